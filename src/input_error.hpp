@@ -1,0 +1,39 @@
+#pragma once
+
+#include <stdexcept>
+#include <string>
+
+namespace peristat {
+
+/// Wrong input, told to the person who wrote it (exit code 2).
+///
+/// Code below the runner names the key of the case file that it was made from, the value found and
+/// what is allowed; the runner, which knows the file, puts file, line and column in front.
+class InputError : public std::runtime_error {
+ public:
+  /// @param key   dotted key of the case file ("lattice.spacing"), or empty
+  /// @param value the offending value as text, or empty
+  /// @param allowed a sentence that says what is wrong and what is allowed
+  InputError(std::string key, std::string value, std::string allowed)
+      : std::runtime_error(join(key, value, allowed)),
+        key_(std::move(key)),
+        value_(std::move(value)),
+        allowed_(std::move(allowed)) {}
+
+  [[nodiscard]] const std::string& key() const { return key_; }
+  [[nodiscard]] const std::string& value() const { return value_; }
+  [[nodiscard]] const std::string& allowed() const { return allowed_; }
+
+  /// "key = value: allowed", without the parts that are empty.
+  [[nodiscard]] static std::string join(const std::string& key, const std::string& value,
+                                        const std::string& allowed) {
+    std::string text = key;
+    if (!value.empty()) text += (text.empty() ? "" : " = ") + value;
+    return text.empty() ? allowed : text + ": " + allowed;
+  }
+
+ private:
+  std::string key_, value_, allowed_;
+};
+
+}  // namespace peristat

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "src/points/points.hpp"
+#include "src/points/shape.hpp"
+
+namespace peristat {
+
+/// Where lattice points stand relative to the lower corner of the first added shape's bounding box.
+enum class LatticeOrigin { cell_centres, nodes };
+
+/// One step of building the body: the shape is added to it or taken away from it, in order.
+struct ShapeStep {
+  enum class Action { add, subtract } action = Action::add;
+  Shape shape;
+};
+
+/// A direction along an axis: "x-", "x+", "y-", "y+", "z-", "z+".
+struct Side {
+  int axis = 0;
+  int sign = 1;
+};
+
+/// Fictitious points outside the body that carry a support: copies of the body's outermost lattice
+/// plane on one side, shifted outwards by one to `thickness` spacings. The layer is also a set.
+struct Layer {
+  std::string name;
+  Side side;
+  int thickness = 3;   ///< in spacings
+  std::string where;   ///< optional expression of x, y, z that keeps a part of the layer
+};
+
+struct Lattice {
+  int dimension = 2;
+  double spacing = 0.0;        ///< [m]
+  double cross_section = 1.0;  ///< 1D: area [m2]; 2D: thickness [m]; 3D: 1
+  LatticeOrigin origin = LatticeOrigin::cell_centres;
+  std::vector<ShapeStep> shapes;
+  std::vector<Layer> layers;
+  double perturbation = 0.0;   ///< largest random shift per component, in spacings, below 0.5
+  std::uint64_t seed = 1;
+};
+
+/// Upper bound of the number of points, without making them (the bounding boxes of the added shapes
+/// over the volume of a cell, and the layers); infinite or huge for a lattice that can't be made.
+[[nodiscard]] double estimate_points(const Lattice& lattice);
+
+/// Points of the lattice, numbered with locality (see numbering.hpp); every point has the volume
+/// spacing^dimension x cross_section. The layers' points stay on the lattice when it is perturbed.
+/// @throws InputError if a shape or value can't be used, or if no point is left
+[[nodiscard]] Points make_points(const Lattice& lattice);
+
+}  // namespace peristat

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "src/points/points.hpp"
+#include "src/points/shape.hpp"
+
+namespace peristat {
+
+/// Rule that selects points for a named set: an expression of x, y, z (true where not zero) or a
+/// shape; a point must satisfy all that are given. Points of fictitious layers are candidates too.
+struct SetRule {
+  std::string name;
+  std::string where;
+  std::optional<Shape> shape;
+};
+
+/// Ascending numbers of the points that satisfy the rule; may be empty.
+[[nodiscard]] std::vector<Index> select(const Points& points, const SetRule& rule);
+
+}  // namespace peristat

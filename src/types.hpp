@@ -1,0 +1,17 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+namespace peristat {
+
+/// Number of a point or of an interaction on this rank.
+using Index = std::int32_t;
+
+/// Position in an array over all bonds; one rank may hold more than 2^31 of them.
+using Offset = std::int64_t;
+
+/// Coordinates of a place [m]; components beyond the dimension are zero.
+using Coordinates = std::array<double, 3>;
+
+}  // namespace peristat
