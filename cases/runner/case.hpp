@@ -1,0 +1,99 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "src/conditions/specification.hpp"
+#include "src/points/lattice.hpp"
+#include "src/points/point_set.hpp"
+
+namespace peristat {
+
+/// Points that come from a file instead of a lattice (table [points]).
+struct PointSource {
+  std::filesystem::path file;  ///< relative paths are relative to the case file
+  double cross_section = 1.0;  ///< 1D: area [m2]; 2D: thickness [m]
+  double horizon = 0.0;        ///< [m]
+};
+
+enum class VolumeCorrection { none, linear };
+enum class SurfaceCorrection { none, volume, energy };
+enum class PlaneState { stress, strain };
+
+struct MaterialSpecification {
+  PlaneState plane = PlaneState::stress;
+  std::optional<double> youngs_modulus;  ///< [Pa]; exactly one of this and the micromodulus is set
+  std::optional<double> micromodulus;    ///< c [N/m6]
+};
+
+struct LoadingSpecification {
+  int steps = 1;               ///< equal steps of the load factor from 0 to 1
+  bool adaptive = true;        ///< cut and grow; otherwise a failed step ends the run
+  double smallest_step = 1e-6; ///< of the load factor
+  double largest_step = 0.0;   ///< of the load factor; 0 means 1 / steps
+};
+
+struct SolverSpecification {
+  std::string mode = "newton";
+  std::string linear = "auto";
+  double relative_tolerance = 1e-10;
+  int max_iterations = 25;     ///< of Newton in a step
+};
+
+struct OutputSpecification {
+  std::filesystem::path directory;  ///< default results/<stem of the case file>
+  int every = 1;                    ///< fields of every n-th accepted step; the last always
+};
+
+/// Mean of a field over a set, reported at every accepted step.
+struct ProbeSpecification {
+  std::string name, set;
+  std::string field = "displacement";  ///< displacement, force, damage, energy_density
+};
+
+/// Place in the case file (lines and columns from 1; 0 means the command line's --set).
+struct CaseLocation {
+  int line = 0, column = 0;
+};
+
+/// A case as read and checked once; constant from then on.
+struct Case {
+  std::string title;
+  int dimension = 2;
+  std::variant<Lattice, PointSource> body;
+  double horizon_ratio = 3.015;  ///< horizon / spacing, for a lattice
+  std::vector<SetRule> sets;
+  VolumeCorrection volume_correction = VolumeCorrection::none;
+  SurfaceCorrection surface_correction = SurfaceCorrection::none;
+  MaterialSpecification material;
+  std::vector<SupportSpecification> supports;
+  std::vector<LoadSpecification> loads;
+  LoadingSpecification loading;
+  SolverSpecification solver;
+  OutputSpecification output;
+  std::vector<ProbeSpecification> probes;
+
+  std::string file;         ///< as given by the person
+  std::string as_read;      ///< text of the file
+  std::string as_resolved;  ///< TOML with overrides and defaults in place
+  std::map<std::string, CaseLocation> locations;  ///< by dotted key, e.g. "support[1].set"
+};
+
+/// Reads and checks a case file.
+/// @param overrides dotted key and TOML value ("loading.steps", "50"); a value that is no TOML is
+///        taken as a string
+/// @throws InputError whose message starts with "FILE:LINE:COLUMN: "
+[[nodiscard]] Case read_case(const std::filesystem::path& file,
+                             const std::vector<std::pair<std::string, std::string>>& overrides = {});
+
+/// The error's message with file, line and column of its key in front.
+[[nodiscard]] std::string located(const Case& from, const std::string& key,
+                                  const std::string& message);
+
+}  // namespace peristat
