@@ -2,6 +2,7 @@
 
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 namespace peristat {
 
@@ -14,15 +15,19 @@ class InputError : public std::runtime_error {
   /// @param key   dotted key of the case file ("lattice.spacing"), or empty
   /// @param value the offending value as text, or empty
   /// @param allowed a sentence that says what is wrong and what is allowed
-  InputError(std::string key, std::string value, std::string allowed)
-      : std::runtime_error(join(key, value, allowed)),
+  /// @param place where it stands ("case.toml:12:3"), put in front of the message, or empty
+  InputError(std::string key, std::string value, std::string allowed, std::string place = {})
+      : std::runtime_error((place.empty() ? "" : place + ": ") + join(key, value, allowed)),
         key_(std::move(key)),
         value_(std::move(value)),
-        allowed_(std::move(allowed)) {}
+        allowed_(std::move(allowed)),
+        place_(std::move(place)) {}
 
   [[nodiscard]] const std::string& key() const { return key_; }
   [[nodiscard]] const std::string& value() const { return value_; }
   [[nodiscard]] const std::string& allowed() const { return allowed_; }
+  /// Empty while nobody who knows the file has seen the error.
+  [[nodiscard]] const std::string& place() const { return place_; }
 
   /// "key = value: allowed", without the parts that are empty.
   [[nodiscard]] static std::string join(const std::string& key, const std::string& value,
@@ -33,7 +38,7 @@ class InputError : public std::runtime_error {
   }
 
  private:
-  std::string key_, value_, allowed_;
+  std::string key_, value_, allowed_, place_;
 };
 
 }  // namespace peristat

@@ -17,7 +17,11 @@ struct SetRule {
   std::optional<Shape> shape;
 };
 
-/// Ascending numbers of the points that satisfy the rule; may be empty.
+/// Ascending numbers of the points that satisfy the rule; may be empty. The expression is evaluated
+/// only inside the shape.
+/// @throws InputError if the rule is empty, the expression is malformed or not finite at a point,
+///         or the shape can't be used; its key is relative to the set's table ("where",
+///         "shape.radius")
 [[nodiscard]] std::vector<Index> select(const Points& points, const SetRule& rule);
 
 }  // namespace peristat

@@ -10,11 +10,11 @@ namespace peristat {
 
 /// The body in its reference configuration: points that carry a volume, and named sets of them.
 struct Points {
-  int dimension = 0;                              ///< 1, 2 or 3
-  double spacing = 0.0;                           ///< lattice spacing, or mean spacing of a cloud [m]
-  std::vector<double> reference;                  ///< positions, count x dimension, row major [m]
-  std::vector<double> volume;                     ///< per point [m3]
-  std::map<std::string, std::vector<Index>> sets; ///< ascending point numbers by set name
+  int dimension = 0;              ///< 1, 2 or 3
+  double spacing = 0.0;           ///< lattice spacing, or mean spacing of a cloud [m]
+  std::vector<double> reference;  ///< positions, count x dimension, row major [m]
+  std::vector<double> volume;     ///< per point [m3]
+  std::map<std::string, std::vector<Index>> sets;  ///< ascending point numbers by set name
 
   [[nodiscard]] Index count() const { return static_cast<Index>(volume.size()); }
 

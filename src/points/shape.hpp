@@ -2,6 +2,7 @@
 
 #include <array>
 #include <limits>
+#include <string>
 #include <variant>
 #include <vector>
 
@@ -34,14 +35,27 @@ struct Sphere {
   double radius = 0.0;
 };
 
-/// Closed simple polygon in the x-y plane (2D; in 3D it is unbounded in z).
+/// Closed simple polygon in the x-y plane (2D; in 3D it is unbounded in z); the last vertex is
+/// joined to the first.
 struct Polygon {
   std::vector<std::array<double, 2>> vertices;
 };
 
+/// Distance outside a shape, relative to the shape's size, that still counts as its boundary: far
+/// above the round-off of lattice coordinates, far below a spacing.
+inline constexpr double boundary_tolerance = 1e-9;
+
 using Shape = std::variant<Box, Disk, Cylinder, Sphere, Polygon>;
 
-/// Whether the place lies inside the shape or on its boundary.
+/// Refuses a shape that has no inside or that does not fit the dimension (disk: 2; cylinder,
+/// sphere: 3; polygon: 2 or 3; box: all). Only a box and a cylinder's length may be infinite.
+/// @param table key of the table that holds the shape's numbers ("lattice.shape[0]")
+/// @param kind_key key that names the kind of shape ("lattice.shape[0].add")
+/// @throws InputError
+void check_shape(const Shape& shape, int dimension, const std::string& table,
+                 const std::string& kind_key);
+
+/// Whether the place lies inside the shape or, up to `boundary_tolerance`, on its boundary.
 [[nodiscard]] bool contains(const Shape& shape, const Coordinates& place);
 
 /// Smallest box around the shape; unbounded directions are infinite.

@@ -1,10 +1,11 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "src/points/points.hpp"
@@ -26,9 +27,18 @@ struct Summary {
   int threads = 1, ranks = 1;
 };
 
-/// Text that describes the run, stored under /case.
+/// Text that describes the run: the case under /case, title and versions as attributes of the file.
 struct CaseText {
   std::string as_read, as_resolved;
+  std::string title{};
+  std::map<std::string, std::string> versions{};  ///< "peristat", "hdf5", ... -> "1.0.0"
+};
+
+/// Columns that a probe adds to the history: NAME for one component, NAME_x, NAME_y, NAME_z for more.
+struct ProbeColumns {
+  std::string name;
+  int components = 1;
+  std::string unit = "1";  ///< of the probed field
 };
 
 /// Writer of a results folder (docs/results.md): results.h5, results.xdmf, history.csv,
@@ -37,14 +47,20 @@ struct CaseText {
 /// A kill at any moment leaves every accepted step readable: each step's fields go to a file of their
 /// own, `parts/NNNNNN.h5`, and results.h5, which links to them, is published by renaming a complete
 /// new file over the old one. `close` gathers the parts into one self-contained results.h5.
+/// The destructor alone leaves what is published.
+///
+/// Every number handed in is finite: anything else is a bug of the caller and throws
+/// std::logic_error that names it, before anything is written. What can't be written later (disk
+/// full, folder gone) throws OutputError, a std::runtime_error that names the file and the reason;
+/// what was published before stays readable.
 class Results {
  public:
   /// Creates the folder and its files; a results folder of an earlier run is replaced, other files
   /// are left alone.
-  /// @throws InputError (key "output.directory") if the folder can't be written
+  /// @throws InputError (key "output.directory") if the folder can't be written, or holds files but
+  ///         no earlier results; (key "probe") if a probe's name is the name of another column
   Results(const std::filesystem::path& directory, const Points& points, const CaseText& text,
-          const std::vector<std::string>& support_sets,
-          const std::vector<std::pair<std::string, int>>& probes);  // name, number of components
+          const std::vector<std::string>& support_sets, const std::vector<ProbeColumns>& probes);
   ~Results();
   Results(const Results&) = delete;
   Results& operator=(const Results&) = delete;
@@ -52,11 +68,13 @@ class Results {
   void add(const IterationRecord& record);
   void add(const DecisionRecord& record);
   /// Adds an accepted step and publishes it, together with the iterations and decisions so far.
-  /// `fields` is empty for steps that only enter the history.
+  /// `fields` is empty for steps that only enter the history. Step numbers ascend; the record holds
+  /// a reaction of every support set and every probe.
   void add(const StepRecord& record, const std::optional<StepFields>& fields);
 
   /// Writes summary.json (counts and energies are taken from the last step record, sums of
-  /// iterations from all) and gathers the parts. Nothing can be added afterwards.
+  /// iterations from all) and gathers the parts. Nothing can be added afterwards. If the parts can't
+  /// be gathered, summary.json is still written and everything stays readable where it is.
   void close(Summary summary);
 
   [[nodiscard]] double seconds_spent() const;  ///< wall time inside this class [s]

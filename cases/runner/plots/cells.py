@@ -1,0 +1,123 @@
+"""Squares (2D) and cubes (3D) that tile a body of lattice points, also after it has deformed."""
+
+from itertools import product
+
+import numpy as np
+
+
+class Cells:
+    """One cell per point, sharing corners with its neighbours so that a picture has no gaps.
+
+    A lattice, also a perturbed one, is recognised by the cells of one spacing: every point must have
+    its own. Points that are no lattice get a square or cube each, without neighbours.
+
+    index      count x dimension, lattice position of the cell
+    spacing    edge length [m]
+    is_lattice whether the points stand on a lattice
+    """
+
+    def __init__(self, reference: np.ndarray, spacing: float):
+        self.spacing = spacing
+        self.dimension = reference.shape[1]
+        phase = np.angle(np.exp(2j * np.pi * reference / spacing).mean(axis=0)) / (2 * np.pi)
+        index = np.rint(reference / spacing - phase).astype(np.int64)
+        index -= index.min(axis=0)
+        self._shape = index.max(axis=0) + 3  # one empty cell around, so that neighbours always exist
+        count = len(index)
+        self.is_lattice = float(np.prod(self._shape.astype(float))) < 60.0 * count + 1e6
+        if self.is_lattice:
+            self._number(index)
+            self.is_lattice = np.count_nonzero(self._grid >= 0) == count
+        if not self.is_lattice:  # every second cell of a row: nobody has a neighbour
+            index = np.zeros_like(index)
+            index[:, 0] = 2 * np.arange(count)
+            self._shape = index.max(axis=0) + 3
+            self._number(index)
+
+    def _number(self, index: np.ndarray) -> None:
+        """Numbers the cells of a dense grid; -1 is empty."""
+        self.index = index
+        self._strides = np.array([int(np.prod(self._shape[axis + 1 :])) for axis in range(self.dimension)])
+        self._flat = (index + 1) @ self._strides
+        self._grid = np.full(int(np.prod(self._shape)), -1, dtype=np.int64)
+        self._grid[self._flat] = np.arange(len(index))
+
+    def neighbours(self, axis: int, sign: int) -> np.ndarray:
+        """Number of every cell's neighbour in a direction, -1 where there is none."""
+        return self._grid[self._flat + sign * self._strides[axis]]
+
+    def image(self, values: np.ndarray) -> np.ndarray:
+        """Values of a plane lattice as an image, rows along y from below; NaN where there is no point."""
+        image = np.full(self.index.max(axis=0) + 1, np.nan)
+        image[tuple(self.index.T)] = values
+        return image.T
+
+    def corners(self, reference: np.ndarray, displacement: np.ndarray, loose: np.ndarray) -> np.ndarray:
+        """Displaced corners, count x 2^dimension x dimension; corner bits are those of `signs()`.
+
+        Displacements are continued linearly from the points to the corners and averaged there.
+        Loose cells (those of broken material) move with their point alone, so that cracks open.
+        """
+        gradient = self._gradient(displacement, loose)
+        half = 0.5 * self.spacing
+        signs = corner_signs(self.dimension)
+        moved = displacement[:, None, :] + half * np.einsum("ka,nac->nkc", signs, gradient)
+        node = self._flat[:, None] + ((signs.astype(int) - 1) // 2) @ self._strides
+        firm = ~loose
+        keys = node[firm].ravel()
+        number_of_cells = np.maximum(np.bincount(keys, minlength=len(self._grid)), 1)
+        for component in range(self.dimension):
+            sums = np.bincount(keys, moved[firm, :, component].ravel(), minlength=len(self._grid))
+            moved[firm, :, component] = (sums / number_of_cells)[node[firm]]
+        centres = reference
+        if self.is_lattice:  # of a perturbed lattice: the unperturbed places
+            centres = self.index * self.spacing
+            centres = centres + (reference - centres).mean(axis=0)
+        return centres[:, None, :] + half * signs + moved
+
+    def _gradient(self, displacement: np.ndarray, loose: np.ndarray) -> np.ndarray:
+        """Displacement gradient by differences to the neighbours: count x axis x component."""
+        gradient = np.zeros((len(displacement), self.dimension, self.dimension))
+        for axis in range(self.dimension):
+            number = np.zeros(len(displacement))
+            for sign in (-1, 1):
+                other = self.neighbours(axis, sign)
+                usable = (other >= 0) & ~loose & ~loose[other]
+                difference = sign * (displacement[other] - displacement) / self.spacing
+                gradient[:, axis] += np.where(usable[:, None], difference, 0.0)
+                number += usable
+            gradient[:, axis] /= np.maximum(number, 1.0)[:, None]
+        return gradient
+
+
+def corner_signs(dimension: int) -> np.ndarray:
+    """Signs of a cell's corners, 2^dimension x dimension; the last axis changes fastest."""
+    return np.array(list(product((-1.0, 1.0), repeat=dimension)))
+
+
+def merged(reference: np.ndarray, spacing: float, limit: int, *fields: np.ndarray):
+    """Fewer points for a picture: means over blocks of lattice cells until at most `limit` remain.
+
+    Returns spacing, reference and fields, unchanged if there are few enough points. A million cells
+    can't be told apart on a screen, but take long to draw.
+    """
+    if len(reference) <= limit:
+        return spacing, reference, *fields
+    dimension = reference.shape[1]
+    factor = int(np.ceil((len(reference) / limit) ** (1.0 / dimension)))
+    block = np.floor((reference - reference.min(axis=0)) / (factor * spacing) + 1e-6).astype(np.int64)
+    shape = block.max(axis=0) + 1
+    key = block @ np.array([int(np.prod(shape[axis + 1 :])) for axis in range(dimension)])
+    _, group = np.unique(key, return_inverse=True)
+    number = np.bincount(group)
+
+    def mean(values):
+        if values.ndim == 1:
+            return np.bincount(group, values) / number
+        return np.stack([np.bincount(group, column) / number for column in values.T], axis=1)
+
+    # Blocks that the body fills only in part stay in their place, so that they tile without gaps.
+    first = np.zeros((len(number), dimension))
+    first[group] = block
+    places = reference.min(axis=0) + (first + 0.5) * factor * spacing - 0.5 * spacing
+    return factor * spacing, places, *(mean(values) for values in fields)

@@ -1,0 +1,107 @@
+"""Looks that all pictures share: fonts, colours, units, titles."""
+
+import matplotlib
+
+matplotlib.use("Agg")
+
+import numpy as np
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+
+INK = "#22282e"  # text and axes
+FAINT = "#8a949e"  # secondary text
+GHOST = "#c3cad1"  # reference configuration
+GRID = "#e6e9ec"
+WARNING = "#b4531b"
+LINES = ["#1f6f9f", "#d1603d", "#3f8f5f", "#7a5aa6", "#b58a1b", "#4d5964"]
+
+DOTS_PER_INCH = 100
+
+matplotlib.rcParams.update(
+    {
+        "font.family": "DejaVu Sans",
+        "font.size": 13,
+        "axes.edgecolor": "#9aa3ab",
+        "axes.labelcolor": INK,
+        "axes.linewidth": 0.9,
+        "axes.spines.top": False,
+        "axes.spines.right": False,
+        "axes.grid": True,
+        "axes.axisbelow": True,
+        "grid.color": GRID,
+        "grid.linewidth": 1.0,
+        "text.color": INK,
+        "xtick.color": "#9aa3ab",
+        "ytick.color": "#9aa3ab",
+        "xtick.labelcolor": INK,
+        "ytick.labelcolor": INK,
+        "legend.frameon": False,
+        "axes.formatter.limits": (-4, 5),
+        "axes.formatter.use_mathtext": True,
+    }
+)
+
+LENGTHS = (("m", 1.0), ("mm", 1e-3), ("µm", 1e-6), ("nm", 1e-9))
+FORCES = (("MN", 1e6), ("kN", 1e3), ("N", 1.0), ("mN", 1e-3), ("µN", 1e-6))
+ENERGY_DENSITIES = (("GJ/m³", 1e9), ("MJ/m³", 1e6), ("kJ/m³", 1e3), ("J/m³", 1.0), ("mJ/m³", 1e-3))
+
+
+def unit_for(largest: float, units, least: float = 0.3) -> tuple[str, float]:
+    """Name and size of the largest unit in which the largest value is at least `least`."""
+    for name, size in units:
+        if largest >= least * size:
+            return name, size
+    return units[-1] if largest > 0.0 else next(unit for unit in units if unit[1] == 1.0)
+
+
+def round_factor(wanted: float) -> float:
+    """Largest of 1, 2, 5, 10, 20, 50, ... that is not above the wanted factor; at least 1."""
+    if not np.isfinite(wanted) or wanted <= 1.0:
+        return 1.0
+    decade = 10.0 ** np.floor(np.log10(wanted))
+    return max(step * decade for step in (1.0, 2.0, 5.0) if step * decade <= wanted * (1 + 1e-12))
+
+
+def number(value: float, digits: int = 4) -> str:
+    """A number as a person writes it: 7 500, 0.25, 1.2e-7."""
+    if value == int(value) and abs(value) < 1e9:
+        return f"{int(value):,}".replace(",", "\u2009")
+    return f"{value:.{digits}g}"
+
+
+def new_figure(width: float, height: float) -> Figure:
+    """An empty white figure; sizes in inches (100 dots each)."""
+    figure = Figure(figsize=(width, height), dpi=DOTS_PER_INCH, facecolor="white")
+    FigureCanvasAgg(figure)
+    return figure
+
+
+def heading(figure: Figure, results, words: list[str]) -> None:
+    """Title and a line of facts below it; a run that did not complete says so in colour."""
+    width, height = figure.get_size_inches()
+    completed = results.status == "completed"
+    room = int((width - (0.7 if completed else 2.9)) / 0.17)  # characters of 0.17 inch
+    title = results.title if len(results.title) <= room else results.title[: room - 1] + "…"
+    left = 0.35 / width
+    figure.text(left, 1 - 0.30 / height, title, fontsize=19, fontweight="bold", va="top",
+                parse_math=False)  # fmt: skip
+    figure.text(left, 1 - 0.74 / height, "  ·  ".join(words), fontsize=13, color="#5b656e", va="top")
+    if not completed:
+        remark = {"not_converged": "did not converge"}.get(results.status, results.status)
+        figure.text(1 - left, 1 - 0.36 / height, f"run {remark}", fontsize=13, color=WARNING,
+                    va="top", ha="right", fontweight="bold")  # fmt: skip
+
+
+def step_words(step) -> list[str]:
+    """Load factor and step as facts for a heading."""
+    return [f"load factor {number(step.load_factor)}", f"step {step.number}"]
+
+
+def colour_bar(figure: Figure, place, mappable, label: str, **options) -> None:
+    """A slim colour bar in the rectangle `place` (figure fractions)."""
+    axes = figure.add_axes(place)
+    bar = figure.colorbar(mappable, cax=axes, **options)
+    bar.outline.set_visible(False)
+    bar.set_label(label, labelpad=10)
+    axes.grid(False)
+    axes.tick_params(length=4)

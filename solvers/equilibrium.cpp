@@ -1,0 +1,77 @@
+#include "solvers/equilibrium.hpp"
+
+#include <cmath>
+
+#include "solvers/vector_verbs.hpp"
+
+namespace peristat {
+
+std::string name(Outcome outcome) {
+  switch (outcome) {
+    case Outcome::converged:
+      return "converged";
+    case Outcome::iteration_limit:
+      return "iteration_limit";
+    case Outcome::not_positive_definite:
+      return "not_positive_definite";
+    case Outcome::singular_tangent:
+      return "singular_tangent";
+    case Outcome::no_descent:
+      return "no_descent";
+    case Outcome::line_search_failed:
+      return "line_search_failed";
+    case Outcome::degenerate:
+      return "degenerate";
+    case Outcome::out_of_memory:
+      return "out_of_memory";
+    case Outcome::linear_solver_inaccurate:
+      return "linear_solver_inaccurate";
+    case Outcome::interrupted:
+      return "interrupted";
+  }
+  return "";
+}
+
+std::string explanation(Outcome outcome) {
+  switch (outcome) {
+    case Outcome::converged:
+      return "equilibrium found";
+    case Outcome::iteration_limit:
+      return "the residual is still above the tolerance after the largest number of iterations "
+             "(solver.max_iterations)";
+    case Outcome::not_positive_definite:
+      return "the tangent has negative pivots: the body buckles, or another limit point is passed";
+    case Outcome::singular_tangent:
+      return "the tangent is singular: some points can move without resistance (too few bonds, "
+             "bonds in one line only, or too few supports)";
+    case Outcome::no_descent:
+      return "the Newton direction does not lower the energy";
+    case Outcome::line_search_failed:
+      return "no step along the Newton direction lowers the energy";
+    case Outcome::degenerate:
+      return "bonds collapse to zero length, or values are not finite";
+    case Outcome::out_of_memory:
+      return "the factorisation does not fit in memory";
+    case Outcome::linear_solver_inaccurate:
+      return "the linear solution is inaccurate: the tangent is close to singular";
+    case Outcome::interrupted:
+      return "interrupted";
+  }
+  return "";
+}
+
+void evaluate(const EquilibriumProblem& problem, std::span<const double> external_force,
+              Trial& trial) {
+  const Stored stored = problem.assembler.gradient(trial.displacement, trial.gradient);
+  trial.stored_energy = stored.energy;
+  trial.total_energy = stored.energy - dot(external_force, trial.displacement);
+  double squared = 0.0;
+  for (Index dof : problem.free.dof) {
+    const double residual = external_force[dof] - trial.gradient[dof];
+    squared += residual * residual;
+  }
+  trial.residual_norm = std::sqrt(squared);
+  trial.degenerate = stored.degenerate || !std::isfinite(squared);
+}
+
+}  // namespace peristat

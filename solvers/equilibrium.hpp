@@ -1,0 +1,59 @@
+#pragma once
+
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "assembly/assembler.hpp"
+#include "solvers/linear/free_dofs.hpp"
+#include "src/conditions/conditions.hpp"
+
+namespace peristat {
+
+/// What the search for equilibrium changes.
+struct State {
+  std::vector<double> displacement;  ///< points x dimension, row major [m]
+  double load_factor = 0.0;
+};
+
+/// How a search for equilibrium ended. Reaching a limit is never success.
+enum class Outcome {
+  converged,
+  iteration_limit,        ///< residual still above the tolerance
+  not_positive_definite,  ///< the tangent has negative pivots: a limit point, buckling or softening
+  singular_tangent,       ///< a motion without stiffness: too few bonds or supports
+  no_descent,             ///< the Newton direction does not lower the energy
+  line_search_failed,     ///< no step length lowers the energy
+  degenerate,             ///< an interaction has collapsed to zero, or values are not finite
+  out_of_memory,          ///< of the linear solver
+  linear_solver_inaccurate,
+  interrupted,            ///< by the person
+};
+
+[[nodiscard]] std::string name(Outcome outcome);
+[[nodiscard]] std::string explanation(Outcome outcome);
+
+/// The equilibrium problem f_ext(load factor) - dE/dx(u) = 0 on the free degrees of freedom, with what
+/// is constant in a solve. The total energy E(u) - f_ext.u is the merit function.
+struct EquilibriumProblem {
+  Assembler& assembler;
+  const Conditions& conditions;
+  const FreeDofs& free;
+};
+
+/// A trial state with everything that a decision about it needs.
+struct Trial {
+  std::vector<double> displacement;  ///< [m]
+  std::vector<double> gradient;      ///< dE/dx [N]
+  double stored_energy = 0.0;        ///< [J]
+  double total_energy = 0.0;         ///< stored energy - f_ext.u [J]
+  double residual_norm = 0.0;        ///< 2-norm of f_ext - dE/dx over free degrees of freedom [N]
+  bool degenerate = false;
+};
+
+/// Evaluates energy and gradient at trial.displacement.
+void evaluate(const EquilibriumProblem& problem, std::span<const double> external_force,
+              Trial& trial);
+
+}  // namespace peristat

@@ -1,0 +1,48 @@
+#include "solvers/line_search.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "solvers/vector_verbs.hpp"
+
+namespace peristat {
+namespace {
+
+/// Derivative of the total energy along the direction [J].
+double slope_along(std::span<const double> direction, const Trial& trial,
+                   std::span<const double> external_force) {
+  return dot(direction, trial.gradient) - dot(direction, external_force);
+}
+
+}  // namespace
+
+LineSearchResult line_search(const EquilibriumProblem& problem,
+                             std::span<const double> external_force, const Trial& from,
+                             std::span<const double> direction, const LineSearchOptions& options,
+                             Trial& trial) {
+  const double slope = slope_along(direction, from, external_force);
+  if (!std::isfinite(slope)) return {Outcome::degenerate, 0.0};
+  if (slope > 0.0) return {Outcome::no_descent, 0.0};
+
+  const double work = dot(external_force, from.displacement);
+  const double round_off = 64.0 * std::numeric_limits<double>::epsilon() *
+                           std::max(std::abs(from.stored_energy), std::abs(work));
+  bool degenerate = false;
+  double length = 1.0;
+  for (int count = 0; count < options.max_trials; ++count, length *= options.shrink) {
+    trial.displacement = from.displacement;
+    add_scaled(trial.displacement, length, direction);
+    evaluate(problem, external_force, trial);
+    degenerate = trial.degenerate;
+    if (degenerate) continue;
+    const double change = trial.total_energy - from.total_energy;
+    if (change <= options.sufficient_decrease * length * slope) return {Outcome::converged, length};
+    const bool flatter =
+        std::abs(slope_along(direction, trial, external_force)) <= std::abs(slope);
+    if (std::abs(change) <= round_off && flatter) return {Outcome::converged, length};
+  }
+  return {degenerate ? Outcome::degenerate : Outcome::line_search_failed, 0.0};
+}
+
+}  // namespace peristat

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <memory>
+
+#include "solvers/linear/linear_solver.hpp"
+
+namespace peristat {
+
+/// What the symbolic factorisation knows before any number is computed.
+struct FactorEstimate {
+  double entries = 0.0;    ///< of the factor
+  double flops = 0.0;      ///< of one factorisation
+  std::string ordering;    ///< "natural", "AMD", "METIS"
+  [[nodiscard]] double bytes() const { return 8.0 * entries; }
+};
+
+/// When a factorisation serves as preconditioner for later tangents instead of being redone.
+struct FactorReuse {
+  int max_iterations = 0;    ///< of conjugate gradients per solve; 0 factorises every tangent
+  double tolerance = 1e-12;  ///< relative residual of those solves
+};
+
+/// Direct solver: CHOLMOD's supernodal LL^T with 64-bit indices, analysed once per pattern.
+///
+/// The fill-reducing order is found on the graph of points, d times smaller than that of the degrees of
+/// freedom, as the cheapest of natural (points are numbered along the body), AMD and METIS.
+///
+/// With reuse, a tangent after the first is solved by conjugate gradients preconditioned with the last
+/// factor; only when that takes more than max_iterations, or meets negative curvature, is the new
+/// tangent factorised. Solutions then still belong to the new tangent (Newton stays quadratic).
+///
+/// A tangent that is not positive definite is factorised a second time as LDL^T for its inertia, where
+/// that costs no more than `largest_inertia_flops`.
+class Cholesky : public LinearSolver {
+ public:
+  explicit Cholesky(FactorReuse reuse = {});
+  ~Cholesky() override;
+
+  LinearOutcome analyze(const Pattern& pattern, const FreeDofs& free) override;
+  LinearOutcome factorize(const Tangent& tangent) override;
+  LinearOutcome solve(std::span<const double> b, std::span<double> x) override;
+  [[nodiscard]] std::optional<Inertia> inertia() const override;
+  [[nodiscard]] LinearStatistics statistics() const override;
+  [[nodiscard]] int last_iterations() const override;
+  [[nodiscard]] std::string describe() const override;
+
+  [[nodiscard]] const FactorEstimate& estimate() const;
+
+  /// Above this the simplicial LDL^T, some twenty times slower than LL^T, is not tried.
+  static constexpr double largest_inertia_flops = 2e10;
+
+ private:
+  struct Cholmod;
+  std::unique_ptr<Cholmod> cholmod_;
+};
+
+}  // namespace peristat

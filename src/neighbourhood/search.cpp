@@ -1,0 +1,185 @@
+#include "src/neighbourhood/search.hpp"
+
+#include <omp.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "src/neighbourhood/horizon.hpp"
+
+namespace peristat {
+namespace {
+
+/// Cells per search radius. Half the radius leaves 3.7 candidates per bond in 3D instead of 6.1 with
+/// cells as large as the radius.
+constexpr int cells_per_radius = 2;
+
+/// Cells of at least radius / cells_per_radius; the last direction is the fastest. Points of a cell
+/// stand next to each other, in ascending order.
+template <int D>
+struct CellList {
+  std::array<double, D> lower{};
+  std::array<double, D> cells_per_length{};
+  std::array<int, D> extent{};
+  std::vector<Index> begin;                     // first place of each cell, cells + 1
+  std::vector<Index> point;                     // points in the order of their cells
+  std::vector<std::array<double, D>> position;  // their positions, to read along
+
+  CellList(const Points& points, double radius) {
+    std::array<double, D> upper;
+    lower.fill(std::numeric_limits<double>::infinity());
+    upper.fill(-std::numeric_limits<double>::infinity());
+    const Index count = points.count();
+    const double* reference = points.reference.data();
+    for (Index i = 0; i < count; ++i) {
+      for (int c = 0; c < D; ++c) {
+        lower[c] = std::min(lower[c], reference[std::size_t(i) * D + c]);
+        upper[c] = std::max(upper[c], reference[std::size_t(i) * D + c]);
+      }
+    }
+    // More cells than points would only cost memory: a cloud with far outliers gets larger cells.
+    const double most_per_direction = std::max(1.0, std::ceil(std::pow(4.0 * count, 1.0 / D)));
+    std::size_t cells = 1;
+    for (int c = 0; c < D; ++c) {
+      const double span = upper[c] - lower[c];
+      const double wanted = std::floor(span * cells_per_radius / reach(radius));
+      const double most = D == 1 ? most_per_direction : 8.0 * most_per_direction;
+      extent[c] = static_cast<int>(std::clamp(wanted, 1.0, most));
+      cells_per_length[c] = span > 0.0 ? extent[c] / span : 0.0;
+      cells *= std::size_t(extent[c]);
+    }
+    std::vector<Index> cell(count);
+    begin.assign(cells + 1, 0);
+    for (Index i = 0; i < count; ++i) {
+      std::size_t flat = 0;
+      for (int c = 0; c < D; ++c) {
+        flat = flat * extent[c] + coordinate(reference[std::size_t(i) * D + c], c);
+      }
+      cell[i] = static_cast<Index>(flat);
+      ++begin[flat + 1];
+    }
+    for (std::size_t k = 0; k < cells; ++k) begin[k + 1] += begin[k];
+    std::vector<Index> next(begin.begin(), begin.end() - 1);
+    point.resize(count);
+    position.resize(count);
+    for (Index i = 0; i < count; ++i) {
+      const Index place = next[cell[i]]++;
+      point[place] = i;
+      for (int c = 0; c < D; ++c) position[place][c] = reference[std::size_t(i) * D + c];
+    }
+  }
+
+  [[nodiscard]] int coordinate(double at, int direction) const {
+    const int cell = static_cast<int>((at - lower[direction]) * cells_per_length[direction]);
+    return std::clamp(cell, 0, extent[direction] - 1);
+  }
+
+  /// Range of places [first, last) of a run of cells along the fastest direction.
+  template <class Visit>
+  void for_each_run(const std::array<double, D>& at, double radius, const Visit& visit) const {
+    std::array<int, D> from, to;
+    for (int c = 0; c < D; ++c) {
+      from[c] = coordinate(at[c] - radius, c);
+      to[c] = coordinate(at[c] + radius, c);
+    }
+    if constexpr (D == 1) {
+      visit(begin[from[0]], begin[to[0] + 1]);
+    } else if constexpr (D == 2) {
+      for (int a = from[0]; a <= to[0]; ++a) {
+        const std::size_t row = std::size_t(a) * extent[1];
+        visit(begin[row + from[1]], begin[row + to[1] + 1]);
+      }
+    } else {
+      for (int a = from[0]; a <= to[0]; ++a) {
+        for (int b = from[1]; b <= to[1]; ++b) {
+          const std::size_t row = (std::size_t(a) * extent[1] + b) * extent[2];
+          visit(begin[row + from[2]], begin[row + to[2] + 1]);
+        }
+      }
+    }
+  }
+};
+
+struct Found {
+  std::vector<Index> partner;
+  std::vector<double> length;
+};
+
+struct Candidate {
+  Index partner;
+  double squared;
+};
+
+template <int D>
+Bonds search(const Points& points, double radius, int threads) {
+  const CellList<D> cells(points, radius);
+  const Index count = points.count();
+  const double longest = reach(radius);
+  const double squared_longest = longest * longest;
+  Bonds bonds;
+  bonds.offset.assign(std::size_t(count) + 1, 0);
+  std::vector<Found> found(threads);
+
+#pragma omp parallel num_threads(threads)
+  {
+    const int thread = omp_get_thread_num();
+    const Index first = static_cast<Index>(std::int64_t(count) * thread / threads);
+    const Index last = static_cast<Index>(std::int64_t(count) * (thread + 1) / threads);
+    Found& mine = found[thread];
+    std::vector<Candidate> row;
+    for (Index i = first; i < last; ++i) {
+      std::array<double, D> at;
+      for (int c = 0; c < D; ++c) at[c] = points.reference[std::size_t(i) * D + c];
+      std::size_t kept = 0;
+      cells.for_each_run(at, longest, [&](Index begin, Index end) {
+        if (row.size() < kept + std::size_t(end - begin)) row.resize(kept + std::size_t(end - begin));
+        for (Index place = begin; place < end; ++place) {
+          double squared = 0.0;
+          for (int c = 0; c < D; ++c) {
+            const double step = cells.position[place][c] - at[c];
+            squared += step * step;
+          }
+          row[kept] = {cells.point[place], squared};
+          kept += std::size_t((squared <= squared_longest) & (cells.point[place] > i));
+        }
+      });
+      std::sort(row.begin(), row.begin() + std::ptrdiff_t(kept),
+                [](const Candidate& a, const Candidate& b) { return a.partner < b.partner; });
+      for (std::size_t k = 0; k < kept; ++k) {
+        mine.partner.push_back(row[k].partner);
+        mine.length.push_back(std::sqrt(row[k].squared));
+      }
+      bonds.offset[std::size_t(i) + 1] = static_cast<Offset>(kept);
+    }
+  }
+
+  for (Index i = 0; i < count; ++i) bonds.offset[std::size_t(i) + 1] += bonds.offset[i];
+  bonds.partner.resize(std::size_t(bonds.offset[count]));
+  bonds.length.resize(bonds.partner.size());
+  bonds.weight.assign(bonds.partner.size(), 0.0);
+  std::size_t at = 0;
+  for (Found& part : found) {
+    std::copy(part.partner.begin(), part.partner.end(), bonds.partner.begin() + std::ptrdiff_t(at));
+    std::copy(part.length.begin(), part.length.end(), bonds.length.begin() + std::ptrdiff_t(at));
+    at += part.partner.size();
+    part = {};
+  }
+  return bonds;
+}
+
+}  // namespace
+
+Bonds search_bonds(const Points& points, double radius, int threads) {
+  switch (points.dimension) {
+    case 1:
+      return search<1>(points, radius, threads);
+    case 2:
+      return search<2>(points, radius, threads);
+    default:
+      return search<3>(points, radius, threads);
+  }
+}
+
+}  // namespace peristat

@@ -1,0 +1,396 @@
+#include "src/results/results.hpp"
+
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <exception>
+#include <limits>
+#include <stdexcept>
+
+#include "src/input_error.hpp"
+#include "src/results/csv_table.hpp"
+#include "src/results/hdf5_file.hpp"
+#include "src/results/output_file.hpp"
+#include "src/results/record_tables.hpp"
+#include "src/results/results_folder.hpp"
+#include "src/results/summary_json.hpp"
+#include "src/results/xdmf_series.hpp"
+
+namespace peristat {
+namespace {
+
+constexpr std::size_t master_growth = 1 << 18;  // bytes
+
+using Clock = std::chrono::steady_clock;
+
+/// Adds the time of its life to a sum.
+class Stopwatch {
+ public:
+  explicit Stopwatch(double& seconds) : seconds_(seconds) {}
+  ~Stopwatch() {
+    seconds_ += std::chrono::duration<double>(Clock::now() - start_).count();
+  }
+  Stopwatch(const Stopwatch&) = delete;
+  Stopwatch& operator=(const Stopwatch&) = delete;
+
+ private:
+  double& seconds_;
+  Clock::time_point start_ = Clock::now();
+};
+
+std::string step_name(int step) {
+  char name[16];
+  std::snprintf(name, sizeof name, "%06d", step);
+  return name;
+}
+
+/// A field of a step with its values.
+struct Field {
+  std::string name;
+  DatasetLabel label;
+  bool is_vector;
+  const std::vector<double>* values;
+};
+
+struct VectorField {
+  std::string name, unit;
+};
+
+struct WrittenStep {
+  std::string name;  ///< "000001"
+  std::vector<VectorField> vectors;
+};
+
+std::vector<Field> present_fields(const StepFields& fields, Index count, int dimension) {
+  std::vector<Field> present{
+      {"displacement", {"m", "displacement of each point"}, true, fields.displacement},
+      {"force",
+       {"N", "internal force on each point: minus the derivative of the stored energy"},
+       true,
+       fields.force},
+      {"damage", {"1", "damage of each point, 0 intact to 1"}, false, fields.damage},
+      {"energy_density", {"J/m3", "stored energy per volume of each point"}, false,
+       fields.energy_density}};
+  std::erase_if(present, [](const Field& field) { return field.values == nullptr; });
+  for (const Field& field : present) {
+    const std::vector<double>& values = *field.values;
+    if (values.size() != std::size_t(count) * (field.is_vector ? dimension : 1)) {
+      throw std::logic_error("results: " + field.name + " has the wrong number of values");
+    }
+    if (!std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); })) {
+      throw std::logic_error("results: " + field.name + " has values that are not finite");
+    }
+  }
+  return present;
+}
+
+/// Publishes an HDF5 file whose contents `write` makes.
+/// @throws OutputError
+template <class Write>
+void publish_hdf5(const std::filesystem::path& path, Write write) {
+  const std::filesystem::path unfinished = temporary(path);
+  try {
+    auto file = Hdf5File::create(unfinished);
+    write(file);
+    file.close();
+  } catch (const std::runtime_error& error) {
+    std::error_code ignored;
+    std::filesystem::remove(unfinished, ignored);
+    throw OutputError(path.string() + ": can't be written: " + error.what());
+  }
+  rename_file(unfinished, path);
+}
+
+/// The point sets as a matrix: 1 where the point of the row is in the set of the column.
+std::vector<std::uint8_t> membership(const Points& points) {
+  std::vector<std::uint8_t> matrix(std::size_t(points.count()) * points.sets.size());
+  std::size_t column = 0;
+  for (const auto& [name, members] : points.sets) {
+    for (const Index point : members) matrix[point * points.sets.size() + column] = 1;
+    ++column;
+  }
+  return matrix;
+}
+
+void write_points(Hdf5File& file, const Points& points) {
+  const auto count = static_cast<std::uint64_t>(points.count());
+  const auto dimension = static_cast<std::uint64_t>(points.dimension);
+  file.make_group("/points");
+  file.set_attribute("/points", "dimension", std::int64_t{points.dimension});
+  file.set_attribute("/points", "spacing", points.spacing);
+  file.write("/points/reference", points.reference, {count, dimension},
+             {"m", "reference position of each point"});
+  file.write("/points/volume", points.volume, {count}, {"m3", "volume of each point"});
+
+  file.write("/points/set_ids", membership(points), {count, points.sets.size()},
+             {"1", "1 where the point (row) is in the set (column); attribute sets names the columns"});
+  std::vector<std::string> names;
+  for (const auto& [name, members] : points.sets) names.push_back(name);
+  file.set_attribute("/points/set_ids", "sets", names);
+
+  std::vector<double> geometry;
+  std::vector<std::int32_t> numbers;
+  for (Index point = 0; point < points.count(); ++point) {
+    const Coordinates at = points.position(point);
+    geometry.insert(geometry.end(), at.begin(), at.end());
+    numbers.push_back(point);
+  }
+  file.write("/points/geometry", geometry, {count, 3},
+             {"m", "reference position with zeros beyond the dimension, for results.xdmf"});
+  file.write("/points/number", numbers, {count}, {"1", "number of each point, for results.xdmf"});
+}
+
+std::int64_t peak_memory_bytes() {
+  rusage usage{};
+  ::getrusage(RUSAGE_SELF, &usage);
+  return std::int64_t{usage.ru_maxrss} * 1024;
+}
+
+}  // namespace
+
+struct Results::Files {
+  Files(const std::filesystem::path& directory, const Points& points, const CaseText& text,
+        const std::vector<std::string>& sets, const std::vector<ProbeColumns>& probe_columns);
+
+  void add(const StepRecord& record, const std::optional<StepFields>& step_fields);
+  void write_step(const StepRecord& record, const std::vector<Field>& fields);
+  void write_views(Hdf5File& file, const std::string& group, const std::string& step,
+                   const std::vector<VectorField>& vectors) const;
+  void append_pending();
+  void publish_xdmf();
+  void gather_parts();
+
+  /// Whether vectors need views of three components (see XdmfSeries).
+  [[nodiscard]] bool has_views() const { return dimension < 3; }
+
+  Index count;
+  int dimension;
+  std::vector<std::string> support_sets;
+  std::vector<ProbeColumns> probes;
+  std::vector<Column> history_header;  // before the folder: a bad probe leaves it alone
+  ResultsFolder folder;
+  CsvTable history, iterations, decisions;
+  Hdf5File master;  ///< results.h5 with links to the parts; lives in memory
+  XdmfSeries xdmf;
+  StepTotals totals;
+  bool xdmf_is_behind = false;
+  Clock::time_point xdmf_time{};  ///< when it was last published
+  std::vector<Row> pending_iterations, pending_decisions;
+  std::vector<WrittenStep> written_steps;
+  int last_step = std::numeric_limits<int>::min();
+  bool closed = false;
+  double seconds = 0.0;
+};
+
+Results::Files::Files(const std::filesystem::path& directory, const Points& points,
+                      const CaseText& text, const std::vector<std::string>& sets,
+                      const std::vector<ProbeColumns>& probe_columns)
+    : count(points.count()),
+      dimension(points.dimension),
+      support_sets(sets),
+      probes(probe_columns),
+      history_header(history_columns(sets, probe_columns)),
+      folder(prepare_results_folder(directory)),
+      history(folder.history(), history_header),
+      iterations(folder.iterations(), iteration_columns()),
+      decisions(folder.decisions(), decision_columns()),
+      master(Hdf5File::in_memory(folder.results().string() + " (in memory)", master_growth)),
+      xdmf(points.count()) {
+  master.set_attribute("/", "title", text.title);
+  auto versions = text.versions;
+  versions.emplace("hdf5", Hdf5File::library_version());
+  for (const auto& [name, version] : versions) {
+    master.set_attribute("/", name + "_version", version);
+  }
+  master.make_group("/case");
+  master.write("/case/as_read", text.as_read, {"none", "text of the case file (TOML)"});
+  master.write("/case/as_resolved", text.as_resolved,
+               {"none", "the case with overrides and defaults in place (TOML)"});
+  master.make_table("/history", history_header);
+  master.make_table("/iterations", iteration_columns());
+  master.make_table("/decisions", decision_columns());
+  master.make_group("/steps");
+  if (has_views()) master.make_group("/xdmf");
+
+  publish_hdf5(folder.parts() / "points.h5",
+               [&](Hdf5File& file) { write_points(file, points); });
+  master.link("/points", "parts/points.h5", "/points");
+  publish_file(folder.results(), master.image());
+}
+
+void Results::Files::append_pending() {
+  master.append("/iterations", iteration_columns(), pending_iterations);
+  pending_iterations.clear();
+  master.append("/decisions", decision_columns(), pending_decisions);
+  pending_decisions.clear();
+}
+
+void Results::Files::write_views(Hdf5File& file, const std::string& group, const std::string& step,
+                                 const std::vector<VectorField>& vectors) const {
+  file.make_group(group);
+  for (const VectorField& vector : vectors) {
+    file.write_padded_view(
+        group + "/" + vector.name, step + "/" + vector.name, static_cast<std::uint64_t>(count),
+        static_cast<std::uint64_t>(dimension),
+        {vector.unit, vector.name + " with zeros beyond the dimension, for results.xdmf"});
+  }
+}
+
+void Results::Files::write_step(const StepRecord& record, const std::vector<Field>& fields) {
+  WrittenStep step{step_name(record.step), {}};
+  const std::string& name = step.name;
+  const auto points = static_cast<std::uint64_t>(count);
+  const Hdf5File::Shape vectors{points, static_cast<std::uint64_t>(dimension)}, scalars{points};
+  std::vector<XdmfSeries::Field> shown;
+  for (const Field& field : fields) {
+    const std::string group = field.is_vector && has_views() ? "/xdmf/" : "/steps/";
+    shown.push_back({field.name, group + name + "/" + field.name, field.is_vector});
+    if (field.is_vector) step.vectors.push_back({field.name, field.label.unit});
+  }
+
+  publish_hdf5(folder.parts() / (name + ".h5"), [&](Hdf5File& file) {
+    file.make_group("/step");
+    file.set_attribute("/step", "step", std::int64_t{record.step});
+    file.set_attribute("/step", "load_factor", record.load_factor);
+    file.set_attribute("/step", "mode", record.mode);
+    for (const Field& field : fields) {
+      file.write("/step/" + field.name, *field.values, field.is_vector ? vectors : scalars,
+                 field.label);
+    }
+    if (has_views()) write_views(file, "/xdmf", "/step", step.vectors);
+  });
+
+  master.link("/steps/" + name, "parts/" + name + ".h5", "/step");
+  if (has_views()) master.link("/xdmf/" + name, "parts/" + name + ".h5", "/xdmf");
+  xdmf.add(record.step, record.load_factor, record.mode, shown);
+  written_steps.push_back(std::move(step));
+}
+
+void Results::Files::add(const StepRecord& record, const std::optional<StepFields>& step_fields) {
+  const Row row = make_row(record, support_sets, probes);
+  const std::vector<Field> fields =
+      present_fields(step_fields.value_or(StepFields{}), count, dimension);
+  if (record.step < 0 || record.step <= last_step) {
+    throw std::logic_error("results: step " + std::to_string(record.step) + " after step " +
+                           std::to_string(last_step));
+  }
+  last_step = record.step;
+
+  if (!fields.empty()) write_step(record, fields);
+  append_pending();
+  master.append("/history", history_header, {row});
+  publish_file(folder.results(), master.image());
+  history.append(row);
+  totals.add(record);
+  // Its length grows with the steps, so that a run of quick steps would mostly write this file.
+  if (!fields.empty()) xdmf_is_behind = true;
+  if (Clock::now() - xdmf_time >= std::chrono::seconds(1)) publish_xdmf();
+}
+
+void Results::Files::publish_xdmf() {
+  if (!xdmf_is_behind) return;
+  publish_file(folder.xdmf(), xdmf.text());
+  xdmf_is_behind = false;
+  xdmf_time = Clock::now();
+}
+
+/// Replaces the links of results.h5 by what they link to and removes the parts.
+void Results::Files::gather_parts() {
+  const std::filesystem::path gathered = temporary(folder.results());
+  try {
+    write_file(gathered, master.image());
+    auto file = Hdf5File::open_for_update(gathered);
+    const auto gather = [&](const std::string& part, const std::string& source,
+                            const std::string& path) {
+      const auto from = Hdf5File::open_for_reading(folder.parts() / part);
+      file.unlink(path);
+      file.copy(from, source, path);
+    };
+    gather("points.h5", "/points", "/points");
+    for (const WrittenStep& step : written_steps) {
+      gather(step.name + ".h5", "/step", "/steps/" + step.name);
+      if (!has_views()) continue;
+      // A view names the path of what it shows, so it is made anew instead of copied.
+      file.unlink("/xdmf/" + step.name);
+      write_views(file, "/xdmf/" + step.name, "/steps/" + step.name, step.vectors);
+    }
+    file.close();
+    rename_file(gathered, folder.results());
+  } catch (const std::runtime_error& error) {
+    std::error_code ignored;
+    std::filesystem::remove(gathered, ignored);
+    throw OutputError(folder.results().string() +
+                      ": the steps can't be gathered into one file, they stay in parts/: " +
+                      error.what());
+  }
+  remove_parts(folder);
+}
+
+Results::Results(const std::filesystem::path& directory, const Points& points, const CaseText& text,
+                 const std::vector<std::string>& support_sets,
+                 const std::vector<ProbeColumns>& probes) {
+  double seconds = 0.0;
+  try {
+    const Stopwatch stopwatch(seconds);
+    files_ = std::make_unique<Files>(directory, points, text, support_sets, probes);
+  } catch (const OutputError& error) {
+    throw InputError("output.directory", directory.string(),
+                     std::string("the folder can't be written: ") + error.what());
+  }
+  files_->seconds = seconds;
+}
+
+Results::~Results() {
+  try {
+    files_->publish_xdmf();
+  } catch (const OutputError&) {
+    // The file of the step before stays; results.h5 and the tables are complete.
+  }
+}
+
+void Results::add(const IterationRecord& record) {
+  const Stopwatch stopwatch(files_->seconds);
+  if (files_->closed) throw std::logic_error("results: closed");
+  Row row = make_row(record);
+  files_->iterations.append(row);
+  files_->pending_iterations.push_back(std::move(row));
+}
+
+void Results::add(const DecisionRecord& record) {
+  const Stopwatch stopwatch(files_->seconds);
+  if (files_->closed) throw std::logic_error("results: closed");
+  Row row = make_row(record);
+  files_->decisions.append(row);
+  files_->pending_decisions.push_back(std::move(row));
+}
+
+void Results::add(const StepRecord& record, const std::optional<StepFields>& fields) {
+  const Stopwatch stopwatch(files_->seconds);
+  if (files_->closed) throw std::logic_error("results: closed");
+  files_->add(record, fields);
+}
+
+void Results::close(Summary summary) {
+  const Stopwatch stopwatch(files_->seconds);
+  if (files_->closed) throw std::logic_error("results: closed");
+  files_->closed = true;
+  files_->append_pending();
+  std::exception_ptr failure;
+  try {
+    publish_file(files_->folder.results(), files_->master.image());
+    files_->publish_xdmf();
+    files_->gather_parts();
+  } catch (const std::runtime_error&) {
+    failure = std::current_exception();
+  }
+  publish_file(files_->folder.summary(),
+               summary_json(summary, files_->totals, peak_memory_bytes()));
+  if (failure) std::rethrow_exception(failure);
+}
+
+double Results::seconds_spent() const { return files_->seconds; }
+
+}  // namespace peristat

@@ -1,0 +1,44 @@
+#include "src/results/xdmf_series.hpp"
+
+#include "src/number_text.hpp"
+
+namespace peristat {
+namespace {
+
+std::string data_item(const std::string& type, const std::string& dimensions,
+                      const std::string& dataset) {
+  return "<DataItem Format=\"HDF\" " + type + " Dimensions=\"" + dimensions + "\">results.h5:" +
+         dataset + "</DataItem>";
+}
+
+constexpr const char* double_type = "NumberType=\"Float\" Precision=\"8\"";
+
+}  // namespace
+
+void XdmfSeries::add(int step, double load_factor, const std::string& mode,
+                     const std::vector<Field>& fields) {
+  // Readers of both generations (XDMF 2 and 3) keep to explicit connectivity and three components.
+  grids_ += "<Grid Name=\"body\" GridType=\"Uniform\">\n<Time Value=\"" + std::to_string(step) +
+            "\"/>\n<Information Name=\"load_factor\" Value=\"" + number_text(load_factor) +
+            "\"/>\n<Information Name=\"mode\" Value=\"" + mode +
+            "\"/>\n<Topology TopologyType=\"Polyvertex\" NumberOfElements=\"" + points_ +
+            "\" NodesPerElement=\"1\">" +
+            data_item("NumberType=\"Int\" Precision=\"4\"", points_, "/points/number") +
+            "</Topology>\n<Geometry GeometryType=\"XYZ\">" +
+            data_item(double_type, points_ + " 3", "/points/geometry") + "</Geometry>\n";
+  for (const Field& field : fields) {
+    grids_ += "<Attribute Name=\"" + field.name + "\" AttributeType=\"" +
+              (field.is_vector ? "Vector" : "Scalar") + "\" Center=\"Node\">" +
+              data_item(double_type, field.is_vector ? points_ + " 3" : points_, field.dataset) +
+              "</Attribute>\n";
+  }
+  grids_ += "</Grid>\n";
+}
+
+std::string XdmfSeries::text() const {
+  return "<?xml version=\"1.0\"?>\n<Xdmf Version=\"3.0\">\n<Domain>\n"
+         "<Grid Name=\"steps\" GridType=\"Collection\" CollectionType=\"Temporal\">\n" +
+         grids_ + "</Grid>\n</Domain>\n</Xdmf>\n";
+}
+
+}  // namespace peristat

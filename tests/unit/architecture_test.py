@@ -1,0 +1,125 @@
+"""The house stands: includes go only downwards, headers stand alone, the code is formatted."""
+
+import concurrent.futures
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import unittest
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+# From the ground up. Tests and benchmarks look at the house from outside and may include any floor.
+FLOORS = ["src", "assembly", "solvers", "cases"]
+OUTSIDE = ["tests", "benchmarks"]
+# Headers outside the standard library that headers of a floor may include; keep it this small.
+ALLOWED_IN_HEADERS = {"omp.h"}
+INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]', re.MULTILINE)
+STANDARD_HEADER = re.compile(r"[a-z_0-9]+")  # <vector>: neither a folder nor an extension
+CLANG_FORMAT_VERSION = "14"  # versions differ in taste; this is the one of Debian 12
+
+
+def sources(*suffixes, places=tuple(FLOORS + OUTSIDE)):
+    found = [
+        path
+        for place in places
+        for path in sorted((ROOT / place).rglob("*"))
+        if path.suffix in suffixes
+    ]
+    assert found, f"no {suffixes} in {places}"
+    return found
+
+
+def misplaced_includes(file, text):
+    """What is wrong with the includes of a file; `file` is relative to the root, with slashes."""
+    floor = file.split("/")[0]
+    wrong = []
+    for kind, name in INCLUDE.findall(text):
+        target = name.split("/")[0]
+        if kind == '"':
+            if target not in FLOORS + OUTSIDE:
+                wrong.append(f'{file}: "{name}" is not rooted at the project root')
+            elif floor in FLOORS and target in OUTSIDE:
+                wrong.append(f'{file}: "{name}" is outside the house')
+            elif floor in FLOORS and FLOORS.index(target) > FLOORS.index(floor):
+                wrong.append(f'{file}: "{name}" runs up a floor')
+        elif file.endswith(".hpp") and floor in FLOORS:
+            if not STANDARD_HEADER.fullmatch(name) and name not in ALLOWED_IN_HEADERS:
+                wrong.append(f"{file}: <{name}> belongs in a .cpp file")
+    return wrong
+
+
+def in_parallel(check, files):
+    with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
+        return [message for message in pool.map(check, files) if message]
+
+
+class Architecture(unittest.TestCase):
+    def test_a_misplaced_include_is_noticed(self):
+        def wrong(file, line):
+            return len(misplaced_includes(file, "#pragma once\n" + line + "\n"))
+
+        self.assertEqual(wrong("src/points/points.hpp", '#include "assembly/pattern.hpp"'), 1)
+        self.assertEqual(wrong("src/points/points.cpp", '#include "solvers/newton.hpp"'), 1)
+        self.assertEqual(wrong("solvers/newton.cpp", '  #  include "cases/runner/case.hpp"'), 1)
+        self.assertEqual(wrong("src/types.cpp", '#include "tests/support.hpp"'), 1)
+        self.assertEqual(wrong("src/points/points.hpp", '#include "shape.hpp"'), 1)
+        self.assertEqual(wrong("src/points/points.hpp", "#include <Eigen/Dense>"), 1)
+        self.assertEqual(wrong("solvers/linear/solver.hpp", "#include <cholmod.h>"), 1)
+        self.assertEqual(wrong("solvers/linear/solver.cpp", "#include <cholmod.h>"), 0)
+        self.assertEqual(wrong("solvers/newton.cpp", '#include "src/types.hpp"'), 0)
+        self.assertEqual(wrong("src/points/points.hpp", "#include <vector>"), 0)
+        self.assertEqual(wrong("tests/unit/a_test.cpp", '#include "cases/runner/case.hpp"'), 0)
+
+    def test_includes_never_run_up_a_floor(self):
+        wrong = []
+        for path in sources(".hpp", ".cpp"):
+            text = path.read_text(encoding="utf-8")
+            wrong += misplaced_includes(path.relative_to(ROOT).as_posix(), text)
+        self.assertEqual(wrong, [])
+
+    def test_every_header_is_read_once(self):
+        wrong = [
+            path.relative_to(ROOT).as_posix()
+            for path in sources(".hpp")
+            if len(re.findall(r"^#pragma once$", path.read_text("utf-8"), re.MULTILINE)) != 1
+        ]
+        self.assertEqual(wrong, [])
+
+    def test_every_header_compiles_alone(self):
+        compiler = os.environ.get("PERISTAT_CXX", "c++")
+
+        def compile_alone(path):
+            name = path.relative_to(ROOT).as_posix()
+            result = subprocess.run(
+                [compiler, "-std=c++20", "-fsyntax-only", "-fopenmp", "-I", ROOT, "-Wall"]
+                + ["-Wextra", "-Wpedantic", "-Wshadow", "-Werror", "-x", "c++", "-"],
+                input=f'#include "{name}"\n',
+                capture_output=True,
+                text=True,
+            )
+            return result.stderr if result.returncode else ""
+
+        wrong = in_parallel(compile_alone, sources(".hpp"))
+        self.assertFalse(wrong, "\n".join(wrong))
+
+    def test_the_code_is_formatted(self):
+        program = shutil.which("clang-format-" + CLANG_FORMAT_VERSION) or shutil.which(
+            "clang-format"
+        )
+        self.assertTrue(program, "clang-format is missing")
+        version = subprocess.run([program, "--version"], capture_output=True, text=True).stdout
+        if f"version {CLANG_FORMAT_VERSION}." not in version:
+            self.skipTest(f"clang-format {CLANG_FORMAT_VERSION} is wanted, here is {version}")
+
+        def check_format(path):
+            command = [program, "--dry-run", "-Werror", "--style=file", path]
+            unformatted = subprocess.run(command, capture_output=True).returncode
+            return path.relative_to(ROOT).as_posix() if unformatted else ""
+
+        wrong = in_parallel(check_format, sources(".hpp", ".cpp"))
+        self.assertFalse(wrong, f"run: {program} -i {' '.join(wrong)}")
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,280 @@
+"""The pictures of a results folder: which exist, that they show something, and how bad folders end.
+
+Run with /usr/bin/python3 tests/unit/cases/plot_test.py; it builds its own folders.
+"""
+
+import csv
+import io
+import json
+import subprocess
+import sys
+import tempfile
+import unittest
+import warnings
+from contextlib import redirect_stderr, redirect_stdout
+from pathlib import Path
+
+import h5py
+import matplotlib.image
+import numpy as np
+
+PLOTS = Path(__file__).resolve().parents[3] / "cases" / "runner" / "plots"
+sys.path.insert(0, str(PLOTS))
+
+import plot  # noqa: E402
+from cells import Cells, merged  # noqa: E402
+from curve_pictures import observed_order  # noqa: E402
+from style import round_factor  # noqa: E402
+
+SPACING = 1e-3
+HISTORY = (
+    "step,load_factor,mode,newton_iterations,relaxation_iterations,stored_energy,dissipated_energy,"
+    "drained_energy,external_work,balance_error,broken_bonds,max_damage,max_stretch"
+).split(",")
+ITERATIONS = "step,iteration,residual,relative_residual,energy,step_length,linear_iterations,changed_bonds".split(",")
+
+
+def lattice(*counts: int) -> np.ndarray:
+    """Cell centres of a box, count x dimension [m]."""
+    grid = np.meshgrid(*[np.arange(count) for count in counts], indexing="ij")
+    return (np.stack(grid, axis=-1).reshape(-1, len(counts)) + 0.5) * SPACING
+
+
+def write_folder(folder: Path, reference: np.ndarray, steps: int = 3, damaged: bool = False) -> None:
+    """A results folder of a body stretched by 1 % in x, torn in the middle if damaged."""
+    folder.mkdir()
+    count, dimension = reference.shape
+    x = reference[:, 0]
+    middle = x.mean()
+    with h5py.File(folder / "results.h5", "w") as file:
+        file.attrs["title"] = "Synthetic body"
+        file["points/reference"] = reference
+        file["points/volume"] = np.full(count, SPACING**dimension)
+        file["points/set_ids"] = np.stack([x < 2 * SPACING, x > x.max() - SPACING], axis=1).astype(np.uint8)
+        file["points/set_ids"].attrs["sets"] = ["left", "right"]
+        file["case/as_resolved"] = f"[lattice]\nspacing = {SPACING}\n[solver]\nrelative_tolerance = 1e-10\n"
+        for step in range(1, steps + 1):
+            displacement = np.zeros_like(reference)
+            displacement[:, 0] = 0.01 * x * step / steps
+            group = file.create_group(f"steps/{step:06d}")
+            group.attrs["load_factor"] = step / steps
+            group.attrs["mode"] = "newton"
+            group["displacement"] = displacement
+            group["damage"] = np.where(damaged & (np.abs(x - middle) < SPACING) & (step > 1), 0.5, 0.0)
+            group["force"] = np.zeros_like(reference)
+            group["energy_density"] = 1e4 * (1.0 + reference[:, -1] / SPACING)
+    with open(folder / "history.csv", "w", newline="") as file:
+        table = csv.writer(file)
+        sets = [f"reaction_{axis}:{name}" for name in ("left", "right") for axis in "xyz"]
+        table.writerow(HISTORY + sets)
+        for step in range(1, steps + 1):
+            force = 1e3 * step / steps
+            table.writerow([step, step / steps, "newton", 4] + [0] * 9 + [-force, 0, 0, force, 0, 0])
+    with open(folder / "iterations.csv", "w", newline="") as file:
+        table = csv.writer(file)
+        table.writerow(ITERATIONS)
+        for step in range(1, steps + 1):
+            for iteration, residual in enumerate((1.0, 1e-2, 1e-5, 1e-11, 0.0)):
+                table.writerow([step, iteration, residual, residual, 0, 1, 0, 0])
+    (folder / "summary.json").write_text(json.dumps({"status": "completed"}))
+
+
+class Pictures(unittest.TestCase):
+    def setUp(self):
+        temporary = tempfile.TemporaryDirectory(prefix="peristat_plot_test_")
+        self.addCleanup(temporary.cleanup)
+        self.folder = Path(temporary.name) / "results"
+
+    def plot(self, expected_code: int = 0) -> str:
+        """Draws the folder's pictures, where a warning is an error too; gives what is said."""
+        said = io.StringIO()
+        with warnings.catch_warnings(), redirect_stdout(said), redirect_stderr(said):
+            warnings.simplefilter("error")
+            code = plot.main([str(self.folder)])
+        self.assertEqual(code, expected_code, said.getvalue())
+        return said.getvalue()
+
+    def assert_pictures(self, *names: str) -> None:
+        """Exactly these pictures exist, of a size to look at and with more than a few colours."""
+        drawn = sorted(path.stem for path in (self.folder / "plots").glob("*.png"))
+        self.assertEqual(drawn, sorted(names))
+        for name in names:
+            image = matplotlib.image.imread(self.folder / "plots" / f"{name}.png")
+            height, width = image.shape[:2]
+            self.assertTrue(900 <= width <= 2000 and 300 <= height <= 2200, f"{name}: {width} x {height}")
+            colours = np.unique((image[::3, ::3, :3] * 255).astype(np.uint8).reshape(-1, 3), axis=0)
+            self.assertGreater(len(colours), 30, name)
+
+    def test_program_ends_with_the_code(self):
+        program = [sys.executable, str(PLOTS / "plot.py")]
+        write_folder(self.folder, lattice(6))
+        for arguments, code in (([str(self.folder)], 0), ([str(self.folder / "none")], 2), ([], 2)):
+            done = subprocess.run(program + arguments, capture_output=True, text=True)
+            self.assertEqual(done.returncode, code, done.stderr)
+            self.assertNotIn("Traceback", done.stderr)
+
+    def test_bar(self):
+        write_folder(self.folder, lattice(40))
+        self.plot()
+        self.assert_pictures("deformed", "load_displacement", "convergence")
+
+    def test_plate(self):
+        write_folder(self.folder, lattice(30, 10))
+        self.plot()
+        self.assert_pictures("deformed", "fields", "load_displacement", "convergence")
+
+    def test_damaged_plate(self):
+        write_folder(self.folder, lattice(30, 30), damaged=True)
+        self.plot()
+        self.assert_pictures("deformed", "fields", "damage", "sequence", "load_displacement", "convergence")
+
+    def test_pictures_of_an_earlier_run_do_not_stay(self):
+        write_folder(self.folder, lattice(10, 10))
+        (self.folder / "plots").mkdir()
+        (self.folder / "plots" / "damage.png").write_text("old")
+        self.plot()
+        self.assert_pictures("deformed", "fields", "load_displacement", "convergence")
+
+    def test_solid(self):
+        write_folder(self.folder, lattice(20, 5, 5))
+        self.plot()
+        self.assert_pictures("deformed", "load_displacement", "convergence")
+
+    def test_damaged_solid(self):
+        write_folder(self.folder, lattice(12, 6, 6), damaged=True)
+        self.plot()
+        self.assert_pictures("deformed", "damage", "load_displacement", "convergence")
+
+    def test_points_that_are_no_lattice(self):
+        for dimension in (2, 3):
+            with self.subTest(dimension=dimension):
+                self.folder = self.folder.with_name(f"cloud_{dimension}")
+                cloud = np.random.default_rng(5).uniform(0.0, 0.02, (300, dimension))
+                write_folder(self.folder, cloud)
+                self.plot()
+                self.assertTrue((self.folder / "plots" / "deformed.png").is_file())
+
+    def test_a_single_point_that_does_not_move(self):
+        for dimension in (1, 2, 3):
+            with self.subTest(dimension=dimension):
+                self.folder = self.folder.with_name(f"single_{dimension}")
+                write_folder(self.folder, np.zeros((1, dimension)), steps=1)
+                self.plot()
+                self.assertTrue((self.folder / "plots" / "deformed.png").is_file())
+
+    def test_many_points_are_averaged(self):
+        write_folder(self.folder, lattice(320, 250), steps=1)
+        self.plot()
+        self.assert_pictures("deformed", "fields", "load_displacement", "convergence")
+
+    def test_killed_run_draws_what_is_there(self):
+        write_folder(self.folder, lattice(20, 10))
+        (self.folder / "summary.json").unlink()
+        history = self.folder / "history.csv"
+        history.write_text(history.read_text()[:-20])  # the last row half written
+        self.assertIn("summary.json", self.plot())
+        self.assert_pictures("deformed", "fields", "load_displacement", "convergence")
+
+    def test_run_without_an_accepted_step(self):
+        write_folder(self.folder, lattice(20, 10), steps=0)
+        self.assertIn("no step was accepted", self.plot())
+        self.assert_pictures()
+
+    def test_steps_without_their_part_are_passed_over(self):
+        write_folder(self.folder, lattice(20, 10))
+        with h5py.File(self.folder / "results.h5", "a") as file:
+            file["steps/000004"] = h5py.ExternalLink("parts/000004.h5", "/")
+        self.assertIn("000004", self.plot())
+        self.assertTrue((self.folder / "plots" / "deformed.png").is_file())
+
+    def test_tables_that_are_gone_are_named(self):
+        write_folder(self.folder, lattice(20, 10))
+        (self.folder / "history.csv").unlink()
+        (self.folder / "iterations.csv").unlink()
+        said = self.plot()
+        self.assertIn("history.csv", said)
+        self.assertIn("iterations.csv", said)
+        self.assert_pictures("deformed", "fields")
+
+    def test_values_that_are_not_finite_are_reported(self):
+        write_folder(self.folder, lattice(20, 10))
+        with h5py.File(self.folder / "results.h5", "a") as file:
+            file["steps/000003/displacement"][0, 0] = np.nan
+            file["steps/000003/energy_density"][0] = np.inf
+        self.assertIn("not finite", self.plot())
+        self.assertTrue((self.folder / "plots" / "deformed.png").is_file())
+
+    def test_folder_that_does_not_exist_ends_with_code_2(self):
+        self.assertIn("no such folder", self.plot(expected_code=2))
+
+    def test_folder_without_results_ends_with_code_2(self):
+        self.folder.mkdir()
+        self.assertIn("results.h5", self.plot(expected_code=2))
+
+    def test_file_that_is_no_hdf5_ends_with_code_2(self):
+        self.folder.mkdir()
+        (self.folder / "results.h5").write_text("no HDF5")
+        self.assertIn("can't be read", self.plot(expected_code=2))
+
+    def test_plots_folder_that_cannot_be_made_ends_with_code_2(self):
+        write_folder(self.folder, lattice(5))
+        (self.folder / "plots").write_text("a file")
+        self.plot(expected_code=2)
+
+
+class Parts(unittest.TestCase):
+    def test_round_factor_is_the_largest_round_number_below(self):
+        wanted = [0.3, 1.0, 1.9, 2.0, 4.9, 7.0, 10.0, 99.0, 2345.0, np.inf]
+        self.assertEqual([round_factor(value) for value in wanted], [1, 1, 1, 2, 2, 5, 10, 50, 2000, 1])
+
+    def test_observed_order_is_that_of_the_sequence(self):
+        for order in (1.0, 1.5, 2.0):
+            residuals = [0.1]
+            while residuals[-1] > 1e-12 and len(residuals) < 30:
+                residuals.append(0.3 * residuals[-1] ** order)
+            self.assertAlmostEqual(observed_order(np.array(residuals)), order, places=6)
+
+    def test_observed_order_ignores_round_off_and_zero(self):
+        self.assertAlmostEqual(observed_order(np.array([1e-1, 1e-2, 1e-4, 1e-8, 3e-15, 0.0])), 2.0, places=12)
+        self.assertIsNone(observed_order(np.array([1.0, 1e-14, 1e-15])))
+        self.assertIsNone(observed_order(np.array([1.0, 1.0, 1.0])))
+
+    def test_corners_follow_an_affine_deformation_exactly(self):
+        generator = np.random.default_rng(3)
+        for counts in ((4,), (4, 5), (3, 4, 5)):
+            reference = lattice(*counts)
+            gradient = generator.uniform(-0.5, 0.5, (len(counts), len(counts)))
+            cells = Cells(reference, SPACING)
+            self.assertTrue(cells.is_lattice)
+            nobody = np.zeros(len(reference), dtype=bool)
+            still = cells.corners(reference, np.zeros_like(reference), nobody)
+            moved = cells.corners(reference, reference @ gradient, nobody)
+            expected = still + still @ gradient
+            # 1e-14 m is 1e-11 of a spacing: round-off of coordinates of a few spacings.
+            np.testing.assert_allclose(moved, expected, rtol=0, atol=1e-14)
+
+    def test_neighbouring_cells_share_corners_and_loose_cells_do_not(self):
+        reference = lattice(2, 1)
+        displacement = np.array([[0.0, 0.0], [0.3e-3, 0.0]])
+        for loose, gap in ((False, 0.0), (True, 0.3e-3)):
+            corners = Cells(reference, SPACING).corners(reference, displacement, np.full(2, loose))
+            self.assertAlmostEqual(corners[1, 0, 0] - corners[0, 2, 0], gap, delta=1e-15)
+
+    def test_perturbed_lattice_is_recognised(self):
+        generator = np.random.default_rng(7)
+        reference = lattice(12, 9) + generator.uniform(-0.3, 0.3, (108, 2)) * SPACING
+        cells = Cells(reference, SPACING)
+        self.assertTrue(cells.is_lattice)
+        self.assertEqual(list(cells.index.max(axis=0)), [11, 8])
+
+    def test_merged_points_keep_means_and_stay_few(self):
+        reference = lattice(40, 20)
+        spacing, places, values = merged(reference, SPACING, 100, reference[:, 0])
+        self.assertTrue(0 < len(places) <= 100)
+        self.assertAlmostEqual(spacing, 3 * SPACING)  # ceil(sqrt(800 / 100))
+        whole = places[:, 0] < 0.039  # blocks of three columns; the last has one
+        np.testing.assert_allclose(values[whole], places[whole, 0], rtol=0, atol=1e-15)
+
+
+if __name__ == "__main__":
+    unittest.main()

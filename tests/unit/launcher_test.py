@@ -1,0 +1,152 @@
+"""The launcher forwards, draws pictures and passes interrupts on; here to a stand-in program."""
+
+import os
+import pathlib
+import shutil
+import signal
+import subprocess
+import tempfile
+import time
+import unittest
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+
+# Prints its arguments; leaves the results folder's path; `run wait` waits for interrupts and counts
+# those of the next half second; `run end CODE` ends with that code.
+PROGRAM = r"""#!/usr/bin/env bash
+printf '[%s]' "$@"; echo " waiting=$OMP_WAIT_POLICY"
+[[ ${PERISTAT_NOTE-} ]] && echo "$PWD/some results" >"$PERISTAT_NOTE"
+if [[ ${2-} == wait ]]; then
+  interrupts=0
+  trap 'interrupts=$((interrupts + 1))' INT
+  echo ready
+  for ((i = 0; i < 300 && interrupts == 0; i++)); do sleep 0.1; done
+  for ((i = 0; i < 5; i++)); do sleep 0.1; done
+  echo "interrupts=$interrupts"
+  exit 130
+fi
+[[ ${2-} == end ]] && exit "$3"
+exit 0
+"""
+PLOT = """import sys
+print("pictures of", sys.argv[1])
+sys.exit(len(sys.argv) > 2)
+"""
+
+
+class Launcher(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory(prefix="peristat launcher ")
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name).resolve()
+        root = self.folder / "house"
+        for part in ["src", "assembly", "solvers", "cases/runner/plots", "build/release"]:
+            (root / part).mkdir(parents=True)
+        for name in ["peristat", "CMakeLists.txt", "CMakePresets.json"]:
+            shutil.copy(ROOT / name, root)
+        (root / "cases/runner/plots/plot.py").write_text(PLOT)
+        (root / "build/release/peristat").write_text(PROGRAM)
+        (root / "build/release/peristat").chmod(0o755)
+        (root / "build/release/.built").touch()
+        self.launcher = root / "peristat"
+        self.root = root
+
+    def launch(self, *arguments, launcher=None):
+        return subprocess.run(
+            [launcher or self.launcher, *arguments],
+            cwd=self.folder,
+            stdin=subprocess.DEVNULL,
+            capture_output=True,
+            text=True,
+        )
+
+    def test_arguments_reach_the_program_unchanged(self):
+        result = self.launch("check", "a case.toml", "--set", "title=two words", "")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertIn("[check][a case.toml][--set][title=two words][]", result.stdout)
+
+    def test_a_link_to_the_launcher_finds_the_program(self):
+        link = self.folder / "link"
+        link.symlink_to(self.launcher)
+        self.assertIn("[check][x]", self.launch("check", "x", launcher=link).stdout)
+
+    def test_waiting_threads_are_passive(self):
+        self.assertIn("waiting=passive", self.launch("check", "x").stdout)
+
+    def test_a_run_draws_its_pictures(self):
+        result = self.launch("run", "case.toml")
+        self.assertIn(f"pictures of {self.folder}/some results", result.stdout)
+
+    def test_no_plots_is_taken_by_the_launcher(self):
+        result = self.launch("run", "case.toml", "--no-plots", "--threads", "1")
+        self.assertIn("[run][case.toml][--threads][1]", result.stdout)
+        self.assertNotIn("pictures", result.stdout)
+
+    def test_the_exit_code_is_the_programs(self):
+        for code, pictures in [(0, True), (1, False), (2, False), (3, True), (4, False)]:
+            result = self.launch("run", "end", str(code))
+            self.assertEqual(result.returncode, code)
+            self.assertEqual("pictures" in result.stdout, pictures, code)
+
+    def test_a_failing_plot_changes_no_exit_code(self):
+        (self.root / "cases/runner/plots/plot.py").write_text("raise SystemExit(1)")
+        result = self.launch("run", "case.toml")
+        self.assertEqual(result.returncode, 0)
+        self.assertIn("could not be drawn", result.stderr)
+
+    def test_an_interrupt_reaches_the_program_once(self):
+        to_launcher = lambda process: process.send_signal(signal.SIGINT)
+        to_group = lambda process: os.killpg(process.pid, signal.SIGINT)
+        for interrupt in [to_launcher, to_group]:
+            process = subprocess.Popen(
+                [self.launcher, "run", "wait"],
+                stdout=subprocess.PIPE,
+                text=True,
+                start_new_session=True,
+                cwd=self.folder,
+            )
+            while process.stdout.readline() != "ready\n":
+                self.assertIsNone(process.poll())
+            interrupt(process)
+            output = process.communicate(timeout=60)[0]
+            self.assertEqual(process.returncode, 130)
+            self.assertIn("interrupts=1\n", output)
+            self.assertIn("pictures of", output)
+
+    def test_an_interrupt_reaches_the_background_job_of_a_script(self):
+        script = f"'{self.launcher}' run wait >log & "
+        script += "until grep -qs ready log; do sleep 0.1; done; kill -INT $!; wait $!"
+        result = subprocess.run(["sh", "-c", script], cwd=self.folder, timeout=60)
+        self.assertEqual(result.returncode, 130)
+        self.assertIn("interrupts=1\n", (self.folder / "log").read_text())
+
+    def test_a_killed_launcher_leaves_no_program_behind(self):
+        process = subprocess.Popen(
+            [self.launcher, "run", "wait"], stdout=subprocess.PIPE, text=True, cwd=self.folder
+        )
+        while process.stdout.readline() != "ready\n":
+            self.assertIsNone(process.poll())
+        started = time.monotonic()
+        process.kill()
+        process.communicate(timeout=60)  # ends when the last holder of the pipe has
+        self.assertLess(time.monotonic() - started, 10, "the program waits 30 s by itself")
+
+    def test_an_unknown_command_names_the_nearest_one(self):
+        for given, meant in [("chekc", "check"), ("rnu", "run"), ("tests", "test")]:
+            result = self.launch(given)
+            self.assertEqual(result.returncode, 2)
+            self.assertIn(f'did you mean "{meant}"?', result.stderr)
+        result = self.launch("xyzzy")
+        self.assertEqual(result.returncode, 2)
+        self.assertNotIn("did you mean", result.stderr)
+
+    def test_help_and_version_need_no_build(self):
+        shutil.rmtree(self.root / "build")
+        self.assertRegex(self.launch("version").stdout, r"^peristat \d+\.\d+\.\d+\n$")
+        self.assertIn("check-tangent", self.launch("help").stdout)
+        self.assertEqual(self.launch().returncode, 2)
+        self.assertFalse((self.root / "build").exists())
+
+
+if __name__ == "__main__":
+    unittest.main()
