@@ -11,6 +11,7 @@
 #include "assembly/interaction.hpp"
 #include "src/lanes.hpp"
 #include "src/measures/length.hpp"
+#include "src/stopwatch.hpp"
 
 namespace peristat {
 namespace {
@@ -358,12 +359,14 @@ Stored Assembler::energy(std::span<const double> displacement) {
 }
 
 Stored Assembler::gradient(std::span<const double> displacement, std::span<double> gradient) {
+  const Stopwatch watch(seconds_);
   return dispatch(points_.dimension, term_.potential, [&](auto d, const auto& law) {
     return Kernels<decltype(d)::value>::gradient(*this, law, displacement, gradient);
   });
 }
 
 void Assembler::tangent(std::span<const double> displacement, Tangent& tangent) {
+  const Stopwatch watch(seconds_);
   dispatch(points_.dimension, term_.potential, [&](auto d, const auto& law) {
     Kernels<decltype(d)::value>::tangent(*this, law, displacement, tangent);
   });
@@ -371,6 +374,7 @@ void Assembler::tangent(std::span<const double> displacement, Tangent& tangent) 
 
 void Assembler::product(std::span<const double> displacement, std::span<const double> v,
                         std::span<double> product) {
+  const Stopwatch watch(seconds_);
   dispatch(points_.dimension, term_.potential, [&](auto d, const auto& law) {
     Kernels<decltype(d)::value>::product(*this, law, displacement, v, product);
   });
@@ -378,15 +382,10 @@ void Assembler::product(std::span<const double> displacement, std::span<const do
 
 double Assembler::point_energies(std::span<const double> displacement,
                                  std::span<double> energies) {
+  const Stopwatch watch(seconds_);
   return dispatch(points_.dimension, term_.potential, [&](auto d, const auto& law) {
     return Kernels<decltype(d)::value>::point_energies(*this, law, displacement, energies);
   });
-}
-
-std::size_t Assembler::memory() const {
-  std::size_t doubles = rows_.size();
-  for (const auto& sums : sums_) doubles += sums.size();
-  return doubles * sizeof(double);
 }
 
 }  // namespace peristat

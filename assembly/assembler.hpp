@@ -44,8 +44,7 @@ class Assembler {
   [[nodiscard]] int threads() const { return static_cast<int>(ranges_.size()); }
   [[nodiscard]] const Points& points() const { return points_; }
   [[nodiscard]] const BondTerm& term() const { return term_; }
-  /// Allocated by the assembler itself [bytes].
-  [[nodiscard]] std::size_t memory() const;
+  [[nodiscard]] double seconds_spent() const { return seconds_; }  ///< wall time of all calls [s]
 
  private:
   template <int D>
@@ -57,6 +56,7 @@ class Assembler {
   std::vector<double> rows_;                 // per point, what kernels gather; see Kernels::pack
   std::vector<std::vector<double>> sums_;  // per thread, rows first..reach of what it adds up
   std::vector<Stored> stored_;             // per thread
+  double seconds_ = 0.0;
 };
 
 }  // namespace peristat

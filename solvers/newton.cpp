@@ -104,7 +104,10 @@ NewtonResult newton(const EquilibriumProblem& problem, LinearSolver& solver, Tan
     }
     out_of_balance(problem, external_force, linearised_at.gradient, force_of_jump, right_hand_side);
 
-    LinearOutcome linear = solver.factorize(tangent);
+    // The first tangent of a load step is always factorised: its pivots tell whether the state that the
+    // step starts from is stable.
+    LinearOutcome linear = solver.factorize(
+        tangent, iteration == 1 ? FactorUse::factorize_now : FactorUse::may_reuse);
     if (linear == LinearOutcome::solved) linear = solver.solve(right_hand_side, solution);
     result.inertia = solver.inertia();
     result.outcome = outcome_of(linear);

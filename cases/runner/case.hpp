@@ -9,7 +9,11 @@
 #include <variant>
 #include <vector>
 
+#include "cases/runner/case_location.hpp"
 #include "src/conditions/specification.hpp"
+#include "src/input_error.hpp"
+#include "src/materials/bond_constants.hpp"
+#include "src/neighbourhood/quadrature.hpp"
 #include "src/points/lattice.hpp"
 #include "src/points/point_set.hpp"
 
@@ -17,37 +21,34 @@ namespace peristat {
 
 /// Points that come from a file instead of a lattice (table [points]).
 struct PointSource {
-  std::filesystem::path file;  ///< relative paths are relative to the case file
+  std::filesystem::path file;  ///< absolute; in the case file relative to the case file's folder
   double cross_section = 1.0;  ///< 1D: area [m2]; 2D: thickness [m]
   double horizon = 0.0;        ///< [m]
 };
-
-enum class VolumeCorrection { none, linear };
-enum class SurfaceCorrection { none, volume, energy };
-enum class PlaneState { stress, strain };
 
 struct MaterialSpecification {
   PlaneState plane = PlaneState::stress;
   std::optional<double> youngs_modulus;  ///< [Pa]; exactly one of this and the micromodulus is set
   std::optional<double> micromodulus;    ///< c [N/m6]
+  std::optional<double> density;         ///< [kg/m3], for dynamics only
 };
 
 struct LoadingSpecification {
-  int steps = 1;               ///< equal steps of the load factor from 0 to 1
-  bool adaptive = true;        ///< cut and grow; otherwise a failed step ends the run
-  double smallest_step = 1e-6; ///< of the load factor
-  double largest_step = 0.0;   ///< of the load factor; 0 means 1 / steps
+  int steps = 1;                ///< equal steps of the load factor from 0 to 1
+  bool adaptive = true;         ///< cut and grow; otherwise a failed step ends the run
+  double smallest_step = 1e-6;  ///< of the load factor
+  double largest_step = 0.0;  ///< of the load factor; 0 means 1 / steps (the reader writes it out)
 };
 
 struct SolverSpecification {
   std::string mode = "newton";
   std::string linear = "auto";
   double relative_tolerance = 1e-10;
-  int max_iterations = 25;     ///< of Newton in a step
+  int max_iterations = 25;  ///< of Newton in a step
 };
 
 struct OutputSpecification {
-  std::filesystem::path directory;  ///< default results/<stem of the case file>
+  std::filesystem::path directory;  ///< default results/FOLDER_STEM of the case file
   int every = 1;                    ///< fields of every n-th accepted step; the last always
 };
 
@@ -55,11 +56,6 @@ struct OutputSpecification {
 struct ProbeSpecification {
   std::string name, set;
   std::string field = "displacement";  ///< displacement, force, damage, energy_density
-};
-
-/// Place in the case file (lines and columns from 1; 0 means the command line's --set).
-struct CaseLocation {
-  int line = 0, column = 0;
 };
 
 /// A case as read and checked once; constant from then on.
@@ -82,18 +78,25 @@ struct Case {
   std::string file;         ///< as given by the person
   std::string as_read;      ///< text of the file
   std::string as_resolved;  ///< TOML with overrides and defaults in place
-  std::map<std::string, CaseLocation> locations;  ///< by dotted key, e.g. "support[1].set"
+  /// Places of every key, table and array element by dotted key, e.g. "support[1].displacement[0]".
+  std::map<std::string, CaseLocation> locations;
 };
 
 /// Reads and checks a case file.
 /// @param overrides dotted key and TOML value ("loading.steps", "50"); a value that is no TOML is
 ///        taken as a string
-/// @throws InputError whose message starts with "FILE:LINE:COLUMN: "
-[[nodiscard]] Case read_case(const std::filesystem::path& file,
-                             const std::vector<std::pair<std::string, std::string>>& overrides = {});
+/// @throws InputError whose place is "FILE:LINE:COLUMN", "--set KEY=VALUE" or, if the file can't be
+///         read at all, empty
+[[nodiscard]] Case read_case(
+    const std::filesystem::path& file,
+    const std::vector<std::pair<std::string, std::string>>& overrides = {});
 
-/// The error's message with file, line and column of its key in front.
+/// The error's message with file, line and column of its key in front; of the longest part of the
+/// key that the case file has, or of the file alone.
 [[nodiscard]] std::string located(const Case& from, const std::string& key,
                                   const std::string& message);
+
+/// The error with the place of its key, unless it has a place already.
+[[nodiscard]] InputError located(const Case& from, const InputError& error);
 
 }  // namespace peristat

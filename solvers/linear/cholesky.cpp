@@ -10,6 +10,7 @@
 
 #include "solvers/linear/conjugate_gradients.hpp"
 #include "solvers/vector_verbs.hpp"
+#include "src/stopwatch.hpp"
 
 namespace peristat {
 namespace {
@@ -21,6 +22,10 @@ constexpr std::array<int, 3> orderings{CHOLMOD_NATURAL, CHOLMOD_AMD, CHOLMOD_MET
 
 /// Below this number of points METIS gains nothing over AMD and costs more to find.
 constexpr Index smallest_for_metis = 20000;
+
+/// Speeds of a plain machine, one thread, that decide how many iterations pay against a factorisation:
+/// factorisation [flop/s], and reading the factor in triangular solves [bytes/s].
+constexpr double factorisation_speed = 3e10, solve_speed = 1e10;
 
 /// Largest relative residual of a direct solve; backward-stable factorisations stay far below.
 constexpr double accepted_residual = 1e-6;
@@ -181,6 +186,13 @@ struct Cholesky::Cholmod {
     return common.status < CHOLMOD_OK ? LinearOutcome::singular : LinearOutcome::solved;
   }
 
+  /// Iterations of conjugate gradients, each reading the factor twice, that half a factorisation buys.
+  int affordable_iterations() const {
+    const double factorisation = estimate.flops / factorisation_speed;
+    const double iteration = 2.0 * estimate.bytes() / solve_speed;
+    return std::min(reuse.max_iterations, static_cast<int>(0.5 * factorisation / iteration));
+  }
+
   bool tangent_is_finite() const {
     const auto finite = [](double entry) { return std::isfinite(entry); };
     return std::all_of(tangent->diagonal.begin(), tangent->diagonal.end(), finite);
@@ -275,6 +287,7 @@ Cholesky::~Cholesky() = default;
 
 LinearOutcome Cholesky::analyze(const Pattern& pattern, const FreeDofs& free) {
   Cholmod& c = *cholmod_;
+  const Stopwatch watch(c.statistics.seconds);
   c.release_symbolic();
   c.factor_valid = c.factor_current = false;
   c.free = &free;
@@ -314,12 +327,13 @@ LinearOutcome Cholesky::analyze(const Pattern& pattern, const FreeDofs& free) {
   return c.right_hand_side ? LinearOutcome::solved : c.outcome_of_status();
 }
 
-LinearOutcome Cholesky::factorize(const Tangent& tangent) {
+LinearOutcome Cholesky::factorize(const Tangent& tangent, FactorUse use) {
   Cholmod& c = *cholmod_;
+  const Stopwatch watch(c.statistics.seconds);
   c.tangent = &tangent;
   c.factor_current = false;
   if (c.free->count() == 0) return LinearOutcome::solved;
-  if (c.reuse.max_iterations > 0 && c.factor_valid) {
+  if (use == FactorUse::may_reuse && c.factor_valid && c.affordable_iterations() > 0) {
     return c.tangent_is_finite() ? LinearOutcome::solved : LinearOutcome::singular;
   }
   return c.factorize();
@@ -327,13 +341,14 @@ LinearOutcome Cholesky::factorize(const Tangent& tangent) {
 
 LinearOutcome Cholesky::solve(std::span<const double> b, std::span<double> x) {
   Cholmod& c = *cholmod_;
+  const Stopwatch watch(c.statistics.seconds);
   c.last_iterations = 0;
   if (b.empty()) return LinearOutcome::solved;
   if (c.factor_current || !c.factor_valid) return c.solve_directly(b, x);
   const GradientsResult result = c.gradients.solve(
       [&](std::span<const double> v, std::span<double> product) { c.multiply(v, product); },
       [&](std::span<const double> v, std::span<double> product) { c.apply_factor(v, product); }, b,
-      x, c.reuse.tolerance, c.reuse.max_iterations);
+      x, c.reuse.tolerance, c.affordable_iterations());
   c.statistics.iterations += result.iterations;
   if (result.outcome != GradientsOutcome::converged) return c.solve_directly(b, x);
   c.last_iterations = result.iterations;

@@ -16,7 +16,9 @@ struct FactorEstimate {
 
 /// When a factorisation serves as preconditioner for later tangents instead of being redone.
 struct FactorReuse {
-  int max_iterations = 0;    ///< of conjugate gradients per solve; 0 factorises every tangent
+  /// Of conjugate gradients per solve; 0 factorises every tangent. The actual limit is lower where so
+  /// many iterations would cost more than half a factorisation.
+  int max_iterations = 12;
   double tolerance = 1e-12;  ///< relative residual of those solves
 };
 
@@ -25,9 +27,9 @@ struct FactorReuse {
 /// The fill-reducing order is found on the graph of points, d times smaller than that of the degrees of
 /// freedom, as the cheapest of natural (points are numbered along the body), AMD and METIS.
 ///
-/// With reuse, a tangent after the first is solved by conjugate gradients preconditioned with the last
-/// factor; only when that takes more than max_iterations, or meets negative curvature, is the new
-/// tangent factorised. Solutions then still belong to the new tangent (Newton stays quadratic).
+/// Where reuse is allowed, a new tangent is solved by conjugate gradients preconditioned with the last
+/// factor; only when that takes too many iterations, or meets negative curvature, is the new tangent
+/// factorised. Solutions still belong to the new tangent, so Newton stays quadratic.
 ///
 /// A tangent that is not positive definite is factorised a second time as LDL^T for its inertia, where
 /// that costs no more than `largest_inertia_flops`.
@@ -37,7 +39,7 @@ class Cholesky : public LinearSolver {
   ~Cholesky() override;
 
   LinearOutcome analyze(const Pattern& pattern, const FreeDofs& free) override;
-  LinearOutcome factorize(const Tangent& tangent) override;
+  LinearOutcome factorize(const Tangent& tangent, FactorUse use) override;
   LinearOutcome solve(std::span<const double> b, std::span<double> x) override;
   [[nodiscard]] std::optional<Inertia> inertia() const override;
   [[nodiscard]] LinearStatistics statistics() const override;

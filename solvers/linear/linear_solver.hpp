@@ -30,7 +30,11 @@ struct Inertia {
 struct LinearStatistics {
   std::int64_t factorisations = 0;
   std::int64_t iterations = 0;  ///< of conjugate gradients
+  double seconds = 0.0;         ///< wall time in all calls [s]
 };
+
+/// Whether an earlier factorisation may stand in as preconditioner for that of a new tangent.
+enum class FactorUse { factorize_now, may_reuse };
 
 /// Solves K_ff x = b on the free degrees of freedom. Implementations keep what the pattern determines
 /// between tangents.
@@ -43,7 +47,7 @@ class LinearSolver {
   [[nodiscard]] virtual LinearOutcome analyze(const Pattern& pattern, const FreeDofs& free) = 0;
 
   /// Takes a new tangent, which must live until the last solve with it.
-  [[nodiscard]] virtual LinearOutcome factorize(const Tangent& tangent) = 0;
+  [[nodiscard]] virtual LinearOutcome factorize(const Tangent& tangent, FactorUse use) = 0;
 
   /// x and b have one entry per equation.
   [[nodiscard]] virtual LinearOutcome solve(std::span<const double> b, std::span<double> x) = 0;

@@ -111,7 +111,7 @@ std::string column_path(const std::string& group, const Column& column) {
 
 /// Appends values to a growing dataset of one dimension.
 void append_values(hid_t file, const std::string& path, hid_t type, const void* values,
-                   hsize_t count) {
+                   hsize_t count, hid_t transfer = H5P_DEFAULT) {
   const Handle dataset = open_dataset(file, path);
   hsize_t start = 0;
   {
@@ -123,9 +123,6 @@ void append_values(hid_t file, const std::string& path, hid_t type, const void* 
   const Handle space(H5Dget_space(dataset), H5Sclose, "size " + path);
   checked(H5Sselect_hyperslab(space, H5S_SELECT_SET, &start, nullptr, &count, nullptr),
           "select the end of " + path);
-  // Texts are converted in a buffer that is cleared each time; the default one has a megabyte.
-  const Handle transfer(H5Pcreate(H5P_DATASET_XFER), H5Pclose, "prepare to write " + path);
-  checked(H5Pset_buffer(transfer, 1 << 12, nullptr, nullptr), "prepare to write " + path);
   checked(H5Dwrite(dataset, type, dataspace({count}), space, transfer, values), "write " + path);
 }
 
@@ -280,7 +277,10 @@ void Hdf5File::append(const std::string& group, const std::vector<Column>& colum
     } else {
       const auto values = column_values<const char*>(
           rows, i, [](const Cell& cell) { return std::get<std::string>(cell).c_str(); });
-      append_values(id_, path, text_type(), values.data(), values.size());
+      // Texts are converted in a buffer that is cleared each time; the default one has a megabyte.
+      const Handle transfer(H5Pcreate(H5P_DATASET_XFER), H5Pclose, "prepare to write " + path);
+      checked(H5Pset_buffer(transfer, 1 << 12, nullptr, nullptr), "prepare to write " + path);
+      append_values(id_, path, text_type(), values.data(), values.size(), transfer);
     }
   }
 }

@@ -558,6 +558,32 @@ TEST_F(CaseReader, RefusesWhatNeverEnds) {
   EXPECT_EQ(refusal_of_file("/dev/zero"), "/dev/zero: is not a regular file");
 }
 
+TEST_F(CaseReader, RefusesNestingThatWouldOverflowTheStack) {
+  const auto repeated = [](const std::string& part) {
+    std::string text;
+    for (int k = 0; k < 100'000; ++k) text += part;
+    return text;
+  };
+  const std::string reason = ": a key of more than 16 parts";
+  EXPECT_EQ(refusal("b = 1\na" + repeated(".a") + " = 1").find("study.toml:2:1" + reason), 0u);
+  EXPECT_EQ(refusal("[a" + repeated(" . 'x=y'") + "]").find("study.toml:1:1" + reason), 0u);
+  EXPECT_EQ(refusal("b = '''\n'''\na = { a" + repeated(".\"\\\"a\"") + " = 1 }")
+                .find("study.toml:3:1" + reason),
+            0u);
+  EXPECT_NE(refusal("a = " + repeated("[")).find("not valid TOML"), std::string::npos);
+  EXPECT_NE(refusal("a = " + repeated("{ a = ")).find("not valid TOML"), std::string::npos);
+  EXPECT_NE(refusal(plate, {{"a" + repeated(".a"), "1"}}).find(reason), std::string::npos);
+  EXPECT_NE(refusal(plate, {{"a" + repeated("[0]"), "1"}}).find(reason), std::string::npos);
+}
+
+TEST_F(CaseReader, TakesDotsInTextForWhatTheyAre) {
+  std::string dots;
+  for (int k = 0; k < 50; ++k) dots += "a.b.";
+  const std::string title = "\"" + dots + "\"";
+  const Case dotted = read("# " + dots + "\n" + with(plate, "\"Plate\"", title + "  # " + dots));
+  EXPECT_EQ(dotted.title, dots);
+}
+
 TEST_F(CaseReader, RefusesAnEmptyFile) {
   EXPECT_EQ(refusal("").find("study.toml:1:1: dimension: this key is missing"), 0u);
 }

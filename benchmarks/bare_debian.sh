@@ -1,0 +1,76 @@
+#!/usr/bin/env bash
+# Does a fresh Debian 12 run peristat? Makes a minimal system in a temporary folder, copies this tree
+# into it, and there types what an analyst types first. Prints the minutes of each. As root, with
+# debootstrap installed; takes 3 GB of TMPDIR and cleans up behind itself.
+#   benchmarks/bare_debian.sh              run a case, then the tests
+#   benchmarks/bare_debian.sh COMMAND...   each argument is one command line for ./peristat
+set -euo pipefail
+
+release=bookworm
+tree=$(cd "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/.." && pwd)
+((EUID == 0)) || { echo "bare_debian.sh: only root may make a system and enter it" >&2; exit 2; }
+(($#)) || set -- "run cases/plate_with_hole/elastic.toml" "test"
+
+# The mirror that this machine uses itself.
+mirror=$(apt-get indextargets --format '$(ORIGIN) $(CODENAME) $(REPO_URI)' |
+  sed -n "s/^Debian $release //p" | sort -u | head -n 1)
+[[ $mirror ]] || { echo "bare_debian.sh: no mirror of $release here; apt-get update?" >&2; exit 2; }
+
+system=$(mktemp -d)
+clean_up() {
+  local mounted
+  for mounted in dev proc; do
+    mountpoint -q "$system/$mounted" && umount --lazy "$system/$mounted"
+  done
+  rm -rf --one-file-system "$system"
+}
+trap clean_up EXIT
+trap 'exit 130' INT TERM HUP
+
+minutes() { awk -v seconds="$1" 'BEGIN { printf "%.1f", seconds / 60 }'; }
+report=()
+timed() {  # timed NAME COMMAND...
+  local name=$1 started=$SECONDS status=0
+  shift
+  echo "== $name"
+  "$@" || status=$?
+  report+=("$(minutes $((SECONDS - started))) min, exit code $status: $name")
+  return "$status"
+}
+
+secure=()
+[[ $mirror == https:* ]] && secure=(--include=ca-certificates)  # such a mirror needs them
+timed "debootstrap --variant=minbase $release" \
+  debootstrap --variant=minbase "${secure[@]}" "$release" "$system" "$mirror" >"$system.log" ||
+  { tail "$system.log"; rm -f "$system.log"; exit 1; }
+rm -f "$system.log"
+
+# How packages are reached is the machine's business, not the test's: same sources, same proxy.
+rm -f "$system/etc/apt/sources.list"
+for file in /etc/apt/sources.list /etc/apt/sources.list.d/*; do
+  [[ -f $file ]] && grep -qF "${mirror%/}" "$file" && cp "$file" "$system${file}"
+done
+for file in /etc/apt/apt.conf /etc/apt/apt.conf.d/*; do
+  [[ -f $file ]] && grep -q '^ *Acquire' "$file" && cp "$file" "$system${file}"
+done
+cp -L /etc/resolv.conf /etc/hosts "$system/etc/"
+mount -t proc proc "$system/proc"
+mount --bind /dev "$system/dev"
+
+mkdir "$system/root/peristat"
+git -C "$tree" ls-files -z --cached --others --exclude-standard |
+  tar -C "$tree" --null --files-from=- --ignore-failed-read -c |
+  tar -C "$system/root/peristat" --no-same-owner -x
+
+environment=(PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin HOME=/root)
+for name in http_proxy https_proxy no_proxy; do
+  [[ -v $name ]] && environment+=("$name=${!name}")
+done
+status=0
+for line; do
+  timed "./peristat $line" env -i "${environment[@]}" \
+    chroot "$system" bash -c "cd /root/peristat && ./peristat $line" </dev/null || status=1
+done
+printf '\n'
+printf '%s\n' "${report[@]}"
+exit "$status"

@@ -1,0 +1,194 @@
+#include "cases/runner/body.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "src/input_error.hpp"
+#include "src/number_text.hpp"
+#include "src/stopwatch.hpp"
+
+namespace peristat {
+namespace {
+
+/// Runs `make`; input errors leave with the place of their key in the case file.
+template <class Make>
+auto located_errors(const Case& from, const Make& make) {
+  try {
+    return make();
+  } catch (const InputError& error) {
+    throw located(from, error);
+  }
+}
+
+/// Input errors of `make` speak of keys inside a table.
+template <class Make>
+auto errors_in_table(const std::string& table, const Make& make) {
+  try {
+    return make();
+  } catch (const InputError& error) {
+    throw InputError(table + (error.key().empty() ? "" : ".") + error.key(), error.value(),
+                     error.allowed());
+  }
+}
+
+const Lattice* lattice_of(const Case& from) { return std::get_if<Lattice>(&from.body); }
+
+BondSetting setting_of(const Case& from, const Points& points) {
+  BondSetting setting;
+  setting.dimension = from.dimension;
+  setting.plane = from.material.plane;
+  if (const Lattice* lattice = lattice_of(from)) {
+    setting.horizon = from.horizon_ratio * lattice->spacing;
+    setting.cross_section = lattice->cross_section;
+  } else {
+    const auto& source = std::get<PointSource>(from.body);
+    setting.horizon = source.horizon;
+    setting.cross_section = source.cross_section;
+    if (setting.horizon < points.spacing) {
+      throw InputError("points.horizon", number_text(setting.horizon),
+                       "horizon smaller than the mean spacing of the points, " +
+                           number_text(points.spacing) + " m");
+    }
+  }
+  return setting;
+}
+
+/// Refuses a lattice that can't fit before any of its points is made.
+void require_memory_for_lattice(const Case& from, const Lattice& lattice) {
+  const double points = estimate_points(lattice);
+  BodySize size{points, std::pow(points, 1.0 / from.dimension)};
+  const Box box = lattice.shapes.empty() ? Box{} : bounds(lattice.shapes.front().shape);
+  for (int c = 0; c < from.dimension; ++c) {
+    const double along = (box.max[c] - box.min[c]) / lattice.spacing;
+    if (std::isfinite(along)) size.longest = std::max(size.longest, along);
+  }
+  const double bonds = points * bonds_per_point(from.dimension, from.horizon_ratio);
+  const MemoryEstimate estimate =
+      estimate_memory(from.dimension, size, from.horizon_ratio, bonds, points * from.dimension);
+  // This estimate counts the bounding box: only what cannot fit even if half of it is cut away is
+  // refused here; the points themselves tell the rest.
+  require_memory(0.5 * estimate.bytes,
+                 "the case with up to " + number_text(points) + " points");
+}
+
+}  // namespace
+
+Points make_points_of(const Case& from) {
+  return located_errors(from, [&] {
+    Points points;
+    if (const Lattice* lattice = lattice_of(from)) {
+      require_memory_for_lattice(from, *lattice);
+      points = make_points(*lattice);
+    } else {
+      const auto& source = std::get<PointSource>(from.body);
+      points = read_points(source.file, from.dimension, source.cross_section);
+    }
+    for (std::size_t k = 0; k < from.sets.size(); ++k) {
+      const SetRule& rule = from.sets[k];
+      const std::string table = "set[" + std::to_string(k) + "]";
+      if (points.sets.contains(rule.name)) {
+        throw InputError(table + ".name", '"' + rule.name + '"',
+                         "there is a set of this name already (sets, layers and the sets of a point "
+                         "file share their names)");
+      }
+      std::vector<Index> members =
+          errors_in_table(table, [&] { return select(points, rule); });
+      if (members.empty()) {
+        throw InputError(table, '"' + rule.name + '"', "the set selects no point");
+      }
+      points.sets[rule.name] = std::move(members);
+    }
+    for (std::size_t k = 0; k < from.probes.size(); ++k) {
+      if (!points.sets.contains(from.probes[k].set)) {
+        throw InputError("probe[" + std::to_string(k) + "].set", '"' + from.probes[k].set + '"',
+                         "no set of this name");
+      }
+    }
+    return points;
+  });
+}
+
+BodySize size_of(const Points& points) {
+  BodySize size{double(points.count()), 1.0};
+  for (int c = 0; c < points.dimension; ++c) {
+    double least = std::numeric_limits<double>::infinity(), most = -least;
+    for (Index i = 0; i < points.count(); ++i) {
+      const double at = points.reference[std::size_t(i) * points.dimension + c];
+      least = std::min(least, at);
+      most = std::max(most, at);
+    }
+    size.longest = std::max(size.longest, (most - least) / points.spacing + 1.0);
+  }
+  return size;
+}
+
+Body make_body(const Case& from, int threads) {
+  Body body;
+  body.points = make_points_of(from);
+  located_errors(from, [&] {
+    body.setting = setting_of(from, body.points);
+    const double expected_bonds =
+        body.points.count() * bonds_per_point(from.dimension, body.horizon_ratio());
+    require_memory(estimate_memory(from.dimension, size_of(body.points), body.horizon_ratio(),
+                                   expected_bonds, double(body.points.reference.size()))
+                       .bytes,
+                   "the case with " + std::to_string(body.points.count()) + " points");
+    {
+      const Stopwatch watch(body.seconds_neighbourhood);
+      body.term.bonds = make_bonds(body.points, {from.volume_correction, from.surface_correction},
+                                   body.setting, threads);
+    }
+    const double modulus = from.material.micromodulus
+                               ? *from.material.micromodulus
+                               : micromodulus(*from.material.youngs_modulus, body.setting);
+    body.term.potential = Harmonic{modulus};
+    body.conditions = std::make_unique<Conditions>(body.points, from.supports, from.loads);
+  });
+  return body;
+}
+
+MemoryEstimate estimate_memory(const Body& body) {
+  const auto& prescribed = body.conditions->prescribed();
+  const auto free = std::count(prescribed.begin(), prescribed.end(), 0);
+  return estimate_memory(body.points.dimension, size_of(body.points), body.horizon_ratio(),
+                         double(body.term.bonds.count()), double(free));
+}
+
+std::string describe_free_motions(const Body& body) {
+  const std::vector<FreeMotion> parts =
+      free_motions(body.points, body.term.bonds, body.conditions->prescribed());
+  std::string text;
+  constexpr std::size_t most_told = 5;
+  for (std::size_t k = 0; k < std::min(parts.size(), most_told); ++k) {
+    const FreeMotion& part = parts[k];
+    const std::string place = place_text(body.points.position(part.example), body.points.dimension);
+    if (part.points == body.points.count()) {
+      text += "the whole body may ";
+    } else if (part.points == 1) {
+      text += "the isolated point at " + place + " m may ";
+    } else {
+      text += "a part of " + std::to_string(part.points) + " points, with one at " + place +
+              " m, may ";
+    }
+    for (std::size_t m = 0; m < part.motions.size(); ++m) {
+      text += (m == 0 ? "" : m + 1 == part.motions.size() ? " and " : ", ") + part.motions[m];
+    }
+    text += "; ";
+  }
+  if (parts.size() > most_told) {
+    text += "so may " + std::to_string(parts.size() - most_told) + " more parts; ";
+  }
+  if (!text.empty()) text.resize(text.size() - 2);
+  return text;
+}
+
+void refuse_free_motions(const Case& from, const Body& body) {
+  const std::string motions = describe_free_motions(body);
+  if (motions.empty()) return;
+  throw located(from, InputError("support", "",
+                                 "the supports do not hold the body: " + motions +
+                                     ". Prescribe displacements that prevent this"));
+}
+
+}  // namespace peristat

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "assembly/assembler.hpp"
+#include "cases/runner/case.hpp"
+#include "cases/runner/memory.hpp"
+#include "solvers/linear/free_dofs.hpp"
+#include "src/conditions/conditions.hpp"
+#include "src/conditions/free_motion.hpp"
+
+namespace peristat {
+
+/// Everything that a case makes before anything is solved; constant from then on.
+struct Body {
+  Points points;
+  BondSetting setting;
+  BondTerm term;
+  std::unique_ptr<Conditions> conditions;  // refers to points
+  double seconds_neighbourhood = 0.0;
+
+  [[nodiscard]] double horizon_ratio() const { return setting.horizon / points.spacing; }
+};
+
+/// Points and sets of a case.
+/// @throws InputError (with place) if a set selects nothing, and as the makers of points do
+/// @throws MemoryError if the points would not fit
+[[nodiscard]] Points make_points_of(const Case& from);
+
+/// The whole body.
+/// @throws InputError (with place), MemoryError if the estimate exceeds the memory available
+[[nodiscard]] Body make_body(const Case& from, int threads);
+
+/// Body size for the memory estimate.
+[[nodiscard]] BodySize size_of(const Points& points);
+
+/// The estimate from the counts that the body has.
+[[nodiscard]] MemoryEstimate estimate_memory(const Body& body);
+
+/// Sentence that tells which parts of the body may move freely; empty if none.
+[[nodiscard]] std::string describe_free_motions(const Body& body);
+
+/// @throws InputError if a part of the body may move freely
+void refuse_free_motions(const Case& from, const Body& body);
+
+}  // namespace peristat

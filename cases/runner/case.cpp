@@ -1,0 +1,415 @@
+#include "cases/runner/case.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <set>
+
+#include "cases/runner/case_file.hpp"
+#include "cases/runner/case_keys.hpp"
+#include "cases/runner/case_text.hpp"
+#include "cases/runner/toml_table.hpp"
+#include "src/conditions/expression.hpp"
+#include "src/input_error.hpp"
+
+namespace peristat {
+namespace {
+
+/// What the checks of one table need to know of the others.
+struct Context {
+  int dimension = 0;
+  double spacing =
+      1.0;  ///< of the lattice; stands for any positive number if points come from a file
+  bool sets_from_file = false;  ///< names of sets are not all known before that is read
+  std::map<std::string, std::string> names;  ///< path of the key that gives a set its name
+};
+
+// ---- Pieces that several tables share
+
+Coordinates coordinates(const TomlTable& table, const std::string& key, int dimension) {
+  Coordinates place{};
+  const auto numbers = table.numbers(key, static_cast<std::size_t>(dimension), Range{});
+  std::copy(numbers.begin(), numbers.end(), place.begin());
+  return place;
+}
+
+double cross_section(const TomlTable& table, int dimension) {
+  if (dimension != 1 && table.has("area"))
+    table.refuse("area", dimension == 2 ? "is for dimension 1; dimension 2 has a thickness"
+                                        : "is for dimension 1 only");
+  if (dimension != 2 && table.has("thickness"))
+    table.refuse("thickness", dimension == 1 ? "is for dimension 2; dimension 1 has an area"
+                                             : "is for dimension 2 only");
+  if (dimension == 1) return table.number("area", Range::positive("m2"), 1.0);
+  if (dimension == 2) return table.number("thickness", Range::positive("m"), 1.0);
+  return 1.0;
+}
+
+std::string name(const TomlTable& table) {
+  const std::string text = table.string("name");
+  const auto allowed = [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
+           c == '-';
+  };
+  if (text.empty()) table.refuse("name", "is empty");
+  for (const char c : text)
+    if (!allowed(c)) table.refuse("name", "may only have letters, digits, _ and -");
+  return text;
+}
+
+/// Name of a set or of a layer, which is a set too.
+std::string set_name(const TomlTable& table, Context& context) {
+  const std::string text = name(table);
+  const auto [entry, is_new] = context.names.try_emplace(text, table.path("name"));
+  if (!is_new) {
+    table.refuse("name", "this name is taken by " + entry->second +
+                             "; sets and layers need different names");
+  }
+  return text;
+}
+
+/// Name of a set that must be there.
+std::string known_set(const TomlTable& table, const Context& context) {
+  const std::string text = table.string("set");
+  if (context.names.count(text) > 0 || context.sets_from_file) return text;
+  std::vector<std::string> names;
+  for (const auto& [key, path] : context.names) names.push_back(key);
+  table.refuse("set",
+               "no set or layer of this name" + did_you_mean(text, names) +
+                   (names.empty() ? "; the case has none" : "  (there: " + listed(names) + ")"));
+}
+
+/// An expression that selects points; empty without the key.
+std::string condition(const TomlTable& table, const Context& context) {
+  if (!table.has("where")) return {};
+  const std::string text = table.string("where");
+  try {
+    Expression(text, context.dimension, context.spacing, Expression::LoadFactor::not_allowed);
+  } catch (const InputError& error) {
+    table.refuse("where", error.allowed());
+  }
+  return text;
+}
+
+enum class Variables { place_and_load, load };
+
+void check_component(const TomlTable& table, const std::string& key, std::size_t component,
+                     const std::string& text, const Context& context, Variables variables) {
+  const int dimension = variables == Variables::load ? 0 : context.dimension;
+  try {
+    Expression(text, dimension, context.spacing, Expression::LoadFactor::allowed);
+  } catch (const InputError& error) {
+    table.refuse(key, component, error.allowed());
+  }
+}
+
+// ---- Shapes
+
+Shape read_numbers_of_shape(const TomlTable& table, const std::string& kind, int dimension) {
+  if (kind == "box")
+    return Box{coordinates(table, "min", dimension), coordinates(table, "max", dimension)};
+  if (kind == "polygon") return Polygon{table.pairs("vertices")};
+  const Coordinates centre = coordinates(table, "centre", dimension);
+  const double radius = table.number("radius", Range::positive("m"));
+  if (kind == "disk") return Disk{centre, radius};
+  if (kind == "sphere") return Sphere{centre, radius};
+  Cylinder cylinder;
+  cylinder.centre = centre;
+  cylinder.radius = radius;
+  if (table.has("axis")) cylinder.axis = coordinates(table, "axis", dimension);
+  constexpr double infinite = std::numeric_limits<double>::infinity();
+  cylinder.length = table.number("length", Range::positive("m", infinite), infinite);
+  return cylinder;
+}
+
+Shape read_shape(const TomlTable& table, const std::string& kind, int dimension) {
+  const Shape shape = read_numbers_of_shape(table, kind, dimension);
+  check_shape(shape, dimension, table.path(), table.path());
+  return shape;
+}
+
+/// Kinds of shapes that a body of this dimension can have.
+std::vector<std::string> shape_kinds(int dimension) {
+  if (dimension == 1) return {"box"};
+  if (dimension == 2) return {"box", "disk", "polygon"};
+  return {"box", "cylinder", "sphere", "polygon"};
+}
+
+void refuse_other_dimension(const TomlTable& table, const std::string& key, const std::string& kind,
+                            int dimension) {
+  const auto allowed = shape_kinds(dimension);
+  if (shape_keys().count(kind) == 0 || std::count(allowed.begin(), allowed.end(), kind) > 0) return;
+  table.refuse(key, "there is no " + kind + " in dimension " + std::to_string(dimension) +
+                        "  (allowed: " + listed(allowed) + ")");
+}
+
+ShapeStep read_shape_step(const TomlTable& table, int dimension) {
+  const std::string action = table.exactly_one({"add", "subtract"});
+  refuse_other_dimension(table, action, table.string(action), dimension);
+  const std::string kind = table.one_of(action, shape_kinds(dimension));
+  std::vector<std::string> keys{action};
+  for (const auto& key : shape_keys().at(kind)) keys.push_back(key);
+  table.allow_only(keys, "is no key of a " + kind);
+
+  return {action == "add" ? ShapeStep::Action::add : ShapeStep::Action::subtract,
+          read_shape(table, kind, dimension)};
+}
+
+// ---- The tables of a case, in the order of the file
+
+Layer read_layer(const TomlTable& table, Context& context) {
+  Layer layer;
+  layer.name = set_name(table, context);
+  std::vector<std::string> sides;
+  for (int axis = 0; axis < context.dimension; ++axis)
+    for (const char sign : {'-', '+'}) sides.push_back({"xyz"[axis], sign});
+  const std::string side = table.one_of("side", sides);
+  layer.side = {side[0] - 'x', side[1] == '+' ? 1 : -1};
+  layer.thickness = static_cast<int>(table.integer("thickness", 1, 1000, 3));
+  layer.where = condition(table, context);
+  return layer;
+}
+
+Lattice read_lattice(const TomlTable& table, Context& context, double& horizon_ratio) {
+  Lattice lattice;
+  lattice.dimension = context.dimension;
+  lattice.spacing = context.spacing = table.number("spacing", Range::positive("m"));
+  horizon_ratio = table.number("horizon_ratio", Range::positive("-"), horizon_ratio);
+  if (horizon_ratio < 1.0)
+    table.refuse("horizon_ratio",
+                 "horizon smaller than the spacing; must be at least 1, usually 3.015");
+  lattice.cross_section = cross_section(table, context.dimension);
+  lattice.origin = table.choice("origin", lattice_origins, lattice.origin);
+  lattice.perturbation =
+      table.number("perturbation", Range::between(0.0, 0.49), lattice.perturbation);
+  lattice.seed = static_cast<std::uint64_t>(
+      table.integer("seed", 0, std::numeric_limits<std::int64_t>::max(), 1));
+
+  for (const auto& shape : table.tables("shape"))
+    lattice.shapes.push_back(read_shape_step(shape, context.dimension));
+  if (lattice.shapes.empty())
+    table.refuse("shape", "this array of tables is missing; a lattice needs at least one shape");
+  for (const auto& layer : table.tables("layer"))
+    lattice.layers.push_back(read_layer(layer, context));
+  return lattice;
+}
+
+PointSource read_point_source(const TomlTable& table, Context& context,
+                              const std::filesystem::path& case_file) {
+  PointSource source;
+  const std::filesystem::path file = table.string("file");
+  if (file.empty()) table.refuse("file", "is empty");
+  source.file = std::filesystem::absolute(case_file.parent_path() / file).lexically_normal();
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(source.file, error))
+    table.refuse("file", "no such file; looked for " + source.file.string());
+  source.horizon = table.number("horizon", Range::positive("m"));
+  source.cross_section = cross_section(table, context.dimension);
+  context.sets_from_file = true;
+  return source;
+}
+
+SetRule read_set(const TomlTable& table, Context& context) {
+  SetRule set;
+  set.name = set_name(table, context);
+  set.where = condition(table, context);
+  if (table.has("shape")) {
+    const TomlTable shape = table.table("shape");
+    const std::string kind = shape.exactly_one(case_keys().at("set.shape"));
+    refuse_other_dimension(shape, kind, kind, context.dimension);
+    set.shape = read_shape(shape.table(kind), kind, context.dimension);
+  }
+  if (set.where.empty() && !set.shape) table.refuse("", "needs a where or a shape");
+  return set;
+}
+
+MaterialSpecification read_material(const TomlTable& table, int dimension) {
+  MaterialSpecification material;
+  static_cast<void>(table.one_of("model", {"bond"}, "bond"));
+  if (dimension != 2 && table.has("plane")) table.refuse("plane", "is for dimension 2 only");
+  material.plane = table.choice("plane", plane_states, material.plane);
+  if (table.exactly_one({"youngs_modulus", "micromodulus"}) == "youngs_modulus")
+    material.youngs_modulus = table.number("youngs_modulus", Range::positive("Pa"));
+  else
+    material.micromodulus = table.number("micromodulus", Range::positive("N/m6", 1e150));
+  if (table.has("density")) material.density = table.number("density", Range::positive("kg/m3"));
+  return material;
+}
+
+SupportSpecification read_support(const TomlTable& table, const Context& context) {
+  SupportSpecification support;
+  support.set = known_set(table, context);
+  const auto components =
+      table.components("displacement", static_cast<std::size_t>(context.dimension));
+  bool all_free = true;
+  for (std::size_t c = 0; c < components.size(); ++c) {
+    if (components[c] == "free") continue;
+    all_free = false;
+    check_component(table, "displacement", c, components[c], context, Variables::place_and_load);
+    support.displacement[c] = components[c];
+  }
+  if (all_free) table.refuse("displacement", "every component is free, so this supports nothing");
+  return support;
+}
+
+LoadSpecification read_load(const TomlTable& table, const Context& context) {
+  LoadSpecification load;
+  load.set = known_set(table, context);
+  const std::string key = table.exactly_one({"body_force", "total_force"});
+  const bool is_density = key == "body_force";
+  load.kind =
+      is_density ? LoadSpecification::Kind::body_force : LoadSpecification::Kind::total_force;
+  const auto components = table.components(key, static_cast<std::size_t>(context.dimension));
+  for (std::size_t c = 0; c < components.size(); ++c) {
+    if (components[c] == "free")
+      table.refuse(key, c, "only displacements of supports can be free; write 0 for no force");
+    check_component(table, key, c, components[c], context,
+                    is_density ? Variables::place_and_load : Variables::load);
+    load.value[c] = components[c];
+  }
+  return load;
+}
+
+LoadingSpecification read_loading(const TomlTable& table) {
+  LoadingSpecification loading;
+  loading.steps = static_cast<int>(table.integer("steps", 1, 1'000'000, loading.steps));
+  loading.adaptive = table.boolean("adaptive", loading.adaptive);
+  const double step = 1.0 / loading.steps;
+  loading.smallest_step =
+      table.number("smallest_step", Range::between(1e-12, 1.0), loading.smallest_step);
+  loading.largest_step = table.number("largest_step", Range::between(1e-12, 1.0), step);
+  if (loading.smallest_step > step)
+    table.refuse("smallest_step", "must not be larger than the first step, 1 / steps");
+  if (loading.largest_step < step)
+    table.refuse("largest_step", "must not be smaller than the first step, 1 / steps");
+  return loading;
+}
+
+SolverSpecification read_solver(const TomlTable& table) {
+  SolverSpecification solver;
+  solver.mode = table.one_of("mode", {"newton"}, solver.mode);
+  solver.linear = table.one_of("linear", {"auto", "cholesky"}, solver.linear);
+  solver.relative_tolerance =
+      table.number("relative_tolerance", Range::between(1e-14, 1e-2), solver.relative_tolerance);
+  solver.max_iterations =
+      static_cast<int>(table.integer("max_iterations", 1, 1000, solver.max_iterations));
+  return solver;
+}
+
+/// results/FOLDER_STEM, so that shipped cases of one name in several folders don't collide.
+std::filesystem::path default_directory(const std::filesystem::path& case_file) {
+  const auto absolute = std::filesystem::absolute(case_file).lexically_normal();
+  const std::string folder = absolute.parent_path().filename().string();
+  const std::string stem = absolute.stem().string();
+  return std::filesystem::path("results") / (folder.empty() ? stem : folder + "_" + stem);
+}
+
+OutputSpecification read_output(const TomlTable& table, const std::filesystem::path& case_file) {
+  OutputSpecification output;
+  output.directory = table.string("directory", default_directory(case_file).string());
+  if (output.directory.empty()) table.refuse("directory", "is empty");
+  output.every = static_cast<int>(table.integer("every", 1, 1'000'000'000, output.every));
+  return output;
+}
+
+ProbeSpecification read_probe(const TomlTable& table, const Context& context,
+                              std::set<std::string>& names) {
+  ProbeSpecification probe;
+  probe.name = name(table);
+  if (!names.insert(probe.name).second) table.refuse("name", "another probe has this name");
+  probe.set = known_set(table, context);
+  probe.field =
+      table.one_of("field", {"displacement", "force", "damage", "energy_density"}, probe.field);
+  return probe;
+}
+
+// ---- Places
+
+void collect_locations(const TomlValue& value, const std::string& path,
+                       std::map<std::string, CaseLocation>& locations) {
+  if (!path.empty()) locations[path] = value.location;
+  for (const auto& [key, entry] : value.entries)
+    collect_locations(entry, path.empty() ? key : path + "." + key, locations);
+  for (std::size_t k = 0; k < value.items.size(); ++k)
+    collect_locations(value.items[k], path + "[" + std::to_string(k) + "]", locations);
+}
+
+/// Place of a key, or of the longest part of it that the case file has.
+CaseLocation location_of(const Case& from, const std::string& key) {
+  for (std::string part = key; !part.empty();) {
+    const auto known = from.locations.find(part);
+    if (known != from.locations.end()) return known->second;
+    const auto cut = part.find_last_of(".[");
+    part.resize(cut == std::string::npos ? 0 : cut);
+  }
+  return {};
+}
+
+// ---- The document
+
+void read_document(const TomlValue& document, const std::filesystem::path& file, Case& result) {
+  const TomlTable root(document, "", result.file);
+  const TomlValue no_entries;
+  const auto optional_table = [&](const std::string& key) {
+    return root.has(key) ? root.table(key) : TomlTable(no_entries, key, result.file);
+  };
+
+  result.title = root.string("title", file.stem().string());
+  result.dimension = static_cast<int>(root.integer("dimension", 1, 3));
+  Context context;
+  context.dimension = result.dimension;
+  if (root.exactly_one({"lattice", "points"}) == "lattice")
+    result.body = read_lattice(root.table("lattice"), context, result.horizon_ratio);
+  else
+    result.body = read_point_source(root.table("points"), context, file);
+  for (const auto& set : root.tables("set")) result.sets.push_back(read_set(set, context));
+
+  const TomlTable quadrature = optional_table("quadrature");
+  result.volume_correction =
+      quadrature.choice("volume_correction", volume_corrections, result.volume_correction);
+  result.surface_correction =
+      quadrature.choice("surface_correction", surface_corrections, result.surface_correction);
+
+  result.material = read_material(root.table("material"), result.dimension);
+  for (const auto& support : root.tables("support"))
+    result.supports.push_back(read_support(support, context));
+  for (const auto& load : root.tables("load")) result.loads.push_back(read_load(load, context));
+  result.loading = read_loading(optional_table("loading"));
+  result.solver = read_solver(optional_table("solver"));
+  result.output = read_output(optional_table("output"), file);
+  std::set<std::string> probe_names;
+  for (const auto& probe : root.tables("probe"))
+    result.probes.push_back(read_probe(probe, context, probe_names));
+}
+
+}  // namespace
+
+Case read_case(const std::filesystem::path& file,
+               const std::vector<std::pair<std::string, std::string>>& overrides) {
+  Case result;
+  result.file = file.string();
+  result.as_read = read_case_text(file);
+
+  TomlValue document = parse_toml(result.as_read, result.file);
+  for (const auto& [key, value] : overrides) apply_override(document, key, value);
+  collect_locations(document, "", result.locations);
+  try {
+    read_document(document, file, result);
+  } catch (const InputError& error) {
+    throw located(result, error);
+  }
+  result.as_resolved = resolved_text(result);
+  return result;
+}
+
+std::string located(const Case& from, const std::string& key, const std::string& message) {
+  return location_of(from, key).text(from.file) + ": " + message;
+}
+
+InputError located(const Case& from, const InputError& error) {
+  if (!error.place().empty()) return error;
+  return InputError(error.key(), error.value(), error.allowed(),
+                    location_of(from, error.key()).text(from.file));
+}
+
+}  // namespace peristat

@@ -1,0 +1,44 @@
+#include "cases/runner/case_keys.hpp"
+
+namespace peristat {
+
+const std::map<std::string, std::vector<std::string>>& shape_keys() {
+  static const std::map<std::string, std::vector<std::string>> keys{
+      {"box", {"min", "max"}},
+      {"disk", {"centre", "radius"}},
+      {"cylinder", {"centre", "radius", "axis", "length"}},
+      {"sphere", {"centre", "radius"}},
+      {"polygon", {"vertices"}}};
+  return keys;
+}
+
+const std::map<std::string, std::vector<std::string>>& case_keys() {
+  static const auto keys = [] {
+    std::map<std::string, std::vector<std::string>> tables{
+        {"",
+         {"title", "dimension", "lattice", "points", "set", "quadrature", "material", "support",
+          "load", "loading", "solver", "output", "probe"}},
+        {"lattice",
+         {"spacing", "horizon_ratio", "thickness", "area", "origin", "perturbation", "seed",
+          "shape", "layer"}},
+        {"lattice.shape",
+         {"add", "subtract", "min", "max", "centre", "radius", "axis", "length", "vertices"}},
+        {"lattice.layer", {"name", "side", "thickness", "where"}},
+        {"points", {"file", "horizon", "thickness", "area"}},
+        {"set", {"name", "where", "shape"}},
+        {"set.shape", {"box", "disk", "cylinder", "sphere", "polygon"}},
+        {"quadrature", {"volume_correction", "surface_correction"}},
+        {"material", {"model", "plane", "youngs_modulus", "micromodulus", "density"}},
+        {"support", {"set", "displacement"}},
+        {"load", {"set", "body_force", "total_force"}},
+        {"loading", {"steps", "adaptive", "smallest_step", "largest_step"}},
+        {"solver", {"mode", "linear", "relative_tolerance", "max_iterations"}},
+        {"output", {"directory", "every"}},
+        {"probe", {"name", "set", "field"}}};
+    for (const auto& [kind, own] : shape_keys()) tables["set.shape." + kind] = own;
+    return tables;
+  }();
+  return keys;
+}
+
+}  // namespace peristat

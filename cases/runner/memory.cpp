@@ -1,0 +1,135 @@
+#include "cases/runner/memory.hpp"
+
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <limits>
+#include <numbers>
+#include <sstream>
+
+namespace peristat {
+namespace {
+
+constexpr double unlimited = std::numeric_limits<double>::infinity();
+
+/// Program, libraries and files [bytes].
+constexpr double base_bytes = 60e6;
+
+/// Value in bytes behind `key` in a file of lines "key: value kB", or unlimited.
+double kilobytes_in(const char* file, const std::string& key) {
+  std::ifstream lines(file);
+  std::string word;
+  while (lines >> word) {
+    double value;
+    if (word == key && lines >> value) return 1024.0 * value;
+  }
+  return unlimited;
+}
+
+double number_in(const std::string& file) {
+  std::ifstream stream(file);
+  double value;
+  return stream >> value ? value : unlimited;
+}
+
+/// Room left in the control group of this process (version 2, or the memory controller of version 1).
+double control_group_room() {
+  std::ifstream groups("/proc/self/cgroup");
+  double room = unlimited;
+  for (std::string line; std::getline(groups, line);) {
+    const auto path_at = line.find('/');
+    if (path_at == std::string::npos) continue;
+    const bool version2 = line.rfind("0::", 0) == 0;
+    if (!version2 && line.find(":memory:") == std::string::npos) continue;
+    const std::string folder =
+        (version2 ? "/sys/fs/cgroup" : "/sys/fs/cgroup/memory") + line.substr(path_at);
+    const double limit =
+        number_in(folder + (version2 ? "/memory.max" : "/memory.limit_in_bytes"));
+    const double used =
+        number_in(folder + (version2 ? "/memory.current" : "/memory.usage_in_bytes"));
+    if (limit < unlimited && used < unlimited) room = std::min(room, limit - used);
+  }
+  return room;
+}
+
+}  // namespace
+
+double bonds_per_point(int dimension, double horizon_ratio) {
+  const double m = horizon_ratio;
+  switch (dimension) {
+    case 1:
+      return m;
+    case 2:
+      return 0.5 * std::numbers::pi * m * m;
+    default:
+      return 2.0 / 3.0 * std::numbers::pi * m * m * m;
+  }
+}
+
+MemoryEstimate estimate_memory(int dimension, const BodySize& size, double horizon_ratio,
+                               double bonds, double free_dofs) {
+  MemoryEstimate estimate;
+  estimate.points = size.points;
+  estimate.bonds = bonds;
+  estimate.free_dofs = free_dofs;
+  const double d = dimension;
+  const double n = std::max(free_dofs, 2.0);
+
+  // A row of the natural order couples to the points of about 1.15 horizons along the body.
+  const double section = size.points / std::max(size.longest, 1.0);
+  const double band = std::min(n, d * section * (1.15 * horizon_ratio));
+  const double natural_entries = n * band;
+  const double natural_flops = 0.75 * n * band * band;
+  // Separators of nested dissection are one horizon thick.
+  const double thick = horizon_ratio / 3.015 * (horizon_ratio / 3.015);
+  const double dissection_entries =
+      dimension == 3 ? 98.0 * thick * std::pow(n, 4.0 / 3.0) : 29.0 * thick * n * std::log2(n);
+  const double dissection_flops = dimension == 3 ? 297.0 * thick * thick * n * n
+                                                 : 1010.0 * thick * thick * std::pow(n, 1.5);
+  estimate.factor_entries = std::min(natural_entries, dissection_entries);
+  estimate.factor_flops = std::min(natural_flops, dissection_flops);
+
+  const double blocks = (bonds + size.points) * d * d;
+  const double vectors = 20.0 * size.points * d + 28.0 * size.points;
+  estimate.bytes = base_bytes + 20.0 * bonds + 8.0 * size.points +  // bonds
+                   8.0 * blocks +                                   // tangent
+                   16.0 * blocks +                                  // the solver's matrix
+                   8.0 * (estimate.factor_entries + vectors);
+  return estimate;
+}
+
+double available_memory() {
+  double available = std::min(kilobytes_in("/proc/meminfo", "MemAvailable:"), control_group_room());
+  rlimit limit{};
+  if (getrlimit(RLIMIT_AS, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY) {
+    const double used = kilobytes_in("/proc/self/status", "VmSize:");
+    available = std::min(available, double(limit.rlim_cur) - (used < unlimited ? used : 0.0));
+  }
+  return available;
+}
+
+std::string bytes_text(double bytes) {
+  std::ostringstream text;
+  text.precision(2);
+  if (bytes >= 1e9) {
+    text << std::fixed << bytes / 1e9 << " GB";
+  } else {
+    text << std::fixed;
+    text.precision(0);
+    text << bytes / 1e6 << " MB";
+  }
+  return text.str();
+}
+
+void require_memory(double bytes, const std::string& for_what) {
+  const double available = available_memory();
+  if (bytes <= available) return;
+  throw MemoryError(for_what + " needs about " + bytes_text(bytes) + ", and " +
+                    bytes_text(available) +
+                    " are available: use a larger lattice.spacing, a smaller "
+                    "lattice.horizon_ratio or a machine with more memory");
+}
+
+}  // namespace peristat

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <stdexcept>
+#include <string>
+
+#include "cases/runner/case.hpp"
+
+namespace peristat {
+
+/// A case that does not fit (exit code 4); told before the memory is asked for.
+class MemoryError : public std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+/// What a run needs, estimated from counts alone.
+struct MemoryEstimate {
+  double points = 0.0, bonds = 0.0, free_dofs = 0.0;
+  double factor_entries = 0.0;  ///< of the Cholesky factor
+  double factor_flops = 0.0;    ///< of one factorisation
+  double bytes = 0.0;           ///< of the whole run
+};
+
+/// Extent of a body in points: how many, and along its longest direction.
+struct BodySize {
+  double points = 0.0;
+  double longest = 1.0;  ///< points along the longest direction
+};
+
+/// Bonds of a point, each counted at one of its ends: half the volume of the horizon in cells.
+[[nodiscard]] double bonds_per_point(int dimension, double horizon_ratio);
+
+/// Estimate for a body solved by Cholesky. The factor's size is the smaller of what nested dissection
+/// and what the natural order along the longest direction leave; their constants are fitted to the
+/// measured table in docs/performance.md and hold within a factor of 1.5.
+[[nodiscard]] MemoryEstimate estimate_memory(int dimension, const BodySize& size,
+                                             double horizon_ratio, double bonds, double free_dofs);
+
+/// Memory that this process may still take [bytes]: what the system calls available, limited by the
+/// control group and by the limit of the address space.
+[[nodiscard]] double available_memory();
+
+/// "1.5 GB"
+[[nodiscard]] std::string bytes_text(double bytes);
+
+/// @throws MemoryError unless `bytes` are available
+void require_memory(double bytes, const std::string& for_what);
+
+}  // namespace peristat
