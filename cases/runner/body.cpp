@@ -6,6 +6,7 @@
 
 #include "src/input_error.hpp"
 #include "src/number_text.hpp"
+#include "src/points/point_file.hpp"
 #include "src/stopwatch.hpp"
 
 namespace peristat {

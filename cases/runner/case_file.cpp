@@ -1,5 +1,6 @@
 #include "cases/runner/case_file.hpp"
 
+#include <cerrno>
 #include <fstream>
 #include <iterator>
 #include <system_error>

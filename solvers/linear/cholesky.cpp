@@ -360,6 +360,13 @@ LinearStatistics Cholesky::statistics() const { return cholmod_->statistics; }
 int Cholesky::last_iterations() const { return cholmod_->last_iterations; }
 const FactorEstimate& Cholesky::estimate() const { return cholmod_->estimate; }
 
+std::string Cholesky::library_version() {
+  int version[3];
+  cholmod_l_version(version);
+  return std::to_string(version[0]) + "." + std::to_string(version[1]) + "." +
+         std::to_string(version[2]);
+}
+
 std::string Cholesky::describe() const {
   char text[200];
   std::snprintf(text, sizeof text,

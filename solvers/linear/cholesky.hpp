@@ -48,6 +48,9 @@ class Cholesky : public LinearSolver {
 
   [[nodiscard]] const FactorEstimate& estimate() const;
 
+  /// Version of CHOLMOD.
+  [[nodiscard]] static std::string library_version();
+
   /// Above this the simplicial LDL^T, some twenty times slower than LL^T, is not tried.
   static constexpr double largest_inertia_flops = 2e10;
 

@@ -128,31 +128,21 @@ std::vector<std::array<double, 3>> confined_energy_ratio(const Points& points, c
 }
 
 void apply_energy_method(Bonds& bonds, const Points& points, const BondSetting& setting) {
-  // The iteration is a relaxed Jacobi iteration on the logarithms; in practice 20 passes bring every
-  // point of a box within 1e-3, and points whose bonds cannot carry an axis keep a bounded factor.
-  constexpr int passes = 20;
-  constexpr double largest_factor = 10.0;
-  const std::vector<double> plain = bonds.weight;
-  std::vector<std::array<double, 3>> factor(points.volume.size(), {1.0, 1.0, 1.0});
-  for (int pass = 0; pass < passes; ++pass) {
-    const auto ratio = confined_energy_ratio(points, bonds, setting);
-    for (std::size_t i = 0; i < factor.size(); ++i) {
-      for (int a = 0; a < points.dimension; ++a) {
-        const double wanted = ratio[i][a] > 0.0 ? factor[i][a] / ratio[i][a] : largest_factor;
-        factor[i][a] = std::clamp(wanted, 1.0 / largest_factor, largest_factor);
-      }
-    }
-    for_each_bond(bonds, [&](Index i, Offset bond) {
-      const Index j = bonds.partner[bond];
-      const std::array<double, 3> squared = squared_direction(points, bonds, i, bond);
-      double sum = 0.0;
-      for (int a = 0; a < points.dimension; ++a) {
-        const double mean = 0.5 * (factor[i][a] + factor[j][a]);
-        sum += squared[a] / (mean * mean);
-      }
-      bonds.weight[bond] = plain[bond] / std::sqrt(sum);
-    });
+  std::vector<std::array<double, 3>> factor = confined_energy_ratio(points, bonds, setting);
+  for (auto& of_point : factor) {
+    // An axis along which no bond of the point stretches has no energy to correct.
+    for (double& axis : of_point) axis = axis > 0.0 ? 1.0 / axis : 1.0;
   }
+  for_each_bond(bonds, [&](Index i, Offset bond) {
+    const Index j = bonds.partner[bond];
+    const std::array<double, 3> squared = squared_direction(points, bonds, i, bond);
+    double sum = 0.0;
+    for (int a = 0; a < points.dimension; ++a) {
+      const double mean = 0.5 * (factor[i][a] + factor[j][a]);
+      sum += squared[a] / (mean * mean);
+    }
+    bonds.weight[bond] /= std::sqrt(sum);
+  });
 }
 
 }  // namespace

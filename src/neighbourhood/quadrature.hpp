@@ -37,17 +37,16 @@ struct Quadrature {
 ///  - none:   mu = 1.
 ///  - volume: mu = 2 V_H / (V_i + V_j) with V_i = sum_j nu_ij V_j and V_H that of a point inside the
 ///            bulk of the lattice (for a cloud of points: of the continuum) (Le and Bobaru 2018).
-///  - energy: every point gets a factor g_a per axis, and a bond with direction n gets
+///  - energy: every point gets per axis a the factor g_a = classical / discrete energy density under
+///            a confined unit strain along the axis, and a bond with direction n gets
 ///            mu = (sum_a (n_a / gbar_a)^2)^(-1/2), gbar the mean of its points' factors (Madenci and
-///            Oterkus 2014, sec. 4.2). The factors are iterated until the *corrected* energy density
-///            of every point under a confined unit strain along each axis is the classical one; the
-///            published method takes one step of this iteration, which leaves errors of some per
-///            cent at surfaces.
+///            Oterkus 2014, sec. 4.2). Iterating this until the corrected energies are classical was
+///            tried: it makes bending softer again, not better.
 [[nodiscard]] Bonds make_bonds(const Points& points, const Quadrature& quadrature,
                                const BondSetting& setting, int threads);
 
-/// Largest deviation from 1 of (corrected energy density / classical) over points and axes under a
-/// confined unit strain: what a surface correction leaves.
+/// Largest deviation from 1 of (discrete energy density / classical) over points and axes under a
+/// confined unit strain: the error of the quadrature, and what a surface correction leaves of it.
 [[nodiscard]] double confined_energy_error(const Points& points, const Bonds& bonds,
                                            const BondSetting& setting);
 

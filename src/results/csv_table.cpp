@@ -1,12 +1,12 @@
 #include "src/results/csv_table.hpp"
 
-#include <fcntl.h>
-#include <unistd.h>
-
 #include <cerrno>
 #include <cstring>
 #include <fstream>
 #include <sstream>
+
+#include <fcntl.h>
+#include <unistd.h>
 
 #include "src/number_text.hpp"
 #include "src/results/output_file.hpp"

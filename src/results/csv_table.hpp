@@ -12,9 +12,9 @@ namespace peristat {
 /// A CSV file that grows by whole rows: UTF-8, comma, newline, numbers as the shortest text that
 /// reads back as the same number, text in double quotes where it holds a comma, quote or newline.
 ///
-/// A row is appended by a single write, which a kill can't tear inside a page of the file (the kernel
-/// looks for a kill only between pages). A row that would reach into the next page is written by
-/// copying the file and renaming the copy instead.
+/// A row is appended by a single write, which a kill can't tear inside a page of the file (the
+/// kernel looks for a kill only between pages). A row that would reach into the next page is
+/// written by copying the file and renaming the copy instead.
 class CsvTable {
  public:
   /// Creates the file with its header, in place of an existing one.

@@ -1,10 +1,10 @@
 #include "src/results/hdf5_file.hpp"
 
-#include <hdf5.h>
-
 #include <algorithm>
 #include <stdexcept>
 #include <utility>
+
+#include <hdf5.h>
 
 namespace peristat {
 namespace {
@@ -47,9 +47,7 @@ class Handle {
 /// The library prints its error stack by default; here the message is thrown instead.
 void silence_error_printing() { H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); }
 
-Handle file_access() {
-  return {H5Pcreate(H5P_FILE_ACCESS), H5Pclose, "prepare to open a file"};
-}
+Handle file_access() { return {H5Pcreate(H5P_FILE_ACCESS), H5Pclose, "prepare to open a file"}; }
 
 /// Access without locks: only one run knows these files, and some file systems have no locks.
 Handle unlocked_access() {
@@ -72,15 +70,10 @@ Handle dataspace(const Hdf5File::Shape& shape) {
           "make a dataspace"};
 }
 
-Handle open_dataset(hid_t file, const std::string& path) {
-  return {H5Dopen2(file, path.c_str(), H5P_DEFAULT), H5Dclose, "open " + path};
-}
-
 void write_attribute(hid_t object, const std::string& name, hid_t type, hid_t space,
                      const void* values) {
-  const Handle attribute(
-      H5Acreate2(object, name.c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose,
-      "create attribute " + name);
+  const Handle attribute(H5Acreate2(object, name.c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT),
+                         H5Aclose, "create attribute " + name);
   checked(H5Awrite(attribute, type, values), "write attribute " + name);
 }
 
@@ -96,9 +89,9 @@ void write_label(hid_t dataset, const DatasetLabel& label) {
 
 void write_dataset(hid_t file, const std::string& path, hid_t type, const void* values,
                    const Hdf5File::Shape& shape, const DatasetLabel& label) {
-  const Handle dataset(H5Dcreate2(file, path.c_str(), type, dataspace(shape), H5P_DEFAULT,
-                                  H5P_DEFAULT, H5P_DEFAULT),
-                       H5Dclose, "create " + path);
+  const Handle dataset(
+      H5Dcreate2(file, path.c_str(), type, dataspace(shape), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
+      H5Dclose, "create " + path);
   checked(H5Dwrite(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values), "write " + path);
   write_label(dataset, label);
 }
@@ -110,9 +103,8 @@ std::string column_path(const std::string& group, const Column& column) {
 }
 
 /// Appends values to a growing dataset of one dimension.
-void append_values(hid_t file, const std::string& path, hid_t type, const void* values,
+void append_values(hid_t dataset, const std::string& path, hid_t type, const void* values,
                    hsize_t count, hid_t transfer = H5P_DEFAULT) {
-  const Handle dataset = open_dataset(file, path);
   hsize_t start = 0;
   {
     const Handle space(H5Dget_space(dataset), H5Sclose, "size " + path);
@@ -163,13 +155,22 @@ Hdf5File Hdf5File::open_for_reading(const std::filesystem::path& file) {
 }
 
 Hdf5File::Hdf5File(Hdf5File&& other) noexcept
-    : id_(std::exchange(other.id_, -1)), image_(std::move(other.image_)) {}
+    : id_(std::exchange(other.id_, -1)),
+      columns_(std::exchange(other.columns_, {})),
+      image_(std::move(other.image_)) {}
 
 Hdf5File::~Hdf5File() {
+  close_columns();
   if (id_ >= 0) H5Fclose(id_);
 }
 
+void Hdf5File::close_columns() {
+  for (const auto& [path, dataset] : columns_) H5Dclose(dataset);
+  columns_.clear();
+}
+
 void Hdf5File::close() {
+  close_columns();
   checked(H5Fflush(id_, H5F_SCOPE_LOCAL), "write a file to the disk");
   checked(H5Fclose(std::exchange(id_, -1)), "close a file");
 }
@@ -211,9 +212,9 @@ void Hdf5File::write_padded_view(const std::string& path, const std::string& sou
   const double zero = 0.0;
   checked(H5Pset_fill_value(creation, H5T_NATIVE_DOUBLE, &zero), "prepare " + path);
   checked(H5Pset_virtual(creation, view, ".", source.c_str(), whole), "map " + path);
-  const Handle dataset(H5Dcreate2(id_, path.c_str(), H5T_NATIVE_DOUBLE, view, H5P_DEFAULT,
-                                  creation, H5P_DEFAULT),
-                       H5Dclose, "create " + path);
+  const Handle dataset(
+      H5Dcreate2(id_, path.c_str(), H5T_NATIVE_DOUBLE, view, H5P_DEFAULT, creation, H5P_DEFAULT),
+      H5Dclose, "create " + path);
   write_label(dataset, label);
 }
 
@@ -254,9 +255,10 @@ void Hdf5File::make_table(const std::string& group, const std::vector<Column>& c
     const hid_t type = column.kind == Column::Kind::integer  ? H5T_NATIVE_INT64
                        : column.kind == Column::Kind::number ? H5T_NATIVE_DOUBLE
                                                              : hid_t{texts};
-    const Handle dataset(
-        H5Dcreate2(id_, path.c_str(), type, space, H5P_DEFAULT, creation, H5P_DEFAULT), H5Dclose,
-        "create " + path);
+    const hid_t dataset =
+        checked(H5Dcreate2(id_, path.c_str(), type, space, H5P_DEFAULT, creation, H5P_DEFAULT),
+                "create " + path);
+    columns_.emplace(path, dataset);
     write_label(dataset, {column.unit, column.description});
   }
 }
@@ -269,26 +271,26 @@ void Hdf5File::append(const std::string& group, const std::vector<Column>& colum
     if (columns[i].kind == Column::Kind::integer) {
       const auto values = column_values<std::int64_t>(
           rows, i, [](const Cell& cell) { return std::get<std::int64_t>(cell); });
-      append_values(id_, path, H5T_NATIVE_INT64, values.data(), values.size());
+      append_values(columns_.at(path), path, H5T_NATIVE_INT64, values.data(), values.size());
     } else if (columns[i].kind == Column::Kind::number) {
-      const auto values = column_values<double>(
-          rows, i, [](const Cell& cell) { return std::get<double>(cell); });
-      append_values(id_, path, H5T_NATIVE_DOUBLE, values.data(), values.size());
+      const auto values =
+          column_values<double>(rows, i, [](const Cell& cell) { return std::get<double>(cell); });
+      append_values(columns_.at(path), path, H5T_NATIVE_DOUBLE, values.data(), values.size());
     } else {
       const auto values = column_values<const char*>(
           rows, i, [](const Cell& cell) { return std::get<std::string>(cell).c_str(); });
       // Texts are converted in a buffer that is cleared each time; the default one has a megabyte.
       const Handle transfer(H5Pcreate(H5P_DATASET_XFER), H5Pclose, "prepare to write " + path);
       checked(H5Pset_buffer(transfer, 1 << 12, nullptr, nullptr), "prepare to write " + path);
-      append_values(id_, path, text_type(), values.data(), values.size(), transfer);
+      append_values(columns_.at(path), path, text_type(), values.data(), values.size(), transfer);
     }
   }
 }
 
 void Hdf5File::link(const std::string& path, const std::string& file, const std::string& object) {
-  checked(H5Lcreate_external(file.c_str(), object.c_str(), id_, path.c_str(), H5P_DEFAULT,
-                             H5P_DEFAULT),
-          "link " + path);
+  checked(
+      H5Lcreate_external(file.c_str(), object.c_str(), id_, path.c_str(), H5P_DEFAULT, H5P_DEFAULT),
+      "link " + path);
 }
 
 void Hdf5File::unlink(const std::string& path) {

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -57,7 +58,8 @@ class Hdf5File {
   void set_attribute(const std::string& path, const std::string& name,
                      const std::vector<std::string>& texts);
 
-  /// A group with one growing dataset per column, without rows; a '/' in a column's name becomes '|'.
+  /// A group with one growing dataset per column, without rows; a '/' in a column's name becomes
+  /// '|'.
   void make_table(const std::string& group, const std::vector<Column>& columns);
   void append(const std::string& group, const std::vector<Column>& columns,
               const std::vector<Row>& rows);
@@ -75,7 +77,10 @@ class Hdf5File {
 
  private:
   explicit Hdf5File(std::int64_t id) : id_(id) {}
+  void close_columns();
+
   std::int64_t id_;
+  std::map<std::string, std::int64_t> columns_;  // datasets of the tables, open, by path
   std::string image_;  // kept, so that its memory is not cleared again for every image
 };
 

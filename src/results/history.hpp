@@ -8,24 +8,24 @@
 
 namespace peristat {
 
-/// One iteration of the equilibrium search (a row of iterations.csv). Iteration 0 is the state right
-/// after the load step's jump of prescribed displacements and loads.
+/// One iteration of the equilibrium search (a row of iterations.csv). Iteration 0 is the state
+/// right after the load step's jump of prescribed displacements and loads.
 struct IterationRecord {
   int step = 0;
   int iteration = 0;
-  double residual = 0.0;           ///< 2-norm over free degrees of freedom [N]
+  double residual = 0.0;  ///< 2-norm over free degrees of freedom [N]
   double relative_residual = 0.0;
-  double energy = 0.0;             ///< stored energy minus work of the present dead loads [J]
-  double step_length = 0.0;        ///< of the line search
-  int linear_iterations = 0;       ///< of the linear solver; 0 for a direct solve
-  Index changed_bonds = 0;         ///< bonds whose damage this iteration changed
+  double energy = 0.0;        ///< stored energy minus work of the present dead loads [J]
+  double step_length = 0.0;   ///< of the line search
+  int linear_iterations = 0;  ///< of the linear solver; 0 for a direct solve
+  Index changed_bonds = 0;    ///< bonds whose damage this iteration changed
 };
 
 /// One accepted step (a row of history.csv).
 struct StepRecord {
   int step = 0;
   double load_factor = 0.0;
-  std::string mode;                ///< "newton", "relaxation"
+  std::string mode;  ///< "newton", "relaxation"
   int newton_iterations = 0;
   int relaxation_iterations = 0;
   double stored_energy = 0.0;      ///< [J]
@@ -36,17 +36,17 @@ struct StepRecord {
   Index broken_bonds = 0;
   double max_damage = 0.0;
   double max_stretch = 0.0;
-  std::map<std::string, Coordinates> reactions;  ///< by support set [N]
+  std::map<std::string, Coordinates> reactions;       ///< by support set [N]
   std::map<std::string, std::vector<double>> probes;  ///< by probe name: components, or one scalar
 };
 
 /// One decision of the load stepping (a row of decisions.csv).
 struct DecisionRecord {
-  int step = 0;                ///< number that the step has, or would have had
-  double load_factor = 0.0;    ///< that was attempted
-  double increment = 0.0;      ///< of the load factor that was attempted
-  std::string outcome;         ///< name of the equilibrium search's outcome
-  std::string action;          ///< "accept", "accept and grow", "cut", "stop"
+  int step = 0;              ///< number that the step has, or would have had
+  double load_factor = 0.0;  ///< that was attempted
+  double increment = 0.0;    ///< of the load factor that was attempted
+  std::string outcome;       ///< name of the equilibrium search's outcome
+  std::string action;        ///< "accept", "accept and grow", "cut", "stop"
   double next_increment = 0.0;
   std::string reason;
 };

@@ -1,12 +1,12 @@
 #include "src/results/output_file.hpp"
 
-#include <fcntl.h>
-#include <unistd.h>
-
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
 #include <string>
+
+#include <fcntl.h>
+#include <unistd.h>
 
 namespace peristat {
 namespace {
@@ -47,6 +47,17 @@ void write_file(const std::filesystem::path& file, std::string_view contents) {
 void publish_file(const std::filesystem::path& file, std::string_view contents) {
   write_file(temporary(file), contents);
   rename_file(temporary(file), file);
+}
+
+void reserve_file(const std::filesystem::path& file, std::uint64_t bytes) {
+  const int descriptor = ::open(file.c_str(), O_WRONLY | O_CLOEXEC);
+  if (descriptor < 0) fail(file, errno);
+  int error = 0;
+  do {
+    error = ::posix_fallocate(descriptor, 0, static_cast<off_t>(bytes));
+  } while (error == EINTR);
+  ::close(descriptor);
+  if (error != 0) fail(file, error);
 }
 
 void rename_file(const std::filesystem::path& from, const std::filesystem::path& to) {

@@ -48,14 +48,16 @@ const std::vector<Column>& step_columns() {
 }  // namespace
 
 std::vector<Column> iteration_columns() {
-  return {{integer, "step", "1", "number that the step has, or would have had"},
-          {integer, "iteration", "1", "0 is the state right after the step's jump of supports and loads"},
-          {number, "residual", "N", "2-norm of the residual over the free degrees of freedom"},
-          {number, "relative_residual", "1", "residual over the norm that the tolerance refers to"},
-          {number, "energy", "J", "stored energy minus work of the present dead loads"},
-          {number, "step_length", "1", "step length of the line search"},
-          {integer, "linear_iterations", "1", "iterations of the linear solver, 0 for a direct solve"},
-          {integer, "changed_bonds", "1", "bonds whose damage this iteration changed"}};
+  return {
+      {integer, "step", "1", "number that the step has, or would have had"},
+      {integer, "iteration", "1",
+       "0 is the state right after the step's jump of supports and loads"},
+      {number, "residual", "N", "2-norm of the residual over the free degrees of freedom"},
+      {number, "relative_residual", "1", "residual over the norm that the tolerance refers to"},
+      {number, "energy", "J", "stored energy minus work of the present dead loads"},
+      {number, "step_length", "1", "step length of the line search"},
+      {integer, "linear_iterations", "1", "iterations of the linear solver, 0 for a direct solve"},
+      {integer, "changed_bonds", "1", "bonds whose damage this iteration changed"}};
 }
 
 std::vector<Column> decision_columns() {
@@ -73,9 +75,9 @@ std::vector<Column> history_columns(const std::vector<std::string>& support_sets
   std::vector<Column> columns = step_columns();
   for (const std::string& set : support_sets) {
     for (const char* axis : axes) {
-      columns.push_back({number, std::string("reaction_") + axis + ":" + set, "N",
-                         std::string("force of the support on set ") + set + ", " + axis +
-                             " component"});
+      columns.push_back(
+          {number, std::string("reaction_") + axis + ":" + set, "N",
+           std::string("force of the support on set ") + set + ", " + axis + " component"});
     }
   }
   std::set<std::string> names;
@@ -84,8 +86,9 @@ std::vector<Column> history_columns(const std::vector<std::string>& support_sets
     for (int c = 0; c < probe.components; ++c) {
       const std::string name = probe.components == 1 ? probe.name : probe.name + "_" + axes[c];
       if (!names.insert(name).second) {
-        throw InputError("probe", probe.name,
-                         "history.csv already has a column \"" + name + "\"; name the probe otherwise");
+        throw InputError(
+            "probe", probe.name,
+            "history.csv already has a column \"" + name + "\"; name the probe otherwise");
       }
       columns.push_back({number, name, probe.unit, "probe " + probe.name + " of the case"});
     }
@@ -112,13 +115,13 @@ Row make_row(const StepRecord& record, const std::vector<std::string>& support_s
   if (record.reactions.size() != support_sets.size() || record.probes.size() != probes.size()) {
     throw std::logic_error("results: a step needs the reactions and probes that were announced");
   }
-  Row row = checked(step_columns(),
-                    {std::int64_t{record.step}, record.load_factor, record.mode,
-                     std::int64_t{record.newton_iterations},
-                     std::int64_t{record.relaxation_iterations}, record.stored_energy,
-                     record.dissipated_energy, record.drained_energy, record.external_work,
-                     record.balance_error, std::int64_t{record.broken_bonds}, record.max_damage,
-                     record.max_stretch});
+  Row row =
+      checked(step_columns(),
+              {std::int64_t{record.step}, record.load_factor, record.mode,
+               std::int64_t{record.newton_iterations}, std::int64_t{record.relaxation_iterations},
+               record.stored_energy, record.dissipated_energy, record.drained_energy,
+               record.external_work, record.balance_error, std::int64_t{record.broken_bonds},
+               record.max_damage, record.max_stretch});
   const auto append = [&row](const std::string& name, double value) {
     if (!std::isfinite(value)) {
       throw std::logic_error("results: " + name + " is " + number_text(value));

@@ -12,8 +12,8 @@ namespace peristat {
 [[nodiscard]] std::vector<Column> iteration_columns();
 [[nodiscard]] std::vector<Column> decision_columns();
 
-/// The step's own columns, then reaction_x:SET, reaction_y:SET, reaction_z:SET per support set, then
-/// the probes: NAME of one component, NAME_x, NAME_y, NAME_z of more.
+/// The step's own columns, then reaction_x:SET, reaction_y:SET, reaction_z:SET per support set,
+/// then the probes: NAME of one component, NAME_x, NAME_y, NAME_z of more.
 /// @throws InputError (key "probe") if a probe's column has the name of another column
 [[nodiscard]] std::vector<Column> history_columns(const std::vector<std::string>& support_sets,
                                                   const std::vector<ProbeColumns>& probes);

@@ -1,7 +1,5 @@
 #include "src/results/results.hpp"
 
-#include <sys/resource.h>
-
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -9,6 +7,8 @@
 #include <exception>
 #include <limits>
 #include <stdexcept>
+
+#include <sys/resource.h>
 
 #include "src/input_error.hpp"
 #include "src/results/csv_table.hpp"
@@ -18,28 +18,15 @@
 #include "src/results/results_folder.hpp"
 #include "src/results/summary_json.hpp"
 #include "src/results/xdmf_series.hpp"
+#include "src/stopwatch.hpp"
 
 namespace peristat {
 namespace {
 
-constexpr std::size_t master_growth = 1 << 18;  // bytes
+constexpr std::size_t master_growth = 1 << 18;     // bytes
+constexpr std::uint64_t room_for_views = 1 << 13;  // bytes per step
 
 using Clock = std::chrono::steady_clock;
-
-/// Adds the time of its life to a sum.
-class Stopwatch {
- public:
-  explicit Stopwatch(double& seconds) : seconds_(seconds) {}
-  ~Stopwatch() {
-    seconds_ += std::chrono::duration<double>(Clock::now() - start_).count();
-  }
-  Stopwatch(const Stopwatch&) = delete;
-  Stopwatch& operator=(const Stopwatch&) = delete;
-
- private:
-  double& seconds_;
-  Clock::time_point start_ = Clock::now();
-};
 
 std::string step_name(int step) {
   char name[16];
@@ -72,7 +59,9 @@ std::vector<Field> present_fields(const StepFields& fields, Index count, int dim
        true,
        fields.force},
       {"damage", {"1", "damage of each point, 0 intact to 1"}, false, fields.damage},
-      {"energy_density", {"J/m3", "stored energy per volume of each point"}, false,
+      {"energy_density",
+       {"J/m3", "stored energy per volume of each point"},
+       false,
        fields.energy_density}};
   std::erase_if(present, [](const Field& field) { return field.values == nullptr; });
   for (const Field& field : present) {
@@ -125,8 +114,9 @@ void write_points(Hdf5File& file, const Points& points) {
              {"m", "reference position of each point"});
   file.write("/points/volume", points.volume, {count}, {"m3", "volume of each point"});
 
-  file.write("/points/set_ids", membership(points), {count, points.sets.size()},
-             {"1", "1 where the point (row) is in the set (column); attribute sets names the columns"});
+  file.write(
+      "/points/set_ids", membership(points), {count, points.sets.size()},
+      {"1", "1 where the point (row) is in the set (column); attribute sets names the columns"});
   std::vector<std::string> names;
   for (const auto& [name, members] : points.sets) names.push_back(name);
   file.set_attribute("/points/set_ids", "sets", names);
@@ -215,8 +205,7 @@ Results::Files::Files(const std::filesystem::path& directory, const Points& poin
   master.make_group("/steps");
   if (has_views()) master.make_group("/xdmf");
 
-  publish_hdf5(folder.parts() / "points.h5",
-               [&](Hdf5File& file) { write_points(file, points); });
+  publish_hdf5(folder.parts() / "points.h5", [&](Hdf5File& file) { write_points(file, points); });
   master.link("/points", "parts/points.h5", "/points");
   publish_file(folder.results(), master.image());
 }
@@ -301,7 +290,15 @@ void Results::Files::publish_xdmf() {
 void Results::Files::gather_parts() {
   const std::filesystem::path gathered = temporary(folder.results());
   try {
-    write_file(gathered, master.image());
+    // HDF5 1.10 crashes when a disk runs full while it copies objects, so the room is reserved
+    // before; closing the file gives back what is not used.
+    const std::string_view image = master.image();
+    write_file(gathered, image);
+    std::uint64_t room = image.size() + std::filesystem::file_size(folder.parts() / "points.h5");
+    for (const WrittenStep& step : written_steps) {
+      room += std::filesystem::file_size(folder.parts() / (step.name + ".h5")) + room_for_views;
+    }
+    reserve_file(gathered, room);
     auto file = Hdf5File::open_for_update(gathered);
     const auto gather = [&](const std::string& part, const std::string& source,
                             const std::string& path) {
@@ -322,9 +319,9 @@ void Results::Files::gather_parts() {
   } catch (const std::runtime_error& error) {
     std::error_code ignored;
     std::filesystem::remove(gathered, ignored);
-    throw OutputError(folder.results().string() +
-                      ": the steps can't be gathered into one file, they stay in parts/: " +
-                      error.what());
+    throw OutputError(
+        folder.results().string() +
+        ": the steps can't be gathered into one file, they stay in parts/: " + error.what());
   }
   remove_parts(folder);
 }

@@ -34,7 +34,8 @@ struct CaseText {
   std::map<std::string, std::string> versions{};  ///< "peristat", "hdf5", ... -> "1.0.0"
 };
 
-/// Columns that a probe adds to the history: NAME for one component, NAME_x, NAME_y, NAME_z for more.
+/// Columns that a probe adds to the history: NAME for one component, NAME_x, NAME_y, NAME_z for
+/// more.
 struct ProbeColumns {
   std::string name;
   int components = 1;
@@ -44,10 +45,10 @@ struct ProbeColumns {
 /// Writer of a results folder (docs/results.md): results.h5, results.xdmf, history.csv,
 /// iterations.csv, decisions.csv, summary.json.
 ///
-/// A kill at any moment leaves every accepted step readable: each step's fields go to a file of their
-/// own, `parts/NNNNNN.h5`, and results.h5, which links to them, is published by renaming a complete
-/// new file over the old one. `close` gathers the parts into one self-contained results.h5.
-/// The destructor alone leaves what is published.
+/// A kill at any moment leaves every accepted step readable: each step's fields go to a file of
+/// their own, `parts/NNNNNN.h5`, and results.h5, which links to them, is published by renaming a
+/// complete new file over the old one. `close` gathers the parts into one self-contained
+/// results.h5. The destructor alone leaves what is published.
 ///
 /// Every number handed in is finite: anything else is a bug of the caller and throws
 /// std::logic_error that names it, before anything is written. What can't be written later (disk
@@ -73,8 +74,8 @@ class Results {
   void add(const StepRecord& record, const std::optional<StepFields>& fields);
 
   /// Writes summary.json (counts and energies are taken from the last step record, sums of
-  /// iterations from all) and gathers the parts. Nothing can be added afterwards. If the parts can't
-  /// be gathered, summary.json is still written and everything stays readable where it is.
+  /// iterations from all) and gathers the parts. Nothing can be added afterwards. If the parts
+  /// can't be gathered, summary.json is still written and everything stays readable where it is.
   void close(Summary summary);
 
   [[nodiscard]] double seconds_spent() const;  ///< wall time inside this class [s]

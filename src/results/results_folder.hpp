@@ -19,7 +19,8 @@ struct ResultsFolder {
 
 /// Makes the folder ready for a new run: creates it, or removes the files of an earlier run from it
 /// (nothing else), and creates parts/.
-/// @throws InputError (key "output.directory") if the folder can't be written, or holds files but none
+/// @throws InputError (key "output.directory") if the folder can't be written, or holds files but
+/// none
 ///         of an earlier run: it may be somebody's home folder
 [[nodiscard]] ResultsFolder prepare_results_folder(const std::filesystem::path& directory);
 

@@ -18,8 +18,8 @@ struct StepTotals {
   void add(const StepRecord& record);
 };
 
-/// Text of summary.json; energies, reactions and probes are those of the last step, all zero or empty
-/// before the first.
+/// Text of summary.json; energies, reactions and probes are those of the last step, all zero or
+/// empty before the first.
 /// @throws std::logic_error that names a number that is not finite
 [[nodiscard]] std::string summary_json(const Summary& summary, const StepTotals& totals,
                                        std::int64_t peak_memory_bytes);

@@ -7,8 +7,8 @@ namespace {
 
 std::string data_item(const std::string& type, const std::string& dimensions,
                       const std::string& dataset) {
-  return "<DataItem Format=\"HDF\" " + type + " Dimensions=\"" + dimensions + "\">results.h5:" +
-         dataset + "</DataItem>";
+  return "<DataItem Format=\"HDF\" " + type + " Dimensions=\"" + dimensions +
+         "\">results.h5:" + dataset + "</DataItem>";
 }
 
 constexpr const char* double_type = "NumberType=\"Float\" Precision=\"8\"";

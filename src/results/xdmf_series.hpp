@@ -8,8 +8,8 @@
 namespace peristat {
 
 /// Text of results.xdmf: one grid of points per step with fields, that reads its arrays from
-/// results.h5. Its time is the step number (load factors may repeat); vectors have three components,
-/// which the glyphs and the warping of ParaView need.
+/// results.h5. Its time is the step number (load factors may repeat); vectors have three
+/// components, which the glyphs and the warping of ParaView need.
 class XdmfSeries {
  public:
   struct Field {

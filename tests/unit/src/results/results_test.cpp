@@ -1,12 +1,5 @@
 #include "src/results/results.hpp"
 
-#include <gtest/gtest.h>
-#include <hdf5.h>
-#include <signal.h>
-#include <sys/resource.h>
-#include <sys/wait.h>
-#include <unistd.h>
-
 #include <chrono>
 #include <cmath>
 #include <fstream>
@@ -15,6 +8,13 @@
 #include <set>
 #include <sstream>
 #include <thread>
+
+#include <gtest/gtest.h>
+#include <hdf5.h>
+#include <signal.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include "src/input_error.hpp"
 
@@ -39,7 +39,8 @@ std::vector<std::string> lines(const fs::path& file) {
 /// Reads an HDF5 file with the library's own calls, as any reader would.
 class Reader {
  public:
-  explicit Reader(const fs::path& file) : file_(H5Fopen(file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT)) {}
+  explicit Reader(const fs::path& file)
+      : file_(H5Fopen(file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT)) {}
   ~Reader() {
     if (file_ >= 0) H5Fclose(file_);
   }
@@ -136,7 +137,8 @@ class Reader {
     H5Gget_info(object, &info);
     for (hsize_t i = 0; i < info.nlinks; ++i) {
       char name[256];
-      H5Lget_name_by_idx(object, ".", H5_INDEX_NAME, H5_ITER_INC, i, name, sizeof name, H5P_DEFAULT);
+      H5Lget_name_by_idx(object, ".", H5_INDEX_NAME, H5_ITER_INC, i, name, sizeof name,
+                         H5P_DEFAULT);
       names.emplace_back(name);
     }
     H5Gclose(object);
@@ -211,7 +213,8 @@ StepRecord example_step(int step) {
   record.broken_bonds = 3;
   record.max_damage = 0.5;
   record.max_stretch = 0.01;
-  record.reactions = {{"right", {1.0 * step, 2.0, 0.0}}, {"left, \"top\"", {-1.0 * step, -2.0, 0.0}}};
+  record.reactions = {{"right", {1.0 * step, 2.0, 0.0}},
+                      {"left, \"top\"", {-1.0 * step, -2.0, 0.0}}};
   record.probes = {{"tip", {0.5, -0.5 * step}}, {"crack", {9.0}}};
   return record;
 }
@@ -219,7 +222,8 @@ StepRecord example_step(int step) {
 void add_step(Results& results, int step, int dimension = 2) {
   results.add(IterationRecord{step, 0, 100.0, 1.0, -1.0, 1.0, 0, 0});
   results.add(IterationRecord{step, 1, 1e-9, 1e-11, -2.0, 0.5, 17, 3});
-  results.add(DecisionRecord{step, 0.1 * step, 0.1, "converged", "accept and grow", 0.2, "quick, \"easy\""});
+  results.add(DecisionRecord{step, 0.1 * step, 0.1, "converged", "accept and grow", 0.2,
+                             "quick, \"easy\""});
   const ExampleFields fields(step, dimension);
   results.add(example_step(step), fields.views());
 }
@@ -292,7 +296,8 @@ void expect_contents(const Reader& file, int dimension) {
     }
   }
   EXPECT_EQ(file.text_attribute("/history/tip_x", "unit"), std::vector<std::string>{"m"});
-  EXPECT_EQ(file.text_attribute("/history/reaction_x:right", "unit"), std::vector<std::string>{"N"});
+  EXPECT_EQ(file.text_attribute("/history/reaction_x:right", "unit"),
+            std::vector<std::string>{"N"});
 }
 
 TEST_F(ResultsTest, FileIsReadableDuringTheRunAndAfterDestructionWithoutClose) {
@@ -385,10 +390,11 @@ TEST_F(ResultsTest, TablesHaveTheColumnsOfTheContract) {
                 "\"reaction_z:left, \"\"top\"\"\",tip_x,tip_y,crack",
                 "1,0.1,newton,4,100,0.3333333333333333,0.25,0.125,5,1e-17,3,0.5,0.01,1,2,0,-1,-2,0,"
                 "0.5,-0.5,9"}));
-  EXPECT_EQ(lines(directory / "iterations.csv"),
-            (std::vector<std::string>{"step,iteration,residual,relative_residual,energy,step_length,"
-                                      "linear_iterations,changed_bonds",
-                                      "1,0,100,1,-1,1,0,0", "1,1,1e-09,1e-11,-2,0.5,17,3"}));
+  EXPECT_EQ(
+      lines(directory / "iterations.csv"),
+      (std::vector<std::string>{"step,iteration,residual,relative_residual,energy,step_length,"
+                                "linear_iterations,changed_bonds",
+                                "1,0,100,1,-1,1,0,0", "1,1,1e-09,1e-11,-2,0.5,17,3"}));
   EXPECT_EQ(lines(directory / "decisions.csv"),
             (std::vector<std::string>{
                 "step,load_factor,increment,outcome,action,next_increment,reason",
@@ -397,25 +403,20 @@ TEST_F(ResultsTest, TablesHaveTheColumnsOfTheContract) {
 
 TEST_F(ResultsTest, TablesStayWholeOverManyPages) {
   Results results = open_results(directory);
-  std::string expected = lines(directory / "iterations.csv").front() + "\n";
   for (int i = 0; i < 2000; ++i) {
     results.add(IterationRecord{1, i, 1.0 / (i + 1), 0.5, -1.0, 1.0, 0, 0});
-    std::ostringstream number;
-    number << std::defaultfloat;
-    expected += "1," + std::to_string(i) + ",";
-    const std::vector<std::string> rows = i == 1999 ? lines(directory / "iterations.csv")
-                                                    : std::vector<std::string>{};
-    if (rows.empty()) continue;
-    ASSERT_EQ(rows.size(), 2001u);
-    for (int k = 0; k < 2000; ++k) {
-      int step = 0, iteration = 0;
-      double residual = 0.0;
-      ASSERT_EQ(std::sscanf(rows[k + 1].c_str(), "%d,%d,%lf,0.5,-1,1,0,0", &step, &iteration,
-                            &residual),
-                3);
-      EXPECT_EQ(iteration, k);
-      EXPECT_EQ(residual, 1.0 / (k + 1));
-    }
+  }
+  EXPECT_GT(fs::file_size(directory / "iterations.csv"), 10u * 4096);
+  const std::vector<std::string> rows = lines(directory / "iterations.csv");
+  ASSERT_EQ(rows.size(), 2001u);
+  for (int i = 0; i < 2000; ++i) {
+    int step = 0, iteration = 0;
+    double residual = 0.0;
+    ASSERT_EQ(
+        std::sscanf(rows[i + 1].c_str(), "%d,%d,%lf,0.5,-1,1,0,0", &step, &iteration, &residual),
+        3);
+    EXPECT_EQ(iteration, i);
+    EXPECT_EQ(residual, 1.0 / (i + 1));
   }
 }
 
@@ -454,8 +455,9 @@ TEST_F(ResultsTest, SummaryTakesSumsFromAllStepsAndTheRestFromTheLast) {
   summary.seconds = {1, 2, 3, 4, 5, 6.5};
   summary.threads = 2;
   results.close(summary);
-  const std::string json = std::regex_replace(
-      read_text(directory / "summary.json"), std::regex("(\"peak_memory_bytes\": )[1-9][0-9]*"), "$1M");
+  const std::string json =
+      std::regex_replace(read_text(directory / "summary.json"),
+                         std::regex("(\"peak_memory_bytes\": )[1-9][0-9]*"), "$1M");
   EXPECT_EQ(json, R"({
   "status": "not_converged",
   "reason": "line\u000a\"quoted\" \\",
@@ -518,7 +520,8 @@ TEST_F(ResultsTest, NumbersThatAreNotFiniteAreRefusedBeforeAnythingIsWritten) {
   record.probes.erase("tip");
   EXPECT_THROW(results.add(record, std::nullopt), std::logic_error);
   add_step(results, 1);
-  EXPECT_THROW(results.add(example_step(1), std::nullopt), std::logic_error) << "the same step again";
+  EXPECT_THROW(results.add(example_step(1), std::nullopt), std::logic_error)
+      << "the same step again";
   EXPECT_EQ(lines(directory / "history.csv").size(), 2u);
   EXPECT_EQ(lines(directory / "iterations.csv").size(), 3u);
   EXPECT_EQ(Reader(directory / "results.h5").numbers("/history/step"), std::vector<double>{1});
@@ -649,52 +652,55 @@ TEST_F(ResultsTest, AFolderThatDisappearsIsReported) {
   EXPECT_THROW(results.add(example_step(2), ExampleFields(2, 2).views()), std::runtime_error);
 }
 
-/// Adds steps until it is killed; writes the number of each accepted step to the pipe. Every 20 steps
-/// it closes the results, announces 0 and starts the run anew, so that kills meet that as well.
-[[noreturn]] void add_steps_forever(const fs::path& directory, int pipe) {
-  while (true) {
-    Results results = open_results(directory);
+/// An accepted step of a run, told by the child that is going to be killed.
+struct Announcement {
+  int run = 0, step = 0;
+};
+
+fs::path run_folder(const fs::path& base, int run) { return base / ("run" + std::to_string(run)); }
+
+/// Adds steps until it is killed and announces each accepted step. Every 20 steps it closes the
+/// results and starts another run, so that kills meet the closing as well.
+[[noreturn]] void add_steps_forever(const fs::path& base, int pipe) {
+  for (int run = 0;; ++run) {
+    Results results = open_results(run_folder(base, run));
     for (int step = 1; step <= 20; ++step) {
       add_step(results, step);
-      if (::write(pipe, &step, sizeof step) != sizeof step) _exit(1);
+      const Announcement accepted{run, step};
+      if (::write(pipe, &accepted, sizeof accepted) != sizeof accepted) _exit(1);
     }
     results.close({});
-    const int closed = 0;
-    if (::write(pipe, &closed, sizeof closed) != sizeof closed) _exit(1);
-    // The next run replaces this one; without a new folder its kills could only show an empty file.
-    fs::remove_all(directory);
   }
 }
 
 TEST_F(ResultsTest, AKillLeavesEveryAnnouncedStep) {
-  int most_steps = 0, checked_runs = 0;
-  for (int run = 0; run < 30; ++run) {
-    const fs::path folder = base / ("run" + std::to_string(run));
+  int most_steps = 0;
+  for (int kill = 0; kill < 30; ++kill) {
+    const fs::path place = base / ("kill" + std::to_string(kill));
     int ends[2];
     ASSERT_EQ(::pipe(ends), 0);
     const pid_t child = ::fork();
     ASSERT_GE(child, 0);
     if (child == 0) {
       ::close(ends[0]);
-      add_steps_forever(folder, ends[1]);
+      add_steps_forever(place, ends[1]);
     }
     ::close(ends[1]);
-    int announced = 0, step = 0;
-    ASSERT_EQ(::read(ends[0], &step, sizeof step), static_cast<ssize_t>(sizeof step));
-    announced = step;
-    std::this_thread::sleep_for(std::chrono::microseconds(1700 * run));
+    Announcement last, next;
+    ASSERT_EQ(::read(ends[0], &last, sizeof last), static_cast<ssize_t>(sizeof last));
+    std::this_thread::sleep_for(std::chrono::microseconds(1700 * kill));
     ::kill(child, SIGKILL);
     ::waitpid(child, nullptr, 0);
-    while (::read(ends[0], &step, sizeof step) == static_cast<ssize_t>(sizeof step)) announced = step;
+    while (::read(ends[0], &next, sizeof next) == static_cast<ssize_t>(sizeof next)) last = next;
     ::close(ends[0]);
-    if (announced == 0) continue;  // killed while the folder was removed for the next run
-    ++checked_runs;
+    const fs::path folder = run_folder(place, last.run);
+    const int announced = last.step;
     most_steps = std::max(most_steps, announced);
 
     const Reader file(folder / "results.h5");
-    ASSERT_TRUE(file.is_open()) << "run " << run;
+    ASSERT_TRUE(file.is_open()) << folder;
     const std::vector<double> steps = file.numbers("/history/step");
-    ASSERT_GE(steps.size(), static_cast<std::size_t>(announced)) << "run " << run;
+    ASSERT_GE(steps.size(), static_cast<std::size_t>(announced)) << folder;
     for (int accepted = 1; accepted <= announced; ++accepted) {
       EXPECT_EQ(steps[accepted - 1], accepted);
       expect_step(file, accepted, 2);
@@ -713,7 +719,6 @@ TEST_F(ResultsTest, AKillLeavesEveryAnnouncedStep) {
       }
     }
   }
-  EXPECT_GE(checked_runs, 20);
   EXPECT_GT(most_steps, 2) << "the kills came too early to mean anything";
 }
 

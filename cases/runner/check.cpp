@@ -1,0 +1,96 @@
+#include "cases/runner/check.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "cases/runner/body.hpp"
+#include "solvers/linear/cholesky.hpp"
+
+namespace peristat {
+namespace {
+
+/// Speed of factorisation that the time estimate assumes [flop/s per thread], and the Newton
+/// iterations and factorisations of a load step.
+constexpr double assumed_speed = 2.5e10;
+constexpr double assumed_factorisations_per_step = 1.0;
+
+struct NeighbourCounts {
+  Index least = 0, most = 0, isolated = 0;
+  double mean = 0.0;
+};
+
+NeighbourCounts count_neighbours(const Bonds& bonds) {
+  std::vector<Index> neighbours(bonds.points(), 0);
+  for (Index i = 0; i < bonds.points(); ++i) {
+    for (Offset bond = bonds.offset[i]; bond < bonds.offset[i + 1]; ++bond) {
+      ++neighbours[i];
+      ++neighbours[bonds.partner[bond]];
+    }
+  }
+  NeighbourCounts counts;
+  const auto [least, most] = std::minmax_element(neighbours.begin(), neighbours.end());
+  counts.least = *least;
+  counts.most = *most;
+  counts.isolated = static_cast<Index>(std::count(neighbours.begin(), neighbours.end(), 0));
+  counts.mean = 2.0 * double(bonds.count()) / double(bonds.points());
+  return counts;
+}
+
+std::string seconds_text(double seconds) {
+  if (seconds < 1.0) return "below a second";
+  if (seconds < 120.0) return fmt::format("about {:.0f} s", seconds);
+  if (seconds < 7200.0) return fmt::format("about {:.0f} min", seconds / 60.0);
+  return fmt::format("about {:.1f} h", seconds / 3600.0);
+}
+
+}  // namespace
+
+Exit check(const Case& from, int threads) {
+  const Body body = make_body(from, threads);
+  const Points& points = body.points;
+  const NeighbourCounts neighbours = count_neighbours(body.term.bonds);
+  fmt::print("case        {}\n", from.title.empty() ? from.file : from.title);
+  fmt::print("points      {} in {}D, spacing {:g} m, horizon {:g} m ({:.4g} spacings)\n",
+             points.count(), points.dimension, points.spacing, body.setting.horizon,
+             body.horizon_ratio());
+  fmt::print("bonds       {}; neighbours per point {} to {}, {:.1f} on average\n",
+             body.term.bonds.count(), neighbours.least, neighbours.most, neighbours.mean);
+  fmt::print("constants   micromodulus {:.6g} N/m6, Young's modulus {:.6g} Pa, Poisson's ratio {:.4g}\n",
+             std::get<Harmonic>(body.term.potential).modulus,
+             youngs_modulus_of(std::get<Harmonic>(body.term.potential).modulus, body.setting),
+             poisson_ratio(body.setting));
+  fmt::print("quadrature  energy of a confined strain deviates by at most {:.3g} from the classical\n",
+             confined_energy_error(points, body.term.bonds, body.setting));
+  for (const auto& [set, members] : points.sets) {
+    fmt::print("set         {}: {} points\n", set, members.size());
+  }
+  const auto& prescribed = body.conditions->prescribed();
+  const auto held = std::count(prescribed.begin(), prescribed.end(), 1);
+  fmt::print("supports    {} prescribed and {} free degrees of freedom\n", held,
+             std::int64_t(prescribed.size()) - held);
+  if (neighbours.isolated > 0) {
+    fmt::print("isolated    {} points have no neighbour\n", neighbours.isolated);
+  }
+
+  MemoryEstimate estimate = estimate_memory(body);
+  require_memory(estimate.bytes, fmt::format("the case with {} points", points.count()));
+  const FreeDofs free(prescribed, points.dimension);
+  const Pattern pattern(body.term.bonds);
+  Cholesky solver;
+  if (solver.analyze(pattern, free) == LinearOutcome::solved) {
+    estimate.bytes += 8.0 * (solver.estimate().entries - estimate.factor_entries);
+    estimate.factor_flops = solver.estimate().flops;
+    fmt::print("solver      {}\n", solver.describe());
+  }
+  const double factorisations = assumed_factorisations_per_step * from.loading.steps;
+  fmt::print("memory      about {} of {} available\n", bytes_text(estimate.bytes),
+             bytes_text(available_memory()));
+  fmt::print("time        {} for {} load steps, if none has to be cut\n",
+             seconds_text(factorisations * estimate.factor_flops / (assumed_speed * threads)),
+             from.loading.steps);
+  refuse_free_motions(from, body);
+  return Exit::done;
+}
+
+}  // namespace peristat

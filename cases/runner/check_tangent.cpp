@@ -1,0 +1,179 @@
+#include "cases/runner/check_tangent.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "cases/runner/body.hpp"
+#include "solvers/vector_verbs.hpp"
+#include "src/conditions/expression.hpp"
+#include "src/input_error.hpp"
+#include "src/number_text.hpp"
+
+namespace peristat {
+namespace {
+
+/// A homogeneous deformation plus a bending-like part, different in every direction.
+std::string default_deformation(const Points& points) {
+  double length = points.spacing;
+  for (double at : points.reference) length = std::max(length, std::abs(at));
+  const std::string l = number_text(length);
+  switch (points.dimension) {
+    case 1:
+      return "1.03*x + 0.01*" + l + "*sin(2*x/" + l + ")";
+    case 2:
+      return "1.03*x + 0.02*y + 0.02*x*y/" + l + "; 0.98*y - 0.01*x + 0.015*x*x/" + l;
+    default:
+      return "1.03*x + 0.02*y - 0.01*z + 0.02*x*y/" + l + "; 0.98*y - 0.01*x + 0.015*x*z/" + l +
+             "; 1.01*z + 0.02*x - 0.015*y*y/" + l;
+  }
+}
+
+std::vector<double> displacement_of(const std::string& deformation, const Points& points) {
+  std::vector<Expression> component;
+  std::istringstream parts(deformation);
+  for (std::string part; std::getline(parts, part, ';');) {
+    component.emplace_back(part, points.dimension, points.spacing,
+                           Expression::LoadFactor::not_allowed);
+  }
+  if (component.size() != std::size_t(points.dimension)) {
+    throw InputError("", '"' + deformation + '"',
+                     "needs " + std::to_string(points.dimension) +
+                         " expressions of the current coordinates, separated by ';'");
+  }
+  std::vector<double> displacement(points.reference.size());
+  for (Index i = 0; i < points.count(); ++i) {
+    for (int c = 0; c < points.dimension; ++c) {
+      const std::size_t dof = std::size_t(i) * points.dimension + c;
+      displacement[dof] = component[c](points.position(i)) - points.reference[dof];
+    }
+  }
+  return displacement;
+}
+
+/// Fixed pseudo-random direction with entries of the size of the spacing.
+std::vector<double> test_direction(const Points& points) {
+  std::vector<double> direction(points.reference.size());
+  std::uint64_t state = 88172645463325252ULL;
+  for (double& entry : direction) {
+    state ^= state << 13;
+    state ^= state >> 7;
+    state ^= state << 17;
+    entry = points.spacing * (2.0 * double(state >> 11) / 9007199254740992.0 - 1.0);
+  }
+  return direction;
+}
+
+struct Convergence {
+  double error = 0.0, order = 0.0;
+};
+
+/// Smallest error, and the order at the smallest step whose error still stands clear of round-off.
+Convergence convergence_of(const std::vector<double>& errors) {
+  constexpr double clear_of_round_off = 100.0;
+  Convergence result;
+  result.error = *std::min_element(errors.begin(), errors.end());
+  for (std::size_t k = 0; k + 1 < errors.size(); ++k) {
+    if (errors[k + 1] < clear_of_round_off * result.error) break;
+    result.order = std::log2(errors[k] / errors[k + 1]);
+  }
+  return result;
+}
+
+double relative_force_sum(const Points& points, const std::vector<double>& gradient) {
+  Coordinates sum{};
+  double size = 0.0;
+  for (std::size_t dof = 0; dof < gradient.size(); ++dof) {
+    sum[dof % std::size_t(points.dimension)] += gradient[dof];
+    size += std::abs(gradient[dof]);
+  }
+  return size > 0.0 ? std::hypot(sum[0], sum[1], sum[2]) / size : 0.0;
+}
+
+double relative_moment_sum(const Points& points, const std::vector<double>& displacement,
+                           const std::vector<double>& gradient) {
+  Coordinates sum{};
+  double size = 0.0;
+  for (Index i = 0; i < points.count(); ++i) {
+    Coordinates at = points.position(i), force{};
+    for (int c = 0; c < points.dimension; ++c) {
+      const std::size_t dof = std::size_t(i) * points.dimension + c;
+      at[c] += displacement[dof];
+      force[c] = gradient[dof];
+    }
+    sum[0] += at[1] * force[2] - at[2] * force[1];
+    sum[1] += at[2] * force[0] - at[0] * force[2];
+    sum[2] += at[0] * force[1] - at[1] * force[0];
+    size += std::hypot(at[0], at[1], at[2]) * std::hypot(force[0], force[1], force[2]);
+  }
+  return size > 0.0 ? std::hypot(sum[0], sum[1], sum[2]) / size : 0.0;
+}
+
+}  // namespace
+
+Exit check_tangent(const Case& from, const std::string& deformation, int threads) {
+  const Body body = make_body(from, threads);
+  const Points& points = body.points;
+  const std::string text = deformation.empty() ? default_deformation(points) : deformation;
+  std::vector<double> displacement;
+  try {
+    displacement = displacement_of(text, points);
+  } catch (const InputError& error) {
+    throw InputError("--deformation", error.value(), error.allowed());
+  }
+  Assembler assembler(points, body.term, threads);
+  const std::size_t dofs = displacement.size();
+  std::vector<double> gradient(dofs), image(dofs), shifted(dofs), forward(dofs), backward(dofs);
+  const Stored stored = assembler.gradient(displacement, gradient);
+  if (stored.degenerate) {
+    throw InputError("--deformation", '"' + text + '"', "collapses a bond to zero length");
+  }
+  Tangent tangent(Pattern(body.term.bonds), points.dimension);
+  assembler.tangent(displacement, tangent);
+  const std::vector<double> direction = test_direction(points);
+  tangent.multiply(direction, image);
+  const double slope = dot(gradient, direction);
+
+  std::vector<double> residual_errors, tangent_errors;
+  constexpr int halvings = 20;
+  double step = 0.05;
+  for (int k = 0; k < halvings; ++k, step *= 0.5) {
+    shifted = displacement;
+    add_scaled(shifted, step, direction);
+    const double energy_forward = assembler.gradient(shifted, forward).energy;
+    shifted = displacement;
+    add_scaled(shifted, -step, direction);
+    const double energy_backward = assembler.gradient(shifted, backward).energy;
+    const double difference = (energy_forward - energy_backward) / (2.0 * step);
+    residual_errors.push_back(std::abs(difference - slope) / std::abs(slope));
+    add_scaled(forward, -1.0, backward);
+    for (double& entry : forward) entry /= 2.0 * step;
+    add_scaled(forward, -1.0, image);
+    tangent_errors.push_back(norm(forward) / norm(image));
+  }
+  const Convergence of_residual = convergence_of(residual_errors);
+  const Convergence of_tangent = convergence_of(tangent_errors);
+
+  fmt::print(
+      "{{\n"
+      "  \"deformation\": \"{}\",\n"
+      "  \"energy\": {:.17g},\n"
+      "  \"residual_norm\": {:.17g},\n"
+      "  \"tangent_frobenius_norm\": {:.17g},\n"
+      "  \"asymmetry\": {:.6g},\n"
+      "  \"force_sum\": {:.6g},\n"
+      "  \"moment_sum\": {:.6g},\n"
+      "  \"residual_error\": {:.6g},\n"
+      "  \"tangent_error\": {:.6g},\n"
+      "  \"residual_order\": {:.6g},\n"
+      "  \"tangent_order\": {:.6g}\n"
+      "}}\n",
+      text, stored.energy, norm(gradient), tangent.frobenius_norm(), tangent.asymmetry(),
+      relative_force_sum(points, gradient), relative_moment_sum(points, displacement, gradient),
+      of_residual.error, of_tangent.error, of_residual.order, of_tangent.order);
+  return Exit::done;
+}
+
+}  // namespace peristat

@@ -1,0 +1,109 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <exception>
+#include <new>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "cases/runner/case.hpp"
+#include "cases/runner/check.hpp"
+#include "cases/runner/check_tangent.hpp"
+#include "cases/runner/memory.hpp"
+#include "cases/runner/run.hpp"
+#include "cases/runner/runtime_environment.hpp"
+#include "src/input_error.hpp"
+
+namespace {
+
+using namespace peristat;
+
+struct CommandLine {
+  std::string case_file, output, log_file, deformation;
+  std::vector<std::string> settings;
+  int threads = 0;
+  bool quiet = false;
+};
+
+/// "key=value" taken apart.
+std::vector<std::pair<std::string, std::string>> overrides(const CommandLine& line) {
+  std::vector<std::pair<std::string, std::string>> result;
+  for (const std::string& setting : line.settings) {
+    const auto equals = setting.find('=');
+    if (equals == std::string::npos || equals == 0) {
+      throw InputError("--set", setting, "needs the form key=value, e.g. loading.steps=50");
+    }
+    result.emplace_back(setting.substr(0, equals), setting.substr(equals + 1));
+  }
+  if (!line.output.empty()) result.emplace_back("output.directory", '"' + line.output + '"');
+  return result;
+}
+
+void add_case_options(CLI::App& command, CommandLine& line) {
+  command.add_option("case", line.case_file, "case file (docs/case-file.md)")->required();
+  command
+      .add_option("--set", line.settings,
+                  "override a key of the case file, e.g. --set loading.steps=50; may be repeated")
+      ->type_name("KEY=VALUE")
+      ->expected(1)
+      ->take_all()
+      ->allow_extra_args(false);
+  command.add_option("--threads", line.threads, "number of threads (default: all processors)")
+      ->check(CLI::Range(1, 1024));
+}
+
+Exit execute(const CLI::App& program, const CommandLine& line, int threads) {
+  const Case from = read_case(line.case_file, overrides(line));
+  if (program.got_subcommand("check")) return check(from, threads);
+  if (program.got_subcommand("check-tangent")) {
+    return check_tangent(from, line.deformation, threads);
+  }
+  return run(from, {threads, line.quiet, line.log_file});
+}
+
+int told(const std::exception& error, Exit code) {
+  std::fflush(stdout);
+  fmt::print(stderr, "peristat: {}\n", error.what());
+  return static_cast<int>(code);
+}
+
+}  // namespace
+
+int main(int count, char** arguments) {
+  CLI::App program("Implicit quasi-static peridynamics", "peristat");
+  program.set_version_flag("--version", "peristat " PERISTAT_VERSION);
+  program.require_subcommand(1);
+  CommandLine line;
+  CLI::App* run_command = program.add_subcommand("run", "run a case");
+  add_case_options(*run_command, line);
+  run_command->add_option("--output", line.output, "results folder (default: the case's)");
+  run_command->add_flag("--quiet", line.quiet, "print nothing but problems");
+  run_command->add_option("--log", line.log_file, "write all that is said, and every iteration, here");
+  add_case_options(*program.add_subcommand("check", "read and build a case, without solving"), line);
+  CLI::App* tangent_command = program.add_subcommand(
+      "check-tangent", "finite-difference check of residual and tangent; prints JSON");
+  add_case_options(*tangent_command, line);
+  tangent_command->add_option("--deformation", line.deformation,
+                              "current coordinates as expressions of x, y, z: 'EXPR; EXPR; …'");
+  try {
+    program.parse(count, arguments);
+  } catch (const CLI::ParseError& error) {
+    const bool helped = program.exit(error) == 0;
+    return static_cast<int>(helped ? Exit::done : Exit::wrong_input);
+  }
+
+  const int threads = line.threads > 0 ? line.threads : default_threads();
+  restart_with_environment(threads, arguments);
+  try {
+    return static_cast<int>(execute(program, line, threads));
+  } catch (const InputError& error) {
+    return told(error, Exit::wrong_input);
+  } catch (const MemoryError& error) {
+    return told(error, Exit::out_of_memory);
+  } catch (const std::bad_alloc&) {
+    return told(std::runtime_error("out of memory"), Exit::out_of_memory);
+  } catch (const std::exception& error) {
+    return told(error, Exit::bug);
+  }
+}

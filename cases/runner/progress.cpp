@@ -1,0 +1,103 @@
+#include "cases/runner/progress.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cmath>
+#include <cstring>
+
+#include "src/input_error.hpp"
+
+namespace peristat {
+
+Progress::Progress(bool quiet, const std::string& log_file)
+    : quiet_(quiet),
+      live_(!quiet && isatty(STDOUT_FILENO) == 1),
+      start_(std::chrono::steady_clock::now()) {
+  if (log_file.empty()) return;
+  log_ = std::fopen(log_file.c_str(), "w");
+  if (!log_) {
+    throw InputError("--log", log_file, std::string("can't be written: ") + std::strerror(errno));
+  }
+}
+
+Progress::~Progress() {
+  erase_live_line();
+  if (log_) std::fclose(log_);
+}
+
+void Progress::erase_live_line() {
+  if (!live_line_shown_) return;
+  fmt::print("\r\033[K");
+  live_line_shown_ = false;
+}
+
+void Progress::say(const std::string& line) {
+  erase_live_line();
+  if (!quiet_) {
+    fmt::print("{}\n", line);
+    std::fflush(stdout);
+  }
+  if (log_) {
+    fmt::print(log_, "{}\n", line);
+    std::fflush(log_);
+  }
+}
+
+void Progress::problem(const std::string& line) {
+  erase_live_line();
+  std::fflush(stdout);
+  fmt::print(stderr, "peristat: {}\n", line);
+  if (log_) {
+    fmt::print(log_, "{}\n", line);
+    std::fflush(log_);
+  }
+}
+
+std::string Progress::time_left() const {
+  if (load_factor_ <= 0.0) return "";
+  const double elapsed =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+  const double left = elapsed * (1.0 - load_factor_) / load_factor_;
+  if (left < 1.0) return "";
+  if (left < 120.0) return fmt::format("  about {:.0f} s left", left);
+  if (left < 7200.0) return fmt::format("  about {:.0f} min left", left / 60.0);
+  return fmt::format("  about {:.1f} h left", left / 3600.0);
+}
+
+void Progress::iteration(const IterationRecord& record) {
+  if (log_) {
+    fmt::print(log_, "  step {} iteration {}: residual {:.3e} N, relative {:.3e}, step length {:g}\n",
+               record.step, record.iteration, record.residual, record.relative_residual,
+               record.step_length);
+  }
+  if (!live_) return;
+  erase_live_line();
+  fmt::print("step {}  load {:.4g}  iteration {}  residual {:.1e}{}", record.step, load_factor_,
+             record.iteration, record.relative_residual, time_left());
+  std::fflush(stdout);
+  live_line_shown_ = true;
+}
+
+void Progress::decision(const DecisionRecord& record) {
+  if (record.action == "accept") return;
+  if (record.action == "accept and grow") {
+    say(fmt::format("  next step of the load factor grows to {:.4g}", record.next_increment));
+    return;
+  }
+  const std::string what = record.action == "cut"
+                               ? fmt::format("step cut to {:.4g}", record.next_increment)
+                               : std::string("stop");
+  say(fmt::format("  load {:.6g}: {} ({}); {}", record.load_factor, record.outcome, record.reason,
+                  what));
+}
+
+void Progress::accepted(const StepRecord& record, double relative_residual) {
+  load_factor_ = record.load_factor;
+  say(fmt::format("step {:4}  load {:<8.6g}  {:2} iterations  residual {:.1e}  damage {:.3g}{}",
+                  record.step, record.load_factor, record.newton_iterations, relative_residual,
+                  record.max_damage, time_left()));
+}
+
+}  // namespace peristat

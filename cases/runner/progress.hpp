@@ -1,0 +1,41 @@
+#pragma once
+
+#include <chrono>
+#include <cstdio>
+#include <string>
+
+#include "src/results/history.hpp"
+
+namespace peristat {
+
+/// What a run tells while it goes: one line per accepted step and decision; on a terminal a line that
+/// follows the iterations too, with the time that is left. Everything also goes to the log file.
+class Progress {
+ public:
+  /// @param quiet nothing on the terminal, except what `problem` tells
+  /// @param log_file empty for none
+  /// @throws InputError (key "--log") if the log file can't be written
+  Progress(bool quiet, const std::string& log_file);
+  ~Progress();
+  Progress(const Progress&) = delete;
+  Progress& operator=(const Progress&) = delete;
+
+  void say(const std::string& line);
+  /// To standard error, quiet or not.
+  void problem(const std::string& line);
+  void iteration(const IterationRecord& record);
+  void decision(const DecisionRecord& record);
+  void accepted(const StepRecord& record, double relative_residual);
+
+ private:
+  void erase_live_line();
+  [[nodiscard]] std::string time_left() const;
+
+  bool quiet_, live_;
+  bool live_line_shown_ = false;
+  double load_factor_ = 0.0;  // accepted
+  std::chrono::steady_clock::time_point start_;
+  std::FILE* log_ = nullptr;
+};
+
+}  // namespace peristat

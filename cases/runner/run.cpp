@@ -1,0 +1,243 @@
+#include "cases/runner/run.hpp"
+
+#include <H5public.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <csignal>
+#include <cstdlib>
+#include <fstream>
+
+#include "cases/runner/body.hpp"
+#include "cases/runner/probe.hpp"
+#include "cases/runner/progress.hpp"
+#include "solvers/linear/cholesky.hpp"
+#include "solvers/load_stepping.hpp"
+#include "src/input_error.hpp"
+#include "src/results/results.hpp"
+#include "src/stopwatch.hpp"
+
+namespace peristat {
+namespace {
+
+std::atomic<bool> interrupt_requested{false};
+
+void request_interrupt(int signal) {
+  interrupt_requested = true;
+  std::signal(signal, SIG_DFL);  // a second one ends the program at once
+}
+
+void leave_note(const std::filesystem::path& directory) {
+  const char* file = std::getenv("PERISTAT_NOTE");
+  if (!file || !*file) return;
+  std::ofstream(file) << std::filesystem::absolute(directory).string() << '\n';
+}
+
+std::vector<std::string> support_sets(const Case& from) {
+  std::vector<std::string> sets;
+  for (const SupportSpecification& support : from.supports) {
+    const bool holds = std::any_of(support.displacement.begin(), support.displacement.end(),
+                                   [](const auto& component) { return component.has_value(); });
+    const bool known = std::find(sets.begin(), sets.end(), support.set) != sets.end();
+    if (holds && !known) sets.push_back(support.set);
+  }
+  return sets;
+}
+
+double largest_displacement(const std::vector<double>& displacement, int dimension) {
+  double largest = 0.0;
+  for (std::size_t k = 0; k < displacement.size(); k += std::size_t(dimension)) {
+    double squared = 0.0;
+    for (int c = 0; c < dimension; ++c) squared += displacement[k + c] * displacement[k + c];
+    largest = std::max(largest, squared);
+  }
+  return std::sqrt(largest);
+}
+
+/// Turns accepted equilibria into rows, fields and probes of the results folder.
+class Recorder {
+ public:
+  Recorder(const Case& from, const Body& body, Assembler& assembler, Results& results,
+           Progress& progress)
+      : case_(from),
+        points_(body.points),
+        assembler_(assembler),
+        results_(results),
+        progress_(progress),
+        force_(body.points.reference.size()),
+        damage_(body.points.volume.size(), 0.0),
+        energy_density_(body.points.volume.size()) {}
+
+  void iteration(const IterationRecord& record) {
+    relative_residual_ = record.relative_residual;
+    results_.add(record);
+    progress_.iteration(record);
+  }
+
+  void accepted(StepRecord record, const NewtonResult& equilibrium) {
+    displacement_ = equilibrium.state.displacement;
+    std::transform(equilibrium.state.gradient.begin(), equilibrium.state.gradient.end(),
+                   force_.begin(), [](double gradient) { return -gradient; });
+    record.max_stretch = assembler_.point_energies(displacement_, energy_density_);
+    for (Index i = 0; i < points_.count(); ++i) energy_density_[i] /= points_.volume[i];
+    const StepFields fields{&displacement_, &force_, &damage_, &energy_density_};
+    for (const ProbeSpecification& probe : case_.probes) {
+      record.probes[probe.name] = probe_values(probe, points_, fields);
+    }
+    const bool write_fields =
+        record.step % case_.output.every == 0 || record.load_factor == 1.0;
+    results_.add(record, write_fields ? std::optional(fields) : std::nullopt);
+    progress_.accepted(record, relative_residual_);
+    last_ = std::move(record);
+  }
+
+  [[nodiscard]] const std::optional<StepRecord>& last() const { return last_; }
+  [[nodiscard]] const std::vector<double>& displacement() const { return displacement_; }
+
+ private:
+  const Case& case_;
+  const Points& points_;
+  Assembler& assembler_;
+  Results& results_;
+  Progress& progress_;
+  std::vector<double> displacement_, force_, damage_, energy_density_;
+  double relative_residual_ = 0.0;
+  std::optional<StepRecord> last_;
+};
+
+std::string failure_reason(const LoadSteppingResult& result) {
+  std::string reason = explanation(result.outcome);
+  const auto& inertia = result.last_attempt.inertia;
+  if (inertia && (inertia->negative > 0 || inertia->zero > 0)) {
+    reason += fmt::format(" ({} negative and {} zero pivots)", inertia->negative, inertia->zero);
+  }
+  return fmt::format("{} after load factor {:.6g}: {}", name(result.outcome),
+                     result.state.load_factor, reason);
+}
+
+void tell_result(const Recorder& recorder, Progress& progress) {
+  if (!recorder.last()) return;
+  const StepRecord& last = *recorder.last();
+  for (const auto& [set, force] : last.reactions) {
+    progress.say(fmt::format("reaction on {}: ({:.6g}, {:.6g}, {:.6g}) N", set, force[0], force[1],
+                             force[2]));
+  }
+  for (const auto& [probe, values] : last.probes) {
+    progress.say(fmt::format("{}: {:.6g}", probe, fmt::join(values, ", ")));
+  }
+}
+
+}  // namespace
+
+std::map<std::string, std::string> versions() {
+  unsigned major = 0, minor = 0, release = 0;
+  H5get_libversion(&major, &minor, &release);
+  return {{"peristat", PERISTAT_VERSION},
+          {"hdf5", fmt::format("{}.{}.{}", major, minor, release)},
+          {"cholmod", Cholesky::library_version()},
+          {"compiler", fmt::format("GCC {}", __VERSION__)}};
+}
+
+Exit run(const Case& from, const RunOptions& options) {
+  Summary summary;
+  std::optional<Stopwatch> total(std::in_place, summary.seconds.total);
+  Progress progress(options.quiet, options.log_file);
+  progress.say(from.title.empty() ? from.file : fmt::format("{} ({})", from.title, from.file));
+
+  const Body body = make_body(from, options.threads);
+  refuse_free_motions(from, body);
+  const MemoryEstimate estimate = estimate_memory(body);
+  require_memory(estimate.bytes, fmt::format("the case with {} points", body.points.count()));
+  const FreeDofs free(body.conditions->prescribed(), from.dimension);
+  progress.say(fmt::format("{} points, {} bonds, {} free degrees of freedom, {} threads",
+                           body.points.count(), body.term.bonds.count(), free.count(),
+                           options.threads));
+
+  std::vector<ProbeColumns> probes;
+  for (const auto& probe : from.probes) probes.push_back(columns_of(probe, from.dimension));
+  std::optional<Results> results;
+  try {
+    results.emplace(from.output.directory, body.points,
+                    CaseText{from.as_read, from.as_resolved, from.title, versions()},
+                    support_sets(from), probes);
+  } catch (const InputError& error) {
+    throw located(from, error);
+  }
+  leave_note(from.output.directory);
+
+  const Pattern pattern(body.term.bonds);
+  Assembler assembler(body.points, body.term, options.threads);
+  Tangent tangent(pattern, from.dimension);
+  Cholesky solver;
+  const LinearOutcome analysis = solver.analyze(pattern, free);
+  require_memory(solver.estimate().bytes(), "the factor of the tangent");
+  progress.say(fmt::format("linear solver: {} ({})", solver.describe(),
+                           from.solver.linear == "auto" ? "auto: the only one that is always right"
+                                                        : "as the case asks"));
+
+  Recorder recorder(from, body, assembler, *results, progress);
+  LoadSteppingObserver observer;
+  observer.iteration = [&](const IterationRecord& record) { recorder.iteration(record); };
+  observer.decision = [&](const DecisionRecord& record) {
+    results->add(record);
+    progress.decision(record);
+  };
+  observer.accepted = [&](const StepRecord& record, const NewtonResult& equilibrium) {
+    recorder.accepted(record, equilibrium);
+  };
+  observer.interrupted = [] { return interrupt_requested.load(); };
+  interrupt_requested = false;
+  std::signal(SIGINT, request_interrupt);
+  std::signal(SIGTERM, request_interrupt);
+
+  LoadSteppingOptions stepping;
+  stepping.steps = from.loading.steps;
+  stepping.adaptive = from.loading.adaptive;
+  stepping.smallest_step = from.loading.smallest_step;
+  stepping.largest_step = from.loading.largest_step;
+  NewtonOptions newton_options;
+  newton_options.relative_tolerance = from.solver.relative_tolerance;
+  newton_options.max_iterations = from.solver.max_iterations;
+  const EquilibriumProblem problem{assembler, *body.conditions, free};
+  LoadSteppingResult result;
+  if (analysis == LinearOutcome::solved) {
+    result = follow_loading(problem, solver, tangent, stepping, newton_options, observer);
+  } else {
+    result.outcome = Outcome::out_of_memory;
+  }
+
+  const bool interrupted = result.outcome == Outcome::interrupted;
+  const bool completed = result.outcome == Outcome::converged;
+  summary.status = completed ? "completed" : interrupted ? "interrupted" : "not_converged";
+  if (!completed) summary.reason = failure_reason(result);
+  summary.points = body.points.count();
+  summary.free_dofs = free.count();
+  summary.bonds = body.term.bonds.count();
+  summary.factorisations = solver.statistics().factorisations;
+  summary.linear_iterations = solver.statistics().iterations;
+  summary.max_displacement = largest_displacement(recorder.displacement(), from.dimension);
+  summary.seconds.neighbourhood = body.seconds_neighbourhood;
+  summary.seconds.assembly = assembler.seconds_spent();
+  summary.seconds.linear = solver.statistics().seconds;
+  summary.seconds.output = results->seconds_spent();
+  summary.threads = options.threads;
+  total.reset();
+  results->close(summary);
+
+  if (completed) {
+    tell_result(recorder, progress);
+    progress.say(fmt::format("completed in {:.2f} s: {} steps, {} factorisations; results in {}",
+                             summary.seconds.total, result.steps, summary.factorisations,
+                             from.output.directory.string()));
+    return Exit::done;
+  }
+  progress.problem(summary.reason);
+  progress.problem(fmt::format("{} accepted steps are in {}", result.steps,
+                               from.output.directory.string()));
+  if (interrupted) return Exit::interrupted;
+  return result.outcome == Outcome::out_of_memory ? Exit::out_of_memory : Exit::not_converged;
+}
+
+}  // namespace peristat
