@@ -1,12 +1,12 @@
 #include "assembly/assembler.hpp"
 
-#include <omp.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
 #include <type_traits>
+
+#include <omp.h>
 
 #include "assembly/interaction.hpp"
 #include "src/lanes.hpp"
@@ -24,8 +24,8 @@ constexpr int row_width(int dimension) { return dimension == 3 ? 8 : 4; }
 constexpr int vector_width(int dimension) { return dimension == 3 ? 4 : dimension; }
 constexpr int block_width(int dimension) { return dimension == 3 ? 8 : 4; }
 
-/// Up to lane_count bonds of one row, side by side. Lanes past `count` repeat the last bond with weight
-/// zero, so that they add nothing.
+/// Up to lane_count bonds of one row, side by side. Lanes past `count` repeat the last bond with
+/// weight zero, so that they add nothing.
 template <int D>
 struct Batch {
   Offset first;
@@ -247,7 +247,8 @@ struct Assembler::Kernels {
           for (int c = 0; c < width; ++c) own[c] += half[c];
           add_to_partners<D>(sums, batch.partner, half);
         });
-        for (int c = 0; c < D * (D + 1) / 2; ++c) sums[std::ptrdiff_t(i) * width + c] += sum(own[c]);
+        for (int c = 0; c < D * (D + 1) / 2; ++c)
+          sums[std::ptrdiff_t(i) * width + c] += sum(own[c]);
       }
     };
     sum_rows<width>(a, body, [&](Index i, const double* total) {
@@ -380,8 +381,7 @@ void Assembler::product(std::span<const double> displacement, std::span<const do
   });
 }
 
-double Assembler::point_energies(std::span<const double> displacement,
-                                 std::span<double> energies) {
+double Assembler::point_energies(std::span<const double> displacement, std::span<double> energies) {
   const Stopwatch watch(seconds_);
   return dispatch(points_.dimension, term_.potential, [&](auto d, const auto& law) {
     return Kernels<decltype(d)::value>::point_energies(*this, law, displacement, energies);

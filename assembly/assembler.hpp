@@ -11,12 +11,14 @@ namespace peristat {
 
 /// What a pass over the interactions finds besides what it adds up.
 struct Stored {
-  double energy = 0.0;     ///< [J]
-  bool degenerate = false; ///< a measure has reached zero or a value is not finite: reject the state
+  double energy = 0.0;  ///< [J]
+  bool degenerate =
+      false;  ///< a measure has reached zero or a value is not finite: reject the state
 };
 
 /// Energy, gradient, tangent and matrix-free product of the discrete energy
-/// E(u) = sum over bonds of w psi(|xi0 + eta|; L), visiting each unique bond once, on several threads.
+/// E(u) = sum over bonds of w psi(|xi0 + eta|; L), visiting each unique bond once, on several
+/// threads.
 ///
 /// All arrays are points x dimension, row major. No call allocates. For a given number of threads
 /// every result is reproducible to the last bit.
@@ -53,7 +55,7 @@ class Assembler {
   const Points& points_;
   const BondTerm& term_;
   std::vector<RowRange> ranges_;
-  std::vector<double> rows_;                 // per point, what kernels gather; see Kernels::pack
+  std::vector<double> rows_;               // per point, what kernels gather; see Kernels::pack
   std::vector<std::vector<double>> sums_;  // per thread, rows first..reach of what it adds up
   std::vector<Stored> stored_;             // per thread
   double seconds_ = 0.0;

@@ -5,8 +5,8 @@
 
 namespace peristat {
 
-/// One-neighbour interactions with their potential: energy sum over bonds of w psi(l; L). Constant in a
-/// solve.
+/// One-neighbour interactions with their potential: energy sum over bonds of w psi(l; L). Constant
+/// in a solve.
 struct BondTerm {
   Bonds bonds;
   BondPotential potential;

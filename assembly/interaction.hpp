@@ -45,7 +45,8 @@ template <int Size, class Real, class MeasureAt>
                                                              const Vector<Size, Real>& v) {
   const Vector<Size, Real>& gradient = measure.gradient();
   const Real along = psi.second * dot<Size>(gradient, v);
-  return plus<Size>(scaled<Size>(along, gradient), scaled<Size>(psi.first, measure.hessian_times(v)));
+  return plus<Size>(scaled<Size>(along, gradient),
+                    scaled<Size>(psi.first, measure.hessian_times(v)));
 }
 
 }  // namespace peristat

@@ -20,9 +20,10 @@ struct Pattern {
   [[nodiscard]] Offset blocks() const { return static_cast<Offset>(partner.size()); }
 };
 
-/// Rows [first, last) of one thread. Its interactions also touch rows up to `reach`, exclusive, which
-/// belong to later threads: what it adds there goes to a buffer of its own and is summed afterwards in
-/// the order of the threads, so that a given number of threads always gives the same result.
+/// Rows [first, last) of one thread. Its interactions also touch rows up to `reach`, exclusive,
+/// which belong to later threads: what it adds there goes to a buffer of its own and is summed
+/// afterwards in the order of the threads, so that a given number of threads always gives the same
+/// result.
 struct RowRange {
   Index first = 0, last = 0, reach = 0;
 };

@@ -17,7 +17,8 @@ void Tangent::multiply(std::span<const double> v, std::span<double> result) cons
   for (Index i = 0; i < pattern.points(); ++i) {
     const double* block = &diagonal[std::size_t(i) * d * d];
     for (int r = 0; r < d; ++r) {
-      for (int c = 0; c < d; ++c) result[std::size_t(i) * d + r] += block[r * d + c] * v[std::size_t(i) * d + c];
+      for (int c = 0; c < d; ++c)
+        result[std::size_t(i) * d + r] += block[r * d + c] * v[std::size_t(i) * d + c];
     }
     for (Offset bond = pattern.offset[i]; bond < pattern.offset[i + 1]; ++bond) {
       const Index j = pattern.partner[bond];

@@ -28,14 +28,14 @@ enum class Outcome {
   degenerate,             ///< an interaction has collapsed to zero, or values are not finite
   out_of_memory,          ///< of the linear solver
   linear_solver_inaccurate,
-  interrupted,            ///< by the person
+  interrupted,  ///< by the person
 };
 
 [[nodiscard]] std::string name(Outcome outcome);
 [[nodiscard]] std::string explanation(Outcome outcome);
 
-/// The equilibrium problem f_ext(load factor) - dE/dx(u) = 0 on the free degrees of freedom, with what
-/// is constant in a solve. The total energy E(u) - f_ext.u is the merit function.
+/// The equilibrium problem f_ext(load factor) - dE/dx(u) = 0 on the free degrees of freedom, with
+/// what is constant in a solve. The total energy E(u) - f_ext.u is the merit function.
 struct EquilibriumProblem {
   Assembler& assembler;
   const Conditions& conditions;

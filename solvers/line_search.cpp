@@ -38,8 +38,7 @@ LineSearchResult line_search(const EquilibriumProblem& problem,
     if (degenerate) continue;
     const double change = trial.total_energy - from.total_energy;
     if (change <= options.sufficient_decrease * length * slope) return {Outcome::converged, length};
-    const bool flatter =
-        std::abs(slope_along(direction, trial, external_force)) <= std::abs(slope);
+    const bool flatter = std::abs(slope_along(direction, trial, external_force)) <= std::abs(slope);
     if (std::abs(change) <= round_off && flatter) return {Outcome::converged, length};
   }
   return {degenerate ? Outcome::degenerate : Outcome::line_search_failed, 0.0};

@@ -17,12 +17,14 @@ struct LineSearchResult {
   double step_length = 0.0;
 };
 
-/// Finds the largest step length 1, shrink, shrink^2, … along `direction` (zero on prescribed degrees
-/// of freedom) that lowers the total energy sufficiently; `trial` is left at the accepted state.
+/// Finds the largest step length 1, shrink, shrink^2, … along `direction` (zero on prescribed
+/// degrees of freedom) that lowers the total energy sufficiently; `trial` is left at the accepted
+/// state.
 ///
-/// Residuals may rise on the way to equilibrium (in bending they always do first), the energy may not.
-/// Near convergence differences of the energy drown in round-off; a trial whose energy is unchanged
-/// within round-off is accepted if the slope along the direction has become smaller in size.
+/// Residuals may rise on the way to equilibrium (in bending they always do first), the energy may
+/// not. Near convergence differences of the energy drown in round-off; a trial whose energy is
+/// unchanged within round-off is accepted if the slope along the direction has become smaller in
+/// size.
 [[nodiscard]] LineSearchResult line_search(const EquilibriumProblem& problem,
                                            std::span<const double> external_force,
                                            const Trial& from, std::span<const double> direction,

@@ -12,8 +12,8 @@ namespace {
 /// A remainder of the load factor below this is round-off of the sum of steps.
 constexpr double end_tolerance = 1e-9;
 
-/// Forces that do work on the body: loads, and on prescribed degrees of freedom what holds them, which
-/// is dE/dx there.
+/// Forces that do work on the body: loads, and on prescribed degrees of freedom what holds them,
+/// which is dE/dx there.
 std::vector<double> working_force(const FreeDofs& free, const std::vector<double>& external_force,
                                   const std::vector<double>& gradient) {
   std::vector<double> force = external_force;
@@ -26,7 +26,8 @@ std::vector<double> working_force(const FreeDofs& free, const std::vector<double
 double trapezoidal_work(const std::vector<double>& force0, const std::vector<double>& force1,
                         const std::vector<double>& u0, const std::vector<double>& u1) {
   double work = 0.0;
-  for (std::size_t k = 0; k < u0.size(); ++k) work += 0.5 * (force0[k] + force1[k]) * (u1[k] - u0[k]);
+  for (std::size_t k = 0; k < u0.size(); ++k)
+    work += 0.5 * (force0[k] + force1[k]) * (u1[k] - u0[k]);
   return work;
 }
 

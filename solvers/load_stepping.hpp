@@ -8,8 +8,8 @@
 namespace peristat {
 
 struct LoadSteppingOptions {
-  int steps = 1;                ///< equal steps of the load factor from 0 to 1
-  bool adaptive = true;         ///< cut after a failure and grow again; otherwise a failure ends the run
+  int steps = 1;         ///< equal steps of the load factor from 0 to 1
+  bool adaptive = true;  ///< cut after a failure and grow again; otherwise a failure ends the run
   double smallest_step = 1e-6;  ///< of the load factor; a cut below it ends the run
   double largest_step = 0.0;    ///< of the load factor; 0 means 1 / steps
   double cut = 0.5;             ///< factor of the step after a failure
@@ -35,8 +35,8 @@ struct LoadSteppingResult {
 
 /// Follows the equilibrium from load factor 0 to 1 in steps; every decision is told.
 ///
-/// External work is summed with the trapezoidal rule over each step, of the loads on the free and of
-/// the reactions on the prescribed degrees of freedom; the balance error is that rule's.
+/// External work is summed with the trapezoidal rule over each step, of the loads on the free and
+/// of the reactions on the prescribed degrees of freedom; the balance error is that rule's.
 [[nodiscard]] LoadSteppingResult follow_loading(const EquilibriumProblem& problem,
                                                 LinearSolver& solver, Tangent& tangent,
                                                 const LoadSteppingOptions& options,

@@ -83,8 +83,8 @@ NewtonResult newton(const EquilibriumProblem& problem, LinearSolver& solver, Tan
   const auto converged = [&] {
     return !current.degenerate && current.residual_norm <= options.relative_tolerance * scale;
   };
-  // A state right after the jump may be degenerate (a support driven onto a neighbour); the predictor
-  // is what moves the neighbours away, so only its result is judged.
+  // A state right after the jump may be degenerate (a support driven onto a neighbour); the
+  // predictor is what moves the neighbours away, so only its result is judged.
   if (!current.degenerate && record(0, 0.0, 0)) {
     result.outcome = Outcome::interrupted;
     return result;
@@ -104,18 +104,18 @@ NewtonResult newton(const EquilibriumProblem& problem, LinearSolver& solver, Tan
     }
     out_of_balance(problem, external_force, linearised_at.gradient, force_of_jump, right_hand_side);
 
-    // The first tangent of a load step is always factorised: its pivots tell whether the state that the
-    // step starts from is stable.
-    LinearOutcome linear = solver.factorize(
-        tangent, iteration == 1 ? FactorUse::factorize_now : FactorUse::may_reuse);
+    // The first tangent of a load step is always factorised: its pivots tell whether the state that
+    // the step starts from is stable.
+    LinearOutcome linear =
+        solver.factorize(tangent, iteration == 1 ? FactorUse::factorize_now : FactorUse::may_reuse);
     if (linear == LinearOutcome::solved) linear = solver.solve(right_hand_side, solution);
     result.inertia = solver.inertia();
     result.outcome = outcome_of(linear);
     if (result.outcome != Outcome::converged) return result;
 
     problem.free.extend_by_zero(solution, direction);
-    LineSearchResult search = line_search(problem, external_force, current, direction,
-                                          options.line_search, next);
+    LineSearchResult search =
+        line_search(problem, external_force, current, direction, options.line_search, next);
     if (iteration == 1 && search.outcome != Outcome::converged) {
       // The jump can leave a state in which the energy tells nothing (collapsed or overstretched
       // bonds beside the supports): the predictor is then taken in full, and the next iteration

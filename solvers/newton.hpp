@@ -28,16 +28,18 @@ struct NewtonResult {
 /// Told of every iteration as it ends; returns true to interrupt.
 using IterationObserver = std::function<bool(const IterationRecord&)>;
 
-/// Newton-Raphson from an equilibrium state to the equilibrium at `load_factor` ([ADAPT] eqs. 5-11).
+/// Newton-Raphson from an equilibrium state to the equilibrium at `load_factor` ([ADAPT] eqs.
+/// 5-11).
 ///
 /// Iteration 0 is the state right after the jump: prescribed displacements and loads have their new
 /// values, free points have not moved. The first iteration is the consistent predictor, with the
 /// tangent K of the old state,
 ///   K_ff du_f = f_ext - dE/dx_f(u) - K_fp du_p,
-/// so that it already spreads the jump du_p of the prescribed displacements over the body; all later
-/// ones are K_ff du_f = f_ext - dE/dx_f(u). Each is followed by an energy line search.
+/// so that it already spreads the jump du_p of the prescribed displacements over the body; all
+/// later ones are K_ff du_f = f_ext - dE/dx_f(u). Each is followed by an energy line search.
 ///
-/// The relative residual is ||f_ext - dE/dx|| over free degrees of freedom, divided by the largest of
+/// The relative residual is ||f_ext - dE/dx|| over free degrees of freedom, divided by the largest
+/// of
 /// ||f_ext||, the reactions' norm in the old state, and the residual of iteration 0.
 [[nodiscard]] NewtonResult newton(const EquilibriumProblem& problem, LinearSolver& solver,
                                   Tangent& tangent, const State& from, double load_factor,

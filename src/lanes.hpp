@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstring>
+
 #include <experimental/simd>
 
 namespace peristat {
@@ -12,7 +13,8 @@ inline constexpr int lane_count = 4;
 
 /// One double per interaction of a batch. Measures and potentials are templates over their scalar:
 /// the kernels call them with Lanes, tests and single interactions with double.
-using Lanes = std::experimental::simd<double, std::experimental::simd_abi::deduce_t<double, lane_count>>;
+using Lanes =
+    std::experimental::simd<double, std::experimental::simd_abi::deduce_t<double, lane_count>>;
 
 /// Largest entry.
 inline double largest(const Lanes& a) { return std::experimental::hmax(a); }
@@ -91,6 +93,8 @@ inline void add_row(double* to, const lanes_detail::Row& row) {
 }
 
 /// Writes a row of four doubles to memory.
-inline void store_row(double* to, const lanes_detail::Row& row) { std::memcpy(to, &row, sizeof row); }
+inline void store_row(double* to, const lanes_detail::Row& row) {
+  std::memcpy(to, &row, sizeof row);
+}
 
 }  // namespace peristat

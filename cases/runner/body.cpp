@@ -69,8 +69,7 @@ void require_memory_for_lattice(const Case& from, const Lattice& lattice) {
       estimate_memory(from.dimension, size, from.horizon_ratio, bonds, points * from.dimension);
   // This estimate counts the bounding box: only what cannot fit even if half of it is cut away is
   // refused here; the points themselves tell the rest.
-  require_memory(0.5 * estimate.bytes,
-                 "the case with up to " + number_text(points) + " points");
+  require_memory(0.5 * estimate.bytes, "the case with up to " + number_text(points) + " points");
 }
 
 }  // namespace
@@ -89,12 +88,12 @@ Points make_points_of(const Case& from) {
       const SetRule& rule = from.sets[k];
       const std::string table = "set[" + std::to_string(k) + "]";
       if (points.sets.contains(rule.name)) {
-        throw InputError(table + ".name", '"' + rule.name + '"',
-                         "there is a set of this name already (sets, layers and the sets of a point "
-                         "file share their names)");
+        throw InputError(
+            table + ".name", '"' + rule.name + '"',
+            "there is a set of this name already (sets, layers and the sets of a point "
+            "file share their names)");
       }
-      std::vector<Index> members =
-          errors_in_table(table, [&] { return select(points, rule); });
+      std::vector<Index> members = errors_in_table(table, [&] { return select(points, rule); });
       if (members.empty()) {
         throw InputError(table, '"' + rule.name + '"', "the set selects no point");
       }
@@ -169,8 +168,8 @@ std::string describe_free_motions(const Body& body) {
     } else if (part.points == 1) {
       text += "the isolated point at " + place + " m may ";
     } else {
-      text += "a part of " + std::to_string(part.points) + " points, with one at " + place +
-              " m, may ";
+      text +=
+          "a part of " + std::to_string(part.points) + " points, with one at " + place + " m, may ";
     }
     for (std::size_t m = 0; m < part.motions.size(); ++m) {
       text += (m == 0 ? "" : m + 1 == part.motions.size() ? " and " : ", ") + part.motions[m];

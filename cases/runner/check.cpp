@@ -1,8 +1,8 @@
 #include "cases/runner/check.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
+
+#include <fmt/format.h>
 
 #include "cases/runner/body.hpp"
 #include "solvers/linear/cholesky.hpp"
@@ -56,12 +56,14 @@ Exit check(const Case& from, int threads) {
              body.horizon_ratio());
   fmt::print("bonds       {}; neighbours per point {} to {}, {:.1f} on average\n",
              body.term.bonds.count(), neighbours.least, neighbours.most, neighbours.mean);
-  fmt::print("constants   micromodulus {:.6g} N/m6, Young's modulus {:.6g} Pa, Poisson's ratio {:.4g}\n",
-             std::get<Harmonic>(body.term.potential).modulus,
-             youngs_modulus_of(std::get<Harmonic>(body.term.potential).modulus, body.setting),
-             poisson_ratio(body.setting));
-  fmt::print("quadrature  energy of a confined strain deviates by at most {:.3g} from the classical\n",
-             confined_energy_error(points, body.term.bonds, body.setting));
+  fmt::print(
+      "constants   micromodulus {:.6g} N/m6, Young's modulus {:.6g} Pa, Poisson's ratio {:.4g}\n",
+      std::get<Harmonic>(body.term.potential).modulus,
+      youngs_modulus_of(std::get<Harmonic>(body.term.potential).modulus, body.setting),
+      poisson_ratio(body.setting));
+  fmt::print(
+      "quadrature  energy of a confined strain deviates by at most {:.3g} from the classical\n",
+      confined_energy_error(points, body.term.bonds, body.setting));
   for (const auto& [set, members] : points.sets) {
     fmt::print("set         {}: {} points\n", set, members.size());
   }

@@ -1,10 +1,10 @@
 #include "cases/runner/check_tangent.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <sstream>
+
+#include <fmt/format.h>
 
 #include "cases/runner/body.hpp"
 #include "solvers/vector_verbs.hpp"

@@ -7,12 +7,12 @@
 
 namespace peristat {
 
-/// Compares residual and tangent of a case with central finite differences of energy and residual, at
-/// one deformation and along one direction, and prints JSON.
+/// Compares residual and tangent of a case with central finite differences of energy and residual,
+/// at one deformation and along one direction, and prints JSON.
 ///
-/// `residual_error` is the smallest over step sizes h of |(E(u+hv) - E(u-hv))/2h - dE.v| / |dE.v|, and
-/// `tangent_error` that of ||(g(u+hv) - g(u-hv))/2h - K v|| / ||K v||. The orders are log2 of the
-/// ratio of the errors of successive halvings of h, at the smallest h at which truncation still
+/// `residual_error` is the smallest over step sizes h of |(E(u+hv) - E(u-hv))/2h - dE.v| / |dE.v|,
+/// and `tangent_error` that of ||(g(u+hv) - g(u-hv))/2h - K v|| / ||K v||. The orders are log2 of
+/// the ratio of the errors of successive halvings of h, at the smallest h at which truncation still
 /// dominates round-off; central differences have order 2 exactly when the derivative is right.
 ///
 /// Supports and loads are ignored.

@@ -1,11 +1,11 @@
-#include <fmt/format.h>
-
-#include <CLI/CLI.hpp>
 #include <exception>
 #include <new>
 #include <string>
 #include <utility>
 #include <vector>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
 
 #include "cases/runner/case.hpp"
 #include "cases/runner/check.hpp"
@@ -79,8 +79,10 @@ int main(int count, char** arguments) {
   add_case_options(*run_command, line);
   run_command->add_option("--output", line.output, "results folder (default: the case's)");
   run_command->add_flag("--quiet", line.quiet, "print nothing but problems");
-  run_command->add_option("--log", line.log_file, "write all that is said, and every iteration, here");
-  add_case_options(*program.add_subcommand("check", "read and build a case, without solving"), line);
+  run_command->add_option("--log", line.log_file,
+                          "write all that is said, and every iteration, here");
+  add_case_options(*program.add_subcommand("check", "read and build a case, without solving"),
+                   line);
   CLI::App* tangent_command = program.add_subcommand(
       "check-tangent", "finite-difference check of residual and tangent; prints JSON");
   add_case_options(*tangent_command, line);

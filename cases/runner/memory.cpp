@@ -1,13 +1,13 @@
 #include "cases/runner/memory.hpp"
 
-#include <sys/resource.h>
-
 #include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <limits>
 #include <numbers>
 #include <sstream>
+
+#include <sys/resource.h>
 
 namespace peristat {
 namespace {
@@ -34,7 +34,8 @@ double number_in(const std::string& file) {
   return stream >> value ? value : unlimited;
 }
 
-/// Room left in the control group of this process (version 2, or the memory controller of version 1).
+/// Room left in the control group of this process (version 2, or the memory controller of version
+/// 1).
 double control_group_room() {
   std::ifstream groups("/proc/self/cgroup");
   double room = unlimited;
@@ -45,8 +46,7 @@ double control_group_room() {
     if (!version2 && line.find(":memory:") == std::string::npos) continue;
     const std::string folder =
         (version2 ? "/sys/fs/cgroup" : "/sys/fs/cgroup/memory") + line.substr(path_at);
-    const double limit =
-        number_in(folder + (version2 ? "/memory.max" : "/memory.limit_in_bytes"));
+    const double limit = number_in(folder + (version2 ? "/memory.max" : "/memory.limit_in_bytes"));
     const double used =
         number_in(folder + (version2 ? "/memory.current" : "/memory.usage_in_bytes"));
     if (limit < unlimited && used < unlimited) room = std::min(room, limit - used);
@@ -86,8 +86,8 @@ MemoryEstimate estimate_memory(int dimension, const BodySize& size, double horiz
   const double thick = horizon_ratio / 3.015 * (horizon_ratio / 3.015);
   const double dissection_entries =
       dimension == 3 ? 98.0 * thick * std::pow(n, 4.0 / 3.0) : 29.0 * thick * n * std::log2(n);
-  const double dissection_flops = dimension == 3 ? 297.0 * thick * thick * n * n
-                                                 : 1010.0 * thick * thick * std::pow(n, 1.5);
+  const double dissection_flops =
+      dimension == 3 ? 297.0 * thick * thick * n * n : 1010.0 * thick * thick * std::pow(n, 1.5);
   estimate.factor_entries = std::min(natural_entries, dissection_entries);
   estimate.factor_flops = std::min(natural_flops, dissection_flops);
 

@@ -29,9 +29,9 @@ struct BodySize {
 /// Bonds of a point, each counted at one of its ends: half the volume of the horizon in cells.
 [[nodiscard]] double bonds_per_point(int dimension, double horizon_ratio);
 
-/// Estimate for a body solved by Cholesky. The factor's size is the smaller of what nested dissection
-/// and what the natural order along the longest direction leave; their constants are fitted to the
-/// measured table in docs/performance.md and hold within a factor of 1.5.
+/// Estimate for a body solved by Cholesky. The factor's size is the smaller of what nested
+/// dissection and what the natural order along the longest direction leave; their constants are
+/// fitted to the measured table in docs/performance.md and hold within a factor of 1.5.
 [[nodiscard]] MemoryEstimate estimate_memory(int dimension, const BodySize& size,
                                              double horizon_ratio, double bonds, double free_dofs);
 

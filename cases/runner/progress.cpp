@@ -1,11 +1,11 @@
 #include "cases/runner/progress.hpp"
 
-#include <fmt/format.h>
-#include <unistd.h>
-
 #include <cerrno>
 #include <cmath>
 #include <cstring>
+
+#include <fmt/format.h>
+#include <unistd.h>
 
 #include "src/input_error.hpp"
 
@@ -68,7 +68,8 @@ std::string Progress::time_left() const {
 
 void Progress::iteration(const IterationRecord& record) {
   if (log_) {
-    fmt::print(log_, "  step {} iteration {}: residual {:.3e} N, relative {:.3e}, step length {:g}\n",
+    fmt::print(log_,
+               "  step {} iteration {}: residual {:.3e} N, relative {:.3e}, step length {:g}\n",
                record.step, record.iteration, record.residual, record.relative_residual,
                record.step_length);
   }

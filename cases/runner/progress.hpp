@@ -8,8 +8,9 @@
 
 namespace peristat {
 
-/// What a run tells while it goes: one line per accepted step and decision; on a terminal a line that
-/// follows the iterations too, with the time that is left. Everything also goes to the log file.
+/// What a run tells while it goes: one line per accepted step and decision; on a terminal a line
+/// that follows the iterations too, with the time that is left. Everything also goes to the log
+/// file.
 class Progress {
  public:
   /// @param quiet nothing on the terminal, except what `problem` tells

@@ -1,14 +1,14 @@
 #include "cases/runner/run.hpp"
 
-#include <H5public.h>
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <csignal>
 #include <cstdlib>
 #include <fstream>
+
+#include <H5public.h>
+#include <fmt/format.h>
 
 #include "cases/runner/body.hpp"
 #include "cases/runner/probe.hpp"
@@ -86,8 +86,7 @@ class Recorder {
     for (const ProbeSpecification& probe : case_.probes) {
       record.probes[probe.name] = probe_values(probe, points_, fields);
     }
-    const bool write_fields =
-        record.step % case_.output.every == 0 || record.load_factor == 1.0;
+    const bool write_fields = record.step % case_.output.every == 0 || record.load_factor == 1.0;
     results_.add(record, write_fields ? std::optional(fields) : std::nullopt);
     progress_.accepted(record, relative_residual_);
     last_ = std::move(record);
@@ -234,8 +233,8 @@ Exit run(const Case& from, const RunOptions& options) {
     return Exit::done;
   }
   progress.problem(summary.reason);
-  progress.problem(fmt::format("{} accepted steps are in {}", result.steps,
-                               from.output.directory.string()));
+  progress.problem(
+      fmt::format("{} accepted steps are in {}", result.steps, from.output.directory.string()));
   if (interrupted) return Exit::interrupted;
   return result.outcome == Outcome::out_of_memory ? Exit::out_of_memory : Exit::not_converged;
 }

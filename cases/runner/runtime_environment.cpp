@@ -1,11 +1,11 @@
 #include "cases/runner/runtime_environment.hpp"
 
-#include <sched.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <cstdlib>
 #include <string>
+
+#include <sched.h>
+#include <unistd.h>
 
 namespace peristat {
 

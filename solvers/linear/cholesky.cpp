@@ -1,12 +1,12 @@
 #include "solvers/linear/cholesky.hpp"
 
-#include <suitesparse/cholmod.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
 #include <limits>
+
+#include <suitesparse/cholmod.h>
 
 #include "solvers/linear/conjugate_gradients.hpp"
 #include "solvers/vector_verbs.hpp"
@@ -23,8 +23,8 @@ constexpr std::array<int, 3> orderings{CHOLMOD_NATURAL, CHOLMOD_AMD, CHOLMOD_MET
 /// Below this number of points METIS gains nothing over AMD and costs more to find.
 constexpr Index smallest_for_metis = 20000;
 
-/// Speeds of a plain machine, one thread, that decide how many iterations pay against a factorisation:
-/// factorisation [flop/s], and reading the factor in triangular solves [bytes/s].
+/// Speeds of a plain machine, one thread, that decide how many iterations pay against a
+/// factorisation: factorisation [flop/s], and reading the factor in triangular solves [bytes/s].
 constexpr double factorisation_speed = 3e10, solve_speed = 1e10;
 
 /// Largest relative residual of a direct solve; backward-stable factorisations stay far below.
@@ -109,7 +109,8 @@ struct Cholesky::Cholmod {
     return order;
   }
 
-  /// visit(i, j) for the diagonal and each block i < j of points with an equation, in their numbers.
+  /// visit(i, j) for the diagonal and each block i < j of points with an equation, in their
+  /// numbers.
   template <class Visit>
   static void for_each_free_block(const Pattern& pattern, const std::vector<Index>& number,
                                   const Visit& visit) {
@@ -123,8 +124,8 @@ struct Cholesky::Cholmod {
     }
   }
 
-  /// visit(entry, value) with `value` the address of the tangent's number for each stored entry of one
-  /// column (the lower triangle) in ascending rows.
+  /// visit(entry, value) with `value` the address of the tangent's number for each stored entry of
+  /// one column (the lower triangle) in ascending rows.
   template <class Visit>
   void for_each_entry_of_column(const Pattern& pattern, Index equation, const Visit& visit) const {
     const int d = free->dimension;
@@ -152,8 +153,8 @@ struct Cholesky::Cholmod {
       for_each_entry_of_column(pattern, e, [&](Index, bool, std::size_t) { ++entries; });
       begin[std::size_t(e) + 1] = begin[e] + entries;
     }
-    matrix = cholmod_l_allocate_sparse(size, size, std::size_t(begin.back()), 1, 1, -1, CHOLMOD_REAL,
-                                       &common);
+    matrix = cholmod_l_allocate_sparse(size, size, std::size_t(begin.back()), 1, 1, -1,
+                                       CHOLMOD_REAL, &common);
     if (!matrix) return;
     std::copy(begin.begin(), begin.end(), static_cast<Long*>(matrix->p));
     Long* rows = static_cast<Long*>(matrix->i);
@@ -186,7 +187,8 @@ struct Cholesky::Cholmod {
     return common.status < CHOLMOD_OK ? LinearOutcome::singular : LinearOutcome::solved;
   }
 
-  /// Iterations of conjugate gradients, each reading the factor twice, that half a factorisation buys.
+  /// Iterations of conjugate gradients, each reading the factor twice, that half a factorisation
+  /// buys.
   int affordable_iterations() const {
     const double factorisation = estimate.flops / factorisation_speed;
     const double iteration = 2.0 * estimate.bytes() / solve_speed;
@@ -323,7 +325,8 @@ LinearOutcome Cholesky::analyze(const Pattern& pattern, const FreeDofs& free) {
   if (!c.factor) return c.outcome_of_status();
   c.estimate.entries = double(c.factor->xsize);
   c.estimate.flops = c.common.fl;
-  c.right_hand_side = cholmod_l_allocate_dense(free.count(), 1, free.count(), CHOLMOD_REAL, &c.common);
+  c.right_hand_side =
+      cholmod_l_allocate_dense(free.count(), 1, free.count(), CHOLMOD_REAL, &c.common);
   return c.right_hand_side ? LinearOutcome::solved : c.outcome_of_status();
 }
 

@@ -8,31 +8,32 @@ namespace peristat {
 
 /// What the symbolic factorisation knows before any number is computed.
 struct FactorEstimate {
-  double entries = 0.0;    ///< of the factor
-  double flops = 0.0;      ///< of one factorisation
-  std::string ordering;    ///< "natural", "AMD", "METIS"
+  double entries = 0.0;  ///< of the factor
+  double flops = 0.0;    ///< of one factorisation
+  std::string ordering;  ///< "natural", "AMD", "METIS"
   [[nodiscard]] double bytes() const { return 8.0 * entries; }
 };
 
 /// When a factorisation serves as preconditioner for later tangents instead of being redone.
 struct FactorReuse {
-  /// Of conjugate gradients per solve; 0 factorises every tangent. The actual limit is lower where so
-  /// many iterations would cost more than half a factorisation.
+  /// Of conjugate gradients per solve; 0 factorises every tangent. The actual limit is lower where
+  /// so many iterations would cost more than half a factorisation.
   int max_iterations = 12;
   double tolerance = 1e-12;  ///< relative residual of those solves
 };
 
 /// Direct solver: CHOLMOD's supernodal LL^T with 64-bit indices, analysed once per pattern.
 ///
-/// The fill-reducing order is found on the graph of points, d times smaller than that of the degrees of
-/// freedom, as the cheapest of natural (points are numbered along the body), AMD and METIS.
+/// The fill-reducing order is found on the graph of points, d times smaller than that of the
+/// degrees of freedom, as the cheapest of natural (points are numbered along the body), AMD and
+/// METIS.
 ///
-/// Where reuse is allowed, a new tangent is solved by conjugate gradients preconditioned with the last
-/// factor; only when that takes too many iterations, or meets negative curvature, is the new tangent
-/// factorised. Solutions still belong to the new tangent, so Newton stays quadratic.
+/// Where reuse is allowed, a new tangent is solved by conjugate gradients preconditioned with the
+/// last factor; only when that takes too many iterations, or meets negative curvature, is the new
+/// tangent factorised. Solutions still belong to the new tangent, so Newton stays quadratic.
 ///
-/// A tangent that is not positive definite is factorised a second time as LDL^T for its inertia, where
-/// that costs no more than `largest_inertia_flops`.
+/// A tangent that is not positive definite is factorised a second time as LDL^T for its inertia,
+/// where that costs no more than `largest_inertia_flops`.
 class Cholesky : public LinearSolver {
  public:
   explicit Cholesky(FactorReuse reuse = {});

@@ -16,7 +16,7 @@ enum class LinearOutcome {
   not_positive_definite,  ///< negative pivots or negative curvature: see inertia()
   singular,               ///< a zero pivot, or values that are not finite
   out_of_memory,
-  inaccurate,             ///< the true residual of the solution is too large
+  inaccurate,  ///< the true residual of the solution is too large
 };
 
 [[nodiscard]] std::string name(LinearOutcome outcome);
@@ -36,13 +36,14 @@ struct LinearStatistics {
 /// Whether an earlier factorisation may stand in as preconditioner for that of a new tangent.
 enum class FactorUse { factorize_now, may_reuse };
 
-/// Solves K_ff x = b on the free degrees of freedom. Implementations keep what the pattern determines
-/// between tangents.
+/// Solves K_ff x = b on the free degrees of freedom. Implementations keep what the pattern
+/// determines between tangents.
 class LinearSolver {
  public:
   virtual ~LinearSolver() = default;
 
-  /// Once per pattern, before anything else. The pattern and the degrees of freedom outlive the solver.
+  /// Once per pattern, before anything else. The pattern and the degrees of freedom outlive the
+  /// solver.
   /// @return solved, or out_of_memory
   [[nodiscard]] virtual LinearOutcome analyze(const Pattern& pattern, const FreeDofs& free) = 0;
 

@@ -46,11 +46,11 @@ Conditions::Conditions(const Points& points, const std::vector<SupportSpecificat
     for (int c = 0; c < points.dimension; ++c) {
       const auto& text = supports[k].displacement[c];
       if (!text) continue;
-      prescriptions_.push_back({supports[k].set, &members, c,
-                                with_key(table + ".displacement", [&] {
-                                  return Expression(*text, points.dimension, points.spacing,
-                                                    Expression::LoadFactor::allowed);
-                                })});
+      prescriptions_.push_back(
+          {supports[k].set, &members, c, with_key(table + ".displacement", [&] {
+             return Expression(*text, points.dimension, points.spacing,
+                               Expression::LoadFactor::allowed);
+           })});
       for (Index point : members) prescribed_[std::size_t(point) * points.dimension + c] = 1;
     }
   }
@@ -65,10 +65,12 @@ Conditions::Conditions(const Points& points, const std::vector<SupportSpecificat
     }
     for (int c = 0; c < points.dimension; ++c) {
       loads_.push_back({&members, c,
-                        with_key(table + (total ? ".total_force" : ".body_force"), [&] {
-                          return Expression(loads[k].value[c], total ? 0 : points.dimension,
-                                            points.spacing, Expression::LoadFactor::allowed);
-                        }),
+                        with_key(table + (total ? ".total_force" : ".body_force"),
+                                 [&] {
+                                   return Expression(loads[k].value[c],
+                                                     total ? 0 : points.dimension, points.spacing,
+                                                     Expression::LoadFactor::allowed);
+                                 }),
                         volume});
     }
   }
@@ -88,14 +90,13 @@ void Conditions::refuse_contradictions() const {
         if (!std::isnan(value[dof]) && value[dof] != now) {
           const Coordinates at = points_.position(point);
           const std::string axis(1, "xyz"[prescription.component]);
-          throw InputError(
-              "support", "",
-              "the supports of sets " + by[dof]->set + " and " + prescription.set +
-                  " contradict each other: at point (" + std::to_string(at[0]) + ", " +
-                  std::to_string(at[1]) + ", " + std::to_string(at[2]) + ") m the displacement in " +
-                  axis + " is " + std::to_string(value[dof]) + " m by one and " +
-                  std::to_string(now) + " m by the other at load factor " +
-                  std::to_string(load_factor));
+          throw InputError("support", "",
+                           "the supports of sets " + by[dof]->set + " and " + prescription.set +
+                               " contradict each other: at point (" + std::to_string(at[0]) + ", " +
+                               std::to_string(at[1]) + ", " + std::to_string(at[2]) +
+                               ") m the displacement in " + axis + " is " +
+                               std::to_string(value[dof]) + " m by one and " + std::to_string(now) +
+                               " m by the other at load factor " + std::to_string(load_factor));
         }
         value[dof] = now;
         by[dof] = &prescription;

@@ -11,8 +11,8 @@
 
 namespace peristat {
 
-/// Supports and loads of a body, as functions of the load factor. Arrays have one entry per degree of
-/// freedom (point x dimension + component).
+/// Supports and loads of a body, as functions of the load factor. Arrays have one entry per degree
+/// of freedom (point x dimension + component).
 class Conditions {
  public:
   /// @throws InputError (keys "support[k].…", "load[k].…", k from 0) for a set that is unknown or
@@ -32,8 +32,8 @@ class Conditions {
 
   /// Reaction of each support's set [N]: the sum over its prescribed degrees of freedom of what the
   /// support adds to hold them, dE/dx - external force.
-  [[nodiscard]] std::map<std::string, Coordinates> reactions(std::span<const double> gradient,
-                                                             std::span<const double> external) const;
+  [[nodiscard]] std::map<std::string, Coordinates> reactions(
+      std::span<const double> gradient, std::span<const double> external) const;
 
  private:
   struct Prescription {
@@ -45,8 +45,8 @@ class Conditions {
   struct Load {
     const std::vector<Index>* points;
     int component;
-    Expression value;        // body force [N/m3], or total force [N]
-    double spread_over;      // volume that a total force is spread over [m3]; 1 for a body force
+    Expression value;    // body force [N/m3], or total force [N]
+    double spread_over;  // volume that a total force is spread over [m3]; 1 for a body force
   };
 
   void refuse_contradictions() const;

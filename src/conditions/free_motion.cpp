@@ -1,10 +1,11 @@
 #include "src/conditions/free_motion.hpp"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <numeric>
+
+#include <Eigen/Dense>
 
 namespace peristat {
 namespace {
@@ -12,8 +13,8 @@ namespace {
 /// Eigenvalues below this fraction of the largest count as zero: motions of the size of round-off.
 constexpr double rank_tolerance = 1e-10;
 
-/// Columns: the rigid motions of a point at `arm` from the centre, translations first, then rotations
-/// about x, y, z (2D: about z), scaled by 1 / size so that all entries are of order one.
+/// Columns: the rigid motions of a point at `arm` from the centre, translations first, then
+/// rotations about x, y, z (2D: about z), scaled by 1 / size so that all entries are of order one.
 Eigen::MatrixXd rigid_motions(const Eigen::Vector3d& arm, int dimension, double size) {
   if (dimension == 1) return Eigen::MatrixXd::Identity(1, 1);
   const Eigen::Vector3d a = arm / size;

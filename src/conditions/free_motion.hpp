@@ -23,8 +23,8 @@ struct FreeMotion {
   std::vector<std::string> motions;  ///< "move along x", "rotate about z", …
 };
 
-/// All components that may move as rigid bodies, largest first; empty if everything is held. Decided
-/// by the rank of the prescribed components on the rigid motions of each component.
+/// All components that may move as rigid bodies, largest first; empty if everything is held.
+/// Decided by the rank of the prescribed components on the rigid motions of each component.
 [[nodiscard]] std::vector<FreeMotion> free_motions(const Points& points, const Bonds& bonds,
                                                    const std::vector<char>& prescribed);
 

@@ -17,8 +17,8 @@ struct BondSetting {
 ///
 ///   1D 2E/(A d^2) | plane stress 9E/(pi d^3 h) | plane strain 48E/(5 pi d^3 h) | 3D 12E/(pi d^4)
 ///
-/// (eq. 3 of [ADAPT], whose 1D constant has a pi too many: the energy of a bar under uniform strain,
-/// c A d^2 / 4 per volume, must be E/2.)
+/// (eq. 3 of [ADAPT], whose 1D constant has a pi too many: the energy of a bar under uniform
+/// strain, c A d^2 / 4 per volume, must be E/2.)
 [[nodiscard]] double micromodulus(double youngs_modulus, const BondSetting& setting);
 
 /// Young's modulus that belongs to a micromodulus: the inverse of the above.

@@ -4,8 +4,8 @@
 
 namespace peristat {
 
-/// Length l = |xi| of a bond: xi = xi0 + eta is the current vector from its first to its second point,
-/// xi0 the reference vector, eta the relative displacement, L = |xi0|.
+/// Length l = |xi| of a bond: xi = xi0 + eta is the current vector from its first to its second
+/// point, xi0 the reference vector, eta the relative displacement, L = |xi0|.
 ///
 ///   value      l                        [m]
 ///   gradient   dl/dxi = n = xi / l      [-]
@@ -48,9 +48,9 @@ struct Length {
     }
   };
 
-  /// The measure from the reference length L, the reference vector xi0 and the relative displacement
-  /// eta [m]. The stretch is free of cancellation, eta.(2 xi0 + eta) / (L (L + l)): the difference of
-  /// two nearly equal lengths would stall a relative residual near 1e-8.
+  /// The measure from the reference length L, the reference vector xi0 and the relative
+  /// displacement eta [m]. The stretch is free of cancellation, eta.(2 xi0 + eta) / (L (L + l)):
+  /// the difference of two nearly equal lengths would stall a relative residual near 1e-8.
   template <int D, class Real>
   [[nodiscard]] static At<D, Real> at(const Real& reference, const Vector<D, Real>& arm,
                                       const Vector<D, Real>& relative_displacement) {
@@ -61,8 +61,8 @@ struct Length {
     return result;
   }
 
-  /// The measure from the current vector xi alone. Its stretch l/L - 1 carries an absolute error of one
-  /// round-off: too much for forces, as good as any other entry for a tangent.
+  /// The measure from the current vector xi alone. Its stretch l/L - 1 carries an absolute error of
+  /// one round-off: too much for forces, as good as any other entry for a tangent.
   template <int D, class Real>
   [[nodiscard]] static At<D, Real> from_current(const Real& reference,
                                                 const Vector<D, Real>& current_arm) {

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cmath>
+
 #include <experimental/simd>
 
 namespace peristat {

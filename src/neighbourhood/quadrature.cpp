@@ -109,7 +109,8 @@ void apply_volume_method(Bonds& bonds, const Points& points, const Quadrature& q
 }
 
 /// Ratio of the discrete to the classical energy density of every point, per axis, under a confined
-/// unit strain along the axis: a bond stores w c L s^2 / 2 with s = n_a^2, half at each of its points.
+/// unit strain along the axis: a bond stores w c L s^2 / 2 with s = n_a^2, half at each of its
+/// points.
 std::vector<std::array<double, 3>> confined_energy_ratio(const Points& points, const Bonds& bonds,
                                                          const BondSetting& setting) {
   const double classical = confined_energy_per_modulus(setting);
@@ -119,7 +120,8 @@ std::vector<std::array<double, 3>> confined_energy_ratio(const Points& points, c
     const Index j = bonds.partner[bond];
     const std::array<double, 3> squared = squared_direction(points, bonds, i, bond);
     for (int a = 0; a < points.dimension; ++a) {
-      const double energy = factor * bonds.weight[bond] * bonds.length[bond] * squared[a] * squared[a];
+      const double energy =
+          factor * bonds.weight[bond] * bonds.length[bond] * squared[a] * squared[a];
       ratio[i][a] += energy / points.volume[i];
       ratio[j][a] += energy / points.volume[j];
     }
@@ -175,8 +177,7 @@ Bonds make_bonds(const Points& points, const Quadrature& quadrature, const BondS
   return bonds;
 }
 
-double confined_energy_error(const Points& points, const Bonds& bonds,
-                             const BondSetting& setting) {
+double confined_energy_error(const Points& points, const Bonds& bonds, const BondSetting& setting) {
   double error = 0.0;
   for (const auto& ratio : confined_energy_ratio(points, bonds, setting)) {
     for (int a = 0; a < points.dimension; ++a) error = std::max(error, std::abs(ratio[a] - 1.0));

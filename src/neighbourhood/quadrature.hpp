@@ -32,16 +32,18 @@ struct Quadrature {
 ///
 ///   w_ij = 1/2 (V_i V_j nu_ij + V_j V_i nu_ji) mu_ij   [m6]
 ///
-/// nu is the partial volume and mu the surface correction, both symmetric and frozen in the reference
-/// configuration:
+/// nu is the partial volume and mu the surface correction, both symmetric and frozen in the
+/// reference configuration:
 ///  - none:   mu = 1.
-///  - volume: mu = 2 V_H / (V_i + V_j) with V_i = sum_j nu_ij V_j and V_H that of a point inside the
+///  - volume: mu = 2 V_H / (V_i + V_j) with V_i = sum_j nu_ij V_j and V_H that of a point inside
+///  the
 ///            bulk of the lattice (for a cloud of points: of the continuum) (Le and Bobaru 2018).
-///  - energy: every point gets per axis a the factor g_a = classical / discrete energy density under
+///  - energy: every point gets per axis a the factor g_a = classical / discrete energy density
+///  under
 ///            a confined unit strain along the axis, and a bond with direction n gets
-///            mu = (sum_a (n_a / gbar_a)^2)^(-1/2), gbar the mean of its points' factors (Madenci and
-///            Oterkus 2014, sec. 4.2). Iterating this until the corrected energies are classical was
-///            tried: it makes bending softer again, not better.
+///            mu = (sum_a (n_a / gbar_a)^2)^(-1/2), gbar the mean of its points' factors (Madenci
+///            and Oterkus 2014, sec. 4.2). Iterating this until the corrected energies are
+///            classical was tried: it makes bending softer again, not better.
 [[nodiscard]] Bonds make_bonds(const Points& points, const Quadrature& quadrature,
                                const BondSetting& setting, int threads);
 

@@ -1,19 +1,19 @@
 #include "src/neighbourhood/search.hpp"
 
-#include <omp.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
+
+#include <omp.h>
 
 #include "src/neighbourhood/horizon.hpp"
 
 namespace peristat {
 namespace {
 
-/// Cells per search radius. Half the radius leaves 3.7 candidates per bond in 3D instead of 6.1 with
-/// cells as large as the radius.
+/// Cells per search radius. Half the radius leaves 3.7 candidates per bond in 3D instead of 6.1
+/// with cells as large as the radius.
 constexpr int cells_per_radius = 2;
 
 /// Cells of at least radius / cells_per_radius; the last direction is the fastest. Points of a cell
@@ -134,7 +134,8 @@ Bonds search(const Points& points, double radius, int threads) {
       for (int c = 0; c < D; ++c) at[c] = points.reference[std::size_t(i) * D + c];
       std::size_t kept = 0;
       cells.for_each_run(at, longest, [&](Index begin, Index end) {
-        if (row.size() < kept + std::size_t(end - begin)) row.resize(kept + std::size_t(end - begin));
+        if (row.size() < kept + std::size_t(end - begin))
+          row.resize(kept + std::size_t(end - begin));
         for (Index place = begin; place < end; ++place) {
           double squared = 0.0;
           for (int c = 0; c < D; ++c) {

@@ -14,8 +14,8 @@ struct PotentialValue {
 ///
 ///   psi = 1/2 C M e^2,   dpsi/dm = C e,   d2psi/dm2 = C / M       (eqs. 23-25 of [CPD])
 ///
-/// For bonds C is the micromodulus c [N/m6], and dpsi/dm = c s the pairwise force density of eq. 3 of
-/// [ADAPT] with the stretch s.
+/// For bonds C is the micromodulus c [N/m6], and dpsi/dm = c s the pairwise force density of eq. 3
+/// of [ADAPT] with the stretch s.
 struct Harmonic {
   double modulus = 0.0;  ///< C [N/m6] for length
 
