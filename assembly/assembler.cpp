@@ -31,7 +31,7 @@ struct Batch {
   Offset first;
   int count;
   std::array<Index, lane_count> partner;
-  Lanes weight, length;
+  Lanes weight, inverse_length;
   Vector<D, Lanes> vector0, vector1;  // partner's minus the row's own gathered vectors
 };
 
@@ -45,17 +45,17 @@ inline void for_each_batch(const Bonds& bonds, const double* rows, Index i, cons
   for (Offset first = bonds.offset[i]; first < end; first += lane_count) {
     batch.first = first;
     batch.count = static_cast<int>(std::min<Offset>(lane_count, end - first));
+    for (int l = 0; l < lane_count; ++l) {
+      batch.partner[l] = bonds.partner[first + std::min(l, batch.count - 1)];
+    }
     if (batch.count == lane_count) {
-      for (int l = 0; l < lane_count; ++l) batch.partner[l] = bonds.partner[first + l];
       batch.weight.copy_from(&bonds.weight[first], std::experimental::element_aligned);
-      batch.length.copy_from(&bonds.length[first], std::experimental::element_aligned);
+      batch.inverse_length.copy_from(&bonds.inverse_length[first],
+                                     std::experimental::element_aligned);
     } else {
-      for (int l = 0; l < lane_count; ++l) {
-        const Offset bond = first + std::min(l, batch.count - 1);
-        batch.partner[l] = bonds.partner[bond];
-        batch.weight[l] = l < batch.count ? bonds.weight[bond] : 0.0;
-        batch.length[l] = bonds.length[bond];
-      }
+      batch.weight = Lanes([&](int l) { return l < batch.count ? bonds.weight[first + l] : 0.0; });
+      batch.inverse_length =
+          Lanes([&](int l) { return bonds.inverse_length[first + std::min(l, batch.count - 1)]; });
     }
     std::array<const double*, lane_count> row;
     for (int l = 0; l < lane_count; ++l) row[l] = rows + std::size_t(batch.partner[l]) * width;
@@ -80,10 +80,12 @@ inline void add_to_partners(double* sums, const std::array<Index, lane_count>& p
     lanes_detail::Row rows[4];
     store_transposed(vector[0], vector[1], vector[2], Lanes(0.0), rows);
     for (int l = 0; l < lane_count; ++l) add_row(sums + std::ptrdiff_t(partner[l]) * 4, rows[l]);
+  } else if constexpr (D == 2) {
+    lanes_detail::Pair pairs[4];
+    store_transposed(vector[0], vector[1], pairs);
+    for (int l = 0; l < lane_count; ++l) add_row(sums + std::ptrdiff_t(partner[l]) * 2, pairs[l]);
   } else {
-    for (int l = 0; l < lane_count; ++l) {
-      for (int c = 0; c < D; ++c) sums[std::ptrdiff_t(partner[l]) * D + c] += vector[c][l];
-    }
+    for (int l = 0; l < lane_count; ++l) sums[partner[l]] += vector[0][l];
   }
 }
 
@@ -205,9 +207,8 @@ struct Assembler::Kernels {
         Vector<D, Lanes> own;
         own.fill(Lanes(0.0));
         for_each_batch<D>(bonds, a.rows_.data(), i, [&](const Batch<D>& batch) {
-          const auto measure = Length::at<D>(batch.length, batch.vector0, batch.vector1);
-          const auto psi =
-              weighted(batch.weight, potential(measure.reference, measure.relative_change));
+          const auto measure = Length::at<D>(batch.inverse_length, batch.vector0, batch.vector1);
+          const auto psi = interaction_energy(batch.weight, potential, measure);
           row_energy += psi.value;
           shortest = std::experimental::min(shortest, measure.current);
           if (energy_only) return;
@@ -237,9 +238,8 @@ struct Assembler::Kernels {
         std::array<Lanes, width> own;
         own.fill(Lanes(0.0));
         for_each_batch<D>(bonds, a.rows_.data(), i, [&](const Batch<D>& batch) {
-          const auto measure = Length::at<D>(batch.length, batch.vector0, batch.vector1);
-          const auto psi =
-              weighted(batch.weight, potential(measure.reference, measure.relative_change));
+          const auto measure = Length::at<D>(batch.inverse_length, batch.vector0, batch.vector1);
+          const auto psi = interaction_energy(batch.weight, potential, measure);
           const Matrix<D, Lanes> block = energy_hessian<D>(psi, measure);
           store_blocks<D>(&result.off_diagonal[std::size_t(batch.first) * D * D], batch.count,
                           block);
@@ -279,9 +279,8 @@ struct Assembler::Kernels {
         Vector<D, Lanes> own;
         own.fill(Lanes(0.0));
         for_each_batch<D>(bonds, a.rows_.data(), i, [&](const Batch<D>& batch) {
-          const auto measure = Length::from_current<D>(batch.length, batch.vector0);
-          const auto psi =
-              weighted(batch.weight, potential(measure.reference, measure.relative_change));
+          const auto measure = Length::from_current<D>(batch.inverse_length, batch.vector0);
+          const auto psi = interaction_energy(batch.weight, potential, measure);
           const Vector<D, Lanes> force = energy_hessian_times<D>(psi, measure, batch.vector1);
           for (int c = 0; c < D; ++c) own[c] -= force[c];
           add_to_partners<D>(sums, batch.partner, force);
@@ -305,9 +304,8 @@ struct Assembler::Kernels {
       for (Index i = range.first; i < range.last; ++i) {
         Lanes own = 0.0;
         for_each_batch<D>(bonds, a.rows_.data(), i, [&](const Batch<D>& batch) {
-          const auto measure = Length::at<D>(batch.length, batch.vector0, batch.vector1);
-          const Lanes half =
-              0.5 * batch.weight * potential(measure.reference, measure.relative_change).value;
+          const auto measure = Length::at<D>(batch.inverse_length, batch.vector0, batch.vector1);
+          const Lanes half = 0.5 * interaction_energy(batch.weight, potential, measure).value;
           most = std::experimental::max(most, measure.relative_change);
           own += half;
           add_to_partners<1>(sums, batch.partner, Vector<1, Lanes>{half});

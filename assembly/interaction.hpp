@@ -1,7 +1,6 @@
 #pragma once
 
 #include "src/measures/small_algebra.hpp"
-#include "src/potentials/harmonic.hpp"
 
 namespace peristat {
 
@@ -9,23 +8,33 @@ namespace peristat {
 /// w psi(m(x)) of an interaction with respect to its relative vectors, by the chain rule.
 /// `Size` is the number of components of all arms together.
 
-/// Potential times quadrature weight.
+/// Weighted potential w psi(m; M) and its derivatives with respect to the measure.
 template <class Real>
-[[nodiscard]] inline PotentialValue<Real> weighted(const Real& weight,
-                                                   const PotentialValue<Real>& psi) {
-  return {weight * psi.value, weight * psi.first, weight * psi.second};
+struct InteractionEnergy {
+  Real value;   ///< w M phi [J]
+  Real first;   ///< w phi'
+  Real second;  ///< w phi'' / M
+};
+
+template <class Real, class P, class MeasureAt>
+[[nodiscard]] inline InteractionEnergy<Real> interaction_energy(const Real& weight,
+                                                                const P& potential,
+                                                                const MeasureAt& measure) {
+  const auto phi = potential(measure.relative_change);
+  return {weight * phi.value / measure.inverse_reference, weight * phi.first,
+          weight * phi.second * measure.inverse_reference};
 }
 
 /// psi' grad m
 template <int Size, class Real, class MeasureAt>
-[[nodiscard]] inline Vector<Size, Real> energy_gradient(const PotentialValue<Real>& psi,
+[[nodiscard]] inline Vector<Size, Real> energy_gradient(const InteractionEnergy<Real>& psi,
                                                         const MeasureAt& measure) {
   return scaled<Size>(psi.first, measure.gradient());
 }
 
 /// psi'' grad m (grad m)^T + psi' hess m
 template <int Size, class Real, class MeasureAt>
-[[nodiscard]] inline Matrix<Size, Real> energy_hessian(const PotentialValue<Real>& psi,
+[[nodiscard]] inline Matrix<Size, Real> energy_hessian(const InteractionEnergy<Real>& psi,
                                                        const MeasureAt& measure) {
   const Vector<Size, Real>& gradient = measure.gradient();
   Matrix<Size, Real> result = measure.hessian();
@@ -40,7 +49,7 @@ template <int Size, class Real, class MeasureAt>
 
 /// (psi'' grad m (grad m)^T + psi' hess m) v
 template <int Size, class Real, class MeasureAt>
-[[nodiscard]] inline Vector<Size, Real> energy_hessian_times(const PotentialValue<Real>& psi,
+[[nodiscard]] inline Vector<Size, Real> energy_hessian_times(const InteractionEnergy<Real>& psi,
                                                              const MeasureAt& measure,
                                                              const Vector<Size, Real>& v) {
   const Vector<Size, Real>& gradient = measure.gradient();

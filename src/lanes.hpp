@@ -31,6 +31,7 @@ inline double sum(double a) { return a; }
 namespace lanes_detail {
 
 using Row = double __attribute__((vector_size(4 * sizeof(double))));
+using Pair = double __attribute__((vector_size(2 * sizeof(double))));
 using Order = long long __attribute__((vector_size(4 * sizeof(long long))));
 
 inline Row load(const double* from) {
@@ -86,9 +87,25 @@ inline void store_transposed(const Lanes& column0, const Lanes& column1, const L
   transpose(rows[0], rows[1], rows[2], rows[3]);
 }
 
-/// Adds a row of four doubles to memory.
-inline void add_row(double* to, const lanes_detail::Row& row) {
-  const lanes_detail::Row total = lanes_detail::load(to) + row;
+/// The same for two columns.
+inline void store_transposed(const Lanes& column0, const Lanes& column1,
+                             lanes_detail::Pair pairs[4]) {
+  using namespace lanes_detail;
+  const Row a = to_row(column0), b = to_row(column1);
+  const Row even = __builtin_shuffle(a, b, Order{0, 4, 2, 6});
+  const Row odd = __builtin_shuffle(a, b, Order{1, 5, 3, 7});
+  pairs[0] = Pair{even[0], even[1]};
+  pairs[1] = Pair{odd[0], odd[1]};
+  pairs[2] = Pair{even[2], even[3]};
+  pairs[3] = Pair{odd[2], odd[3]};
+}
+
+/// Adds a row of four (or two) doubles to memory.
+template <class Row>
+inline void add_row(double* to, const Row& row) {
+  Row total;
+  std::memcpy(&total, to, sizeof total);
+  total += row;
   std::memcpy(to, &total, sizeof total);
 }
 

@@ -20,7 +20,7 @@ struct Length {
 
   template <int D, class Real>
   struct At {
-    Real reference;             ///< L [m]
+    Real inverse_reference;     ///< 1/L [1/m]
     Real current;               ///< l [m]
     Real relative_change;       ///< l/L - 1, the stretch s
     Vector<D, Real> direction;  ///< n
@@ -48,28 +48,30 @@ struct Length {
     }
   };
 
-  /// The measure from the reference length L, the reference vector xi0 and the relative
-  /// displacement eta [m]. The stretch is free of cancellation, eta.(2 xi0 + eta) / (L (L + l)):
+  /// The measure from 1/L, the reference vector xi0 and the relative displacement eta [m]. The
+  /// stretch is free of cancellation,
+  ///   s = eta.(2 xi0 + eta) / (L (L + l)) = eta.(2 xi0 + eta) / L^2 / (1 + l/L):
   /// the difference of two nearly equal lengths would stall a relative residual near 1e-8.
   template <int D, class Real>
-  [[nodiscard]] static At<D, Real> at(const Real& reference, const Vector<D, Real>& arm,
+  [[nodiscard]] static At<D, Real> at(const Real& inverse_reference, const Vector<D, Real>& arm,
                                       const Vector<D, Real>& relative_displacement) {
     const Vector<D, Real> current_arm = plus<D>(arm, relative_displacement);
-    At<D, Real> result = from_current<D>(reference, current_arm);
-    result.relative_change = dot<D>(relative_displacement, plus<D>(arm, current_arm)) /
-                             (reference * (reference + result.current));
+    At<D, Real> result = from_current<D>(inverse_reference, current_arm);
+    result.relative_change = dot<D>(relative_displacement, plus<D>(arm, current_arm)) *
+                             inverse_reference * inverse_reference /
+                             (1.0 + result.current * inverse_reference);
     return result;
   }
 
   /// The measure from the current vector xi alone. Its stretch l/L - 1 carries an absolute error of
   /// one round-off: too much for forces, as good as any other entry for a tangent.
   template <int D, class Real>
-  [[nodiscard]] static At<D, Real> from_current(const Real& reference,
+  [[nodiscard]] static At<D, Real> from_current(const Real& inverse_reference,
                                                 const Vector<D, Real>& current_arm) {
     At<D, Real> result;
-    result.reference = reference;
+    result.inverse_reference = inverse_reference;
     result.current = square_root(dot<D>(current_arm, current_arm));
-    result.relative_change = result.current / reference - 1.0;
+    result.relative_change = result.current * inverse_reference - 1.0;
     result.inverse = 1.0 / result.current;
     result.direction = scaled<D>(result.inverse, current_arm);
     return result;

@@ -21,7 +21,7 @@ std::array<double, 3> squared_direction(const Points& points, const Bonds& bonds
   std::array<double, 3> result{};
   const Coordinates from = points.position(i), to = points.position(bonds.partner[bond]);
   for (int a = 0; a < points.dimension; ++a) {
-    const double n = (to[a] - from[a]) / bonds.length[bond];
+    const double n = (to[a] - from[a]) * bonds.inverse_length[bond];
     result[a] = n * n;
   }
   return result;
@@ -42,8 +42,8 @@ void apply_volume_correction(Bonds& bonds, const Points& points, const Quadratur
     if (quadrature.volume == VolumeCorrection::linear) {
       const double size_i = cell_size(points, i, setting.cross_section);
       const double size_j = cell_size(points, j, setting.cross_section);
-      share = 0.5 * (linear_partial_volume(bonds.length[bond], setting.horizon, size_i) +
-                     linear_partial_volume(bonds.length[bond], setting.horizon, size_j));
+      share = 0.5 * (linear_partial_volume(bonds.length(bond), setting.horizon, size_i) +
+                     linear_partial_volume(bonds.length(bond), setting.horizon, size_j));
     }
     bonds.weight[bond] = share * points.volume[i] * points.volume[j];
   });
@@ -57,14 +57,14 @@ void drop_weightless(Bonds& bonds) {
     for (; bond < end; ++bond) {
       if (bonds.weight[bond] == 0.0) continue;
       bonds.partner[kept] = bonds.partner[bond];
-      bonds.length[kept] = bonds.length[bond];
+      bonds.inverse_length[kept] = bonds.inverse_length[bond];
       bonds.weight[kept] = bonds.weight[bond];
       ++kept;
     }
     bonds.offset[i + 1] = kept;
   }
   bonds.partner.resize(std::size_t(kept));
-  bonds.length.resize(std::size_t(kept));
+  bonds.inverse_length.resize(std::size_t(kept));
   bonds.weight.resize(std::size_t(kept));
 }
 
@@ -121,7 +121,7 @@ std::vector<std::array<double, 3>> confined_energy_ratio(const Points& points, c
     const std::array<double, 3> squared = squared_direction(points, bonds, i, bond);
     for (int a = 0; a < points.dimension; ++a) {
       const double energy =
-          factor * bonds.weight[bond] * bonds.length[bond] * squared[a] * squared[a];
+          factor * bonds.weight[bond] * bonds.length(bond) * squared[a] * squared[a];
       ratio[i][a] += energy / points.volume[i];
       ratio[j][a] += energy / points.volume[j];
     }

@@ -104,7 +104,7 @@ struct CellList {
 
 struct Found {
   std::vector<Index> partner;
-  std::vector<double> length;
+  std::vector<double> inverse_length;
 };
 
 struct Candidate {
@@ -150,7 +150,7 @@ Bonds search(const Points& points, double radius, int threads) {
                 [](const Candidate& a, const Candidate& b) { return a.partner < b.partner; });
       for (std::size_t k = 0; k < kept; ++k) {
         mine.partner.push_back(row[k].partner);
-        mine.length.push_back(std::sqrt(row[k].squared));
+        mine.inverse_length.push_back(1.0 / std::sqrt(row[k].squared));
       }
       bonds.offset[std::size_t(i) + 1] = static_cast<Offset>(kept);
     }
@@ -158,12 +158,13 @@ Bonds search(const Points& points, double radius, int threads) {
 
   for (Index i = 0; i < count; ++i) bonds.offset[std::size_t(i) + 1] += bonds.offset[i];
   bonds.partner.resize(std::size_t(bonds.offset[count]));
-  bonds.length.resize(bonds.partner.size());
+  bonds.inverse_length.resize(bonds.partner.size());
   bonds.weight.assign(bonds.partner.size(), 0.0);
   std::size_t at = 0;
   for (Found& part : found) {
     std::copy(part.partner.begin(), part.partner.end(), bonds.partner.begin() + std::ptrdiff_t(at));
-    std::copy(part.length.begin(), part.length.end(), bonds.length.begin() + std::ptrdiff_t(at));
+    std::copy(part.inverse_length.begin(), part.inverse_length.end(),
+              bonds.inverse_length.begin() + std::ptrdiff_t(at));
     at += part.partner.size();
     part = {};
   }

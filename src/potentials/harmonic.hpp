@@ -2,29 +2,31 @@
 
 namespace peristat {
 
-/// Value and derivatives of a potential with respect to its measure m.
+/// Density phi(e) of a potential and its derivatives with respect to the relative change e = m/M -
+/// 1 of a measure m with reference value M. The potential itself is psi(m; M) = M phi(m/M - 1), so
+/// that dpsi/dm = phi'(e) and d2psi/dm2 = phi''(e) / M.
 template <class Real>
-struct PotentialValue {
-  Real value;   ///< psi
-  Real first;   ///< dpsi/dm
-  Real second;  ///< d2psi/dm2
+struct PotentialDensity {
+  Real value;   ///< phi
+  Real first;   ///< phi'
+  Real second;  ///< phi''
 };
 
-/// Harmonic potential, quadratic in the relative change e = m/M - 1 of a measure:
+/// Harmonic potential, quadratic in the relative change:
 ///
-///   psi = 1/2 C M e^2,   dpsi/dm = C e,   d2psi/dm2 = C / M       (eqs. 23-25 of [CPD])
+///   phi = C e^2 / 2,  i.e.  psi = C M e^2 / 2,  dpsi/dm = C e,  d2psi/dm2 = C / M
+///                                                                    (eqs. 23-25 of [CPD])
 ///
 /// For bonds C is the micromodulus c [N/m6], and dpsi/dm = c s the pairwise force density of eq. 3
 /// of [ADAPT] with the stretch s.
 struct Harmonic {
   double modulus = 0.0;  ///< C [N/m6] for length
 
-  /// @param reference M, @param relative_change m/M - 1
+  /// @param e relative change of the measure
   template <class Real>
-  [[nodiscard]] PotentialValue<Real> operator()(const Real& reference,
-                                                const Real& relative_change) const {
-    const Real first = modulus * relative_change;
-    return {0.5 * first * relative_change * reference, first, modulus / reference};
+  [[nodiscard]] PotentialDensity<Real> operator()(const Real& e) const {
+    const Real first = modulus * e;
+    return {0.5 * first * e, first, Real(modulus)};
   }
 };
 

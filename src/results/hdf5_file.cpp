@@ -6,6 +6,8 @@
 
 #include <hdf5.h>
 
+#include "src/results/output_file.hpp"
+
 namespace peristat {
 namespace {
 
@@ -136,14 +138,16 @@ Hdf5File Hdf5File::in_memory(const std::string& name, std::size_t growth) {
                           "create a file in memory"));
 }
 
-Hdf5File Hdf5File::create(const std::filesystem::path& file) {
-  silence_error_printing();
-  return Hdf5File(checked(H5Fcreate(file.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, unlocked_access()),
-                          "create " + file.string()));
+Hdf5File Hdf5File::create(const std::filesystem::path& file, std::uint64_t room) {
+  static const std::string empty(in_memory("empty file (in memory)", 1 << 12).image());
+  return create(file, room, empty);
 }
 
-Hdf5File Hdf5File::open_for_update(const std::filesystem::path& file) {
+Hdf5File Hdf5File::create(const std::filesystem::path& file, std::uint64_t room,
+                          std::string_view image) {
   silence_error_printing();
+  write_file(file, image);
+  reserve_file(file, room);
   return Hdf5File(
       checked(H5Fopen(file.c_str(), H5F_ACC_RDWR, unlocked_access()), "open " + file.string()));
 }

@@ -26,9 +26,14 @@ class Hdf5File {
   /// @param name  unique among the open files
   /// @param growth bytes by which the memory grows
   [[nodiscard]] static Hdf5File in_memory(const std::string& name, std::size_t growth);
-  /// A new file on the disk, in place of an existing one.
-  [[nodiscard]] static Hdf5File create(const std::filesystem::path& file);
-  [[nodiscard]] static Hdf5File open_for_update(const std::filesystem::path& file);
+  /// A new file on the disk, in place of an existing one. HDF5 1.10 may crash when the disk runs
+  /// full under it, so the room is set aside first; closing the file gives back what is not used.
+  /// @param room bytes that the file may need
+  /// @throws OutputError if the disk has less room
+  [[nodiscard]] static Hdf5File create(const std::filesystem::path& file, std::uint64_t room);
+  /// The same for a file with the contents that image() gave; `room` counts them as well.
+  [[nodiscard]] static Hdf5File create(const std::filesystem::path& file, std::uint64_t room,
+                                       std::string_view image);
   [[nodiscard]] static Hdf5File open_for_reading(const std::filesystem::path& file);
 
   Hdf5File(Hdf5File&& other) noexcept;

@@ -23,8 +23,11 @@
 namespace peristat {
 namespace {
 
-constexpr std::size_t master_growth = 1 << 18;     // bytes
-constexpr std::uint64_t room_for_views = 1 << 13;  // bytes per step
+constexpr std::size_t master_growth = 1 << 18;  // bytes
+// Generous bounds of what HDF5 needs beside the values of a file and for the views of a step
+// [byte].
+constexpr std::uint64_t room_for_structure = 1 << 16;
+constexpr std::uint64_t room_for_views = 1 << 13;
 
 using Clock = std::chrono::steady_clock;
 
@@ -76,13 +79,13 @@ std::vector<Field> present_fields(const StepFields& fields, Index count, int dim
   return present;
 }
 
-/// Publishes an HDF5 file whose contents `write` makes.
+/// Publishes an HDF5 file whose contents `write` makes, with so many bytes of values.
 /// @throws OutputError
 template <class Write>
-void publish_hdf5(const std::filesystem::path& path, Write write) {
+void publish_hdf5(const std::filesystem::path& path, std::uint64_t bytes, Write write) {
   const std::filesystem::path unfinished = temporary(path);
   try {
-    auto file = Hdf5File::create(unfinished);
+    auto file = Hdf5File::create(unfinished, bytes + room_for_structure);
     write(file);
     file.close();
   } catch (const std::runtime_error& error) {
@@ -205,7 +208,10 @@ Results::Files::Files(const std::filesystem::path& directory, const Points& poin
   master.make_group("/steps");
   if (has_views()) master.make_group("/xdmf");
 
-  publish_hdf5(folder.parts() / "points.h5", [&](Hdf5File& file) { write_points(file, points); });
+  const std::uint64_t bytes_per_point =
+      (std::uint64_t(dimension) + 4) * sizeof(double) + sizeof(std::int32_t) + points.sets.size();
+  publish_hdf5(folder.parts() / "points.h5", std::uint64_t(count) * bytes_per_point,
+               [&](Hdf5File& file) { write_points(file, points); });
   master.link("/points", "parts/points.h5", "/points");
   publish_file(folder.results(), master.image());
 }
@@ -234,13 +240,15 @@ void Results::Files::write_step(const StepRecord& record, const std::vector<Fiel
   const auto points = static_cast<std::uint64_t>(count);
   const Hdf5File::Shape vectors{points, static_cast<std::uint64_t>(dimension)}, scalars{points};
   std::vector<XdmfSeries::Field> shown;
+  std::uint64_t bytes = 0;
   for (const Field& field : fields) {
+    bytes += field.values->size() * sizeof(double);
     const std::string group = field.is_vector && has_views() ? "/xdmf/" : "/steps/";
     shown.push_back({field.name, group + name + "/" + field.name, field.is_vector});
     if (field.is_vector) step.vectors.push_back({field.name, field.label.unit});
   }
 
-  publish_hdf5(folder.parts() / (name + ".h5"), [&](Hdf5File& file) {
+  publish_hdf5(folder.parts() / (name + ".h5"), bytes, [&](Hdf5File& file) {
     file.make_group("/step");
     file.set_attribute("/step", "step", std::int64_t{record.step});
     file.set_attribute("/step", "load_factor", record.load_factor);
@@ -290,16 +298,13 @@ void Results::Files::publish_xdmf() {
 void Results::Files::gather_parts() {
   const std::filesystem::path gathered = temporary(folder.results());
   try {
-    // HDF5 1.10 crashes when a disk runs full while it copies objects, so the room is reserved
-    // before; closing the file gives back what is not used.
     const std::string_view image = master.image();
-    write_file(gathered, image);
-    std::uint64_t room = image.size() + std::filesystem::file_size(folder.parts() / "points.h5");
+    std::uint64_t room = image.size() + std::filesystem::file_size(folder.parts() / "points.h5") +
+                         room_for_structure;
     for (const WrittenStep& step : written_steps) {
       room += std::filesystem::file_size(folder.parts() / (step.name + ".h5")) + room_for_views;
     }
-    reserve_file(gathered, room);
-    auto file = Hdf5File::open_for_update(gathered);
+    auto file = Hdf5File::create(gathered, room, image);
     const auto gather = [&](const std::string& part, const std::string& source,
                             const std::string& path) {
       const auto from = Hdf5File::open_for_reading(folder.parts() / part);

@@ -1,0 +1,82 @@
+// Neighbour search and the passes over the bonds.
+#include <cmath>
+#include <vector>
+
+#include <benchmark/benchmark.h>
+#include <omp.h>
+
+#include "assembly/assembler.hpp"
+#include "benchmarks/lattice_bodies.hpp"
+#include "src/neighbourhood/search.hpp"
+
+namespace {
+
+using namespace peristat;
+
+Points body(const benchmark::State& state) {
+  return state.range(0) == 2 ? benchmark_bodies::box(2, {300, 300, 0})
+                             : benchmark_bodies::box(3, {40, 40, 40});
+}
+
+/// A small displacement and a direction, different at every point.
+std::vector<double> wave(const Points& points, double amplitude, double frequency) {
+  std::vector<double> values(points.reference.size());
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    values[k] = amplitude * std::sin(frequency * double(k));
+  }
+  return values;
+}
+
+void count_bonds(benchmark::State& state, double bonds) {
+  state.counters["bond"] = benchmark::Counter(bonds, benchmark::Counter::kIsIterationInvariantRate);
+}
+
+void neighbour_search(benchmark::State& state) {
+  const Points points = body(state);
+  double directed = 0.0;
+  for (auto _ : state) {
+    const Bonds bonds = search_bonds(points, benchmark_bodies::horizon, omp_get_max_threads());
+    directed = 2.0 * double(bonds.count());
+  }
+  count_bonds(state, directed);
+}
+
+enum class Pass { energy, gradient, tangent, product, stored_product };
+
+template <Pass pass>
+void assembly(benchmark::State& state) {
+  const Points points = body(state);
+  const BondTerm term = benchmark_bodies::term(points);
+  Assembler assembler(points, term, omp_get_max_threads());
+  Tangent tangent(Pattern(term.bonds), points.dimension);
+  const std::vector<double> displacement = wave(points, 1e-2, 7.0), v = wave(points, 1.0, 3.0);
+  std::vector<double> result(v.size());
+  for (auto _ : state) {
+    if constexpr (pass == Pass::energy) {
+      benchmark::DoNotOptimize(assembler.energy(displacement));
+    } else if constexpr (pass == Pass::gradient) {
+      benchmark::DoNotOptimize(assembler.gradient(displacement, result));
+    } else if constexpr (pass == Pass::tangent) {
+      assembler.tangent(displacement, tangent);
+    } else if constexpr (pass == Pass::product) {
+      assembler.product(displacement, v, result);
+    } else {
+      tangent.multiply(v, result);
+    }
+    benchmark::ClobberMemory();
+  }
+  count_bonds(state, double(term.bonds.count()));
+}
+
+void both_dimensions(benchmark::internal::Benchmark* benchmark) {
+  benchmark->ArgName("dimension")->Arg(2)->Arg(3)->UseRealTime()->Unit(benchmark::kMillisecond);
+}
+
+BENCHMARK(neighbour_search)->Apply(both_dimensions);
+BENCHMARK(assembly<Pass::energy>)->Name("energy")->Apply(both_dimensions);
+BENCHMARK(assembly<Pass::gradient>)->Name("gradient")->Apply(both_dimensions);
+BENCHMARK(assembly<Pass::tangent>)->Name("tangent")->Apply(both_dimensions);
+BENCHMARK(assembly<Pass::product>)->Name("matrix_free_product")->Apply(both_dimensions);
+BENCHMARK(assembly<Pass::stored_product>)->Name("stored_product")->Apply(both_dimensions);
+
+}  // namespace

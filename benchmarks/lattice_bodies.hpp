@@ -1,0 +1,34 @@
+#pragma once
+
+#include <array>
+
+#include "assembly/bond_term.hpp"
+#include "src/neighbourhood/quadrature.hpp"
+#include "src/points/lattice.hpp"
+
+namespace peristat::benchmark_bodies {
+
+/// A box of unit-spaced lattice points with horizon 3.015, the setting of all benchmarks.
+inline constexpr double horizon = 3.015;
+
+[[nodiscard]] inline Points box(int dimension, const std::array<int, 3>& extent) {
+  Lattice lattice;
+  lattice.dimension = dimension;
+  lattice.spacing = 1.0;
+  Box shape;
+  for (int c = 0; c < dimension; ++c) shape.max[c] = extent[c];
+  lattice.shapes.push_back({ShapeStep::Action::add, shape});
+  return make_points(lattice);
+}
+
+[[nodiscard]] inline BondSetting setting(int dimension) {
+  return {dimension, PlaneState::stress, horizon, 1.0};
+}
+
+/// Bonds with the micromodulus of a unit Young's modulus.
+[[nodiscard]] inline BondTerm term(const Points& points) {
+  const BondSetting bond = setting(points.dimension);
+  return {make_bonds(points, {}, bond, 1), Harmonic{micromodulus(1.0, bond)}};
+}
+
+}  // namespace peristat::benchmark_bodies

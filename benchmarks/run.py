@@ -1,0 +1,82 @@
+"""Runs the benchmark program on one and on all threads and prints the table of RESULTS.md.
+
+Every figure stands beside the DGEMM and STREAM triad of the same run. Targets are for one thread of a
+machine with 55 GF/s and 35 GB/s and are scaled by what this run measures: those of passes over bonds by
+the slower of the two ratios, those of the factorisation are shares of DGEMM already.
+
+    benchmarks/run.py [OPTION of Google Benchmark]...
+"""
+
+import json
+import os
+import pathlib
+import subprocess
+import sys
+
+REFERENCE_DGEMM, REFERENCE_TRIAD = 55e9, 35e9
+
+# name: (counter, unit of the printed figure, its text, target on one thread)
+ROWS = {
+    "neighbour_search": ("bond", 1e6, "M directed bonds/s", 50e6),
+    "energy": ("bond", 1e6, "M bonds/s", None),
+    "gradient": ("bond", 1e6, "M bonds/s", None),
+    "tangent": ("bond", 1e6, "M bonds/s", 80e6),
+    "matrix_free_product": ("bond", 1e6, "M bonds/s", 300e6),
+    "stored_product": ("bond", 1e6, "M bonds/s", None),
+    "factorisation": ("flop", 1e9, "GF/s", None),
+}
+FACTORISATION_SHARE = {"100": 0.45, "300": 0.65}
+
+
+def measure(program, threads, options):
+    """Best rate of each benchmark over the repetitions, by its name."""
+    environment = dict(os.environ, OMP_NUM_THREADS=str(threads), OMP_THREAD_LIMIT=str(threads),
+                       OMP_WAIT_POLICY="passive")
+    command = [program, "--benchmark_format=json", "--benchmark_repetitions=7",
+               "--benchmark_enable_random_interleaving=true", "--benchmark_min_time=0.15", *options]
+    output = subprocess.run(command, env=environment, check=True, stdout=subprocess.PIPE,
+                            stderr=subprocess.DEVNULL, text=True).stdout
+    best = {}
+    for run in json.loads(output)["benchmarks"]:
+        if run["run_type"] != "iteration":
+            continue
+        name = run["run_name"].replace("/real_time", "").replace("dimension:", "").replace("width:", "")
+        rate = next(run[key] for key in ("bond", "flop", "byte") if key in run)
+        best[name] = max(best.get(name, 0.0), rate)
+    return best
+
+
+def print_table(threads, one, many):
+    dgemm, triad = one["dgemm"], one["stream_triad"]
+    scale = min(dgemm / REFERENCE_DGEMM, triad / REFERENCE_TRIAD, 1.0)
+    print(f"| measured | unit | 1 thread | {threads} threads | ratio | target, 1 thread, this machine |")
+    print("|---|---|---|---|---|---|")
+    print(f"| DGEMM | GF/s | {dgemm / 1e9:.1f} | {many['dgemm'] / 1e9:.1f} "
+          f"| {many['dgemm'] / dgemm:.2f} | |")
+    print(f"| STREAM triad | GB/s | {triad / 1e9:.1f} | {many['stream_triad'] / 1e9:.1f} "
+          f"| {many['stream_triad'] / triad:.2f} | |")
+    for name, rate in one.items():
+        kind, _, case = name.partition("/")
+        if kind not in ROWS:
+            continue
+        _, unit, unit_text, target = ROWS[kind]
+        if kind == "factorisation":
+            share = FACTORISATION_SHARE[case]
+            told = f"{case}² points | {unit_text} ({rate / dgemm:.0%} of DGEMM)"
+            goal = f"{share * dgemm / unit:.1f} ({share:.0%} of DGEMM)"
+        else:
+            told = f"{case}D | {unit_text}"
+            goal = f"{scale * target / unit:.0f}" if target else ""
+        print(f"| {kind.replace('_', ' ')}, {told} | {rate / unit:.1f} | {many[name] / unit:.1f} "
+              f"| {many[name] / rate:.2f} | {goal} |")
+
+
+def main():
+    program = pathlib.Path(__file__).resolve().parent.parent / "build/release/peristat_bench"
+    threads = len(os.sched_getaffinity(0))
+    one = measure(program, 1, sys.argv[1:])
+    print_table(threads, one, measure(program, threads, sys.argv[1:]))
+
+
+if __name__ == "__main__":
+    main()
