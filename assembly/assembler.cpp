@@ -37,7 +37,8 @@ struct Batch {
 
 /// Calls visit(batch) for the bonds of row i.
 template <int D, class Visit>
-inline void for_each_batch(const Bonds& bonds, const double* rows, Index i, const Visit& visit) {
+[[gnu::always_inline]] inline void for_each_batch(const Bonds& bonds, const double* rows, Index i,
+                                                  const Visit& visit) {
   constexpr int width = row_width(D);
   const double* own = rows + std::size_t(i) * width;
   const Offset end = bonds.offset[i + 1];
@@ -45,17 +46,16 @@ inline void for_each_batch(const Bonds& bonds, const double* rows, Index i, cons
   for (Offset first = bonds.offset[i]; first < end; first += lane_count) {
     batch.first = first;
     batch.count = static_cast<int>(std::min<Offset>(lane_count, end - first));
-    for (int l = 0; l < lane_count; ++l) {
-      batch.partner[l] = bonds.partner[first + std::min(l, batch.count - 1)];
-    }
     if (batch.count == lane_count) {
+      for (int l = 0; l < lane_count; ++l) batch.partner[l] = bonds.partner[first + l];
       batch.weight.copy_from(&bonds.weight[first], std::experimental::element_aligned);
       batch.inverse_length.copy_from(&bonds.inverse_length[first],
                                      std::experimental::element_aligned);
     } else {
+      const auto bond = [&](int l) { return first + std::min(l, batch.count - 1); };
+      for (int l = 0; l < lane_count; ++l) batch.partner[l] = bonds.partner[bond(l)];
       batch.weight = Lanes([&](int l) { return l < batch.count ? bonds.weight[first + l] : 0.0; });
-      batch.inverse_length =
-          Lanes([&](int l) { return bonds.inverse_length[first + std::min(l, batch.count - 1)]; });
+      batch.inverse_length = Lanes([&](int l) { return bonds.inverse_length[bond(l)]; });
     }
     std::array<const double*, lane_count> row;
     for (int l = 0; l < lane_count; ++l) row[l] = rows + std::size_t(batch.partner[l]) * width;

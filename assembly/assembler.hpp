@@ -5,6 +5,7 @@
 
 #include "assembly/bond_term.hpp"
 #include "assembly/tangent.hpp"
+#include "src/aligned_vector.hpp"
 #include "src/points/points.hpp"
 
 namespace peristat {
@@ -55,9 +56,9 @@ class Assembler {
   const Points& points_;
   const BondTerm& term_;
   std::vector<RowRange> ranges_;
-  std::vector<double> rows_;               // per point, what kernels gather; see Kernels::pack
-  std::vector<std::vector<double>> sums_;  // per thread, rows first..reach of what it adds up
-  std::vector<Stored> stored_;             // per thread
+  AlignedVector<double> rows_;               // per point, what kernels gather; see Kernels::pack
+  std::vector<AlignedVector<double>> sums_;  // per thread, rows first..reach of what it adds up
+  std::vector<Stored> stored_;               // per thread
   double seconds_ = 0.0;
 };
 
