@@ -31,7 +31,7 @@ FACTORISATION_SHARE = {"100": 0.45, "300": 0.65}
 def measure(program, threads, options):
     """Best rate of each benchmark over the repetitions, by its name."""
     environment = dict(os.environ, OMP_NUM_THREADS=str(threads), OMP_THREAD_LIMIT=str(threads),
-                       OMP_WAIT_POLICY="passive")
+                       GOMP_SPINCOUNT="1000")
     command = [program, "--benchmark_format=json", "--benchmark_repetitions=7",
                "--benchmark_enable_random_interleaving=true", "--benchmark_min_time=0.15", *options]
     output = subprocess.run(command, env=environment, check=True, stdout=subprocess.PIPE,

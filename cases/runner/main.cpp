@@ -95,7 +95,7 @@ int main(int count, char** arguments) {
     return static_cast<int>(helped ? Exit::done : Exit::wrong_input);
   }
 
-  const int threads = line.threads > 0 ? line.threads : default_threads();
+  const int threads = choose_threads(line.threads);
   restart_with_environment(threads, arguments);
   try {
     return static_cast<int>(execute(program, line, threads));

@@ -145,11 +145,14 @@ struct Expression::Parser {
       refuse_parse(error);
     }
     if (!std::isfinite(result)) {
-      static constexpr const char* names[] = {"(x)", "(x, y)", "(x, y, z)"};
-      refuse("the value at " + std::string(names[dimension - 1]) + " = " +
-             place_text(place, dimension) +
-             (knows_load ? ", load = " + number_text(load_factor) : "") + " is " +
-             number_text(result) + "; it must be finite");
+      // Without a dimension (total forces) only the load factor tells where.
+      static constexpr const char* names[] = {"", "(x) = ", "(x, y) = ", "(x, y, z) = "};
+      std::string where = names[dimension];
+      if (dimension > 0) where += place_text(place, dimension);
+      if (knows_load) {
+        where += (where.empty() ? "load = " : ", load = ") + number_text(load_factor);
+      }
+      refuse("the value at " + where + " is " + number_text(result) + "; it must be finite");
     }
     return result;
   }

@@ -14,7 +14,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 # Prints its arguments; leaves the results folder's path; `run wait` waits for interrupts and counts
 # those of the next half second; `run end CODE` ends with that code.
 PROGRAM = r"""#!/usr/bin/env bash
-printf '[%s]' "$@"; echo " waiting=$OMP_WAIT_POLICY"
+printf '[%s]' "$@"; echo
 [[ ${PERISTAT_NOTE-} ]] && echo "$PWD/some results" >"$PERISTAT_NOTE"
 if [[ ${2-} == wait ]]; then
   interrupts=0
@@ -69,9 +69,6 @@ class Launcher(unittest.TestCase):
         link = self.folder / "link"
         link.symlink_to(self.launcher)
         self.assertIn("[check][x]", self.launch("check", "x", launcher=link).stdout)
-
-    def test_waiting_threads_are_passive(self):
-        self.assertIn("waiting=passive", self.launch("check", "x").stdout)
 
     def test_a_run_draws_its_pictures(self):
         result = self.launch("run", "case.toml")
