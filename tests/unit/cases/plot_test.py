@@ -235,8 +235,8 @@ class Parts(unittest.TestCase):
             self.assertAlmostEqual(observed_order(np.array(residuals)), order, places=6)
 
     def test_observed_order_ignores_round_off_and_zero(self):
-        self.assertAlmostEqual(observed_order(np.array([1e-1, 1e-2, 1e-4, 1e-8, 3e-15, 0.0])), 2.0, places=12)
-        self.assertIsNone(observed_order(np.array([1.0, 1e-14, 1e-15])))
+        self.assertAlmostEqual(observed_order(np.array([1e-1, 1e-2, 1e-4, 1e-8, 3e-12, 0.0])), 2.0, places=12)
+        self.assertIsNone(observed_order(np.array([1.0, 1e-12, 1e-13])))
         self.assertIsNone(observed_order(np.array([1.0, 1.0, 1.0])))
 
     def test_corners_follow_an_affine_deformation_exactly(self):
