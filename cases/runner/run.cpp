@@ -82,20 +82,29 @@ class Recorder {
                    force_.begin(), [](double gradient) { return -gradient; });
     record.max_stretch = assembler_.point_energies(displacement_, energy_density_);
     for (Index i = 0; i < points_.count(); ++i) energy_density_[i] /= points_.volume[i];
-    const StepFields fields{&displacement_, &force_, &damage_, &energy_density_};
+    const StepFields fields = present_fields();
     for (const ProbeSpecification& probe : case_.probes) {
       record.probes[probe.name] = probe_values(probe, points_, fields);
     }
-    const bool write_fields = record.step % case_.output.every == 0 || record.load_factor == 1.0;
+    const bool write_fields = record.step % case_.output.every == 0;
     results_.add(record, write_fields ? std::optional(fields) : std::nullopt);
     progress_.accepted(record, relative_residual_);
     last_ = std::move(record);
+  }
+
+  /// Writes the fields of the last accepted state, whatever output.every says.
+  void finish() {
+    if (last_) results_.add_fields(*last_, present_fields());
   }
 
   [[nodiscard]] const std::optional<StepRecord>& last() const { return last_; }
   [[nodiscard]] const std::vector<double>& displacement() const { return displacement_; }
 
  private:
+  [[nodiscard]] StepFields present_fields() const {
+    return {&displacement_, &force_, &damage_, &energy_density_};
+  }
+
   const Case& case_;
   const Points& points_;
   Assembler& assembler_;
@@ -222,6 +231,7 @@ Exit run(const Case& from, const RunOptions& options) {
   summary.seconds.linear = solver.statistics().seconds;
   summary.seconds.output = results->seconds_spent();
   summary.threads = options.threads;
+  recorder.finish();
   total.reset();
   results->close(summary);
 

@@ -149,6 +149,7 @@ struct Results::Files {
         const std::vector<std::string>& sets, const std::vector<ProbeColumns>& probe_columns);
 
   void add(const StepRecord& record, const std::optional<StepFields>& step_fields);
+  void add_fields(const StepRecord& record, const StepFields& step_fields);
   void write_step(const StepRecord& record, const std::vector<Field>& fields);
   void write_views(Hdf5File& file, const std::string& group, const std::string& step,
                    const std::vector<VectorField>& vectors) const;
@@ -287,6 +288,17 @@ void Results::Files::add(const StepRecord& record, const std::optional<StepField
   if (Clock::now() - xdmf_time >= std::chrono::seconds(1)) publish_xdmf();
 }
 
+void Results::Files::add_fields(const StepRecord& record, const StepFields& step_fields) {
+  if (record.step != last_step) {
+    throw std::logic_error("results: fields of step " + std::to_string(record.step) +
+                           " after step " + std::to_string(last_step));
+  }
+  if (!written_steps.empty() && written_steps.back().name == step_name(record.step)) return;
+  write_step(record, present_fields(step_fields, count, dimension));
+  publish_file(folder.results(), master.image());
+  xdmf_is_behind = true;
+}
+
 void Results::Files::publish_xdmf() {
   if (!xdmf_is_behind) return;
   publish_file(folder.xdmf(), xdmf.text());
@@ -373,6 +385,12 @@ void Results::add(const StepRecord& record, const std::optional<StepFields>& fie
   const Stopwatch stopwatch(files_->seconds);
   if (files_->closed) throw std::logic_error("results: closed");
   files_->add(record, fields);
+}
+
+void Results::add_fields(const StepRecord& record, const StepFields& fields) {
+  const Stopwatch stopwatch(files_->seconds);
+  if (files_->closed) throw std::logic_error("results: closed");
+  files_->add_fields(record, fields);
 }
 
 void Results::close(Summary summary) {

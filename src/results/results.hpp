@@ -73,6 +73,10 @@ class Results {
   /// a reaction of every support set and every probe.
   void add(const StepRecord& record, const std::optional<StepFields>& fields);
 
+  /// Publishes the fields of the step added last, unless they were added with it: for the end of a
+  /// run whose last step was one that only enters the history.
+  void add_fields(const StepRecord& record, const StepFields& fields);
+
   /// Writes summary.json (counts and energies are taken from the last step record, sums of
   /// iterations from all) and gathers the parts. Nothing can be added afterwards. If the parts
   /// can't be gathered, summary.json is still written and everything stays readable where it is.
