@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include <fmt/format.h>
+
 #include "src/input_error.hpp"
 #include "src/number_text.hpp"
 #include "src/points/point_file.hpp"
@@ -69,7 +71,7 @@ void require_memory_for_lattice(const Case& from, const Lattice& lattice) {
       estimate_memory(from.dimension, size, from.horizon_ratio, bonds, points * from.dimension);
   // This estimate counts the bounding box: only what cannot fit even if half of it is cut away is
   // refused here; the points themselves tell the rest.
-  require_memory(0.5 * estimate.bytes, "the case with up to " + number_text(points) + " points");
+  require_memory(0.5 * estimate.bytes, fmt::format("the case with up to {:.3g} points", points));
 }
 
 }  // namespace

@@ -5,8 +5,8 @@
 #include <fstream>
 #include <limits>
 #include <numbers>
-#include <sstream>
 
+#include <fmt/format.h>
 #include <sys/resource.h>
 
 namespace peristat {
@@ -111,16 +111,9 @@ double available_memory() {
 }
 
 std::string bytes_text(double bytes) {
-  std::ostringstream text;
-  text.precision(2);
-  if (bytes >= 1e9) {
-    text << std::fixed << bytes / 1e9 << " GB";
-  } else {
-    text << std::fixed;
-    text.precision(0);
-    text << bytes / 1e6 << " MB";
-  }
-  return text.str();
+  if (bytes < 1e9) return fmt::format("{:.0f} MB", bytes / 1e6);
+  if (bytes < 1e14) return fmt::format("{:.2f} GB", bytes / 1e9);
+  return fmt::format("{:.1e} GB", bytes / 1e9);
 }
 
 void require_memory(double bytes, const std::string& for_what) {

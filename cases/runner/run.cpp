@@ -181,9 +181,9 @@ Exit run(const Case& from, const RunOptions& options) {
   Cholesky solver;
   const LinearOutcome analysis = solver.analyze(pattern, free);
   require_memory(solver.estimate().bytes(), "the factor of the tangent");
-  progress.say(fmt::format("linear solver: {} ({})", solver.describe(),
-                           from.solver.linear == "auto" ? "auto: the only one that is always right"
-                                                        : "as the case asks"));
+  progress.say(fmt::format(
+      "linear solver: {} ({})", solver.describe(),
+      from.solver.linear == "auto" ? "auto: the one solver of this version" : "as the case asks"));
 
   Recorder recorder(from, body, assembler, *results, progress);
   LoadSteppingObserver observer;

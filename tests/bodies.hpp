@@ -1,0 +1,148 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <random>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "assembly/bond_term.hpp"
+#include "src/neighbourhood/quadrature.hpp"
+#include "src/points/lattice.hpp"
+
+namespace peristat::testing {
+
+/// Uniform numbers in [-1, 1), the same on every machine.
+class Random {
+ public:
+  explicit Random(std::uint64_t seed) : engine_(seed) {}
+
+  [[nodiscard]] double number() { return 2.0 * (double(engine_() >> 11) * 0x1p-53) - 1.0; }
+
+  [[nodiscard]] std::vector<double> vector(std::size_t size, double scale = 1.0) {
+    std::vector<double> result(size);
+    for (double& entry : result) entry = scale * number();
+    return result;
+  }
+
+ private:
+  std::mt19937_64 engine_;
+};
+
+[[nodiscard]] inline double dot(std::span<const double> a, std::span<const double> b) {
+  double result = 0.0;
+  for (std::size_t k = 0; k < a.size(); ++k) result += a[k] * b[k];
+  return result;
+}
+
+[[nodiscard]] inline double norm(std::span<const double> a) { return std::sqrt(dot(a, a)); }
+
+/// 2-norm of a - b.
+[[nodiscard]] inline double distance(std::span<const double> a, std::span<const double> b) {
+  double squared = 0.0;
+  for (std::size_t k = 0; k < a.size(); ++k) squared += (a[k] - b[k]) * (a[k] - b[k]);
+  return std::sqrt(squared);
+}
+
+[[nodiscard]] inline double largest(std::span<const double> a) {
+  double result = 0.0;
+  for (double entry : a) result = std::max(result, std::abs(entry));
+  return result;
+}
+
+/// What a box of lattice points with its bonds is made of; the defaults of each dimension give a
+/// few hundred bonds.
+struct BoxSetting {
+  int dimension = 2;
+  std::array<int, 3> extent{0, 0, 0};  ///< points per direction
+  double spacing = 0.1;                ///< [m]
+  double horizon_ratio = 2.015;
+  double cross_section = 0.5;
+  double perturbation = 0.0;  ///< in spacings
+  Quadrature quadrature{};
+  double youngs_modulus = 3.0;  ///< [Pa]
+  PlaneState plane = PlaneState::stress;
+};
+
+/// The setting of a small box of unequal sides.
+[[nodiscard]] inline BoxSetting small_box(int dimension) {
+  BoxSetting setting;
+  setting.dimension = dimension;
+  if (dimension == 1) setting.extent = {23, 0, 0};
+  if (dimension == 2) setting.extent = {9, 7, 0};
+  if (dimension == 3) setting.extent = {6, 5, 4};
+  setting.cross_section = dimension == 3 ? 1.0 : 0.5;
+  return setting;
+}
+
+[[nodiscard]] inline Points box_points(const BoxSetting& setting) {
+  Lattice lattice;
+  lattice.dimension = setting.dimension;
+  lattice.spacing = setting.spacing;
+  lattice.cross_section = setting.cross_section;
+  lattice.perturbation = setting.perturbation;
+  lattice.seed = 7;
+  Box box;
+  for (int c = 0; c < setting.dimension; ++c) box.max[c] = setting.extent[c] * setting.spacing;
+  lattice.shapes.push_back({ShapeStep::Action::add, box});
+  return make_points(lattice);
+}
+
+[[nodiscard]] inline BondSetting bond_setting(const BoxSetting& setting) {
+  return {setting.dimension, setting.plane, setting.horizon_ratio * setting.spacing,
+          setting.cross_section};
+}
+
+/// A body without supports and loads.
+struct BoxBody {
+  Points points;
+  BondSetting setting;
+  BondTerm term;
+
+  explicit BoxBody(const BoxSetting& box, int threads = 1)
+      : BoxBody(box_points(box), box, threads) {}
+  BoxBody(Points from, const BoxSetting& box, int threads = 1)
+      : points(std::move(from)),
+        setting(bond_setting(box)),
+        term{make_bonds(points, box.quadrature, setting, threads),
+             Harmonic{micromodulus(box.youngs_modulus, setting)}} {}
+
+  [[nodiscard]] std::size_t dofs() const { return points.reference.size(); }
+
+  /// Random displacements of a tenth of the spacing: strains of some ten per cent, without symmetry.
+  [[nodiscard]] std::vector<double> random_state(std::uint64_t seed) const {
+    return Random(seed).vector(dofs(), 0.1 * points.spacing);
+  }
+};
+
+/// visit(i, j, bond) for every unique bond.
+template <class Visit>
+void for_each_bond(const Bonds& bonds, const Visit& visit) {
+  for (Index i = 0; i < bonds.points(); ++i) {
+    for (Offset bond = bonds.offset[i]; bond < bonds.offset[i + 1]; ++bond) {
+      visit(i, bonds.partner[bond], bond);
+    }
+  }
+}
+
+/// Reference distance of two points [m].
+[[nodiscard]] inline double reference_distance(const Points& points, Index i, Index j) {
+  const Coordinates a = points.position(i), b = points.position(j);
+  return std::hypot(b[0] - a[0], b[1] - a[1], b[2] - a[2]);
+}
+
+/// Whether a point keeps at least `margin` [m] from the faces of a box from the origin to `extent`
+/// times the spacing.
+[[nodiscard]] inline bool is_inside(const Points& points, Index i, const BoxSetting& box,
+                                    double margin) {
+  const Coordinates at = points.position(i);
+  for (int c = 0; c < points.dimension; ++c) {
+    if (at[c] < margin || at[c] > box.extent[c] * box.spacing - margin) return false;
+  }
+  return true;
+}
+
+}  // namespace peristat::testing

@@ -1,0 +1,274 @@
+// Statements that hold for every measure, written once.
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "src/lanes.hpp"
+#include "src/measures/length.hpp"
+#include "tests/bodies.hpp"
+#include "tests/finite_differences.hpp"
+
+namespace peristat {
+namespace {
+
+constexpr double epsilon = std::numeric_limits<double>::epsilon();
+
+/// A measure in a dimension; all arms (relative vectors) one after another make its argument.
+template <class M, int D>
+struct MeasureIn {
+  static constexpr int dimension = D, size = M::arms * D;
+
+  template <class Real>
+  static auto at(const Real& inverse_reference, const Vector<size, Real>& arms,
+                 const Vector<size, Real>& relative_displacement) {
+    return M::template at<D>(inverse_reference, arms, relative_displacement);
+  }
+  template <class Real>
+  static auto from_current(const Real& inverse_reference, const Vector<size, Real>& arms) {
+    return M::template from_current<D>(inverse_reference, arms);
+  }
+};
+
+template <class Case>
+class Measure : public ::testing::Test {
+ protected:
+  static constexpr int size = Case::size;
+  using Arms = Vector<size, double>;
+
+  testing::Random random_{11};
+
+  /// Arms of length about one that no direction is special for.
+  Arms arms() {
+    Arms result;
+    for (double& entry : result) entry = (random_.number() < 0.0 ? -1.0 : 1.0) * 0.7;
+    for (double& entry : result) entry += 0.3 * random_.number();
+    return result;
+  }
+
+  Arms small_vector(double scale) {
+    Arms result;
+    for (double& entry : result) entry = scale * random_.number();
+    return result;
+  }
+
+  /// Reference value of arms.
+  static double reference(const Arms& arms) { return Case::from_current(1.0, arms).current; }
+};
+
+using Measures = ::testing::Types<MeasureIn<Length, 1>, MeasureIn<Length, 2>, MeasureIn<Length, 3>>;
+TYPED_TEST_SUITE(Measure, Measures);
+
+template <int Size>
+std::vector<double> listed(const Vector<Size, double>& vector) {
+  return {vector.begin(), vector.end()};
+}
+
+TYPED_TEST(Measure, GradientIsDerivativeOfValue) {
+  for (int repeat = 0; repeat < 5; ++repeat) {
+    const auto arms = this->arms(), along = this->small_vector(1.0);
+    const auto value = [&](double t) {
+      const auto moved = plus<TypeParam::size>(arms, scaled<TypeParam::size>(t, along));
+      return std::vector<double>{TypeParam::from_current(1.0, moved).current};
+    };
+    const auto measure = TypeParam::from_current(1.0, arms);
+    EXPECT_TRUE(testing::is_derivative(value, {dot<TypeParam::size>(measure.gradient(), along)},
+                                       1e-3));
+  }
+}
+
+TYPED_TEST(Measure, HessianIsDerivativeOfGradient) {
+  constexpr int size = TypeParam::size;
+  for (int repeat = 0; repeat < 5; ++repeat) {
+    const auto arms = this->arms(), along = this->small_vector(1.0);
+    // With a multiple of the arms added, so that no derivative is zero, not even in 1D.
+    const auto gradient = [&](double t) {
+      const auto moved = plus<size>(arms, scaled<size>(t, along));
+      const auto measure = TypeParam::from_current(1.0, moved);
+      return listed<size>(plus<size>(measure.gradient(), moved));
+    };
+    const auto hessian = TypeParam::from_current(1.0, arms).hessian();
+    std::vector<double> derivative = listed<size>(along);
+    for (int r = 0; r < size; ++r) {
+      for (int c = 0; c < size; ++c) derivative[r] += hessian[r][c] * along[c];
+    }
+    EXPECT_TRUE(testing::is_derivative(gradient, derivative, 1e-3));
+  }
+}
+
+TYPED_TEST(Measure, HessianTimesIsHessianTimesVector) {
+  constexpr int size = TypeParam::size;
+  const auto arms = this->arms(), v = this->small_vector(1.0);
+  const auto measure = TypeParam::from_current(1.0, arms);
+  const auto hessian = measure.hessian();
+  const auto product = measure.hessian_times(v);
+  for (int r = 0; r < size; ++r) {
+    double expected = 0.0;
+    for (int c = 0; c < size; ++c) {
+      expected += hessian[r][c] * v[c];
+      EXPECT_EQ(hessian[r][c], hessian[c][r]);
+    }
+    EXPECT_NEAR(product[r], expected, 8 * epsilon);  // entries of order one, a handful of terms
+  }
+}
+
+/// Rotation about an oblique axis (2D: about z; 1D: none).
+template <int D>
+Matrix<D, double> rotation() {
+  Matrix<D, double> result{};
+  if constexpr (D == 1) {
+    result[0][0] = 1.0;
+  } else {
+    const double cosine = std::cos(2.1), sine = std::sin(2.1);
+    if constexpr (D == 2) {
+      result = {{{cosine, -sine}, {sine, cosine}}};
+    } else {
+      const Vector<3, double> axis{2.0 / 7.0, 3.0 / 7.0, 6.0 / 7.0};
+      const Matrix<3, double> cross{
+          {{0.0, -axis[2], axis[1]}, {axis[2], 0.0, -axis[0]}, {-axis[1], axis[0], 0.0}}};
+      for (int r = 0; r < 3; ++r) {
+        for (int c = 0; c < 3; ++c) {
+          result[r][c] = (r == c ? cosine : 0.0) + (1.0 - cosine) * axis[r] * axis[c] +
+                         sine * cross[r][c];
+        }
+      }
+    }
+  }
+  return result;
+}
+
+template <int D, int Size>
+Vector<Size, double> rotated(const Vector<Size, double>& arms) {
+  const Matrix<D, double> q = rotation<D>();
+  Vector<Size, double> result{};
+  for (int arm = 0; arm < Size; arm += D) {
+    for (int r = 0; r < D; ++r) {
+      for (int c = 0; c < D; ++c) result[arm + r] += q[r][c] * arms[arm + c];
+    }
+  }
+  return result;
+}
+
+// A translation leaves relative vectors as they are; what is left of a rigid motion is its rotation.
+TYPED_TEST(Measure, IsInvariantUnderRigidMotion) {
+  constexpr int size = TypeParam::size, dimension = TypeParam::dimension;
+  const auto arms = this->arms();
+  const double inverse_reference = 1.0 / this->reference(arms);
+  const auto stretched = plus<size>(arms, this->small_vector(0.3));
+  const auto before = TypeParam::at(inverse_reference, arms, minus<size>(stretched, arms));
+  const auto turned = rotated<dimension, size>(stretched);
+  const auto after = TypeParam::at(inverse_reference, arms, minus<size>(turned, arms));
+  ASSERT_GT(std::abs(before.relative_change), 1e-3);
+  EXPECT_NEAR(after.current, before.current, 8 * epsilon * before.current);
+  EXPECT_NEAR(after.relative_change, before.relative_change, 16 * epsilon);
+  const auto gradient = rotated<dimension, size>(before.gradient());
+  for (int c = 0; c < size; ++c) EXPECT_NEAR(after.gradient()[c], gradient[c], 16 * epsilon);
+
+  const auto rigid =
+      TypeParam::at(inverse_reference, arms, minus<size>(rotated<dimension, size>(arms), arms));
+  EXPECT_NEAR(rigid.relative_change, 0.0, 16 * epsilon);
+}
+
+TYPED_TEST(Measure, RelativeChangeHasNoCancellation) {
+  constexpr int size = TypeParam::size;
+  using Long = long double;
+  const Long long_epsilon = std::numeric_limits<Long>::epsilon();
+  ASSERT_LT(long_epsilon, 1e-3L * epsilon);
+  for (double strain = 1e-4; strain > 0.5e-14; strain *= 0.1) {
+    const auto arms = this->arms();
+    typename TestFixture::Arms displacement;  // stretches every component: a change of first order
+    for (int c = 0; c < size; ++c) {
+      displacement[c] = strain * (1.0 + 0.5 * this->random_.number()) * arms[c];
+    }
+    Vector<size, Long> long_arms, long_displacement;
+    for (int c = 0; c < size; ++c) {
+      long_arms[c] = arms[c];
+      long_displacement[c] = displacement[c];
+    }
+    const Long reference = TypeParam::from_current(Long(1), long_arms).current;
+    const auto exact = TypeParam::at(1 / reference, long_arms, long_displacement);
+    // The difference of the two measures, as far as long double carries it, says the same.
+    EXPECT_NEAR(double((exact.current / reference - 1) / exact.relative_change), 1.0,
+                double(16 * long_epsilon / strain));
+
+    const auto measure = TypeParam::at(double(1 / reference), arms, displacement);
+    EXPECT_NEAR(double(measure.relative_change / exact.relative_change), 1.0, 8 * epsilon)
+        << "strain " << strain;
+  }
+}
+
+TYPED_TEST(Measure, FromCurrentAgreesWithFromDisplacement) {
+  constexpr int size = TypeParam::size;
+  const auto arms = this->arms(), displacement = this->small_vector(0.3);
+  const double inverse_reference = 1.0 / this->reference(arms);
+  const auto a = TypeParam::at(inverse_reference, arms, displacement);
+  const auto b = TypeParam::from_current(inverse_reference, plus<size>(arms, displacement));
+  EXPECT_EQ(a.current, b.current);
+  EXPECT_NEAR(a.relative_change, b.relative_change, 8 * epsilon);
+  EXPECT_EQ(a.gradient(), b.gradient());
+}
+
+TYPED_TEST(Measure, LanesAgreeWithDoublesLaneByLane) {
+  constexpr int size = TypeParam::size;
+  typename TestFixture::Arms arms[lane_count], displacement[lane_count], v[lane_count];
+  double inverse_reference[lane_count];
+  for (int l = 0; l < lane_count; ++l) {
+    arms[l] = this->arms();
+    displacement[l] = this->small_vector(0.3);
+    v[l] = this->small_vector(1.0);
+    inverse_reference[l] = 1.0 / this->reference(arms[l]);
+  }
+  const auto lanes_of = [](const auto& vectors) {
+    Vector<size, Lanes> result;
+    for (int c = 0; c < size; ++c) result[c] = Lanes([&](int l) { return vectors[l][c]; });
+    return result;
+  };
+  const Lanes lanes_inverse([&](int l) { return inverse_reference[l]; });
+  const auto lanes = TypeParam::at(lanes_inverse, lanes_of(arms), lanes_of(displacement));
+  const auto hessian = lanes.hessian();
+  const auto product = lanes.hessian_times(lanes_of(v));
+  // The compiler may contract products and sums differently in both: some round-offs of numbers of
+  // order one.
+  constexpr double tolerance = 8 * epsilon;
+  for (int l = 0; l < lane_count; ++l) {
+    const auto single = TypeParam::at(inverse_reference[l], arms[l], displacement[l]);
+    EXPECT_NEAR(lanes.current[l], single.current, tolerance);
+    EXPECT_NEAR(lanes.relative_change[l], single.relative_change, tolerance);
+    for (int r = 0; r < size; ++r) {
+      EXPECT_NEAR(lanes.gradient()[r][l], single.gradient()[r], tolerance);
+      EXPECT_NEAR(product[r][l], single.hessian_times(v[l])[r], tolerance);
+      for (int c = 0; c < size; ++c) {
+        EXPECT_NEAR(hessian[r][c][l], single.hessian()[r][c], tolerance);
+      }
+    }
+  }
+}
+
+template <class Case>
+class LengthMeasure : public Measure<Case> {};
+TYPED_TEST_SUITE(LengthMeasure, Measures);
+
+TYPED_TEST(LengthMeasure, IsTheEuclideanNorm) {
+  const auto arms = this->arms();
+  double squared = 0.0;
+  for (double entry : arms) squared += entry * entry;
+  EXPECT_NEAR(TypeParam::from_current(1.0, arms).current, std::sqrt(squared), 4 * epsilon);
+}
+
+TYPED_TEST(LengthMeasure, DegenerateLengthIsNotFinite) {
+  constexpr int size = TypeParam::size;
+  const auto arms = this->arms();
+  const double inverse_reference = 1.0 / this->reference(arms);
+  const auto collapsed = TypeParam::at(inverse_reference, arms, scaled<size>(-1.0, arms));
+  EXPECT_EQ(collapsed.current, 0.0);
+  for (double entry : collapsed.gradient()) EXPECT_FALSE(std::isfinite(entry));
+  const auto zero = TypeParam::from_current(inverse_reference, Vector<size, double>{});
+  for (const auto& row : zero.hessian()) {
+    for (double entry : row) EXPECT_FALSE(std::isfinite(entry));
+  }
+}
+
+}  // namespace
+}  // namespace peristat
