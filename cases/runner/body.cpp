@@ -125,8 +125,9 @@ BodySize size_of(const Points& points) {
   return size;
 }
 
-Body make_body(const Case& from, int threads) {
-  Body body;
+std::unique_ptr<const Body> make_body(const Case& from, int threads) {
+  auto owned = std::make_unique<Body>();
+  Body& body = *owned;
   body.points = make_points_of(from);
   located_errors(from, [&] {
     body.setting = setting_of(from, body.points);
@@ -147,7 +148,7 @@ Body make_body(const Case& from, int threads) {
     body.term.potential = Harmonic{modulus};
     body.conditions = std::make_unique<Conditions>(body.points, from.supports, from.loads);
   });
-  return body;
+  return owned;
 }
 
 MemoryEstimate estimate_memory(const Body& body) {

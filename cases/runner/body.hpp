@@ -15,6 +15,10 @@ namespace peristat {
 
 /// Everything that a case makes before anything is solved; constant from then on.
 struct Body {
+  Body() = default;
+  Body(const Body&) = delete;  // its members refer to its points: it stays where it is made
+  Body& operator=(const Body&) = delete;
+
   Points points;
   BondSetting setting;
   BondTerm term;
@@ -31,7 +35,7 @@ struct Body {
 
 /// The whole body.
 /// @throws InputError (with place), MemoryError if the estimate exceeds the memory available
-[[nodiscard]] Body make_body(const Case& from, int threads);
+[[nodiscard]] std::unique_ptr<const Body> make_body(const Case& from, int threads);
 
 /// Body size for the memory estimate.
 [[nodiscard]] BodySize size_of(const Points& points);

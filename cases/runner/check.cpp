@@ -47,7 +47,8 @@ std::string seconds_text(double seconds) {
 }  // namespace
 
 Exit check(const Case& from, int threads) {
-  const Body body = make_body(from, threads);
+  const std::unique_ptr<const Body> made = make_body(from, threads);
+  const Body& body = *made;
   const Points& points = body.points;
   const NeighbourCounts neighbours = count_neighbours(body.term.bonds);
   fmt::print("case        {}\n", from.title.empty() ? from.file : from.title);

@@ -114,7 +114,8 @@ double relative_moment_sum(const Points& points, const std::vector<double>& disp
 }  // namespace
 
 Exit check_tangent(const Case& from, const std::string& deformation, int threads) {
-  const Body body = make_body(from, threads);
+  const std::unique_ptr<const Body> made = make_body(from, threads);
+  const Body& body = *made;
   const Points& points = body.points;
   const std::string text = deformation.empty() ? default_deformation(points) : deformation;
   std::vector<double> displacement;

@@ -154,7 +154,8 @@ Exit run(const Case& from, const RunOptions& options) {
   Progress progress(options.quiet, options.log_file);
   progress.say(from.title.empty() ? from.file : fmt::format("{} ({})", from.title, from.file));
 
-  const Body body = make_body(from, options.threads);
+  const std::unique_ptr<const Body> made = make_body(from, options.threads);
+  const Body& body = *made;
   refuse_free_motions(from, body);
   const MemoryEstimate estimate = estimate_memory(body);
   require_memory(estimate.bytes, fmt::format("the case with {} points", body.points.count()));

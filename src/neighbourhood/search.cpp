@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
+#include <numeric>
 
 #include <omp.h>
 
@@ -39,16 +41,26 @@ struct CellList {
         upper[c] = std::max(upper[c], reference[std::size_t(i) * D + c]);
       }
     }
-    // More cells than points would only cost memory: a cloud with far outliers gets larger cells.
-    const double most_per_direction = std::max(1.0, std::ceil(std::pow(4.0 * count, 1.0 / D)));
-    std::size_t cells = 1;
+    // Many more cells than points would only cost memory: a cloud with far outliers gets larger
+    // ones.
+    const double most_cells = 8.0 * count + 64.0;
+    std::array<double, D> wanted;
+    for (int c = 0; c < D; ++c) {
+      const double cells_along = (upper[c] - lower[c]) * cells_per_radius / reach(radius);
+      wanted[c] = std::clamp(std::floor(cells_along), 1.0, most_cells);
+    }
+    const auto total = [&] {
+      return std::accumulate(wanted.begin(), wanted.end(), 1.0, std::multiplies<>());
+    };
+    while (total() > most_cells) {
+      double& largest = *std::max_element(wanted.begin(), wanted.end());
+      largest = std::ceil(0.5 * largest);
+    }
+    const std::size_t cells = std::size_t(total());
     for (int c = 0; c < D; ++c) {
       const double span = upper[c] - lower[c];
-      const double wanted = std::floor(span * cells_per_radius / reach(radius));
-      const double most = D == 1 ? most_per_direction : 8.0 * most_per_direction;
-      extent[c] = static_cast<int>(std::clamp(wanted, 1.0, most));
+      extent[c] = static_cast<int>(wanted[c]);
       cells_per_length[c] = span > 0.0 ? extent[c] / span : 0.0;
-      cells *= std::size_t(extent[c]);
     }
     std::vector<Index> cell(count);
     begin.assign(cells + 1, 0);

@@ -35,8 +35,7 @@ struct MeasureIn {
 template <class Case>
 class Measure : public ::testing::Test {
  protected:
-  static constexpr int size = Case::size;
-  using Arms = Vector<size, double>;
+  using Arms = Vector<Case::size, double>;
 
   testing::Random random_{11};
 

@@ -1,0 +1,149 @@
+#include "src/neighbourhood/search.hpp"
+
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "tests/bodies.hpp"
+
+namespace peristat {
+namespace {
+
+Points points_at(int dimension, std::vector<double> reference) {
+  Points points;
+  points.dimension = dimension;
+  points.volume.assign(reference.size() / std::size_t(dimension), 1.0);
+  points.reference = std::move(reference);
+  return points;
+}
+
+/// Points in the cube from -1 to 1.
+Points cloud(int dimension, int count, std::uint64_t seed) {
+  return points_at(dimension, testing::Random(seed).vector(std::size_t(count) * dimension));
+}
+
+/// Compares with all pairs. Ties are left to the tests that make them: no pair may come closer to
+/// the radius than `margin`, relatively.
+void expect_all_pairs(const Points& points, const Bonds& bonds, double radius,
+                      double margin = 1e-12) {
+  ASSERT_EQ(bonds.offset.size(), points.volume.size() + 1);
+  ASSERT_EQ(bonds.offset.front(), 0);
+  ASSERT_EQ(bonds.offset.back(), bonds.count());
+  ASSERT_EQ(bonds.inverse_length.size(), bonds.partner.size());
+  ASSERT_EQ(bonds.weight.size(), bonds.partner.size());
+  for (Index i = 0; i < points.count(); ++i) {
+    std::vector<Index> partners;
+    for (Index j = i + 1; j < points.count(); ++j) {
+      const double distance = testing::reference_distance(points, i, j);
+      ASSERT_GT(std::abs(distance / (radius * (1.0 + 1e-8)) - 1.0), margin);
+      if (distance <= radius * (1.0 + 1e-8)) partners.push_back(j);
+    }
+    const std::vector<Index> found(bonds.partner.begin() + bonds.offset[i],
+                                   bonds.partner.begin() + bonds.offset[i + 1]);
+    ASSERT_EQ(found, partners) << "point " << i;
+  }
+  testing::for_each_bond(bonds, [&](Index i, Index j, Offset bond) {
+    const double distance = testing::reference_distance(points, i, j);
+    EXPECT_NEAR(bonds.length(bond) / distance, 1.0, 8 * std::numeric_limits<double>::epsilon());
+  });
+}
+
+TEST(SearchBonds, FindsWhatAllPairsOfARandomCloudGive) {
+  for (int dimension = 1; dimension <= 3; ++dimension) {
+    const Points points = cloud(dimension, 400, 3);
+    Offset least = std::numeric_limits<Offset>::max(), most = 0;
+    for (double radius : {0.01, 0.11, 0.37, 1.3, 5.0}) {
+      SCOPED_TRACE(::testing::Message() << dimension << "D, radius " << radius);
+      const Bonds bonds = search_bonds(points, radius, 2);
+      expect_all_pairs(points, bonds, radius);
+      least = std::min(least, bonds.count());
+      most = std::max(most, bonds.count());
+    }
+    EXPECT_LT(least, 2000);
+    EXPECT_EQ(most, 400 * 399 / 2);
+  }
+}
+
+TEST(SearchBonds, FindsWhatAllPairsOfAThinBodyGive) {
+  Points points = cloud(3, 300, 4);
+  for (std::size_t k = 0; k < points.reference.size(); k += 3) {
+    points.reference[k] *= 20.0;
+    points.reference[k + 2] = 0.25;  // in a plane
+  }
+  const Bonds bonds = search_bonds(points, 0.9, 1);
+  expect_all_pairs(points, bonds, 0.9);
+  EXPECT_GT(bonds.count(), 100);
+}
+
+TEST(SearchBonds, FindsNeighboursAtExactlyTheHorizonWhateverTheRoundOff) {
+  // Inner points of a lattice whose horizon is m spacings: 2m in 1D; the lattice points of a disk
+  // and a ball of radius 2 and 3 without the centre (Gauss circle problem: 13, 29; 33, 123).
+  const int expected[3][2] = {{4, 6}, {12, 28}, {32, 122}};
+  for (int dimension = 1; dimension <= 3; ++dimension) {
+    for (int ratio : {2, 3}) {
+      for (double spacing : {0.1, 1.0 / 3.0, 0.7e-3, 1e5 / 7.0}) {
+        testing::BoxSetting box;
+        box.dimension = dimension;
+        box.extent = {8, 7, 7};
+        box.spacing = spacing;
+        const Points points = testing::box_points(box);
+        const Bonds bonds = search_bonds(points, ratio * spacing, 2);
+        std::vector<int> degree(points.volume.size(), 0);
+        testing::for_each_bond(bonds, [&](Index i, Index j, Offset) {
+          ++degree[i];
+          ++degree[j];
+        });
+        int inner = 0;
+        for (Index i = 0; i < points.count(); ++i) {
+          if (!testing::is_inside(points, i, box, (ratio + 0.4) * spacing)) continue;
+          ++inner;
+          EXPECT_EQ(degree[i], expected[dimension - 1][ratio - 2])
+              << dimension << "D, ratio " << ratio << ", spacing " << spacing;
+        }
+        EXPECT_GT(inner, 0);
+      }
+    }
+  }
+}
+
+TEST(SearchBonds, GivesTheSameForAnyNumberOfThreads) {
+  for (int dimension = 1; dimension <= 3; ++dimension) {
+    const Points points = cloud(dimension, 300, 5);
+    const Bonds one = search_bonds(points, 0.3, 1);
+    ASSERT_GT(one.count(), 100);
+    for (int threads : {2, 3, 7}) {
+      const Bonds several = search_bonds(points, 0.3, threads);
+      EXPECT_EQ(several.offset, one.offset);
+      EXPECT_EQ(several.partner, one.partner);
+      EXPECT_EQ(several.inverse_length, one.inverse_length);
+    }
+  }
+}
+
+TEST(SearchBonds, TakesCloudsWithFarOutliers) {
+  for (int dimension = 1; dimension <= 3; ++dimension) {
+    Points points = cloud(dimension, 300, 6);
+    const auto add = [&](double at) {
+      for (int c = 0; c < dimension; ++c) points.reference.push_back(c % 2 ? -at : at);
+      points.volume.push_back(1.0);
+    };
+    for (double at : {1e3, 1e3 + 0.01, -1e7, 1e9}) add(at);
+    const Bonds bonds = search_bonds(points, 0.25, 2);
+    expect_all_pairs(points, bonds, 0.25);
+    EXPECT_GT(bonds.count(), 300);
+    EXPECT_EQ(bonds.partner[bonds.offset[300]], 301);
+  }
+}
+
+TEST(SearchBonds, TakesASinglePointAndThreadsWithoutWork) {
+  const Bonds bonds = search_bonds(points_at(2, {0.5, -3.0}), 1.0, 4);
+  EXPECT_EQ(bonds.points(), 1);
+  EXPECT_EQ(bonds.count(), 0);
+  const Bonds pair = search_bonds(points_at(3, {0, 0, 0, 0, 0, 1}), 1.0, 4);
+  EXPECT_EQ(pair.partner, std::vector<Index>{1});
+}
+
+}  // namespace
+}  // namespace peristat
