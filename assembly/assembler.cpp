@@ -298,7 +298,7 @@ struct Assembler::Kernels {
                                std::span<double> energies) {
     pack(a, a.points_.reference, displacement);
     const Bonds& bonds = a.term_.bonds;
-    std::vector<double> longest(a.threads(), -1.0);
+    std::vector<double>& longest = a.longest_;
     const auto body = [&](int thread, RowRange range, double* sums) {
       Lanes most = -1.0;
       for (Index i = range.first; i < range.last; ++i) {
@@ -346,7 +346,8 @@ Assembler::Assembler(const Points& points, const BondTerm& term, int threads)
       ranges_(partition_rows(Pattern(term.bonds), threads)),
       rows_(std::size_t(points.count()) * row_width(points.dimension)),
       sums_(ranges_.size()),
-      stored_(ranges_.size()) {
+      stored_(ranges_.size()),
+      longest_(ranges_.size()) {
   for (std::size_t t = 0; t < ranges_.size(); ++t) {
     sums_[t].resize(std::size_t(ranges_[t].reach - ranges_[t].first) *
                     block_width(points.dimension));

@@ -59,6 +59,7 @@ class Assembler {
   AlignedVector<double> rows_;               // per point, what kernels gather; see Kernels::pack
   std::vector<AlignedVector<double>> sums_;  // per thread, rows first..reach of what it adds up
   std::vector<Stored> stored_;               // per thread
+  std::vector<double> longest_;              // per thread, largest stretch
   double seconds_ = 0.0;
 };
 

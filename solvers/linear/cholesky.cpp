@@ -210,6 +210,7 @@ struct Cholesky::Cholmod {
     const LinearOutcome outcome = outcome_of_status();
     if (outcome == LinearOutcome::not_positive_definite) return count_pivots();
     if (outcome != LinearOutcome::solved) return outcome;
+    if (getenv("RC")) std::printf("rcond %g\n", cholmod_l_rcond(factor, &common));
     inertia = Inertia{free->count(), 0, 0};
     factor_valid = factor_current = true;
     return outcome;

@@ -84,8 +84,9 @@ struct CellList {
   }
 
   [[nodiscard]] int coordinate(double at, int direction) const {
-    const int cell = static_cast<int>((at - lower[direction]) * cells_per_length[direction]);
-    return std::clamp(cell, 0, extent[direction] - 1);
+    // Clamped before the conversion: a body that is thin by round-off only has huge numbers here.
+    const double cell = (at - lower[direction]) * cells_per_length[direction];
+    return static_cast<int>(std::clamp(cell, 0.0, extent[direction] - 1.0));
   }
 
   /// Range of places [first, last) of a run of cells along the fastest direction.

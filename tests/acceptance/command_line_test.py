@@ -1,0 +1,294 @@
+"""The program as a person meets it: exit codes, messages, and what is on disk after each ending."""
+
+import csv
+import json
+import os
+import pathlib
+import random
+import resource
+import signal
+import subprocess
+import tempfile
+import time
+import unittest
+
+import h5py
+import numpy
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+PROGRAM = os.environ["PERISTAT_PROGRAM"]
+
+HISTORY_COLUMNS = [
+    "step", "load_factor", "mode", "newton_iterations", "relaxation_iterations", "stored_energy",
+    "dissipated_energy", "drained_energy", "external_work", "balance_error", "broken_bonds",
+    "max_damage", "max_stretch", "reaction_x:left", "reaction_y:left", "reaction_z:left",
+    "reaction_x:right", "reaction_y:right", "reaction_z:right", "end_x", "end_y",
+]  # fmt: skip
+ITERATION_COLUMNS = [
+    "step", "iteration", "residual", "relative_residual", "energy", "step_length",
+    "linear_iterations", "changed_bonds",
+]  # fmt: skip
+SUMMARY_KEYS = {
+    "status", "points", "free_dofs", "bonds", "triangles", "tetrahedra", "steps", "newton_iterations",
+    "relaxation_iterations", "factorisations", "linear_iterations", "broken_bonds", "max_damage",
+    "max_displacement", "energy", "reactions", "probes", "seconds", "peak_memory_bytes", "threads",
+    "ranks",
+}  # fmt: skip
+
+STRIP = """\
+title = "Strip"
+dimension = 2
+[lattice]
+spacing = 1e-3
+thickness = 1e-3
+[[lattice.shape]]
+add = "box"
+min = [0.0, 0.0]
+max = [0.02, 0.01]
+[[lattice.layer]]
+name = "left"
+side = "x-"
+[[lattice.layer]]
+name = "right"
+side = "x+"
+[material]
+youngs_modulus = 200e9
+[[support]]
+set = "left"
+displacement = [0, 0]
+[[support]]
+set = "right"
+displacement = ["1e-5*load", "free"]
+[[probe]]
+name = "end"
+set = "right"
+"""
+
+
+class CommandLine(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory(prefix="peristat_acceptance_")
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+        self.case = self.write("strip.toml", STRIP)
+
+    def write(self, name, text):
+        path = self.folder / name
+        path.write_text(text)
+        return path
+
+    def peristat(self, *arguments, **options):
+        return subprocess.run([PROGRAM, *map(str, arguments)], cwd=self.folder, text=True, timeout=120,
+                              stdin=subprocess.DEVNULL, capture_output=True, **options)  # fmt: skip
+
+    def start(self, *arguments):
+        process = subprocess.Popen([PROGRAM, *map(str, arguments)], cwd=self.folder, text=True,
+                                   stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+                                   stderr=subprocess.PIPE)  # fmt: skip
+        self.addCleanup(process.communicate)
+        self.addCleanup(process.kill)
+        return process
+
+    def assert_refused(self, run, *fragments):
+        self.assertEqual(run.returncode, 2, run.stdout + run.stderr)
+        for fragment in fragments:
+            self.assertIn(fragment, run.stderr)
+
+    def history(self, folder):
+        with open(self.folder / folder / "history.csv", newline="") as file:
+            return list(csv.DictReader(file))
+
+    # ---- bad input --------------------------------------------------------------------------------
+
+    def test_each_kind_of_bad_input_is_refused_at_its_place(self):
+        def changed(old, new):
+            self.assertIn(old, STRIP)
+            return STRIP.replace(old, new, 1)
+
+        without_supports = STRIP[: STRIP.index("[[support]]")]
+        bad = {
+            "broken": (changed("spacing = 1e-3", "spacing = = 1"), ["bad.toml:4:"]),
+            "unknown key": (changed("youngs_modulus", "yongs_modulus"), ["bad.toml:17:", "did you mean youngs_modulus"]),
+            "wrong type": (changed("spacing = 1e-3", "spacing = 'fine'"), ["bad.toml:4:", "lattice.spacing"]),
+            "negative spacing": (changed("spacing = 1e-3", "spacing = -1e-3"), ["bad.toml:4:", "lattice.spacing"]),
+            "small horizon": (changed("thickness", "horizon_ratio = 0.5\nthickness"), ["bad.toml:5:", "horizon smaller"]),
+            "zero modulus": (changed("200e9", "0.0"), ["bad.toml:17:", "youngs_modulus"]),
+            "modulus nan": (changed("200e9", "nan"), ["bad.toml:17:", "youngs_modulus"]),
+            "unknown variable": (changed("1e-5*load", "1e-5*lod"), ["bad.toml:23:", "lod", "load"]),
+            "empty set": (STRIP + '[[set]]\nname = "none"\nwhere = "x > 1"\n', ["bad.toml:27:", "selects no point"]),
+            "no supports": (without_supports, ["bad.toml", "move along x", "move along y", "rotate about z"]),
+            "half held": (changed("displacement = [0, 0]", 'displacement = [0, "free"]'), ["bad.toml:18:", "move along y"]),
+            "contradiction": (STRIP + '[[support]]\nset = "left"\ndisplacement = [1e-3, 0]\n',
+                              ["bad.toml:18:", "contradict", "left"]),
+        }  # fmt: skip
+        for name, (text, fragments) in bad.items():
+            with self.subTest(name):
+                self.write("bad.toml", text)
+                for command in ("run", "check"):
+                    self.assert_refused(self.peristat(command, "bad.toml"), *fragments)
+                self.assertFalse((self.folder / "results").exists())
+
+    def test_a_missing_file_and_wrong_options_are_refused(self):
+        self.assert_refused(self.peristat("run", "missing.toml"), "missing.toml")
+        self.assert_refused(self.peristat("run", self.folder), str(self.folder))
+        self.assert_refused(self.peristat("run", self.case, "--set", "loading.steps"), "key=value")
+        self.assert_refused(self.peristat("run", self.case, "--set", "loading.stepps=3"), "--set loading.stepps=3", "steps")
+        self.assertEqual(self.peristat("run").returncode, 2)
+        self.assertEqual(self.peristat("rum", self.case).returncode, 2)
+        self.assertEqual(self.peristat("run", self.case, "--threads", "0").returncode, 2)
+
+    def test_a_folder_that_cant_be_written_is_refused(self):
+        self.write("occupied", "not a folder")
+        self.assert_refused(self.peristat("run", self.case, "--output", "occupied"), "output.directory", "occupied")
+        self.assert_refused(self.peristat("run", self.case, "--output", "/proc/peristat"), "output.directory")
+        self.assertEqual((self.folder / "occupied").read_text(), "not a folder")
+
+    def test_what_cant_fit_is_refused_with_its_estimate_before_memory_is_taken(self):
+        for spacing in ("1e-6", "1e-8", "1e-10"):
+            begin = time.monotonic()
+            run = self.peristat("run", self.case, "--set", f"lattice.spacing={spacing}",
+                                preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, (2**30, 2**30)))  # fmt: skip
+            self.assertEqual(run.returncode, 4, run.stderr)
+            self.assertIn("needs about", run.stderr)
+            self.assertLess(time.monotonic() - begin, 10.0)
+        self.assertFalse((self.folder / "results").exists())
+
+    def test_no_number_ends_in_a_crash_or_a_number_that_is_none(self):
+        """Every number of a small case replaced by odd ones: a named ending each time."""
+        numbers = ["0", "-1", "nan", "inf", "1e308", "1e-308", "0.5", '"x"', "[]", "true", "3"]
+        places = [(line, text.split("=")[0]) for line, text in enumerate(STRIP.splitlines())
+                  if "=" in text and "name" not in text and "set" not in text]  # fmt: skip
+        self.assertGreater(len(places), 8)
+        lines = STRIP.splitlines()
+        for line, key in places:
+            for number in numbers:
+                text = lines[:line] + [f"{key}= {number}"] + lines[line + 1 :]
+                self.write("odd.toml", "\n".join(text))
+                run = self.peristat("run", "odd.toml", "--quiet", "--output", "odd", "--threads", "1")
+                self.assertIn(run.returncode, (0, 2, 3, 4), f"{key}= {number}\n{run.stderr}")
+                if run.returncode == 0:
+                    content = (self.folder / "odd/history.csv").read_text()
+                    self.assertNotRegex(content, r"\b(nan|inf)\b")
+
+    # ---- results ----------------------------------------------------------------------------------
+
+    def test_a_run_leaves_what_the_contract_says(self):
+        run = self.peristat("run", self.case, "--output", "out", "--set", "loading.steps=4",
+                            "--set", "output.every=3", "--log", "log.txt", "--threads", "1")  # fmt: skip
+        self.assertEqual(run.returncode, 0, run.stderr)
+        out = self.folder / "out"
+        self.assertEqual((out / "history.csv").read_text().splitlines()[0], ",".join(HISTORY_COLUMNS))
+        self.assertEqual((out / "iterations.csv").read_text().splitlines()[0], ",".join(ITERATION_COLUMNS))
+        rows = self.history("out")
+        self.assertEqual([float(row["load_factor"]) for row in rows], [0.25, 0.5, 0.75, 1.0])
+        pull = float(rows[-1]["reaction_x:right"])
+        self.assertGreater(pull, 0.0)
+        self.assertAlmostEqual(float(rows[-1]["reaction_x:left"]) / pull, -1.0, delta=1e-8)
+        summary = json.loads((out / "summary.json").read_text())
+        self.assertLessEqual(SUMMARY_KEYS, set(summary))
+        self.assertEqual((summary["status"], summary["steps"], summary["threads"]), ("completed", 4, 1))
+        with h5py.File(out / "results.h5") as file:
+            self.assertEqual(sorted(file["steps"]), ["000003", "000004"])
+            self.assertLessEqual({"reference", "volume", "set_ids"}, set(file["points"]))
+            self.assertLessEqual({"as_read", "as_resolved"}, set(file["case"]))
+            self.assertEqual(len(file["history/load_factor"]), 4)
+            last = file["steps/000004"]
+            self.assertEqual((last.attrs["load_factor"], last["displacement"].shape), (1.0, (260, 2)))
+            for name in ("displacement", "damage", "force", "energy_density"):
+                self.assertTrue(numpy.isfinite(last[name]).all())
+                self.assertTrue({"unit", "description"} <= set(last[name].attrs))
+        self.assertTrue((out / "results.xdmf").exists())
+        self.assertIn("iteration", (self.folder / "log.txt").read_text())
+        again = self.peristat("run", self.case, "--output", "out", "--quiet")
+        self.assertEqual((again.returncode, again.stdout), (0, ""))
+        self.assertEqual(len(self.history("out")), 1)
+
+    def test_a_run_that_does_not_converge_keeps_what_it_reached(self):
+        self.write("column.toml", STRIP.replace("1e-5*load", "-8e-3*load"))
+        run = self.peristat("run", "column.toml", "--output", "out", "--set", "loading.steps=40",
+                            "--set", "loading.smallest_step=1e-3", "--set", "output.every=7")  # fmt: skip
+        self.assertEqual(run.returncode, 3, run.stdout + run.stderr)
+        self.assertIn("negative pivots", run.stderr)
+        summary = json.loads((self.folder / "out/summary.json").read_text())
+        self.assertEqual(summary["status"], "not_converged")
+        rows = self.history("out")
+        self.assertGreater(len(rows), 1)
+        decisions = (self.folder / "out/decisions.csv").read_text()
+        self.assertIn(",cut,", decisions)
+        self.assertIn(",stop,", decisions)
+        with h5py.File(self.folder / "out/results.h5") as file:
+            self.assertIn(f"{int(rows[-1]['step']):06d}", file["steps"])
+
+    def test_an_interrupt_closes_the_results(self):
+        for sent in (signal.SIGINT, signal.SIGTERM):
+            process = self.start("run", self.case, "--output", "out", "--set", "loading.steps=100000")
+            while "step" not in process.stdout.readline():
+                self.assertIsNone(process.poll())
+            process.send_signal(sent)
+            process.communicate(timeout=60)
+            self.assertEqual(process.returncode, 130)
+            self.assertEqual(json.loads((self.folder / "out/summary.json").read_text())["status"], "interrupted")
+            with h5py.File(self.folder / "out/results.h5") as file:
+                self.assertEqual(len(file["steps"]), len(self.history("out")))
+
+    def test_a_kill_at_any_moment_leaves_every_accepted_step(self):
+        chance = random.Random(1)
+        announced_in_all = 0
+        for _ in range(25):
+            process = self.start("run", self.case, "--output", "out", "--set", "loading.steps=100000")
+            time.sleep(0.05 + 0.3 * chance.random())
+            process.kill()
+            output, _ = process.communicate(timeout=60)
+            announced = sum(line.startswith("step ") for line in output.splitlines(keepends=True)
+                            if line.endswith("\n"))  # fmt: skip
+            announced_in_all += announced
+            if announced == 0:
+                continue
+            with h5py.File(self.folder / "out/results.h5") as file:
+                self.assertGreaterEqual(len(file["history/step"]), announced)
+                for step in range(1, announced + 1):
+                    self.assertTrue(numpy.isfinite(file[f"steps/{step:06d}/displacement"]).all())
+            text = (self.folder / "out/history.csv").read_text()
+            self.assertTrue(text.endswith("\n"))
+            self.assertTrue(all(line.count(",") == len(HISTORY_COLUMNS) - 1 for line in text.splitlines()))
+        self.assertGreater(announced_in_all, 25)
+
+    # ---- the other commands -----------------------------------------------------------------------
+
+    def test_check_tells_counts_memory_and_time_and_solves_nothing(self):
+        run = self.peristat("check", self.case)
+        self.assertEqual(run.returncode, 0, run.stderr)
+        for word in ("260 in 2D", "bonds", "supports", "memory", "time"):
+            self.assertIn(word, run.stdout)
+        self.assertFalse((self.folder / "results").exists())
+
+    def test_tangents_of_all_shipped_cases_pass_the_finite_difference_check(self):
+        cases = sorted(path for path in (ROOT / "cases").glob("*/*.toml"))
+        self.assertGreaterEqual(len(cases), 4)
+        for case in cases:
+            with self.subTest(case=case.name):
+                run = self.peristat("check-tangent", case)
+                self.assertEqual(run.returncode, 0, run.stderr)
+                told = json.loads(run.stdout)
+                self.assertGreater(told["residual_norm"], 0.0)
+                self.assertGreater(told["tangent_frobenius_norm"], 0.0)
+                self.assertLess(abs(told["residual_error"]), 1e-7)
+                self.assertLess(abs(told["tangent_error"]), 1e-7)
+                self.assertLess(abs(told["asymmetry"]), 1e-13)
+                self.assertLess(abs(told["force_sum"]), 1e-11)
+                self.assertLess(abs(told["moment_sum"]), 1e-11)
+                if case.parent.name == "bar":  # quadratic energy: differences are exact at any step
+                    self.assertIsNone(told["residual_order"])
+                    continue
+                self.assertAlmostEqual(told["residual_order"], 2.0, delta=0.1)
+                self.assertAlmostEqual(told["tangent_order"], 2.0, delta=0.1)
+
+    def test_check_tangent_takes_a_deformation(self):
+        run = self.peristat("check-tangent", self.case, "--deformation", "x; y")
+        self.assertEqual(json.loads(run.stdout)["energy"], 0.0)
+        self.assert_refused(self.peristat("check-tangent", self.case, "--deformation", "x"), "--deformation")
+        self.assert_refused(self.peristat("check-tangent", self.case, "--deformation", "0; q"), "--deformation", "q")
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,265 @@
+#include "solvers/linear/cholesky.hpp"
+
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include <Eigen/Dense>
+#include <gtest/gtest.h>
+
+#include "tests/problems.hpp"
+
+namespace peristat {
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+using testing::BoxBody;
+
+/// The rows and columns of the free degrees of freedom, both halves.
+MatrixXd dense(const Tangent& tangent, const FreeDofs& free) {
+  const int d = tangent.dimension;
+  MatrixXd full = MatrixXd::Zero(tangent.dofs(), tangent.dofs());
+  for (Index i = 0; i < tangent.pattern.points(); ++i) {
+    for (int r = 0; r < d; ++r) {
+      for (int c = 0; c < d; ++c) {
+        full(i * d + r, i * d + c) = tangent.diagonal[std::size_t(i) * d * d + r * d + c];
+      }
+    }
+    for (Offset bond = tangent.pattern.offset[i]; bond < tangent.pattern.offset[i + 1]; ++bond) {
+      const Index j = tangent.pattern.partner[bond];
+      for (int r = 0; r < d; ++r) {
+        for (int c = 0; c < d; ++c) {
+          const double entry = tangent.off_diagonal[std::size_t(bond) * d * d + r * d + c];
+          full(i * d + r, j * d + c) = full(j * d + c, i * d + r) = entry;
+        }
+      }
+    }
+  }
+  return full(free.dof, free.dof);
+}
+
+/// A tangent of a body, with some degrees of freedom prescribed.
+struct System {
+  BoxBody body;
+  FreeDofs free;
+  Tangent tangent;
+  std::vector<double> b, x;
+
+  System(const testing::BoxSetting& box, const std::vector<char>& prescribed,
+         const std::vector<double>& state)
+      : body(box),
+        free(prescribed, box.dimension),
+        tangent(Pattern(body.term.bonds), box.dimension),
+        b(testing::Random(3).vector(std::size_t(free.count()))),
+        x(std::size_t(free.count()), 1e300) {
+    assemble(state);
+  }
+
+  void assemble(const std::vector<double>& state) {
+    Assembler(body.points, body.term, 1).tangent(state, tangent);
+  }
+
+  LinearOutcome solve(LinearSolver& solver, FactorUse use = FactorUse::factorize_now) {
+    LinearOutcome outcome = solver.factorize(tangent, use);
+    if (outcome == LinearOutcome::solved) outcome = solver.solve(b, x);
+    return outcome;
+  }
+};
+
+/// All components of points at opposite ends, and single components of others.
+std::vector<char> some_prescribed(const BoxBody& body) {
+  const int d = body.points.dimension;
+  const int last = body.points.count() - 1;
+  std::vector<char> prescribed(body.dofs(), 0);
+  for (int point : {0, 1, last / 2, last}) {
+    for (int c = 0; c < d; ++c) prescribed[std::size_t(point) * d + c] = 1;
+  }
+  for (int k = 0; k < d; ++k) prescribed[std::size_t(8 + 2 * k) * d + k] = 1;
+  return prescribed;
+}
+
+double relative_error(const System& system, const VectorXd& expected) {
+  const VectorXd x = Eigen::Map<const VectorXd>(system.x.data(), Eigen::Index(system.x.size()));
+  return (x - expected).norm() / expected.norm();
+}
+
+VectorXd dense_solution(const System& system) {
+  return dense(system.tangent, system.free)
+      .fullPivLu()
+      .solve(Eigen::Map<const VectorXd>(system.b.data(), Eigen::Index(system.b.size())));
+}
+
+TEST(Cholesky, AgreesWithADenseSolve) {
+  for (int dimension = 1; dimension <= 3; ++dimension) {
+    const testing::BoxSetting box = testing::small_box(dimension);
+    const BoxBody body(box);
+    std::vector<double> state = body.random_state(1);
+    for (double& entry : state) entry *= 0.1;  // not so far that the tangent is indefinite
+    System system(box, some_prescribed(body), state);
+    ASSERT_LT(system.free.count(), Index(body.dofs()) - dimension);
+    Cholesky solver;
+    ASSERT_EQ(solver.analyze(system.tangent.pattern, system.free), LinearOutcome::solved);
+    EXPECT_GT(solver.estimate().entries, system.free.count());
+    ASSERT_EQ(system.solve(solver), LinearOutcome::solved);
+    EXPECT_LT(relative_error(system, dense_solution(system)), 1e-11) << dimension << "D";
+    ASSERT_TRUE(solver.inertia());
+    EXPECT_EQ(solver.inertia()->positive, system.free.count());
+    EXPECT_EQ(solver.inertia()->negative, 0);
+    EXPECT_EQ(solver.last_iterations(), 0);
+    EXPECT_EQ(solver.statistics().factorisations, 1);
+  }
+}
+
+TEST(Cholesky, CountsTheSignsOfAnIndefiniteTangent) {
+  for (int dimension = 2; dimension <= 3; ++dimension) {
+    const testing::BoxSetting box = testing::small_box(dimension);
+    const BoxBody body(box);
+    std::vector<double> state = body.random_state(2);
+    // Compressed to four tenths: a bond's stiffness across, c s / l, is then -1.5 c / L.
+    for (std::size_t k = 0; k < state.size(); ++k) {
+      state[k] = 0.1 * state[k] - 0.6 * body.points.reference[k];
+    }
+    System system(box, some_prescribed(body), state);
+    const VectorXd eigenvalues =
+        Eigen::SelfAdjointEigenSolver<MatrixXd>(dense(system.tangent, system.free)).eigenvalues();
+    const Index negative = Index((eigenvalues.array() < 0.0).count());
+    ASSERT_GT(negative, 3);
+    ASSERT_LT(negative, system.free.count() - 3);
+    ASSERT_GT(eigenvalues.cwiseAbs().minCoeff(), 1e-6 * eigenvalues.cwiseAbs().maxCoeff());
+    Cholesky solver;
+    ASSERT_EQ(solver.analyze(system.tangent.pattern, system.free), LinearOutcome::solved);
+    EXPECT_EQ(system.solve(solver), LinearOutcome::not_positive_definite);
+    ASSERT_TRUE(solver.inertia());
+    EXPECT_EQ(solver.inertia()->negative, negative) << dimension << "D";
+    EXPECT_EQ(solver.inertia()->positive, system.free.count() - negative);
+    EXPECT_EQ(solver.inertia()->zero, 0);
+
+    // The solver is as good as new afterwards.
+    system.assemble(std::vector<double>(body.dofs(), 0.0));
+    ASSERT_EQ(system.solve(solver), LinearOutcome::solved);
+    EXPECT_LT(relative_error(system, dense_solution(system)), 1e-11);
+  }
+}
+
+/// Solves with a tangent that leaves motions without stiffness.
+LinearOutcome outcome_without_support(const testing::BoxSetting& box,
+                                      const std::vector<std::size_t>& held) {
+  const BoxBody body(box);
+  std::vector<char> prescribed(body.dofs(), 0);
+  for (std::size_t dof : held) prescribed[dof] = 1;
+  System system(box, prescribed, std::vector<double>(body.dofs(), 0.0));
+  Cholesky solver;
+  EXPECT_EQ(solver.analyze(system.tangent.pattern, system.free), LinearOutcome::solved);
+  return system.solve(solver);
+}
+
+// Round-off may give the zero pivot of a singular tangent either sign, or a solution that is all
+// round-off; whatever it was, "solved" it is not.
+TEST(Cholesky, NamesASingularTangent) {
+  for (int dimension = 1; dimension <= 3; ++dimension) {
+    const testing::BoxSetting box = testing::small_box(dimension);
+    EXPECT_EQ(outcome_without_support(box, {}), LinearOutcome::singular) << dimension << "D, free";
+  }
+  EXPECT_EQ(outcome_without_support(testing::small_box(2), {10, 11}), LinearOutcome::singular);
+  EXPECT_EQ(outcome_without_support(testing::small_box(3), {0, 1, 2, 30, 31, 32}),
+            LinearOutcome::singular);
+  // A straight row has no stiffness across: its pivots are exactly zero.
+  testing::BoxSetting row = testing::small_box(2);
+  row.extent = {9, 1, 0};
+  EXPECT_EQ(outcome_without_support(row, {0, 1, 16, 17}), LinearOutcome::singular);
+}
+
+TEST(Cholesky, RefusesValuesThatAreNotFinite) {
+  const testing::BoxSetting box = testing::small_box(2);
+  const BoxBody body(box);
+  System system(box, some_prescribed(body), std::vector<double>(body.dofs(), 0.0));
+  Cholesky solver;
+  ASSERT_EQ(solver.analyze(system.tangent.pattern, system.free), LinearOutcome::solved);
+  system.tangent.diagonal[40] = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(system.solve(solver), LinearOutcome::singular);
+}
+
+TEST(Cholesky, TakesABodyWithoutFreeDegreesOfFreedom) {
+  const testing::BoxSetting box = testing::small_box(2);
+  const BoxBody body(box);
+  System system(box, std::vector<char>(body.dofs(), 1), std::vector<double>(body.dofs(), 0.0));
+  Cholesky solver;
+  EXPECT_EQ(solver.analyze(system.tangent.pattern, system.free), LinearOutcome::solved);
+  EXPECT_EQ(system.solve(solver), LinearOutcome::solved);
+  EXPECT_EQ(solver.statistics().factorisations, 0);
+}
+
+/// Large enough that some iterations cost less than a factorisation.
+System large_system() {
+  testing::BoxSetting box = testing::small_box(3);
+  box.extent = {11, 10, 9};
+  const BoxBody body(box);
+  return System(box, some_prescribed(body), std::vector<double>(body.dofs(), 0.0));
+}
+
+TEST(Cholesky, ReusedFactorGivesTheSolutionOfTheNewTangent) {
+  System system = large_system();
+  Cholesky reusing, fresh(FactorReuse{0, 1e-12});
+  for (Cholesky* solver : {&reusing, &fresh}) {
+    ASSERT_EQ(solver->analyze(system.tangent.pattern, system.free), LinearOutcome::solved);
+    ASSERT_EQ(system.solve(*solver), LinearOutcome::solved);
+  }
+  const std::vector<double> old_solution = system.x;
+
+  std::vector<double> state = system.body.random_state(5);
+  for (double& entry : state) entry *= 1e-3;
+  system.assemble(state);
+  ASSERT_EQ(system.solve(fresh, FactorUse::may_reuse), LinearOutcome::solved);
+  EXPECT_EQ(fresh.statistics().factorisations, 2);
+  const std::vector<double> expected = system.x;
+  ASSERT_GT(testing::distance(old_solution, expected), 1e-5 * testing::norm(expected));
+
+  ASSERT_EQ(system.solve(reusing, FactorUse::may_reuse), LinearOutcome::solved);
+  EXPECT_EQ(reusing.statistics().factorisations, 1);
+  EXPECT_GT(reusing.last_iterations(), 0);
+  EXPECT_EQ(reusing.statistics().iterations, reusing.last_iterations());
+  EXPECT_LT(testing::distance(system.x, expected), 1e-10 * testing::norm(expected));
+
+  ASSERT_EQ(system.solve(reusing, FactorUse::factorize_now), LinearOutcome::solved);
+  EXPECT_EQ(reusing.statistics().factorisations, 2);
+  EXPECT_EQ(reusing.last_iterations(), 0);
+}
+
+TEST(Cholesky, FactorizesAnewWhereTheOldFactorIsTooFarAway) {
+  System system = large_system();
+  Cholesky solver;
+  ASSERT_EQ(solver.analyze(system.tangent.pattern, system.free), LinearOutcome::solved);
+  ASSERT_EQ(system.solve(solver), LinearOutcome::solved);
+
+  std::vector<double> state = system.body.random_state(5);
+  for (std::size_t k = 0; k < state.size(); ++k) state[k] += system.body.points.reference[k];
+  system.assemble(state);  // twice as long, and uneven
+  ASSERT_EQ(system.solve(solver, FactorUse::may_reuse), LinearOutcome::solved);
+  EXPECT_EQ(solver.statistics().factorisations, 2);
+  EXPECT_EQ(solver.last_iterations(), 0);
+  std::vector<double> product(system.body.dofs()), full(system.body.dofs()), rest(system.b);
+  system.free.extend_by_zero(system.x, full);
+  system.tangent.multiply(full, product);
+  system.free.restrict_to_free(product, rest);
+  EXPECT_LT(testing::distance(rest, system.b), 1e-10 * testing::norm(system.b));
+
+  // And an indefinite one is seen as such, although an old factor could stand in.
+  for (std::size_t k = 0; k < state.size(); ++k) state[k] = -0.6 * system.body.points.reference[k];
+  system.assemble(state);
+  EXPECT_EQ(system.solve(solver, FactorUse::may_reuse), LinearOutcome::not_positive_definite);
+  ASSERT_TRUE(solver.inertia());
+  EXPECT_GT(solver.inertia()->negative, 0);
+}
+
+TEST(Cholesky, DescribesItself) {
+  System system = large_system();
+  Cholesky solver;
+  ASSERT_EQ(solver.analyze(system.tangent.pattern, system.free), LinearOutcome::solved);
+  EXPECT_NE(solver.describe().find("CHOLMOD"), std::string::npos);
+  EXPECT_NE(solver.describe().find(solver.estimate().ordering), std::string::npos);
+  EXPECT_GT(solver.estimate().flops, solver.estimate().entries);
+}
+
+}  // namespace
+}  // namespace peristat
