@@ -13,7 +13,7 @@
 #include "src/neighbourhood/quadrature.hpp"
 #include "src/points/lattice.hpp"
 
-namespace peristat::testing {
+namespace peristat::tests {
 
 /// Uniform numbers in [-1, 1), the same on every machine.
 class Random {
@@ -145,4 +145,4 @@ void for_each_bond(const Bonds& bonds, const Visit& visit) {
   return true;
 }
 
-}  // namespace peristat::testing
+}  // namespace peristat::tests

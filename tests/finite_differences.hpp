@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-namespace peristat::testing {
+namespace peristat::tests {
 
 /// A function along a line, t -> f(x + t v): its values, flattened.
 using AlongLine = std::function<std::vector<double>(double)>;
@@ -71,4 +71,4 @@ inline ::testing::AssertionResult is_derivative(const AlongLine& f,
          << " and " << fine / size << " at half of it";
 }
 
-}  // namespace peristat::testing
+}  // namespace peristat::tests

@@ -10,7 +10,7 @@
 #include "solvers/linear/cholesky.hpp"
 #include "tests/bodies.hpp"
 
-namespace peristat::testing {
+namespace peristat::tests {
 
 /// A support; components that are not given are free.
 [[nodiscard]] inline SupportSpecification support(std::string set, std::optional<std::string> x,
@@ -65,4 +65,4 @@ struct Problem {
   [[nodiscard]] State at_rest() const { return {std::vector<double>(body.dofs(), 0.0), 0.0}; }
 };
 
-}  // namespace peristat::testing
+}  // namespace peristat::tests

@@ -82,7 +82,7 @@ Exit check(const Case& from, int threads) {
   const Pattern pattern(body.term.bonds);
   Cholesky solver;
   if (solver.analyze(pattern, free) == LinearOutcome::solved) {
-    estimate.bytes += 8.0 * (solver.estimate().entries - estimate.factor_entries);
+    estimate = with_factor(estimate, solver.estimate().entries);
     estimate.factor_flops = solver.estimate().flops;
     fmt::print("solver      {}\n", solver.describe());
   }

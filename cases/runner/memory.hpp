@@ -35,6 +35,9 @@ struct BodySize {
 [[nodiscard]] MemoryEstimate estimate_memory(int dimension, const BodySize& size,
                                              double horizon_ratio, double bonds, double free_dofs);
 
+/// The estimate once the factor's size is known.
+[[nodiscard]] MemoryEstimate with_factor(MemoryEstimate estimate, double factor_entries);
+
 /// Memory that this process may still take [bytes]: what the system calls available, limited by the
 /// control group and by the limit of the address space.
 [[nodiscard]] double available_memory();

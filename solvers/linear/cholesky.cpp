@@ -30,6 +30,9 @@ constexpr double factorisation_speed = 3e10, solve_speed = 1e10;
 /// Largest relative residual of a direct solve; backward-stable factorisations stay far below.
 constexpr double accepted_residual = 1e-6;
 
+/// A pivot below this fraction of the largest is zero up to round-off: it has no sign.
+constexpr double zero_pivot = 1e3 * std::numeric_limits<double>::epsilon();
+
 }  // namespace
 
 struct Cholesky::Cholmod {
@@ -210,10 +213,22 @@ struct Cholesky::Cholmod {
     const LinearOutcome outcome = outcome_of_status();
     if (outcome == LinearOutcome::not_positive_definite) return count_pivots();
     if (outcome != LinearOutcome::solved) return outcome;
-    if (getenv("RC")) std::printf("rcond %g\n", cholmod_l_rcond(factor, &common));
+    // The pivots of LL^T are the squares of its diagonal, and this is their least over the largest.
+    if (cholmod_l_rcond(factor, &common) <= zero_pivot) return LinearOutcome::singular;
     inertia = Inertia{free->count(), 0, 0};
     factor_valid = factor_current = true;
     return outcome;
+  }
+
+  /// Of the filled matrix; the diagonal entry stands first in its column.
+  double largest_diagonal() const {
+    const double* values = static_cast<const double*>(matrix->x);
+    const Long* begin = static_cast<const Long*>(matrix->p);
+    double largest = 0.0;
+    for (Index e = 0; e < free->count(); ++e) {
+      largest = std::max(largest, std::abs(values[begin[e]]));
+    }
+    return largest;
   }
 
   /// Inertia by LDL^T (Sylvester's law), where it is affordable.
@@ -224,8 +239,10 @@ struct Cholesky::Cholmod {
     cholmod_l_change_factor(CHOLMOD_PATTERN, 0, 0, 1, 1, signs, &common);
     common.supernodal = CHOLMOD_SIMPLICIAL;
     common.final_ll = 0;
+    common.dbound = 1e-3 * zero_pivot * largest_diagonal();  // LDL^T gives up at an exact zero
     cholmod_l_factorize(matrix, signs, &common);
-    const bool complete = common.status == CHOLMOD_OK && signs->xtype == CHOLMOD_REAL;
+    const bool finished = common.status == CHOLMOD_OK || common.status == CHOLMOD_DSMALL;
+    const bool complete = finished && signs->xtype == CHOLMOD_REAL;
     LinearOutcome outcome = LinearOutcome::not_positive_definite;
     if (complete && !signs->is_super) {
       const Long* begin = static_cast<const Long*>(signs->p);
@@ -237,8 +254,7 @@ struct Cholesky::Cholmod {
       Inertia counted;
       for (std::size_t k = 0; k < signs->n; ++k) {
         const double pivot = value[begin[k]];
-        // A pivot that is zero up to round-off has no sign.
-        if (std::abs(pivot) <= 1e3 * std::numeric_limits<double>::epsilon() * largest) {
+        if (std::abs(pivot) <= zero_pivot * largest) {
           ++counted.zero;
         } else {
           ++(pivot > 0.0 ? counted.positive : counted.negative);
@@ -249,6 +265,7 @@ struct Cholesky::Cholmod {
     }
     common.supernodal = CHOLMOD_SUPERNODAL;
     common.final_ll = 1;
+    common.dbound = 0.0;
     cholmod_l_free_factor(&signs, &common);
     return outcome;
   }

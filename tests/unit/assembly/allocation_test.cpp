@@ -42,7 +42,7 @@ namespace {
 
 TEST(Assembler, AllocatesNothingInItsCalls) {
   for (int dimension = 1; dimension <= 3; ++dimension) {
-    const testing::BoxBody body(testing::small_box(dimension));
+    const tests::BoxBody body(tests::small_box(dimension));
     Assembler assembler(body.points, body.term, 2);
     const std::vector<double> state = body.random_state(1);
     std::vector<double> gradient(body.dofs()), product(body.dofs()), v = state,

@@ -12,21 +12,21 @@
 namespace peristat {
 namespace {
 
-using testing::BoxBody;
-using testing::distance;
-using testing::dot;
-using testing::norm;
+using tests::BoxBody;
+using tests::distance;
+using tests::dot;
+using tests::norm;
 
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
 
 /// Bodies of every dimension without symmetry: perturbed points, with corrections and without.
-std::vector<testing::BoxSetting> uneven_boxes() {
-  std::vector<testing::BoxSetting> boxes;
+std::vector<tests::BoxSetting> uneven_boxes() {
+  std::vector<tests::BoxSetting> boxes;
   for (int dimension = 1; dimension <= 3; ++dimension) {
     for (const Quadrature& quadrature :
          {Quadrature{}, Quadrature{VolumeCorrection::linear, SurfaceCorrection::volume},
           Quadrature{VolumeCorrection::linear, SurfaceCorrection::energy}}) {
-      testing::BoxSetting box = testing::small_box(dimension);
+      tests::BoxSetting box = tests::small_box(dimension);
       box.quadrature = quadrature;
       box.perturbation = 0.2;
       boxes.push_back(box);
@@ -48,13 +48,13 @@ TEST(Assembler, GradientIsDerivativeOfEnergy) {
     Assembler assembler(body.points, body.term, 2);
     const std::vector<double> state = body.random_state(1);
     const std::vector<double> along =
-        testing::Random(2).vector(body.dofs(), body.points.spacing);
+        tests::Random(2).vector(body.dofs(), body.points.spacing);
     std::vector<double> gradient(body.dofs());
     ASSERT_FALSE(assembler.gradient(state, gradient).degenerate);
     const auto energy = [&](double t) {
       return std::vector<double>{assembler.energy(moved(state, t, along)).energy};
     };
-    EXPECT_TRUE(testing::is_derivative(energy, {dot(gradient, along)}, 1e-3))
+    EXPECT_TRUE(tests::is_derivative(energy, {dot(gradient, along)}, 1e-3))
         << box.dimension << "D";
   }
 }
@@ -65,7 +65,7 @@ TEST(Assembler, ProductIsDerivativeOfGradient) {
     Assembler assembler(body.points, body.term, 2);
     const std::vector<double> state = body.random_state(1);
     const std::vector<double> along =
-        testing::Random(2).vector(body.dofs(), body.points.spacing);
+        tests::Random(2).vector(body.dofs(), body.points.spacing);
     std::vector<double> product(body.dofs());
     assembler.product(state, along, product);
     const auto gradient = [&](double t) {
@@ -74,13 +74,13 @@ TEST(Assembler, ProductIsDerivativeOfGradient) {
       return result;
     };
     ASSERT_GT(norm(gradient(0.0)), 0.0);
-    EXPECT_TRUE(testing::is_derivative(gradient, product, 1e-3)) << box.dimension << "D";
+    EXPECT_TRUE(tests::is_derivative(gradient, product, 1e-3)) << box.dimension << "D";
   }
 }
 
 TEST(Assembler, TangentIsDerivativeOfGradientInEveryColumn) {
   for (int dimension = 1; dimension <= 3; ++dimension) {
-    testing::BoxSetting box = testing::small_box(dimension);
+    tests::BoxSetting box = tests::small_box(dimension);
     box.extent = {4, 3, 3};
     box.perturbation = 0.2;
     box.quadrature = {VolumeCorrection::linear, SurfaceCorrection::energy};
@@ -98,7 +98,7 @@ TEST(Assembler, TangentIsDerivativeOfGradientInEveryColumn) {
         (void)assembler.gradient(moved(state, t, unit), result);
         return result;
       };
-      EXPECT_TRUE(testing::is_derivative(gradient, column, 1e-3))
+      EXPECT_TRUE(tests::is_derivative(gradient, column, 1e-3))
           << dimension << "D, column " << dof;
     }
   }
@@ -113,7 +113,7 @@ TEST(Assembler, StoredTangentAndMatrixFreeProductAgree) {
     tangent.diagonal.assign(tangent.diagonal.size(), 1e300);  // every entry is overwritten
     tangent.off_diagonal.assign(tangent.off_diagonal.size(), 1e300);
     assembler.tangent(state, tangent);
-    const std::vector<double> v = testing::Random(5).vector(body.dofs());
+    const std::vector<double> v = tests::Random(5).vector(body.dofs());
     std::vector<double> stored(body.dofs()), free(body.dofs());
     tangent.multiply(v, stored);
     assembler.product(state, v, free);
@@ -124,10 +124,10 @@ TEST(Assembler, StoredTangentAndMatrixFreeProductAgree) {
 
 TEST(Assembler, EnergyIsTheDoubleSumOverOrderedPairs) {
   for (int dimension = 1; dimension <= 3; ++dimension) {
-    testing::BoxSetting box = testing::small_box(dimension);
+    tests::BoxSetting box = tests::small_box(dimension);
     box.perturbation = 0.2;
-    Points points = testing::box_points(box);
-    testing::Random random(6);
+    Points points = tests::box_points(box);
+    tests::Random random(6);
     for (double& volume : points.volume) volume *= 1.0 + 0.5 * random.number();
     const BoxBody body(points, box);
     const std::vector<double> state = body.random_state(7);
@@ -138,7 +138,7 @@ TEST(Assembler, EnergyIsTheDoubleSumOverOrderedPairs) {
     double most = -1.0;
     for (Index i = 0; i < points.count(); ++i) {
       for (Index j = 0; j < points.count(); ++j) {
-        const double reference = testing::reference_distance(points, i, j);
+        const double reference = tests::reference_distance(points, i, j);
         if (i == j || reference > body.setting.horizon) continue;
         double squared = 0.0;
         for (int c = 0; c < dimension; ++c) {
@@ -170,7 +170,7 @@ std::vector<double> everything(const BoxBody& body, int threads) {
   Assembler assembler(body.points, body.term, threads);
   EXPECT_EQ(assembler.threads(), threads);
   const std::vector<double> state = body.random_state(8);
-  const std::vector<double> v = testing::Random(9).vector(body.dofs());
+  const std::vector<double> v = tests::Random(9).vector(body.dofs());
   std::vector<double> gradient(body.dofs()), product(body.dofs()),
       energies(body.points.volume.size());
   Tangent tangent(Pattern(body.term.bonds), body.points.dimension);
@@ -190,7 +190,7 @@ TEST(Assembler, GivesTheSameForAnyNumberOfThreadsUpToRoundOff) {
     const BoxBody body(box);
     const std::vector<double> one = everything(body, 1);
     ASSERT_GT(norm(one), 0.0);
-    const double scale = testing::largest(one);
+    const double scale = tests::largest(one);
     for (int threads : {2, 3, 5}) {
       const std::vector<double> several = everything(body, threads);
       ASSERT_EQ(several.size(), one.size());
@@ -213,7 +213,7 @@ TEST(Assembler, IsReproducibleToTheLastBitForAGivenNumberOfThreads) {
 }
 
 TEST(Assembler, TakesMoreThreadsThanRows) {
-  testing::BoxSetting box = testing::small_box(2);
+  tests::BoxSetting box = tests::small_box(2);
   box.extent = {2, 1, 0};
   const BoxBody body(box);
   const std::vector<double> one = everything(body, 1);
@@ -222,17 +222,17 @@ TEST(Assembler, TakesMoreThreadsThanRows) {
 }
 
 TEST(Assembler, EnergyAndGradientTellTheSameEnergy) {
-  const BoxBody body(testing::small_box(3));
+  const BoxBody body(tests::small_box(3));
   Assembler assembler(body.points, body.term, 2);
   std::vector<double> gradient(body.dofs(), 1e300);
   const Stored both = assembler.gradient(body.random_state(1), gradient);
   EXPECT_EQ(assembler.energy(body.random_state(1)).energy, both.energy);
-  EXPECT_LT(testing::largest(gradient), 1e300);  // overwritten, not added to
+  EXPECT_LT(tests::largest(gradient), 1e300);  // overwritten, not added to
 }
 
 TEST(Assembler, ReportsDegenerateStates) {
   for (int dimension = 1; dimension <= 3; ++dimension) {
-    const BoxBody body(testing::small_box(dimension));
+    const BoxBody body(tests::small_box(dimension));
     for (int threads : {1, 3}) {
       Assembler assembler(body.points, body.term, threads);
       std::vector<double> gradient(body.dofs()), state(body.dofs(), 0.0);

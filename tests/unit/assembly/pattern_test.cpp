@@ -32,7 +32,7 @@ void expect_partition(const Bonds& bonds, int threads) {
 
 TEST(PartitionRows, CoversEveryRowOnce) {
   for (int dimension = 1; dimension <= 3; ++dimension) {
-    const testing::BoxBody body(testing::small_box(dimension));
+    const tests::BoxBody body(tests::small_box(dimension));
     ASSERT_GT(body.points.count(), 20);
     for (int threads : {1, 2, 3, 5, 16, 1000}) expect_partition(body.term.bonds, threads);
   }
@@ -46,9 +46,9 @@ TEST(PartitionRows, TakesRowsWithoutBonds) {
 }
 
 TEST(PartitionRows, SharesBondsEvenly) {
-  testing::BoxSetting box = testing::small_box(2);
+  tests::BoxSetting box = tests::small_box(2);
   box.extent = {40, 30, 0};
-  const testing::BoxBody body(box);
+  const tests::BoxBody body(box);
   const Pattern pattern(body.term.bonds);
   for (int threads : {2, 3, 5}) {
     for (const RowRange& range : partition_rows(pattern, threads)) {

@@ -14,7 +14,7 @@ namespace {
 
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-using testing::BoxBody;
+using tests::BoxBody;
 
 /// The rows and columns of the free degrees of freedom, both halves.
 MatrixXd dense(const Tangent& tangent, const FreeDofs& free) {
@@ -46,12 +46,12 @@ struct System {
   Tangent tangent;
   std::vector<double> b, x;
 
-  System(const testing::BoxSetting& box, const std::vector<char>& prescribed,
+  System(const tests::BoxSetting& box, const std::vector<char>& prescribed,
          const std::vector<double>& state)
       : body(box),
         free(prescribed, box.dimension),
         tangent(Pattern(body.term.bonds), box.dimension),
-        b(testing::Random(3).vector(std::size_t(free.count()))),
+        b(tests::Random(3).vector(std::size_t(free.count()))),
         x(std::size_t(free.count()), 1e300) {
     assemble(state);
   }
@@ -92,7 +92,7 @@ VectorXd dense_solution(const System& system) {
 
 TEST(Cholesky, AgreesWithADenseSolve) {
   for (int dimension = 1; dimension <= 3; ++dimension) {
-    const testing::BoxSetting box = testing::small_box(dimension);
+    const tests::BoxSetting box = tests::small_box(dimension);
     const BoxBody body(box);
     std::vector<double> state = body.random_state(1);
     for (double& entry : state) entry *= 0.1;  // not so far that the tangent is indefinite
@@ -113,7 +113,7 @@ TEST(Cholesky, AgreesWithADenseSolve) {
 
 TEST(Cholesky, CountsTheSignsOfAnIndefiniteTangent) {
   for (int dimension = 2; dimension <= 3; ++dimension) {
-    const testing::BoxSetting box = testing::small_box(dimension);
+    const tests::BoxSetting box = tests::small_box(dimension);
     const BoxBody body(box);
     std::vector<double> state = body.random_state(2);
     // Compressed to four tenths: a bond's stiffness across, c s / l, is then -1.5 c / L.
@@ -143,7 +143,7 @@ TEST(Cholesky, CountsTheSignsOfAnIndefiniteTangent) {
 }
 
 /// Solves with a tangent that leaves motions without stiffness.
-LinearOutcome outcome_without_support(const testing::BoxSetting& box,
+LinearOutcome outcome_without_support(const tests::BoxSetting& box,
                                       const std::vector<std::size_t>& held) {
   const BoxBody body(box);
   std::vector<char> prescribed(body.dofs(), 0);
@@ -154,24 +154,23 @@ LinearOutcome outcome_without_support(const testing::BoxSetting& box,
   return system.solve(solver);
 }
 
-// Round-off may give the zero pivot of a singular tangent either sign, or a solution that is all
-// round-off; whatever it was, "solved" it is not.
+// Whether round-off leaves a zero pivot positive, negative or exactly zero.
 TEST(Cholesky, NamesASingularTangent) {
   for (int dimension = 1; dimension <= 3; ++dimension) {
-    const testing::BoxSetting box = testing::small_box(dimension);
+    const tests::BoxSetting box = tests::small_box(dimension);
     EXPECT_EQ(outcome_without_support(box, {}), LinearOutcome::singular) << dimension << "D, free";
   }
-  EXPECT_EQ(outcome_without_support(testing::small_box(2), {10, 11}), LinearOutcome::singular);
-  EXPECT_EQ(outcome_without_support(testing::small_box(3), {0, 1, 2, 30, 31, 32}),
+  EXPECT_EQ(outcome_without_support(tests::small_box(2), {10, 11}), LinearOutcome::singular);
+  EXPECT_EQ(outcome_without_support(tests::small_box(3), {0, 1, 2, 30, 31, 32}),
             LinearOutcome::singular);
   // A straight row has no stiffness across: its pivots are exactly zero.
-  testing::BoxSetting row = testing::small_box(2);
+  tests::BoxSetting row = tests::small_box(2);
   row.extent = {9, 1, 0};
   EXPECT_EQ(outcome_without_support(row, {0, 1, 16, 17}), LinearOutcome::singular);
 }
 
 TEST(Cholesky, RefusesValuesThatAreNotFinite) {
-  const testing::BoxSetting box = testing::small_box(2);
+  const tests::BoxSetting box = tests::small_box(2);
   const BoxBody body(box);
   System system(box, some_prescribed(body), std::vector<double>(body.dofs(), 0.0));
   Cholesky solver;
@@ -181,7 +180,7 @@ TEST(Cholesky, RefusesValuesThatAreNotFinite) {
 }
 
 TEST(Cholesky, TakesABodyWithoutFreeDegreesOfFreedom) {
-  const testing::BoxSetting box = testing::small_box(2);
+  const tests::BoxSetting box = tests::small_box(2);
   const BoxBody body(box);
   System system(box, std::vector<char>(body.dofs(), 1), std::vector<double>(body.dofs(), 0.0));
   Cholesky solver;
@@ -192,7 +191,7 @@ TEST(Cholesky, TakesABodyWithoutFreeDegreesOfFreedom) {
 
 /// Large enough that some iterations cost less than a factorisation.
 System large_system() {
-  testing::BoxSetting box = testing::small_box(3);
+  tests::BoxSetting box = tests::small_box(3);
   box.extent = {11, 10, 9};
   const BoxBody body(box);
   return System(box, some_prescribed(body), std::vector<double>(body.dofs(), 0.0));
@@ -208,18 +207,18 @@ TEST(Cholesky, ReusedFactorGivesTheSolutionOfTheNewTangent) {
   const std::vector<double> old_solution = system.x;
 
   std::vector<double> state = system.body.random_state(5);
-  for (double& entry : state) entry *= 1e-3;
+  for (double& entry : state) entry *= 1e-4;
   system.assemble(state);
   ASSERT_EQ(system.solve(fresh, FactorUse::may_reuse), LinearOutcome::solved);
   EXPECT_EQ(fresh.statistics().factorisations, 2);
   const std::vector<double> expected = system.x;
-  ASSERT_GT(testing::distance(old_solution, expected), 1e-5 * testing::norm(expected));
+  ASSERT_GT(tests::distance(old_solution, expected), 1e-7 * tests::norm(expected));
 
   ASSERT_EQ(system.solve(reusing, FactorUse::may_reuse), LinearOutcome::solved);
   EXPECT_EQ(reusing.statistics().factorisations, 1);
   EXPECT_GT(reusing.last_iterations(), 0);
   EXPECT_EQ(reusing.statistics().iterations, reusing.last_iterations());
-  EXPECT_LT(testing::distance(system.x, expected), 1e-10 * testing::norm(expected));
+  EXPECT_LT(tests::distance(system.x, expected), 1e-10 * tests::norm(expected));
 
   ASSERT_EQ(system.solve(reusing, FactorUse::factorize_now), LinearOutcome::solved);
   EXPECT_EQ(reusing.statistics().factorisations, 2);
@@ -242,7 +241,7 @@ TEST(Cholesky, FactorizesAnewWhereTheOldFactorIsTooFarAway) {
   system.free.extend_by_zero(system.x, full);
   system.tangent.multiply(full, product);
   system.free.restrict_to_free(product, rest);
-  EXPECT_LT(testing::distance(rest, system.b), 1e-10 * testing::norm(system.b));
+  EXPECT_LT(tests::distance(rest, system.b), 1e-10 * tests::norm(system.b));
 
   // And an indefinite one is seen as such, although an old factor could stand in.
   for (std::size_t k = 0; k < state.size(); ++k) state[k] = -0.6 * system.body.points.reference[k];

@@ -24,13 +24,13 @@ LinearMap map_of(const MatrixXd& matrix) {
 }
 
 MatrixXd random_matrix(std::uint64_t seed) {
-  const std::vector<double> numbers = testing::Random(seed).vector(size * size);
+  const std::vector<double> numbers = tests::Random(seed).vector(size * size);
   return Eigen::Map<const MatrixXd>(numbers.data(), size, size);
 }
 
 struct System {
   MatrixXd matrix, identity = MatrixXd::Identity(size, size);
-  std::vector<double> b = testing::Random(1).vector(size), x = std::vector<double>(size, 7.0);
+  std::vector<double> b = tests::Random(1).vector(size), x = std::vector<double>(size, 7.0);
 
   System() {
     const MatrixXd root = random_matrix(2);

@@ -37,7 +37,7 @@ class Measure : public ::testing::Test {
  protected:
   using Arms = Vector<Case::size, double>;
 
-  testing::Random random_{11};
+  tests::Random random_{11};
 
   /// Arms of length about one that no direction is special for.
   Arms arms() {
@@ -73,7 +73,7 @@ TYPED_TEST(Measure, GradientIsDerivativeOfValue) {
       return std::vector<double>{TypeParam::from_current(1.0, moved).current};
     };
     const auto measure = TypeParam::from_current(1.0, arms);
-    EXPECT_TRUE(testing::is_derivative(value, {dot<TypeParam::size>(measure.gradient(), along)},
+    EXPECT_TRUE(tests::is_derivative(value, {dot<TypeParam::size>(measure.gradient(), along)},
                                        1e-3));
   }
 }
@@ -93,7 +93,7 @@ TYPED_TEST(Measure, HessianIsDerivativeOfGradient) {
     for (int r = 0; r < size; ++r) {
       for (int c = 0; c < size; ++c) derivative[r] += hessian[r][c] * along[c];
     }
-    EXPECT_TRUE(testing::is_derivative(gradient, derivative, 1e-3));
+    EXPECT_TRUE(tests::is_derivative(gradient, derivative, 1e-3));
   }
 }
 

@@ -14,8 +14,8 @@
 namespace peristat {
 namespace {
 
-using testing::BoxSetting;
-using testing::for_each_bond;
+using tests::BoxSetting;
+using tests::for_each_bond;
 
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
 
@@ -29,7 +29,7 @@ const Quadrature all_quadratures[] = {
 
 /// A box that has points whose neighbours' neighbours are all present.
 BoxSetting deep_box(int dimension, const Quadrature& quadrature) {
-  BoxSetting box = testing::small_box(dimension);
+  BoxSetting box = tests::small_box(dimension);
   box.extent = dimension == 1   ? std::array<int, 3>{30, 0, 0}
                : dimension == 2 ? std::array<int, 3>{14, 13, 0}
                                 : std::array<int, 3>{12, 11, 11};
@@ -42,11 +42,11 @@ double depth(const BoxSetting& box) { return (2.0 * box.horizon_ratio + 1.0) * b
 
 /// Ratio of the discrete energy density to the classical one under a confined unit strain along an
 /// axis: sums over ordered pairs, half of each bond's c s^2 L/2 w at either point.
-std::vector<double> confined_energy(const testing::BoxBody& body, int axis) {
+std::vector<double> confined_energy(const tests::BoxBody& body, int axis) {
   std::vector<double> energy(body.points.volume.size(), 0.0);
   const double modulus = micromodulus(1.0, body.setting);
   for_each_bond(body.term.bonds, [&](Index i, Index j, Offset bond) {
-    const double length = testing::reference_distance(body.points, i, j);
+    const double length = tests::reference_distance(body.points, i, j);
     const double n = (body.points.position(j)[axis] - body.points.position(i)[axis]) / length;
     const double whole = 0.5 * modulus * std::pow(n, 4) * length * body.term.bonds.weight[bond];
     energy[i] += 0.5 * whole / body.points.volume[i];
@@ -70,10 +70,10 @@ TEST(LinearPartialVolume, FallsLinearlyOverOneSizeAboutTheHorizon) {
 
 TEST(MakeBonds, WeighsWithTheProductOfVolumesWithoutCorrections) {
   for (int dimension = 1; dimension <= 3; ++dimension) {
-    Points points = testing::box_points(testing::small_box(dimension));
-    testing::Random random(1);
+    Points points = tests::box_points(tests::small_box(dimension));
+    tests::Random random(1);
     for (double& volume : points.volume) volume *= 1.0 + 0.5 * random.number();
-    const testing::BoxBody body(points, testing::small_box(dimension));
+    const tests::BoxBody body(points, tests::small_box(dimension));
     ASSERT_GT(body.term.bonds.count(), 20);
     for_each_bond(body.term.bonds, [&](Index i, Index j, Offset bond) {
       EXPECT_DOUBLE_EQ(body.term.bonds.weight[bond], points.volume[i] * points.volume[j]);
@@ -82,12 +82,12 @@ TEST(MakeBonds, WeighsWithTheProductOfVolumesWithoutCorrections) {
 }
 
 TEST(MakeBonds, AveragesTheLinearPartialVolumesOfBothPoints) {
-  BoxSetting box = testing::small_box(2);
+  BoxSetting box = tests::small_box(2);
   box.quadrature.volume = VolumeCorrection::linear;
-  Points points = testing::box_points(box);
-  testing::Random random(1);
+  Points points = tests::box_points(box);
+  tests::Random random(1);
   for (double& volume : points.volume) volume *= 1.0 + 0.3 * random.number();
-  const testing::BoxBody body(points, box);
+  const tests::BoxBody body(points, box);
   const double horizon = body.setting.horizon;
   double widest = 0.0;
   Offset partial = 0;
@@ -97,7 +97,7 @@ TEST(MakeBonds, AveragesTheLinearPartialVolumesOfBothPoints) {
   });
   for (Index i = 0; i < points.count(); ++i) {
     for (Index j = i + 1; j < points.count(); ++j) {
-      const double distance = testing::reference_distance(points, i, j);
+      const double distance = tests::reference_distance(points, i, j);
       const auto share = [&](Index of) {
         const double size = std::sqrt(points.volume[of] / box.cross_section);
         return std::clamp((horizon + 0.5 * size - distance) / size, 0.0, 1.0);
@@ -117,10 +117,10 @@ TEST(MakeBonds, AveragesTheLinearPartialVolumesOfBothPoints) {
 TEST(MakeBonds, IsSymmetricInTheTwoPoints) {
   for (int dimension = 1; dimension <= 3; ++dimension) {
     for (const Quadrature& quadrature : all_quadratures) {
-      BoxSetting box = testing::small_box(dimension);
+      BoxSetting box = tests::small_box(dimension);
       box.quadrature = quadrature;
-      Points points = testing::box_points(box);
-      testing::Random random(2);
+      Points points = tests::box_points(box);
+      tests::Random random(2);
       for (double& volume : points.volume) volume *= 1.0 + 0.3 * random.number();
       // The same points numbered backwards: every bond has its points swapped.
       Points backwards = points;
@@ -131,7 +131,7 @@ TEST(MakeBonds, IsSymmetricInTheTwoPoints) {
           backwards.reference[std::size_t(last - i) * dimension + c] = points.position(i)[c];
         }
       }
-      const testing::BoxBody one(points, box), other(backwards, box);
+      const tests::BoxBody one(points, box), other(backwards, box);
       std::map<std::pair<Index, Index>, double> weight;
       for_each_bond(other.term.bonds, [&](Index i, Index j, Offset bond) {
         weight[{last - j, last - i}] = other.term.bonds.weight[bond];
@@ -149,7 +149,7 @@ TEST(MakeBonds, IsSymmetricInTheTwoPoints) {
 TEST(MakeBonds, HasOnlyPositiveWeights) {
   for (int dimension = 1; dimension <= 3; ++dimension) {
     for (const Quadrature& quadrature : all_quadratures) {
-      const testing::BoxBody body(deep_box(dimension, quadrature));
+      const tests::BoxBody body(deep_box(dimension, quadrature));
       const auto& weight = body.term.bonds.weight;
       ASSERT_FALSE(weight.empty());
       EXPECT_GT(*std::min_element(weight.begin(), weight.end()), 0.0);
@@ -159,9 +159,9 @@ TEST(MakeBonds, HasOnlyPositiveWeights) {
 
 TEST(MakeBonds, GivesTheSameForAnyNumberOfThreads) {
   for (const Quadrature& quadrature : all_quadratures) {
-    BoxSetting box = testing::small_box(3);
+    BoxSetting box = tests::small_box(3);
     box.quadrature = quadrature;
-    const testing::BoxBody one(box, 1), three(box, 3);
+    const tests::BoxBody one(box, 1), three(box, 3);
     EXPECT_EQ(one.term.bonds.partner, three.term.bonds.partner);
     EXPECT_EQ(one.term.bonds.weight, three.term.bonds.weight);
   }
@@ -174,9 +174,9 @@ TEST(VolumeMethod, ScalesByTheMissingNeighbourhood) {
   for (int dimension = 1; dimension <= 3; ++dimension) {
     for (VolumeCorrection volume : {VolumeCorrection::none, VolumeCorrection::linear}) {
       const BoxSetting box = deep_box(dimension, {volume, SurfaceCorrection::volume});
-      const testing::BoxBody plain(deep_box(dimension, {volume, SurfaceCorrection::none}));
-      const testing::BoxBody corrected(box);
-      const auto neighbourhoods = [&](const testing::BoxBody& body) {
+      const tests::BoxBody plain(deep_box(dimension, {volume, SurfaceCorrection::none}));
+      const tests::BoxBody corrected(box);
+      const auto neighbourhoods = [&](const tests::BoxBody& body) {
         std::vector<double> sums(body.points.volume.size(), 0.0);
         for_each_bond(body.term.bonds, [&](Index i, Index j, Offset bond) {
           sums[i] += body.term.bonds.weight[bond] / body.points.volume[i];
@@ -192,8 +192,8 @@ TEST(VolumeMethod, ScalesByTheMissingNeighbourhood) {
         const double factor = corrected.term.bonds.weight[bond] / plain.term.bonds.weight[bond];
         EXPECT_NEAR(factor * (before[i] + before[j]) / (2.0 * bulk), 1.0, 1e-13);
         const double whole = (box.horizon_ratio + 0.5) * box.spacing;
-        const bool inside = testing::is_inside(plain.points, i, box, whole) &&
-                            testing::is_inside(plain.points, j, box, whole);
+        const bool inside = tests::is_inside(plain.points, i, box, whole) &&
+                            tests::is_inside(plain.points, j, box, whole);
         if (inside) {
           EXPECT_NEAR(factor, 1.0, 1e-13);
         }
@@ -217,15 +217,15 @@ TEST(EnergyMethod, MakesTheConfinedEnergyClassicalInTheBulk) {
       for (PlaneState plane : {PlaneState::stress, PlaneState::strain}) {
         BoxSetting box = deep_box(dimension, {volume, SurfaceCorrection::energy});
         box.plane = plane;
-        const testing::BoxBody corrected(box);
+        const tests::BoxBody corrected(box);
         box.quadrature.surface = SurfaceCorrection::none;
-        const testing::BoxBody plain(box);
+        const tests::BoxBody plain(box);
         for (int axis = 0; axis < dimension; ++axis) {
           const std::vector<double> energy = confined_energy(corrected, axis);
           const std::vector<double> uncorrected = confined_energy(plain, axis);
           int deep = 0;
           for (Index i = 0; i < corrected.points.count(); ++i) {
-            if (!testing::is_inside(corrected.points, i, box, depth(box))) continue;
+            if (!tests::is_inside(corrected.points, i, box, depth(box))) continue;
             ++deep;
             EXPECT_NEAR(energy[i], 1.0, 1e-13);
             EXPECT_GT(std::abs(uncorrected[i] - 1.0), 1e-5);  // the lattice alone is not
@@ -240,8 +240,8 @@ TEST(EnergyMethod, MakesTheConfinedEnergyClassicalInTheBulk) {
 TEST(EnergyMethod, ReducesTheErrorAtSurfaces) {
   for (int dimension = 1; dimension <= 3; ++dimension) {
     for (VolumeCorrection volume : {VolumeCorrection::none, VolumeCorrection::linear}) {
-      const testing::BoxBody plain(deep_box(dimension, {volume, SurfaceCorrection::none}));
-      const testing::BoxBody corrected(deep_box(dimension, {volume, SurfaceCorrection::energy}));
+      const tests::BoxBody plain(deep_box(dimension, {volume, SurfaceCorrection::none}));
+      const tests::BoxBody corrected(deep_box(dimension, {volume, SurfaceCorrection::energy}));
       // Over all points at the surface, along all axes; the mean, since a sharper worst case may
       // stand at a corner.
       double before = 0.0, after = 0.0;
@@ -260,7 +260,7 @@ TEST(EnergyMethod, ReducesTheErrorAtSurfaces) {
 
 TEST(ConfinedEnergyError, IsTheLargestOverPointsAndAxes) {
   for (int dimension = 1; dimension <= 3; ++dimension) {
-    const testing::BoxBody body(deep_box(dimension, {}));
+    const tests::BoxBody body(deep_box(dimension, {}));
     double expected = 0.0;
     for (int axis = 0; axis < dimension; ++axis) {
       for (double energy : confined_energy(body, axis)) {

@@ -21,7 +21,7 @@ Points points_at(int dimension, std::vector<double> reference) {
 
 /// Points in the cube from -1 to 1.
 Points cloud(int dimension, int count, std::uint64_t seed) {
-  return points_at(dimension, testing::Random(seed).vector(std::size_t(count) * dimension));
+  return points_at(dimension, tests::Random(seed).vector(std::size_t(count) * dimension));
 }
 
 /// Compares with all pairs. Ties are left to the tests that make them: no pair may come closer to
@@ -36,7 +36,7 @@ void expect_all_pairs(const Points& points, const Bonds& bonds, double radius,
   for (Index i = 0; i < points.count(); ++i) {
     std::vector<Index> partners;
     for (Index j = i + 1; j < points.count(); ++j) {
-      const double distance = testing::reference_distance(points, i, j);
+      const double distance = tests::reference_distance(points, i, j);
       ASSERT_GT(std::abs(distance / (radius * (1.0 + 1e-8)) - 1.0), margin);
       if (distance <= radius * (1.0 + 1e-8)) partners.push_back(j);
     }
@@ -44,8 +44,8 @@ void expect_all_pairs(const Points& points, const Bonds& bonds, double radius,
                                    bonds.partner.begin() + bonds.offset[i + 1]);
     ASSERT_EQ(found, partners) << "point " << i;
   }
-  testing::for_each_bond(bonds, [&](Index i, Index j, Offset bond) {
-    const double distance = testing::reference_distance(points, i, j);
+  tests::for_each_bond(bonds, [&](Index i, Index j, Offset bond) {
+    const double distance = tests::reference_distance(points, i, j);
     EXPECT_NEAR(bonds.length(bond) / distance, 1.0, 8 * std::numeric_limits<double>::epsilon());
   });
 }
@@ -84,20 +84,20 @@ TEST(SearchBonds, FindsNeighboursAtExactlyTheHorizonWhateverTheRoundOff) {
   for (int dimension = 1; dimension <= 3; ++dimension) {
     for (int ratio : {2, 3}) {
       for (double spacing : {0.1, 1.0 / 3.0, 0.7e-3, 1e5 / 7.0}) {
-        testing::BoxSetting box;
+        tests::BoxSetting box;
         box.dimension = dimension;
         box.extent = {8, 7, 7};
         box.spacing = spacing;
-        const Points points = testing::box_points(box);
+        const Points points = tests::box_points(box);
         const Bonds bonds = search_bonds(points, ratio * spacing, 2);
         std::vector<int> degree(points.volume.size(), 0);
-        testing::for_each_bond(bonds, [&](Index i, Index j, Offset) {
+        tests::for_each_bond(bonds, [&](Index i, Index j, Offset) {
           ++degree[i];
           ++degree[j];
         });
         int inner = 0;
         for (Index i = 0; i < points.count(); ++i) {
-          if (!testing::is_inside(points, i, box, (ratio + 0.4) * spacing)) continue;
+          if (!tests::is_inside(points, i, box, (ratio + 0.4) * spacing)) continue;
           ++inner;
           EXPECT_EQ(degree[i], expected[dimension - 1][ratio - 2])
               << dimension << "D, ratio " << ratio << ", spacing " << spacing;

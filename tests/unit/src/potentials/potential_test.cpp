@@ -42,7 +42,7 @@ TYPED_TEST(EveryPotential, FirstIsDerivativeOfValue) {
     const auto value = [&](double t) {
       return std::vector<double>{this->potential_(e + t).value};
     };
-    EXPECT_TRUE(testing::is_derivative(value, {this->potential_(e).first}, 1e-4)) << "at " << e;
+    EXPECT_TRUE(tests::is_derivative(value, {this->potential_(e).first}, 1e-4)) << "at " << e;
   }
 }
 
@@ -51,7 +51,7 @@ TYPED_TEST(EveryPotential, SecondIsDerivativeOfFirst) {
     const auto first = [&](double t) {
       return std::vector<double>{this->potential_(e + t).first};
     };
-    EXPECT_TRUE(testing::is_derivative(first, {this->potential_(e).second}, 1e-4)) << "at " << e;
+    EXPECT_TRUE(tests::is_derivative(first, {this->potential_(e).second}, 1e-4)) << "at " << e;
   }
 }
 
