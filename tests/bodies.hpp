@@ -112,7 +112,8 @@ struct BoxBody {
 
   [[nodiscard]] std::size_t dofs() const { return points.reference.size(); }
 
-  /// Random displacements of a tenth of the spacing: strains of some ten per cent, without symmetry.
+  /// Random displacements of a tenth of the spacing: strains of some ten per cent, without
+  /// symmetry.
   [[nodiscard]] std::vector<double> random_state(std::uint64_t seed) const {
     return Random(seed).vector(dofs(), 0.1 * points.spacing);
   }

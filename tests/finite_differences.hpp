@@ -49,8 +49,8 @@ inline ::testing::AssertionResult is_derivative(const AlongLine& f,
   const double size = norm(derivative);
   const std::vector<double> value = f(0.0);
   if (value.empty() || value.size() != derivative.size()) {
-    return ::testing::AssertionFailure() << value.size() << " values, " << derivative.size()
-                                         << " derivatives";
+    return ::testing::AssertionFailure()
+           << value.size() << " values, " << derivative.size() << " derivatives";
   }
   if (!(size > 0.0)) return ::testing::AssertionFailure() << "the derivative is " << size;
 

@@ -13,8 +13,8 @@ namespace peristat {
 /// `residual_error` is the smallest over step sizes h of |(E(u+hv) - E(u-hv))/2h - dE.v| / |dE.v|,
 /// and `tangent_error` that of ||(g(u+hv) - g(u-hv))/2h - K v|| / ||K v||. The orders are log2 of
 /// the ratio of the errors of successive halvings of h, at the smallest h at which truncation still
-/// dominates round-off; central differences have order 2 exactly when the derivative is right. Where
-/// truncation never does (the energy of a harmonic bar in 1D is quadratic) the order is null.
+/// dominates round-off; central differences have order 2 exactly when the derivative is right.
+/// Where truncation never does (the energy of a harmonic bar in 1D is quadratic) the order is null.
 ///
 /// Supports and loads are ignored.
 ///

@@ -93,7 +93,7 @@ class Architecture(unittest.TestCase):
             name = path.relative_to(ROOT).as_posix()
             result = subprocess.run(
                 [compiler, "-std=c++20", "-fsyntax-only", "-fopenmp", "-I", ROOT, "-Wall"]
-                + ["-Wextra", "-Wpedantic", "-Wshadow", "-Wno-psabi", "-Werror", "-x", "c++", "-"],
+                + ['-DPERISTAT_SOURCE_DIR=""', "-Wextra", "-Wpedantic", "-Wshadow", "-Wno-psabi", "-Werror", "-x", "c++", "-"],
                 input=f'#include "{name}"\n',
                 capture_output=True,
                 text=True,

@@ -45,8 +45,8 @@ TEST(Assembler, AllocatesNothingInItsCalls) {
     const tests::BoxBody body(tests::small_box(dimension));
     Assembler assembler(body.points, body.term, 2);
     const std::vector<double> state = body.random_state(1);
-    std::vector<double> gradient(body.dofs()), product(body.dofs()), v = state,
-                        energies(body.points.volume.size());
+    std::vector<double> gradient(body.dofs()), product(body.dofs()),
+        v = state, energies(body.points.volume.size());
     Tangent tangent(Pattern(body.term.bonds), dimension);
     bool degenerate = assembler.energy(state).degenerate;  // the threads start here
 

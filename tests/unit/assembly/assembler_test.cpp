@@ -47,15 +47,13 @@ TEST(Assembler, GradientIsDerivativeOfEnergy) {
     const BoxBody body(box);
     Assembler assembler(body.points, body.term, 2);
     const std::vector<double> state = body.random_state(1);
-    const std::vector<double> along =
-        tests::Random(2).vector(body.dofs(), body.points.spacing);
+    const std::vector<double> along = tests::Random(2).vector(body.dofs(), body.points.spacing);
     std::vector<double> gradient(body.dofs());
     ASSERT_FALSE(assembler.gradient(state, gradient).degenerate);
     const auto energy = [&](double t) {
       return std::vector<double>{assembler.energy(moved(state, t, along)).energy};
     };
-    EXPECT_TRUE(tests::is_derivative(energy, {dot(gradient, along)}, 1e-3))
-        << box.dimension << "D";
+    EXPECT_TRUE(tests::is_derivative(energy, {dot(gradient, along)}, 1e-3)) << box.dimension << "D";
   }
 }
 
@@ -64,8 +62,7 @@ TEST(Assembler, ProductIsDerivativeOfGradient) {
     const BoxBody body(box);
     Assembler assembler(body.points, body.term, 2);
     const std::vector<double> state = body.random_state(1);
-    const std::vector<double> along =
-        tests::Random(2).vector(body.dofs(), body.points.spacing);
+    const std::vector<double> along = tests::Random(2).vector(body.dofs(), body.points.spacing);
     std::vector<double> product(body.dofs());
     assembler.product(state, along, product);
     const auto gradient = [&](double t) {
@@ -98,8 +95,7 @@ TEST(Assembler, TangentIsDerivativeOfGradientInEveryColumn) {
         (void)assembler.gradient(moved(state, t, unit), result);
         return result;
       };
-      EXPECT_TRUE(tests::is_derivative(gradient, column, 1e-3))
-          << dimension << "D, column " << dof;
+      EXPECT_TRUE(tests::is_derivative(gradient, column, 1e-3)) << dimension << "D, column " << dof;
     }
   }
 }
@@ -149,8 +145,8 @@ TEST(Assembler, EnergyIsTheDoubleSumOverOrderedPairs) {
         }
         const double stretch = std::sqrt(squared) / reference - 1.0;
         most = std::max(most, stretch);
-        of_point[i] += 0.25 * modulus * stretch * stretch * reference * points.volume[j] *
-                       points.volume[i];
+        of_point[i] +=
+            0.25 * modulus * stretch * stretch * reference * points.volume[j] * points.volume[i];
       }
       energy += of_point[i];
     }
@@ -178,8 +174,8 @@ std::vector<double> everything(const BoxBody& body, int threads) {
   assembler.product(state, v, product);
   assembler.tangent(state, tangent);
   all.push_back(assembler.point_energies(state, energies));
-  for (const auto* part : {&gradient, &product, &energies, &tangent.diagonal,
-                           &tangent.off_diagonal}) {
+  for (const auto* part :
+       {&gradient, &product, &energies, &tangent.diagonal, &tangent.off_diagonal}) {
     all.insert(all.end(), part->begin(), part->end());
   }
   return all;
@@ -241,7 +237,8 @@ TEST(Assembler, ReportsDegenerateStates) {
       const Index i = body.points.count() / 2;
       const Index j = body.term.bonds.partner[body.term.bonds.offset[i]];
       for (int c = 0; c < dimension; ++c) {
-        state[std::size_t(i) * dimension + c] = body.points.position(j)[c] - body.points.position(i)[c];
+        state[std::size_t(i) * dimension + c] =
+            body.points.position(j)[c] - body.points.position(i)[c];
       }
       EXPECT_TRUE(assembler.gradient(state, gradient).degenerate);
       EXPECT_TRUE(assembler.energy(state).degenerate);

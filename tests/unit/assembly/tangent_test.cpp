@@ -21,9 +21,9 @@ struct Example {
   }
 };
 
-constexpr double dense[6][6] = {{1, 2, 10, 11, 0, 0},    {2, 3, 12, 13, 0, 0},
-                                {10, 12, 4, 5, 20, 21},  {11, 13, 5, 6, 22, 23},
-                                {0, 0, 20, 22, 7, 8},    {0, 0, 21, 23, 8, 9}};
+constexpr double dense[6][6] = {{1, 2, 10, 11, 0, 0},   {2, 3, 12, 13, 0, 0},
+                                {10, 12, 4, 5, 20, 21}, {11, 13, 5, 6, 22, 23},
+                                {0, 0, 20, 22, 7, 8},   {0, 0, 21, 23, 8, 9}};
 
 TEST(Tangent, MultipliesWithBothHalves) {
   const Example example;

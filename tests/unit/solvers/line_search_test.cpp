@@ -23,8 +23,8 @@ struct Search {
   LineSearchOptions options;
 
   explicit Search(int dimension, const char* force = "1e-3")
-      : problem(tests::small_box(dimension),
-                {tests::support("left", "0", "0", "0")}, {tests::body_force("all", force)}),
+      : problem(tests::small_box(dimension), {tests::support("left", "0", "0", "0")},
+                {tests::body_force("all", force)}),
         external_force(problem.body.dofs()),
         direction(problem.body.dofs()) {
     problem.conditions.external_force(1.0, external_force);

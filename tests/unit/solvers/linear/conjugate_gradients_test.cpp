@@ -95,14 +95,12 @@ TEST(ConjugateGradients, GiveZeroForAZeroRightHandSide) {
 TEST(ConjugateGradients, ReportTheLimitAndValuesThatAreNotFinite) {
   System system;
   ConjugateGradients gradients;
-  const GradientsResult limited = gradients.solve(map_of(system.matrix), map_of(system.identity),
-                                                  system.b, system.x, 1e-12, 3);
+  const GradientsResult limited =
+      gradients.solve(map_of(system.matrix), map_of(system.identity), system.b, system.x, 1e-12, 3);
   EXPECT_EQ(limited.outcome, GradientsOutcome::iteration_limit);
   EXPECT_EQ(limited.iterations, 3);
-  const MatrixXd broken =
-      std::numeric_limits<double>::quiet_NaN() * MatrixXd::Ones(size, size);
-  EXPECT_EQ(gradients
-                .solve(map_of(broken), map_of(system.identity), system.b, system.x, 1e-12, 10)
+  const MatrixXd broken = std::numeric_limits<double>::quiet_NaN() * MatrixXd::Ones(size, size);
+  EXPECT_EQ(gradients.solve(map_of(broken), map_of(system.identity), system.b, system.x, 1e-12, 10)
                 .outcome,
             GradientsOutcome::not_finite);
 }

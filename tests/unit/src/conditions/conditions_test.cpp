@@ -63,9 +63,9 @@ TEST(Conditions, PrescribesOnlyTheGivenComponents) {
 
 TEST(Conditions, BodyForceActsOnEveryVolumeAtItsPlace) {
   const Points points = four_points();
-  const Conditions conditions(
-      points, {},
-      {load(body_force, "middle", {"x*load", "y", "0"}), load(body_force, "left", {"3", "0", "0"})});
+  const Conditions conditions(points, {},
+                              {load(body_force, "middle", {"x*load", "y", "0"}),
+                               load(body_force, "left", {"3", "0", "0"})});
   std::vector<double> force(8, -1.0);
   conditions.external_force(0.5, force);
   // Point 1 (volume 2) at (1, 11), point 2 (volume 3) at (2, 12).
@@ -91,8 +91,8 @@ TEST(Conditions, TotalForceIsSpreadInProportionToVolume) {
 
 TEST(Conditions, ReactionsAreWhatTheSupportsAdd) {
   const Points points = four_points();
-  const Conditions conditions(
-      points, {support("left", "0"), support("middle", std::nullopt, "load")}, {});
+  const Conditions conditions(points,
+                              {support("left", "0"), support("middle", std::nullopt, "load")}, {});
   const std::vector<double> gradient{1, 2, 4, 8, 16, 32, 64, 128};
   const std::vector<double> external{0.5, 0, 0.25, 0.125, 0, 0, 0, 0};
   const auto reactions = conditions.reactions(gradient, external);
@@ -105,34 +105,38 @@ TEST(Conditions, TakesSupportsThatAgreeWhereTheyOverlap) {
   const Points points = four_points();
   EXPECT_NO_THROW(Conditions(points, {support("left", "x*load"), support("middle", "load")},
                              {}));  // both 1 at x = 1
-  EXPECT_NO_THROW(Conditions(points, {support("left", "1"), support("middle", std::nullopt, "2")}, {}));
+  EXPECT_NO_THROW(
+      Conditions(points, {support("left", "1"), support("middle", std::nullopt, "2")}, {}));
 }
 
 TEST(Conditions, RefusesSupportsThatContradictEachOther) {
   const Points points = four_points();
   const auto make = [&](const std::string& one, const std::string& other) {
-    return refusal(
-        [&] { Conditions(points, {support("left", one), support("middle", other)}, {}); });
+    return refusal([&] {
+      Conditions(points, {support("left", one), support("middle", other)}, {});
+    });
   };
   const InputError error = make("0.25", "x");
   EXPECT_EQ(error.key(), "support");
   for (const char* told : {"left", "middle", "contradict", "in x", "(1.0", "0.25"}) {
     EXPECT_NE(error.allowed().find(told), std::string::npos) << told << ": " << error.allowed();
   }
-  make("load", "1.5*load");       // at the end
-  make("load*(1 - load)", "0");   // only on the way
-  make("1", "1 - load");          // not at the start
+  make("load", "1.5*load");      // at the end
+  make("load*(1 - load)", "0");  // only on the way
+  make("1", "1 - load");         // not at the start
 }
 
 TEST(Conditions, RefusesUnknownAndEmptySets) {
   const Points points = four_points();
-  const InputError unknown = refusal(
-      [&] { Conditions(points, {support("first", "0"), support("riht", "0")}, {}); });
+  const InputError unknown = refusal([&] {
+    Conditions(points, {support("first", "0"), support("riht", "0")}, {});
+  });
   EXPECT_EQ(unknown.key(), "support[1].set");
   EXPECT_EQ(unknown.value(), "\"riht\"");
   EXPECT_NE(unknown.allowed().find("middle"), std::string::npos);
-  const InputError empty =
-      refusal([&] { Conditions(points, {}, {load(body_force, "none", {"0", "0", "0"})}); });
+  const InputError empty = refusal([&] {
+    Conditions(points, {}, {load(body_force, "none", {"0", "0", "0"})});
+  });
   EXPECT_EQ(empty.key(), "load[0].set");
   EXPECT_NE(empty.allowed().find("no point"), std::string::npos);
 }
@@ -141,12 +145,14 @@ TEST(Conditions, NamesTheKeyOfABadExpression) {
   const Points points = four_points();
   EXPECT_EQ(refusal([&] { Conditions(points, {support("left", "2*q")}, {}); }).key(),
             "support[0].displacement");
-  EXPECT_EQ(refusal([&] { Conditions(points, {}, {load(body_force, "left", {"(", "0", "0"})}); })
-                .key(),
+  EXPECT_EQ(refusal([&] {
+              Conditions(points, {}, {load(body_force, "left", {"(", "0", "0"})});
+            }).key(),
             "load[0].body_force");
   // A total force has no place.
-  EXPECT_EQ(refusal([&] { Conditions(points, {}, {load(total_force, "left", {"x", "0", "0"})}); })
-                .key(),
+  EXPECT_EQ(refusal([&] {
+              Conditions(points, {}, {load(total_force, "left", {"x", "0", "0"})});
+            }).key(),
             "load[0].total_force");
 }
 

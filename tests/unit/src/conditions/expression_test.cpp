@@ -153,6 +153,8 @@ TEST(Expression, NamesThePlaceWhereItIsNotFinite) {
             "the value at (x, y) = (0, 2), load = 0.5 is inf; it must be finite");
   EXPECT_NE(refusal("sqrt(x - 1)", 1, without_load).find("at (x) = (0) is"), std::string::npos);
   EXPECT_EQ(refusal("1/x", 2, with_load, {4, 0, 0}), "accepted");
+  // Without a dimension there is no place, only the load factor.
+  EXPECT_EQ(refusal("1/(load - 0.5)", 0), "the value at load = 0.5 is inf; it must be finite");
 }
 
 TEST(Expression, RefusesAConstantThatIsNotFiniteAtOnce) {

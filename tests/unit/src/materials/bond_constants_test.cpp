@@ -69,8 +69,8 @@ double classical_energy(const BondSetting& setting, const Strain& e) {
   const double lambda = plane_stress ? youngs_modulus * nu / (1.0 - nu * nu)
                                      : youngs_modulus * nu / ((1.0 + nu) * (1.0 - 2.0 * nu));
   const double trace = e[0] + e[1] + e[2];
-  const double squares = e[0] * e[0] + e[1] * e[1] + e[2] * e[2] +
-                         2.0 * (e[3] * e[3] + e[4] * e[4] + e[5] * e[5]);
+  const double squares =
+      e[0] * e[0] + e[1] * e[1] + e[2] * e[2] + 2.0 * (e[3] * e[3] + e[4] * e[4] + e[5] * e[5]);
   return 0.5 * lambda * trace * trace + shear * squares;
 }
 
@@ -85,7 +85,8 @@ std::vector<Strain> strains(int dimension) {
   if (dimension == 2) {
     return {{1, 0, 0, 0, 0, 0}, {0, 1, 0, 0, 0, 0}, {0, 0, 0, 1, 0, 0}, {0.7, -0.4, 0, 0.2, 0, 0}};
   }
-  return {{1, 0, 0, 0, 0, 0}, {0, 0, 1, 0, 0, 0}, {0, 0, 0, 0, 1, 0}, {0.7, -0.4, 0.1, 0.2, 0.3, -0.6}};
+  return {
+      {1, 0, 0, 0, 0, 0}, {0, 0, 1, 0, 0, 0}, {0, 0, 0, 0, 1, 0}, {0.7, -0.4, 0.1, 0.2, 0.3, -0.6}};
 }
 
 // The midpoint rules leave some 1e-7.

@@ -73,8 +73,8 @@ TYPED_TEST(Measure, GradientIsDerivativeOfValue) {
       return std::vector<double>{TypeParam::from_current(1.0, moved).current};
     };
     const auto measure = TypeParam::from_current(1.0, arms);
-    EXPECT_TRUE(tests::is_derivative(value, {dot<TypeParam::size>(measure.gradient(), along)},
-                                       1e-3));
+    EXPECT_TRUE(
+        tests::is_derivative(value, {dot<TypeParam::size>(measure.gradient(), along)}, 1e-3));
   }
 }
 
@@ -129,8 +129,8 @@ Matrix<D, double> rotation() {
           {{0.0, -axis[2], axis[1]}, {axis[2], 0.0, -axis[0]}, {-axis[1], axis[0], 0.0}}};
       for (int r = 0; r < 3; ++r) {
         for (int c = 0; c < 3; ++c) {
-          result[r][c] = (r == c ? cosine : 0.0) + (1.0 - cosine) * axis[r] * axis[c] +
-                         sine * cross[r][c];
+          result[r][c] =
+              (r == c ? cosine : 0.0) + (1.0 - cosine) * axis[r] * axis[c] + sine * cross[r][c];
         }
       }
     }
@@ -150,7 +150,8 @@ Vector<Size, double> rotated(const Vector<Size, double>& arms) {
   return result;
 }
 
-// A translation leaves relative vectors as they are; what is left of a rigid motion is its rotation.
+// A translation leaves relative vectors as they are; what is left of a rigid motion is its
+// rotation.
 TYPED_TEST(Measure, IsInvariantUnderRigidMotion) {
   constexpr int size = TypeParam::size, dimension = TypeParam::dimension;
   const auto arms = this->arms();

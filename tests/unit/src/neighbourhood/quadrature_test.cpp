@@ -19,13 +19,12 @@ using tests::for_each_bond;
 
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
 
-const Quadrature all_quadratures[] = {
-    {VolumeCorrection::none, SurfaceCorrection::none},
-    {VolumeCorrection::linear, SurfaceCorrection::none},
-    {VolumeCorrection::none, SurfaceCorrection::volume},
-    {VolumeCorrection::linear, SurfaceCorrection::volume},
-    {VolumeCorrection::none, SurfaceCorrection::energy},
-    {VolumeCorrection::linear, SurfaceCorrection::energy}};
+const Quadrature all_quadratures[] = {{VolumeCorrection::none, SurfaceCorrection::none},
+                                      {VolumeCorrection::linear, SurfaceCorrection::none},
+                                      {VolumeCorrection::none, SurfaceCorrection::volume},
+                                      {VolumeCorrection::linear, SurfaceCorrection::volume},
+                                      {VolumeCorrection::none, SurfaceCorrection::energy},
+                                      {VolumeCorrection::linear, SurfaceCorrection::energy}};
 
 /// A box that has points whose neighbours' neighbours are all present.
 BoxSetting deep_box(int dimension, const Quadrature& quadrature) {

@@ -39,18 +39,14 @@ TYPED_TEST_SUITE(EveryPotential, TypesOf<BondPotential>::type);
 
 TYPED_TEST(EveryPotential, FirstIsDerivativeOfValue) {
   for (double e : relative_changes) {
-    const auto value = [&](double t) {
-      return std::vector<double>{this->potential_(e + t).value};
-    };
+    const auto value = [&](double t) { return std::vector<double>{this->potential_(e + t).value}; };
     EXPECT_TRUE(tests::is_derivative(value, {this->potential_(e).first}, 1e-4)) << "at " << e;
   }
 }
 
 TYPED_TEST(EveryPotential, SecondIsDerivativeOfFirst) {
   for (double e : relative_changes) {
-    const auto first = [&](double t) {
-      return std::vector<double>{this->potential_(e + t).first};
-    };
+    const auto first = [&](double t) { return std::vector<double>{this->potential_(e + t).first}; };
     EXPECT_TRUE(tests::is_derivative(first, {this->potential_(e).second}, 1e-4)) << "at " << e;
   }
 }
