@@ -166,7 +166,7 @@ struct Assembler::Kernels {
       const RowRange range = a.ranges_[thread];
       double* sums = a.sums_[thread].data();
       std::fill_n(sums, std::size_t(range.reach - range.first) * width, 0.0);
-      body(thread, range, sums - std::ptrdiff_t(range.first) * width);
+      if (range.last > range.first) body(thread, range, sums - std::ptrdiff_t(range.first) * width);
 #pragma omp barrier
       for (Index i = range.first; i < range.last; ++i) {
         double* total = sums + std::size_t(i - range.first) * width;
@@ -347,7 +347,7 @@ Assembler::Assembler(const Points& points, const BondTerm& term, int threads)
       rows_(std::size_t(points.count()) * row_width(points.dimension)),
       sums_(ranges_.size()),
       stored_(ranges_.size()),
-      longest_(ranges_.size()) {
+      longest_(ranges_.size(), -1.0) {
   for (std::size_t t = 0; t < ranges_.size(); ++t) {
     sums_[t].resize(std::size_t(ranges_[t].reach - ranges_[t].first) *
                     block_width(points.dimension));
