@@ -1,324 +1,13 @@
 #include "assembly/assembler.hpp"
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <limits>
 #include <type_traits>
 
-#include <omp.h>
-
-#include "assembly/interaction.hpp"
-#include "src/lanes.hpp"
-#include "src/measures/length.hpp"
+#include "assembly/bond_kernels.hpp"
+#include "assembly/local_kernels.hpp"
+#include "assembly/workspace.hpp"
 #include "src/stopwatch.hpp"
 
 namespace peristat {
-namespace {
-
-/// Doubles of a gathered row: two vectors of the dimension, each padded to a transposition's width
-/// where they don't fit one together.
-constexpr int row_width(int dimension) { return dimension == 3 ? 8 : 4; }
-
-/// Doubles of a point's sum: of a vector, and of the upper half of a symmetric block.
-constexpr int vector_width(int dimension) { return dimension == 3 ? 4 : dimension; }
-constexpr int block_width(int dimension) { return dimension == 3 ? 8 : 4; }
-
-/// Up to lane_count bonds of one row, side by side. Lanes past `count` repeat the last bond with
-/// weight zero, so that they add nothing.
-template <int D>
-struct Batch {
-  Offset first;
-  int count;
-  std::array<Index, lane_count> partner;
-  Lanes weight, inverse_length;
-  Vector<D, Lanes> vector0, vector1;  // partner's minus the row's own gathered vectors
-};
-
-/// Calls visit(batch) for the bonds of row i.
-template <int D, class Visit>
-[[gnu::always_inline]] inline void for_each_batch(const Bonds& bonds, const double* rows, Index i,
-                                                  const Visit& visit) {
-  constexpr int width = row_width(D);
-  const double* own = rows + std::size_t(i) * width;
-  const Offset end = bonds.offset[i + 1];
-  Batch<D> batch;
-  for (Offset first = bonds.offset[i]; first < end; first += lane_count) {
-    batch.first = first;
-    batch.count = static_cast<int>(std::min<Offset>(lane_count, end - first));
-    if (batch.count == lane_count) {
-      for (int l = 0; l < lane_count; ++l) batch.partner[l] = bonds.partner[first + l];
-      batch.weight.copy_from(&bonds.weight[first], std::experimental::element_aligned);
-      batch.inverse_length.copy_from(&bonds.inverse_length[first],
-                                     std::experimental::element_aligned);
-    } else {
-      const auto bond = [&](int l) { return first + std::min(l, batch.count - 1); };
-      for (int l = 0; l < lane_count; ++l) batch.partner[l] = bonds.partner[bond(l)];
-      batch.weight = Lanes([&](int l) { return l < batch.count ? bonds.weight[first + l] : 0.0; });
-      batch.inverse_length = Lanes([&](int l) { return bonds.inverse_length[bond(l)]; });
-    }
-    std::array<const double*, lane_count> row;
-    for (int l = 0; l < lane_count; ++l) row[l] = rows + std::size_t(batch.partner[l]) * width;
-    Lanes columns[8];
-    load_transposed(row[0], row[1], row[2], row[3], columns);
-    if constexpr (D == 3) {
-      load_transposed(row[0] + 4, row[1] + 4, row[2] + 4, row[3] + 4, columns + 4);
-    }
-    for (int c = 0; c < D; ++c) {
-      batch.vector0[c] = columns[c] - own[c];
-      batch.vector1[c] = columns[width / 2 + c] - own[width / 2 + c];
-    }
-    visit(batch);
-  }
-}
-
-/// Adds lane l of a vector to the sum of partner l.
-template <int D>
-inline void add_to_partners(double* sums, const std::array<Index, lane_count>& partner,
-                            const Vector<D, Lanes>& vector) {
-  if constexpr (D == 3) {
-    lanes_detail::Row rows[4];
-    store_transposed(vector[0], vector[1], vector[2], Lanes(0.0), rows);
-    for (int l = 0; l < lane_count; ++l) add_row(sums + std::ptrdiff_t(partner[l]) * 4, rows[l]);
-  } else if constexpr (D == 2) {
-    lanes_detail::Pair pairs[4];
-    store_transposed(vector[0], vector[1], pairs);
-    for (int l = 0; l < lane_count; ++l) add_row(sums + std::ptrdiff_t(partner[l]) * 2, pairs[l]);
-  } else {
-    for (int l = 0; l < lane_count; ++l) sums[partner[l]] += vector[0][l];
-  }
-}
-
-/// Upper half of a symmetric block as the lanes that are stored: xx xy yy, or xx xy xz yy yz zz.
-template <int D>
-inline std::array<Lanes, block_width(D)> upper_half(const Matrix<D, Lanes>& block) {
-  std::array<Lanes, block_width(D)> half;
-  half.fill(Lanes(0.0));
-  int k = 0;
-  for (int r = 0; r < D; ++r) {
-    for (int c = r; c < D; ++c) half[k++] = block[r][c];
-  }
-  return half;
-}
-
-template <int D>
-inline void add_to_partners(double* sums, const std::array<Index, lane_count>& partner,
-                            const std::array<Lanes, block_width(D)>& half) {
-  for (int part = 0; part < block_width(D); part += 4) {
-    lanes_detail::Row rows[4];
-    store_transposed(half[part], half[part + 1], half[part + 2], half[part + 3], rows);
-    for (int l = 0; l < lane_count; ++l) {
-      add_row(sums + std::ptrdiff_t(partner[l]) * block_width(D) + part, rows[l]);
-    }
-  }
-}
-
-/// Writes minus the block of lane l to the off-diagonal block of bond l.
-template <int D>
-inline void store_blocks(double* blocks, int count, const Matrix<D, Lanes>& block) {
-  if constexpr (D == 1) {
-    for (int l = 0; l < count; ++l) blocks[l] = -block[0][0][l];
-  } else if constexpr (D == 2) {
-    lanes_detail::Row rows[4];
-    store_transposed(-block[0][0], -block[0][1], -block[1][0], -block[1][1], rows);
-    for (int l = 0; l < count; ++l) store_row(blocks + l * 4, rows[l]);
-  } else {
-    lanes_detail::Row head[4], tail[4];
-    store_transposed(-block[0][0], -block[0][1], -block[0][2], -block[1][0], head);
-    store_transposed(-block[1][1], -block[1][2], -block[2][0], -block[2][1], tail);
-    const Lanes last = -block[2][2];
-    for (int l = 0; l < count; ++l) {
-      store_row(blocks + l * 9, head[l]);
-      store_row(blocks + l * 9 + 4, tail[l]);
-      blocks[l * 9 + 8] = last[l];
-    }
-  }
-}
-
-}  // namespace
-
-/// The passes, for one dimension; the potential is chosen once, outside the loops.
-template <int D>
-struct Assembler::Kernels {
-  using Span = std::span<const double>;
-
-  /// Gathered rows: two vectors per point, e.g. reference position and displacement.
-  static void pack(Assembler& a, Span first, Span second) {
-    constexpr int width = row_width(D);
-    const Index count = a.points_.count();
-#pragma omp parallel for num_threads(a.threads())
-    for (Index i = 0; i < count; ++i) {
-      double* row = &a.rows_[std::size_t(i) * width];
-      for (int c = 0; c < D; ++c) {
-        row[c] = first[std::size_t(i) * D + c];
-        row[width / 2 + c] = second[std::size_t(i) * D + c];
-      }
-    }
-  }
-
-  /// Runs body(range, sums) on every thread with cleared sums of `width` doubles per row, then
-  /// calls write(row, total) with the threads' sums added up in order.
-  template <int width, class Body, class Write>
-  static void sum_rows(Assembler& a, const Body& body, const Write& write) {
-#pragma omp parallel num_threads(a.threads())
-    {
-      const int thread = omp_get_thread_num();
-      const RowRange range = a.ranges_[thread];
-      double* sums = a.sums_[thread].data();
-      std::fill_n(sums, std::size_t(range.reach - range.first) * width, 0.0);
-      if (range.last > range.first) body(thread, range, sums - std::ptrdiff_t(range.first) * width);
-#pragma omp barrier
-      for (Index i = range.first; i < range.last; ++i) {
-        double* total = sums + std::size_t(i - range.first) * width;
-        for (int earlier = 0; earlier < thread; ++earlier) {
-          const RowRange other = a.ranges_[earlier];
-          if (i >= other.reach) continue;
-          const double* spilled = &a.sums_[earlier][std::size_t(i - other.first) * width];
-          for (int c = 0; c < width; ++c) total[c] += spilled[c];
-        }
-        write(i, total);
-      }
-    }
-  }
-
-  static Stored combined(const std::vector<Stored>& parts) {
-    Stored stored;
-    for (const Stored& part : parts) {
-      stored.energy += part.energy;
-      stored.degenerate |= part.degenerate;
-    }
-    stored.degenerate |= !std::isfinite(stored.energy);
-    return stored;
-  }
-
-  template <class P>
-  static Stored gradient(Assembler& a, const P& potential, Span displacement,
-                         std::span<double> result) {
-    pack(a, a.points_.reference, displacement);
-    std::vector<Stored>& parts = a.stored_;
-    const Bonds& bonds = a.term_.bonds;
-    const bool energy_only = result.empty();
-    constexpr int width = vector_width(D);
-    const auto body = [&](int thread, RowRange range, double* sums) {
-      Lanes shortest = std::numeric_limits<double>::infinity();
-      double energy = 0.0;
-      for (Index i = range.first; i < range.last; ++i) {
-        Lanes row_energy = 0.0;
-        Vector<D, Lanes> own;
-        own.fill(Lanes(0.0));
-        for_each_batch<D>(bonds, a.rows_.data(), i, [&](const Batch<D>& batch) {
-          const auto measure = Length::at<D>(batch.inverse_length, batch.vector0, batch.vector1);
-          const auto psi = interaction_energy(batch.weight, potential, measure);
-          row_energy += psi.value;
-          shortest = std::experimental::min(shortest, measure.current);
-          if (energy_only) return;
-          const Vector<D, Lanes> force = energy_gradient<D>(psi, measure);
-          for (int c = 0; c < D; ++c) own[c] -= force[c];
-          add_to_partners<D>(sums, batch.partner, force);
-        });
-        energy += sum(row_energy);
-        for (int c = 0; c < D; ++c) sums[std::ptrdiff_t(i) * width + c] += sum(own[c]);
-      }
-      parts[thread] = {energy, !(smallest(shortest) > 0.0)};
-    };
-    sum_rows<width>(a, body, [&](Index i, const double* total) {
-      if (energy_only) return;
-      for (int c = 0; c < D; ++c) result[std::size_t(i) * D + c] = total[c];
-    });
-    return combined(parts);
-  }
-
-  template <class P>
-  static void tangent(Assembler& a, const P& potential, Span displacement, Tangent& result) {
-    pack(a, a.points_.reference, displacement);
-    const Bonds& bonds = a.term_.bonds;
-    constexpr int width = block_width(D);
-    const auto body = [&](int, RowRange range, double* sums) {
-      for (Index i = range.first; i < range.last; ++i) {
-        std::array<Lanes, width> own;
-        own.fill(Lanes(0.0));
-        for_each_batch<D>(bonds, a.rows_.data(), i, [&](const Batch<D>& batch) {
-          const auto measure = Length::at<D>(batch.inverse_length, batch.vector0, batch.vector1);
-          const auto psi = interaction_energy(batch.weight, potential, measure);
-          const Matrix<D, Lanes> block = energy_hessian<D>(psi, measure);
-          store_blocks<D>(&result.off_diagonal[std::size_t(batch.first) * D * D], batch.count,
-                          block);
-          const auto half = upper_half<D>(block);
-          for (int c = 0; c < width; ++c) own[c] += half[c];
-          add_to_partners<D>(sums, batch.partner, half);
-        });
-        for (int c = 0; c < D * (D + 1) / 2; ++c)
-          sums[std::ptrdiff_t(i) * width + c] += sum(own[c]);
-      }
-    };
-    sum_rows<width>(a, body, [&](Index i, const double* total) {
-      double* block = &result.diagonal[std::size_t(i) * D * D];
-      int k = 0;
-      for (int r = 0; r < D; ++r) {
-        for (int c = r; c < D; ++c) block[r * D + c] = block[c * D + r] = total[k++];
-      }
-    });
-  }
-
-  template <class P>
-  static void product(Assembler& a, const P& potential, Span displacement, Span v,
-                      std::span<double> result) {
-    pack(a, displacement, v);
-    constexpr int row = row_width(D);
-    const Index count = a.points_.count();
-#pragma omp parallel for num_threads(a.threads())
-    for (Index i = 0; i < count; ++i) {
-      for (int c = 0; c < D; ++c) {
-        a.rows_[std::size_t(i) * row + c] += a.points_.reference[std::size_t(i) * D + c];
-      }
-    }
-    const Bonds& bonds = a.term_.bonds;
-    constexpr int width = vector_width(D);
-    const auto body = [&](int, RowRange range, double* sums) {
-      for (Index i = range.first; i < range.last; ++i) {
-        Vector<D, Lanes> own;
-        own.fill(Lanes(0.0));
-        for_each_batch<D>(bonds, a.rows_.data(), i, [&](const Batch<D>& batch) {
-          const auto measure = Length::from_current<D>(batch.inverse_length, batch.vector0);
-          const auto psi = interaction_energy(batch.weight, potential, measure);
-          const Vector<D, Lanes> force = energy_hessian_times<D>(psi, measure, batch.vector1);
-          for (int c = 0; c < D; ++c) own[c] -= force[c];
-          add_to_partners<D>(sums, batch.partner, force);
-        });
-        for (int c = 0; c < D; ++c) sums[std::ptrdiff_t(i) * width + c] += sum(own[c]);
-      }
-    };
-    sum_rows<width>(a, body, [&](Index i, const double* total) {
-      for (int c = 0; c < D; ++c) result[std::size_t(i) * D + c] = total[c];
-    });
-  }
-
-  template <class P>
-  static double point_energies(Assembler& a, const P& potential, Span displacement,
-                               std::span<double> energies) {
-    pack(a, a.points_.reference, displacement);
-    const Bonds& bonds = a.term_.bonds;
-    std::vector<double>& longest = a.longest_;
-    const auto body = [&](int thread, RowRange range, double* sums) {
-      Lanes most = -1.0;
-      for (Index i = range.first; i < range.last; ++i) {
-        Lanes own = 0.0;
-        for_each_batch<D>(bonds, a.rows_.data(), i, [&](const Batch<D>& batch) {
-          const auto measure = Length::at<D>(batch.inverse_length, batch.vector0, batch.vector1);
-          const Lanes half = 0.5 * interaction_energy(batch.weight, potential, measure).value;
-          most = std::experimental::max(most, measure.relative_change);
-          own += half;
-          add_to_partners<1>(sums, batch.partner, Vector<1, Lanes>{half});
-        });
-        sums[i] += sum(own);
-      }
-      longest[thread] = largest(most);
-    };
-    sum_rows<1>(a, body, [&](Index i, const double* total) { energies[i] = *total; });
-    return *std::max_element(longest.begin(), longest.end());
-  }
-};
-
 namespace {
 
 /// Calls body with the dimension as a compile-time constant and the potential as its own type.
@@ -338,21 +27,22 @@ auto dispatch(int dimension, const BondPotential& potential, const Body& body) {
       potential);
 }
 
+/// Calls body with the dimension as a compile-time constant, for models with more than bonds.
+template <class Body>
+void with_dimension(int dimension, const Body& body) {
+  if (dimension == 2) body(std::integral_constant<int, 2>{});
+  if (dimension == 3) body(std::integral_constant<int, 3>{});
+}
+
 }  // namespace
 
-Assembler::Assembler(const Points& points, const BondTerm& term, int threads)
-    : points_(points),
-      term_(term),
-      ranges_(partition_rows(Pattern(term.bonds), threads)),
-      rows_(std::size_t(points.count()) * row_width(points.dimension)),
-      sums_(ranges_.size()),
-      stored_(ranges_.size()),
-      longest_(ranges_.size(), -1.0) {
-  for (std::size_t t = 0; t < ranges_.size(); ++t) {
-    sums_[t].resize(std::size_t(ranges_[t].reach - ranges_[t].first) *
-                    block_width(points.dimension));
-  }
-}
+Assembler::Assembler(const Points& points, const Model& model, int threads)
+    : workspace_(std::make_unique<Workspace>(points, model, threads)) {}
+Assembler::~Assembler() = default;
+
+int Assembler::threads() const { return workspace_->threads(); }
+const Points& Assembler::points() const { return workspace_->points; }
+const Model& Assembler::model() const { return workspace_->model; }
 
 Stored Assembler::energy(std::span<const double> displacement) {
   return gradient(displacement, {});
@@ -360,31 +50,59 @@ Stored Assembler::energy(std::span<const double> displacement) {
 
 Stored Assembler::gradient(std::span<const double> displacement, std::span<double> gradient) {
   const Stopwatch watch(seconds_);
-  return dispatch(points_.dimension, term_.potential, [&](auto d, const auto& law) {
-    return Kernels<decltype(d)::value>::gradient(*this, law, displacement, gradient);
+  const int dimension = points().dimension;
+  Stored stored = dispatch(dimension, model().potential, [&](auto d, const auto& law) {
+    return BondKernels<decltype(d)::value>::gradient(*workspace_, law, displacement, gradient);
   });
+  if (model().has_only_bonds()) return stored;
+  with_dimension(dimension, [&](auto d) {
+    const Stored higher =
+        LocalKernels<decltype(d)::value>::gradient(*workspace_, displacement, gradient);
+    stored.energy += higher.energy;
+    stored.degenerate |= higher.degenerate;
+  });
+  return stored;
 }
 
-void Assembler::tangent(std::span<const double> displacement, Tangent& tangent) {
+void Assembler::tangent(std::span<const double> displacement, Tangent& tangent,
+                        Curvature curvature) {
   const Stopwatch watch(seconds_);
-  dispatch(points_.dimension, term_.potential, [&](auto d, const auto& law) {
-    Kernels<decltype(d)::value>::tangent(*this, law, displacement, tangent);
+  const int dimension = points().dimension;
+  dispatch(dimension, model().potential, [&](auto d, const auto& law) {
+    BondKernels<decltype(d)::value>::tangent(*workspace_, law, displacement, curvature, tangent);
+  });
+  if (model().has_only_bonds()) return;
+  with_dimension(dimension, [&](auto d) {
+    LocalKernels<decltype(d)::value>::tangent(*workspace_, displacement, curvature, tangent);
   });
 }
 
 void Assembler::product(std::span<const double> displacement, std::span<const double> v,
                         std::span<double> product) {
   const Stopwatch watch(seconds_);
-  dispatch(points_.dimension, term_.potential, [&](auto d, const auto& law) {
-    Kernels<decltype(d)::value>::product(*this, law, displacement, v, product);
+  const int dimension = points().dimension;
+  dispatch(dimension, model().potential, [&](auto d, const auto& law) {
+    BondKernels<decltype(d)::value>::product(*workspace_, law, displacement, v, product);
+  });
+  if (model().has_only_bonds()) return;
+  with_dimension(dimension, [&](auto d) {
+    LocalKernels<decltype(d)::value>::product(*workspace_, displacement, v, product);
   });
 }
 
 double Assembler::point_energies(std::span<const double> displacement, std::span<double> energies) {
   const Stopwatch watch(seconds_);
-  return dispatch(points_.dimension, term_.potential, [&](auto d, const auto& law) {
-    return Kernels<decltype(d)::value>::point_energies(*this, law, displacement, energies);
+  const int dimension = points().dimension;
+  const double longest = dispatch(dimension, model().potential, [&](auto d, const auto& law) {
+    return BondKernels<decltype(d)::value>::point_energies(*workspace_, law, displacement,
+                                                           energies);
   });
+  if (!model().has_only_bonds()) {
+    with_dimension(dimension, [&](auto d) {
+      LocalKernels<decltype(d)::value>::point_energies(*workspace_, displacement, energies);
+    });
+  }
+  return longest;
 }
 
 }  // namespace peristat

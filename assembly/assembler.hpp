@@ -1,32 +1,29 @@
 #pragma once
 
+#include <memory>
 #include <span>
-#include <vector>
 
-#include "assembly/bond_term.hpp"
+#include "assembly/curvature.hpp"
+#include "assembly/model.hpp"
+#include "assembly/stored.hpp"
 #include "assembly/tangent.hpp"
-#include "src/aligned_vector.hpp"
 #include "src/points/points.hpp"
 
 namespace peristat {
 
-/// What a pass over the interactions finds besides what it adds up.
-struct Stored {
-  double energy = 0.0;  ///< [J]
-  bool degenerate =
-      false;  ///< a measure has reached zero or a value is not finite: reject the state
-};
+struct Workspace;
 
 /// Energy, gradient, tangent and matrix-free product of the discrete energy
-/// E(u) = sum over bonds of w psi(|xi0 + eta|; L), visiting each unique bond once, on several
-/// threads.
+/// E(u) = sum over interactions of w psi(m; M), visiting each unique bond, triangle and tetrahedron
+/// once, on several threads.
 ///
 /// All arrays are points x dimension, row major. No call allocates. For a given number of threads
 /// every result is reproducible to the last bit.
 class Assembler {
  public:
-  /// Points and term must outlive the assembler.
-  Assembler(const Points& points, const BondTerm& term, int threads);
+  /// Points and model must outlive the assembler.
+  Assembler(const Points& points, const Model& model, int threads);
+  ~Assembler();
 
   /// E [J]
   [[nodiscard]] Stored energy(std::span<const double> displacement);
@@ -34,32 +31,26 @@ class Assembler {
   /// E [J] and dE/dx [N] (minus the internal force).
   [[nodiscard]] Stored gradient(std::span<const double> displacement, std::span<double> gradient);
 
-  /// d2E/dx2 [N/m], every entry overwritten.
-  void tangent(std::span<const double> displacement, Tangent& tangent);
+  /// d2E/dx2 [N/m], every entry overwritten; or, projected, a positive semidefinite stand-in that
+  /// is exact where every interaction's Hessian is.
+  void tangent(std::span<const double> displacement, Tangent& tangent,
+               Curvature curvature = Curvature::exact);
 
   /// product = d2E/dx2(displacement) v, without a stored tangent.
   void product(std::span<const double> displacement, std::span<const double> v,
                std::span<double> product);
 
-  /// Energy of each point, half of its bonds' [J], and the largest stretch l/L - 1 of a bond.
+  /// Energy of each point, an equal share of its interactions' [J], and the largest stretch l/L - 1
+  /// of a bond.
   double point_energies(std::span<const double> displacement, std::span<double> energies);
 
-  [[nodiscard]] int threads() const { return static_cast<int>(ranges_.size()); }
-  [[nodiscard]] const Points& points() const { return points_; }
-  [[nodiscard]] const BondTerm& term() const { return term_; }
+  [[nodiscard]] int threads() const;
+  [[nodiscard]] const Points& points() const;
+  [[nodiscard]] const Model& model() const;
   [[nodiscard]] double seconds_spent() const { return seconds_; }  ///< wall time of all calls [s]
 
  private:
-  template <int D>
-  struct Kernels;
-
-  const Points& points_;
-  const BondTerm& term_;
-  std::vector<RowRange> ranges_;
-  AlignedVector<double> rows_;               // per point, what kernels gather; see Kernels::pack
-  std::vector<AlignedVector<double>> sums_;  // per thread, rows first..reach of what it adds up
-  std::vector<Stored> stored_;               // per thread
-  std::vector<double> longest_;              // per thread, largest stretch
+  std::unique_ptr<Workspace> workspace_;
   double seconds_ = 0.0;
 };
 

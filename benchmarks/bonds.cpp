@@ -46,9 +46,9 @@ enum class Pass { energy, gradient, tangent, product, stored_product };
 template <Pass pass>
 void assembly(benchmark::State& state) {
   const Points points = body(state);
-  const BondTerm term = benchmark_bodies::term(points);
-  Assembler assembler(points, term, omp_get_max_threads());
-  Tangent tangent(Pattern(term.bonds), points.dimension);
+  const Model model = benchmark_bodies::model(points);
+  Assembler assembler(points, model, omp_get_max_threads());
+  Tangent tangent(Pattern(model.bonds), points.dimension);
   const std::vector<double> displacement = wave(points, 1e-2, 7.0), v = wave(points, 1.0, 3.0);
   std::vector<double> result(v.size());
   for (auto _ : state) {
@@ -65,7 +65,7 @@ void assembly(benchmark::State& state) {
     }
     benchmark::ClobberMemory();
   }
-  count_bonds(state, double(term.bonds.count()));
+  count_bonds(state, double(model.bonds.count()));
 }
 
 void both_dimensions(benchmark::internal::Benchmark* benchmark) {

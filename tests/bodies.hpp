@@ -4,12 +4,14 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <optional>
 #include <random>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
-#include "assembly/bond_term.hpp"
+#include "assembly/model.hpp"
 #include "src/neighbourhood/quadrature.hpp"
 #include "src/points/lattice.hpp"
 
@@ -65,6 +67,9 @@ struct BoxSetting {
   Quadrature quadrature{};
   double youngs_modulus = 3.0;  ///< [Pa]
   PlaneState plane = PlaneState::stress;
+  /// Stiffness of triangles and tetrahedra relative to that of the bonds, roughly; 0: none.
+  double triangles = 0.0, tetrahedra = 0.0;
+  bool stored = false;  ///< store them
 };
 
 /// The setting of a small box of unequal sides.
@@ -100,15 +105,40 @@ struct BoxSetting {
 struct BoxBody {
   Points points;
   BondSetting setting;
-  BondTerm term;
+  Model model;
 
   explicit BoxBody(const BoxSetting& box, int threads = 1)
       : BoxBody(box_points(box), box, threads) {}
   BoxBody(Points from, const BoxSetting& box, int threads = 1)
       : points(std::move(from)),
         setting(bond_setting(box)),
-        term{make_bonds(points, box.quadrature, setting, threads),
-             Harmonic{micromodulus(box.youngs_modulus, setting)}} {}
+        model{make_bonds(points, box.quadrature, setting, threads),
+              Harmonic{micromodulus(box.youngs_modulus, setting)},
+              {},
+              {}} {
+    add(model.triangles, box.triangles, box, threads);
+    add(model.tetrahedra, box.tetrahedra, box, threads);
+  }
+
+  /// Interactions whose weights differ from point to point.
+  template <class Measure>
+  void add(std::optional<InteractionTerm<Measure>>& to, double stiffness, const BoxSetting& box,
+           int threads) {
+    if (stiffness == 0.0) return;
+    Interactions<Measure> interactions(points, model.bonds, setting.horizon, threads);
+    // psi is C M e^2 / 2 with M of the order of horizon^arms.
+    const double micromodulus_of_bonds = std::get<Harmonic>(model.potential).modulus;
+    const double unit = double(model.bonds.count()) / double(interactions.count()) *
+                        std::pow(setting.horizon, 1 - Measure::arms);
+    std::vector<double> shares(points.volume.size());
+    for (std::size_t a = 0; a < shares.size(); ++a) {
+      shares[a] = points.volume[a] * points.volume[a] * (1.0 + 0.1 * double(a % 7));
+    }
+    interactions.set_shares(std::move(shares));
+    if (box.stored) interactions.store(points, model.bonds, threads);
+    to.emplace(InteractionTerm<Measure>{std::move(interactions),
+                                        Harmonic{stiffness * unit * micromodulus_of_bonds}});
+  }
 
   [[nodiscard]] std::size_t dofs() const { return points.reference.size(); }
 

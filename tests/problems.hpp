@@ -52,8 +52,8 @@ struct Problem {
       : body(points_with_ends(box), box),
         conditions(body.points, supports, loads),
         free(conditions.prescribed(), box.dimension),
-        assembler(body.points, body.term, threads),
-        tangent(Pattern(body.term.bonds), box.dimension) {}
+        assembler(body.points, body.model, threads),
+        tangent(Pattern(body.model.bonds), box.dimension) {}
   Problem(const Problem&) = delete;
   Problem& operator=(const Problem&) = delete;
 

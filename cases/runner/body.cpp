@@ -139,13 +139,13 @@ std::unique_ptr<const Body> make_body(const Case& from, int threads) {
                    "the case with " + std::to_string(body.points.count()) + " points");
     {
       const Stopwatch watch(body.seconds_neighbourhood);
-      body.term.bonds = make_bonds(body.points, {from.volume_correction, from.surface_correction},
-                                   body.setting, threads);
+      body.model.bonds = make_bonds(body.points, {from.volume_correction, from.surface_correction},
+                                    body.setting, threads);
     }
     const double modulus = from.material.micromodulus
                                ? *from.material.micromodulus
                                : micromodulus(*from.material.youngs_modulus, body.setting);
-    body.term.potential = Harmonic{modulus};
+    body.model.potential = Harmonic{modulus};
     body.conditions = std::make_unique<Conditions>(body.points, from.supports, from.loads);
   });
   return owned;
@@ -155,12 +155,12 @@ MemoryEstimate estimate_memory(const Body& body) {
   const auto& prescribed = body.conditions->prescribed();
   const auto free = std::count(prescribed.begin(), prescribed.end(), 0);
   return estimate_memory(body.points.dimension, size_of(body.points), body.horizon_ratio(),
-                         double(body.term.bonds.count()), double(free));
+                         double(body.model.bonds.count()), double(free));
 }
 
 std::string describe_free_motions(const Body& body) {
   const std::vector<FreeMotion> parts =
-      free_motions(body.points, body.term.bonds, body.conditions->prescribed());
+      free_motions(body.points, body.model.bonds, body.conditions->prescribed());
   std::string text;
   constexpr std::size_t most_told = 5;
   for (std::size_t k = 0; k < std::min(parts.size(), most_told); ++k) {

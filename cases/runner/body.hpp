@@ -21,7 +21,7 @@ struct Body {
 
   Points points;
   BondSetting setting;
-  BondTerm term;
+  Model model;
   std::unique_ptr<Conditions> conditions;  // refers to points
   double seconds_neighbourhood = 0.0;
 

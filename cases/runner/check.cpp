@@ -50,21 +50,21 @@ Exit check(const Case& from, int threads) {
   const std::unique_ptr<const Body> made = make_body(from, threads);
   const Body& body = *made;
   const Points& points = body.points;
-  const NeighbourCounts neighbours = count_neighbours(body.term.bonds);
+  const NeighbourCounts neighbours = count_neighbours(body.model.bonds);
   fmt::print("case        {}\n", from.title.empty() ? from.file : from.title);
   fmt::print("points      {} in {}D, spacing {:g} m, horizon {:g} m ({:.4g} spacings)\n",
              points.count(), points.dimension, points.spacing, body.setting.horizon,
              body.horizon_ratio());
   fmt::print("bonds       {}; neighbours per point {} to {}, {:.1f} on average\n",
-             body.term.bonds.count(), neighbours.least, neighbours.most, neighbours.mean);
+             body.model.bonds.count(), neighbours.least, neighbours.most, neighbours.mean);
   fmt::print(
       "constants   micromodulus {:.6g} N/m6, Young's modulus {:.6g} Pa, Poisson's ratio {:.4g}\n",
-      std::get<Harmonic>(body.term.potential).modulus,
-      youngs_modulus_of(std::get<Harmonic>(body.term.potential).modulus, body.setting),
+      std::get<Harmonic>(body.model.potential).modulus,
+      youngs_modulus_of(std::get<Harmonic>(body.model.potential).modulus, body.setting),
       poisson_ratio(body.setting));
   fmt::print(
       "quadrature  energy of a confined strain deviates by at most {:.3g} from the classical\n",
-      confined_energy_error(points, body.term.bonds, body.setting));
+      confined_energy_error(points, body.model.bonds, body.setting));
   for (const auto& [set, members] : points.sets) {
     fmt::print("set         {}: {} points\n", set, members.size());
   }
@@ -79,7 +79,7 @@ Exit check(const Case& from, int threads) {
   MemoryEstimate estimate = estimate_memory(body);
   require_memory(estimate.bytes, fmt::format("the case with {} points", points.count()));
   const FreeDofs free(prescribed, points.dimension);
-  const Pattern pattern(body.term.bonds);
+  const Pattern pattern(body.model.bonds);
   Cholesky solver;
   if (solver.analyze(pattern, free) == LinearOutcome::solved) {
     estimate = with_factor(estimate, solver.estimate().entries);

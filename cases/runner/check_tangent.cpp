@@ -131,14 +131,14 @@ Exit check_tangent(const Case& from, const std::string& deformation, int threads
   } catch (const InputError& error) {
     throw InputError("--deformation", error.value(), error.allowed());
   }
-  Assembler assembler(points, body.term, threads);
+  Assembler assembler(points, body.model, threads);
   const std::size_t dofs = displacement.size();
   std::vector<double> gradient(dofs), image(dofs), shifted(dofs), forward(dofs), backward(dofs);
   const Stored stored = assembler.gradient(displacement, gradient);
   if (stored.degenerate) {
     throw InputError("--deformation", '"' + text + '"', "collapses a bond to zero length");
   }
-  Tangent tangent(Pattern(body.term.bonds), points.dimension);
+  Tangent tangent(Pattern(body.model.bonds), points.dimension);
   assembler.tangent(displacement, tangent);
   const std::vector<double> direction = test_direction(points);
   tangent.multiply(direction, image);

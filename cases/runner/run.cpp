@@ -161,7 +161,7 @@ Exit run(const Case& from, const RunOptions& options) {
   require_memory(estimate.bytes, fmt::format("the case with {} points", body.points.count()));
   const FreeDofs free(body.conditions->prescribed(), from.dimension);
   progress.say(fmt::format("{} points, {} bonds, {} free degrees of freedom, {} threads",
-                           body.points.count(), body.term.bonds.count(), free.count(),
+                           body.points.count(), body.model.bonds.count(), free.count(),
                            options.threads));
 
   std::vector<ProbeColumns> probes;
@@ -176,8 +176,8 @@ Exit run(const Case& from, const RunOptions& options) {
   }
   leave_note(from.output.directory);
 
-  const Pattern pattern(body.term.bonds);
-  Assembler assembler(body.points, body.term, options.threads);
+  const Pattern pattern(body.model.bonds);
+  Assembler assembler(body.points, body.model, options.threads);
   Tangent tangent(pattern, from.dimension);
   Cholesky solver;
   const LinearOutcome analysis = solver.analyze(pattern, free);
@@ -223,7 +223,7 @@ Exit run(const Case& from, const RunOptions& options) {
   if (!completed) summary.reason = failure_reason(result);
   summary.points = body.points.count();
   summary.free_dofs = free.count();
-  summary.bonds = body.term.bonds.count();
+  summary.bonds = body.model.bonds.count();
   summary.factorisations = solver.statistics().factorisations;
   summary.linear_iterations = solver.statistics().iterations;
   summary.max_displacement = largest_displacement(recorder.displacement(), from.dimension);

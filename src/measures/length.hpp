@@ -18,32 +18,39 @@ struct Length {
   /// Relative vectors (arms) that the measure depends on.
   static constexpr int arms = 1;
 
+  /// Whether a value of zero has no gradient.
+  template <int D>
+  static constexpr bool singular_at_zero = true;
+
   template <int D, class Real>
   struct At {
+    static constexpr int arms = 1, dimension = D;
+
     Real inverse_reference;     ///< 1/L [1/m]
     Real current;               ///< l [m]
     Real relative_change;       ///< l/L - 1, the stretch s
-    Vector<D, Real> direction;  ///< n
+    Arms<1, D, Real> gradient;  ///< n
     Real inverse;               ///< 1/l [1/m]
 
-    [[nodiscard]] const Vector<D, Real>& gradient() const { return direction; }
-
-    [[nodiscard]] Matrix<D, Real> hessian() const {
-      Matrix<D, Real> result;
+    /// block += factor times the Hessian's block between arms P and Q.
+    template <int P, int Q>
+    void add_hessian(const Real& factor, Matrix<D, Real>& block) const {
+      const Real scale = factor * inverse;
+      const Vector<D, Real>& n = gradient[0];
       for (int r = 0; r < D; ++r) {
-        for (int c = r; c < D; ++c) {
+        for (int c = 0; c < D; ++c) {
           const Real identity = r == c ? 1.0 : 0.0;
-          result[r][c] = result[c][r] = (identity - direction[r] * direction[c]) * inverse;
+          block[r][c] += scale * (identity - n[r] * n[c]);
         }
       }
-      return result;
     }
 
-    /// Hessian times a relative vector.
-    [[nodiscard]] Vector<D, Real> hessian_times(const Vector<D, Real>& v) const {
-      const Real along = dot<D>(direction, v);
-      Vector<D, Real> result;
-      for (int c = 0; c < D; ++c) result[c] = (v[c] - along * direction[c]) * inverse;
+    /// Hessian times relative vectors.
+    [[nodiscard]] Arms<1, D, Real> hessian_times(const Arms<1, D, Real>& v) const {
+      const Vector<D, Real>& n = gradient[0];
+      const Real along = dot<D>(n, v[0]);
+      Arms<1, D, Real> result;
+      for (int c = 0; c < D; ++c) result[0][c] = (v[0][c] - along * n[c]) * inverse;
       return result;
     }
   };
@@ -53,11 +60,12 @@ struct Length {
   ///   s = eta.(2 xi0 + eta) / (L (L + l)) = eta.(2 xi0 + eta) / L^2 / (1 + l/L):
   /// the difference of two nearly equal lengths would stall a relative residual near 1e-8.
   template <int D, class Real>
-  [[nodiscard]] static At<D, Real> at(const Real& inverse_reference, const Vector<D, Real>& arm,
-                                      const Vector<D, Real>& relative_displacement) {
-    const Vector<D, Real> current_arm = plus<D>(arm, relative_displacement);
-    At<D, Real> result = from_current<D>(inverse_reference, current_arm);
-    result.relative_change = dot<D>(relative_displacement, plus<D>(arm, current_arm)) *
+  [[nodiscard]] static At<D, Real> at(const Real& inverse_reference,
+                                      const Arms<1, D, Real>& reference,
+                                      const Arms<1, D, Real>& relative_displacement) {
+    const Vector<D, Real> current_arm = plus<D>(reference[0], relative_displacement[0]);
+    At<D, Real> result = from_current<D, Real>(inverse_reference, {current_arm});
+    result.relative_change = dot<D>(relative_displacement[0], plus<D>(reference[0], current_arm)) *
                              inverse_reference * inverse_reference /
                              (1.0 + result.current * inverse_reference);
     return result;
@@ -67,14 +75,19 @@ struct Length {
   /// one round-off: too much for forces, as good as any other entry for a tangent.
   template <int D, class Real>
   [[nodiscard]] static At<D, Real> from_current(const Real& inverse_reference,
-                                                const Vector<D, Real>& current_arm) {
+                                                const Arms<1, D, Real>& current) {
     At<D, Real> result;
     result.inverse_reference = inverse_reference;
-    result.current = square_root(dot<D>(current_arm, current_arm));
+    result.current = value<D>(current);
     result.relative_change = result.current * inverse_reference - 1.0;
     result.inverse = 1.0 / result.current;
-    result.direction = scaled<D>(result.inverse, current_arm);
+    result.gradient[0] = scaled<D>(result.inverse, current[0]);
     return result;
+  }
+
+  template <int D, class Real>
+  [[nodiscard]] static Real value(const Arms<1, D, Real>& arm) {
+    return square_root(dot<D>(arm[0], arm[0]));
   }
 };
 

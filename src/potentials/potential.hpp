@@ -21,4 +21,7 @@ concept Potential = std::is_aggregate_v<P> &&
 /// Every potential that a bond can have; the choice is made once, outside the loop over bonds.
 using BondPotential = std::variant<Harmonic>;
 
+/// Every potential that a triangle or tetrahedron can have.
+using HigherPotential = std::variant<Harmonic>;
+
 }  // namespace peristat

@@ -62,9 +62,9 @@ class ElasticBody : public ::testing::TestWithParam<Setting> {
 
   const int d_ = GetParam().dimension;
   BoxBody body_{box()};
-  Assembler assembler_{body_.points, body_.term, 2};
+  Assembler assembler_{body_.points, body_.model, 2};
 
-  void SetUp() override { ASSERT_GT(body_.term.bonds.count(), 30); }
+  void SetUp() override { ASSERT_GT(body_.model.bonds.count(), 30); }
 
   std::vector<double> gradient(const std::vector<double>& displacement) {
     std::vector<double> result(body_.dofs());
@@ -210,7 +210,7 @@ TEST_P(HomogeneousDeformation, IsInEquilibriumAtInteriorPoints) {
   tests::BoxSetting setting = box();
   setting.extent = {14, 13, d_ == 3 ? 13 : 0};
   const BoxBody body(setting);
-  Assembler assembler(body.points, body.term, 2);
+  Assembler assembler(body.points, body.model, 2);
   const bool corrected = setting.quadrature.surface != SurfaceCorrection::none;
   // A cell's half beside the horizon belongs to the neighbourhood with the linear correction.
   const double margin = (setting.horizon_ratio + 0.5) * setting.spacing * (corrected ? 2.0 : 1.0);

@@ -39,8 +39,8 @@ inline SolvedCase solve_case(const std::string& name,
   solved.from = read_case(std::string(PERISTAT_SOURCE_DIR "/cases/") + name, overrides);
   solved.body = make_body(solved.from, threads);
   const FreeDofs free(solved.body->conditions->prescribed(), solved.from.dimension);
-  Assembler assembler(solved.body->points, solved.body->term, threads);
-  const Pattern pattern(solved.body->term.bonds);
+  Assembler assembler(solved.body->points, solved.body->model, threads);
+  const Pattern pattern(solved.body->model.bonds);
   Tangent tangent(pattern, solved.from.dimension);
   Cholesky solver;
   if (solver.analyze(pattern, free) != LinearOutcome::solved) {

@@ -43,11 +43,11 @@ namespace {
 TEST(Assembler, AllocatesNothingInItsCalls) {
   for (int dimension = 1; dimension <= 3; ++dimension) {
     const tests::BoxBody body(tests::small_box(dimension));
-    Assembler assembler(body.points, body.term, 2);
+    Assembler assembler(body.points, body.model, 2);
     const std::vector<double> state = body.random_state(1);
     std::vector<double> gradient(body.dofs()), product(body.dofs()),
         v = state, energies(body.points.volume.size());
-    Tangent tangent(Pattern(body.term.bonds), dimension);
+    Tangent tangent(Pattern(body.model.bonds), dimension);
     bool degenerate = assembler.energy(state).degenerate;  // the threads start here
 
     const long before = allocations;

@@ -34,7 +34,7 @@ TEST(PartitionRows, CoversEveryRowOnce) {
   for (int dimension = 1; dimension <= 3; ++dimension) {
     const tests::BoxBody body(tests::small_box(dimension));
     ASSERT_GT(body.points.count(), 20);
-    for (int threads : {1, 2, 3, 5, 16, 1000}) expect_partition(body.term.bonds, threads);
+    for (int threads : {1, 2, 3, 5, 16, 1000}) expect_partition(body.model.bonds, threads);
   }
 }
 
@@ -49,7 +49,7 @@ TEST(PartitionRows, SharesBondsEvenly) {
   tests::BoxSetting box = tests::small_box(2);
   box.extent = {40, 30, 0};
   const tests::BoxBody body(box);
-  const Pattern pattern(body.term.bonds);
+  const Pattern pattern(body.model.bonds);
   for (int threads : {2, 3, 5}) {
     for (const RowRange& range : partition_rows(pattern, threads)) {
       const double share = double(pattern.offset[range.last] - pattern.offset[range.first]);

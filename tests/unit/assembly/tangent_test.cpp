@@ -53,9 +53,9 @@ TEST(Tangent, AsymmetryIsRelativeToTheLargestEntry) {
 
 TEST(Tangent, StartsAtZero) {
   const tests::BoxBody body(tests::small_box(3));
-  const Tangent tangent(Pattern(body.term.bonds), 3);
+  const Tangent tangent(Pattern(body.model.bonds), 3);
   EXPECT_EQ(tangent.diagonal.size(), body.points.volume.size() * 9);
-  EXPECT_EQ(tangent.off_diagonal.size(), std::size_t(body.term.bonds.count()) * 9);
+  EXPECT_EQ(tangent.off_diagonal.size(), std::size_t(body.model.bonds.count()) * 9);
   EXPECT_EQ(tangent.frobenius_norm(), 0.0);
 }
 

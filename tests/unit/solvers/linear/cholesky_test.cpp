@@ -50,14 +50,14 @@ struct System {
          const std::vector<double>& state)
       : body(box),
         free(prescribed, box.dimension),
-        tangent(Pattern(body.term.bonds), box.dimension),
+        tangent(Pattern(body.model.bonds), box.dimension),
         b(tests::Random(3).vector(std::size_t(free.count()))),
         x(std::size_t(free.count()), 1e300) {
     assemble(state);
   }
 
   void assemble(const std::vector<double>& state) {
-    Assembler(body.points, body.term, 1).tangent(state, tangent);
+    Assembler(body.points, body.model, 1).tangent(state, tangent);
   }
 
   LinearOutcome solve(LinearSolver& solver, FactorUse use = FactorUse::factorize_now) {

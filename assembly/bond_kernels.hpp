@@ -1,0 +1,276 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <span>
+
+#include "assembly/curvature.hpp"
+#include "assembly/interaction.hpp"
+#include "assembly/tangent.hpp"
+#include "assembly/workspace.hpp"
+#include "src/lanes.hpp"
+#include "src/measures/length.hpp"
+
+namespace peristat {
+
+/// Up to lane_count bonds of one row, side by side. Lanes past `count` repeat the last bond with
+/// weight zero, so that they add nothing.
+template <int D>
+struct Batch {
+  Offset first;
+  int count;
+  std::array<Index, lane_count> partner;
+  Lanes weight, inverse_length;
+  Vector<D, Lanes> vector0, vector1;  // partner's minus the row's own gathered vectors
+};
+
+/// Calls visit(batch) for the bonds of row i.
+template <int D, class Visit>
+[[gnu::always_inline]] inline void for_each_batch(const Bonds& bonds, const double* rows, Index i,
+                                                  const Visit& visit) {
+  constexpr int width = row_width(D);
+  const double* own = rows + std::size_t(i) * width;
+  const Offset end = bonds.offset[i + 1];
+  Batch<D> batch;
+  for (Offset first = bonds.offset[i]; first < end; first += lane_count) {
+    batch.first = first;
+    batch.count = static_cast<int>(std::min<Offset>(lane_count, end - first));
+    if (batch.count == lane_count) {
+      for (int l = 0; l < lane_count; ++l) batch.partner[l] = bonds.partner[first + l];
+      batch.weight.copy_from(&bonds.weight[first], std::experimental::element_aligned);
+      batch.inverse_length.copy_from(&bonds.inverse_length[first],
+                                     std::experimental::element_aligned);
+    } else {
+      const auto bond = [&](int l) { return first + std::min(l, batch.count - 1); };
+      for (int l = 0; l < lane_count; ++l) batch.partner[l] = bonds.partner[bond(l)];
+      batch.weight = Lanes([&](int l) { return l < batch.count ? bonds.weight[first + l] : 0.0; });
+      batch.inverse_length = Lanes([&](int l) { return bonds.inverse_length[bond(l)]; });
+    }
+    std::array<const double*, lane_count> row;
+    for (int l = 0; l < lane_count; ++l) row[l] = rows + std::size_t(batch.partner[l]) * width;
+    Lanes columns[8];
+    load_transposed(row[0], row[1], row[2], row[3], columns);
+    if constexpr (D == 3) {
+      load_transposed(row[0] + 4, row[1] + 4, row[2] + 4, row[3] + 4, columns + 4);
+    }
+    for (int c = 0; c < D; ++c) {
+      batch.vector0[c] = columns[c] - own[c];
+      batch.vector1[c] = columns[width / 2 + c] - own[width / 2 + c];
+    }
+    visit(batch);
+  }
+}
+
+/// Adds lane l of a vector to the sum of partner l.
+template <int D>
+inline void add_to_partners(double* sums, const std::array<Index, lane_count>& partner,
+                            const Vector<D, Lanes>& vector) {
+  if constexpr (D == 3) {
+    lanes_detail::Row rows[4];
+    store_transposed(vector[0], vector[1], vector[2], Lanes(0.0), rows);
+    for (int l = 0; l < lane_count; ++l) add_row(sums + std::ptrdiff_t(partner[l]) * 4, rows[l]);
+  } else if constexpr (D == 2) {
+    lanes_detail::Pair pairs[4];
+    store_transposed(vector[0], vector[1], pairs);
+    for (int l = 0; l < lane_count; ++l) add_row(sums + std::ptrdiff_t(partner[l]) * 2, pairs[l]);
+  } else {
+    for (int l = 0; l < lane_count; ++l) sums[partner[l]] += vector[0][l];
+  }
+}
+
+/// Upper half of a symmetric block as the lanes that are stored: xx xy yy, or xx xy xz yy yz zz.
+template <int D>
+inline std::array<Lanes, block_width(D)> upper_half(const Matrix<D, Lanes>& block) {
+  std::array<Lanes, block_width(D)> half;
+  half.fill(Lanes(0.0));
+  int k = 0;
+  for (int r = 0; r < D; ++r) {
+    for (int c = r; c < D; ++c) half[k++] = block[r][c];
+  }
+  return half;
+}
+
+template <int D>
+inline void add_to_partners(double* sums, const std::array<Index, lane_count>& partner,
+                            const std::array<Lanes, block_width(D)>& half) {
+  for (int part = 0; part < block_width(D); part += 4) {
+    lanes_detail::Row rows[4];
+    store_transposed(half[part], half[part + 1], half[part + 2], half[part + 3], rows);
+    for (int l = 0; l < lane_count; ++l) {
+      add_row(sums + std::ptrdiff_t(partner[l]) * block_width(D) + part, rows[l]);
+    }
+  }
+}
+
+/// Writes minus the block of lane l to the off-diagonal block of bond l.
+template <int D>
+inline void store_blocks(double* blocks, int count, const Matrix<D, Lanes>& block) {
+  if constexpr (D == 1) {
+    for (int l = 0; l < count; ++l) blocks[l] = -block[0][0][l];
+  } else if constexpr (D == 2) {
+    lanes_detail::Row rows[4];
+    store_transposed(-block[0][0], -block[0][1], -block[1][0], -block[1][1], rows);
+    for (int l = 0; l < count; ++l) store_row(blocks + l * 4, rows[l]);
+  } else {
+    lanes_detail::Row head[4], tail[4];
+    store_transposed(-block[0][0], -block[0][1], -block[0][2], -block[1][0], head);
+    store_transposed(-block[1][1], -block[1][2], -block[2][0], -block[2][1], tail);
+    const Lanes last = -block[2][2];
+    for (int l = 0; l < count; ++l) {
+      store_row(blocks + l * 9, head[l]);
+      store_row(blocks + l * 9 + 4, tail[l]);
+      blocks[l * 9 + 8] = last[l];
+    }
+  }
+}
+
+/// The positive semidefinite part of a bond's Hessian psi'' n n^T + psi'/l (I - n n^T): its
+/// eigenvalues are psi'' and psi'/l.
+inline InteractionEnergy<Lanes> projected(const InteractionEnergy<Lanes>& psi) {
+  return {psi.value, std::experimental::max(psi.first, Lanes(0.0)),
+          std::experimental::max(psi.second, Lanes(0.0))};
+}
+
+/// The passes over the bonds, for one dimension; the potential is chosen once, outside the loops.
+/// Each overwrites its result.
+template <int D>
+struct BondKernels {
+  using Span = std::span<const double>;
+
+  template <class P>
+  static Stored gradient(Workspace& a, const P& potential, Span displacement,
+                         std::span<double> result) {
+    a.pack<D>(a.points.reference, displacement);
+    std::vector<Stored>& parts = a.stored;
+    const Bonds& bonds = a.model.bonds;
+    const bool energy_only = result.empty();
+    constexpr int width = vector_width(D);
+    const auto body = [&](int thread, RowRange range, double* sums) {
+      Lanes shortest = std::numeric_limits<double>::infinity();
+      double energy = 0.0;
+      for (Index i = range.first; i < range.last; ++i) {
+        Lanes row_energy = 0.0;
+        Vector<D, Lanes> own;
+        own.fill(Lanes(0.0));
+        for_each_batch<D>(bonds, a.rows.data(), i, [&](const Batch<D>& batch) {
+          const auto measure =
+              Length::at<D, Lanes>(batch.inverse_length, {batch.vector0}, {batch.vector1});
+          const auto psi = interaction_energy(batch.weight, potential, measure);
+          row_energy += psi.value;
+          shortest = std::experimental::min(shortest, measure.current);
+          if (energy_only) return;
+          const Vector<D, Lanes> force = energy_gradient(psi, measure)[0];
+          for (int c = 0; c < D; ++c) own[c] -= force[c];
+          add_to_partners<D>(sums, batch.partner, force);
+        });
+        energy += sum(row_energy);
+        for (int c = 0; c < D; ++c) sums[std::ptrdiff_t(i) * width + c] += sum(own[c]);
+      }
+      parts[thread] = {energy, !(smallest(shortest) > 0.0)};
+    };
+    a.sum_rows<width>(body, [&](Index i, const double* total) {
+      if (energy_only) return;
+      for (int c = 0; c < D; ++c) result[std::size_t(i) * D + c] = total[c];
+    });
+    return a.total_stored();
+  }
+
+  template <class P>
+  static void tangent(Workspace& a, const P& potential, Span displacement, Curvature curvature,
+                      Tangent& result) {
+    a.pack<D>(a.points.reference, displacement);
+    const Bonds& bonds = a.model.bonds;
+    constexpr int width = block_width(D);
+    const auto body = [&](int, RowRange range, double* sums) {
+      for (Index i = range.first; i < range.last; ++i) {
+        std::array<Lanes, width> own;
+        own.fill(Lanes(0.0));
+        for_each_batch<D>(bonds, a.rows.data(), i, [&](const Batch<D>& batch) {
+          const auto measure =
+              Length::at<D, Lanes>(batch.inverse_length, {batch.vector0}, {batch.vector1});
+          auto psi = interaction_energy(batch.weight, potential, measure);
+          if (curvature == Curvature::projected) psi = projected(psi);
+          const Matrix<D, Lanes> block = energy_hessian<0, 0>(psi, measure);
+          store_blocks<D>(&result.off_diagonal[std::size_t(batch.first) * D * D], batch.count,
+                          block);
+          const auto half = upper_half<D>(block);
+          for (int c = 0; c < width; ++c) own[c] += half[c];
+          add_to_partners<D>(sums, batch.partner, half);
+        });
+        for (int c = 0; c < D * (D + 1) / 2; ++c)
+          sums[std::ptrdiff_t(i) * width + c] += sum(own[c]);
+      }
+    };
+    a.sum_rows<width>(body, [&](Index i, const double* total) {
+      double* block = &result.diagonal[std::size_t(i) * D * D];
+      int k = 0;
+      for (int r = 0; r < D; ++r) {
+        for (int c = r; c < D; ++c) block[r * D + c] = block[c * D + r] = total[k++];
+      }
+    });
+  }
+
+  template <class P>
+  static void product(Workspace& a, const P& potential, Span displacement, Span v,
+                      std::span<double> result) {
+    a.pack<D>(displacement, v);
+    constexpr int row = row_width(D);
+    const Index count = a.points.count();
+#pragma omp parallel for num_threads(a.threads())
+    for (Index i = 0; i < count; ++i) {
+      for (int c = 0; c < D; ++c) {
+        a.rows[std::size_t(i) * row + c] += a.points.reference[std::size_t(i) * D + c];
+      }
+    }
+    const Bonds& bonds = a.model.bonds;
+    constexpr int width = vector_width(D);
+    const auto body = [&](int, RowRange range, double* sums) {
+      for (Index i = range.first; i < range.last; ++i) {
+        Vector<D, Lanes> own;
+        own.fill(Lanes(0.0));
+        for_each_batch<D>(bonds, a.rows.data(), i, [&](const Batch<D>& batch) {
+          const auto measure =
+              Length::from_current<D, Lanes>(batch.inverse_length, {batch.vector0});
+          const auto psi = interaction_energy(batch.weight, potential, measure);
+          const Vector<D, Lanes> force =
+              energy_hessian_times(psi, measure, Arms<1, D, Lanes>{batch.vector1})[0];
+          for (int c = 0; c < D; ++c) own[c] -= force[c];
+          add_to_partners<D>(sums, batch.partner, force);
+        });
+        for (int c = 0; c < D; ++c) sums[std::ptrdiff_t(i) * width + c] += sum(own[c]);
+      }
+    };
+    a.sum_rows<width>(body, [&](Index i, const double* total) {
+      for (int c = 0; c < D; ++c) result[std::size_t(i) * D + c] = total[c];
+    });
+  }
+
+  template <class P>
+  static double point_energies(Workspace& a, const P& potential, Span displacement,
+                               std::span<double> energies) {
+    a.pack<D>(a.points.reference, displacement);
+    const Bonds& bonds = a.model.bonds;
+    std::vector<double>& longest = a.longest;
+    const auto body = [&](int thread, RowRange range, double* sums) {
+      Lanes most = -1.0;
+      for (Index i = range.first; i < range.last; ++i) {
+        Lanes own = 0.0;
+        for_each_batch<D>(bonds, a.rows.data(), i, [&](const Batch<D>& batch) {
+          const auto measure =
+              Length::at<D, Lanes>(batch.inverse_length, {batch.vector0}, {batch.vector1});
+          const Lanes half = 0.5 * interaction_energy(batch.weight, potential, measure).value;
+          most = std::experimental::max(most, measure.relative_change);
+          own += half;
+          add_to_partners<1>(sums, batch.partner, Vector<1, Lanes>{half});
+        });
+        sums[i] += sum(own);
+      }
+      longest[thread] = largest(most);
+    };
+    a.sum_rows<1>(body, [&](Index i, const double* total) { energies[i] = *total; });
+    return *std::max_element(longest.begin(), longest.end());
+  }
+};
+
+}  // namespace peristat

@@ -1,0 +1,441 @@
+#pragma once
+
+#include <array>
+#include <limits>
+#include <span>
+#include <utility>
+
+#include "assembly/curvature.hpp"
+#include "assembly/interaction.hpp"
+#include "assembly/projection.hpp"
+#include "assembly/tangent.hpp"
+#include "assembly/workspace.hpp"
+
+namespace peristat {
+
+/// The arms of four interactions that share all points but the last.
+template <class Measure, int D>
+class BatchArms {
+ public:
+  static constexpr int count = Measure::arms, last = count - 1;
+
+  template <class Group>
+  BatchArms(const LocalWorkspace<D>& workspace, const Group& group) : workspace_(workspace) {
+    for (int p = 0; p < last; ++p) {
+      reference_[p] = workspace.local.reference.one(group.partners[p]);
+      displacement_[p] = workspace.displacement.one(group.partners[p]);
+    }
+  }
+
+  /// The measure of a block's interactions.
+  [[nodiscard]] auto measure(const InteractionBlock& block) {
+    reference_[last] = workspace_.local.reference.block(block.first);
+    displacement_[last] = workspace_.displacement.block(block.first);
+    if constexpr (Measure::template singular_at_zero<D>) {
+      // An empty lane may hold anything, also what has no gradient: it repeats the first full one.
+      constexpr std::uint32_t full = (1U << lane_count) - 1U;
+      if (block.active != full) {
+        const int repeated = block.first + std::countr_zero(block.active);
+        fill_empty(block, workspace_.local.reference.one(repeated), reference_[last]);
+        fill_empty(block, workspace_.displacement.one(repeated), displacement_[last]);
+      }
+    }
+    return Measure::template at<D, Lanes>(
+        Lanes(block.inverse_reference, std::experimental::element_aligned), reference_,
+        displacement_);
+  }
+
+ private:
+  static void fill_empty(const InteractionBlock& block, const Vector<D, Lanes>& with,
+                         Vector<D, Lanes>& arm) {
+    const Lanes full(interactions_detail::lanes_of_bits[block.active].data(),
+                     std::experimental::element_aligned);
+    for (int c = 0; c < D; ++c) std::experimental::where(full < 0.5, arm[c]) = with[c];
+  }
+
+  const LocalWorkspace<D>& workspace_;
+  Arms<count, D, Lanes> reference_, displacement_;
+};
+
+/// The passes over triangles and tetrahedra, for one dimension. Each adds to its result.
+template <int D>
+struct LocalKernels {
+  using Span = std::span<const double>;
+
+  /// Calls visit(measure type, interactions, potential) for each kind of interaction.
+  template <class Visit>
+  static void for_each_term(const Model& model, const Visit& visit) {
+    const auto with_potential = [&](auto measure, const auto& term) {
+      std::visit([&](const auto& law) { visit(measure, term.interactions, law); }, term.potential);
+    };
+    if (model.triangles) with_potential(Area{}, *model.triangles);
+    if constexpr (D == 3) {
+      if (model.tetrahedra) with_potential(Volume{}, *model.tetrahedra);
+    }
+  }
+
+  /// Whether the pairs of a neighbourhood are needed to find an interaction.
+  static bool must_find(const Model& model) {
+    return (model.triangles && !model.triangles->interactions.is_stored()) ||
+           (model.tetrahedra && !model.tetrahedra->interactions.is_stored());
+  }
+
+  static void move_to(LocalWorkspace<D>& w, Index i, Span displacement, bool find_pairs) {
+    w.local.move_to(i);
+    if (find_pairs) w.local.upper.find_pairs();
+    assign_relative(w, displacement, w.displacement);
+  }
+
+  static void assign_relative(const LocalWorkspace<D>& w, Span field, LocalVectors<D>& relative) {
+    const double* own = &field[std::size_t(w.local.upper.own()) * D];
+    const std::span<const Index> partner = w.local.upper.points();
+    relative.assign(w.local.upper.count(),
+                    [&](int a, int c) { return field[std::size_t(partner[a]) * D + c] - own[c]; });
+  }
+
+  static Lanes weight_of(const InteractionBlock& block) {
+    return Lanes(block.weight, std::experimental::element_aligned);
+  }
+
+  /// Adds partners' totals to their rows, and minus their sum to the point's own.
+  template <int width, int stride>
+  static void add_to_rows(const LocalWorkspace<D>& w, double* sums) {
+    const std::span<const Index> partner = w.local.upper.points();
+    std::array<double, width> own{};
+    for (int a = 0; a < w.local.upper.count(); ++a) {
+      const std::array<double, width> total = w.template total_of<width>(a);
+      double* row = sums + std::ptrdiff_t(partner[a]) * stride;
+      for (int c = 0; c < width; ++c) {
+        row[c] += total[c];
+        own[c] -= total[c];
+      }
+    }
+    double* row = sums + std::ptrdiff_t(w.local.upper.own()) * stride;
+    for (int c = 0; c < width; ++c) row[c] += own[c];
+  }
+
+  static Stored gradient(Workspace& a, Span displacement, std::span<double> result) {
+    const bool energy_only = result.empty();
+    const bool find_pairs = must_find(a.model);
+    constexpr int stride = vector_width(D);
+    const auto body = [&](int thread, RowRange range, double* sums) {
+      LocalWorkspace<D>& w = a.template local_of<D>(thread);
+      Lanes smallest_measure = std::numeric_limits<double>::infinity();
+      double energy = 0.0;
+      for (Index i = range.first; i < range.last; ++i) {
+        move_to(w, i, displacement, find_pairs);
+        w.clear(D);
+        Lanes row_energy = 0.0;
+        for_each_term(a.model, [&](auto kind, const auto& interactions, const auto& potential) {
+          using Measure = decltype(kind);
+          constexpr int last = Measure::arms - 1;
+          interactions.template for_each_group<D>(w.local, w.scratch, [&](const auto& group) {
+            BatchArms<Measure, D> arms(w, group);
+            Arms<last, D, Lanes> fixed{};
+            for (const InteractionBlock& block : group.blocks) {
+              const auto measure = arms.measure(block);
+              const auto psi = interaction_energy(weight_of(block), potential, measure);
+              row_energy += psi.value;
+              if constexpr (Measure::template singular_at_zero<D>) {
+                smallest_measure = std::experimental::min(smallest_measure, measure.current);
+              }
+              if (energy_only) continue;
+              const auto force = energy_gradient(psi, measure);
+              for (int p = 0; p < last; ++p) fixed[p] = plus<D>(fixed[p], force[p]);
+              w.template add_to_last<D>(block.first, force[last]);
+            }
+            if (energy_only) return;
+            for (int p = 0; p < last; ++p) {
+              w.template add_to_fixed<D>(group.partners[p], fixed[p]);
+            }
+          });
+        });
+        energy += sum(row_energy);
+        if (!energy_only) add_to_rows<D, stride>(w, sums);
+      }
+      a.stored[thread] = {energy, !(smallest(smallest_measure) > 0.0)};
+    };
+    a.sum_rows<stride>(body, [&](Index i, const double* total) {
+      if (energy_only) return;
+      for (int c = 0; c < D; ++c) result[std::size_t(i) * D + c] += total[c];
+    });
+    return a.total_stored();
+  }
+
+  static void product(Workspace& a, Span displacement, Span v, std::span<double> result) {
+    const bool find_pairs = must_find(a.model);
+    constexpr int stride = vector_width(D);
+    const auto body = [&](int thread, RowRange range, double* sums) {
+      LocalWorkspace<D>& w = a.template local_of<D>(thread);
+      for (Index i = range.first; i < range.last; ++i) {
+        move_to(w, i, displacement, find_pairs);
+        assign_relative(w, v, w.vector);
+        w.clear(D);
+        for_each_term(a.model, [&](auto kind, const auto& interactions, const auto& potential) {
+          using Measure = decltype(kind);
+          constexpr int last = Measure::arms - 1;
+          interactions.template for_each_group<D>(w.local, w.scratch, [&](const auto& group) {
+            BatchArms<Measure, D> arms(w, group);
+            Arms<Measure::arms, D, Lanes> vectors;
+            for (int p = 0; p < last; ++p) vectors[p] = w.vector.one(group.partners[p]);
+            Arms<last, D, Lanes> fixed{};
+            for (const InteractionBlock& block : group.blocks) {
+              const auto measure = arms.measure(block);
+              const auto psi = interaction_energy(weight_of(block), potential, measure);
+              vectors[last] = w.vector.block(block.first);
+              const auto force = energy_hessian_times(psi, measure, vectors);
+              for (int p = 0; p < last; ++p) fixed[p] = plus<D>(fixed[p], force[p]);
+              w.template add_to_last<D>(block.first, force[last]);
+            }
+            for (int p = 0; p < last; ++p) {
+              w.template add_to_fixed<D>(group.partners[p], fixed[p]);
+            }
+          });
+        });
+        add_to_rows<D, stride>(w, sums);
+      }
+    };
+    a.sum_rows<stride>(body, [&](Index i, const double* total) {
+      for (int c = 0; c < D; ++c) result[std::size_t(i) * D + c] += total[c];
+    });
+  }
+
+  /// Shares every interaction's energy equally among its points.
+  static void point_energies(Workspace& a, Span displacement, std::span<double> energies) {
+    const bool find_pairs = must_find(a.model);
+    const auto body = [&](int thread, RowRange range, double* sums) {
+      LocalWorkspace<D>& w = a.template local_of<D>(thread);
+      for (Index i = range.first; i < range.last; ++i) {
+        move_to(w, i, displacement, find_pairs);
+        w.clear(1);
+        Lanes own = 0.0;
+        for_each_term(a.model, [&](auto kind, const auto& interactions, const auto& potential) {
+          using Measure = decltype(kind);
+          constexpr double share = 1.0 / (Measure::arms + 1);
+          interactions.template for_each_group<D>(w.local, w.scratch, [&](const auto& group) {
+            BatchArms<Measure, D> arms(w, group);
+            Lanes of_group = 0.0;
+            for (const InteractionBlock& block : group.blocks) {
+              const auto psi = interaction_energy(weight_of(block), potential, arms.measure(block));
+              of_group += share * psi.value;
+              w.template add_to_last<1>(block.first, {share * psi.value});
+            }
+            for (int partner : group.partners) w.template add_to_fixed<1>(partner, {of_group});
+            own += of_group;
+          });
+        });
+        const std::span<const Index> partner = w.local.upper.points();
+        for (int k = 0; k < w.local.upper.count(); ++k) {
+          sums[partner[k]] += w.template total_of<1>(k)[0];
+        }
+        sums[i] += sum(own);
+      }
+    };
+    a.sum_rows<1>(body, [&](Index i, const double* total) { energies[i] += *total; });
+  }
+
+  // ---- Tangent
+
+  static constexpr int half_entries = D * (D + 1) / 2;
+
+  static std::array<Lanes, half_entries> half_of(const Matrix<D, Lanes>& block) {
+    std::array<Lanes, half_entries> half;
+    int k = 0;
+    for (int r = 0; r < D; ++r) {
+      for (int c = r; c < D; ++c) half[k++] = block[r][c];
+    }
+    return half;
+  }
+
+  static Matrix<D, double> full_of(const std::array<double, half_entries>& half) {
+    Matrix<D, double> block;
+    int k = 0;
+    for (int r = 0; r < D; ++r) {
+      for (int c = r; c < D; ++c) block[r][c] = block[c][r] = half[k++];
+    }
+    return block;
+  }
+
+  /// Calls visit(P, Q) with compile-time numbers of arms P <= Q.
+  template <int arms, class Visit>
+  static void for_each_pair_of_arms(const Visit& visit) {
+    [&]<int... K>(std::integer_sequence<int, K...>) {
+      const auto at = [&](auto k) {
+        constexpr int P = decltype(k)::value / arms, Q = decltype(k)::value % arms;
+        if constexpr (P <= Q) {
+          visit(std::integral_constant<int, P>{}, std::integral_constant<int, Q>{});
+        }
+      };
+      (at(std::integral_constant<int, K>{}), ...);
+    }
+    (std::make_integer_sequence<int, arms * arms>{});
+  }
+
+  /// Relative Hessian of four interactions.
+  template <int arms>
+  using HessianBlocks = std::array<std::array<Matrix<D, Lanes>, arms>, arms>;
+
+  /// Projects the Hessian of each lane; only blocks P <= Q are read and written.
+  template <int arms>
+  static void project(HessianBlocks<arms>& blocks) {
+    constexpr int size = arms * D;
+    for (int l = 0; l < lane_count; ++l) {
+      std::array<double, size * size> matrix;
+      for (int p = 0; p < arms; ++p) {
+        for (int q = p; q < arms; ++q) {
+          for (int r = 0; r < D; ++r) {
+            for (int c = 0; c < D; ++c) {
+              const double entry = blocks[p][q][r][c][l];
+              matrix[(p * D + r) * size + q * D + c] = entry;
+              matrix[(q * D + c) * size + p * D + r] = entry;
+            }
+          }
+        }
+      }
+      project_to_semidefinite(matrix.data(), size);
+      for (int p = 0; p < arms; ++p) {
+        for (int q = p; q < arms; ++q) {
+          for (int r = 0; r < D; ++r) {
+            for (int c = 0; c < D; ++c) {
+              blocks[p][q][r][c][l] = matrix[(p * D + r) * size + q * D + c];
+            }
+          }
+        }
+      }
+    }
+  }
+
+  /// Adds up the relative Hessian of a point's interactions of one kind.
+  template <class Measure, class P>
+  static void add_hessian(LocalWorkspace<D>& w, const Interactions<Measure>& interactions,
+                          const P& potential, Curvature curvature) {
+    constexpr int arms_count = Measure::arms, last = arms_count - 1;
+    interactions.template for_each_group<D>(w.local, w.scratch, [&](const auto& group) {
+      BatchArms<Measure, D> arms(w, group);
+      std::array<std::array<Lanes, half_entries>, last> on_diagonal{};
+      Matrix<D, Lanes> of_fixed_pair{};
+      for (const InteractionBlock& block : group.blocks) {
+        const auto add = [&](auto p, auto q, const Matrix<D, Lanes>& part) {
+          if constexpr (p == last && q == last) {
+            w.template add_to_last<half_entries>(block.first, half_of(part));
+          } else if constexpr (p == q) {
+            const auto half = half_of(part);
+            for (int c = 0; c < half_entries; ++c) on_diagonal[p][c] += half[c];
+          } else if constexpr (q == last) {
+            w.add_to_hessian(group.partners[p], block.first, part);
+          } else {
+            for (int r = 0; r < D; ++r) of_fixed_pair[r] = plus<D>(of_fixed_pair[r], part[r]);
+          }
+        };
+        const auto measure = arms.measure(block);
+        const auto psi = interaction_energy(weight_of(block), potential, measure);
+        if (curvature == Curvature::exact) {
+          for_each_pair_of_arms<arms_count>(
+              [&](auto p, auto q) { add(p, q, energy_hessian<p, q>(psi, measure)); });
+        } else {
+          HessianBlocks<arms_count> blocks;
+          for_each_pair_of_arms<arms_count>(
+              [&](auto p, auto q) { blocks[p][q] = energy_hessian<p, q>(psi, measure); });
+          project<arms_count>(blocks);
+          for_each_pair_of_arms<arms_count>([&](auto p, auto q) { add(p, q, blocks[p][q]); });
+        }
+      }
+      for (int p = 0; p < last; ++p) {
+        w.template add_to_fixed<half_entries>(group.partners[p], on_diagonal[p]);
+      }
+      if constexpr (last == 2) w.add_to_pair(group.partners[0], group.partners[1], of_fixed_pair);
+    });
+  }
+
+  static void add_transposed(const Matrix<D, double>& block, double* to) {
+    for (int r = 0; r < D; ++r) {
+      for (int c = 0; c < D; ++c) to[c * D + r] += block[r][c];
+    }
+  }
+
+  static void tangent(Workspace& a, Span displacement, Curvature curvature, Tangent& result) {
+    const Bonds& bonds = a.model.bonds;
+    constexpr int stride = block_width(D), entries = D * D;
+    const auto body = [&](int thread, RowRange range, double* sums) {
+      LocalWorkspace<D>& w = a.template local_of<D>(thread);
+      std::vector<double>& beyond = a.blocks[thread];
+      const Offset first_beyond = bonds.offset[range.last];
+      std::fill(beyond.begin(), beyond.end(), 0.0);
+      const auto block_of = [&](Offset bond) {
+        return bond < first_beyond ? &result.off_diagonal[std::size_t(bond) * entries]
+                                   : &beyond[std::size_t(bond - first_beyond) * entries];
+      };
+      for (Index i = range.first; i < range.last; ++i) {
+        move_to(w, i, displacement, true);
+        w.clear(half_entries);
+        w.clear_hessian();
+        for_each_term(a.model, [&](auto kind, const auto& interactions, const auto& potential) {
+          add_hessian<decltype(kind)>(w, interactions, potential, curvature);
+        });
+
+        // With H_ab the relative Hessian: K_ab += H_ab, K_ib -= sum_a H_ab, K_ii += sum_ab H_ab.
+        const std::span<const Index> partner = w.local.upper.points();
+        double* of_own_bonds = &result.off_diagonal[std::size_t(bonds.offset[i]) * entries];
+        Matrix<D, double> own{};
+        for (int k = 0; k < w.local.upper.count(); ++k) {
+          const auto half = w.template total_of<half_entries>(k);
+          double* row = sums + std::ptrdiff_t(partner[k]) * stride;
+          for (int c = 0; c < half_entries; ++c) row[c] += half[c];
+          const Matrix<D, double> block = full_of(half);
+          for (int r = 0; r < D; ++r) {
+            for (int c = 0; c < D; ++c) {
+              of_own_bonds[k * entries + r * D + c] -= block[r][c];
+              own[r][c] += block[r][c];
+            }
+          }
+        }
+        for (const UpperNeighbourhood::Pair& pair : w.local.upper.pairs()) {
+          const Matrix<D, double> block = w.pair(pair.a, pair.b);
+          double* to = block_of(pair.bond);
+          double *to_a = of_own_bonds + pair.a * entries, *to_b = of_own_bonds + pair.b * entries;
+          for (int r = 0; r < D; ++r) {
+            for (int c = 0; c < D; ++c) {
+              to[r * D + c] += block[r][c];
+              to_b[r * D + c] -= block[r][c];
+              to_a[c * D + r] -= block[r][c];
+              own[r][c] += block[r][c];
+              own[c][r] += block[r][c];
+            }
+          }
+        }
+        double* row = sums + std::ptrdiff_t(i) * stride;
+        int k = 0;
+        for (int r = 0; r < D; ++r) {
+          for (int c = r; c < D; ++c) row[k++] += own[r][c];
+        }
+      }
+    };
+    const auto add_spilled_blocks = [&](int thread, RowRange range) {
+      for (int earlier = 0; earlier < thread; ++earlier) {
+        const RowRange other = a.ranges[earlier];
+        const Index last = std::min(range.last, other.reach);
+        if (last <= range.first) continue;
+        const std::size_t from = std::size_t(bonds.offset[range.first]) * entries;
+        const std::size_t count = std::size_t(bonds.offset[last]) * entries - from;
+        const double* spilled =
+            a.blocks[earlier].data() + from - std::size_t(bonds.offset[other.last]) * entries;
+        for (std::size_t k = 0; k < count; ++k) result.off_diagonal[from + k] += spilled[k];
+      }
+    };
+    a.sum_rows<stride>(
+        body,
+        [&](Index i, const double* total) {
+          double* block = &result.diagonal[std::size_t(i) * entries];
+          int k = 0;
+          for (int r = 0; r < D; ++r) {
+            for (int c = r; c < D; ++c, ++k) {
+              block[r * D + c] += total[k];
+              if (c > r) block[c * D + r] += total[k];
+            }
+          }
+        },
+        add_spilled_blocks);
+  }
+};
+
+}  // namespace peristat

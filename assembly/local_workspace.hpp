@@ -1,0 +1,128 @@
+#pragma once
+
+#include <algorithm>
+#include <bit>
+#include <cstddef>
+
+#include "src/aligned_vector.hpp"
+#include "src/lanes.hpp"
+#include "src/neighbourhood/interactions.hpp"
+
+namespace peristat {
+
+/// What a thread adds up over the interactions of one point with the partners above it. Everything
+/// is a function of the arms alone: sums belong to partners, and the point's own part follows from
+/// them, because an interaction does not change when all of its points move together.
+///
+/// Interactions come as a group of fixed partners and blocks of four last partners side by side
+/// (see InteractionGroup). What belongs to a last partner is added to its place in its block; what
+/// belongs to a fixed one is added lane by lane, and the lanes are summed at the end.
+template <int D>
+struct LocalWorkspace {
+  /// Most doubles that are added up per partner: the upper half of a symmetric block.
+  static constexpr int most_width = D * (D + 1) / 2;
+  static constexpr int entries = D * D;
+
+  LocalWorkspace(const Points& points, const Bonds& bonds)
+      : LocalWorkspace(points, bonds, UpperNeighbourhood::largest(bonds)) {}
+
+  LocalNeighbourhood<D> local;
+  LocalVectors<D> displacement;  ///< of the partners relative to the point [m]
+  LocalVectors<D> vector;        ///< another such field, for the product
+  InteractionScratch scratch;
+
+  void clear(int width) {
+    const std::size_t count = std::size_t(local.upper.count());
+    std::fill_n(of_fixed_.begin(), count * width * lane_count, 0.0);
+    std::fill_n(of_last_.begin(), std::size_t(block_count(int(count))) * width * lane_count, 0.0);
+  }
+
+  template <int width>
+  void add_to_fixed(int partner, const std::array<Lanes, width>& value) {
+    add<width>(&of_fixed_[std::size_t(partner) * width * lane_count], value);
+  }
+
+  /// To the partners first .. first + 3, a lane each.
+  template <int width>
+  void add_to_last(int first, const std::array<Lanes, width>& value) {
+    add<width>(&of_last_[std::size_t(first) * width], value);
+  }
+
+  template <int width>
+  [[nodiscard]] std::array<double, width> total_of(int partner) const {
+    std::array<double, width> total;
+    const double* fixed = &of_fixed_[std::size_t(partner) * width * lane_count];
+    const double* last = &of_last_[std::size_t(partner / lane_count) * lane_count * width +
+                                   std::size_t(partner % lane_count)];
+    for (int c = 0; c < width; ++c) {
+      const double* lane = fixed + c * lane_count;
+      total[c] = ((lane[0] + lane[1]) + (lane[2] + lane[3])) + last[c * lane_count];
+    }
+    return total;
+  }
+
+  /// Relative Hessian: blocks of partners a < b, four b side by side.
+  [[nodiscard]] double* hessian(int a, int first) {
+    return &hessian_[(std::size_t(a) * stride_ + std::size_t(first)) * entries];
+  }
+  void clear_hessian() {
+    const int count = local.upper.count();
+    for (int a = 0; a < count; ++a) {
+      // Partners above a only; their first block may start below it.
+      const int first = a / lane_count * lane_count;
+      std::fill_n(hessian(a, first), std::size_t(block_count(count) * lane_count - first) * entries,
+                  0.0);
+    }
+  }
+  void add_to_hessian(int a, int first, const Matrix<D, Lanes>& block) {
+    add_block(hessian(a, first), block);
+  }
+  /// Adds the sum of a block's lanes to one pair.
+  void add_to_pair(int a, int b, const Matrix<D, Lanes>& block) {
+    double* place = hessian(a, b / lane_count * lane_count) + b % lane_count;
+    for (int r = 0; r < D; ++r) {
+      for (int c = 0; c < D; ++c) place[(r * D + c) * lane_count] += sum(block[r][c]);
+    }
+  }
+  [[nodiscard]] Matrix<D, double> pair(int a, int b) {
+    const double* place = hessian(a, b / lane_count * lane_count) + b % lane_count;
+    Matrix<D, double> block;
+    for (int r = 0; r < D; ++r) {
+      for (int c = 0; c < D; ++c) block[r][c] = place[(r * D + c) * lane_count];
+    }
+    return block;
+  }
+
+ private:
+  LocalWorkspace(const Points& points, const Bonds& bonds, int most)
+      : local(points, bonds),
+        displacement(most),
+        vector(most),
+        scratch(most),
+        stride_(std::size_t(block_count(most)) * lane_count),
+        of_fixed_(std::size_t(most) * most_width * lane_count),
+        of_last_(stride_ * most_width),
+        hessian_(std::size_t(most) * stride_ * entries) {}
+
+  static void add_lanes(double* to, const Lanes& value) {
+    Lanes total(to, std::experimental::element_aligned);
+    total += value;
+    total.copy_to(to, std::experimental::element_aligned);
+  }
+  template <int width>
+  static void add(double* to, const std::array<Lanes, width>& value) {
+    for (int c = 0; c < width; ++c) add_lanes(to + c * lane_count, value[c]);
+  }
+  static void add_block(double* to, const Matrix<D, Lanes>& block) {
+    for (int r = 0; r < D; ++r) {
+      for (int c = 0; c < D; ++c) add_lanes(to + (r * D + c) * lane_count, block[r][c]);
+    }
+  }
+
+  std::size_t stride_;
+  AlignedVector<double> of_fixed_;  // [partner][width][lane]
+  AlignedVector<double> of_last_;   // [block][width][lane]
+  AlignedVector<double> hessian_;   // [partner][block][entry][lane]
+};
+
+}  // namespace peristat

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <optional>
+
+#include "src/neighbourhood/bonds.hpp"
+#include "src/neighbourhood/interactions.hpp"
+#include "src/potentials/potential.hpp"
+
+namespace peristat {
+
+/// Two- or three-neighbour interactions with their potential.
+template <class Measure>
+struct InteractionTerm {
+  Interactions<Measure> interactions;
+  HigherPotential potential;
+};
+
+using TriangleTerm = InteractionTerm<Area>;
+using TetrahedronTerm = InteractionTerm<Volume>;
+
+/// The discrete energy of a body: the sum of w psi(m; M) over its bonds (measure l), and in
+/// continuum-kinematics-inspired peridynamics over its triangles (a) and tetrahedra (v)
+/// ([CPD] eq. 14). Constant in a solve.
+struct Model {
+  Bonds bonds;
+  BondPotential potential;
+  std::optional<TriangleTerm> triangles;
+  std::optional<TetrahedronTerm> tetrahedra;
+
+  [[nodiscard]] bool has_only_bonds() const { return !triangles && !tetrahedra; }
+};
+
+}  // namespace peristat

@@ -1,0 +1,222 @@
+#pragma once
+
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "src/lanes.hpp"
+#include "src/measures/area.hpp"
+#include "src/measures/volume.hpp"
+#include "src/neighbourhood/horizon.hpp"
+#include "src/neighbourhood/local_neighbourhood.hpp"
+
+namespace peristat {
+
+/// Four neighbouring partners of a point that may each complete an interaction.
+struct InteractionBlock {
+  double inverse_reference[lane_count];  ///< 1/M, signed as the measure is; 1 in empty lanes
+  double weight[lane_count];  ///< w [m9 or m12], negative where M is, so that w M > 0; 0 if empty
+  std::int32_t first;         ///< local number of the first
+  std::uint32_t active;       ///< bit l: lane l holds an interaction
+};
+
+/// Interactions of a point that share all of their points but the last.
+template <int Fixed>
+struct InteractionGroup {
+  std::array<std::int32_t, Fixed> partners;  ///< local numbers, ascending
+  std::span<const InteractionBlock> blocks;  ///< of the last point, above all partners
+};
+
+/// Room for the interactions that are found of one point.
+struct InteractionScratch {
+  explicit InteractionScratch(int most_partners)
+      : shares(most_partners), blocks(std::size_t(block_count(most_partners))) {}
+  LocalVectors<1> shares;
+  std::vector<InteractionBlock> blocks;
+};
+
+/// Unique triangles (Measure = Area) or tetrahedra (Volume) of a body: points with all mutual
+/// distances within the horizon ([CPD] sec. 3.1 after eqs. 32 and 34) that are not collinear
+/// (coplanar) up to flatness_tolerance. Each is visited once, at its lowest point, with its other
+/// points in ascending order.
+///
+/// They are found anew at every visit from the bond graph, or, once stored, read back: 72 bytes for
+/// a block of up to four.
+template <class Measure>
+class Interactions {
+ public:
+  static constexpr int fixed = Measure::arms - 1;
+  using Group = InteractionGroup<fixed>;
+
+  /// Counts them.
+  Interactions(const Points& points, const Bonds& bonds, double horizon, int threads);
+
+  [[nodiscard]] Offset count() const { return count_; }
+
+  /// Interactions that each point takes part in.
+  [[nodiscard]] const std::vector<std::int32_t>& per_point() const { return per_point_; }
+
+  /// An interaction's weight is the sum of its points' shares [m9 or m12].
+  void set_shares(std::vector<double> shares) { shares_ = std::move(shares); }
+
+  /// Memory that storing them takes [bytes].
+  [[nodiscard]] double stored_bytes() const;
+  [[nodiscard]] bool is_stored() const { return !chunks_.empty(); }
+  void store(const Points& points, const Bonds& bonds, int threads);
+
+  /// Calls visit(group) for the interactions whose lowest point `local` has moved to. When they are
+  /// not stored, its pairs must have been found.
+  template <int D, class Visit>
+  void for_each_group(const LocalNeighbourhood<D>& local, InteractionScratch& scratch,
+                      const Visit& visit) const;
+
+ private:
+  struct StoredGroup {
+    std::array<std::int32_t, fixed> partners;
+    std::int32_t blocks;
+  };
+  /// What is stored of points first, first + 1, …
+  struct Chunk {
+    Index first;
+    std::vector<Offset> groups_before, blocks_before;  // per point, and the totals
+    std::vector<StoredGroup> groups;
+    std::vector<InteractionBlock> blocks;
+  };
+
+  template <int D>
+  void count_in(const Points& points, const Bonds& bonds, int threads);
+  template <int D>
+  void store_in(const Points& points, const Bonds& bonds, int threads);
+  template <int D, class Visit>
+  void find_groups(const LocalNeighbourhood<D>& local, InteractionScratch& scratch,
+                   const Visit& visit) const;
+  template <int D>
+  bool make_block(const Arms<Measure::arms, D, Lanes>& arms, const Lanes& share,
+                  std::uint32_t candidates, InteractionBlock& block) const;
+
+  double least_measure_;  // a smaller one is flat
+  Offset count_ = 0;
+  Offset blocks_ = 0, groups_ = 0;
+  std::vector<std::int32_t> per_point_;
+  std::vector<double> shares_;
+  std::vector<Chunk> chunks_;
+};
+
+using Triangles = Interactions<Area>;
+using Tetrahedra = Interactions<Volume>;
+
+namespace interactions_detail {
+
+/// 1 in the lanes of the set bits, 0 elsewhere.
+inline constexpr auto lanes_of_bits = [] {
+  std::array<std::array<double, lane_count>, 1 << lane_count> table{};
+  for (std::size_t bits = 0; bits < table.size(); ++bits) {
+    for (std::size_t l = 0; l < lane_count; ++l) table[bits][l] = bits >> l & 1U ? 1.0 : 0.0;
+  }
+  return table;
+}();
+
+}  // namespace interactions_detail
+
+/// Fills a block from those of its four partners that are candidates (bits).
+/// @param arms from the point; the last arm is that of the four
+/// @param share sum of the points' shares
+/// @return whether it holds any interaction
+template <class Measure>
+template <int D>
+bool Interactions<Measure>::make_block(const Arms<Measure::arms, D, Lanes>& arms,
+                                       const Lanes& share, std::uint32_t candidates,
+                                       InteractionBlock& block) const {
+  using std::experimental::element_aligned;
+  using std::experimental::where;
+  const Lanes reference = Measure::template value<D>(arms);
+  const Lanes candidate(interactions_detail::lanes_of_bits[candidates].data(), element_aligned);
+  const auto active = candidate * std::experimental::abs(reference) > Lanes(least_measure_);
+  if (std::experimental::none_of(active)) return false;
+  Lanes inverse = 1.0 / reference;
+  where(!active, inverse) = 1.0;
+  Lanes weight = share;
+  where(reference < 0.0, weight) = -weight;
+  where(!active, weight) = 0.0;
+  inverse.copy_to(block.inverse_reference, element_aligned);
+  weight.copy_to(block.weight, element_aligned);
+  block.active = candidates;
+  if (std::experimental::any_of(!active && candidate > 0.0)) {  // some are flat
+    for (int l = 0; l < lane_count; ++l) {
+      if (!active[l]) block.active &= ~(std::uint32_t(1) << l);
+    }
+  }
+  return true;
+}
+
+template <class Measure>
+template <int D, class Visit>
+void Interactions<Measure>::find_groups(const LocalNeighbourhood<D>& local,
+                                        InteractionScratch& scratch, const Visit& visit) const {
+  const UpperNeighbourhood& upper = local.upper;
+  const auto share_of = [&](int a) { return shares_[upper.points()[a]]; };
+  scratch.shares.assign(upper.count(), [&](int a, int) { return share_of(a); });
+  const double own_share = shares_[upper.own()];
+  Group group;
+  Arms<Measure::arms, D, Lanes> arms;
+  double share = 0.0;
+
+  // Blocks among the bits of partners that are bonded to all fixed ones.
+  const auto complete = [&](const auto& word_of) {
+    std::size_t count = 0;
+    for (int w = 0; w < upper.words(); ++w) {
+      std::uint64_t word = word_of(w);
+      while (word != 0) {
+        const int nibble = std::countr_zero(word) / lane_count * lane_count;
+        const auto candidates = static_cast<std::uint32_t>(word >> nibble) & 0xFU;
+        word &= ~(std::uint64_t(0xF) << nibble);
+        InteractionBlock& block = scratch.blocks[count];
+        block.first = w * 64 + nibble;
+        arms[fixed] = local.reference.block(block.first);
+        const Lanes shares = share + scratch.shares.block(block.first)[0];
+        if (make_block<D>(arms, shares, candidates, block)) ++count;
+      }
+    }
+    group.blocks = {scratch.blocks.data(), count};
+    if (count > 0) visit(group);
+  };
+  if constexpr (fixed == 1) {
+    for (int a = 0; a < upper.count(); ++a) {
+      group.partners = {a};
+      arms[0] = local.reference.one(a);
+      share = own_share + share_of(a);
+      complete([bits = upper.mutual(a)](int w) { return bits[w]; });
+    }
+  } else {
+    for (const UpperNeighbourhood::Pair& pair : upper.pairs()) {
+      group.partners = {pair.a, pair.b};
+      arms[0] = local.reference.one(pair.a);
+      arms[1] = local.reference.one(pair.b);
+      share = own_share + share_of(pair.a) + share_of(pair.b);
+      const std::uint64_t *a = upper.mutual(pair.a), *b = upper.mutual(pair.b);
+      complete([a, b](int w) { return a[w] & b[w]; });
+    }
+  }
+}
+
+template <class Measure>
+template <int D, class Visit>
+void Interactions<Measure>::for_each_group(const LocalNeighbourhood<D>& local,
+                                           InteractionScratch& scratch, const Visit& visit) const {
+  if (chunks_.empty()) return find_groups<D>(local, scratch, visit);
+  const Index i = local.upper.own();
+  const Chunk* chunk = &chunks_.back();
+  while (i < chunk->first) --chunk;
+  const std::size_t row = std::size_t(i - chunk->first);
+  const InteractionBlock* block = chunk->blocks.data() + chunk->blocks_before[row];
+  for (Offset g = chunk->groups_before[row]; g < chunk->groups_before[row + 1]; ++g) {
+    const StoredGroup& stored = chunk->groups[std::size_t(g)];
+    visit(Group{stored.partners, {block, std::size_t(stored.blocks)}});
+    block += stored.blocks;
+  }
+}
+
+}  // namespace peristat

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <cstddef>
+
+#include "src/aligned_vector.hpp"
+#include "src/lanes.hpp"
+#include "src/measures/small_algebra.hpp"
+
+namespace peristat {
+
+/// Blocks of lane_count that `count` entries fill.
+constexpr int block_count(int count) { return (count + lane_count - 1) / lane_count; }
+
+/// A vector per local number, component by component, so that four neighbours in a row load as
+/// lanes. Entries that fill up the last block are zero.
+template <int D>
+class LocalVectors {
+ public:
+  explicit LocalVectors(int most)
+      : stride_(std::size_t(block_count(most)) * lane_count), values_(D * stride_, 0.0) {}
+
+  /// Takes vector(a)[c] for the local numbers a in [0, count).
+  template <class VectorOf>
+  void assign(int count, const VectorOf& vector) {
+    const int end = block_count(count) * lane_count;
+    for (int a = 0; a < end; ++a) {
+      for (int c = 0; c < D; ++c) values_[c * stride_ + a] = a < count ? vector(a, c) : 0.0;
+    }
+  }
+
+  /// The vector of one neighbour in all lanes.
+  [[nodiscard]] Vector<D, Lanes> one(int a) const {
+    Vector<D, Lanes> result;
+    for (int c = 0; c < D; ++c) result[c] = values_[c * stride_ + a];
+    return result;
+  }
+
+  /// The vectors of neighbours first .. first + 3.
+  [[nodiscard]] Vector<D, Lanes> block(int first) const {
+    Vector<D, Lanes> result;
+    for (int c = 0; c < D; ++c) {
+      result[c].copy_from(&values_[c * stride_ + first], std::experimental::element_aligned);
+    }
+    return result;
+  }
+
+ private:
+  std::size_t stride_;
+  AlignedVector<double> values_;
+};
+
+}  // namespace peristat
