@@ -24,8 +24,8 @@ using TetrahedronTerm = InteractionTerm<Volume>;
 struct Model {
   Bonds bonds;
   BondPotential potential;
-  std::optional<TriangleTerm> triangles;
-  std::optional<TetrahedronTerm> tetrahedra;
+  std::optional<TriangleTerm> triangles{};
+  std::optional<TetrahedronTerm> tetrahedra{};
 
   [[nodiscard]] bool has_only_bonds() const { return !triangles && !tetrahedra; }
 };

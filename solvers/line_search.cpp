@@ -22,26 +22,33 @@ LineSearchResult line_search(const EquilibriumProblem& problem,
                              std::span<const double> direction, const LineSearchOptions& options,
                              Trial& trial) {
   const double slope = slope_along(direction, from, external_force);
-  if (!std::isfinite(slope)) return {Outcome::degenerate, 0.0};
-  if (slope > 0.0) return {Outcome::no_descent, 0.0};
+  LineSearchResult result;
+  if (!std::isfinite(slope)) result.outcome = Outcome::degenerate;
+  if (slope > 0.0) result.outcome = Outcome::no_descent;
+  if (result.outcome != Outcome::converged) return result;
 
   const double work = dot(external_force, from.displacement);
   const double round_off = 64.0 * std::numeric_limits<double>::epsilon() *
                            std::max(std::abs(from.stored_energy), std::abs(work));
-  bool degenerate = false;
   double length = 1.0;
   for (int count = 0; count < options.max_trials; ++count, length *= options.shrink) {
     trial.displacement = from.displacement;
     add_scaled(trial.displacement, length, direction);
     evaluate(problem, external_force, trial);
-    degenerate = trial.degenerate;
-    if (degenerate) continue;
+    if (trial.degenerate) {
+      ++result.degenerate;
+      continue;
+    }
+    result.step_length = length;
     const double change = trial.total_energy - from.total_energy;
-    if (change <= options.sufficient_decrease * length * slope) return {Outcome::converged, length};
+    if (change <= options.sufficient_decrease * length * slope) return result;
     const bool flatter = std::abs(slope_along(direction, trial, external_force)) <= std::abs(slope);
-    if (std::abs(change) <= round_off && flatter) return {Outcome::converged, length};
+    if (std::abs(change) <= round_off && flatter) return result;
+    ++result.rejected;
   }
-  return {degenerate ? Outcome::degenerate : Outcome::line_search_failed, 0.0};
+  result.outcome = trial.degenerate ? Outcome::degenerate : Outcome::line_search_failed;
+  result.step_length = 0.0;
+  return result;
 }
 
 }  // namespace peristat

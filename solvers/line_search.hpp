@@ -15,6 +15,8 @@ struct LineSearchOptions {
 struct LineSearchResult {
   Outcome outcome = Outcome::converged;
   double step_length = 0.0;
+  int rejected = 0;    ///< trials whose energy was too high
+  int degenerate = 0;  ///< trials in which a measure had no gradient, or a value was not finite
 };
 
 /// Finds the largest step length 1, shrink, shrink^2, … along `direction` (zero on prescribed

@@ -32,9 +32,10 @@ double trapezoidal_work(const std::vector<double>& force0, const std::vector<dou
 }
 
 /// Whether a smaller step can help.
-bool worth_cutting(Outcome outcome) {
-  return outcome != Outcome::interrupted && outcome != Outcome::out_of_memory &&
-         outcome != Outcome::singular_tangent;
+bool worth_cutting(const NewtonResult& attempt) {
+  const Outcome outcome = attempt.outcome;
+  return !attempt.unstable_start && outcome != Outcome::interrupted &&
+         outcome != Outcome::out_of_memory && outcome != Outcome::singular_tangent;
 }
 
 }  // namespace
@@ -110,8 +111,7 @@ LoadSteppingResult follow_loading(const EquilibriumProblem& problem, LinearSolve
     }
 
     const double next = attempted * options.cut;
-    const bool cut =
-        options.adaptive && worth_cutting(attempt.outcome) && next >= options.smallest_step;
+    const bool cut = options.adaptive && worth_cutting(attempt) && next >= options.smallest_step;
     decision.reason = explanation(attempt.outcome);
     if (attempt.inertia && attempt.inertia->negative > 0) {
       decision.reason += " (" + std::to_string(attempt.inertia->negative) + " negative pivots)";

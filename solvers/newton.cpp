@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 
 #include "solvers/vector_verbs.hpp"
 
@@ -20,17 +21,6 @@ double residual_scale(const EquilibriumProblem& problem, std::span<const double>
   return std::max({norm(external_force), std::sqrt(reactions), after_jump.residual_norm});
 }
 
-/// Right-hand side of an iteration: f_ext - dE/dx - K jump on the free degrees of freedom.
-void out_of_balance(const EquilibriumProblem& problem, std::span<const double> external_force,
-                    std::span<const double> gradient, std::span<const double> force_of_jump,
-                    std::span<double> result) {
-  for (std::size_t e = 0; e < result.size(); ++e) {
-    const Index dof = problem.free.dof[e];
-    result[e] = external_force[dof] - gradient[dof];
-    if (!force_of_jump.empty()) result[e] -= force_of_jump[dof];
-  }
-}
-
 Outcome outcome_of(LinearOutcome linear) {
   switch (linear) {
     case LinearOutcome::solved:
@@ -45,6 +35,56 @@ Outcome outcome_of(LinearOutcome linear) {
       return Outcome::linear_solver_inaccurate;
   }
   return Outcome::singular_tangent;
+}
+
+/// Linear systems of the iterations, with room for their vectors.
+class Linearisation {
+ public:
+  Linearisation(const EquilibriumProblem& problem, LinearSolver& solver, Tangent& tangent,
+                std::span<const double> external_force)
+      : problem_(problem),
+        solver_(solver),
+        tangent_(tangent),
+        external_force_(external_force),
+        right_hand_side_(std::size_t(problem.free.count())),
+        solution_(right_hand_side_.size()),
+        force_of_jump_(external_force.size()) {}
+
+  /// Finds the direction du with K_ff du_f = f_ext - dE/dx_f - K_fp jump_p at a state.
+  /// @param jump of the prescribed displacements; empty for none
+  [[nodiscard]] LinearOutcome solve(const Trial& at, Curvature curvature, FactorUse use,
+                                    std::span<const double> jump, std::span<double> direction) {
+    problem_.assembler.tangent(at.displacement, tangent_, curvature);
+    if (!jump.empty()) tangent_.multiply(jump, force_of_jump_);
+    for (std::size_t e = 0; e < right_hand_side_.size(); ++e) {
+      const Index dof = problem_.free.dof[e];
+      right_hand_side_[e] = external_force_[dof] - at.gradient[dof];
+      if (!jump.empty()) right_hand_side_[e] -= force_of_jump_[dof];
+    }
+    LinearOutcome outcome = solver_.factorize(tangent_, use);
+    if (outcome == LinearOutcome::solved) outcome = solver_.solve(right_hand_side_, solution_);
+    problem_.free.extend_by_zero(solution_, direction);
+    return outcome;
+  }
+
+ private:
+  const EquilibriumProblem& problem_;
+  LinearSolver& solver_;
+  Tangent& tangent_;
+  std::span<const double> external_force_;
+  std::vector<double> right_hand_side_, solution_, force_of_jump_;
+};
+
+/// Negative pivots for the history.
+std::int64_t told_negative_pivots(LinearOutcome linear, const std::optional<Inertia>& inertia) {
+  if (inertia) return inertia->negative;
+  return linear == LinearOutcome::not_positive_definite ? -1 : 0;
+}
+
+/// Whether a search along a projected tangent's direction may succeed where the exact one's failed.
+bool projection_may_help(Outcome outcome) {
+  return outcome == Outcome::not_positive_definite || outcome == Outcome::no_descent ||
+         outcome == Outcome::line_search_failed || outcome == Outcome::degenerate;
 }
 
 }  // namespace
@@ -70,14 +110,10 @@ NewtonResult newton(const EquilibriumProblem& problem, LinearSolver& solver, Tan
   evaluate(problem, external_force, current);
   const double scale = residual_scale(problem, external_force, old_state, current);
 
-  const auto record = [&](int iteration, double step_length, int linear_iterations) {
-    IterationRecord row;
-    row.iteration = iteration;
+  const auto record = [&](IterationRecord row) {
     row.residual = current.residual_norm;
     row.relative_residual = scale > 0.0 ? current.residual_norm / scale : 0.0;
     row.energy = current.total_energy;
-    row.step_length = step_length;
-    row.linear_iterations = linear_iterations;
     return observer && observer(row);
   };
   const auto converged = [&] {
@@ -85,57 +121,77 @@ NewtonResult newton(const EquilibriumProblem& problem, LinearSolver& solver, Tan
   };
   // A state right after the jump may be degenerate (a support driven onto a neighbour); the
   // predictor is what moves the neighbours away, so only its result is judged.
-  if (!current.degenerate && record(0, 0.0, 0)) {
+  if (!current.degenerate && record({})) {
     result.outcome = Outcome::interrupted;
     return result;
   }
   if (converged()) return result;
 
   Trial next = current;
-  std::vector<double> right_hand_side(problem.free.count()), solution(problem.free.count());
-  std::vector<double> direction(dofs), force_of_jump;
+  Linearisation linearisation(problem, solver, tangent, external_force);
+  std::vector<double> direction(dofs);
+  std::optional<Inertia> start_inertia;
   for (int iteration = 1; iteration <= options.max_iterations; ++iteration) {
-    const Trial& linearised_at = iteration == 1 ? old_state : current;
-    problem.assembler.tangent(linearised_at.displacement, tangent);
-    force_of_jump.clear();
-    if (iteration == 1) {
-      force_of_jump.resize(dofs);
-      problem.assembler.product(old_state.displacement, jump, force_of_jump);
+    const bool is_predictor = iteration == 1 && options.predictor == Predictor::consistent;
+    const Trial& linearised_at = is_predictor ? old_state : current;
+    IterationRecord row;
+    row.iteration = iteration;
+    LineSearchResult search;
+    for (Curvature curvature : {Curvature::exact, Curvature::projected}) {
+      const bool exact = curvature == Curvature::exact;
+      if (exact && options.projection == Projection::always) continue;
+      // The first tangent of a load step is always factorised: its pivots tell whether the state
+      // that the step starts from is stable.
+      const FactorUse use = iteration == 1 ? FactorUse::factorize_now : FactorUse::may_reuse;
+      const LinearOutcome linear = linearisation.solve(
+          linearised_at, curvature, use,
+          is_predictor ? std::span<const double>(jump) : std::span<const double>(), direction);
+      if (exact) {
+        result.inertia = solver.inertia();
+        row.negative_pivots = told_negative_pivots(linear, result.inertia);
+        if (is_predictor) {
+          result.unstable_start = linear == LinearOutcome::not_positive_definite;
+          start_inertia = result.inertia;
+        }
+      }
+      row.tangent = exact ? "exact" : "projected";
+      row.linear_iterations = solver.last_iterations();
+      result.outcome = outcome_of(linear);
+      if (result.outcome == Outcome::converged) {
+        search =
+            line_search(problem, external_force, current, direction, options.line_search, next);
+        result.outcome = search.outcome;
+      }
+      row.rejected_trials += search.rejected;
+      row.degenerate_trials += search.degenerate;
+      if (is_predictor && linear == LinearOutcome::solved && search.outcome != Outcome::converged) {
+        // The jump can leave a state in which the energy tells nothing (collapsed or overstretched
+        // bonds beside the supports): the predictor is then taken in full, and the next iteration
+        // judges it.
+        next.displacement = current.displacement;
+        add_scaled(next.displacement, 1.0, direction);
+        evaluate(problem, external_force, next);
+        search.step_length = 1.0;
+        result.outcome = next.degenerate ? Outcome::degenerate : Outcome::converged;
+      }
+      if (result.outcome == Outcome::converged) break;
+      if (options.projection == Projection::never || !projection_may_help(result.outcome)) break;
     }
-    out_of_balance(problem, external_force, linearised_at.gradient, force_of_jump, right_hand_side);
-
-    // The first tangent of a load step is always factorised: its pivots tell whether the state that
-    // the step starts from is stable.
-    LinearOutcome linear =
-        solver.factorize(tangent, iteration == 1 ? FactorUse::factorize_now : FactorUse::may_reuse);
-    if (linear == LinearOutcome::solved) linear = solver.solve(right_hand_side, solution);
-    result.inertia = solver.inertia();
-    result.outcome = outcome_of(linear);
-    if (result.outcome != Outcome::converged) return result;
-
-    problem.free.extend_by_zero(solution, direction);
-    LineSearchResult search =
-        line_search(problem, external_force, current, direction, options.line_search, next);
-    if (iteration == 1 && search.outcome != Outcome::converged) {
-      // The jump can leave a state in which the energy tells nothing (collapsed or overstretched
-      // bonds beside the supports): the predictor is then taken in full, and the next iteration
-      // judges it.
-      next.displacement = current.displacement;
-      add_scaled(next.displacement, 1.0, direction);
-      evaluate(problem, external_force, next);
-      search = {next.degenerate ? Outcome::degenerate : Outcome::converged, 1.0};
-    }
-    result.outcome = search.outcome;
-    if (result.outcome != Outcome::converged) return result;
+    if (result.outcome != Outcome::converged) break;
     std::swap(current, next);
     result.iterations = iteration;
-    if (record(iteration, search.step_length, solver.last_iterations())) {
+    row.step_length = search.step_length;
+    if (record(row)) {
       result.outcome = Outcome::interrupted;
       return result;
     }
     if (converged()) return result;
+    result.outcome = Outcome::iteration_limit;
   }
-  result.outcome = Outcome::iteration_limit;
+  if (result.unstable_start) {
+    result.outcome = Outcome::not_positive_definite;
+    result.inertia = start_inertia;
+  }
   return result;
 }
 

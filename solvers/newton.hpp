@@ -11,16 +11,32 @@
 
 namespace peristat {
 
+/// When the tangent's interactions are projected to their positive semidefinite part.
+enum class Projection {
+  automatic,  ///< when the exact tangent has negative pivots or its direction leads nowhere
+  never,
+  always,
+};
+
+/// What the first iteration of a load step linearises about.
+enum class Predictor {
+  consistent,  ///< the old state; the jump of the prescribed displacements is spread over the body
+  none,        ///< the state right after the jump, as every later iteration ([CPD] sec. 3.2)
+};
+
 struct NewtonOptions {
   double relative_tolerance = 1e-10;
   int max_iterations = 25;
+  Projection projection = Projection::automatic;
+  Predictor predictor = Predictor::consistent;
   LineSearchOptions line_search;
 };
 
 struct NewtonResult {
   Outcome outcome = Outcome::converged;
   int iterations = 0;
-  std::optional<Inertia> inertia;  ///< of the last factorised tangent, if known
+  std::optional<Inertia> inertia;  ///< of the last exact tangent that was factorised, if known
+  bool unstable_start = false;     ///< the exact tangent of the old state has negative pivots
   Trial state;                     ///< last state reached; equilibrium only if converged
   std::vector<double> external_force;
 };
@@ -37,6 +53,13 @@ using IterationObserver = std::function<bool(const IterationRecord&)>;
 ///   K_ff du_f = f_ext - dE/dx_f(u) - K_fp du_p,
 /// so that it already spreads the jump du_p of the prescribed displacements over the body; all
 /// later ones are K_ff du_f = f_ext - dE/dx_f(u). Each is followed by an energy line search.
+///
+/// The exact tangent always comes first, so that convergence is quadratic. Where it has negative
+/// pivots, or its direction does not lower the energy, the projected one takes its place for that
+/// iteration: it is positive semidefinite by construction, so its direction descends, and the
+/// search goes on as a minimisation of the energy. States in which a measure has no gradient are
+/// rejected by the line search. From a state that is unstable itself the search may find another,
+/// stable one; if it finds none, the outcome is not_positive_definite whatever ended the search.
 ///
 /// The relative residual is ||f_ext - dE/dx|| over free degrees of freedom, divided by the largest
 /// of

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "cases/runner/cpd_model.hpp"
 #include "src/input_error.hpp"
 #include "src/number_text.hpp"
 #include "src/points/point_file.hpp"
@@ -57,6 +58,12 @@ BondSetting setting_of(const Case& from, const Points& points) {
   return setting;
 }
 
+double micromodulus_of(const Case& from, const BondSetting& setting) {
+  const MaterialSpecification& material = from.material;
+  return material.micromodulus ? *material.micromodulus
+                               : micromodulus(*material.youngs_modulus, setting);
+}
+
 /// Refuses a lattice that can't fit before any of its points is made.
 void require_memory_for_lattice(const Case& from, const Lattice& lattice) {
   const double points = estimate_points(lattice);
@@ -72,6 +79,19 @@ void require_memory_for_lattice(const Case& from, const Lattice& lattice) {
   // This estimate counts the bounding box: only what cannot fit even if half of it is cut away is
   // refused here; the points themselves tell the rest.
   require_memory(0.5 * estimate.bytes, fmt::format("the case with up to {:.3g} points", points));
+}
+
+/// Stores triangles and tetrahedra if they fit into half of what everything else leaves.
+void store_interactions(Body& body, int threads) {
+  const auto for_each_term = [&](const auto& visit) {
+    if (body.model.triangles) visit(body.model.triangles->interactions);
+    if (body.model.tetrahedra) visit(body.model.tetrahedra->interactions);
+  };
+  InteractionStorage& storage = body.interaction_storage;
+  for_each_term([&](const auto& term) { storage.needed += term.stored_bytes(); });
+  storage.room = std::max(0.5 * (available_memory() - estimate_memory(body).bytes), 0.0);
+  if (!storage.fits()) return;
+  for_each_term([&](auto& term) { term.store(body.points, body.model.bonds, threads); });
 }
 
 }  // namespace
@@ -139,14 +159,15 @@ std::unique_ptr<const Body> make_body(const Case& from, int threads) {
                    "the case with " + std::to_string(body.points.count()) + " points");
     {
       const Stopwatch watch(body.seconds_neighbourhood);
-      body.model.bonds = make_bonds(body.points, {from.volume_correction, from.surface_correction},
-                                    body.setting, threads);
+      Bonds bonds = make_bonds(body.points, {from.volume_correction, from.surface_correction},
+                               body.setting, threads);
+      body.model = from.material.model == MaterialModel::cpd
+                       ? make_cpd_model(from, body.points, body.setting, std::move(bonds), threads)
+                       : Model{std::move(bonds), Harmonic{micromodulus_of(from, body.setting)}};
     }
-    const double modulus = from.material.micromodulus
-                               ? *from.material.micromodulus
-                               : micromodulus(*from.material.youngs_modulus, body.setting);
-    body.model.potential = Harmonic{modulus};
     body.conditions = std::make_unique<Conditions>(body.points, from.supports, from.loads);
+    const Stopwatch watch(body.seconds_neighbourhood);
+    store_interactions(body, threads);
   });
   return owned;
 }
@@ -154,8 +175,37 @@ std::unique_ptr<const Body> make_body(const Case& from, int threads) {
 MemoryEstimate estimate_memory(const Body& body) {
   const auto& prescribed = body.conditions->prescribed();
   const auto free = std::count(prescribed.begin(), prescribed.end(), 0);
-  return estimate_memory(body.points.dimension, size_of(body.points), body.horizon_ratio(),
-                         double(body.model.bonds.count()), double(free));
+  MemoryEstimate estimate =
+      estimate_memory(body.points.dimension, size_of(body.points), body.horizon_ratio(),
+                      double(body.model.bonds.count()), double(free));
+  const auto add_stored = [&](const auto& term) {
+    if (term && term->interactions.is_stored()) {
+      estimate.bytes += term->interactions.stored_bytes();
+    }
+  };
+  add_stored(body.model.triangles);
+  add_stored(body.model.tetrahedra);
+  return estimate;
+}
+
+std::vector<std::string> describe_interactions(const Body& body) {
+  std::vector<std::string> lines;
+  const auto tell = [&](const char* what, const auto& term) {
+    if (!term) return;
+    const auto& per_point = term->interactions.per_point();
+    const auto [least, most] = std::minmax_element(per_point.begin(), per_point.end());
+    lines.push_back(
+        fmt::format("{} {}; per point {} to {}", term->interactions.count(), what, *least, *most));
+  };
+  tell("triangles", body.model.triangles);
+  tell("tetrahedra", body.model.tetrahedra);
+  if (!lines.empty()) {
+    const InteractionStorage& storage = body.interaction_storage;
+    lines.push_back(fmt::format("{}: storing them takes {} of {} that are free for it",
+                                storage.fits() ? "stored" : "found anew in every pass",
+                                bytes_text(storage.needed), bytes_text(storage.room)));
+  }
+  return lines;
 }
 
 std::string describe_free_motions(const Body& body) {

@@ -13,6 +13,13 @@
 
 namespace peristat {
 
+/// What storing all triangles and tetrahedra takes, and what may be taken [bytes]. They are stored
+/// if it fits, and found anew in every pass otherwise.
+struct InteractionStorage {
+  double needed = 0.0, room = 0.0;
+  [[nodiscard]] bool fits() const { return needed <= room; }
+};
+
 /// Everything that a case makes before anything is solved; constant from then on.
 struct Body {
   Body() = default;
@@ -23,6 +30,7 @@ struct Body {
   BondSetting setting;
   Model model;
   std::unique_ptr<Conditions> conditions;  // refers to points
+  InteractionStorage interaction_storage;
   double seconds_neighbourhood = 0.0;
 
   [[nodiscard]] double horizon_ratio() const { return setting.horizon / points.spacing; }
@@ -42,6 +50,10 @@ struct Body {
 
 /// The estimate from the counts that the body has.
 [[nodiscard]] MemoryEstimate estimate_memory(const Body& body);
+
+/// Lines that tell the triangles and tetrahedra, and whether they are stored; empty for bonds
+/// alone.
+[[nodiscard]] std::vector<std::string> describe_interactions(const Body& body);
 
 /// Sentence that tells which parts of the body may move freely; empty if none.
 [[nodiscard]] std::string describe_free_motions(const Body& body);

@@ -223,16 +223,53 @@ SetRule read_set(const TomlTable& table, Context& context) {
   return set;
 }
 
+/// A stiffness may be negative (auxetic bodies have such), but not remotely large.
+Range stiffness(const std::string& unit) {
+  return {-1e200, 1e200, "must be a finite number of " + unit};
+}
+
+void read_cpd_constants(const TomlTable& table, int dimension, MaterialSpecification& material) {
+  for (const char* key : {"plane", "micromodulus"})
+    if (table.has(key)) table.refuse(key, "is for model \"bond\"");
+  if (dimension == 1)
+    table.refuse("model", "cpd needs dimension 2 or 3; in 1D it is the bond model");
+  const bool from_moduli = table.exactly_one({"youngs_modulus", "c1"}) == "youngs_modulus";
+  if (from_moduli) {
+    material.youngs_modulus = table.number("youngs_modulus", Range::positive("Pa"));
+    material.poisson_ratio = table.number("poisson_ratio", Range::between(-1.0, 1.0));
+    if (dimension == 2 && table.has("c2"))
+      table.refuse("c2",
+                   "follows from youngs_modulus and poisson_ratio in 2D; give c1 for a free c2");
+    if (table.has("c3"))
+      table.refuse("c3", "follows from youngs_modulus and poisson_ratio; give c1 for a free c3");
+  } else {
+    material.c1 = table.number("c1", Range::positive("N/m6", 1e200));
+    for (const char* key : {"poisson_ratio", "calibration"})
+      if (table.has(key)) table.refuse(key, "goes with youngs_modulus, not with c1");
+  }
+  material.c2 = table.number("c2", stiffness("N/m10"), material.c2);
+  material.c3 = table.number("c3", stiffness("N/m14"), material.c3);
+  if (dimension == 2 && material.c3 != 0.0)
+    table.refuse("c3", "must be 0 in 2D: three neighbours of a point in a plane span no volume");
+  material.calibration = table.choice("calibration", calibrations, material.calibration);
+}
+
 MaterialSpecification read_material(const TomlTable& table, int dimension) {
   MaterialSpecification material;
-  static_cast<void>(table.one_of("model", {"bond"}, "bond"));
+  material.model = table.choice("model", material_models, material.model);
+  if (table.has("density")) material.density = table.number("density", Range::positive("kg/m3"));
+  if (material.model == MaterialModel::cpd) {
+    read_cpd_constants(table, dimension, material);
+    return material;
+  }
+  for (const char* key : {"poisson_ratio", "c1", "c2", "c3", "calibration"})
+    if (table.has(key)) table.refuse(key, "is for model \"cpd\"");
   if (dimension != 2 && table.has("plane")) table.refuse("plane", "is for dimension 2 only");
   material.plane = table.choice("plane", plane_states, material.plane);
   if (table.exactly_one({"youngs_modulus", "micromodulus"}) == "youngs_modulus")
     material.youngs_modulus = table.number("youngs_modulus", Range::positive("Pa"));
   else
     material.micromodulus = table.number("micromodulus", Range::positive("N/m6", 1e150));
-  if (table.has("density")) material.density = table.number("density", Range::positive("kg/m3"));
   return material;
 }
 
@@ -289,6 +326,8 @@ SolverSpecification read_solver(const TomlTable& table) {
   SolverSpecification solver;
   solver.mode = table.one_of("mode", {"newton"}, solver.mode);
   solver.linear = table.one_of("linear", {"auto", "cholesky"}, solver.linear);
+  solver.predictor = table.choice("predictor", predictors, solver.predictor);
+  solver.projection = table.choice("projection", projections, solver.projection);
   solver.relative_tolerance =
       table.number("relative_tolerance", Range::between(1e-14, 1e-2), solver.relative_tolerance);
   solver.max_iterations =
@@ -318,8 +357,15 @@ ProbeSpecification read_probe(const TomlTable& table, const Context& context,
   probe.name = name(table);
   if (!names.insert(probe.name).second) table.refuse("name", "another probe has this name");
   probe.set = known_set(table, context);
-  probe.field =
-      table.one_of("field", {"displacement", "force", "damage", "energy_density"}, probe.field);
+  probe.field = table.one_of(
+      "field", {"displacement", "force", "damage", "energy_density", "poisson_ratio"}, probe.field);
+  const bool is_ratio = probe.field == "poisson_ratio";
+  if (is_ratio && context.dimension == 1)
+    table.refuse("field", "there is no Poisson's ratio in dimension 1");
+  if (!is_ratio && table.has("axis")) table.refuse("axis", "is for field \"poisson_ratio\"");
+  const std::vector<std::string> axes{"x", "y", "z"};
+  const std::vector<std::string> present(axes.begin(), axes.begin() + context.dimension);
+  probe.axis = table.one_of("axis", present, "x")[0] - 'x';
   return probe;
 }
 
@@ -370,7 +416,18 @@ void read_document(const TomlValue& document, const std::filesystem::path& file,
   result.surface_correction =
       quadrature.choice("surface_correction", surface_corrections, result.surface_correction);
 
+  result.weights = quadrature.choice("weights", interaction_weights, result.weights);
+
   result.material = read_material(root.table("material"), result.dimension);
+  const bool is_cpd = result.material.model == MaterialModel::cpd;
+  const std::vector<std::string> not_of_model =
+      is_cpd ? std::vector<std::string>{"volume_correction", "surface_correction"}
+             : std::vector<std::string>{"weights"};
+  for (const auto& key : not_of_model) {
+    if (!quadrature.has(key) || quadrature.string(key) == "none") continue;
+    quadrature.refuse(key, is_cpd ? "is for model \"bond\"; the effective volumes of cpd need none"
+                                  : "is for model \"cpd\"");
+  }
   for (const auto& support : root.tables("support"))
     result.supports.push_back(read_support(support, context));
   for (const auto& load : root.tables("load")) result.loads.push_back(read_load(load, context));

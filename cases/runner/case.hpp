@@ -10,9 +10,11 @@
 #include <vector>
 
 #include "cases/runner/case_location.hpp"
+#include "solvers/newton.hpp"
 #include "src/conditions/specification.hpp"
 #include "src/input_error.hpp"
 #include "src/materials/bond_constants.hpp"
+#include "src/neighbourhood/effective_volumes.hpp"
 #include "src/neighbourhood/quadrature.hpp"
 #include "src/points/lattice.hpp"
 #include "src/points/point_set.hpp"
@@ -26,11 +28,23 @@ struct PointSource {
   double horizon = 0.0;        ///< [m]
 };
 
+/// Bonds alone, or continuum-kinematics-inspired peridynamics.
+enum class MaterialModel { bond, cpd };
+
+/// What constants from E and nu are to be right on.
+enum class Calibration { lattice, continuum };
+
 struct MaterialSpecification {
+  MaterialModel model = MaterialModel::bond;
   PlaneState plane = PlaneState::stress;
-  std::optional<double> youngs_modulus;  ///< [Pa]; exactly one of this and the micromodulus is set
+  std::optional<double> youngs_modulus;  ///< [Pa]; exactly one of this, micromodulus and c1 is set
   std::optional<double> micromodulus;    ///< c [N/m6]
-  std::optional<double> density;         ///< [kg/m3], for dynamics only
+  std::optional<double> poisson_ratio;   ///< cpd, with youngs_modulus
+  std::optional<double> c1;              ///< C1 [N/m6]
+  double c2 = 0.0;                       ///< C2 [N/m10]; in 2D not with youngs_modulus
+  double c3 = 0.0;                       ///< C3 [N/m14]; with c1 only
+  Calibration calibration = Calibration::lattice;
+  std::optional<double> density;  ///< [kg/m3], for dynamics only
 };
 
 struct LoadingSpecification {
@@ -43,6 +57,8 @@ struct LoadingSpecification {
 struct SolverSpecification {
   std::string mode = "newton";
   std::string linear = "auto";
+  Projection projection = Projection::automatic;
+  Predictor predictor = Predictor::consistent;
   double relative_tolerance = 1e-10;
   int max_iterations = 25;  ///< of Newton in a step
 };
@@ -55,7 +71,9 @@ struct OutputSpecification {
 /// Mean of a field over a set, reported at every accepted step.
 struct ProbeSpecification {
   std::string name, set;
-  std::string field = "displacement";  ///< displacement, force, damage, energy_density
+  /// displacement, force, damage, energy_density, or poisson_ratio
+  std::string field = "displacement";
+  int axis = 0;  ///< for poisson_ratio: direction that is pulled
 };
 
 /// A case as read and checked once; constant from then on.
@@ -67,6 +85,7 @@ struct Case {
   std::vector<SetRule> sets;
   VolumeCorrection volume_correction = VolumeCorrection::none;
   SurfaceCorrection surface_correction = SurfaceCorrection::none;
+  InteractionWeights weights = InteractionWeights::mean;
   MaterialSpecification material;
   std::vector<SupportSpecification> supports;
   std::vector<LoadSpecification> loads;

@@ -27,14 +27,17 @@ const std::map<std::string, std::vector<std::string>>& case_keys() {
         {"points", {"file", "horizon", "thickness", "area"}},
         {"set", {"name", "where", "shape"}},
         {"set.shape", {"box", "disk", "cylinder", "sphere", "polygon"}},
-        {"quadrature", {"volume_correction", "surface_correction"}},
-        {"material", {"model", "plane", "youngs_modulus", "micromodulus", "density"}},
+        {"quadrature", {"volume_correction", "surface_correction", "weights"}},
+        {"material",
+         {"model", "plane", "youngs_modulus", "micromodulus", "poisson_ratio", "c1", "c2", "c3",
+          "calibration", "density"}},
         {"support", {"set", "displacement"}},
         {"load", {"set", "body_force", "total_force"}},
         {"loading", {"steps", "adaptive", "smallest_step", "largest_step"}},
-        {"solver", {"mode", "linear", "relative_tolerance", "max_iterations"}},
+        {"solver",
+         {"mode", "linear", "relative_tolerance", "max_iterations", "projection", "predictor"}},
         {"output", {"directory", "every"}},
-        {"probe", {"name", "set", "field"}}};
+        {"probe", {"name", "set", "field", "axis"}}};
     for (const auto& [kind, own] : shape_keys()) tables["set.shape." + kind] = own;
     return tables;
   }();

@@ -28,6 +28,16 @@ inline const Choices<VolumeCorrection> volume_corrections{{"none", VolumeCorrect
 inline const Choices<SurfaceCorrection> surface_corrections{{"none", SurfaceCorrection::none},
                                                             {"volume", SurfaceCorrection::volume},
                                                             {"energy", SurfaceCorrection::energy}};
+inline const Choices<InteractionWeights> interaction_weights{{"mean", InteractionWeights::mean},
+                                                             {"bulk", InteractionWeights::bulk}};
+inline const Choices<MaterialModel> material_models{{"bond", MaterialModel::bond},
+                                                    {"cpd", MaterialModel::cpd}};
+inline const Choices<Calibration> calibrations{{"lattice", Calibration::lattice},
+                                               {"continuum", Calibration::continuum}};
+inline const Choices<Projection> projections{
+    {"auto", Projection::automatic}, {"never", Projection::never}, {"always", Projection::always}};
+inline const Choices<Predictor> predictors{{"consistent", Predictor::consistent},
+                                           {"none", Predictor::none}};
 inline const Choices<PlaneState> plane_states{{"stress", PlaneState::stress},
                                               {"strain", PlaneState::strain}};
 

@@ -147,15 +147,29 @@ std::string resolved_text(const Case& from) {
   for (const auto& set : from.sets) write_set(out, set, from.dimension);
 
   out.header("quadrature");
-  out.string("volume_correction", choice_name(volume_corrections, from.volume_correction));
-  out.string("surface_correction", choice_name(surface_corrections, from.surface_correction));
+  const MaterialSpecification& material = from.material;
+  const bool is_cpd = material.model == MaterialModel::cpd;
+  if (is_cpd) {
+    out.string("weights", choice_name(interaction_weights, from.weights));
+  } else {
+    out.string("volume_correction", choice_name(volume_corrections, from.volume_correction));
+    out.string("surface_correction", choice_name(surface_corrections, from.surface_correction));
+  }
 
   out.header("material");
-  out.string("model", "bond");
-  if (from.dimension == 2) out.string("plane", choice_name(plane_states, from.material.plane));
-  out.number_if_any("youngs_modulus", from.material.youngs_modulus);
-  out.number_if_any("micromodulus", from.material.micromodulus);
-  out.number_if_any("density", from.material.density);
+  out.string("model", choice_name(material_models, material.model));
+  if (!is_cpd && from.dimension == 2)
+    out.string("plane", choice_name(plane_states, material.plane));
+  out.number_if_any("youngs_modulus", material.youngs_modulus);
+  out.number_if_any("poisson_ratio", material.poisson_ratio);
+  out.number_if_any("micromodulus", material.micromodulus);
+  out.number_if_any("c1", material.c1);
+  if (is_cpd && (material.c1 || from.dimension == 3)) out.number("c2", material.c2);
+  if (is_cpd && material.c1) out.number("c3", material.c3);
+  if (is_cpd && !material.c1) {
+    out.string("calibration", choice_name(calibrations, material.calibration));
+  }
+  out.number_if_any("density", material.density);
 
   for (const auto& support : from.supports) {
     out.element("support");
@@ -182,6 +196,8 @@ std::string resolved_text(const Case& from) {
   out.header("solver");
   out.string("mode", from.solver.mode);
   out.string("linear", from.solver.linear);
+  out.string("predictor", choice_name(predictors, from.solver.predictor));
+  out.string("projection", choice_name(projections, from.solver.projection));
   out.number("relative_tolerance", from.solver.relative_tolerance);
   out.integer("max_iterations", from.solver.max_iterations);
 
@@ -194,6 +210,7 @@ std::string resolved_text(const Case& from) {
     out.string("name", probe.name);
     out.string("set", probe.set);
     out.string("field", probe.field);
+    if (probe.field == "poisson_ratio") out.string("axis", std::string(1, "xyz"[probe.axis]));
   }
   return out.text();
 }

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "cases/runner/body.hpp"
+#include "cases/runner/cpd_model.hpp"
 #include "solvers/linear/cholesky.hpp"
 
 namespace peristat {
@@ -44,6 +45,35 @@ std::string seconds_text(double seconds) {
   return fmt::format("about {:.1f} h", seconds / 3600.0);
 }
 
+void print_constants(const Case& from, const Body& body) {
+  if (from.material.model == MaterialModel::bond) {
+    const double modulus = std::get<Harmonic>(body.model.potential).modulus;
+    fmt::print(
+        "constants   micromodulus {:.6g} N/m6, Young's modulus {:.6g} Pa, Poisson's ratio {:.4g}\n",
+        modulus, youngs_modulus_of(modulus, body.setting), poisson_ratio(body.setting));
+    fmt::print(
+        "quadrature  energy of a confined strain deviates by at most {:.3g} from the classical\n",
+        confined_energy_error(body.points, body.model.bonds, body.setting));
+    return;
+  }
+  const int dimension = from.dimension;
+  const CpdConstants constants = cpd_constants_of(from, body.points, body.setting);
+  fmt::print("constants   C1 {:.6g} N/m6, C2 {:.6g} N/m10, C3 {:.6g} N/m14\n", constants.c1,
+             constants.c2, constants.c3);
+  const auto print_moduli = [&](const char* where, const CpdStiffness& stiffness) {
+    const CubicElasticity elasticity = stiffness.elasticity(constants);
+    const LameModuli moduli = elasticity.isotropic(dimension);
+    fmt::print(
+        "moduli      {}: Young's modulus {:.6g} Pa, Poisson's ratio {:.4g}, anisotropy {:.4g}\n",
+        where, youngs_modulus_of(moduli, dimension), poisson_ratio_of(moduli, dimension),
+        elasticity.anisotropy());
+  };
+  print_moduli("lattice", lattice_stiffness(dimension, body.points.spacing, body.setting.horizon,
+                                            body.setting.cross_section));
+  print_moduli("continuum",
+               continuum_stiffness(dimension, body.setting.horizon, body.setting.cross_section));
+}
+
 }  // namespace
 
 Exit check(const Case& from, int threads) {
@@ -57,14 +87,10 @@ Exit check(const Case& from, int threads) {
              body.horizon_ratio());
   fmt::print("bonds       {}; neighbours per point {} to {}, {:.1f} on average\n",
              body.model.bonds.count(), neighbours.least, neighbours.most, neighbours.mean);
-  fmt::print(
-      "constants   micromodulus {:.6g} N/m6, Young's modulus {:.6g} Pa, Poisson's ratio {:.4g}\n",
-      std::get<Harmonic>(body.model.potential).modulus,
-      youngs_modulus_of(std::get<Harmonic>(body.model.potential).modulus, body.setting),
-      poisson_ratio(body.setting));
-  fmt::print(
-      "quadrature  energy of a confined strain deviates by at most {:.3g} from the classical\n",
-      confined_energy_error(points, body.model.bonds, body.setting));
+  for (const std::string& line : describe_interactions(body)) {
+    fmt::print("interaction {}\n", line);
+  }
+  print_constants(from, body);
   for (const auto& [set, members] : points.sets) {
     fmt::print("set         {}: {} points\n", set, members.size());
   }

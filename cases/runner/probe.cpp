@@ -1,5 +1,7 @@
 #include "cases/runner/probe.hpp"
 
+#include <Eigen/QR>
+
 namespace peristat {
 namespace {
 
@@ -16,15 +18,44 @@ ProbedField field_of(const std::string& name) {
   return {&StepFields::energy_density, false, "J/m3"};
 }
 
+/// Poisson's ratio of the homogeneous deformation that fits the displacements of a set best (least
+/// squares), -(mean lateral strain) / (strain along the axis); 0 while there is no strain along it.
+double fitted_poisson_ratio(const ProbeSpecification& probe, const Points& points,
+                            const std::vector<double>& displacement) {
+  const std::vector<Index>& members = points.sets.at(probe.set);
+  const int d = points.dimension;
+  Eigen::MatrixXd positions(members.size(), d + 1), displacements(members.size(), d);
+  for (std::size_t k = 0; k < members.size(); ++k) {
+    for (int c = 0; c < d; ++c) {
+      positions(k, c) = points.reference[std::size_t(members[k]) * d + c];
+      displacements(k, c) = displacement[std::size_t(members[k]) * d + c];
+    }
+    positions(k, d) = 1.0;
+  }
+  // Of full rank for any set of two or more points in every direction, by the smallest solution for
+  // others.
+  const Eigen::MatrixXd gradient = positions.completeOrthogonalDecomposition().solve(displacements);
+  double lateral = 0.0;
+  for (int c = 0; c < d; ++c) {
+    if (c != probe.axis) lateral += gradient(c, c) / (d - 1);
+  }
+  const double axial = gradient(probe.axis, probe.axis);
+  return axial == 0.0 ? 0.0 : -lateral / axial;
+}
+
 }  // namespace
 
 ProbeColumns columns_of(const ProbeSpecification& probe, int dimension) {
+  if (probe.field == "poisson_ratio") return {probe.name, 1, "1"};
   const ProbedField field = field_of(probe.field);
   return {probe.name, field.is_vector ? dimension : 1, field.unit};
 }
 
 std::vector<double> probe_values(const ProbeSpecification& probe, const Points& points,
                                  const StepFields& fields) {
+  if (probe.field == "poisson_ratio") {
+    return {fitted_poisson_ratio(probe, points, *fields.displacement)};
+  }
   const ProbedField field = field_of(probe.field);
   const std::vector<double>& values = *(fields.*(field.field));
   const std::vector<Index>& members = points.sets.at(probe.set);

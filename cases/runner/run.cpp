@@ -163,6 +163,7 @@ Exit run(const Case& from, const RunOptions& options) {
   progress.say(fmt::format("{} points, {} bonds, {} free degrees of freedom, {} threads",
                            body.points.count(), body.model.bonds.count(), free.count(),
                            options.threads));
+  for (const std::string& line : describe_interactions(body)) progress.say(line);
 
   std::vector<ProbeColumns> probes;
   for (const auto& probe : from.probes) probes.push_back(columns_of(probe, from.dimension));
@@ -209,6 +210,8 @@ Exit run(const Case& from, const RunOptions& options) {
   NewtonOptions newton_options;
   newton_options.relative_tolerance = from.solver.relative_tolerance;
   newton_options.max_iterations = from.solver.max_iterations;
+  newton_options.predictor = from.solver.predictor;
+  newton_options.projection = from.solver.projection;
   const EquilibriumProblem problem{assembler, *body.conditions, free};
   LoadSteppingResult result;
   if (analysis == LinearOutcome::solved) {
@@ -224,6 +227,8 @@ Exit run(const Case& from, const RunOptions& options) {
   summary.points = body.points.count();
   summary.free_dofs = free.count();
   summary.bonds = body.model.bonds.count();
+  if (body.model.triangles) summary.triangles = body.model.triangles->interactions.count();
+  if (body.model.tetrahedra) summary.tetrahedra = body.model.tetrahedra->interactions.count();
   summary.factorisations = solver.statistics().factorisations;
   summary.linear_iterations = solver.statistics().iterations;
   summary.max_displacement = largest_displacement(recorder.displacement(), from.dimension);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <map>
 #include <string>
 #include <vector>
@@ -15,10 +16,17 @@ struct IterationRecord {
   int iteration = 0;
   double residual = 0.0;  ///< 2-norm over free degrees of freedom [N]
   double relative_residual = 0.0;
-  double energy = 0.0;        ///< stored energy minus work of the present dead loads [J]
-  double step_length = 0.0;   ///< of the line search
-  int linear_iterations = 0;  ///< of the linear solver; 0 for a direct solve
-  Index changed_bonds = 0;    ///< bonds whose damage this iteration changed
+  double energy = 0.0;           ///< stored energy minus work of the present dead loads [J]
+  double step_length = 0.0;      ///< of the line search
+  int linear_iterations = 0;     ///< of the linear solver; 0 for a direct solve
+  Index changed_bonds = 0;       ///< bonds whose damage this iteration changed
+  std::string tangent = "none";  ///< that the step was found with: "exact", "projected"; iteration
+                                 ///< 0 has "none"
+  /// Of the exact tangent; 0 also where it was solved without a factorisation of its own, -1 where
+  /// there are some but counting them was too expensive.
+  std::int64_t negative_pivots = 0;
+  int rejected_trials = 0;    ///< of the line search: the energy was too high
+  int degenerate_trials = 0;  ///< of the line search: a measure had no gradient
 };
 
 /// One accepted step (a row of history.csv).

@@ -57,7 +57,13 @@ std::vector<Column> iteration_columns() {
       {number, "energy", "J", "stored energy minus work of the present dead loads"},
       {number, "step_length", "1", "step length of the line search"},
       {integer, "linear_iterations", "1", "iterations of the linear solver, 0 for a direct solve"},
-      {integer, "changed_bonds", "1", "bonds whose damage this iteration changed"}};
+      {integer, "changed_bonds", "1", "bonds whose damage this iteration changed"},
+      {text, "tangent", "none",
+       "tangent of the iteration: exact, or projected to positive "
+       "semidefinite interactions; iteration 0 has none"},
+      {integer, "negative_pivots", "1", "of the exact tangent; -1: not counted"},
+      {integer, "rejected_trials", "1", "line search: trial states whose energy was too high"},
+      {integer, "degenerate_trials", "1", "line search: trial states without a gradient"}};
 }
 
 std::vector<Column> decision_columns() {
@@ -101,7 +107,9 @@ Row make_row(const IterationRecord& record) {
   return checked(columns,
                  {std::int64_t{record.step}, std::int64_t{record.iteration}, record.residual,
                   record.relative_residual, record.energy, record.step_length,
-                  std::int64_t{record.linear_iterations}, std::int64_t{record.changed_bonds}});
+                  std::int64_t{record.linear_iterations}, std::int64_t{record.changed_bonds},
+                  record.tangent, record.negative_pivots, std::int64_t{record.rejected_trials},
+                  std::int64_t{record.degenerate_trials}});
 }
 
 Row make_row(const DecisionRecord& record) {

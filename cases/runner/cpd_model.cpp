@@ -1,0 +1,54 @@
+#include "cases/runner/cpd_model.hpp"
+
+#include "src/input_error.hpp"
+
+namespace peristat {
+namespace {
+
+template <class Measure>
+InteractionTerm<Measure> make_term(const Case& from, const Points& points, const Bonds& bonds,
+                                   const BulkNeighbourhood& bulk, double horizon, double constant,
+                                   int threads) {
+  Interactions<Measure> interactions(points, bonds, horizon, threads);
+  interactions.set_shares(weight_shares<Measure>(
+      points, effective_volumes(interactions, neighbour_counts(bonds), bulk, from.weights)));
+  return {std::move(interactions), Harmonic{constant}};
+}
+
+}  // namespace
+
+CpdConstants cpd_constants_of(const Case& from, const Points& points, const BondSetting& setting) {
+  const MaterialSpecification& material = from.material;
+  if (material.c1) return {*material.c1, material.c2, material.c3};
+  const int dimension = from.dimension;
+  const CpdStiffness stiffness =
+      material.calibration == Calibration::lattice
+          ? lattice_stiffness(dimension, points.spacing, setting.horizon, setting.cross_section)
+          : continuum_stiffness(dimension, setting.horizon, setting.cross_section);
+  try {
+    return stiffness.constants(
+        lame_moduli(*material.youngs_modulus, *material.poisson_ratio, dimension), material.c2);
+  } catch (const InputError& error) {
+    throw InputError("material." + error.key(), error.value(), error.allowed());
+  }
+}
+
+Model make_cpd_model(const Case& from, const Points& points, const BondSetting& setting,
+                     Bonds bonds, int threads) {
+  const CpdConstants constants = cpd_constants_of(from, points, setting);
+  const BulkNeighbourhood bulk =
+      bulk_neighbourhood(from.dimension, points.spacing, setting.horizon, setting.cross_section);
+  Model model{std::move(bonds), Harmonic{constants.c1}};
+  set_one_neighbour_weights(model.bonds, points, bulk);
+  if (constants.c2 != 0.0) {
+    model.triangles =
+        make_term<Area>(from, points, model.bonds, bulk, setting.horizon, constants.c2, threads);
+  }
+  if (constants.c3 != 0.0) {
+    model.tetrahedra =
+        make_term<Volume>(from, points, model.bonds, bulk, setting.horizon, constants.c3, threads);
+  }
+  return model;
+}
+
+}  // namespace peristat

@@ -1,0 +1,21 @@
+#pragma once
+
+#include "assembly/model.hpp"
+#include "cases/runner/case.hpp"
+#include "src/materials/cpd_constants.hpp"
+#include "src/neighbourhood/bulk_neighbourhood.hpp"
+
+namespace peristat {
+
+/// Constants of a case of model "cpd": as given, or from E and nu on the lattice's bulk sums or in
+/// the continuum.
+/// @throws InputError with keys of table [material]
+[[nodiscard]] CpdConstants cpd_constants_of(const Case& from, const Points& points,
+                                            const BondSetting& setting);
+
+/// Model of a case of model "cpd".
+/// @param bonds whose weights are to be set
+[[nodiscard]] Model make_cpd_model(const Case& from, const Points& points,
+                                   const BondSetting& setting, Bonds bonds, int threads);
+
+}  // namespace peristat

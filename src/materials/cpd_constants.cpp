@@ -1,0 +1,159 @@
+#include "src/materials/cpd_constants.hpp"
+
+#include <cmath>
+#include <numbers>
+
+#include "src/input_error.hpp"
+#include "src/neighbourhood/bulk_neighbourhood.hpp"
+#include "src/neighbourhood/lattice_ball.hpp"
+#include "src/number_text.hpp"
+
+namespace peristat {
+namespace {
+
+constexpr double pi = std::numbers::pi;
+
+/// lambda and mu as the elasticity of an isotropic body.
+CubicElasticity isotropic_elasticity(double lambda, double mu) {
+  return {lambda + 2.0 * mu, lambda, mu};
+}
+
+void add_scaled(CubicElasticity& to, double factor, const CubicElasticity& what) {
+  to.c11 += factor * what.c11;
+  to.c12 += factor * what.c12;
+  to.c44 += factor * what.c44;
+}
+
+}  // namespace
+
+double youngs_modulus_of(const LameModuli& moduli, int dimension) {
+  const auto [lambda, mu] = moduli;
+  return dimension == 2 ? 4.0 * mu * (lambda + mu) / (lambda + 2.0 * mu)
+                        : mu * (3.0 * lambda + 2.0 * mu) / (lambda + mu);
+}
+
+double poisson_ratio_of(const LameModuli& moduli, int dimension) {
+  const auto [lambda, mu] = moduli;
+  return dimension == 2 ? lambda / (lambda + 2.0 * mu) : 0.5 * lambda / (lambda + mu);
+}
+
+LameModuli lame_moduli(double youngs_modulus, double poisson_ratio, int dimension) {
+  const double most = dimension == 2 ? 1.0 : 0.5;
+  if (!(youngs_modulus > 0.0)) {
+    throw InputError("youngs_modulus", number_text(youngs_modulus), "must be positive");
+  }
+  if (!(poisson_ratio > -1.0 && poisson_ratio < most)) {
+    throw InputError("poisson_ratio", number_text(poisson_ratio),
+                     dimension == 2
+                         ? "must be above -1 and below 1, the incompressible limit in 2D"
+                         : "must be above -1 and below 0.5, the incompressible limit in 3D");
+  }
+  const double mu = 0.5 * youngs_modulus / (1.0 + poisson_ratio);
+  const double lambda =
+      2.0 * mu * poisson_ratio / (dimension == 2 ? 1.0 - poisson_ratio : 1.0 - 2.0 * poisson_ratio);
+  return {lambda, mu};
+}
+
+void require_stable(const LameModuli& moduli, int dimension) {
+  if (!(moduli.mu > 0.0)) {
+    throw InputError("mu", number_text(moduli.mu), "must be positive in a stable body");
+  }
+  if (!(moduli.lambda + 2.0 / dimension * moduli.mu > 0.0)) {
+    throw InputError("lambda", number_text(moduli.lambda),
+                     dimension == 2 ? "lambda + mu must be positive in a stable body"
+                                    : "lambda + 2/3 mu must be positive in a stable body");
+  }
+}
+
+LameModuli CubicElasticity::isotropic(int dimension) const {
+  return dimension == 2
+             ? LameModuli{(c11 + 3.0 * c12 - 2.0 * c44) / 4.0, (c11 - c12 + 2.0 * c44) / 4.0}
+             : LameModuli{(c11 + 4.0 * c12 - 2.0 * c44) / 5.0, (c11 - c12 + 3.0 * c44) / 5.0};
+}
+
+CubicElasticity CpdStiffness::elasticity(const CpdConstants& constants) const {
+  CubicElasticity sum;
+  add_scaled(sum, constants.c1, of_c1);
+  add_scaled(sum, constants.c2, of_c2);
+  add_scaled(sum, constants.c3, of_c3);
+  return sum;
+}
+
+CpdConstants CpdStiffness::constants(const LameModuli& moduli, double c2) const {
+  const LameModuli one = of_c1.isotropic(dimension), two = of_c2.isotropic(dimension),
+                   three = of_c3.isotropic(dimension);
+  CpdConstants result;
+  if (dimension == 2) {
+    result.c1 = moduli.mu / one.mu;  // triangles resist no shear in 2D
+    result.c2 = (moduli.lambda - one.lambda * result.c1) / two.lambda;
+  } else {
+    result.c2 = c2;
+    result.c1 = (moduli.mu - two.mu * c2) / one.mu;
+    result.c3 = (moduli.lambda - one.lambda * result.c1 - two.lambda * c2) / three.lambda;
+  }
+  if (!(result.c1 > 0.0)) {
+    throw InputError("c2", number_text(c2),
+                     "leaves no positive c1 for the shear modulus " + number_text(moduli.mu) +
+                         " Pa; must be below " + number_text(moduli.mu / two.mu));
+  }
+  return result;
+}
+
+CpdStiffness continuum_stiffness(int dimension, double horizon, double cross_section) {
+  CpdStiffness stiffness;
+  stiffness.dimension = dimension;
+  if (dimension == 2) {
+    const double of_c1 = pi * std::pow(horizon, 3) * cross_section / 24.0;
+    const double of_c2 = 5.0 * pi * pi / (9.0 * (4.0 * pi - 3.0 * std::sqrt(3.0))) *
+                         std::pow(horizon, 6) * cross_section * cross_section;
+    stiffness.of_c1 = isotropic_elasticity(of_c1, of_c1);
+    stiffness.of_c2 = isotropic_elasticity(of_c2, 0.0);
+  } else {
+    const double of_c1 = pi * std::pow(horizon, 4) / 30.0, d8 = std::pow(horizon, 8);
+    stiffness.of_c1 = isotropic_elasticity(of_c1, of_c1);
+    stiffness.of_c2 = isotropic_elasticity(0.837318284291 * d8, 0.139553047382 * d8);
+    stiffness.of_c3 = isotropic_elasticity(1.81514 * std::pow(horizon, 12), 0.0);
+  }
+  return stiffness;
+}
+
+CpdStiffness lattice_stiffness(int dimension, double spacing, double horizon,
+                               double cross_section) {
+  const BulkNeighbourhood bulk = bulk_neighbourhood(dimension, spacing, horizon, cross_section);
+  const LatticeBall ball(dimension, spacing, horizon);
+  CpdStiffness stiffness;
+  stiffness.dimension = dimension;
+
+  // 1/2 V1 C1 sum L n n n n
+  const double v1 = bulk.volume / double(bulk.neighbours);
+  for (const Coordinates& arm : ball.arms()) {
+    const double length = std::hypot(arm[0], arm[1], arm[2]);
+    const double nx = arm[0] / length, ny = arm[1] / length, mixed = nx * nx * ny * ny;
+    add_scaled(stiffness.of_c1, 0.5 * v1 * length, {std::pow(nx, 4), mixed, mixed});
+  }
+
+  // 2/3 V2 C2 sum A P P over unordered pairs, P = I in 2D and I - m m^T in 3D
+  if (bulk.pairs > 0) {
+    const double v2 = bulk.volume * bulk.volume / double(bulk.pairs);
+    ball.for_each_pair([&](const Coordinates& b, const Coordinates& c, double area) {
+      double mx = 0.0, my = 0.0;
+      if (dimension == 3) {
+        mx = (b[1] * c[2] - b[2] * c[1]) / area;
+        my = (b[2] * c[0] - b[0] * c[2]) / area;
+      }
+      const double pxx = 1.0 - mx * mx, pyy = 1.0 - my * my, pxy = -mx * my;
+      add_scaled(stiffness.of_c2, 2.0 / 3.0 * v2 * area, {pxx * pxx, pxx * pyy, pxy * pxy});
+    });
+  }
+
+  // 6/4 V3 C3 sum V I I over unordered triplets
+  if (bulk.triplets > 0) {
+    const double v3 = std::pow(bulk.volume, 3) / double(bulk.triplets);
+    ball.for_each_triplet([&](double volume) {
+      add_scaled(stiffness.of_c3, 1.5 * v3 * volume, {1.0, 1.0, 0.0});
+    });
+  }
+  return stiffness;
+}
+
+}  // namespace peristat

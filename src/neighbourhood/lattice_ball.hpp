@@ -1,0 +1,90 @@
+#pragma once
+
+#include <cmath>
+#include <vector>
+
+#include "src/neighbourhood/horizon.hpp"
+#include "src/types.hpp"
+
+namespace peristat {
+
+/// Interactions of one point of an infinite cubic lattice with what lies within its horizon.
+class LatticeBall {
+ public:
+  LatticeBall(int dimension, double spacing, double horizon)
+      : dimension_(dimension), horizon_(horizon) {
+    const int width = static_cast<int>(std::floor(reach(horizon) / spacing));
+    const int width_y = dimension > 1 ? width : 0, width_z = dimension > 2 ? width : 0;
+    for (int x = -width; x <= width; ++x) {
+      for (int y = -width_y; y <= width_y; ++y) {
+        for (int z = -width_z; z <= width_z; ++z) {
+          const Coordinates arm{spacing * x, spacing * y, spacing * z};
+          const double squared = dot(arm, arm);
+          if (squared > 0.0 && squared <= reach(horizon) * reach(horizon)) arms_.push_back(arm);
+        }
+      }
+    }
+  }
+
+  /// Vectors to the neighbours [m].
+  [[nodiscard]] const std::vector<Coordinates>& arms() const { return arms_; }
+
+  /// visit(b, c, area) for every unordered pair of neighbours within the horizon of each other that
+  /// is not collinear with the point; area = |b x c|.
+  template <class Visit>
+  void for_each_pair(const Visit& visit) const {
+    for (std::size_t j = 0; j < arms_.size(); ++j) {
+      for (std::size_t k = j + 1; k < arms_.size(); ++k) {
+        if (!are_mutual(j, k)) continue;
+        const Coordinates normal = cross(arms_[j], arms_[k]);
+        const double area = std::sqrt(dot(normal, normal));
+        if (area > flatness_tolerance * horizon_ * horizon_) visit(arms_[j], arms_[k], area);
+      }
+    }
+  }
+
+  /// visit(volume) for every unordered triplet of mutual neighbours that is not coplanar with the
+  /// point; volume = |b.(c x d)|.
+  template <class Visit>
+  void for_each_triplet(const Visit& visit) const {
+    if (dimension_ < 3) return;
+    const double least = flatness_tolerance * horizon_ * horizon_ * horizon_;
+    std::vector<std::size_t> common;
+    for (std::size_t j = 0; j < arms_.size(); ++j) {
+      common.clear();
+      for (std::size_t k = j + 1; k < arms_.size(); ++k) {
+        if (are_mutual(j, k)) common.push_back(k);
+      }
+      for (std::size_t a = 0; a < common.size(); ++a) {
+        const Coordinates normal = cross(arms_[j], arms_[common[a]]);
+        for (std::size_t b = a + 1; b < common.size(); ++b) {
+          if (!are_mutual(common[a], common[b])) continue;
+          const double volume = std::abs(dot(normal, arms_[common[b]]));
+          if (volume > least) visit(volume);
+        }
+      }
+    }
+  }
+
+ private:
+  static double dot(const Coordinates& a, const Coordinates& b) {
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+  }
+  static Coordinates cross(const Coordinates& a, const Coordinates& b) {
+    return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+  }
+  [[nodiscard]] bool are_mutual(std::size_t j, std::size_t k) const {
+    double squared = 0.0;
+    for (int c = 0; c < 3; ++c) {
+      const double difference = arms_[j][c] - arms_[k][c];
+      squared += difference * difference;
+    }
+    return squared <= reach(horizon_) * reach(horizon_);
+  }
+
+  int dimension_;
+  double horizon_;
+  std::vector<Coordinates> arms_;
+};
+
+}  // namespace peristat
