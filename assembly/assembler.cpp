@@ -64,16 +64,15 @@ Stored Assembler::gradient(std::span<const double> displacement, std::span<doubl
   return stored;
 }
 
-void Assembler::tangent(std::span<const double> displacement, Tangent& tangent,
-                        Curvature curvature) {
+void Assembler::tangent(std::span<const double> displacement, Tangent& tangent, double projection) {
   const Stopwatch watch(seconds_);
   const int dimension = points().dimension;
   dispatch(dimension, model().potential, [&](auto d, const auto& law) {
-    BondKernels<decltype(d)::value>::tangent(*workspace_, law, displacement, curvature, tangent);
+    BondKernels<decltype(d)::value>::tangent(*workspace_, law, displacement, projection, tangent);
   });
   if (model().has_only_bonds()) return;
   with_dimension(dimension, [&](auto d) {
-    LocalKernels<decltype(d)::value>::tangent(*workspace_, displacement, curvature, tangent);
+    LocalKernels<decltype(d)::value>::tangent(*workspace_, displacement, projection, tangent);
   });
 }
 

@@ -3,7 +3,6 @@
 #include <memory>
 #include <span>
 
-#include "assembly/curvature.hpp"
 #include "assembly/model.hpp"
 #include "assembly/stored.hpp"
 #include "assembly/tangent.hpp"
@@ -31,10 +30,11 @@ class Assembler {
   /// E [J] and dE/dx [N] (minus the internal force).
   [[nodiscard]] Stored gradient(std::span<const double> displacement, std::span<double> gradient);
 
-  /// d2E/dx2 [N/m], every entry overwritten; or, projected, a positive semidefinite stand-in that
-  /// is exact where every interaction's Hessian is.
-  void tangent(std::span<const double> displacement, Tangent& tangent,
-               Curvature curvature = Curvature::exact);
+  /// d2E/dx2 [N/m], every entry overwritten.
+  /// @param projection share in [0, 1] by which the relative Hessian of every interaction moves
+  ///        towards its positive semidefinite part: 0 is exact, 1 gives a positive semidefinite
+  ///        tangent
+  void tangent(std::span<const double> displacement, Tangent& tangent, double projection = 0.0);
 
   /// product = d2E/dx2(displacement) v, without a stored tangent.
   void product(std::span<const double> displacement, std::span<const double> v,

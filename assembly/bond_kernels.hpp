@@ -5,7 +5,6 @@
 #include <limits>
 #include <span>
 
-#include "assembly/curvature.hpp"
 #include "assembly/interaction.hpp"
 #include "assembly/tangent.hpp"
 #include "assembly/workspace.hpp"
@@ -125,11 +124,12 @@ inline void store_blocks(double* blocks, int count, const Matrix<D, Lanes>& bloc
   }
 }
 
-/// The positive semidefinite part of a bond's Hessian psi'' n n^T + psi'/l (I - n n^T): its
-/// eigenvalues are psi'' and psi'/l.
-inline InteractionEnergy<Lanes> projected(const InteractionEnergy<Lanes>& psi) {
-  return {psi.value, std::experimental::max(psi.first, Lanes(0.0)),
-          std::experimental::max(psi.second, Lanes(0.0))};
+/// A bond's Hessian psi'' n n^T + psi'/l (I - n n^T) moved by a share towards its positive
+/// semidefinite part: its eigenvalues are psi'' and psi'/l.
+inline InteractionEnergy<Lanes> projected(const InteractionEnergy<Lanes>& psi, double share) {
+  const Lanes zero = 0.0;
+  return {psi.value, psi.first - share * std::experimental::min(psi.first, zero),
+          psi.second - share * std::experimental::min(psi.second, zero)};
 }
 
 /// The passes over the bonds, for one dimension; the potential is chosen once, outside the loops.
@@ -177,7 +177,7 @@ struct BondKernels {
   }
 
   template <class P>
-  static void tangent(Workspace& a, const P& potential, Span displacement, Curvature curvature,
+  static void tangent(Workspace& a, const P& potential, Span displacement, double projection,
                       Tangent& result) {
     a.pack<D>(a.points.reference, displacement);
     const Bonds& bonds = a.model.bonds;
@@ -190,7 +190,7 @@ struct BondKernels {
           const auto measure =
               Length::at<D, Lanes>(batch.inverse_length, {batch.vector0}, {batch.vector1});
           auto psi = interaction_energy(batch.weight, potential, measure);
-          if (curvature == Curvature::projected) psi = projected(psi);
+          if (projection > 0.0) psi = projected(psi, projection);
           const Matrix<D, Lanes> block = energy_hessian<0, 0>(psi, measure);
           store_blocks<D>(&result.off_diagonal[std::size_t(batch.first) * D * D], batch.count,
                           block);

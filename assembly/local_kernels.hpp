@@ -5,7 +5,6 @@
 #include <span>
 #include <utility>
 
-#include "assembly/curvature.hpp"
 #include "assembly/interaction.hpp"
 #include "assembly/projection.hpp"
 #include "assembly/tangent.hpp"
@@ -275,9 +274,10 @@ struct LocalKernels {
   template <int arms>
   using HessianBlocks = std::array<std::array<Matrix<D, Lanes>, arms>, arms>;
 
-  /// Projects the Hessian of each lane; only blocks P <= Q are read and written.
+  /// Moves the Hessian of each lane by a share towards its positive semidefinite part; only blocks
+  /// P <= Q are read and written.
   template <int arms>
-  static void project(HessianBlocks<arms>& blocks) {
+  static void project(HessianBlocks<arms>& blocks, double share) {
     constexpr int size = arms * D;
     for (int l = 0; l < lane_count; ++l) {
       std::array<double, size * size> matrix;
@@ -292,7 +292,7 @@ struct LocalKernels {
           }
         }
       }
-      project_to_semidefinite(matrix.data(), size);
+      project_to_semidefinite(matrix.data(), size, share);
       for (int p = 0; p < arms; ++p) {
         for (int q = p; q < arms; ++q) {
           for (int r = 0; r < D; ++r) {
@@ -308,7 +308,7 @@ struct LocalKernels {
   /// Adds up the relative Hessian of a point's interactions of one kind.
   template <class Measure, class P>
   static void add_hessian(LocalWorkspace<D>& w, const Interactions<Measure>& interactions,
-                          const P& potential, Curvature curvature) {
+                          const P& potential, double projection) {
     constexpr int arms_count = Measure::arms, last = arms_count - 1;
     interactions.template for_each_group<D>(w.local, w.scratch, [&](const auto& group) {
       BatchArms<Measure, D> arms(w, group);
@@ -329,14 +329,14 @@ struct LocalKernels {
         };
         const auto measure = arms.measure(block);
         const auto psi = interaction_energy(weight_of(block), potential, measure);
-        if (curvature == Curvature::exact) {
+        if (projection == 0.0) {
           for_each_pair_of_arms<arms_count>(
               [&](auto p, auto q) { add(p, q, energy_hessian<p, q>(psi, measure)); });
         } else {
           HessianBlocks<arms_count> blocks;
           for_each_pair_of_arms<arms_count>(
               [&](auto p, auto q) { blocks[p][q] = energy_hessian<p, q>(psi, measure); });
-          project<arms_count>(blocks);
+          project<arms_count>(blocks, projection);
           for_each_pair_of_arms<arms_count>([&](auto p, auto q) { add(p, q, blocks[p][q]); });
         }
       }
@@ -353,7 +353,7 @@ struct LocalKernels {
     }
   }
 
-  static void tangent(Workspace& a, Span displacement, Curvature curvature, Tangent& result) {
+  static void tangent(Workspace& a, Span displacement, double projection, Tangent& result) {
     const Bonds& bonds = a.model.bonds;
     constexpr int stride = block_width(D), entries = D * D;
     const auto body = [&](int thread, RowRange range, double* sums) {
@@ -370,7 +370,7 @@ struct LocalKernels {
         w.clear(half_entries);
         w.clear_hessian();
         for_each_term(a.model, [&](auto kind, const auto& interactions, const auto& potential) {
-          add_hessian<decltype(kind)>(w, interactions, potential, curvature);
+          add_hessian<decltype(kind)>(w, interactions, potential, projection);
         });
 
         // With H_ab the relative Hessian: K_ab += H_ab, K_ib -= sum_a H_ab, K_ii += sum_ab H_ab.

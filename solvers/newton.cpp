@@ -52,9 +52,9 @@ class Linearisation {
 
   /// Finds the direction du with K_ff du_f = f_ext - dE/dx_f - K_fp jump_p at a state.
   /// @param jump of the prescribed displacements; empty for none
-  [[nodiscard]] LinearOutcome solve(const Trial& at, Curvature curvature, FactorUse use,
+  [[nodiscard]] LinearOutcome solve(const Trial& at, double projection, FactorUse use,
                                     std::span<const double> jump, std::span<double> direction) {
-    problem_.assembler.tangent(at.displacement, tangent_, curvature);
+    problem_.assembler.tangent(at.displacement, tangent_, projection);
     if (!jump.empty()) tangent_.multiply(jump, force_of_jump_);
     for (std::size_t e = 0; e < right_hand_side_.size(); ++e) {
       const Index dof = problem_.free.dof[e];
@@ -131,20 +131,21 @@ NewtonResult newton(const EquilibriumProblem& problem, LinearSolver& solver, Tan
   Linearisation linearisation(problem, solver, tangent, external_force);
   std::vector<double> direction(dofs);
   std::optional<Inertia> start_inertia;
+  double last_projection = 0.0;
   for (int iteration = 1; iteration <= options.max_iterations; ++iteration) {
     const bool is_predictor = iteration == 1 && options.predictor == Predictor::consistent;
     const Trial& linearised_at = is_predictor ? old_state : current;
     IterationRecord row;
     row.iteration = iteration;
     LineSearchResult search;
-    for (Curvature curvature : {Curvature::exact, Curvature::projected}) {
-      const bool exact = curvature == Curvature::exact;
-      if (exact && options.projection == Projection::always) continue;
+    for (double projection = options.projection == Projection::always ? 1.0 : 0.0;;) {
+      const bool exact = projection == 0.0;
       // The first tangent of a load step is always factorised: its pivots tell whether the state
       // that the step starts from is stable.
-      const FactorUse use = iteration == 1 ? FactorUse::factorize_now : FactorUse::may_reuse;
+      const FactorUse use =
+          iteration == 1 || !exact ? FactorUse::factorize_now : FactorUse::may_reuse;
       const LinearOutcome linear = linearisation.solve(
-          linearised_at, curvature, use,
+          linearised_at, projection, use,
           is_predictor ? std::span<const double>(jump) : std::span<const double>(), direction);
       if (exact) {
         result.inertia = solver.inertia();
@@ -154,7 +155,7 @@ NewtonResult newton(const EquilibriumProblem& problem, LinearSolver& solver, Tan
           start_inertia = result.inertia;
         }
       }
-      row.tangent = exact ? "exact" : "projected";
+      row.projection = projection;
       row.linear_iterations = solver.last_iterations();
       result.outcome = outcome_of(linear);
       if (result.outcome == Outcome::converged) {
@@ -174,11 +175,14 @@ NewtonResult newton(const EquilibriumProblem& problem, LinearSolver& solver, Tan
         search.step_length = 1.0;
         result.outcome = next.degenerate ? Outcome::degenerate : Outcome::converged;
       }
-      if (result.outcome == Outcome::converged) break;
-      if (options.projection == Projection::never || !projection_may_help(result.outcome)) break;
+      const bool may_project = options.projection != Projection::never && projection < 1.0;
+      if (!may_project || !projection_may_help(result.outcome)) break;
+      projection = exact ? std::max(last_projection / 4.0, options.least_projection)
+                         : std::min(4.0 * projection, 1.0);
     }
     if (result.outcome != Outcome::converged) break;
     std::swap(current, next);
+    if (row.projection > 0.0) last_projection = row.projection;
     result.iterations = iteration;
     row.step_length = search.step_length;
     if (record(row)) {

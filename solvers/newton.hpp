@@ -29,6 +29,9 @@ struct NewtonOptions {
   int max_iterations = 25;
   Projection projection = Projection::automatic;
   Predictor predictor = Predictor::consistent;
+  /// A projection of a quarter of the last one is tried first, and while the tangent still has
+  /// negative pivots, four times as much up to 1; this is the least.
+  double least_projection = 1.0 / 16.0;
   LineSearchOptions line_search;
 };
 
@@ -55,11 +58,13 @@ using IterationObserver = std::function<bool(const IterationRecord&)>;
 /// later ones are K_ff du_f = f_ext - dE/dx_f(u). Each is followed by an energy line search.
 ///
 /// The exact tangent always comes first, so that convergence is quadratic. Where it has negative
-/// pivots, or its direction does not lower the energy, the projected one takes its place for that
-/// iteration: it is positive semidefinite by construction, so its direction descends, and the
-/// search goes on as a minimisation of the energy. States in which a measure has no gradient are
-/// rejected by the line search. From a state that is unstable itself the search may find another,
-/// stable one; if it finds none, the outcome is not_positive_definite whatever ended the search.
+/// pivots, or its direction does not lower the energy, every interaction's Hessian is moved towards
+/// its positive semidefinite part, by as small a share as gives positive pivots: a full projection
+/// always does, but is much stiffer than the body and converges slowly. The direction then
+/// descends, and the search goes on as a minimisation of the energy. States in which a measure has
+/// no gradient are rejected by the line search. From a state that is unstable itself the search may
+/// find another, stable one; if it finds none, the outcome is not_positive_definite whatever ended
+/// the search.
 ///
 /// The relative residual is ||f_ext - dE/dx|| over free degrees of freedom, divided by the largest
 /// of

@@ -16,12 +16,12 @@ struct IterationRecord {
   int iteration = 0;
   double residual = 0.0;  ///< 2-norm over free degrees of freedom [N]
   double relative_residual = 0.0;
-  double energy = 0.0;           ///< stored energy minus work of the present dead loads [J]
-  double step_length = 0.0;      ///< of the line search
-  int linear_iterations = 0;     ///< of the linear solver; 0 for a direct solve
-  Index changed_bonds = 0;       ///< bonds whose damage this iteration changed
-  std::string tangent = "none";  ///< that the step was found with: "exact", "projected"; iteration
-                                 ///< 0 has "none"
+  double energy = 0.0;        ///< stored energy minus work of the present dead loads [J]
+  double step_length = 0.0;   ///< of the line search
+  int linear_iterations = 0;  ///< of the linear solver; 0 for a direct solve
+  Index changed_bonds = 0;    ///< bonds whose damage this iteration changed
+  double projection = 0.0;    ///< share by which the tangent's interactions were projected to their
+                              ///< positive semidefinite part: 0 is the exact tangent
   /// Of the exact tangent; 0 also where it was solved without a factorisation of its own, -1 where
   /// there are some but counting them was too expensive.
   std::int64_t negative_pivots = 0;

@@ -58,9 +58,9 @@ std::vector<Column> iteration_columns() {
       {number, "step_length", "1", "step length of the line search"},
       {integer, "linear_iterations", "1", "iterations of the linear solver, 0 for a direct solve"},
       {integer, "changed_bonds", "1", "bonds whose damage this iteration changed"},
-      {text, "tangent", "none",
-       "tangent of the iteration: exact, or projected to positive "
-       "semidefinite interactions; iteration 0 has none"},
+      {number, "projection", "1",
+       "share by which the tangent's interactions were projected to their positive semidefinite "
+       "part; 0 is the exact tangent"},
       {integer, "negative_pivots", "1", "of the exact tangent; -1: not counted"},
       {integer, "rejected_trials", "1", "line search: trial states whose energy was too high"},
       {integer, "degenerate_trials", "1", "line search: trial states without a gradient"}};
@@ -108,7 +108,7 @@ Row make_row(const IterationRecord& record) {
                  {std::int64_t{record.step}, std::int64_t{record.iteration}, record.residual,
                   record.relative_residual, record.energy, record.step_length,
                   std::int64_t{record.linear_iterations}, std::int64_t{record.changed_bonds},
-                  record.tangent, record.negative_pivots, std::int64_t{record.rejected_trials},
+                  record.projection, record.negative_pivots, std::int64_t{record.rejected_trials},
                   std::int64_t{record.degenerate_trials}});
 }
 
