@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "assembly/model.hpp"
+#include "src/neighbourhood/effective_volumes.hpp"
 #include "src/neighbourhood/quadrature.hpp"
 #include "src/points/lattice.hpp"
 
@@ -120,21 +121,20 @@ struct BoxBody {
     add(model.tetrahedra, box.tetrahedra, box, threads);
   }
 
-  /// Interactions whose weights differ from point to point.
+  /// Interactions with the weights of continuum-kinematics-inspired peridynamics.
   template <class Measure>
   void add(std::optional<InteractionTerm<Measure>>& to, double stiffness, const BoxSetting& box,
            int threads) {
     if (stiffness == 0.0) return;
     Interactions<Measure> interactions(points, model.bonds, setting.horizon, threads);
-    // psi is C M e^2 / 2 with M of the order of horizon^arms.
+    const BulkNeighbourhood bulk =
+        bulk_neighbourhood(box.dimension, box.spacing, setting.horizon, box.cross_section);
+    interactions.set_shares(weight_shares<Measure>(
+        points, effective_volumes(interactions, neighbour_counts(model.bonds), bulk,
+                                  InteractionWeights::mean)));
+    // psi is C M e^2 / 2 with M of the order of horizon^arms, and there are V_H^arms of them.
+    const double unit = std::pow(setting.horizon * bulk.volume, 1 - Measure::arms);
     const double micromodulus_of_bonds = std::get<Harmonic>(model.potential).modulus;
-    const double unit = double(model.bonds.count()) / double(interactions.count()) *
-                        std::pow(setting.horizon, 1 - Measure::arms);
-    std::vector<double> shares(points.volume.size());
-    for (std::size_t a = 0; a < shares.size(); ++a) {
-      shares[a] = points.volume[a] * points.volume[a] * (1.0 + 0.1 * double(a % 7));
-    }
-    interactions.set_shares(std::move(shares));
     if (box.stored) interactions.store(points, model.bonds, threads);
     to.emplace(InteractionTerm<Measure>{std::move(interactions),
                                         Harmonic{stiffness * unit * micromodulus_of_bonds}});

@@ -64,9 +64,11 @@ void print_constants(const Case& from, const Body& body) {
     const CubicElasticity elasticity = stiffness.elasticity(constants);
     const LameModuli moduli = elasticity.isotropic(dimension);
     fmt::print(
-        "moduli      {}: Young's modulus {:.6g} Pa, Poisson's ratio {:.4g}, anisotropy {:.4g}\n",
+        "moduli      {}: Young's modulus {:.6g} Pa, Poisson's ratio {:.4g} (along the axes "
+        "{:.4g}), "
+        "anisotropy {:.4g}\n",
         where, youngs_modulus_of(moduli, dimension), poisson_ratio_of(moduli, dimension),
-        elasticity.anisotropy());
+        elasticity.axis_poisson_ratio(dimension), elasticity.anisotropy());
   };
   print_moduli("lattice", lattice_stiffness(dimension, body.points.spacing, body.setting.horizon,
                                             body.setting.cross_section));

@@ -1,5 +1,6 @@
 #include <exception>
 #include <new>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -7,6 +8,7 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "cases/runner/calibrate.hpp"
 #include "cases/runner/case.hpp"
 #include "cases/runner/check.hpp"
 #include "cases/runner/check_tangent.hpp"
@@ -24,6 +26,7 @@ struct CommandLine {
   std::vector<std::string> settings;
   int threads = 0;
   bool quiet = false;
+  CalibrationQuestion calibration;
 };
 
 /// "key=value" taken apart.
@@ -40,8 +43,7 @@ std::vector<std::pair<std::string, std::string>> overrides(const CommandLine& li
   return result;
 }
 
-void add_case_options(CLI::App& command, CommandLine& line) {
-  command.add_option("case", line.case_file, "case file (docs/case-file.md)")->required();
+void add_settings(CLI::App& command, CommandLine& line) {
   command
       .add_option("--set", line.settings,
                   "override a key of the case file, e.g. --set loading.steps=50; may be repeated")
@@ -49,12 +51,41 @@ void add_case_options(CLI::App& command, CommandLine& line) {
       ->expected(1)
       ->take_all()
       ->allow_extra_args(false);
+}
+
+void add_case_options(CLI::App& command, CommandLine& line) {
+  command.add_option("case", line.case_file, "case file (docs/case-file.md)")->required();
+  add_settings(command, line);
   command.add_option("--threads", line.threads, "number of threads (default: all processors)")
       ->check(CLI::Range(1, 1024));
 }
 
+void add_calibration(CLI::App& command, CommandLine& line) {
+  CLI::Option* file =
+      command.add_option("case", line.case_file, "case file: its lattice and material");
+  add_settings(command, line);
+  CalibrationQuestion& asked = line.calibration;
+  command.add_option("--dimension", asked.dimension, "2 or 3")->excludes(file);
+  command.add_option("--spacing", asked.spacing, "of the lattice [m]")->excludes(file);
+  command.add_option("--horizon-ratio", asked.horizon_ratio, "horizon / spacing")->excludes(file);
+  command.add_option("--thickness", asked.thickness, "2D [m] (default: 1)")->excludes(file);
+  const auto add = [&](const char* name, std::optional<double>& value, const char* text) {
+    command.add_option(name, value, text)->excludes(file);
+  };
+  add("--youngs-modulus", asked.youngs_modulus, "E [Pa], with --poisson-ratio");
+  add("--poisson-ratio", asked.poisson_ratio, "nu");
+  add("--lambda", asked.lambda, "[Pa], with --mu");
+  add("--mu", asked.mu, "[Pa]");
+  add("--c1", asked.c1, "[N/m6], one-neighbour constant");
+  add("--c2", asked.c2, "[N/m10], two-neighbour constant; in 3D also beside moduli");
+  add("--c3", asked.c3, "[N/m14], three-neighbour constant, 3D");
+}
+
 Exit execute(const CLI::App& program, const CommandLine& line, int threads) {
+  const bool is_calibration = program.got_subcommand("calibrate");
+  if (is_calibration && line.case_file.empty()) return calibrate(line.calibration);
   const Case from = read_case(line.case_file, overrides(line));
+  if (is_calibration) return calibrate(from);
   if (program.got_subcommand("check")) return check(from, threads);
   if (program.got_subcommand("check-tangent")) {
     return check_tangent(from, line.deformation, threads);
@@ -88,6 +119,9 @@ int main(int count, char** arguments) {
   add_case_options(*tangent_command, line);
   tangent_command->add_option("--deformation", line.deformation,
                               "current coordinates as expressions of x, y, z: 'EXPR; EXPR; …'");
+  add_calibration(
+      *program.add_subcommand("calibrate", "constants of cpd from moduli and back; prints JSON"),
+      line);
   try {
     program.parse(count, arguments);
   } catch (const CLI::ParseError& error) {

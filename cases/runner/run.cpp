@@ -56,6 +56,25 @@ double largest_displacement(const std::vector<double>& displacement, int dimensi
   return std::sqrt(largest);
 }
 
+/// The counts of [CPD] sec. 3.1 for the results folder.
+std::vector<PointCounts> neighbour_counts_of(const Body& body) {
+  const auto ordered = [](std::vector<std::int32_t> counts, std::int32_t orders) {
+    for (std::int32_t& count : counts) count *= orders;
+    return counts;
+  };
+  std::vector<PointCounts> counts{
+      {"neighbours", "neighbours within the horizon, #N1", neighbour_counts(body.model.bonds)}};
+  if (body.model.triangles) {
+    counts.push_back({"neighbour_pairs", "contributing ordered pairs of neighbours, #N2",
+                      ordered(body.model.triangles->interactions.per_point(), 2)});
+  }
+  if (body.model.tetrahedra) {
+    counts.push_back({"neighbour_triplets", "contributing ordered triplets of neighbours, #N3",
+                      ordered(body.model.tetrahedra->interactions.per_point(), 6)});
+  }
+  return counts;
+}
+
 /// Turns accepted equilibria into rows, fields and probes of the results folder.
 class Recorder {
  public:
@@ -171,7 +190,7 @@ Exit run(const Case& from, const RunOptions& options) {
   try {
     results.emplace(from.output.directory, body.points,
                     CaseText{from.as_read, from.as_resolved, from.title, versions()},
-                    support_sets(from), probes);
+                    support_sets(from), probes, neighbour_counts_of(body));
   } catch (const InputError& error) {
     throw located(from, error);
   }

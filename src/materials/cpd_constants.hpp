@@ -33,6 +33,12 @@ struct CubicElasticity {
   /// Zener's ratio 2 c44 / (c11 - c12): 1 for an isotropic body.
   [[nodiscard]] double anisotropy() const { return 2.0 * c44 / (c11 - c12); }
 
+  /// Poisson's ratio for a pull along an axis of the lattice: c12 / c11 in 2D, c12 / (c11 + c12) in
+  /// 3D.
+  [[nodiscard]] double axis_poisson_ratio(int dimension) const {
+    return c12 / (dimension == 2 ? c11 : c11 + c12);
+  }
+
   /// Isotropic part, the mean over all directions of the axes (Voigt).
   [[nodiscard]] LameModuli isotropic(int dimension) const;
 };

@@ -107,7 +107,7 @@ std::vector<std::uint8_t> membership(const Points& points) {
   return matrix;
 }
 
-void write_points(Hdf5File& file, const Points& points) {
+void write_points(Hdf5File& file, const Points& points, const std::vector<PointCounts>& counts) {
   const auto count = static_cast<std::uint64_t>(points.count());
   const auto dimension = static_cast<std::uint64_t>(points.dimension);
   file.make_group("/points");
@@ -123,6 +123,11 @@ void write_points(Hdf5File& file, const Points& points) {
   std::vector<std::string> names;
   for (const auto& [name, members] : points.sets) names.push_back(name);
   file.set_attribute("/points/set_ids", "sets", names);
+
+  for (const PointCounts& of_points : counts) {
+    file.write("/points/" + of_points.name, of_points.values, {count},
+               {"1", of_points.description});
+  }
 
   std::vector<double> geometry;
   std::vector<std::int32_t> numbers;
@@ -146,7 +151,8 @@ std::int64_t peak_memory_bytes() {
 
 struct Results::Files {
   Files(const std::filesystem::path& directory, const Points& points, const CaseText& text,
-        const std::vector<std::string>& sets, const std::vector<ProbeColumns>& probe_columns);
+        const std::vector<std::string>& sets, const std::vector<ProbeColumns>& probe_columns,
+        const std::vector<PointCounts>& counts);
 
   void add(const StepRecord& record, const std::optional<StepFields>& step_fields);
   void add_fields(const StepRecord& record, const StepFields& step_fields);
@@ -181,7 +187,8 @@ struct Results::Files {
 
 Results::Files::Files(const std::filesystem::path& directory, const Points& points,
                       const CaseText& text, const std::vector<std::string>& sets,
-                      const std::vector<ProbeColumns>& probe_columns)
+                      const std::vector<ProbeColumns>& probe_columns,
+                      const std::vector<PointCounts>& counts)
     : count(points.count()),
       dimension(points.dimension),
       support_sets(sets),
@@ -209,10 +216,11 @@ Results::Files::Files(const std::filesystem::path& directory, const Points& poin
   master.make_group("/steps");
   if (has_views()) master.make_group("/xdmf");
 
-  const std::uint64_t bytes_per_point =
-      (std::uint64_t(dimension) + 4) * sizeof(double) + sizeof(std::int32_t) + points.sets.size();
+  const std::uint64_t bytes_per_point = counts.size() * sizeof(std::int32_t) +
+                                        (std::uint64_t(dimension) + 4) * sizeof(double) +
+                                        sizeof(std::int32_t) + points.sets.size();
   publish_hdf5(folder.parts() / "points.h5", std::uint64_t(count) * bytes_per_point,
-               [&](Hdf5File& file) { write_points(file, points); });
+               [&](Hdf5File& file) { write_points(file, points, counts); });
   master.link("/points", "parts/points.h5", "/points");
   publish_file(folder.results(), master.image());
 }
@@ -345,11 +353,11 @@ void Results::Files::gather_parts() {
 
 Results::Results(const std::filesystem::path& directory, const Points& points, const CaseText& text,
                  const std::vector<std::string>& support_sets,
-                 const std::vector<ProbeColumns>& probes) {
+                 const std::vector<ProbeColumns>& probes, const std::vector<PointCounts>& counts) {
   double seconds = 0.0;
   try {
     const Stopwatch stopwatch(seconds);
-    files_ = std::make_unique<Files>(directory, points, text, support_sets, probes);
+    files_ = std::make_unique<Files>(directory, points, text, support_sets, probes, counts);
   } catch (const OutputError& error) {
     throw InputError("output.directory", directory.string(),
                      std::string("the folder can't be written: ") + error.what());

@@ -34,6 +34,13 @@ struct CaseText {
   std::map<std::string, std::string> versions{};  ///< "peristat", "hdf5", ... -> "1.0.0"
 };
 
+/// Numbers of every point that do not change, e.g. counts of neighbours.
+struct PointCounts {
+  std::string name;  ///< of the dataset in /points
+  std::string description;
+  std::vector<std::int32_t> values;
+};
+
 /// Columns that a probe adds to the history: NAME for one component, NAME_x, NAME_y, NAME_z for
 /// more.
 struct ProbeColumns {
@@ -61,7 +68,8 @@ class Results {
   /// @throws InputError (key "output.directory") if the folder can't be written, or holds files but
   ///         no earlier results; (key "probe") if a probe's name is the name of another column
   Results(const std::filesystem::path& directory, const Points& points, const CaseText& text,
-          const std::vector<std::string>& support_sets, const std::vector<ProbeColumns>& probes);
+          const std::vector<std::string>& support_sets, const std::vector<ProbeColumns>& probes,
+          const std::vector<PointCounts>& counts = {});
   ~Results();
   Results(const Results&) = delete;
   Results& operator=(const Results&) = delete;

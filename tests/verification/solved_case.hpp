@@ -49,8 +49,12 @@ inline SolvedCase solve_case(const std::string& name,
   }
   LoadSteppingOptions stepping;
   stepping.steps = solved.from.loading.steps;
+  stepping.adaptive = solved.from.loading.adaptive;
   NewtonOptions options;
   options.relative_tolerance = solved.from.solver.relative_tolerance;
+  options.max_iterations = solved.from.solver.max_iterations;
+  options.predictor = solved.from.solver.predictor;
+  options.projection = solved.from.solver.projection;
   LoadSteppingObserver observer;
   observer.iteration = [&](const IterationRecord& row) { solved.iterations.push_back(row); };
   observer.accepted = [&](const StepRecord& row, const NewtonResult&) {

@@ -1,10 +1,12 @@
 #include "assembly/assembler.hpp"
 
+#include <array>
 #include <cmath>
 #include <limits>
 #include <tuple>
 #include <vector>
 
+#include <Eigen/Dense>
 #include <gtest/gtest.h>
 
 #include "tests/bodies.hpp"
@@ -172,6 +174,95 @@ TEST(Assembler, EnergyIsTheDoubleSumOverOrderedPairs) {
   }
 }
 
+// Eq. 14 of [CPD]: per point 1/3 of the sum over ordered pairs and 1/4 of that over ordered
+// triplets.
+TEST(Assembler, EnergyIsTheSumOverOrderedPairsAndTriplets) {
+  for (int dimension : {2, 3}) {
+    tests::BoxSetting box = tests::small_box(dimension);
+    box.extent = {5, 4, 3};
+    box.perturbation = 0.2;
+    box.triangles = 1.0;
+    box.tetrahedra = dimension == 3 ? 2.0 : 0.0;
+    const BoxBody body(box);
+    BoxBody bonds_alone(body.points, [&] {
+      tests::BoxSetting other = box;
+      other.triangles = other.tetrahedra = 0.0;
+      return other;
+    }());
+    const std::vector<double> state = body.random_state(7);
+    const Points& points = body.points;
+    const auto n = std::size_t(points.count());
+    using Vector3 = std::array<double, 3>;
+    const auto place = [&](std::size_t i, bool current) {
+      Vector3 at = points.position(Index(i));
+      for (int c = 0; c < dimension && current; ++c) at[c] += state[i * dimension + c];
+      return at;
+    };
+    const auto arm = [&](std::size_t i, std::size_t j, bool current) {
+      const Vector3 a = place(i, current), b = place(j, current);
+      return Vector3{b[0] - a[0], b[1] - a[1], b[2] - a[2]};
+    };
+    const auto near = [&](std::size_t i, std::size_t j) {
+      return i != j &&
+             tests::reference_distance(points, Index(i), Index(j)) <= body.setting.horizon;
+    };
+    const auto dot = [](const Vector3& a, const Vector3& b) { return peristat::dot<3>(a, b); };
+    const auto area = [&](const Vector3& b, const Vector3& c) {
+      const Vector3 vector = cross(b, c);
+      return dimension == 2 ? vector[2] : std::sqrt(dot(vector, vector));
+    };
+    const auto volume = [&](const Vector3& b, const Vector3& c, const Vector3& d) {
+      return dot(cross(b, c), d);
+    };
+    const double neighbourhood_in_bulk =
+        bulk_neighbourhood(dimension, box.spacing, body.setting.horizon, box.cross_section).volume;
+    const auto neighbours_in_bulk =
+        double(bulk_neighbourhood(dimension, box.spacing, body.setting.horizon, box.cross_section)
+                   .neighbours);
+    double expected = 0.0;
+    for (std::size_t i = 0; i < n; ++i) {
+      double neighbours = 0.0, pairs = 0.0, triplets = 0.0, psi2 = 0.0, psi3 = 0.0;
+      for (std::size_t j = 0; j < n; ++j) {
+        if (!near(i, j)) continue;
+        ++neighbours;
+        for (std::size_t k = 0; k < n; ++k) {
+          if (!near(i, k) || !near(j, k)) continue;
+          const double reference = area(arm(i, j, false), arm(i, k, false));
+          const double change = area(arm(i, j, true), arm(i, k, true)) / reference - 1.0;
+          ++pairs;
+          psi2 += 0.5 * std::abs(reference) * change * change;
+          for (std::size_t l = 0; l < n && dimension == 3; ++l) {
+            if (!near(i, l) || !near(j, l) || !near(k, l)) continue;
+            const double of_reference =
+                volume(arm(i, j, false), arm(i, k, false), arm(i, l, false));
+            const double relative =
+                volume(arm(i, j, true), arm(i, k, true), arm(i, l, true)) / of_reference - 1.0;
+            ++triplets;
+            psi3 += 0.5 * std::abs(of_reference) * relative * relative;
+          }
+        }
+      }
+      const double v_h = neighbourhood_in_bulk * neighbours / neighbours_in_bulk;
+      const auto modulus = [](const auto& term) {
+        return std::get<Harmonic>(term->potential).modulus;
+      };
+      if (pairs > 0.0) {
+        expected +=
+            points.volume[i] * v_h * v_h / pairs / 3.0 * modulus(body.model.triangles) * psi2;
+      }
+      if (triplets > 0.0) {
+        expected += points.volume[i] * std::pow(v_h, 3) / triplets / 4.0 *
+                    modulus(body.model.tetrahedra) * psi3;
+      }
+    }
+    Assembler assembler(points, body.model, 2), of_bonds(points, bonds_alone.model, 2);
+    const double energy = assembler.energy(state).energy - of_bonds.energy(state).energy;
+    ASSERT_GT(expected, 1e-3 * of_bonds.energy(state).energy);
+    // Flat tetrahedra of the perturbed lattice have large relative changes of tiny volumes.
+    EXPECT_NEAR(energy / expected, 1.0, 1e-11) << dimension << "D";
+  }
+}
+
 /// Everything that an assembler gives, one after another.
 std::vector<double> everything(const BoxBody& body, int threads) {
   Assembler assembler(body.points, body.model, threads);
@@ -260,6 +351,68 @@ TEST(Assembler, ReportsDegenerateStates) {
         EXPECT_TRUE(assembler.gradient(broken, gradient).degenerate) << wrong;
       }
     }
+  }
+}
+
+TEST(Assembler, ReportsCollapsedTrianglesButNotCollapsedTetrahedra) {
+  // All points of a block driven into one plane: areas that had been across it keep gradients,
+  // those of triangles along the direction of the collapse have none.
+  for (bool tetrahedra : {false, true}) {
+    tests::BoxSetting box = tests::small_box(3);
+    (tetrahedra ? box.tetrahedra : box.triangles) = 1.0;
+    const BoxBody body(box);
+    Assembler assembler(body.points, body.model, 2);
+    std::vector<double> state(body.dofs(), 0.0), gradient(body.dofs());
+    // Shear z onto x, and flatten z: no length is zero, but x-z triangles become lines.
+    for (Index i = 0; i < body.points.count(); ++i) {
+      const double z = body.points.position(i)[2];
+      state[std::size_t(i) * 3] = 0.3 * z;
+      state[std::size_t(i) * 3 + 2] = -z;
+    }
+    EXPECT_EQ(assembler.gradient(state, gradient).degenerate, !tetrahedra);
+  }
+}
+
+TEST(Assembler, ProjectedTangentIsPositiveSemidefiniteAndExactWhereThatIs) {
+  for (tests::BoxSetting box : uneven_boxes()) {
+    if (box.dimension == 1) continue;  // bonds in a line have no negative eigenvalue
+    box.extent = {4, 3, 3};
+    const BoxBody body(box);
+    Assembler assembler(body.points, body.model, 2);
+    const auto matrix = [&](const std::vector<double>& state, double projection) {
+      Tangent tangent(Pattern(body.model.bonds), box.dimension);
+      assembler.tangent(state, tangent, projection);
+      Eigen::MatrixXd result(body.dofs(), body.dofs());
+      std::vector<double> unit(body.dofs(), 0.0), column(body.dofs());
+      for (std::size_t k = 0; k < body.dofs(); ++k) {
+        unit[k] = 1.0;
+        tangent.multiply(unit, column);
+        unit[k] = 0.0;
+        result.col(Eigen::Index(k)) =
+            Eigen::Map<const Eigen::VectorXd>(column.data(), Eigen::Index(column.size()));
+      }
+      return result;
+    };
+    const auto least_over_largest = [](const Eigen::MatrixXd& k) {
+      const Eigen::VectorXd eigenvalues =
+          Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(k, Eigen::EigenvaluesOnly).eigenvalues();
+      return eigenvalues.minCoeff() / eigenvalues.maxCoeff();
+    };
+    // Squeezed to half its width, so that interactions buckle.
+    std::vector<double> squeezed = body.random_state(1);
+    for (std::size_t k = 0; k < squeezed.size(); ++k) {
+      squeezed[k] += -0.5 * body.points.reference[k];
+    }
+    const Eigen::MatrixXd exact = matrix(squeezed, 0.0), half = matrix(squeezed, 0.5),
+                          full = matrix(squeezed, 1.0);
+    EXPECT_LT(least_over_largest(exact), -1e-3);
+    EXPECT_GT(least_over_largest(full), -1e-13);
+    EXPECT_LE((half - 0.5 * (exact + full)).norm(), 1e-13 * full.norm());
+
+    // At rest every interaction is at its minimum.
+    const std::vector<double> rest(body.dofs(), 0.0);
+    const Eigen::MatrixXd at_rest = matrix(rest, 0.0);
+    EXPECT_LE((matrix(rest, 1.0) - at_rest).norm(), 1e-13 * at_rest.norm());
   }
 }
 

@@ -431,7 +431,7 @@ const std::vector<BadInput> bad_inputs{
      "[material]",
      "[material]\nmodel = \"bnd\"",
      18,
-     {"material.model = \"bnd\": not known; did you mean bond?  (allowed: bond)"}},
+     {"material.model = \"bnd\": not known; did you mean bond?  (allowed: bond, cpd)"}},
     {"WrongMode",
      "[material]",
      "[solver]\nmode = \"adaptive\"\n[material]",

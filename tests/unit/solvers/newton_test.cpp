@@ -203,10 +203,79 @@ TEST(Newton, NamesNegativePivots) {
   for (std::size_t k = 0; k < folded.displacement.size(); ++k) {
     folded.displacement[k] = -0.6 * problem.body.points.reference[k];
   }
-  const Solved solved = solve(problem, folded);
+  NewtonOptions exact_only;
+  exact_only.projection = Projection::never;
+  const Solved solved = solve(problem, folded, 1.0, exact_only);
   EXPECT_EQ(solved.result.outcome, Outcome::not_positive_definite);
+  EXPECT_TRUE(solved.result.unstable_start);
   ASSERT_TRUE(solved.result.inertia);
   EXPECT_GT(solved.result.inertia->negative, 0);
+}
+
+TEST(Newton, LeavesAnUnstableStateAlongProjectedTangents) {
+  // The same state, let go: a minimum of the energy is there to be found.
+  const tests::BoxSetting box = tests::small_box(2);
+  Problem problem(box, {support("left", "0", "0"), support("right", "0", "0")},
+                  {tests::body_force("all", "1e-3", "2e-3")});
+  State folded = problem.at_rest();
+  for (Index dof : problem.free.dof) {
+    folded.displacement[dof] = -0.6 * problem.body.points.reference[dof];
+  }
+  NewtonOptions options;
+  options.max_iterations = 100;
+  const Solved solved = solve(problem, folded, 1.0, options);
+  EXPECT_EQ(solved.result.outcome, Outcome::converged);
+  EXPECT_TRUE(solved.result.unstable_start);
+  bool projected = false;
+  for (std::size_t k = 1; k < solved.iterations.size(); ++k) {
+    const IterationRecord& row = solved.iterations[k];
+    if (row.projection > 0.0) {
+      projected = true;
+      EXPECT_NE(row.negative_pivots, 0);
+    }
+    // The first iteration is the predictor; from then on the energy falls.
+    if (k > 1) {
+      EXPECT_LE(row.energy, solved.iterations[k - 1].energy * (1.0 + 1e-12));
+    }
+  }
+  EXPECT_TRUE(projected);
+  EXPECT_EQ(solved.iterations.back().projection, 0.0);  // the last one is exact, and quadratic
+  const Solved rest = solve(problem, problem.at_rest(), 1.0, options);
+  ASSERT_EQ(rest.result.outcome, Outcome::converged);
+}
+
+TEST(Newton, ProjectsFromTheStartWhenAsked) {
+  const tests::BoxSetting box = tests::small_box(2);
+  Problem problem(box, pulled(box, 0.2), {});
+  NewtonOptions options;
+  options.projection = Projection::always;
+  options.max_iterations = 200;
+  const Solved projected = solve(problem, problem.at_rest(), 1.0, options);
+  const Solved exact = solve(problem, problem.at_rest());
+  ASSERT_EQ(projected.result.outcome, Outcome::converged);
+  ASSERT_EQ(exact.result.outcome, Outcome::converged);
+  for (std::size_t k = 1; k < projected.iterations.size(); ++k) {
+    EXPECT_EQ(projected.iterations[k].projection, 1.0);
+  }
+  EXPECT_GT(projected.result.iterations, exact.result.iterations);
+  EXPECT_LT(tests::distance(projected.result.state.displacement, exact.result.state.displacement),
+            1e-8 * tests::norm(exact.result.state.displacement));
+}
+
+TEST(Newton, WithoutAPredictorLinearisesAboutTheStateAfterTheJump) {
+  const tests::BoxSetting box = tests::small_box(2);
+  Problem problem(box, pulled(box, 0.1), {});
+  NewtonOptions options;
+  options.predictor = Predictor::none;
+  const Solved without = solve(problem, problem.at_rest(), 1.0, options);
+  const Solved with = solve(problem, problem.at_rest());
+  ASSERT_EQ(without.result.outcome, Outcome::converged);
+  ASSERT_EQ(with.result.outcome, Outcome::converged);
+  EXPECT_EQ(without.iterations[0].residual, with.iterations[0].residual);
+  // The jump bends the bonds beside the support; the predictor goes around that.
+  EXPECT_GT(without.iterations[1].residual, 2.0 * with.iterations[1].residual);
+  EXPECT_LT(tests::distance(without.result.state.displacement, with.result.state.displacement),
+            1e-8 * tests::norm(with.result.state.displacement));
 }
 
 TEST(Newton, NamesADegenerateState) {

@@ -221,7 +221,7 @@ StepRecord example_step(int step) {
 
 void add_step(Results& results, int step, int dimension = 2) {
   results.add(IterationRecord{step, 0, 100.0, 1.0, -1.0, 1.0, 0, 0});
-  results.add(IterationRecord{step, 1, 1e-9, 1e-11, -2.0, 0.5, 17, 3});
+  results.add(IterationRecord{step, 1, 1e-9, 1e-11, -2.0, 0.5, 17, 3, 0.25, 12, 4, 1});
   results.add(DecisionRecord{step, 0.1 * step, 0.1, "converged", "accept and grow", 0.2,
                              "quick, \"easy\""});
   const ExampleFields fields(step, dimension);
@@ -390,11 +390,12 @@ TEST_F(ResultsTest, TablesHaveTheColumnsOfTheContract) {
                 "\"reaction_z:left, \"\"top\"\"\",tip_x,tip_y,crack",
                 "1,0.1,newton,4,100,0.3333333333333333,0.25,0.125,5,1e-17,3,0.5,0.01,1,2,0,-1,-2,0,"
                 "0.5,-0.5,9"}));
-  EXPECT_EQ(
-      lines(directory / "iterations.csv"),
-      (std::vector<std::string>{"step,iteration,residual,relative_residual,energy,step_length,"
-                                "linear_iterations,changed_bonds",
-                                "1,0,100,1,-1,1,0,0", "1,1,1e-09,1e-11,-2,0.5,17,3"}));
+  EXPECT_EQ(lines(directory / "iterations.csv"),
+            (std::vector<std::string>{
+                "step,iteration,residual,relative_residual,energy,step_length,"
+                "linear_iterations,changed_bonds,projection,negative_pivots,"
+                "rejected_trials,degenerate_trials",
+                "1,0,100,1,-1,1,0,0,0,0,0,0", "1,1,1e-09,1e-11,-2,0.5,17,3,0.25,12,4,1"}));
   EXPECT_EQ(lines(directory / "decisions.csv"),
             (std::vector<std::string>{
                 "step,load_factor,increment,outcome,action,next_increment,reason",
@@ -709,7 +710,7 @@ TEST_F(ResultsTest, AKillLeavesEveryAnnouncedStep) {
     EXPECT_EQ(file.numbers("/points/volume"), example_points(2).volume);
 
     for (const auto& [name, columns] : std::map<std::string, int>{
-             {"history.csv", 22}, {"iterations.csv", 8}, {"decisions.csv", 7}}) {
+             {"history.csv", 22}, {"iterations.csv", 12}, {"decisions.csv", 7}}) {
       EXPECT_EQ(read_text(folder / name).back(), '\n') << name;
       const std::vector<std::string> rows = lines(folder / name);
       ASSERT_GE(rows.size(), 1u + announced) << name;
