@@ -11,6 +11,7 @@
 #include <sys/resource.h>
 
 #include "src/input_error.hpp"
+#include "src/results/convergence_table.hpp"
 #include "src/results/csv_table.hpp"
 #include "src/results/hdf5_file.hpp"
 #include "src/results/output_file.hpp"
@@ -176,6 +177,7 @@ struct Results::Files {
   Hdf5File master;  ///< results.h5 with links to the parts; lives in memory
   XdmfSeries xdmf;
   StepTotals totals;
+  ConvergenceTable convergence;
   bool xdmf_is_behind = false;
   Clock::time_point xdmf_time{};  ///< when it was last published
   std::vector<Row> pending_iterations, pending_decisions;
@@ -291,6 +293,7 @@ void Results::Files::add(const StepRecord& record, const std::optional<StepField
   publish_file(folder.results(), master.image());
   history.append(row);
   totals.add(record);
+  convergence.accept(record.step);
   // Its length grows with the steps, so that a run of quick steps would mostly write this file.
   if (!fields.empty()) xdmf_is_behind = true;
   if (Clock::now() - xdmf_time >= std::chrono::seconds(1)) publish_xdmf();
@@ -377,6 +380,7 @@ void Results::add(const IterationRecord& record) {
   const Stopwatch stopwatch(files_->seconds);
   if (files_->closed) throw std::logic_error("results: closed");
   Row row = make_row(record);
+  files_->convergence.add(record);
   files_->iterations.append(row);
   files_->pending_iterations.push_back(std::move(row));
 }
@@ -409,6 +413,7 @@ void Results::close(Summary summary) {
   std::exception_ptr failure;
   try {
     publish_file(files_->folder.results(), files_->master.image());
+    publish_file(files_->folder.convergence(), files_->convergence.csv());
     files_->publish_xdmf();
     files_->gather_parts();
   } catch (const std::runtime_error&) {

@@ -14,8 +14,8 @@ namespace fs = std::filesystem;
 
 /// The history stands last, so that a folder whose removal was interrupted is still recognised.
 std::vector<fs::path> own_files(const ResultsFolder& folder) {
-  return {folder.results(),   folder.xdmf(),    folder.iterations(),
-          folder.decisions(), folder.summary(), folder.history()};
+  return {folder.results(),     folder.xdmf(),    folder.iterations(), folder.decisions(),
+          folder.convergence(), folder.summary(), folder.history()};
 }
 
 bool is_part(const fs::path& file) {

@@ -26,7 +26,8 @@ HISTORY_COLUMNS = [
 ]  # fmt: skip
 ITERATION_COLUMNS = [
     "step", "iteration", "residual", "relative_residual", "energy", "step_length",
-    "linear_iterations", "changed_bonds",
+    "linear_iterations", "changed_bonds", "projection", "negative_pivots", "rejected_trials",
+    "degenerate_trials",
 ]  # fmt: skip
 SUMMARY_KEYS = {
     "status", "points", "free_dofs", "bonds", "triangles", "tetrahedra", "steps", "newton_iterations",
@@ -214,10 +215,17 @@ class CommandLine(unittest.TestCase):
         rows = self.history("out")
         self.assertGreater(len(rows), 1)
         decisions = (self.folder / "out/decisions.csv").read_text()
-        self.assertIn(",cut,", decisions)
-        self.assertIn(",stop,", decisions)
+        self.assertIn(",stop,", decisions)  # from an unstable state no smaller step helps
         with h5py.File(self.folder / "out/results.h5") as file:
             self.assertIn(f"{int(rows[-1]['step']):06d}", file["steps"])
+
+    def test_a_step_that_fails_is_cut(self):
+        run = self.peristat("run", self.case, "--output", "out", "--set", "solver.max_iterations=1",
+                            "--set", "loading.smallest_step=0.1")  # fmt: skip
+        self.assertEqual(run.returncode, 3, run.stdout + run.stderr)
+        self.assertIn("solver.max_iterations", run.stderr)
+        decisions = (self.folder / "out/decisions.csv").read_text().splitlines()[1:]
+        self.assertEqual([row.split(",")[4] for row in decisions], ["cut", "cut", "cut", "stop"])
 
     def test_an_interrupt_closes_the_results(self):
         for sent in (signal.SIGINT, signal.SIGTERM):
