@@ -21,7 +21,7 @@ constexpr std::array<const char*, 3> ordering_names{"natural", "AMD", "METIS"};
 constexpr std::array<int, 3> orderings{CHOLMOD_NATURAL, CHOLMOD_AMD, CHOLMOD_METIS};
 
 /// Below this number of points METIS gains nothing over AMD and costs more to find.
-constexpr Index smallest_for_metis = 20000;
+constexpr Index smallest_for_metis = 5000;
 
 /// Speeds of a plain machine, one thread, that decide how many iterations pay against a
 /// factorisation: factorisation [flop/s], and reading the factor in triangular solves [bytes/s].

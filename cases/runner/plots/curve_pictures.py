@@ -261,8 +261,9 @@ def _draw_tolerance(axes, results):
     tolerance = results.case.get("solver", {}).get("relative_tolerance")
     if isinstance(tolerance, float) and tolerance > 0.0:
         axes.axhline(tolerance, color=FAINT, linewidth=1.2, linestyle=(0, (2, 3)), zorder=2)
+        # Below its line: "round-off" may stand right above.
         axes.annotate(f"tolerance {tolerance:.0e}", (1.0, tolerance), xycoords=("axes fraction", "data"),
-                      xytext=(-4, 4), textcoords="offset points", ha="right", va="bottom",
+                      xytext=(-4, -4), textcoords="offset points", ha="right", va="top",
                       fontsize=11, color=FAINT)  # fmt: skip
 
 

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from results_folder import NotAResultsFolder, ResultsFolder, read_results_folder
 
-PICTURES = ["deformed", "damage", "fields", "sequence", "load_displacement", "convergence"]
+PICTURES = ["deformed", "lateral", "middle_plane", "damage", "fields", "sequence", "load_displacement", "convergence"]
 MOST_FRAMES = 6
 
 
@@ -48,6 +48,11 @@ def _draw_fields(results: ResultsFolder):
         import solid_pictures
 
         yield "deformed", solid_pictures.draw_deformed_solid(results, step)
+        import section_pictures
+
+        if section_pictures.moves_visibly(results, step):
+            yield "lateral", section_pictures.draw_lateral_solid(results, step)
+            yield "middle_plane", section_pictures.draw_middle_plane(results, step)
         if damaged:
             yield "damage", solid_pictures.draw_damaged_solid(results, step)
 

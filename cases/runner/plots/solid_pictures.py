@@ -61,15 +61,16 @@ class Camera:
 def draw_deformed_solid(results, step):
     """Deformed body coloured by the magnitude of the displacement."""
     values, value_range, label = displacement_magnitude(step.displacement)
-    return _solid(results, step, values, value_range, label, "viridis")
+    return draw_solid(results, step, values, value_range, label, "viridis")
 
 
 def draw_damaged_solid(results, step):
     """Deformed body coloured by damage."""
-    return _solid(results, step, step.damage, (0.0, 1.0), "damage", DAMAGE_COLOURS)
+    return draw_solid(results, step, step.damage, (0.0, 1.0), "damage", DAMAGE_COLOURS)
 
 
-def _solid(results, step, values, value_range, label, colours):
+def draw_solid(results, step, values, value_range, label, colours):
+    """Deformed body coloured by a value per point."""
     factor = exaggeration(results.reference, step.displacement)
     spacing, reference, displacement, damage, values = merged(
         results.reference, results.spacing, MOST_CELLS, step.displacement, step.damage, values

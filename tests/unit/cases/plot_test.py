@@ -40,7 +40,8 @@ def lattice(*counts: int) -> np.ndarray:
     return (np.stack(grid, axis=-1).reshape(-1, len(counts)) + 0.5) * SPACING
 
 
-def write_folder(folder: Path, reference: np.ndarray, steps: int = 3, damaged: bool = False) -> None:
+def write_folder(folder: Path, reference: np.ndarray, steps: int = 3, damaged: bool = False,
+                 strain: float = 0.01) -> None:  # fmt: skip
     """A results folder of a body stretched by 1 % in x, torn in the middle if damaged."""
     folder.mkdir()
     count, dimension = reference.shape
@@ -55,7 +56,10 @@ def write_folder(folder: Path, reference: np.ndarray, steps: int = 3, damaged: b
         file["case/as_resolved"] = f"[lattice]\nspacing = {SPACING}\n[solver]\nrelative_tolerance = 1e-10\n"
         for step in range(1, steps + 1):
             displacement = np.zeros_like(reference)
-            displacement[:, 0] = 0.01 * x * step / steps
+            displacement[:, 0] = strain * x * step / steps
+            for axis in range(1, dimension):  # contracts about its middle
+                across = reference[:, axis] - reference[:, axis].mean()
+                displacement[:, axis] = -0.3 * strain * across * step / steps
             group = file.create_group(f"steps/{step:06d}")
             group.attrs["load_factor"] = step / steps
             group.attrs["mode"] = "newton"
@@ -139,6 +143,15 @@ class Pictures(unittest.TestCase):
         write_folder(self.folder, lattice(20, 5, 5))
         self.plot()
         self.assert_pictures("deformed", "load_displacement", "convergence")
+
+    def test_solid_that_deforms_visibly(self):
+        for planes in (4, 5):  # a plane in the middle, or two beside it
+            with self.subTest(planes=planes):
+                folder, self.folder = self.folder, self.folder.with_name(f"planes{planes}")
+                write_folder(self.folder, lattice(12, 6, planes), strain=1.0)
+                self.plot()
+                self.assert_pictures("deformed", "lateral", "middle_plane", "load_displacement", "convergence")
+                self.folder = folder
 
     def test_damaged_solid(self):
         write_folder(self.folder, lattice(12, 6, 6), damaged=True)
