@@ -1,0 +1,159 @@
+"""Continuum-kinematics-inspired peridynamics through the command line, as an analyst types it."""
+
+import csv
+import json
+import os
+import pathlib
+import subprocess
+import tempfile
+import unittest
+
+import h5py
+import numpy
+
+PROGRAM = os.environ["PERISTAT_PROGRAM"]
+CASES = pathlib.Path(__file__).resolve().parents[2] / "cases" / "cpd"
+
+
+class Cpd(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory(prefix="peristat_acceptance_")
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+
+    def peristat(self, *arguments):
+        return subprocess.run([PROGRAM, *map(str, arguments)], cwd=self.folder, text=True, timeout=300,
+                              stdin=subprocess.DEVNULL, capture_output=True)  # fmt: skip
+
+    def answer(self, *arguments):
+        run = self.peristat(*arguments)
+        self.assertEqual(run.returncode, 0, run.stdout + run.stderr)
+        return json.loads(run.stdout)
+
+    def assert_refused(self, run, *fragments):
+        self.assertEqual(run.returncode, 2, run.stdout + run.stderr)
+        for fragment in fragments:
+            self.assertIn(fragment, run.stderr)
+
+    # ---- tangents ---------------------------------------------------------------------------------
+
+    def test_tangents_of_every_case_are_exact(self):
+        checked = 0
+        small = {"cube.toml": ["lattice.spacing=0.1", "material.c2=125", "material.c3=4e4"],
+                 "cube_hole.toml": ["lattice.spacing=0.1", "material.c2=125", "material.c3=4e4"],
+                 "table3.toml": ["material.c2=51", "material.c3=1"]}  # fmt: skip
+        for case in sorted(CASES.glob("*.toml")):
+            for weights in ("mean", "bulk"):
+                with self.subTest(case=case.name, weights=weights):
+                    settings = [*small.get(case.name, []), f"quadrature.weights={weights}"]
+                    told = self.answer("check-tangent", case, *(word for s in settings for word in ("--set", s)))
+                    checked += 1
+                    self.assertGreater(told["energy"], 0.0)
+                    self.assertLess(told["residual_error"], 1e-7)
+                    self.assertLess(told["tangent_error"], 1e-7)
+                    self.assertAlmostEqual(told["residual_order"], 2.0, delta=0.1)
+                    self.assertAlmostEqual(told["tangent_order"], 2.0, delta=0.1)
+                    self.assertLess(told["asymmetry"], 1e-13)
+                    self.assertLess(told["force_sum"], 1e-11)
+                    self.assertLess(told["moment_sum"], 1e-11)
+        self.assertEqual(checked, 14)
+
+    # ---- a run ------------------------------------------------------------------------------------
+
+    def test_a_run_leaves_counts_and_the_convergence_table(self):
+        run = self.peristat("run", CASES / "table3.toml", "--output", "out", "--set", "material.c2=51",
+                            "--set", "material.c3=1", "--set", "loading.steps=50",
+                            "--set", "support[1].displacement=['(x + 0.2)*0.04*load', 0, 0]",
+                            "--set", "support[0].displacement=['(x + 0.2)*0.04*load', 0, 0]")  # fmt: skip
+        self.assertEqual(run.returncode, 0, run.stdout + run.stderr)
+        self.assertIn("triangles; per point", run.stdout)
+        self.assertIn("tetrahedra; per point", run.stdout)
+        self.assertIn("stored: storing them takes", run.stdout)
+        summary = json.loads((self.folder / "out/summary.json").read_text())
+        with h5py.File(self.folder / "out/results.h5") as file:
+            neighbours = file["points/neighbours"][...]
+            pairs, triplets = file["points/neighbour_pairs"][...], file["points/neighbour_triplets"][...]
+        self.assertEqual(neighbours.sum(), 2 * summary["bonds"])
+        self.assertEqual(pairs.sum(), 6 * summary["triangles"])
+        self.assertEqual(triplets.sum(), 24 * summary["tetrahedra"])
+        self.assertTrue((numpy.array([len(neighbours), len(pairs), len(triplets)]) == summary["points"]).all())
+
+        with open(self.folder / "out/convergence.csv", newline="") as table:
+            header, *rows = csv.reader(table)
+        self.assertEqual(header, ["iteration"] + [f"step_{step}" for step in range(1, 51)])
+        self.assertEqual(rows[-1][0], "observed_order")
+        self.assertEqual(set(rows[0][1:]), {"1"})
+        with open(self.folder / "out/iterations.csv", newline="") as table:
+            first = [float(row["residual"]) for row in csv.DictReader(table) if row["step"] == "7"]
+        column = [row[7] for row in rows[:-1] if row[7]]
+        self.assertEqual(len(column), len(first))
+        for told, residual in zip(column, first):
+            self.assertAlmostEqual(float(told), residual / first[0], delta=1e-15)
+
+    def test_calibrated_moduli_are_those_of_the_case(self):
+        case = (CASES / "poisson_3d.toml").read_text()
+        start, end = case.index("c1 = "), case.index("[[support]]")
+        path = self.folder / "moduli.toml"
+        path.write_text(case[:start] + "youngs_modulus = 3e9\npoisson_ratio = 0.35\n\n" + case[end:])
+        run = self.peristat("check", path)
+        self.assertEqual(run.returncode, 0, run.stderr)
+        self.assertIn("lattice: Young's modulus 3e+09 Pa, Poisson's ratio 0.35 ", run.stdout)
+        run = self.peristat("check", path, "--set", "material.calibration=continuum")
+        self.assertIn("continuum: Young's modulus 3e+09 Pa, Poisson's ratio 0.35 ", run.stdout)
+        told = self.answer("calibrate", path)
+        self.assertAlmostEqual(told["lattice"]["youngs_modulus"] / 3e9, 1.0, delta=1e-11)
+        self.assertAlmostEqual(told["lattice"]["poisson_ratio"], 0.35, delta=1e-11)
+
+    def test_an_unstable_body_ends_with_its_name(self):
+        run = self.peristat("run", CASES / "square.toml", "--output", "out", "--set", "material.c2=-2000",
+                            "--set", "lattice.spacing=0.05")  # fmt: skip
+        self.assertEqual(run.returncode, 3, run.stdout + run.stderr)
+        self.assertIn("not_positive_definite", run.stderr)
+        self.assertIn("negative pivots", run.stderr)
+
+    # ---- calibrate --------------------------------------------------------------------------------
+
+    LATTICE = ["--dimension", "3", "--spacing", "0.05", "--horizon-ratio", "2.015"]
+    PLANE = ["--dimension", "2", "--spacing", "0.02", "--horizon-ratio", "3.015", "--thickness", "0.1"]
+
+    def test_calibrate_goes_there_and_back(self):
+        for lattice in (self.LATTICE, self.PLANE):
+            there = self.answer("calibrate", *lattice, "--youngs-modulus", "2e9", "--poisson-ratio", "0.4")
+            for place in ("lattice", "continuum"):
+                found = there[place]
+                self.assertAlmostEqual(found["youngs_modulus"] / 2e9, 1.0, delta=1e-10)
+                constants = [word for key in ("c1", "c2", "c3") for word in ("--" + key, repr(found[key]))]
+                back = self.answer("calibrate", *lattice, *constants)[place]
+                self.assertAlmostEqual(back["poisson_ratio"], 0.4, delta=1e-9)
+                lame = self.answer("calibrate", *lattice, "--lambda", found["lambda"], "--mu", found["mu"])[place]
+                for key in ("c1", "c2", "c3"):
+                    self.assertAlmostEqual(lame[key], found[key], delta=1e-9 * abs(found[key]))
+            self.assertEqual(there["continuum"]["anisotropy"], 1.0)
+            self.assertNotAlmostEqual(there["lattice"]["anisotropy"], 1.0, delta=0.01)
+
+    def test_calibrate_refuses_what_makes_no_sense(self):
+        moduli = ["--youngs-modulus", "1", "--poisson-ratio"]
+        for arguments, words in {
+            (*self.LATTICE, *moduli, "0.5"): ["--poisson-ratio", "below 0.5"],
+            (*self.LATTICE, *moduli, "nan"): ["--poisson-ratio"],
+            (*self.PLANE, *moduli, "1"): ["--poisson-ratio", "below 1"],
+            (*self.LATTICE, "--youngs-modulus", "-1", "--poisson-ratio", "0"): ["--youngs-modulus"],
+            (*self.LATTICE, "--lambda", "-1", "--mu", "1"): ["--lambda", "stable"],
+            (*self.LATTICE, "--lambda", "1"): ["--mu", "missing"],
+            (*self.LATTICE, *moduli, "0.3", "--c2", "1e30"): ["--c2", "no positive c1"],
+            (*self.PLANE, *moduli, "0.3", "--c2", "1"): ["--c2", "2D"],
+            (*self.PLANE, "--c1", "1", "--c3", "1"): ["--c3", "2D"],
+            (*self.LATTICE, "--c1", "0"): ["--c1", "positive"],
+            (*self.LATTICE, "--c1", "1", "--mu", "1"): ["exactly one"],
+            (*self.LATTICE,): ["exactly one"],
+            ("--dimension", "1", "--c1", "1"): ["--dimension"],
+            ("--dimension", "3", "--spacing", "1", "--horizon-ratio", "100", "--c1", "1"): ["--horizon-ratio"],
+            ("--dimension", "3", "--spacing", "1", "--horizon-ratio", "1", "--c1", "1"): ["--horizon-ratio"],
+        }.items():
+            with self.subTest(arguments=arguments):
+                self.assert_refused(self.peristat("calibrate", *arguments), *words)
+        self.assert_refused(self.peristat("calibrate", CASES.parent / "bar/tension.toml"), "material", "cpd")
+
+
+if __name__ == "__main__":
+    unittest.main()
