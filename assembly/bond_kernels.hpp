@@ -153,7 +153,7 @@ struct BondKernels {
         Lanes row_energy = 0.0;
         Vector<D, Lanes> own;
         own.fill(Lanes(0.0));
-        for_each_batch<D>(bonds, a.rows.data(), i, [&](const Batch<D>& batch) {
+        for_each_batch<D>(bonds, a.rows.data(), i, [&](const Batch<D>& batch) __attribute__((always_inline)) {
           const auto measure =
               Length::at<D, Lanes>(batch.inverse_length, {batch.vector0}, {batch.vector1});
           const auto psi = interaction_energy(batch.weight, potential, measure);
@@ -186,7 +186,7 @@ struct BondKernels {
       for (Index i = range.first; i < range.last; ++i) {
         std::array<Lanes, width> own;
         own.fill(Lanes(0.0));
-        for_each_batch<D>(bonds, a.rows.data(), i, [&](const Batch<D>& batch) {
+        for_each_batch<D>(bonds, a.rows.data(), i, [&](const Batch<D>& batch) __attribute__((always_inline)) {
           const auto measure =
               Length::at<D, Lanes>(batch.inverse_length, {batch.vector0}, {batch.vector1});
           auto psi = interaction_energy(batch.weight, potential, measure);
@@ -229,7 +229,7 @@ struct BondKernels {
       for (Index i = range.first; i < range.last; ++i) {
         Vector<D, Lanes> own;
         own.fill(Lanes(0.0));
-        for_each_batch<D>(bonds, a.rows.data(), i, [&](const Batch<D>& batch) {
+        for_each_batch<D>(bonds, a.rows.data(), i, [&](const Batch<D>& batch) __attribute__((always_inline)) {
           const auto measure =
               Length::from_current<D, Lanes>(batch.inverse_length, {batch.vector0});
           const auto psi = interaction_energy(batch.weight, potential, measure);
@@ -256,7 +256,7 @@ struct BondKernels {
       Lanes most = -1.0;
       for (Index i = range.first; i < range.last; ++i) {
         Lanes own = 0.0;
-        for_each_batch<D>(bonds, a.rows.data(), i, [&](const Batch<D>& batch) {
+        for_each_batch<D>(bonds, a.rows.data(), i, [&](const Batch<D>& batch) __attribute__((always_inline)) {
           const auto measure =
               Length::at<D, Lanes>(batch.inverse_length, {batch.vector0}, {batch.vector1});
           const Lanes half = 0.5 * interaction_energy(batch.weight, potential, measure).value;

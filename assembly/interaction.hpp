@@ -39,13 +39,14 @@ template <int P, int Q, class Real, class MeasureAt>
 [[nodiscard]] inline auto energy_hessian(const InteractionEnergy<Real>& psi,
                                          const MeasureAt& measure) {
   constexpr int D = MeasureAt::dimension;
+  constexpr bool on_diagonal = P == Q;  // symmetric: its lower half mirrors the upper
   Matrix<D, Real> block;
   const Vector<D, Real> row = scaled<D>(psi.second, measure.gradient[P]);
   for (int r = 0; r < D; ++r) {
-    for (int c = 0; c < D; ++c) block[r][c] = row[r] * measure.gradient[Q][c];
+    for (int c = on_diagonal ? r : 0; c < D; ++c) block[r][c] = row[r] * measure.gradient[Q][c];
   }
   measure.template add_hessian<P, Q>(psi.first, block);
-  if constexpr (P == Q) {  // symmetric to the last bit
+  if constexpr (on_diagonal) {
     for (int r = 0; r < D; ++r) {
       for (int c = 0; c < r; ++c) block[r][c] = block[c][r];
     }

@@ -23,6 +23,11 @@ ROWS = {
     "tangent": ("bond", 1e6, "M bonds/s", 80e6),
     "matrix_free_product": ("bond", 1e6, "M bonds/s", 300e6),
     "stored_product": ("bond", 1e6, "M bonds/s", None),
+    "tetrahedra_tangent": ("interaction", 1e6, "M tetrahedra/s", 30e6),
+    "tetrahedra_gradient": ("interaction", 1e6, "M tetrahedra/s", None),
+    "tetrahedra_product": ("interaction", 1e6, "M tetrahedra/s", None),
+    "triangles_tangent": ("interaction", 1e6, "M triangles/s", None),
+    "triangles_gradient": ("interaction", 1e6, "M triangles/s", None),
     "factorisation": ("flop", 1e9, "GF/s", None),
 }
 FACTORISATION_SHARE = {"100": 0.45, "300": 0.65}
@@ -41,7 +46,7 @@ def measure(program, threads, options):
         if run["run_type"] != "iteration":
             continue
         name = run["run_name"].replace("/real_time", "").replace("dimension:", "").replace("width:", "")
-        rate = next(run[key] for key in ("bond", "flop", "byte") if key in run)
+        rate = next(run[key] for key in ("bond", "interaction", "flop", "byte") if key in run)
         best[name] = max(best.get(name, 0.0), rate)
     return best
 
@@ -64,6 +69,11 @@ def print_table(threads, one, many):
             share = FACTORISATION_SHARE[case]
             told = f"{case}² points | {unit_text} ({rate / dgemm:.0%} of DGEMM)"
             goal = f"{share * dgemm / unit:.1f} ({share:.0%} of DGEMM)"
+        elif kind.startswith("t") and "/" in case:
+            horizon, stored = (part.split(":")[1] for part in case.split("/"))
+            how = "stored" if stored == "1" else "found anew"
+            told = f"horizon {int(horizon) / 1000:g}, {how} | {unit_text}"
+            goal = f"{scale * target / unit:.0f}" if target and horizon != "2015" else ""
         else:
             told = f"{case}D | {unit_text}"
             goal = f"{scale * target / unit:.0f}" if target else ""

@@ -83,10 +83,12 @@ struct Area::At<3, Real> {
   template <int P, int Q>
   void add_hessian(const Real& factor, Matrix<3, Real>& block) const {
     // |other arm|^2 on the diagonal, -b.c beside it.
-    const Real sides = P == Q ? dot<3>(arm[1 - P], arm[1 - P]) : -dot<3>(arm[0], arm[1]);
-    add_outer<3>(factor * inverse * sides, normal, normal, block);
-    if constexpr (P < Q) add_skew<Real>(-factor, normal, block);
-    if constexpr (P > Q) add_skew<Real>(factor, normal, block);
+    if constexpr (P == Q) {
+      add_outer_square<3, Real>(factor * inverse * dot<3>(arm[1 - P], arm[1 - P]), normal, block);
+    } else {
+      add_outer<3>(-factor * inverse * dot<3>(arm[0], arm[1]), normal, normal, block);
+      add_skew<Real>(P < Q ? -factor : factor, normal, block);
+    }
   }
 
   [[nodiscard]] Arms<2, 3, Real> hessian_times(const Arms<2, 3, Real>& v) const {

@@ -32,17 +32,13 @@ struct Length {
     Arms<1, D, Real> gradient;  ///< n
     Real inverse;               ///< 1/l [1/m]
 
-    /// block += factor times the Hessian's block between arms P and Q.
+    /// block += factor times the Hessian's block between arms P and Q; on the diagonal its upper
+    /// half.
     template <int P, int Q>
     void add_hessian(const Real& factor, Matrix<D, Real>& block) const {
       const Real scale = factor * inverse;
-      const Vector<D, Real>& n = gradient[0];
-      for (int r = 0; r < D; ++r) {
-        for (int c = 0; c < D; ++c) {
-          const Real identity = r == c ? 1.0 : 0.0;
-          block[r][c] += scale * (identity - n[r] * n[c]);
-        }
-      }
+      for (int r = 0; r < D; ++r) block[r][r] += scale;
+      add_outer_square<D, Real>(-scale, gradient[0], block);
     }
 
     /// Hessian times relative vectors.

@@ -74,6 +74,15 @@ inline void add_outer(const Real& factor, const Vector<D, Real>& a, const Vector
   }
 }
 
+/// The upper half of block += factor a a^T
+template <int D, class Real>
+inline void add_outer_square(const Real& factor, const Vector<D, Real>& a, Matrix<D, Real>& block) {
+  for (int r = 0; r < D; ++r) {
+    const Real row = factor * a[r];
+    for (int c = r; c < D; ++c) block[r][c] += row * a[c];
+  }
+}
+
 /// Square root of double and Lanes alike.
 template <class Real>
 inline Real square_root(const Real& a) {

@@ -61,7 +61,10 @@ struct Flat {
     of.template add_hessian<P, Q>(Real(0.25), block);
     of.template add_hessian<P, Q>(Real(0.75), block);
     for (int r = 0; r < D; ++r) {
-      for (int c = 0; c < D; ++c) to[P * D + r][Q * D + c] = block[r][c];
+      for (int c = 0; c < D; ++c) {
+        // On the diagonal only the upper half is there.
+        to[P * D + r][Q * D + c] = P == Q && c < r ? block[c][r] : block[r][c];
+      }
     }
   }
 };
