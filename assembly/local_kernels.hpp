@@ -27,7 +27,7 @@ class BatchArms {
   }
 
   /// The measure of a block's interactions.
-  [[nodiscard]] auto measure(const InteractionBlock& block) {
+  [[nodiscard, gnu::always_inline]] auto measure(const InteractionBlock& block) {
     reference_[last] = workspace_.local.reference.block(block.first);
     displacement_[last] = workspace_.displacement.block(block.first);
     if constexpr (Measure::template singular_at_zero<D>) {
@@ -257,9 +257,9 @@ struct LocalKernels {
 
   /// Calls visit(P, Q) with compile-time numbers of arms P <= Q.
   template <int arms, class Visit>
-  static void for_each_pair_of_arms(const Visit& visit) {
+  [[gnu::always_inline]] static void for_each_pair_of_arms(const Visit& visit) {
     [&]<int... K>(std::integer_sequence<int, K...>) {
-      const auto at = [&](auto k) {
+      const auto at = [&](auto k) __attribute__((always_inline)) {
         constexpr int P = decltype(k)::value / arms, Q = decltype(k)::value % arms;
         if constexpr (P <= Q) {
           visit(std::integral_constant<int, P>{}, std::integral_constant<int, Q>{});
@@ -315,7 +315,8 @@ struct LocalKernels {
       std::array<std::array<Lanes, half_entries>, last> on_diagonal{};
       Matrix<D, Lanes> of_fixed_pair{};
       for (const InteractionBlock& block : group.blocks) {
-        const auto add = [&](auto p, auto q, const Matrix<D, Lanes>& part) {
+        const auto add = [&](auto p, auto q, const Matrix<D, Lanes>& part)
+            __attribute__((always_inline)) {
           if constexpr (p == last && q == last) {
             w.template add_to_last<half_entries>(block.first, half_of(part));
           } else if constexpr (p == q) {
@@ -330,8 +331,9 @@ struct LocalKernels {
         const auto measure = arms.measure(block);
         const auto psi = interaction_energy(weight_of(block), potential, measure);
         if (projection == 0.0) {
-          for_each_pair_of_arms<arms_count>(
-              [&](auto p, auto q) { add(p, q, energy_hessian<p, q>(psi, measure)); });
+          for_each_pair_of_arms<arms_count>([&](auto p, auto q) __attribute__((always_inline)) {
+            add(p, q, energy_hessian<p, q>(psi, measure));
+          });
         } else {
           HessianBlocks<arms_count> blocks;
           for_each_pair_of_arms<arms_count>(

@@ -12,6 +12,28 @@ namespace peristat {
 namespace {
 
 constexpr double pi = std::numbers::pi;
+const double sqrt3 = std::sqrt(3.0);
+
+/// Mean areas over the contributing pairs of a ball of horizon 1. Each of a triangle's sides is the
+/// longest for a third of the triangles; the third corner is then in the lens of two balls about
+/// its ends. With y the distance from that side t (area t y), and P the fraction of pairs that
+/// contribute:
+///   2D: P = 1 - 3 sqrt3/(4 pi), mean over all pairs 12/(6 pi) int y = 5/(12 pi);
+///   3D: P = 15/32, mean over all pairs 27/16 int y^2 = 27/16 (pi/12 - 3 sqrt3/32).
+const double mean_area_in_plane = 5.0 / (3.0 * (4.0 * pi - 3.0 * sqrt3));
+const double mean_area_in_space = 18.0 / 5.0 * (pi / 12.0 - 3.0 * sqrt3 / 32.0);
+
+/// Mean volume over the contributing triplets, in the same way from the longest of six edges: the
+/// two other corners are in the lens of two balls and within 1 of each other. The fraction of
+/// triplets that contribute is the complete star of four hard spheres, known from their fourth
+/// virial coefficient; the integral of the volume is by Gauss's rule, to ten digits.
+double mean_volume() {
+  constexpr double lens_volume_integral = 0.183000569676;
+  const double virial = 2707.0 / 4480.0 + 219.0 * std::numbers::sqrt2 / (2240.0 * pi) -
+                        4131.0 * std::acos(1.0 / 3.0) / (4480.0 * pi);
+  const double fraction = 1995.0 / 4480.0 - virial;
+  return 2.0 * pi * lens_volume_integral / (std::pow(4.0 * pi / 3.0, 3) * fraction);
+}
 
 /// lambda and mu as the elasticity of an isotropic body.
 CubicElasticity isotropic_elasticity(double lambda, double mu) {
@@ -103,16 +125,20 @@ CpdStiffness continuum_stiffness(int dimension, double horizon, double cross_sec
   CpdStiffness stiffness;
   stiffness.dimension = dimension;
   if (dimension == 2) {
+    const double disk = pi * horizon * horizon * cross_section;
     const double of_c1 = pi * std::pow(horizon, 3) * cross_section / 24.0;
-    const double of_c2 = 5.0 * pi * pi / (9.0 * (4.0 * pi - 3.0 * std::sqrt(3.0))) *
-                         std::pow(horizon, 6) * cross_section * cross_section;
+    const double of_c2 = disk * disk * mean_area_in_plane * horizon * horizon / 3.0;
     stiffness.of_c1 = isotropic_elasticity(of_c1, of_c1);
     stiffness.of_c2 = isotropic_elasticity(of_c2, 0.0);
   } else {
-    const double of_c1 = pi * std::pow(horizon, 4) / 30.0, d8 = std::pow(horizon, 8);
+    const double ball = 4.0 / 3.0 * pi * std::pow(horizon, 3);
+    const double of_c1 = pi * std::pow(horizon, 4) / 30.0;
+    // Of <P P>, the isotropic mean of projections onto planes: mu = 1/15, lambda = 6/15.
+    const double of_c2 = ball * ball * mean_area_in_space * horizon * horizon / 3.0;
+    const double of_c3 = std::pow(ball, 3) * mean_volume() * std::pow(horizon, 3) / 4.0;
     stiffness.of_c1 = isotropic_elasticity(of_c1, of_c1);
-    stiffness.of_c2 = isotropic_elasticity(0.837318284291 * d8, 0.139553047382 * d8);
-    stiffness.of_c3 = isotropic_elasticity(1.81514 * std::pow(horizon, 12), 0.0);
+    stiffness.of_c2 = isotropic_elasticity(6.0 / 15.0 * of_c2, 1.0 / 15.0 * of_c2);
+    stiffness.of_c3 = isotropic_elasticity(of_c3, 0.0);
   }
   return stiffness;
 }

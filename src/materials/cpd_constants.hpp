@@ -64,12 +64,11 @@ struct CpdStiffness {
 ///
 ///   2D  mu = pi d^3 h C1 / 24,  lambda - mu = 5 pi^2 / (9 (4 pi - 3 sqrt 3)) d^6 h^2 C2
 ///   3D  mu = pi d^4 C1 / 30 + 0.139553047382 d^8 C2,
-///       lambda = pi d^4 C1 / 30 + 0.837318284291 d^8 C2 + 1.81514 d^12 C3
+///       lambda = pi d^4 C1 / 30 + 0.837318284291 d^8 C2 + 1.81517547 d^12 C3
 ///
 /// The energy density (eq. 14 of [CPD]) under a strain e is C1/4 int L (n.e n)^2 +
-/// C2/6 V_H^2 <A (e:P)^2> + C3/8 V_H^3 <V> (tr e)^2 with means < > over contributing pairs and
-/// triplets, P the identity of the triangle's plane. 2D: <A> = 5 d^2 / (3 (4 pi - 3 sqrt 3));
-/// 3D, by numerical integration: <A> = 0.357911 d^2, <V> = 0.098789 d^3.
+/// C2/6 V_H^2 <A (P:e)^2> + C3/8 V_H^3 <V> (tr e)^2 with means < > over contributing pairs and
+/// triplets, P the identity of the triangle's plane.
 /// @param cross_section thickness h in 2D [m]
 [[nodiscard]] CpdStiffness continuum_stiffness(int dimension, double horizon, double cross_section);
 

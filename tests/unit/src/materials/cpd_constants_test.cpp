@@ -192,12 +192,17 @@ TEST(ContinuumStiffness, HasThePoissonRatiosOfCentralForcesAndTheIncompressibleL
   EXPECT_NEAR(poisson_ratio_of(solid.moduli({0.0, 1.0, 0.0}), 3), 3.0 / 7.0, 1e-9);
 }
 
-TEST(ContinuumStiffness, HasTheMeanAreaOfAPlanePairAsPrinted) {
+TEST(ContinuumStiffness, HasTheMeanAreasAndVolumesOfNumericalIntegration) {
   // 2D: lambda = V_H^2 <A> / 3 per C2.
   const double mean_area = 5.0 / (3.0 * (4.0 * pi - 3.0 * std::sqrt(3.0)));
   const double lambda = continuum_stiffness(2, 1.0, 1.0).of_c2.isotropic(2).lambda;
   EXPECT_NEAR(lambda, pi * pi * mean_area / 3.0, 1e-14);
   EXPECT_NEAR(lambda, 0.743955390950, 1e-12);
+  // 3D, found independently by numerical integration (the last by Monte Carlo, to four digits).
+  const CpdStiffness solid = continuum_stiffness(3, 1.0, 1.0);
+  EXPECT_NEAR(solid.of_c2.isotropic(3).mu, 0.139553047382, 1e-12);
+  EXPECT_NEAR(solid.of_c2.isotropic(3).lambda, 0.837318284291, 1e-12);
+  EXPECT_NEAR(solid.of_c3.isotropic(3).lambda, 1.81514, 1e-4);
 }
 
 TEST(CpdConstants, AndModuliAreInversesOfEachOther) {
