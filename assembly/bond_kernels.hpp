@@ -153,17 +153,18 @@ struct BondKernels {
         Lanes row_energy = 0.0;
         Vector<D, Lanes> own;
         own.fill(Lanes(0.0));
-        for_each_batch<D>(bonds, a.rows.data(), i, [&](const Batch<D>& batch) __attribute__((always_inline)) {
-          const auto measure =
-              Length::at<D, Lanes>(batch.inverse_length, {batch.vector0}, {batch.vector1});
-          const auto psi = interaction_energy(batch.weight, potential, measure);
-          row_energy += psi.value;
-          shortest = std::experimental::min(shortest, measure.current);
-          if (energy_only) return;
-          const Vector<D, Lanes> force = energy_gradient(psi, measure)[0];
-          for (int c = 0; c < D; ++c) own[c] -= force[c];
-          add_to_partners<D>(sums, batch.partner, force);
-        });
+        for_each_batch<D>(
+            bonds, a.rows.data(), i, [&](const Batch<D>& batch) __attribute__((always_inline)) {
+              const auto measure =
+                  Length::at<D, Lanes>(batch.inverse_length, {batch.vector0}, {batch.vector1});
+              const auto psi = interaction_energy(batch.weight, potential, measure);
+              row_energy += psi.value;
+              shortest = std::experimental::min(shortest, measure.current);
+              if (energy_only) return;
+              const Vector<D, Lanes> force = energy_gradient(psi, measure)[0];
+              for (int c = 0; c < D; ++c) own[c] -= force[c];
+              add_to_partners<D>(sums, batch.partner, force);
+            });
         energy += sum(row_energy);
         for (int c = 0; c < D; ++c) sums[std::ptrdiff_t(i) * width + c] += sum(own[c]);
       }
@@ -186,18 +187,19 @@ struct BondKernels {
       for (Index i = range.first; i < range.last; ++i) {
         std::array<Lanes, width> own;
         own.fill(Lanes(0.0));
-        for_each_batch<D>(bonds, a.rows.data(), i, [&](const Batch<D>& batch) __attribute__((always_inline)) {
-          const auto measure =
-              Length::at<D, Lanes>(batch.inverse_length, {batch.vector0}, {batch.vector1});
-          auto psi = interaction_energy(batch.weight, potential, measure);
-          if (projection > 0.0) psi = projected(psi, projection);
-          const Matrix<D, Lanes> block = energy_hessian<0, 0>(psi, measure);
-          store_blocks<D>(&result.off_diagonal[std::size_t(batch.first) * D * D], batch.count,
-                          block);
-          const auto half = upper_half<D>(block);
-          for (int c = 0; c < width; ++c) own[c] += half[c];
-          add_to_partners<D>(sums, batch.partner, half);
-        });
+        for_each_batch<D>(
+            bonds, a.rows.data(), i, [&](const Batch<D>& batch) __attribute__((always_inline)) {
+              const auto measure =
+                  Length::at<D, Lanes>(batch.inverse_length, {batch.vector0}, {batch.vector1});
+              auto psi = interaction_energy(batch.weight, potential, measure);
+              if (projection > 0.0) psi = projected(psi, projection);
+              const Matrix<D, Lanes> block = energy_hessian<0, 0>(psi, measure);
+              store_blocks<D>(&result.off_diagonal[std::size_t(batch.first) * D * D], batch.count,
+                              block);
+              const auto half = upper_half<D>(block);
+              for (int c = 0; c < width; ++c) own[c] += half[c];
+              add_to_partners<D>(sums, batch.partner, half);
+            });
         for (int c = 0; c < D * (D + 1) / 2; ++c)
           sums[std::ptrdiff_t(i) * width + c] += sum(own[c]);
       }
@@ -229,15 +231,16 @@ struct BondKernels {
       for (Index i = range.first; i < range.last; ++i) {
         Vector<D, Lanes> own;
         own.fill(Lanes(0.0));
-        for_each_batch<D>(bonds, a.rows.data(), i, [&](const Batch<D>& batch) __attribute__((always_inline)) {
-          const auto measure =
-              Length::from_current<D, Lanes>(batch.inverse_length, {batch.vector0});
-          const auto psi = interaction_energy(batch.weight, potential, measure);
-          const Vector<D, Lanes> force =
-              energy_hessian_times(psi, measure, Arms<1, D, Lanes>{batch.vector1})[0];
-          for (int c = 0; c < D; ++c) own[c] -= force[c];
-          add_to_partners<D>(sums, batch.partner, force);
-        });
+        for_each_batch<D>(
+            bonds, a.rows.data(), i, [&](const Batch<D>& batch) __attribute__((always_inline)) {
+              const auto measure =
+                  Length::from_current<D, Lanes>(batch.inverse_length, {batch.vector0});
+              const auto psi = interaction_energy(batch.weight, potential, measure);
+              const Vector<D, Lanes> force =
+                  energy_hessian_times(psi, measure, Arms<1, D, Lanes>{batch.vector1})[0];
+              for (int c = 0; c < D; ++c) own[c] -= force[c];
+              add_to_partners<D>(sums, batch.partner, force);
+            });
         for (int c = 0; c < D; ++c) sums[std::ptrdiff_t(i) * width + c] += sum(own[c]);
       }
     };
@@ -256,14 +259,15 @@ struct BondKernels {
       Lanes most = -1.0;
       for (Index i = range.first; i < range.last; ++i) {
         Lanes own = 0.0;
-        for_each_batch<D>(bonds, a.rows.data(), i, [&](const Batch<D>& batch) __attribute__((always_inline)) {
-          const auto measure =
-              Length::at<D, Lanes>(batch.inverse_length, {batch.vector0}, {batch.vector1});
-          const Lanes half = 0.5 * interaction_energy(batch.weight, potential, measure).value;
-          most = std::experimental::max(most, measure.relative_change);
-          own += half;
-          add_to_partners<1>(sums, batch.partner, Vector<1, Lanes>{half});
-        });
+        for_each_batch<D>(
+            bonds, a.rows.data(), i, [&](const Batch<D>& batch) __attribute__((always_inline)) {
+              const auto measure =
+                  Length::at<D, Lanes>(batch.inverse_length, {batch.vector0}, {batch.vector1});
+              const Lanes half = 0.5 * interaction_energy(batch.weight, potential, measure).value;
+              most = std::experimental::max(most, measure.relative_change);
+              own += half;
+              add_to_partners<1>(sums, batch.partner, Vector<1, Lanes>{half});
+            });
         sums[i] += sum(own);
       }
       longest[thread] = largest(most);
