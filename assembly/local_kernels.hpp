@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <limits>
 #include <span>
 #include <utility>
@@ -274,12 +275,13 @@ struct LocalKernels {
   template <int arms>
   using HessianBlocks = std::array<std::array<Matrix<D, Lanes>, arms>, arms>;
 
-  /// Moves the Hessian of each lane by a share towards its positive semidefinite part; only blocks
-  /// P <= Q are read and written.
+  /// Moves the Hessian of each active lane by a share towards its positive semidefinite part; only
+  /// blocks P <= Q are read and written.
   template <int arms>
-  static void project(HessianBlocks<arms>& blocks, double share) {
+  static void project(HessianBlocks<arms>& blocks, std::uint32_t active, double share) {
     constexpr int size = arms * D;
     for (int l = 0; l < lane_count; ++l) {
+      if ((active >> l & 1U) == 0) continue;
       std::array<double, size * size> matrix;
       for (int p = 0; p < arms; ++p) {
         for (int q = p; q < arms; ++q) {
@@ -338,7 +340,7 @@ struct LocalKernels {
           HessianBlocks<arms_count> blocks;
           for_each_pair_of_arms<arms_count>(
               [&](auto p, auto q) { blocks[p][q] = energy_hessian<p, q>(psi, measure); });
-          project<arms_count>(blocks, projection);
+          project<arms_count>(blocks, block.active, projection);
           for_each_pair_of_arms<arms_count>([&](auto p, auto q) { add(p, q, blocks[p][q]); });
         }
       }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <optional>
 
 #include "solvers/vector_verbs.hpp"
 
@@ -51,10 +52,13 @@ class Linearisation {
         force_of_jump_(external_force.size()) {}
 
   /// Finds the direction du with K_ff du_f = f_ext - dE/dx_f - K_fp jump_p at a state.
+  /// @param projection of the interactions; after the exact tangent (0) of a state any other share
+  /// may
+  ///        follow at the same state
   /// @param jump of the prescribed displacements; empty for none
   [[nodiscard]] LinearOutcome solve(const Trial& at, double projection, FactorUse use,
                                     std::span<const double> jump, std::span<double> direction) {
-    problem_.assembler.tangent(at.displacement, tangent_, projection);
+    assemble(at, projection);
     if (!jump.empty()) tangent_.multiply(jump, force_of_jump_);
     for (std::size_t e = 0; e < right_hand_side_.size(); ++e) {
       const Index dof = problem_.free.dof[e];
@@ -68,9 +72,32 @@ class Linearisation {
   }
 
  private:
+  void assemble(const Trial& at, double projection) {
+    if (projection == 0.0 || !exact_is_known_) {
+      problem_.assembler.tangent(at.displacement, tangent_, projection);
+      exact_is_known_ = projection == 0.0;
+      to_projected_.reset();
+      projection_ = projection;
+      return;
+    }
+    // Linear in the share: the projection of every interaction, which is what costs, is done once.
+    if (!to_projected_) {
+      to_projected_.emplace(tangent_.pattern, tangent_.dimension);
+      problem_.assembler.tangent(at.displacement, *to_projected_, 1.0);
+      add_scaled(to_projected_->diagonal, -1.0, tangent_.diagonal);
+      add_scaled(to_projected_->off_diagonal, -1.0, tangent_.off_diagonal);
+    }
+    add_scaled(tangent_.diagonal, projection - projection_, to_projected_->diagonal);
+    add_scaled(tangent_.off_diagonal, projection - projection_, to_projected_->off_diagonal);
+    projection_ = projection;
+  }
+
   const EquilibriumProblem& problem_;
   LinearSolver& solver_;
   Tangent& tangent_;
+  std::optional<Tangent> to_projected_;  // projected minus exact, of the present state
+  double projection_ = 0.0;
+  bool exact_is_known_ = false;
   std::span<const double> external_force_;
   std::vector<double> right_hand_side_, solution_, force_of_jump_;
 };

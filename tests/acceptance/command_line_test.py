@@ -207,7 +207,8 @@ class CommandLine(unittest.TestCase):
     def test_a_run_that_does_not_converge_keeps_what_it_reached(self):
         self.write("column.toml", STRIP.replace("1e-5*load", "-8e-3*load"))
         run = self.peristat("run", "column.toml", "--output", "out", "--set", "loading.steps=40",
-                            "--set", "loading.smallest_step=1e-3", "--set", "output.every=7")  # fmt: skip
+                            "--set", "loading.smallest_step=1e-3", "--set", "output.every=7",
+                            "--set", "solver.projection=never")  # or it finds the buckled state # fmt: skip
         self.assertEqual(run.returncode, 3, run.stdout + run.stderr)
         self.assertIn("negative pivots", run.stderr)
         summary = json.loads((self.folder / "out/summary.json").read_text())
