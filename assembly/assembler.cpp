@@ -1,5 +1,6 @@
 #include "assembly/assembler.hpp"
 
+#include <algorithm>
 #include <type_traits>
 
 #include "assembly/bond_kernels.hpp"
@@ -49,10 +50,21 @@ Stored Assembler::energy(std::span<const double> displacement) {
 }
 
 Stored Assembler::gradient(std::span<const double> displacement, std::span<double> gradient) {
+  return pass<false>(displacement, gradient);
+}
+
+Stored Assembler::commit(std::span<const double> displacement, std::span<double> gradient) {
+  return pass<true>(displacement, gradient);
+}
+
+template <bool commits>
+Stored Assembler::pass(std::span<const double> displacement, std::span<double> gradient) {
   const Stopwatch watch(seconds_);
   const int dimension = points().dimension;
-  Stored stored = dispatch(dimension, model().potential, [&](auto d, const auto& law) {
-    return BondKernels<decltype(d)::value>::gradient(*workspace_, law, displacement, gradient);
+  Stored stored = dispatch(dimension, model().potential, [&]<class P>(auto d, const P& law) {
+    constexpr bool moves_history = commits && PotentialWithHistory<P>;
+    return BondKernels<decltype(d)::value>::template gradient<moves_history>(
+        *workspace_, law, displacement, gradient);
   });
   if (model().has_only_bonds()) return stored;
   with_dimension(dimension, [&](auto d) {
@@ -62,6 +74,26 @@ Stored Assembler::gradient(std::span<const double> displacement, std::span<doubl
     stored.degenerate |= higher.degenerate;
   });
   return stored;
+}
+
+DamageGrowth Assembler::growth(std::span<const double> displacement) {
+  const Stopwatch watch(seconds_);
+  return dispatch(points().dimension, model().potential, [&]<class P>(auto d, const P& law) {
+    if constexpr (PotentialWithHistory<P>) {
+      return BondKernels<decltype(d)::value>::growth(*workspace_, law, displacement);
+    } else {
+      return DamageGrowth{};
+    }
+  });
+}
+
+std::span<const double> Assembler::history() const {
+  const std::vector<double>& largest = workspace_->largest_stretch;
+  return std::span(largest).first(largest.empty() ? 0 : std::size_t(model().bonds.count()));
+}
+
+void Assembler::restore(std::span<const double> history) {
+  std::copy(history.begin(), history.end(), workspace_->largest_stretch.begin());
 }
 
 void Assembler::tangent(std::span<const double> displacement, Tangent& tangent, double projection) {

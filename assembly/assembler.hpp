@@ -30,6 +30,21 @@ class Assembler {
   /// E [J] and dE/dx [N] (minus the internal force).
   [[nodiscard]] Stored gradient(std::span<const double> displacement, std::span<double> gradient);
 
+  /// Commits a state: moves the history of every bond that it damages to it. E is then what is
+  /// stored after that, and dE/dx, unless it is left out, the same as before. Only accepted states
+  /// are committed, and in relaxation that breaks bonds on the way, every iteration.
+  Stored commit(std::span<const double> displacement, std::span<double> gradient = {});
+
+  /// What committing a state would damage.
+  [[nodiscard]] DamageGrowth growth(std::span<const double> displacement);
+
+  /// Largest stretch of each bond over the committed states, as far as it has damaged the bond (0
+  /// before, Degraded::never_fails where the model says so); empty for a potential without history.
+  [[nodiscard]] std::span<const double> history() const;
+
+  /// Takes up a history again that was read before.
+  void restore(std::span<const double> history);
+
   /// d2E/dx2 [N/m], every entry overwritten.
   /// @param projection share in [0, 1] by which the relative Hessian of every interaction moves
   ///        towards its positive semidefinite part: 0 is exact, 1 gives a positive semidefinite
@@ -50,6 +65,9 @@ class Assembler {
   [[nodiscard]] double seconds_spent() const { return seconds_; }  ///< wall time of all calls [s]
 
  private:
+  template <bool commits>
+  Stored pass(std::span<const double> displacement, std::span<double> gradient);
+
   std::unique_ptr<Workspace> workspace_;
   double seconds_ = 0.0;
 };

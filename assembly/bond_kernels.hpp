@@ -124,6 +124,44 @@ inline void store_blocks(double* blocks, int count, const Matrix<D, Lanes>& bloc
   }
 }
 
+/// A potential at bonds with their histories.
+template <class P>
+struct AtHistory {
+  const P& potential;
+  Lanes largest_stretch;
+  [[nodiscard]] PotentialDensity<Lanes> operator()(const Lanes& e) const {
+    return potential(e, largest_stretch);
+  }
+};
+
+/// The potential as a function of the stretch alone: at the bonds' histories, if it has one.
+template <class P>
+[[gnu::always_inline]] inline auto at_history(const Workspace& a, const P& potential,
+                                              Offset first_bond) {
+  if constexpr (PotentialWithHistory<P>) {
+    const double* from = &a.largest_stretch[std::size_t(first_bond)];
+    return AtHistory<P>{potential, Lanes(from, std::experimental::element_aligned)};
+  } else {
+    return potential;
+  }
+}
+
+/// Finds the bonds of a batch whose stretches damage them, and moves their histories there if it
+/// commits.
+template <bool commits, int D, class P>
+inline void find_growth(const P& potential, const Batch<D>& batch, const Lanes& stretch,
+                        std::vector<double>& largest_stretch, DamageGrowth& growth) {
+  if (std::experimental::all_of(stretch <= potential.law.onset())) return;
+  for (int l = 0; l < batch.count; ++l) {
+    double& largest = largest_stretch[std::size_t(batch.first + l)];
+    const double s = stretch[l];
+    if (!potential.is_loading(s, largest)) continue;
+    if constexpr (commits) largest = s;
+    ++growth.degrading;
+    growth.breaking += potential.is_broken(s);
+  }
+}
+
 /// A bond's Hessian psi'' n n^T + psi'/l (I - n n^T) moved by a share towards its positive
 /// semidefinite part: its eigenvalues are psi'' and psi'/l.
 inline InteractionEnergy<Lanes> projected(const InteractionEnergy<Lanes>& psi, double share) {
@@ -138,7 +176,8 @@ template <int D>
 struct BondKernels {
   using Span = std::span<const double>;
 
-  template <class P>
+  /// @tparam commits whether histories follow: the energy is then what is stored after that
+  template <bool commits, class P>
   static Stored gradient(Workspace& a, const P& potential, Span displacement,
                          std::span<double> result) {
     a.pack<D>(a.points.reference, displacement);
@@ -149,6 +188,7 @@ struct BondKernels {
     const auto body = [&](int thread, RowRange range, double* sums) {
       Lanes shortest = std::numeric_limits<double>::infinity();
       double energy = 0.0;
+      DamageGrowth growth;
       for (Index i = range.first; i < range.last; ++i) {
         Lanes row_energy = 0.0;
         Vector<D, Lanes> own;
@@ -157,7 +197,12 @@ struct BondKernels {
             bonds, a.rows.data(), i, [&](const Batch<D>& batch) __attribute__((always_inline)) {
               const auto measure =
                   Length::at<D, Lanes>(batch.inverse_length, {batch.vector0}, {batch.vector1});
-              const auto psi = interaction_energy(batch.weight, potential, measure);
+              if constexpr (commits) {
+                find_growth<true>(potential, batch, measure.relative_change, a.largest_stretch,
+                                  growth);
+              }
+              const auto psi =
+                  interaction_energy(batch.weight, at_history(a, potential, batch.first), measure);
               row_energy += psi.value;
               shortest = std::experimental::min(shortest, measure.current);
               if (energy_only) return;
@@ -168,13 +213,31 @@ struct BondKernels {
         energy += sum(row_energy);
         for (int c = 0; c < D; ++c) sums[std::ptrdiff_t(i) * width + c] += sum(own[c]);
       }
-      parts[thread] = {energy, !(smallest(shortest) > 0.0)};
+      parts[thread] = {energy, !(smallest(shortest) > 0.0), growth};
     };
     a.sum_rows<width>(body, [&](Index i, const double* total) {
       if (energy_only) return;
       for (int c = 0; c < D; ++c) result[std::size_t(i) * D + c] = total[c];
     });
     return a.total_stored();
+  }
+
+  template <class P>
+  static DamageGrowth growth(Workspace& a, const P& potential, Span displacement) {
+    a.pack<D>(a.points.reference, displacement);
+    const auto body = [&](int thread, RowRange range, double*) {
+      DamageGrowth found;
+      for (Index i = range.first; i < range.last; ++i) {
+        for_each_batch<D>(a.model.bonds, a.rows.data(), i, [&](const Batch<D>& batch) {
+          const auto measure =
+              Length::at<D, Lanes>(batch.inverse_length, {batch.vector0}, {batch.vector1});
+          find_growth<false>(potential, batch, measure.relative_change, a.largest_stretch, found);
+        });
+      }
+      a.stored[thread] = {0.0, false, found};
+    };
+    a.sum_rows<1>(body, [](Index, const double*) {});
+    return a.total_stored().growth;
   }
 
   template <class P>
@@ -191,7 +254,8 @@ struct BondKernels {
             bonds, a.rows.data(), i, [&](const Batch<D>& batch) __attribute__((always_inline)) {
               const auto measure =
                   Length::at<D, Lanes>(batch.inverse_length, {batch.vector0}, {batch.vector1});
-              auto psi = interaction_energy(batch.weight, potential, measure);
+              auto psi =
+                  interaction_energy(batch.weight, at_history(a, potential, batch.first), measure);
               if (projection > 0.0) psi = projected(psi, projection);
               const Matrix<D, Lanes> block = energy_hessian<0, 0>(psi, measure);
               store_blocks<D>(&result.off_diagonal[std::size_t(batch.first) * D * D], batch.count,
@@ -235,7 +299,8 @@ struct BondKernels {
             bonds, a.rows.data(), i, [&](const Batch<D>& batch) __attribute__((always_inline)) {
               const auto measure =
                   Length::from_current<D, Lanes>(batch.inverse_length, {batch.vector0});
-              const auto psi = interaction_energy(batch.weight, potential, measure);
+              const auto psi =
+                  interaction_energy(batch.weight, at_history(a, potential, batch.first), measure);
               const Vector<D, Lanes> force =
                   energy_hessian_times(psi, measure, Arms<1, D, Lanes>{batch.vector1})[0];
               for (int c = 0; c < D; ++c) own[c] -= force[c];
@@ -263,7 +328,10 @@ struct BondKernels {
             bonds, a.rows.data(), i, [&](const Batch<D>& batch) __attribute__((always_inline)) {
               const auto measure =
                   Length::at<D, Lanes>(batch.inverse_length, {batch.vector0}, {batch.vector1});
-              const Lanes half = 0.5 * interaction_energy(batch.weight, potential, measure).value;
+              const Lanes half =
+                  0.5 *
+                  interaction_energy(batch.weight, at_history(a, potential, batch.first), measure)
+                      .value;
               most = std::experimental::max(most, measure.relative_change);
               own += half;
               add_to_partners<1>(sums, batch.partner, Vector<1, Lanes>{half});

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include "src/neighbourhood/bonds.hpp"
 #include "src/neighbourhood/interactions.hpp"
@@ -24,6 +25,7 @@ using TetrahedronTerm = InteractionTerm<Volume>;
 struct Model {
   Bonds bonds;
   BondPotential potential;
+  std::vector<char> never_fails{};  ///< per bond, 1: no damage whatever the stretch; empty: none
   std::optional<TriangleTerm> triangles{};
   std::optional<TetrahedronTerm> tetrahedra{};
 

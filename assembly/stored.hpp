@@ -1,12 +1,21 @@
 #pragma once
 
+#include "src/types.hpp"
+
 namespace peristat {
+
+/// Bonds that are stretched beyond their history.
+struct DamageGrowth {
+  Index degrading = 0;  ///< bonds that lose integrity
+  Index breaking = 0;   ///< of these, bonds that lose the last of it
+};
 
 /// What a pass over the interactions finds besides what it adds up.
 struct Stored {
   double energy = 0.0;      ///< [J]
   bool degenerate = false;  ///< a measure without gradient at zero has reached it, or a value is
                             ///< not finite: reject the state
+  DamageGrowth growth{};    ///< only of a pass that commits
 };
 
 }  // namespace peristat

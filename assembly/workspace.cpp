@@ -1,5 +1,7 @@
 #include "assembly/workspace.hpp"
 
+#include "src/lanes.hpp"
+
 namespace peristat {
 
 Workspace::Workspace(const Points& of, const Model& with, int threads)
@@ -13,6 +15,16 @@ Workspace::Workspace(const Points& of, const Model& with, int threads)
   for (std::size_t t = 0; t < ranges.size(); ++t) {
     sums[t].resize(std::size_t(ranges[t].reach - ranges[t].first) * block_width(of.dimension));
   }
+  std::visit(
+      [&]<class P>(const P&) {
+        if constexpr (PotentialWithHistory<P>) {
+          largest_stretch.resize(std::size_t(with.bonds.count()) + lane_count, 0.0);
+          for (std::size_t b = 0; b < with.never_fails.size(); ++b) {
+            if (with.never_fails[b]) largest_stretch[b] = P::never_fails;
+          }
+        }
+      },
+      with.potential);
   if (with.has_only_bonds()) return;
   blocks.resize(ranges.size());
   for (std::size_t t = 0; t < ranges.size(); ++t) {

@@ -38,6 +38,10 @@ struct Workspace {
   std::vector<AlignedVector<double>> sums;  ///< per thread, rows first..reach of what it adds up
   std::vector<Stored> stored;               ///< per thread
   std::vector<double> longest;              ///< per thread, largest stretch
+  /// Largest stretch of each bond over the accepted states, as far as it has damaged the bond, and
+  /// 0 or never_fails before; a batch more than there are bonds. Empty for a potential without
+  /// history.
+  std::vector<double> largest_stretch;
 
   // Only for models with more than bonds.
   std::vector<std::vector<double>> blocks;  ///< per thread, off-diagonal blocks of rows last..reach
@@ -104,6 +108,8 @@ struct Workspace {
     for (const Stored& part : stored) {
       total.energy += part.energy;
       total.degenerate |= part.degenerate;
+      total.growth.degrading += part.growth.degrading;
+      total.growth.breaking += part.growth.breaking;
     }
     total.degenerate |= !std::isfinite(total.energy);
     return total;

@@ -35,7 +35,7 @@ class EveryPotential : public ::testing::Test {
   static_assert(Potential<P>);
   const P potential_ = example<P>();
 };
-TYPED_TEST_SUITE(EveryPotential, TypesOf<BondPotential>::type);
+TYPED_TEST_SUITE(EveryPotential, TypesOf<HigherPotential>::type);
 
 TYPED_TEST(EveryPotential, FirstIsDerivativeOfValue) {
   for (double e : relative_changes) {

@@ -1,0 +1,68 @@
+#include "assembly/damage.hpp"
+
+#include <algorithm>
+#include <variant>
+
+namespace peristat {
+namespace {
+
+/// Calls visit(law) if the bonds have a history.
+template <class Visit>
+void with_law(const Model& model, std::span<const double> history, const Visit& visit) {
+  if (history.empty()) return;
+  std::visit(
+      [&]<class P>(const P& law) {
+        if constexpr (PotentialWithHistory<P>) visit(law);
+      },
+      model.potential);
+}
+
+}  // namespace
+
+DamageState assess_damage(const Model& model, std::span<const double> history,
+                          std::span<const double> cut_weight, std::span<double> damage) {
+  const Bonds& bonds = model.bonds;
+  DamageState state;
+  std::vector<double> whole(cut_weight.begin(), cut_weight.end());
+  whole.resize(damage.size(), 0.0);
+  std::vector<double> left(damage.size(), 0.0);
+  const auto add = [&](Index i, Offset bond, double integrity) {
+    const double weight = bonds.weight[bond];
+    for (const Index point : {i, bonds.partner[bond]}) {
+      whole[point] += weight;
+      left[point] += integrity * weight;
+    }
+  };
+  const auto for_each_bond = [&](const auto& integrity) {
+    for (Index i = 0; i < bonds.points(); ++i) {
+      for (Offset bond = bonds.offset[i]; bond < bonds.offset[i + 1]; ++bond) {
+        add(i, bond, integrity(bond));
+      }
+    }
+  };
+  if (history.empty()) for_each_bond([](Offset) { return 1.0; });
+  with_law(model, history, [&](const auto& law) {
+    for_each_bond([&](Offset bond) {
+      const double largest = history[bond];
+      state.dissipated_energy += bonds.weight[bond] * bonds.length(bond) * law.dissipated(largest);
+      state.broken_bonds += law.is_broken(largest);
+      return law.integrity_after(largest);
+    });
+  });
+  for (std::size_t i = 0; i < damage.size(); ++i) {
+    damage[i] = whole[i] > 0.0 ? std::clamp(1.0 - left[i] / whole[i], 0.0, 1.0) : 0.0;
+    state.max_damage = std::max(state.max_damage, damage[i]);
+  }
+  return state;
+}
+
+std::vector<char> broken_bonds(const Model& model, std::span<const double> history) {
+  std::vector<char> broken(history.size());
+  with_law(model, history, [&](const auto& law) {
+    std::transform(history.begin(), history.end(), broken.begin(),
+                   [&](double largest) { return law.is_broken(largest); });
+  });
+  return broken;
+}
+
+}  // namespace peristat

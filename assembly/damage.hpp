@@ -1,0 +1,35 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "assembly/model.hpp"
+#include "src/points/points.hpp"
+
+namespace peristat {
+
+/// What the history of a body's bonds means.
+struct DamageState {
+  double dissipated_energy = 0.0;  ///< by degraded and broken bonds [J]
+  Index broken_bonds = 0;
+  double max_damage = 0.0;  ///< largest of a point
+};
+
+/// Damage of each point: the share of the weight of its bonds that is lost,
+///
+///   phi_i = 1 - sum_j w_ij T(kappa_ij) / (sum_j w_ij + c_i),
+///
+/// T the integrity that its history leaves to a bond and c_i the weight of the bonds that a
+/// pre-crack has cut, which `cut_weight` gives where these are to count. With equal weights and T
+/// either 0 or 1 this is one minus the share of unbroken bonds ([GPMB] eq. 13). A point without
+/// bonds has the damage 0, or 1 if a crack has cut them.
+/// @param history of the assembler; empty without damage
+/// @param cut_weight per point [m6], or empty
+[[nodiscard]] DamageState assess_damage(const Model& model, std::span<const double> history,
+                                        std::span<const double> cut_weight,
+                                        std::span<double> damage);
+
+/// Whether each bond is broken, in the order of the bonds; empty without history.
+[[nodiscard]] std::vector<char> broken_bonds(const Model& model, std::span<const double> history);
+
+}  // namespace peristat

@@ -1,0 +1,19 @@
+#pragma once
+
+namespace peristat {
+
+/// Brittle bond: whole below the critical stretch s_c, broken from it on ([GPMB] eq. 9). The force
+/// jumps from c s_c to zero.
+struct CriticalStretch {
+  double critical_stretch = 0.0;  ///< s_c
+
+  [[nodiscard]] double onset() const { return critical_stretch; }
+  [[nodiscard]] double critical() const { return critical_stretch; }
+  [[nodiscard]] double integrity(double s) const { return s < critical_stretch ? 1.0 : 0.0; }
+  [[nodiscard]] double slope(double) const { return 0.0; }
+  [[nodiscard]] double moment(double s) const {
+    return s < critical_stretch ? 0.5 * s * s : 0.5 * critical_stretch * critical_stretch;
+  }
+};
+
+}  // namespace peristat
