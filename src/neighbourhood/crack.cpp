@@ -77,18 +77,17 @@ bool is_inside(const CrackPolygon& polygon, const Coordinates& normal, const Coo
   return odd;
 }
 
-/// Distance between edges that have no vertex in common, and of edges that have one from the other
-/// end of their neighbours: zero if the polygon is not simple.
+/// Smallest distance of edges that have no vertex in common; zero for a polygon that is not simple.
+/// An edge that folds back on its neighbour also meets the edge behind that one, except in a
+/// triangle, which then has no area.
 double smallest_gap(const CrackPolygon& polygon) {
   const std::size_t count = polygon.vertices.size();
   double gap = std::numeric_limits<double>::infinity();
   for (std::size_t k = 0; k < count; ++k) {
-    const Coordinates &p = polygon.vertices[k], &q = vertex_after(polygon, k);
-    for (std::size_t m = 0; m < count; ++m) {
-      if (m == k || m == (k + 1) % count) continue;
-      const Coordinates& other = polygon.vertices[m];
-      gap = std::min(gap, (m + 1) % count == k ? distance(other, p, q)
-                                               : distance(other, vertex_after(polygon, m), p, q));
+    for (std::size_t m = k + 2; m < count; ++m) {
+      if (k == 0 && m + 1 == count) continue;
+      gap = std::min(gap, distance(polygon.vertices[k], vertex_after(polygon, k),
+                                   polygon.vertices[m], vertex_after(polygon, m)));
     }
   }
   return gap;
