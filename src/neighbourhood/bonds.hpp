@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 #include "src/types.hpp"
@@ -18,6 +19,29 @@ struct Bonds {
   [[nodiscard]] double length(Offset bond) const { return 1.0 / inverse_length[bond]; }  ///< L [m]
   [[nodiscard]] Offset count() const { return static_cast<Offset>(partner.size()); }
   [[nodiscard]] Index points() const { return static_cast<Index>(offset.size()) - 1; }
+
+  /// Removes every bond with drop(i, bond), i its lower point; the others keep their order. Each
+  /// bond is asked for once, in order, before it moves: drop may read its partner, length and
+  /// weight, but no offset.
+  template <class Drop>
+  void remove_if(const Drop& drop) {
+    Offset kept = 0;
+    Offset bond = 0;
+    for (Index i = 0; i < points(); ++i) {
+      const Offset end = offset[i + 1];
+      for (; bond < end; ++bond) {
+        if (drop(i, bond)) continue;
+        partner[kept] = partner[bond];
+        inverse_length[kept] = inverse_length[bond];
+        weight[kept] = weight[bond];
+        ++kept;
+      }
+      offset[i + 1] = kept;
+    }
+    partner.resize(std::size_t(kept));
+    inverse_length.resize(std::size_t(kept));
+    weight.resize(std::size_t(kept));
+  }
 };
 
 }  // namespace peristat

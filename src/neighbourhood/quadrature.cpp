@@ -50,22 +50,7 @@ void apply_volume_correction(Bonds& bonds, const Points& points, const Quadratur
 }
 
 void drop_weightless(Bonds& bonds) {
-  Offset kept = 0;
-  Offset bond = 0;
-  for (Index i = 0; i < bonds.points(); ++i) {
-    const Offset end = bonds.offset[i + 1];
-    for (; bond < end; ++bond) {
-      if (bonds.weight[bond] == 0.0) continue;
-      bonds.partner[kept] = bonds.partner[bond];
-      bonds.inverse_length[kept] = bonds.inverse_length[bond];
-      bonds.weight[kept] = bonds.weight[bond];
-      ++kept;
-    }
-    bonds.offset[i + 1] = kept;
-  }
-  bonds.partner.resize(std::size_t(kept));
-  bonds.inverse_length.resize(std::size_t(kept));
-  bonds.weight.resize(std::size_t(kept));
+  bonds.remove_if([&](Index, Offset bond) { return bonds.weight[bond] == 0.0; });
 }
 
 /// Volume of the neighbourhood of a point far from surfaces, without its own: summed over the
