@@ -50,13 +50,15 @@ def draw_sweep(keys: list[str], values: list[tuple[str, ...]], folders: list[Pat
         return None
 
     figure = new_figure(16.0, 7.2)
-    left = figure.add_axes([0.065, 0.115, 0.335, 0.71])
-    right = figure.add_axes([0.475, 0.115, 0.335, 0.71])
+    left = figure.add_axes([0.065, 0.115, 0.325, 0.71])
+    right = figure.add_axes([0.46, 0.115, 0.325, 0.71])
     _draw_reactions(left, shown)
     _draw_midlines(right, shown)
     _draw_legend(figure, left, shown)
     count = len(statuses)
-    words = [f"sweep of {' and '.join(keys)}", f"{number(count)} combination{'s' * (count != 1)}"]
+    told = " and ".join(keys)
+    words = [f"sweep of {told if len(told) <= 80 else f'{len(keys)} keys'}",
+             f"{number(count)} combination{'s' * (count != 1)}"]  # fmt: skip
     for status, remark in (("not_converged", "did not converge"), ("out_of_memory", "out of memory"),
                            ("failed", "failed")):  # fmt: skip
         if status in statuses:
@@ -179,13 +181,13 @@ def _draw_reactions(axes, shown: list[Curves]) -> None:
     largest = max(peaks.values())
     common = next(name for name, peak in peaks.items() if peak >= (1 - 1e-6) * largest)
     unit, size = unit_for(largest, FORCES, 1.0)
-    for curves in shown:
+    for curves, width in zip(shown, _widths(len(shown))):
         values = curves.reactions.get(common)
         if values is None:
             values = max(curves.reactions.values(), key=np.max, default=np.zeros(len(curves.load)))
         x, y = np.concatenate([[0.0], curves.load]), np.concatenate([[0.0], values / size])
-        marks = {"marker": "o", "markersize": np.clip(260 / len(x), 2.5, 5)} if len(x) <= 60 else {}
-        axes.plot(x, y, linewidth=1.8, zorder=3, label=curves.label, **marks, **curves.looks)
+        marks = {"marker": "o", "markersize": 2.5 * width} if len(x) <= 60 else {}
+        axes.plot(x, y, linewidth=width, zorder=3, label=curves.label, **marks, **curves.looks)
         if not curves.completed:
             axes.plot(x[-1], y[-1], "x", color=WARNING, markersize=11, markeredgewidth=2.4, zorder=4)
     _draw_axis(axes)
@@ -199,12 +201,17 @@ def _draw_midlines(axes, shown: list[Curves]) -> None:
     places = max(np.nanmax(np.abs(curves.x)) for curves in shown)
     length, length_size = unit_for(places, LENGTHS)
     unit, size = unit_for(max(np.nanmax(curves.displacement) for curves in shown), LENGTHS)
-    for curves in shown:
+    for curves, width in zip(shown, _widths(len(shown))):
         values = curves.damage if damaged else curves.displacement / size
-        axes.plot(curves.x / length_size, values, linewidth=1.8, zorder=3, **curves.looks)
+        axes.plot(curves.x / length_size, values, linewidth=width, zorder=3, **curves.looks)
     _draw_axis(axes)
     axes.set_xlabel(f"x along the midline [{length}]")
     axes.set_ylabel("damage at the last step" if damaged else f"displacement at the last step [{unit}]")
+
+
+def _widths(count: int):
+    """Of lines; the later is the thinner, so that the earlier are seen beneath where lines coincide."""
+    return np.linspace(3.2 if count > 1 else 1.8, 1.4 if count > 1 else 1.8, count)
 
 
 def _draw_axis(axes) -> None:
@@ -220,7 +227,7 @@ def _draw_legend(figure, axes, shown: list[Curves]) -> None:
         cross = axes.plot([], [], "x", color=WARNING, markersize=9, markeredgewidth=2.2)
         handles, texts = [*handles, *cross], [*texts, "did not converge"]
     lines = sum(text.count("\n") + 1 for text in texts)
-    size = np.clip(12.0 * 22 / max(lines, 1), 7.0, 12.0)
+    size = np.clip(11.0 * 24 / max(lines, 1), 6.5, 11.0)
     title = f"{len(chosen)} of {len(shown)} combinations" if len(chosen) < len(shown) else None
-    figure.legend(handles, texts, loc="upper left", bbox_to_anchor=(0.82, 0.84), fontsize=size, title=title,
-                  title_fontsize=size, alignment="left", handlelength=2.6)  # fmt: skip
+    figure.legend(handles, texts, loc="upper left", bbox_to_anchor=(0.795, 0.84), fontsize=size, title=title,
+                  title_fontsize=size, alignment="left", handlelength=2.4)  # fmt: skip
