@@ -8,8 +8,9 @@ from pathlib import Path
 import numpy as np
 
 RUNNER = Path(__file__).resolve().parents[3] / "cases" / "runner"
-sys.path[:0] = [str(RUNNER / "sweep"), str(RUNNER / "plots")]
+sys.path[:0] = [str(RUNNER / "sweep"), str(RUNNER / "plots"), str(Path(__file__).parent)]
 
+import plot_test  # noqa: E402
 from results_folder import ResultsFolder  # noqa: E402
 from sweep_picture import DASHES, draw_sweep, labels, line_looks, midline  # noqa: E402
 from variations import WrongInput, combinations, folder_name, split_values  # noqa: E402
@@ -104,6 +105,22 @@ class Picture(unittest.TestCase):
         self.assertEqual(labels(["a.x", "b.x"], [("1", "2")]), ["a.x = 1, b.x = 2"])
         (long,) = labels(["support[1].displacement"], [('["1e-5*load", "free"]',)])
         self.assertLessEqual(len(long), 30)
+
+    def test_damage_is_drawn_where_there_is_any(self):
+        for damaged, wanted in ((False, "displacement"), (True, "damage")):
+            with tempfile.TemporaryDirectory() as name:
+                folders = [Path(name) / "first", Path(name) / "second", Path(name) / "third"]
+                plot_test.write_folder(folders[0], plot_test.lattice(20, 7))
+                plot_test.write_folder(folders[1], plot_test.lattice(20, 8), damaged=damaged)
+                statuses = ["completed", "not_converged", "out_of_memory"]
+                figure = draw_sweep(["a"], [("1",), ("2",), ("3",)], folders, statuses)
+                left, right = figure.axes
+                self.assertIn(wanted, right.get_ylabel())
+                self.assertEqual(len(left.lines), 2 + 1 + 1 + 1)  # curves, cross, zero, legend's cross
+                first, second, _ = (line.get_ydata() for line in right.lines)
+                self.assertEqual(len(first), 20)
+                self.assertEqual(second.max(), 0.5 if damaged else second[-1])
+                self.assertEqual(first.max() > 0.0, not damaged)
 
     def test_nothing_to_draw_is_no_picture(self):
         with tempfile.TemporaryDirectory() as folder:
