@@ -32,6 +32,10 @@ PLOT = """import sys
 print("pictures of", sys.argv[1])
 sys.exit(len(sys.argv) > 2)
 """
+SWEEP = """import os, sys
+print("sweep", sys.argv[1:], os.environ["PERISTAT_PROGRAM"])
+sys.exit(3)
+"""
 
 
 class Launcher(unittest.TestCase):
@@ -40,11 +44,12 @@ class Launcher(unittest.TestCase):
         self.addCleanup(folder.cleanup)
         self.folder = pathlib.Path(folder.name).resolve()
         root = self.folder / "house"
-        for part in ["src", "assembly", "solvers", "cases/runner/plots", "build/release"]:
+        for part in ["src", "assembly", "solvers", "cases/runner/plots", "cases/runner/sweep", "build/release"]:
             (root / part).mkdir(parents=True)
         for name in ["peristat", "CMakeLists.txt", "CMakePresets.json"]:
             shutil.copy(ROOT / name, root)
         (root / "cases/runner/plots/plot.py").write_text(PLOT)
+        (root / "cases/runner/sweep/sweep.py").write_text(SWEEP)
         (root / "build/release/peristat").write_text(PROGRAM)
         (root / "build/release/peristat").chmod(0o755)
         (root / "build/release/.built").touch()
@@ -90,6 +95,13 @@ class Launcher(unittest.TestCase):
         result = self.launch("run", "case.toml")
         self.assertEqual(result.returncode, 0)
         self.assertIn("could not be drawn", result.stderr)
+
+    def test_a_sweep_knows_the_program(self):
+        result = self.launch("sweep", "a case.toml", "--vary", "x=1,2")
+        self.assertEqual(result.returncode, 3, result.stderr)
+        program = self.root / "build/release/peristat"
+        self.assertEqual(result.stdout, f"sweep ['a case.toml', '--vary', 'x=1,2'] {program}\n")
+        self.assertIn("sweep ['--help']", self.launch("help", "sweep").stdout)
 
     def test_an_interrupt_reaches_the_program_once(self):
         to_launcher = lambda process: process.send_signal(signal.SIGINT)

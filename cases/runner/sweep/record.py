@@ -1,0 +1,69 @@
+"""What a combination's results were made from, kept in its folder as sweep.json.
+
+Run as a script it writes the record: python3 record.py FOLDER [key=value]...
+"""
+
+import hashlib
+import json
+import subprocess
+import sys
+import tomllib
+from pathlib import Path
+
+
+def is_done(folder: Path, case_text: bytes, settings: list[str]) -> bool:
+    """Whether the folder holds the completed results of this case text, settings and points.
+
+    The checksum of the summary ties the record to its run: a later one in the same folder, by
+    whatever command, replaces the summary.
+    """
+    try:
+        record = json.loads((folder / "sweep.json").read_bytes())
+        summary = (folder / "summary.json").read_bytes()
+        return (
+            (folder / "results.h5").is_file()
+            and json.loads(summary)["status"] == "completed"
+            and record["summary_sha256"] == _checksum(summary)
+            and record["case_sha256"] == _checksum(case_text)
+            and record["settings"] == settings
+            and all(value == _checksum(Path(file).read_bytes()) for file, value in record["files"].items())
+        )
+    except (OSError, ValueError, KeyError, TypeError, AttributeError):
+        return False
+
+
+def record_done(folder: Path, settings: list[str]) -> bool:
+    """Writes the record of a completed run; false if it can't be.
+
+    In a process of its own: the memory that reading HDF5 takes would count as the next run's.
+    """
+    command = [sys.executable, "-BEs", __file__, str(folder), *settings]
+    return subprocess.run(command, stdin=subprocess.DEVNULL, capture_output=True, process_group=0).returncode == 0
+
+
+def _write(folder: Path, settings: list[str]) -> None:
+    import h5py
+
+    with h5py.File(folder / "results.h5", "r") as file:
+        as_read, as_resolved = (_bytes(file[f"case/{name}"][()]) for name in ("as_read", "as_resolved"))
+    points_file = tomllib.loads(as_resolved.decode()).get("points", {}).get("file")
+    files = [points_file] if points_file else []
+    record = {
+        "case_sha256": _checksum(as_read),
+        "settings": settings,
+        "files": {file: _checksum(Path(file).read_bytes()) for file in files},
+        "summary_sha256": _checksum((folder / "summary.json").read_bytes()),
+    }
+    (folder / "sweep.json").write_text(json.dumps(record, indent=2) + "\n")
+
+
+def _bytes(value) -> bytes:
+    return value if isinstance(value, bytes) else str(value).encode()
+
+
+def _checksum(content: bytes) -> str:
+    return hashlib.sha256(content).hexdigest()
+
+
+if __name__ == "__main__":
+    _write(Path(sys.argv[1]), sys.argv[2:])

@@ -1,0 +1,221 @@
+"""Runs a case for every combination of given values: one table and one picture (docs/sweep.md).
+
+The program to run is named by the environment variable PERISTAT_PROGRAM, which the launcher sets.
+"""
+
+import argparse
+import json
+import os
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "plots"))
+
+from program import Ending, Program
+from record import is_done, record_done
+from table import figures, write_table
+from variations import WrongInput, combinations, folder_name, read_variations
+
+DONE, BUG, WRONG_INPUT, NOT_CONVERGED, OUT_OF_MEMORY, INTERRUPTED = 0, 1, 2, 3, 4, 130
+STATUS = {DONE: "completed", NOT_CONVERGED: "not_converged", OUT_OF_MEMORY: "out_of_memory",
+          INTERRUPTED: "interrupted"}  # fmt: skip
+WORDS = {NOT_CONVERGED: "did not converge", OUT_OF_MEMORY: "out of memory", INTERRUPTED: "interrupted",
+         WRONG_INPUT: "refused"}  # fmt: skip
+
+
+@dataclass
+class Combination:
+    """One run of the sweep."""
+
+    values: tuple[str, ...]  # of the varied keys
+    settings: list[str]  # all "key=value" it is run with
+    folder: Path
+
+
+@dataclass
+class Sweep:
+    case: Path
+    case_text: bytes
+    keys: list[str]  # that are varied
+    combinations: list[Combination]
+    directory: Path
+    threads: int | None
+
+
+# ----------------------------------------------------------------------------------------- running
+
+
+def run_all(sweep: Sweep, program: Program) -> int:
+    """Runs what is not done yet, one after the other; returns the exit code of the sweep."""
+    rows = {number: _row(sweep, combination, DONE, True)
+            for number, combination in enumerate(sweep.combinations)
+            if is_done(combination.folder, sweep.case_text, combination.settings)}  # fmt: skip
+    skipped, codes = set(rows), set()
+    for number, combination in enumerate(sweep.combinations):
+        if program.interrupted:
+            return INTERRUPTED
+        print(f"{number + 1}/{len(sweep.combinations)} {_label(sweep, combination)}: ", end="", flush=True)
+        if number in skipped:
+            print("skipped (done before)", flush=True)
+            continue
+        before = _stamp(combination.folder)
+        ending = program.run(_arguments(sweep, combination))
+        is_new = _stamp(combination.folder) != before  # else the folder's results are of an earlier run
+        print(_told(ending, combination.folder if is_new else None), flush=True)
+        if ending.code == WRONG_INPUT:
+            print(ending.message, file=sys.stderr)
+            return WRONG_INPUT
+        if ending.code == DONE and not record_done(combination.folder, combination.settings):
+            print("  sweep.json could not be written: this combination will be run again", file=sys.stderr)
+        rows[number] = _row(sweep, combination, ending.code, is_new)
+        _save(sweep, rows)
+        if ending.code == INTERRUPTED:
+            return INTERRUPTED
+        codes.add(ending.code)
+    _save(sweep, rows)
+    print(f"sweep: {sweep.directory / 'sweep.csv'}", flush=True)
+    _draw(sweep, [rows[number]["status"] for number in range(len(rows))])
+    return _worst(codes)
+
+
+def _arguments(sweep: Sweep, combination: Combination) -> list[str]:
+    settings = [word for setting in combination.settings for word in ("--set", setting)]
+    threads = [] if sweep.threads is None else ["--threads", str(sweep.threads)]
+    return ["run", str(sweep.case), "--quiet", *settings, "--output", str(combination.folder), *threads]
+
+
+def _row(sweep: Sweep, combination: Combination, code: int, has_results: bool) -> dict:
+    row = dict(zip(sweep.keys, combination.values))
+    row |= {"status": STATUS.get(code, "failed"), "exit_code": code}
+    return row | (figures(combination.folder) if has_results else {})
+
+
+def _label(sweep: Sweep, combination: Combination) -> str:
+    return ", ".join(f"{key}={value}" for key, value in zip(sweep.keys, combination.values))
+
+
+def _stamp(folder: Path):
+    """Tells one summary of a folder from the next."""
+    try:
+        status = (folder / "summary.json").stat()
+    except OSError:
+        return None
+    return status.st_ino, status.st_mtime_ns
+
+
+def _told(ending: Ending, folder: Path | None) -> str:
+    """How a run ended, in one line; what a completed run complained about follows."""
+    if ending.code == DONE:
+        return "\n  ".join(["done", *ending.message.splitlines()])
+    words = WORDS.get(ending.code, "failed")
+    if ending.code in (WRONG_INPUT, INTERRUPTED):
+        return f"exit code {ending.code}: {words}"
+    reason = _reason(folder) or ending.message.partition("\n")[0].removeprefix("peristat: ")
+    return f"exit code {ending.code}: {words}" + (f" ({reason})" if reason else "")
+
+
+def _reason(folder: Path | None) -> str:
+    try:
+        return json.loads((folder / "summary.json").read_bytes())["reason"] if folder else ""
+    except (OSError, ValueError, KeyError):
+        return ""
+
+
+def _worst(codes: set[int]) -> int:
+    if codes - {DONE, NOT_CONVERGED, OUT_OF_MEMORY}:
+        return BUG
+    return next((code for code in (NOT_CONVERGED, OUT_OF_MEMORY) if code in codes), DONE)
+
+
+def _save(sweep: Sweep, rows: dict[int, dict]) -> None:
+    """The table of what is done; a picture of an earlier table is removed."""
+    sweep.directory.mkdir(parents=True, exist_ok=True)  # no run has made it if none had the memory
+    write_table(sweep.directory / "sweep.csv", sweep.keys, [rows[number] for number in sorted(rows)])
+    (sweep.directory / "sweep.png").unlink(missing_ok=True)
+
+
+def _draw(sweep: Sweep, statuses: list[str]) -> None:
+    """The picture; whatever goes wrong with it, the table is complete."""
+    path = sweep.directory / "sweep.png"
+    try:
+        from sweep_picture import draw_sweep
+
+        folders = [combination.folder for combination in sweep.combinations]
+        values = [combination.values for combination in sweep.combinations]
+        figure = draw_sweep(sweep.keys, values, folders, statuses)
+        if figure is None:
+            print("sweep: no sweep.png: no combination has an accepted step")
+            return
+        figure.savefig(path, pil_kwargs={"compress_level": 4})
+        print(f"sweep: {path}")
+    except Exception as error:
+        print(f"sweep: {path} could not be drawn ({error}); the table is complete", file=sys.stderr)
+
+
+# ------------------------------------------------------------------------------------ command line
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(
+        prog="peristat sweep", allow_abbrev=False,
+        description="Runs a case for every combination of the given values, one after the other, skips "
+        "what is done, and makes one table (DIR/sweep.csv) and one picture (DIR/sweep.png).",
+        epilog="Exit codes: 0 all completed, 2 wrong input, 3 a combination did not converge, 4 one was "
+        "out of memory, 130 interrupted, 1 a bug.",
+    )  # fmt: skip
+    parser.add_argument("case", metavar="CASE", help="case file (docs/case-file.md)")
+    parser.add_argument("--vary", metavar="KEY=V1,V2,...", action="append", default=[],
+                        help="values of a key of the case file, e.g. loading.steps=10,20; may be repeated. "
+                        "Commas in brackets and quotes separate nothing")  # fmt: skip
+    parser.add_argument("--set", metavar="KEY=VALUE", action="append", default=[], dest="settings",
+                        help="override a key of the case file in all runs; may be repeated")  # fmt: skip
+    parser.add_argument("--output", metavar="DIR", type=Path,
+                        help="folder of the sweep (default: results/FOLDER_STEM_sweep)")  # fmt: skip
+    parser.add_argument("--threads", metavar="N", type=int, help="number of threads (default: all processors)")
+    return parser
+
+
+def _default_directory(case: Path) -> Path:
+    """results/FOLDER_STEM_sweep, like the program's own results/FOLDER_STEM."""
+    absolute = Path(os.path.abspath(case))
+    return Path("results") / "_".join(filter(None, [absolute.parent.name, absolute.stem, "sweep"]))
+
+
+def read_sweep(arguments: argparse.Namespace) -> Sweep:
+    variations = read_variations(arguments.vary, arguments.settings)
+    case = Path(arguments.case)
+    try:
+        text = case.read_bytes()
+    except OSError as error:
+        raise WrongInput(f"{case}: can't be read ({error.strerror})") from error
+    directory = arguments.output or _default_directory(case)
+    if directory.exists() and not directory.is_dir():
+        raise WrongInput(f"--output {directory}: is no folder")
+    if set('"\\') & set(str(directory)):
+        raise WrongInput(f"--output {directory}: must have no quotes and no backslashes")
+    found = []
+    for values in combinations(variations):
+        varied = [f"{key}={value}" for key, value in zip(variations, values)]
+        found.append(Combination(values, [*arguments.settings, *varied], directory / folder_name(varied)))
+    return Sweep(case, text, list(variations), found, directory, arguments.threads)
+
+
+def main(words: list[str]) -> int:
+    sys.stdout.reconfigure(errors="backslashreplace")
+    arguments = _parser().parse_args(words)
+    program = os.environ.get("PERISTAT_PROGRAM")
+    if not program:
+        print("peristat sweep: PERISTAT_PROGRAM must name the program; use ./peristat sweep", file=sys.stderr)
+        return WRONG_INPUT
+    try:
+        return run_all(read_sweep(arguments), Program(program))
+    except WrongInput as error:
+        print(f"peristat sweep: {error}", file=sys.stderr)
+    except OSError as error:
+        print(f"peristat sweep: {error}", file=sys.stderr)
+    return WRONG_INPUT
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

@@ -1,0 +1,233 @@
+"""The picture of a sweep: load curves of all combinations, and a field along the midline of the body."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from matplotlib import colormaps
+from results_folder import NotAResultsFolder, ResultsFolder, read_results_folder
+from style import FORCES, GHOST, LENGTHS, LINES, WARNING, heading, new_figure, number, unit_for
+
+DASHES = ["-", (0, (5, 2)), (0, (1.2, 1.5)), (0, (7, 2, 1.5, 2))]
+MOST_LABELS = 24  # entries of the legend
+LONGEST_LABEL = 30  # characters
+
+
+@dataclass
+class Curves:
+    """What is drawn of one combination."""
+
+    title: str
+    label: str
+    looks: dict  # colour and line
+    completed: bool
+    load: np.ndarray  # load factors of the accepted steps
+    reactions: dict[str, np.ndarray]  # their norm by support set [N]
+    x: np.ndarray  # along the midline [m], NaN in gaps
+    damage: np.ndarray
+    displacement: np.ndarray  # its magnitude [m]
+    largest_damage: float  # of all points
+
+
+@dataclass
+class _Heading:
+    title: str
+    status: str = "completed"
+
+
+def draw_sweep(keys: list[str], values: list[tuple[str, ...]], folders: list[Path], statuses: list[str]):
+    """Figure of all combinations that have an accepted step; None if there is none."""
+    shown = []
+    for looks, label, folder, status in zip(line_looks(values), labels(keys, values), folders, statuses):
+        if status in ("completed", "not_converged"):
+            try:
+                results = read_results_folder(folder)
+            except NotAResultsFolder:
+                continue
+            if results.step_numbers and results.history.get("load_factor"):
+                shown.append(_curves(results, label, looks, status == "completed"))
+    if not shown:
+        return None
+
+    figure = new_figure(16.0, 7.2)
+    left = figure.add_axes([0.065, 0.115, 0.325, 0.71])
+    right = figure.add_axes([0.46, 0.115, 0.325, 0.71])
+    _draw_reactions(left, shown)
+    _draw_midlines(right, shown)
+    _draw_legend(figure, left, shown)
+    count = len(statuses)
+    told = " and ".join(keys)
+    words = [f"sweep of {told if len(told) <= 80 else f'{len(keys)} keys'}",
+             f"{number(count)} combination{'s' * (count != 1)}"]  # fmt: skip
+    for status, remark in (("not_converged", "did not converge"), ("out_of_memory", "out of memory"),
+                           ("failed", "failed")):  # fmt: skip
+        if status in statuses:
+            words.append(f"{statuses.count(status)} {remark}")
+    heading(figure, _Heading(shown[0].title), words)
+    return figure
+
+
+# ----------------------------------------------------------------------------------------- reading
+
+
+def _curves(results: ResultsFolder, label: str, looks: dict, completed: bool) -> Curves:
+    step = results.step(results.step_numbers[-1])
+    magnitude = np.linalg.norm(step.displacement, axis=1)
+    x, damage, displacement = midline(results, step.damage, magnitude)
+    return Curves(results.title, label, looks, completed, np.array(results.history["load_factor"]),
+                  _reactions(results.history), x, damage, displacement, step.damage.max())  # fmt: skip
+
+
+def _reactions(history: dict[str, list]) -> dict[str, np.ndarray]:
+    """Norm of the reaction at the accepted steps by support set [N]."""
+    names = [column.partition(":")[2] for column in history if column.startswith("reaction_x:")]
+    return {name: np.linalg.norm([history[f"reaction_{axis}:{name}"] for axis in "xyz"], axis=0) for name in names}
+
+
+def midline(results: ResultsFolder, *fields: np.ndarray) -> list[np.ndarray]:
+    """Places x and fields of the points nearest to the line along x through the middle of the body.
+
+    Points of layers are no part of the body. Points that are equally near (the two rows beside the
+    line) are averaged. NaN stands where the body has no point near the line, as in a hole.
+    """
+    spacing = results.spacing
+    body = np.ones(len(results.volume), dtype=bool)
+    for layer in results.case.get("lattice", {}).get("layer", []):
+        body[results.sets.get(layer.get("name"), [])] = False
+    points = np.flatnonzero(body)
+    reference = results.reference[points]
+    middle = 0.5 * (reference.min(axis=0) + reference.max(axis=0))
+    distance = np.linalg.norm((reference - middle)[:, 1:], axis=1)
+    cell = np.rint((reference[:, 0] - reference[:, 0].min()) / spacing).astype(int)
+
+    least = np.full(cell.max() + 1, np.inf)
+    np.minimum.at(least, cell, distance)
+    near = (distance <= least[cell] + 0.1 * spacing) & (distance <= spacing * max(results.dimension - 1, 1) ** 0.5)
+    count = np.bincount(cell[near], minlength=len(least))
+    columns = [np.bincount(cell[near], values[points][near], len(least))[count > 0] / count[count > 0]
+               for values in (results.reference[:, 0], *fields)]  # fmt: skip
+    gaps = np.flatnonzero(np.diff(columns[0]) > 2.2 * spacing) + 1
+    return [np.insert(column, gaps, np.nan) for column in columns]
+
+
+# ------------------------------------------------------------------------------------------- looks
+
+
+def labels(keys: list[str], values: list[tuple[str, ...]]) -> list[str]:
+    """The varied values as a legend tells them: short names of the keys that have several values."""
+    short = [key.rpartition(".")[2] for key in keys]
+    names = [name if short.count(name) == 1 else key for name, key in zip(short, keys)]
+    several = [len(set(column)) > 1 for column in zip(*values)]
+    if not any(several):
+        several = [True] * len(keys)
+    told = []
+    for combination in values:
+        parts = [_cut(f"{name} = {value}") for name, value, shown in zip(names, combination, several) if shown]
+        line = ", ".join(parts)
+        told.append((line if len(line) <= LONGEST_LABEL else "\n".join(parts)).replace("$", r"\$"))
+    return told
+
+
+def _cut(text: str) -> str:
+    return text if len(text) <= LONGEST_LABEL else text[: LONGEST_LABEL - 1] + "…"
+
+
+def line_looks(values: list[tuple[str, ...]]) -> list[dict]:
+    """Colour by one key, dashes by the others if they have few values; else colour by combination.
+
+    The key that colours is numeric if there is one, and has the most values.
+    """
+    columns = [list(dict.fromkeys(column)) for column in zip(*values)]
+    key = max(range(len(columns)), key=lambda place: (_is_numeric(columns[place]), len(columns[place])))
+    others = [combination[:key] + combination[key + 1 :] for combination in values]
+    rest = list(dict.fromkeys(others))
+    if len(rest) > len(DASHES):
+        return [{"color": shade, "linestyle": "-"} for shade in _shades(len(values))]
+    colours = _colours(columns[key])
+    return [{"color": colours[combination[key]], "linestyle": DASHES[rest.index(other)]}
+            for combination, other in zip(values, others)]  # fmt: skip
+
+
+def _is_numeric(texts: list[str]) -> bool:
+    try:
+        return all(np.isfinite(float(text)) for text in texts)
+    except ValueError:
+        return False
+
+
+def _colours(texts: list[str]) -> dict:
+    """Numbers get the shades of an ordered map by rank, a few words distinct colours."""
+    if _is_numeric(texts):
+        return dict(zip(sorted(texts, key=float), _shades(len(texts))))
+    return dict(zip(texts, LINES if len(texts) <= len(LINES) else _shades(len(texts))))
+
+
+def _shades(count: int):
+    return colormaps["viridis"](np.linspace(0.05, 0.85, max(count, 2)))
+
+
+# ----------------------------------------------------------------------------------------- drawing
+
+
+def _draw_reactions(axes, shown: list[Curves]) -> None:
+    """Norm of the reaction of the most loaded support set over the load factor, from the unloaded state."""
+    peaks: dict[str, float] = {}
+    for curves in shown:
+        for name, values in curves.reactions.items():
+            peaks[name] = max(peaks.get(name, 0.0), values.max())
+    if not peaks:
+        axes.text(0.5, 0.5, "no support has a reaction", transform=axes.transAxes, ha="center")
+        return
+    largest = max(peaks.values())
+    common = next(name for name, peak in peaks.items() if peak >= (1 - 1e-6) * largest)
+    unit, size = unit_for(largest, FORCES, 1.0)
+    for curves, width in zip(shown, _widths(len(shown))):
+        values = curves.reactions.get(common)
+        if values is None:
+            values = max(curves.reactions.values(), key=np.max, default=np.zeros(len(curves.load)))
+        x, y = np.concatenate([[0.0], curves.load]), np.concatenate([[0.0], values / size])
+        marks = {"marker": "o", "markersize": 2.5 * width} if len(x) <= 60 else {}
+        axes.plot(x, y, linewidth=width, zorder=3, label=curves.label, **marks, **curves.looks)
+        if not curves.completed:
+            axes.plot(x[-1], y[-1], "x", color=WARNING, markersize=11, markeredgewidth=2.4, zorder=4)
+    _draw_axis(axes)
+    axes.set_xlabel("load factor")
+    axes.set_ylabel(f"reaction of “{common}” [{unit}]".replace("$", r"\$"))
+
+
+def _draw_midlines(axes, shown: list[Curves]) -> None:
+    """Damage, if there is any, or displacement along the midline at the last accepted step."""
+    damaged = max(curves.largest_damage for curves in shown) > 0.0
+    places = max(np.nanmax(np.abs(curves.x)) for curves in shown)
+    length, length_size = unit_for(places, LENGTHS)
+    unit, size = unit_for(max(np.nanmax(curves.displacement) for curves in shown), LENGTHS)
+    for curves, width in zip(shown, _widths(len(shown))):
+        values = curves.damage if damaged else curves.displacement / size
+        axes.plot(curves.x / length_size, values, linewidth=width, zorder=3, **curves.looks)
+    _draw_axis(axes)
+    axes.set_xlabel(f"x along the midline [{length}]")
+    axes.set_ylabel("damage at the last step" if damaged else f"displacement at the last step [{unit}]")
+
+
+def _widths(count: int):
+    """Of lines; the later is the thinner, so that the earlier are seen beneath where lines coincide."""
+    return np.linspace(3.2 if count > 1 else 1.8, 1.4 if count > 1 else 1.8, count)
+
+
+def _draw_axis(axes) -> None:
+    axes.axhline(0.0, color=GHOST, linewidth=1.2, zorder=1)
+
+
+def _draw_legend(figure, axes, shown: list[Curves]) -> None:
+    """Beside the panels; of many combinations, evenly chosen ones are named."""
+    handles, texts = axes.get_legend_handles_labels()
+    chosen = np.unique(np.linspace(0, len(handles) - 1, min(MOST_LABELS, len(handles))).round().astype(int))
+    handles, texts = [handles[place] for place in chosen], [texts[place] for place in chosen]
+    if not all(curves.completed for curves in shown):
+        cross = axes.plot([], [], "x", color=WARNING, markersize=9, markeredgewidth=2.2)
+        handles, texts = [*handles, *cross], [*texts, "did not converge"]
+    lines = sum(text.count("\n") + 1 for text in texts)
+    size = np.clip(11.0 * 24 / max(lines, 1), 6.5, 11.0)
+    title = f"{len(chosen)} of {len(shown)} combinations" if len(chosen) < len(shown) else None
+    figure.legend(handles, texts, loc="upper left", bbox_to_anchor=(0.795, 0.84), fontsize=size, title=title,
+                  title_fontsize=size, alignment="left", handlelength=2.4)  # fmt: skip

@@ -1,0 +1,76 @@
+"""The table of a sweep: a row per combination, from the results folders (docs/results.md)."""
+
+import csv
+import json
+import math
+import os
+from pathlib import Path
+
+FIGURES = [
+    "steps", "newton_iterations", "relaxation_iterations", "factorisations", "broken_bonds", "max_damage",
+    "max_displacement",
+]  # fmt: skip
+ENERGIES = {
+    "energy_stored": "stored", "energy_dissipated": "dissipated", "energy_drained": "drained",
+    "external_work": "external_work", "balance_error": "balance_error",
+}  # fmt: skip
+COSTS = ["seconds_total", "peak_memory_bytes"]
+
+
+def figures(folder: Path) -> dict:
+    """The columns that a results folder fills; empty if its run has not ended."""
+    try:
+        summary = json.loads((folder / "summary.json").read_bytes())
+    except (OSError, ValueError):
+        return {}
+    row = {name: summary.get(name, "") for name in FIGURES}
+    row |= {column: summary.get("energy", {}).get(name, "") for column, name in ENERGIES.items()}
+    row |= {f"peak_reaction:{name}": peak for name, peak in _peak_reactions(folder).items()}
+    for name, reaction in summary.get("reactions", {}).items():
+        row[f"final_reaction:{name}"] = math.hypot(*reaction)
+    for name, value in summary.get("probes", {}).items():
+        row |= _probe_columns(name, value)
+    row["seconds_total"] = summary.get("seconds", {}).get("total", "")
+    row["peak_memory_bytes"] = summary.get("peak_memory_bytes", "")
+    return row
+
+
+def _probe_columns(name: str, value) -> dict:
+    """A scalar probe is one column, a vector one per component."""
+    if not isinstance(value, list):
+        return {f"probe:{name}": value}
+    return {f"probe:{name}_{axis}": component for axis, component in zip("xyz", value)}
+
+
+def _peak_reactions(folder: Path) -> dict[str, float]:
+    """Per support set the largest norm of its reaction over all accepted steps [N]."""
+    peaks: dict[str, float] = {}
+    try:
+        with open(folder / "history.csv", newline="", encoding="utf-8") as file:
+            for row in csv.DictReader(file):
+                for column in row:
+                    kind, _, name = column.partition(":")
+                    if kind == "reaction_x":
+                        norm = math.hypot(*(float(row[f"reaction_{axis}:{name}"]) for axis in "xyz"))
+                        peaks[name] = max(peaks.get(name, 0.0), norm)
+    except OSError:
+        pass
+    return peaks
+
+
+def write_table(path: Path, keys: list[str], rows: list[dict]) -> None:
+    """Replaces the table by a complete new one in one rename.
+
+    A set or probe that only some combinations have gets a column all the same.
+    """
+    fixed = [*keys, "status", "exit_code", *FIGURES, *ENERGIES]
+    found = dict.fromkeys(column for row in rows for column in row)
+    between = [column for column in found if column not in [*fixed, *COSTS]]
+    order = ("peak_reaction", "final_reaction", "probe")
+    between.sort(key=lambda column: order.index(column.partition(":")[0]))
+    unfinished = path.with_name(path.name + ".tmp")
+    with open(unfinished, "w", newline="", encoding="utf-8", errors="surrogateescape") as file:
+        table = csv.DictWriter(file, [*fixed, *between, *COSTS], restval="", lineterminator="\n")
+        table.writeheader()
+        table.writerows(rows)
+    os.replace(unfinished, path)

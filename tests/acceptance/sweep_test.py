@@ -1,0 +1,297 @@
+"""Sweeps as an analyst types them: the table, the picture, what is skipped, and every ending."""
+
+import csv
+import json
+import math
+import os
+import pathlib
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+
+import matplotlib.image
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+SWEEP = ROOT / "cases" / "runner" / "sweep" / "sweep.py"  # reads PERISTAT_PROGRAM, as this test does
+
+STRIP = """\
+title = "Strip"
+dimension = 2
+[lattice]
+spacing = 1e-3
+thickness = 1e-3
+[[lattice.shape]]
+add = "box"
+min = [0.0, 0.0]
+max = [0.02, 0.01]
+[[lattice.layer]]
+name = "left"
+side = "x-"
+[[lattice.layer]]
+name = "right"
+side = "x+"
+[material]
+youngs_modulus = 200e9
+[[support]]
+set = "left"
+displacement = [0, 0]
+[[support]]
+set = "right"
+displacement = ["1e-5*load", "free"]
+[[probe]]
+name = "end"
+set = "right"
+[[probe]]
+name = "energy"
+set = "left"
+field = "energy_density"
+"""
+COLUMNS = [
+    "status", "exit_code", "steps", "newton_iterations", "relaxation_iterations", "factorisations",
+    "broken_bonds", "max_damage", "max_displacement", "energy_stored", "energy_dissipated",
+    "energy_drained", "external_work", "balance_error", "peak_reaction:left", "peak_reaction:right",
+    "final_reaction:left", "final_reaction:right", "probe:end_x", "probe:end_y", "probe:energy",
+    "seconds_total", "peak_memory_bytes",
+]  # fmt: skip
+STIFFNESS_AND_STEPS = ["--vary", "material.youngs_modulus=100e9,200e9", "--vary", "loading.steps=1,3"]
+FIRST_FAILS = ["--vary", "solver.max_iterations=1,20", "--set", "loading.smallest_step=0.1"]
+
+
+class Sweep(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory(prefix="peristat sweep ")
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name).resolve()
+        self.write("strip.toml", STRIP)
+        self.out = self.folder / "out"
+
+    def write(self, name, text):
+        (self.folder / name).write_text(text)
+
+    def command(self, *arguments):
+        return [sys.executable, "-BEs", SWEEP, *arguments]
+
+    def sweep(self, *arguments, case="strip.toml", output=("--output", "out")):
+        return subprocess.run(self.command(case, *arguments, *output), cwd=self.folder, text=True, timeout=300,
+                              stdin=subprocess.DEVNULL, capture_output=True)  # fmt: skip
+
+    def assert_ends(self, run, code, *lines):
+        """The exit code, and the ends of the lines that tell of the combinations."""
+        self.assertEqual(run.returncode, code, run.stdout + run.stderr)
+        told = [line for line in run.stdout.splitlines() if line[0].isdigit()]
+        self.assertEqual(len(told), len(lines), run.stdout)
+        for line, fragment in zip(told, lines):
+            self.assertIn(f": {fragment}", line)
+
+    def rows(self):
+        with open(self.out / "sweep.csv", newline="") as table:
+            return list(csv.DictReader(table))
+
+    def summaries(self):
+        return sorted((path, path.stat().st_mtime_ns) for path in self.out.glob("*/summary.json"))
+
+    # ---- table and picture ------------------------------------------------------------------------
+
+    def test_every_combination_is_a_row(self):
+        self.assert_ends(self.sweep(*STIFFNESS_AND_STEPS), 0, "done", "done", "done", "done")
+        keys = ["material.youngs_modulus", "loading.steps"]
+        rows = self.rows()
+        self.assertEqual(list(rows[0]), keys + COLUMNS)
+        told = [[row[key] for key in keys] for row in rows]
+        self.assertEqual(told, [["100e9", "1"], ["100e9", "3"], ["200e9", "1"], ["200e9", "3"]])
+        for row in rows:
+            folder = self.out / ",".join(f"{key}={row[key]}" for key in keys)
+            summary = json.loads((folder / "summary.json").read_text())
+            self.assertEqual((row["status"], row["exit_code"], row["steps"]), ("completed", "0", row["loading.steps"]))
+            for column, value in {
+                "newton_iterations": summary["newton_iterations"],
+                "energy_stored": summary["energy"]["stored"],
+                "external_work": summary["energy"]["external_work"],
+                "final_reaction:right": math.hypot(*summary["reactions"]["right"]),
+                "peak_reaction:right": math.hypot(*summary["reactions"]["right"]),  # it only grows
+                "probe:end_x": summary["probes"]["end"][0],
+                "probe:energy": summary["probes"]["energy"],
+                "seconds_total": summary["seconds"]["total"],
+                "peak_memory_bytes": summary["peak_memory_bytes"],
+            }.items():
+                self.assertEqual(float(row[column]), value, column)
+        soft, stiff = float(rows[0]["final_reaction:right"]), float(rows[2]["final_reaction:right"])
+        self.assertGreater(soft, 0.0)
+        self.assertAlmostEqual(stiff / soft, 2.0, delta=1e-9)
+        picture = matplotlib.image.imread(self.out / "sweep.png")
+        self.assertEqual(picture.shape[:2], (720, 1600))
+        self.assertGreater(picture[100:, :, :3].std(), 0.05)
+        self.assertEqual(sorted(path.name for path in self.out.glob("sweep.*")), ["sweep.csv", "sweep.png"])
+
+    def test_peak_and_final_reaction_differ_where_the_load_goes_back(self):
+        displacement = 'support[1].displacement=["4e-5*load*(1 - 0.5*load)", "free"]'
+        self.sweep("--vary", displacement.replace("1 - 0.5", "1 - 0.75") + ',["1e-5*load", "free"]',
+                   "--set", "loading.steps=6")  # fmt: skip
+        back, forth = self.rows()
+        self.assertEqual(back["support[1].displacement"], '["4e-5*load*(1 - 0.75*load)", "free"]')
+        # largest at load 2/3: 4e-5 * 2/3 * 1/2, and 1e-5 at the end
+        ratio = float(back["peak_reaction:left"]) / float(back["final_reaction:left"])
+        self.assertAlmostEqual(ratio, 4.0 / 3.0, delta=1e-3)
+        self.assertEqual(forth["peak_reaction:left"], forth["final_reaction:left"])
+
+    def test_the_folder_is_named_after_the_case(self):
+        run = self.sweep("--vary", "loading.steps=1", "--threads", "1", output=())
+        self.assert_ends(run, 0, "done")
+        self.out = self.folder / "results" / f"{self.folder.name}_strip_sweep"
+        self.assertEqual(len(self.rows()), 1)
+        summary = json.loads((self.out / "loading.steps=1" / "summary.json").read_text())
+        self.assertEqual(summary["threads"], 1)
+
+    def test_what_launched_it_does_not_count_as_memory(self):
+        self.sweep("--vary", "loading.steps=1,2,3")
+        peaks = [float(row["peak_memory_bytes"]) for row in self.rows()]
+        self.assertLess(max(peaks) / min(peaks), 1.3)
+
+    # ---- skipping ---------------------------------------------------------------------------------
+
+    def test_what_is_done_is_skipped(self):
+        self.sweep(*STIFFNESS_AND_STEPS)
+        table, before = (self.out / "sweep.csv").read_text(), self.summaries()
+        self.assertEqual(len(before), 4)
+        self.assert_ends(self.sweep(*STIFFNESS_AND_STEPS), 0, *["skipped"] * 4)
+        self.assertEqual(self.summaries(), before)
+        self.assertEqual((self.out / "sweep.csv").read_text(), table)
+        self.assertTrue((self.out / "sweep.png").exists())
+        more = self.sweep("--vary", "material.youngs_modulus=200e9,300e9", *STIFFNESS_AND_STEPS[2:])
+        self.assert_ends(more, 0, "skipped", "skipped", "done", "done")
+
+    def test_changed_settings_run_again(self):
+        vary = ["--vary", "loading.steps=1,2"]
+        self.sweep(*vary)
+        changed = [*vary, "--set", "material.youngs_modulus=100e9"]
+        self.assert_ends(self.sweep(*changed), 0, "done", "done")
+        self.assert_ends(self.sweep(*changed), 0, "skipped", "skipped")
+        self.assert_ends(self.sweep(*vary), 0, "done", "done")
+
+    def test_a_changed_case_runs_again(self):
+        self.sweep("--vary", "loading.steps=1,2")
+        self.write("strip.toml", STRIP.replace("200e9", "210e9"))
+        self.assert_ends(self.sweep("--vary", "loading.steps=1,2"), 0, "done", "done")
+
+    def test_results_of_another_run_do_not_count_as_done(self):
+        self.sweep("--vary", "loading.steps=1,2")
+        subprocess.run([os.environ["PERISTAT_PROGRAM"], "run", "strip.toml", "--quiet", "--set", "loading.steps=5",
+                        "--output", "out/loading.steps=2"], cwd=self.folder, check=True)  # fmt: skip
+        (self.out / "loading.steps=1" / "results.h5").unlink()
+        self.assert_ends(self.sweep("--vary", "loading.steps=1,2"), 0, "done", "done")
+
+    def test_a_changed_points_file_runs_again(self):
+        rows = [f"{x}e-3, {y}e-3, 1e-9, {'left' if x < 3 else 'right' if x > 8 else ''}"
+                for x in range(12) for y in range(4)]  # fmt: skip
+        begin, end = STRIP.index("[lattice]"), STRIP.index("[material]")
+        points = '[points]\nfile = "points.csv"\nhorizon = 3.015e-3\nthickness = 1e-3\n'
+        self.write("strip.toml", STRIP[:begin] + points + STRIP[end:])
+        self.write("points.csv", "x, y, volume, set\n" + "\n".join(rows) + "\n")
+        self.assert_ends(self.sweep("--vary", "loading.steps=1"), 0, "done")
+        self.assert_ends(self.sweep("--vary", "loading.steps=1"), 0, "skipped")
+        self.write("points.csv", "x, y, volume, set\n" + "\n".join(rows[:-1]) + "\n")
+        self.assert_ends(self.sweep("--vary", "loading.steps=1"), 0, "done")
+
+    # ---- other endings ----------------------------------------------------------------------------
+
+    def test_wrong_arguments_are_refused(self):
+        for arguments, fragment in {
+            (): "nothing is varied",
+            ("--vary", "loading.steps"): "key=value1,value2",
+            ("--vary", "=1,2"): "key=value1,value2",
+            ("--vary", "loading.steps="): "a value is empty",
+            ("--vary", "loading.steps=1,,2"): "a value is empty",
+            ("--vary", "loading.steps=1,2,1"): "stands twice",
+            ("--vary", "load[0].body_force=[0, 1"): "] is missing",
+            ("--vary", "loading.steps=1", "--vary", "loading.steps=2"): "varied twice",
+            ("--vary", "loading.steps=1", "--set", "loading.steps=2"): "both varied and set",
+            ("--vary", "output.directory=a,b"): "output.directory",
+            ("--vary", "loading.steps=1", "--threads", "many"): "--threads",
+            ("--vary", "loading.steps=1", "--threads", "0"): "--threads",
+            ("--vary", "loading.steps=1", "--wary"): "--wary",
+            ("--vary", "loading.stepps=1,2"): "did you mean steps",
+        }.items():
+            with self.subTest(arguments=arguments):
+                run = self.sweep(*arguments)
+                self.assertEqual(run.returncode, 2, run.stdout + run.stderr)
+                self.assertIn(fragment, run.stderr)
+                self.assertNotIn("Traceback", run.stderr)
+                self.assertFalse(self.out.exists())
+        run = self.sweep("--vary", "loading.steps=1", case="missing.toml")
+        self.assertEqual(run.returncode, 2)
+        self.assertIn("missing.toml", run.stderr)
+
+    def test_wrong_input_stops_at_once(self):
+        run = self.sweep("--vary", "loading.steps=1,0,2")
+        self.assert_ends(run, 2, "done", "exit code 2")
+        self.assertIn("loading.steps=0", run.stderr)
+        self.assertEqual(len(self.rows()), 1)
+
+    def test_the_others_go_on_when_one_does_not_converge(self):
+        self.assert_ends(self.sweep(*FIRST_FAILS), 3, "exit code 3: did not converge (iteration_limit", "done")
+        failed, completed = self.rows()
+        self.assertEqual((failed["status"], failed["exit_code"], failed["steps"]), ("not_converged", "3", "0"))
+        self.assertEqual(failed["peak_reaction:left"], "")
+        self.assertEqual((completed["status"], completed["steps"]), ("completed", "1"))
+        self.assertTrue((self.out / "sweep.png").exists())
+        self.assert_ends(self.sweep(*FIRST_FAILS), 3, "exit code 3", "skipped")
+
+    def test_what_does_not_fit_is_told_and_earlier_results_are_not_taken_for_it(self):
+        self.sweep("--vary", "loading.steps=1")
+        run = self.sweep("--vary", "loading.steps=1", "--set", "lattice.spacing=1e-8")
+        self.assert_ends(run, 4, "exit code 4: out of memory (the case")
+        (row,) = self.rows()
+        self.assertEqual((row["status"], row["exit_code"], row["steps"]), ("out_of_memory", "4", ""))
+        self.assertFalse((self.out / "sweep.png").exists())  # the earlier one is gone
+        self.assert_ends(self.sweep("--vary", "loading.steps=1"), 0, "skipped")
+
+    def interrupted(self, interrupt):
+        """Ending and output of a sweep whose second combination, a long one, is interrupted."""
+        process = subprocess.Popen(
+            self.command("strip.toml", "--vary", "loading.steps=1,100000,2", "--output", "out"), cwd=self.folder,
+            text=True, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, start_new_session=True)  # fmt: skip
+        self.addCleanup(process.kill)
+        second = self.out / "loading.steps=100000" / "history.csv"
+        end = time.monotonic() + 60
+        while not (second.exists() and second.read_text().count("\n") > 2):
+            self.assertIsNone(process.poll())
+            self.assertLess(time.monotonic(), end)
+            time.sleep(0.02)
+        interrupt(process)
+        output = process.communicate(timeout=60)[0]
+        return process.returncode, output
+
+    def test_an_interrupt_ends_the_run_and_leaves_the_table(self):
+        for interrupt in (lambda process: process.send_signal(signal.SIGINT),
+                          lambda process: os.killpg(process.pid, signal.SIGINT)):  # fmt: skip
+            if self.out.exists():
+                shutil.rmtree(self.out)
+            code, output = self.interrupted(interrupt)
+            self.assertEqual(code, 130, output)
+            self.assertNotIn("3/3", output)
+            self.assertEqual([row["status"] for row in self.rows()], ["completed", "interrupted"])
+            summary = json.loads((self.out / "loading.steps=100000" / "summary.json").read_text())
+            self.assertEqual(summary["status"], "interrupted")  # it was told once, and saved
+
+    def test_a_killed_sweep_leaves_no_run_behind(self):
+        code, _ = self.interrupted(lambda process: process.kill())
+        self.assertEqual(code, -signal.SIGKILL)
+        time.sleep(0.2)
+        history = self.out / "loading.steps=100000" / "history.csv"
+        size = history.stat().st_size
+        time.sleep(0.5)
+        self.assertEqual(history.stat().st_size, size)
+
+    def test_help_tells_the_options(self):
+        run = subprocess.run(self.command("--help"), text=True, capture_output=True)
+        self.assertEqual(run.returncode, 0, run.stderr)
+        for word in ("usage: peristat sweep", "--vary", "--set", "--output", "--threads"):
+            self.assertIn(word, run.stdout)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,131 @@
+"""Pieces of a sweep: how values are split, folders named, curves taken from fields and told apart."""
+
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+import numpy as np
+
+RUNNER = Path(__file__).resolve().parents[3] / "cases" / "runner"
+sys.path[:0] = [str(RUNNER / "sweep"), str(RUNNER / "plots"), str(Path(__file__).parent)]
+
+import plot_test  # noqa: E402
+from results_folder import ResultsFolder  # noqa: E402
+from sweep_picture import DASHES, draw_sweep, labels, line_looks, midline  # noqa: E402
+from variations import WrongInput, combinations, folder_name, split_values  # noqa: E402
+
+
+def body(reference, layers=None) -> ResultsFolder:
+    """A results folder of points with spacing 1 and nothing else; layers are point numbers by name."""
+    layers = layers or {}
+    case = {"lattice": {"layer": [{"name": name} for name in layers]}}
+    return ResultsFolder(Path(), "", np.asarray(reference, dtype=float), np.ones(len(reference)), 1.0, layers,
+                         [], {}, {}, {}, case)  # fmt: skip
+
+
+def lattice(*counts: int) -> np.ndarray:
+    return np.stack(np.meshgrid(*map(np.arange, counts), indexing="ij"), axis=-1).reshape(-1, len(counts)).astype(float)
+
+
+class Variations(unittest.TestCase):
+    def test_commas_in_brackets_and_quotes_separate_nothing(self):
+        for text, values in {
+            "1": ["1"],
+            "1, 2e-3 ,auto": ["1", "2e-3", "auto"],
+            '["1e-5*load", "free"],[0, 0]': ['["1e-5*load", "free"]', "[0, 0]"],
+            "'a,b',\"c,d\"": ["'a,b'", '"c,d"'],
+            r'"a\",b",c': [r'"a\",b"', "c"],
+            "{ a = [1, 2], b = 3 },4": ["{ a = [1, 2], b = 3 }", "4"],
+            "max(x,y),x": ["max(x,y)", "x"],
+            '"[",1': ['"["', "1"],
+            "": [""],
+            "1,": ["1", ""],
+        }.items():
+            self.assertEqual(split_values(text), values)
+        for text in ("[1", "1]", "[1)", '"a', "'a\",b"):
+            with self.assertRaises(WrongInput):
+                split_values(text)
+
+    def test_the_last_key_changes_fastest(self):
+        self.assertEqual(combinations({"a": ["1", "2"], "b": ["x", "y"]}),
+                         [("1", "x"), ("1", "y"), ("2", "x"), ("2", "y")])  # fmt: skip
+
+    def test_folder_names_are_safe_and_different(self):
+        self.assertEqual(folder_name(["loading.steps=10", "load[0].x=1e-3"]), "loading.steps=10,load[0].x=1e-3")
+        odd = ["a=x/y", "a=x_y", "a=x y", "a='x,y'", "a=../x", "a=ä", "a=x\ny", "a=\udcff", f"a={'x' * 500}",
+               f"a={'x' * 501}", "a=b=c"]  # fmt: skip
+        names = [folder_name([setting]) for setting in odd]
+        self.assertEqual(len(set(names)), len(names))
+        for name in names:
+            self.assertRegex(name, r"^a=[A-Za-z0-9._+\[\]-]+$")
+            self.assertLess(len(name), 200)
+
+
+class Picture(unittest.TestCase):
+    def test_a_middle_row_or_the_mean_of_two_is_the_midline(self):
+        for rows, expected in ((5, 2.0), (4, 1.5)):
+            points = lattice(6, rows)
+            x, y = midline(body(points), points[:, 1])
+            np.testing.assert_allclose(x, np.arange(6))
+            np.testing.assert_allclose(y, expected)
+
+    def test_dimensions_one_and_three(self):
+        points = lattice(5, 4, 2)
+        x, y, z = midline(body(points), points[:, 1], points[:, 2])
+        np.testing.assert_allclose((x, y, z), (np.arange(5), [1.5] * 5, [0.5] * 5))
+        (x,) = midline(body(lattice(5)))
+        np.testing.assert_allclose(x, np.arange(5))
+
+    def test_layers_are_no_part_of_the_body(self):
+        points = lattice(6, 7)
+        layers = {"left": np.flatnonzero(points[:, 0] < 1), "top": np.flatnonzero(points[:, 1] > 4)}
+        x, y = midline(body(points, layers), points[:, 1])
+        np.testing.assert_allclose(x, np.arange(1, 6))
+        np.testing.assert_allclose(y, 2.0)
+
+    def test_a_hole_is_a_gap(self):
+        points = lattice(11, 11)
+        points = points[np.abs(points - 5).max(axis=1) > 2]
+        x, y = midline(body(points), points[:, 1])
+        np.testing.assert_allclose(x, [0, 1, 2, np.nan, 8, 9, 10])
+        np.testing.assert_allclose(y, [5, 5, 5, np.nan, 5, 5, 5])
+
+    def test_colours_follow_numbers_and_dashes_the_rest(self):
+        values = [(word, value) for word in ("never", "auto") for value in ("100", "5", "20")]
+        looks = line_looks(values)
+        shades = {value: look["color"][1] for (_, value), look in zip(values, looks)}  # green rises in viridis
+        self.assertEqual(sorted(shades, key=shades.get), ["5", "20", "100"])
+        self.assertEqual([look["linestyle"] for look in looks], [DASHES[0]] * 3 + [DASHES[1]] * 3)
+        many = line_looks([(str(a), str(b)) for a in range(9) for b in range(9)])
+        self.assertEqual(len({tuple(look["color"]) for look in many}), 81)
+
+    def test_labels_are_short_where_they_are_clear(self):
+        self.assertEqual(labels(["loading.steps", "title"], [("1", "x"), ("2", "x")]), ["steps = 1", "steps = 2"])
+        self.assertEqual(labels(["a.x", "b.x"], [("1", "2")]), ["a.x = 1, b.x = 2"])
+        (long,) = labels(["support[1].displacement"], [('["1e-5*load", "free"]',)])
+        self.assertLessEqual(len(long), 30)
+
+    def test_damage_is_drawn_where_there_is_any(self):
+        for damaged, wanted in ((False, "displacement"), (True, "damage")):
+            with tempfile.TemporaryDirectory() as name:
+                folders = [Path(name) / "first", Path(name) / "second", Path(name) / "third"]
+                plot_test.write_folder(folders[0], plot_test.lattice(20, 7))
+                plot_test.write_folder(folders[1], plot_test.lattice(20, 8), damaged=damaged)
+                statuses = ["completed", "not_converged", "out_of_memory"]
+                figure = draw_sweep(["a"], [("1",), ("2",), ("3",)], folders, statuses)
+                left, right = figure.axes
+                self.assertIn(wanted, right.get_ylabel())
+                self.assertEqual(len(left.lines), 2 + 1 + 1 + 1)  # curves, cross, zero, legend's cross
+                first, second, _ = (line.get_ydata() for line in right.lines)
+                self.assertEqual(len(first), 20)
+                self.assertEqual(second.max(), 0.5 if damaged else second[-1])
+                self.assertEqual(first.max() > 0.0, not damaged)
+
+    def test_nothing_to_draw_is_no_picture(self):
+        with tempfile.TemporaryDirectory() as folder:
+            self.assertIsNone(draw_sweep(["a"], [("1",)], [Path(folder)], ["completed"]))
+
+
+if __name__ == "__main__":
+    unittest.main()
