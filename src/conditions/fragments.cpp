@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <set>
 #include <utility>
 
 #include <Eigen/Dense>
@@ -128,7 +129,7 @@ std::vector<Support> supports_of(const Web& web, Index count, const std::vector<
 }
 
 /// Strips loose points until none is left, and takes them out of the supports of all points.
-/// @return the loose points in the order in which they came off
+/// @return the loose points
 std::vector<Index> strip(Web& web, std::vector<Support>& support) {
   std::vector<char> is_loose(support.size(), 0);
   std::vector<Index> loose;
@@ -147,6 +148,34 @@ std::vector<Index> strip(Web& web, std::vector<Support>& support) {
     });
   }
   return loose;
+}
+
+/// Pins loose points one by one, those that need the fewest pins first (then the lowest); each then
+/// supports the others by its bonds. Leaves their support complete but for the pins.
+void pin_loose(const Web& web, const std::vector<Index>& loose, std::vector<Support>& support,
+               std::vector<char>& pinned) {
+  constexpr std::size_t settled = 0;
+  std::vector<std::size_t> rank(support.size(), settled);  // 1 + number of missing axes
+  std::set<std::pair<std::size_t, Index>> waiting;
+  const auto wait = [&](Index i) {
+    rank[i] = 1 + missing_axes(support[i]).size();
+    waiting.emplace(rank[i], i);
+  };
+  for (Index i : loose) wait(i);
+  while (!waiting.empty()) {
+    const Index i = waiting.begin()->second;
+    waiting.erase(waiting.begin());
+    rank[i] = settled;
+    for (int axis : missing_axes(support[i])) {
+      pinned[std::size_t(i) * web.dimension() + axis] = 1;
+    }
+    web.for_each_partner(i, [&](Index j) {
+      if (rank[j] == settled) return;
+      waiting.erase({rank[j], j});
+      support[j] += web.direction(i, j);
+      wait(j);
+    });
+  }
 }
 
 /// Numbers the pieces that float, in the order of Fragments::piece.
@@ -198,10 +227,8 @@ Fragments find_fragments(const Points& points, const Bonds& bonds, std::span<con
   fragments.loose = strip(web, support);
   if (!fragments.loose.empty()) {
     std::vector<char> is_loose(std::size_t(points.count()), 0);
-    for (Index i : fragments.loose) {
-      is_loose[i] = 1;
-      for (int axis : missing_axes(support[i])) fragments.pinned[std::size_t(i) * d + axis] = 1;
-    }
+    for (Index i : fragments.loose) is_loose[i] = 1;
+    pin_loose(web, fragments.loose, support, fragments.pinned);
     std::sort(fragments.loose.begin(), fragments.loose.end());
     cores = cores_of(web, bonds, is_loose);
   }

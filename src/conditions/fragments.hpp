@@ -42,12 +42,18 @@ inline constexpr double independence_tolerance = 2.5e-7;
 ///   n = (x_j - x_i) / |x_j - x_i| to points j that are not loose, by unbroken bonds, and
 ///   the axes of the prescribed components of i
 ///
-/// of a loose point i are not independent in all dimensions (independence_tolerance). Pinned are
-/// as many of its components as are missing, first the axis that the directions cover least: all
-/// that are not prescribed if it hangs on no bond.
+/// of a loose point i are not independent in all dimensions (independence_tolerance). They are then
+/// pinned one by one, the one that needs the fewest pins first: as many of its components as are
+/// missing, the axis first that the directions cover least. Once pinned, a point supports the other
+/// loose ones by its unbroken bonds. A chain thus hangs on, free of stress, however the body that
+/// it hangs on moves, and a pair of points that broke off may neither move nor be strained.
 ///
 /// The others form cores, connected by unbroken bonds among themselves. The rigid motions that its
 /// prescribed degrees of freedom leave to a core are suppressed by as many pins, far apart.
+///
+/// Not found are hinges inside of a core: two blocks that share a point or fewer bonds than it
+/// takes to hold one on the other, or a chain between two blocks that is not straight. Each of
+/// their points has bonds enough and the core counts as rigid, yet parts of it can turn.
 ///
 /// @param broken one flag per bond, or empty: none is broken
 /// @param prescribed per degree of freedom

@@ -411,8 +411,58 @@ TEST(Fragments, StripChains) {
   EXPECT_EQ(fragments.count, 0);
   EXPECT_EQ(fragments.loose, (std::vector<Index>{0, 25}));
   EXPECT_EQ(pins_of(fragments, 25, 2), (std::vector<int>{0, 1}));
-  EXPECT_EQ(pins_of(fragments, 0, 2), (std::vector<int>{1, 1}));
-  EXPECT_EQ(web.soft_motions(fragments.pinned), 0);
+  EXPECT_EQ(pins_of(fragments, 0, 2), (std::vector<int>{0, 1}));  // it follows along x
+  expect_determinate(web, fragments);
+}
+
+TEST(Fragments, StripTrees) {
+  // A stem of one bond with three branches.
+  Web web = block_with_a_tip();
+  web.add({{7.0, 1.0}, {8.0, 1.0}, {7.0, 2.0}, {7.0, 0.0}}).bond(1.01).hold({0, 1, 2, 3});
+  // Without diagonals the squares shear: only the points to the right count here.
+  for (Index i = 4; i < tip; ++i) web.hold({i});
+  const Fragments fragments = web.find();
+  EXPECT_EQ(fragments.loose, (std::vector<Index>{24, 25, 26, 27, 28}));
+  EXPECT_EQ(total(fragments.pinned), 5);
+  expect_determinate(web, fragments);
+}
+
+TEST(Fragments, OfAFewPointsAreHeldLikeRigidBodies) {
+  for (int dimension : {1, 2, 3}) {
+    const int points_of_most = dimension == 1 ? 3 : 4;
+    for (int count = 1; count <= points_of_most; ++count) {
+      // Up to three points in a triangle; the fourth makes it a tetrahedron or a square.
+      Web web(dimension);
+      const Place places[] = {{0.0, 0.0, 0.0}, {1.0, 0.1, 0.0}, {0.2, 1.0, 0.1}, {0.9, 0.8, 0.9}};
+      for (int k = 0; k < count; ++k) web.add({places[k]});
+      web.bond(2.0);
+      const Fragments fragments = web.find();
+      EXPECT_EQ(fragments.count, 1);
+      EXPECT_EQ(fragments.piece, std::vector<std::int32_t>(std::size_t(count), 1));
+      const bool stiff = dimension == 1 ? count > 1 : count > dimension;
+      EXPECT_EQ(fragments.loose.size(), stiff ? 0u : std::size_t(count));
+      expect_determinate(web, fragments);
+    }
+  }
+}
+
+TEST(Fragments, OfAFewPointsInARowMayBend) {
+  for (int dimension : {2, 3}) {
+    Web web(dimension);
+    web.add_block({5, 1, 1}).bond();
+    const Fragments fragments = web.find();
+    EXPECT_EQ(fragments.loose.size(), 5u);
+    EXPECT_EQ(total(fragments.pinned), 5 * dimension - 4);
+    expect_determinate(web, fragments);
+  }
+}
+
+TEST(Fragments, OfFewPointsMindTheirSupports) {
+  Web web(2);
+  web.add({{0.0, 0.0}, {1.0, 0.0}, {2.0, 0.0}}).bond(1.01).hold(0, 0).hold(2, 1);
+  const Fragments fragments = web.find();
+  EXPECT_EQ(fragments.count, 1);  // it may turn about (2, 0)
+  expect_determinate(web, fragments);
 }
 
 }  // namespace
