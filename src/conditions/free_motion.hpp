@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -12,9 +13,15 @@ namespace peristat {
 struct Components {
   std::vector<Index> of_point;  ///< number of the component that a point belongs to
   std::vector<Index> size;      ///< points of each component
+
+  /// Points of each component, ascending.
+  [[nodiscard]] std::vector<std::vector<Index>> members() const;
 };
 
-[[nodiscard]] Components connected_components(const Bonds& bonds);
+/// Numbered by their lowest points.
+/// @param broken one flag per bond; flagged bonds do not connect. Empty: all bonds do.
+[[nodiscard]] Components connected_components(const Bonds& bonds,
+                                              std::span<const char> broken = {});
 
 /// Rigid motions that the supports leave to one connected component of the bond graph.
 struct FreeMotion {

@@ -170,6 +170,16 @@ TEST(ConnectedComponents, AreNumberedByTheirLowestPoint) {
   const Components components = connected_components(two.bonds);
   EXPECT_EQ(components.of_point, (std::vector<Index>{0, 1, 1, 1, 1, 2}));
   EXPECT_EQ(components.size, (std::vector<Index>{1, 4, 1}));
+  EXPECT_EQ(components.members(), (std::vector<std::vector<Index>>{{0}, {1, 2, 3, 4}, {5}}));
+}
+
+TEST(ConnectedComponents, AreNotConnectedByBrokenBonds) {
+  Blocks row(1);
+  row.add({4, 1, 1});  // bonds 0-1, 1-2, 2-3
+  EXPECT_EQ(connected_components(row.bonds, std::vector<char>{0, 0, 0}).size,
+            (std::vector<Index>{4}));
+  EXPECT_EQ(connected_components(row.bonds, std::vector<char>{0, 1, 0}).of_point,
+            (std::vector<Index>{0, 0, 1, 1}));
 }
 
 }  // namespace
