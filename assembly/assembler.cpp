@@ -4,6 +4,7 @@
 #include <type_traits>
 
 #include "assembly/bond_kernels.hpp"
+#include "assembly/damage.hpp"
 #include "assembly/local_kernels.hpp"
 #include "assembly/workspace.hpp"
 #include "src/stopwatch.hpp"
@@ -134,6 +135,38 @@ double Assembler::point_energies(std::span<const double> displacement, std::span
     });
   }
   return longest;
+}
+
+void Assembler::point_stretches(std::span<const double> displacement,
+                                std::span<double> stretches) const {
+  constexpr double none = -2.0;  // below every stretch
+  std::fill(stretches.begin(), stretches.end(), none);
+  const std::vector<char> broken = broken_bonds(model(), history());
+  const Bonds& bonds = model().bonds;
+  const auto with_points = [&](auto d) {
+    constexpr int D = decltype(d)::value;
+    const auto difference = [&](std::span<const double> field, Index i, Index j) {
+      Vector<D, double> result;
+      for (int c = 0; c < D; ++c) {
+        result[c] = field[std::size_t(j) * D + c] - field[std::size_t(i) * D + c];
+      }
+      return result;
+    };
+    for (Index i = 0; i < bonds.points(); ++i) {
+      for (Offset bond = bonds.offset[i]; bond < bonds.offset[i + 1]; ++bond) {
+        if (!broken.empty() && broken[bond]) continue;
+        const Index j = bonds.partner[bond];
+        const double stretch = Length::at<D, double>(bonds.inverse_length[bond],
+                                                     {difference(points().reference, i, j)},
+                                                     {difference(displacement, i, j)})
+                                   .relative_change;
+        stretches[i] = std::max(stretches[i], stretch);
+        stretches[j] = std::max(stretches[j], stretch);
+      }
+    }
+  };
+  dispatch(points().dimension, model().potential, [&](auto d, const auto&) { with_points(d); });
+  std::replace(stretches.begin(), stretches.end(), none, 0.0);
 }
 
 }  // namespace peristat

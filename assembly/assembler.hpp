@@ -59,6 +59,9 @@ class Assembler {
   /// of a bond.
   double point_energies(std::span<const double> displacement, std::span<double> energies);
 
+  /// Largest stretch of the unbroken bonds of each point; 0 without such a bond.
+  void point_stretches(std::span<const double> displacement, std::span<double> stretches) const;
+
   [[nodiscard]] int threads() const;
   [[nodiscard]] const Points& points() const;
   [[nodiscard]] const Model& model() const;

@@ -146,17 +146,30 @@ template <class P>
   }
 }
 
-/// Finds the bonds of a batch whose stretches damage them, and moves their histories there if it
-/// commits.
-template <bool commits, int D, class P>
-inline void find_growth(const P& potential, const Batch<D>& batch, const Lanes& stretch,
-                        std::vector<double>& largest_stretch, DamageGrowth& growth) {
+/// Moves the histories of a batch to its stretches where these damage the bonds.
+template <int D, class P>
+inline void commit(const P& potential, const Batch<D>& batch, const Lanes& stretch,
+                   std::vector<double>& largest_stretch, DamageGrowth& growth) {
   if (std::experimental::all_of(stretch <= potential.law.onset())) return;
   for (int l = 0; l < batch.count; ++l) {
     double& largest = largest_stretch[std::size_t(batch.first + l)];
     const double s = stretch[l];
     if (!potential.is_loading(s, largest)) continue;
-    if constexpr (commits) largest = s;
+    largest = s;
+    ++growth.degrading;
+    growth.breaking += potential.is_broken(s);
+  }
+}
+
+/// What committing a batch would damage.
+template <int D, class P>
+inline void look_at(const P& potential, const Batch<D>& batch, const Lanes& stretch,
+                    const std::vector<double>& largest_stretch, DamageGrowth& growth) {
+  if (largest(stretch) <= std::min(growth.utilisation, 1.0) * potential.law.onset()) return;
+  for (int l = 0; l < batch.count; ++l) {
+    const double before = largest_stretch[std::size_t(batch.first + l)], s = stretch[l];
+    growth.utilisation = std::max(growth.utilisation, potential.utilisation(s, before));
+    if (!potential.is_loading(s, before)) continue;
     ++growth.degrading;
     growth.breaking += potential.is_broken(s);
   }
@@ -198,8 +211,7 @@ struct BondKernels {
               const auto measure =
                   Length::at<D, Lanes>(batch.inverse_length, {batch.vector0}, {batch.vector1});
               if constexpr (commits) {
-                find_growth<true>(potential, batch, measure.relative_change, a.largest_stretch,
-                                  growth);
+                commit<D>(potential, batch, measure.relative_change, a.largest_stretch, growth);
               }
               const auto psi =
                   interaction_energy(batch.weight, at_history(a, potential, batch.first), measure);
@@ -231,7 +243,7 @@ struct BondKernels {
         for_each_batch<D>(a.model.bonds, a.rows.data(), i, [&](const Batch<D>& batch) {
           const auto measure =
               Length::at<D, Lanes>(batch.inverse_length, {batch.vector0}, {batch.vector1});
-          find_growth<false>(potential, batch, measure.relative_change, a.largest_stretch, found);
+          look_at<D>(potential, batch, measure.relative_change, a.largest_stretch, found);
         });
       }
       a.stored[thread] = {0.0, false, found};

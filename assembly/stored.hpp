@@ -8,6 +8,9 @@ namespace peristat {
 struct DamageGrowth {
   Index degrading = 0;  ///< bonds that lose integrity
   Index breaking = 0;   ///< of these, bonds that lose the last of it
+  /// Largest ratio of a bond's stretch to that beyond which it is damaged: damage grows above 1.
+  /// Only of a pass that does not commit.
+  double utilisation = 0.0;
 };
 
 /// What a pass over the interactions finds besides what it adds up.

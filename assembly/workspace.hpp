@@ -110,6 +110,7 @@ struct Workspace {
       total.degenerate |= part.degenerate;
       total.growth.degrading += part.growth.degrading;
       total.growth.breaking += part.growth.breaking;
+      total.growth.utilisation = std::max(total.growth.utilisation, part.growth.utilisation);
     }
     total.degenerate |= !std::isfinite(total.energy);
     return total;

@@ -1,5 +1,6 @@
 #include "solvers/equilibrium.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "solvers/vector_verbs.hpp"
@@ -26,6 +27,10 @@ std::string name(Outcome outcome) {
       return "out_of_memory";
     case Outcome::linear_solver_inaccurate:
       return "linear_solver_inaccurate";
+    case Outcome::damage_limit:
+      return "damage_limit";
+    case Outcome::fragmented:
+      return "fragmented";
     case Outcome::interrupted:
       return "interrupted";
   }
@@ -38,7 +43,7 @@ std::string explanation(Outcome outcome) {
       return "equilibrium found";
     case Outcome::iteration_limit:
       return "the residual is still above the tolerance after the largest number of iterations "
-             "(solver.max_iterations)";
+             "(solver.max_iterations, relaxation.max_iterations)";
     case Outcome::not_positive_definite:
       return "the tangent has negative pivots: the body buckles, or another limit point is passed";
     case Outcome::singular_tangent:
@@ -54,6 +59,11 @@ std::string explanation(Outcome outcome) {
       return "the factorisation does not fit in memory";
     case Outcome::linear_solver_inaccurate:
       return "the linear solution is inaccurate: the tangent is close to singular";
+    case Outcome::damage_limit:
+      return "more bonds break at one load than loading.max_broken_bonds allows, however small the "
+             "step: a limit point, from which the crack runs by itself";
+    case Outcome::fragmented:
+      return "a piece has come off (solver.fragments = \"stop\")";
     case Outcome::interrupted:
       return "interrupted";
   }
@@ -72,6 +82,17 @@ void evaluate(const EquilibriumProblem& problem, std::span<const double> externa
   }
   trial.residual_norm = std::sqrt(squared);
   trial.degenerate = stored.degenerate || !std::isfinite(squared);
+}
+
+double residual_scale(const EquilibriumProblem& problem, std::span<const double> external_force,
+                      const Trial& old_state, const Trial& after_jump) {
+  double reactions = 0.0;
+  for (std::size_t dof = 0; dof < external_force.size(); ++dof) {
+    if (problem.free.equation[dof] != FreeDofs::none) continue;
+    const double reaction = old_state.gradient[dof] - external_force[dof];
+    reactions += reaction * reaction;
+  }
+  return std::max({norm(external_force), std::sqrt(reactions), after_jump.residual_norm});
 }
 
 }  // namespace peristat

@@ -28,7 +28,9 @@ enum class Outcome {
   degenerate,             ///< an interaction has collapsed to zero, or values are not finite
   out_of_memory,          ///< of the linear solver
   linear_solver_inaccurate,
-  interrupted,  ///< by the person
+  damage_limit,  ///< more bonds break at once than allowed, however small the step
+  fragmented,    ///< a piece has come off, and that is to end the run
+  interrupted,   ///< by the person
 };
 
 [[nodiscard]] std::string name(Outcome outcome);
@@ -55,5 +57,12 @@ struct Trial {
 /// Evaluates energy and gradient at trial.displacement.
 void evaluate(const EquilibriumProblem& problem, std::span<const double> external_force,
               Trial& trial);
+
+/// Norm that the residual of a step is measured against [N]: the largest of ||f_ext||, of the
+/// reactions in the old state, and of the residual right after the step's jump of supports and
+/// loads.
+[[nodiscard]] double residual_scale(const EquilibriumProblem& problem,
+                                    std::span<const double> external_force, const Trial& old_state,
+                                    const Trial& after_jump);
 
 }  // namespace peristat

@@ -2,9 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <utility>
 
+#include "assembly/damage.hpp"
 #include "solvers/vector_verbs.hpp"
+#include "src/conditions/fragments.hpp"
 
 namespace peristat {
 namespace {
@@ -12,8 +15,12 @@ namespace {
 /// A remainder of the load factor below this is round-off of the sum of steps.
 constexpr double end_tolerance = 1e-9;
 
-/// Forces that do work on the body: loads, and on prescribed degrees of freedom what holds them,
-/// which is dE/dx there.
+/// Where an implicit step that would damage a bond is cut to: this share of the interpolated way
+/// to the onset of damage.
+constexpr double share_to_onset = 0.98;
+
+/// Forces that do work on the body: loads, and on degrees of freedom without an equation what holds
+/// them, which is dE/dx there.
 std::vector<double> working_force(const FreeDofs& free, const std::vector<double>& external_force,
                                   const std::vector<double>& gradient) {
   std::vector<double> force = external_force;
@@ -31,102 +38,444 @@ double trapezoidal_work(const std::vector<double>& force0, const std::vector<dou
   return work;
 }
 
+Attempt to_attempt(NewtonResult result, double load_factor) {
+  return {result.outcome,
+          result.iterations,
+          load_factor,
+          result.inertia,
+          result.unstable_start,
+          std::move(result.state),
+          std::move(result.external_force)};
+}
+
+Attempt to_attempt(RelaxationResult result, double load_factor) {
+  return {result.outcome,
+          result.iterations,
+          load_factor,
+          {},
+          false,
+          std::move(result.state),
+          std::move(result.external_force)};
+}
+
 /// Whether a smaller step can help.
-bool worth_cutting(const NewtonResult& attempt) {
+bool worth_cutting(const Attempt& attempt) {
   const Outcome outcome = attempt.outcome;
   return !attempt.unstable_start && outcome != Outcome::interrupted &&
          outcome != Outcome::out_of_memory && outcome != Outcome::singular_tangent;
 }
 
+/// Whether relaxation may succeed where an implicit search has failed.
+bool worth_relaxing(const Attempt& attempt) {
+  return attempt.outcome != Outcome::interrupted && attempt.outcome != Outcome::out_of_memory;
+}
+
+std::string bonds_text(Index count) {
+  return std::to_string(count) + (count == 1 ? " bond" : " bonds");
+}
+
+/// What is left of the load, and how large a step of it is taken next.
+class Increment {
+ public:
+  Increment(int steps, double largest, const LoadSteppingOptions& options)
+      : options_(options),
+        largest_(largest > 0.0 ? largest : 1.0 / steps),
+        value_(std::min(1.0 / steps, largest_)) {}
+
+  [[nodiscard]] double value() const { return value_; }
+
+  /// Target of the next step; the last one is not left a remainder of round-off.
+  [[nodiscard]] double target(double load_factor) const {
+    const double rest = 1.0 - load_factor;
+    return rest - value_ > end_tolerance ? load_factor + value_ : 1.0;
+  }
+
+  [[nodiscard]] bool can_cut_to(double increment) const {
+    return options_.adaptive && increment >= options_.smallest_step;
+  }
+  void cut_to(double increment) { value_ = increment; }
+  /// @return whether it grew
+  bool grow() {
+    if (!options_.adaptive || value_ >= largest_) return false;
+    value_ = std::min(options_.growth * value_, largest_);
+    return true;
+  }
+  void reset() { value_ = largest_; }
+
+ private:
+  const LoadSteppingOptions& options_;
+  double largest_, value_;
+};
+
+class LoadPath {
+ public:
+  LoadPath(const SolvedBody& body, const Conditions& conditions, const LoadSteppingOptions& options,
+           const NewtonOptions& newton_options, const LoadSteppingObserver& observer,
+           const SolvedBody* stand_in)
+      : main_(body),
+        active_(stand_in ? stand_in : &main_),
+        conditions_(conditions),
+        options_(options),
+        newton_options_(newton_options),
+        observer_(observer),
+        implicit_(options.steps, options.largest_step, options),
+        relaxed_(options.relaxation_steps, 0.0, options),
+        relaxes_(options.mode == Mode::relaxation),
+        pinned_(conditions.prescribed().size(), 0) {
+    number_free_dofs();
+    const std::size_t dofs = pinned_.size();
+    result_.state.displacement.assign(dofs, 0.0);
+    std::vector<double> gradient(dofs), external_force(dofs);
+    conditions.external_force(0.0, external_force);
+    const Stored reference = assembler().gradient(result_.state.displacement, gradient);
+    force_ = working_force(*free_, external_force, gradient);
+    external_work_ = reference.energy;  // of a body that is not free of stress in the reference
+  }
+
+  LoadSteppingResult follow() {
+    while (1.0 - result_.state.load_factor > end_tolerance) {
+      const bool goes_on = relaxes_ ? relaxation_step() : implicit_step();
+      if (!goes_on) break;
+    }
+    return std::move(result_);
+  }
+
+ private:
+  [[nodiscard]] Assembler& assembler() { return active_->assembler; }
+  [[nodiscard]] EquilibriumProblem problem() { return {assembler(), conditions_, *free_}; }
+  [[nodiscard]] bool is_standing_in() const { return active_ != &main_; }
+  [[nodiscard]] int next_step() const { return result_.steps + 1; }
+
+  // ---- Implicit steps
+
+  bool implicit_step() {
+    const double load_factor = result_.state.load_factor;
+    const double target = implicit_.target(load_factor), attempted = target - load_factor;
+    Attempt attempt = search(result_.state, target, newton_options_);
+    if (attempt.outcome != Outcome::converged)
+      return implicit_failure(std::move(attempt), attempted);
+
+    const DamageGrowth growth = main_.assembler.growth(attempt.state.displacement);
+    if (options_.mode == Mode::adaptive && growth.utilisation > 1.0) {
+      return approach_damage(growth, target, attempted);
+    }
+    if (options_.max_broken_bonds > 0 && growth.breaking > options_.max_broken_bonds) {
+      attempt.outcome = Outcome::damage_limit;
+      return implicit_failure(std::move(attempt), attempted, bonds_text(growth.breaking));
+    }
+    const bool grows = attempt.iterations <= options_.easy_iterations && implicit_.grow();
+    tell(target, attempted, attempt.outcome, grows ? "accept and grow" : "accept",
+         implicit_.value(), std::to_string(attempt.iterations) + " iterations");
+    StepRecord record;
+    record.mode = "newton";
+    record.newton_iterations = attempt.iterations;
+    const std::vector<double> next =
+        working_force(*free_, attempt.external_force, attempt.state.gradient);
+    external_work_ +=
+        trapezoidal_work(force_, next, result_.state.displacement, attempt.state.displacement);
+    return accept(std::move(record), std::move(attempt), growth);
+  }
+
+  /// An implicit step has converged to a state that would damage bonds.
+  bool approach_damage(const DamageGrowth& growth, double target, double attempted) {
+    const double before = main_.assembler.growth(result_.state.displacement).utilisation;
+    const double share = (1.0 - before) / (growth.utilisation - before);
+    const double rest = share_to_onset * std::min(share, 1.0) * attempted;
+    const std::string why = bonds_text(growth.degrading) +
+                            " would be damaged, the most stretched " + "to " +
+                            std::to_string(growth.utilisation) + " of what it bears";
+    const bool near = rest < relaxed_.value() || is_near_onset_;
+    if (!near && implicit_.can_cut_to(rest)) {
+      is_near_onset_ = true;
+      implicit_.cut_to(rest);
+      tell(target, attempted, Outcome::converged, "cut", rest, why);
+      return true;
+    }
+    return hand_over(target, attempted, Outcome::converged, why);
+  }
+
+  bool implicit_failure(Attempt attempt, double attempted, const std::string& what = {}) {
+    const double target = attempt.load_factor;
+    std::string reason = explanation(attempt.outcome) + (what.empty() ? "" : " (" + what + ")");
+    if (attempt.inertia && attempt.inertia->negative > 0) {
+      reason += " (" + std::to_string(attempt.inertia->negative) + " negative pivots)";
+    }
+    if (options_.mode == Mode::adaptive && worth_relaxing(attempt)) {
+      return hand_over(target, attempted, attempt.outcome, reason);
+    }
+    const double next = attempted * options_.cut;
+    if (worth_cutting(attempt) && implicit_.can_cut_to(next)) {
+      implicit_.cut_to(next);
+      tell(target, attempted, attempt.outcome, "cut", next, reason);
+      return true;
+    }
+    return stop(std::move(attempt), attempted, reason);
+  }
+
+  Attempt search(const State& from, double target, const NewtonOptions& options) {
+    const int step = next_step();
+    return to_attempt(newton(problem(), active_->solver, active_->tangent, from, target, options,
+                             [&](IterationRecord row) { return told(step, row); }),
+                      target);
+  }
+
+  bool told(int step, IterationRecord row) {
+    row.step = step;
+    if (observer_.iteration) observer_.iteration(row);
+    return observer_.interrupted && observer_.interrupted();
+  }
+
+  // ---- Hand-over
+
+  bool hand_over(double target, double attempted, Outcome outcome, const std::string& why) {
+    std::string reason = why;
+    if (is_standing_in()) {
+      if (!take_up_body()) return false;
+      reason += "; the body with the horizon of damage takes the place of its stand-in";
+    }
+    relaxes_ = true;
+    is_near_onset_ = false;
+    motion_ = {};
+    tell(target, attempted, outcome, "hand over to relaxation", relaxed_.value(), reason);
+    return true;
+  }
+
+  /// Equilibrium of the body itself at the load that its stand-in has reached.
+  bool take_up_body() {
+    active_ = &main_;
+    const double load_factor = result_.state.load_factor;
+    Attempt attempt = search(result_.state, load_factor, newton_options_);
+    if (attempt.outcome != Outcome::converged) {
+      const std::string reason = explanation(attempt.outcome);
+      return stop(std::move(attempt), 0.0, reason);
+    }
+    result_.state.displacement = attempt.state.displacement;
+    force_ = working_force(*free_, attempt.external_force, attempt.state.gradient);
+    external_work_ = attempt.state.stored_energy;
+    return true;
+  }
+
+  void hand_back() {
+    relaxes_ = false;
+    implicit_.reset();
+    tell(result_.state.load_factor, 0.0, Outcome::converged, "hand back to newton",
+         implicit_.value(), "no bond was damaged in the last step, which ended in equilibrium");
+  }
+
+  // ---- Relaxed steps
+
+  bool relaxation_step() {
+    const double load_factor = result_.state.load_factor;
+    const double target = relaxed_.target(load_factor), attempted = target - load_factor;
+    const bool may_fail = !main_.assembler.history().empty();
+    std::vector<double> history(assembler().history().begin(), assembler().history().end());
+    const RelaxationMotion motion = motion_;
+    const int step = next_step();
+    const RelaxationObserver observer = [&](IterationRecord row) { return told(step, row); };
+
+    RelaxationOptions options = options_.relaxation;
+    const bool newton_finishes = options_.mode == Mode::adaptive && options.holds;
+    if (newton_finishes) {
+      options.relative_tolerance =
+          std::max(options_.newton_takes_over_at, options.relative_tolerance);
+    }
+    RelaxationResult relaxed =
+        relax(problem(), active_->tangent, result_.state, target, options, motion_, observer);
+    int newton_iterations = 0;
+    double drained = relaxed.drained_energy, work = relaxed.external_work;
+    int iterations = relaxed.iterations;
+    DamageGrowth growth = relaxed.growth;
+    const double in_motion = relaxed.kinetic_energy;
+    const double scale = relaxed.scale, energy = relaxed.state.total_energy;
+    Attempt attempt = to_attempt(std::move(relaxed), target);
+    if (newton_finishes && attempt.outcome == Outcome::converged) {
+      const State near{attempt.state.displacement, target};
+      NewtonOptions finish = newton_options_;
+      finish.least_scale = scale;
+      Attempt finished = search(near, target, finish);
+      newton_iterations = finished.iterations;
+      if (finished.outcome == Outcome::converged) {
+        drained += energy - finished.state.total_energy;
+        work += dot(finished.external_force, finished.state.displacement) -
+                dot(finished.external_force, attempt.state.displacement);
+        attempt = std::move(finished);
+      } else if (worth_relaxing(finished)) {
+        options.relative_tolerance = options_.relaxation.relative_tolerance;
+        options.least_scale = scale;
+        RelaxationResult rest =
+            relax(problem(), active_->tangent, near, target, options, motion_, observer);
+        iterations += rest.iterations;
+        drained += rest.drained_energy;
+        work += rest.external_work;
+        growth.degrading += rest.growth.degrading;
+        growth.breaking += rest.growth.breaking;
+        attempt = to_attempt(std::move(rest), target);
+      } else {
+        attempt = std::move(finished);
+      }
+    }
+    if (attempt.outcome != Outcome::converged) {
+      assembler().restore(history);
+      motion_ = motion;
+      const double next = attempted * options_.cut;
+      const std::string reason = explanation(attempt.outcome);
+      if (worth_cutting(attempt) && relaxed_.can_cut_to(next)) {
+        relaxed_.cut_to(next);
+        tell(target, attempted, attempt.outcome, "cut", next, reason);
+        return true;
+      }
+      return stop(std::move(attempt), attempted, reason);
+    }
+
+    external_work_ += work;
+    drained_energy_ += drained;
+    in_motion_ = in_motion;
+    if (options.breaking == Breaking::at_equilibrium) {
+      growth = assembler().growth(attempt.state.displacement);
+    }
+    const bool grew = relaxed_.grow();
+    tell(target, attempted, attempt.outcome, grew ? "accept and grow" : "accept", relaxed_.value(),
+         std::to_string(iterations) + " iterations of relaxation");
+    StepRecord record;
+    record.mode = "relaxation";
+    record.relaxation_iterations = iterations;
+    record.newton_iterations = newton_iterations;
+    if (!accept(std::move(record), std::move(attempt), growth)) return false;
+    const bool hands_back =
+        options_.mode == Mode::adaptive && options.holds && (!may_fail || growth.degrading == 0);
+    if (hands_back && 1.0 - result_.state.load_factor > end_tolerance) hand_back();
+    return true;
+  }
+
+  // ---- What follows a search
+
+  void tell(double load_factor, double increment, Outcome outcome, const std::string& action,
+            double next, const std::string& reason) {
+    if (!observer_.decision) return;
+    DecisionRecord decision;
+    decision.step = next_step();
+    decision.load_factor = load_factor;
+    decision.increment = increment;
+    decision.outcome = name(outcome);
+    decision.action = action;
+    decision.next_increment = next;
+    decision.reason = reason;
+    observer_.decision(decision);
+  }
+
+  bool stop(Attempt attempt, double attempted, const std::string& reason) {
+    tell(attempt.load_factor, attempted, attempt.outcome, "stop", 0.0, reason);
+    result_.outcome = attempt.outcome;
+    result_.last_attempt = std::move(attempt);
+    return false;
+  }
+
+  /// Commits a state, finds what has come off and tells the step.
+  bool accept(StepRecord record, Attempt attempt, const DamageGrowth& growth) {
+    if (!is_standing_in() && growth.degrading > 0) {
+      attempt.state.stored_energy = assembler().commit(attempt.state.displacement).energy;
+    }
+    result_.state = {attempt.state.displacement, attempt.load_factor};
+    ++result_.steps;
+    is_near_onset_ = is_near_onset_ && !relaxes_;
+    force_ = working_force(*free_, attempt.external_force, attempt.state.gradient);
+
+    const Assembler& assembler = active_->assembler;
+    std::vector<double> damage(std::size_t(assembler.points().count()));
+    const DamageState damaged = assess_damage(assembler.model(), assembler.history(), {}, damage);
+    if (growth.breaking > 0) find_pieces();
+
+    record.step = result_.steps;
+    record.load_factor = attempt.load_factor;
+    record.stored_energy = attempt.state.stored_energy;
+    record.dissipated_energy = damaged.dissipated_energy;
+    record.drained_energy = drained_energy_ + in_motion_;
+    record.external_work = external_work_;
+    record.balance_error =
+        external_work_ - record.stored_energy - record.dissipated_energy - record.drained_energy;
+    record.broken_bonds = damaged.broken_bonds;
+    record.reactions = conditions_.reactions(attempt.state.gradient, attempt.external_force);
+    if (observer_.accepted) {
+      observer_.accepted(
+          record, {attempt.state, attempt.external_force, assembler.history(), pieces_.piece});
+    }
+    result_.last_attempt = std::move(attempt);
+    return resolve_fragments();
+  }
+
+  // ---- Fragments
+
+  void find_pieces() {
+    const Assembler& assembler = active_->assembler;
+    pieces_ = find_fragments(assembler.points(), assembler.model().bonds,
+                             broken_bonds(assembler.model(), assembler.history()),
+                             conditions_.prescribed(), result_.state.displacement);
+    if (options_.fragments == FragmentRemedy::remove) {
+      const int d = assembler.points().dimension;
+      for (std::size_t dof = 0; dof < pieces_.pinned.size(); ++dof) {
+        pieces_.pinned[dof] |= pieces_.piece[dof / std::size_t(d)] > 0;
+      }
+    }
+  }
+
+  /// Pins what has come free.
+  bool resolve_fragments() {
+    if (pieces_.pinned.empty() || pieces_.pinned == pinned_) return true;
+    const std::string what = std::to_string(pieces_.count) + " floating pieces, " +
+                             std::to_string(pieces_.loose.size()) + " loose points";
+    const double load_factor = result_.state.load_factor;
+    if (options_.fragments == FragmentRemedy::stop && pieces_.count > 0) {
+      Attempt attempt = std::move(result_.last_attempt);
+      attempt.outcome = Outcome::fragmented;
+      return stop(std::move(attempt), 0.0, what);
+    }
+    const bool removes = options_.fragments == FragmentRemedy::remove;
+    pinned_ = pieces_.pinned;
+    tell(load_factor, 0.0, Outcome::converged, removes ? "remove fragments" : "hold fragments",
+         relaxes_ ? relaxed_.value() : implicit_.value(), what);
+    number_free_dofs();
+    motion_ = {};
+    if (active_->solver.analyze(active_->tangent.pattern, *free_) == LinearOutcome::solved) {
+      return true;
+    }
+    Attempt attempt = std::move(result_.last_attempt);
+    attempt.outcome = Outcome::out_of_memory;
+    return stop(std::move(attempt), 0.0, explanation(Outcome::out_of_memory));
+  }
+
+  void number_free_dofs() {
+    std::vector<char> without_equation = conditions_.prescribed();
+    for (std::size_t dof = 0; dof < pinned_.size(); ++dof) without_equation[dof] |= pinned_[dof];
+    free_ = std::make_unique<FreeDofs>(without_equation, main_.assembler.points().dimension);
+  }
+
+  SolvedBody main_;
+  const SolvedBody* active_;
+  const Conditions& conditions_;
+  const LoadSteppingOptions& options_;
+  const NewtonOptions& newton_options_;
+  const LoadSteppingObserver& observer_;
+  Increment implicit_, relaxed_;
+  bool relaxes_;
+  bool is_near_onset_ = false;  // an implicit step was cut to end just before damage begins
+  std::vector<char> pinned_;    // per degree of freedom
+  std::unique_ptr<FreeDofs> free_;
+  Fragments pieces_;
+  RelaxationMotion motion_;
+  std::vector<double> force_;  // that does work, in the last accepted state
+  double external_work_ = 0.0, drained_energy_ = 0.0;
+  double in_motion_ = 0.0;  // kinetic energy of relaxation that does not hold
+  LoadSteppingResult result_;
+};
+
 }  // namespace
 
-LoadSteppingResult follow_loading(const EquilibriumProblem& problem, LinearSolver& solver,
-                                  Tangent& tangent, const LoadSteppingOptions& options,
+LoadSteppingResult follow_loading(const SolvedBody& body, const Conditions& conditions,
+                                  const LoadSteppingOptions& options,
                                   const NewtonOptions& newton_options,
-                                  const LoadSteppingObserver& observer) {
-  const std::size_t dofs = problem.free.equation.size();
-  LoadSteppingResult result;
-  result.state.displacement.assign(dofs, 0.0);
-
-  std::vector<double> gradient(dofs), external_force(dofs);
-  problem.conditions.external_force(0.0, external_force);
-  const Stored reference = problem.assembler.gradient(result.state.displacement, gradient);
-  std::vector<double> force = working_force(problem.free, external_force, gradient);
-  double external_work = reference.energy;  // of a body that is not free of stress in the reference
-
-  const double nominal = 1.0 / options.steps;
-  const double largest = options.largest_step > 0.0 ? options.largest_step : nominal;
-  double increment = std::min(nominal, largest);
-
-  while (1.0 - result.state.load_factor > end_tolerance) {
-    const double rest = 1.0 - result.state.load_factor;
-    const double attempted = rest - increment > end_tolerance ? increment : rest;
-    const double target = attempted == rest ? 1.0 : result.state.load_factor + attempted;
-    const int step = result.steps + 1;
-    NewtonResult attempt = newton(problem, solver, tangent, result.state, target, newton_options,
-                                  [&](IterationRecord row) {
-                                    row.step = step;
-                                    if (observer.iteration) observer.iteration(row);
-                                    return observer.interrupted && observer.interrupted();
-                                  });
-    DecisionRecord decision;
-    decision.step = step;
-    decision.load_factor = target;
-    decision.increment = attempted;
-    decision.outcome = name(attempt.outcome);
-    decision.next_increment = increment;
-
-    if (attempt.outcome == Outcome::converged) {
-      const bool easy = attempt.iterations <= options.easy_iterations;
-      decision.action = "accept";
-      decision.reason = std::to_string(attempt.iterations) + " iterations";
-      if (options.adaptive && easy && increment < largest) {
-        increment = std::min(options.growth * increment, largest);
-        decision.action = "accept and grow";
-        decision.next_increment = increment;
-      }
-      const std::vector<double> next_force =
-          working_force(problem.free, attempt.external_force, attempt.state.gradient);
-      external_work += trapezoidal_work(force, next_force, result.state.displacement,
-                                        attempt.state.displacement);
-      force = next_force;
-      result.state.displacement = attempt.state.displacement;
-      result.state.load_factor = target;
-      result.steps = step;
-
-      StepRecord record;
-      record.step = step;
-      record.load_factor = target;
-      record.mode = "newton";
-      record.newton_iterations = attempt.iterations;
-      record.stored_energy = attempt.state.stored_energy;
-      record.external_work = external_work;
-      record.balance_error = external_work - record.stored_energy;
-      record.reactions =
-          problem.conditions.reactions(attempt.state.gradient, attempt.external_force);
-      if (observer.decision) observer.decision(decision);
-      if (observer.accepted) observer.accepted(record, attempt);
-      result.last_attempt = std::move(attempt);
-      continue;
-    }
-
-    const double next = attempted * options.cut;
-    const bool cut = options.adaptive && worth_cutting(attempt) && next >= options.smallest_step;
-    decision.reason = explanation(attempt.outcome);
-    if (attempt.inertia && attempt.inertia->negative > 0) {
-      decision.reason += " (" + std::to_string(attempt.inertia->negative) + " negative pivots)";
-    }
-    decision.action = cut ? "cut" : "stop";
-    decision.next_increment = cut ? next : 0.0;
-    if (observer.decision) observer.decision(decision);
-    if (!cut) {
-      result.outcome = attempt.outcome;
-      result.last_attempt = std::move(attempt);
-      return result;
-    }
-    increment = next;
-  }
-  return result;
+                                  const LoadSteppingObserver& observer,
+                                  const SolvedBody* stand_in) {
+  return LoadPath(body, conditions, options, newton_options, observer, stand_in).follow();
 }
 
 }  // namespace peristat

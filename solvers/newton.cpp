@@ -10,18 +10,6 @@
 namespace peristat {
 namespace {
 
-/// Norms that a residual is measured against [N].
-double residual_scale(const EquilibriumProblem& problem, std::span<const double> external_force,
-                      const Trial& old_state, const Trial& after_jump) {
-  double reactions = 0.0;
-  for (std::size_t dof = 0; dof < external_force.size(); ++dof) {
-    if (problem.free.equation[dof] != FreeDofs::none) continue;
-    const double reaction = old_state.gradient[dof] - external_force[dof];
-    reactions += reaction * reaction;
-  }
-  return std::max({norm(external_force), std::sqrt(reactions), after_jump.residual_norm});
-}
-
 Outcome outcome_of(LinearOutcome linear) {
   switch (linear) {
     case LinearOutcome::solved:
@@ -135,7 +123,8 @@ NewtonResult newton(const EquilibriumProblem& problem, LinearSolver& solver, Tan
   std::vector<double> jump = current.displacement;
   add_scaled(jump, -1.0, from.displacement);
   evaluate(problem, external_force, current);
-  const double scale = residual_scale(problem, external_force, old_state, current);
+  const double scale =
+      std::max(residual_scale(problem, external_force, old_state, current), options.least_scale);
 
   const auto record = [&](IterationRecord row) {
     row.residual = current.residual_norm;

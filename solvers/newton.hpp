@@ -33,6 +33,7 @@ struct NewtonOptions {
   /// negative pivots, four times as much up to 1; this is the least.
   double least_projection = 1.0 / 16.0;
   LineSearchOptions line_search;
+  double least_scale = 0.0;  ///< the residual is measured against no less than this [N]
 };
 
 struct NewtonResult {

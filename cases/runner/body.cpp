@@ -64,6 +64,40 @@ double micromodulus_of(const Case& from, const BondSetting& setting) {
                                : micromodulus(*material.youngs_modulus, setting);
 }
 
+BondPotential bond_potential(const DamageSpecification& damage, double micromodulus) {
+  switch (damage.law) {
+    case DamageLaw::none:
+      return Harmonic{micromodulus};
+    case DamageLaw::critical_stretch:
+      return Degraded<CriticalStretch>{micromodulus, {damage.critical}};
+    case DamageLaw::tanh:
+      return Degraded<TanhDegradation>{micromodulus, {damage.onset, damage.critical, damage.rate}};
+    case DamageLaw::tanh_continuous:
+      break;
+  }
+  return Degraded<TanhDegradation>{
+      micromodulus, TanhDegradation::continuous(damage.onset, damage.critical, damage.rate)};
+}
+
+/// Flags of the bonds of the points of the sets that never fail; empty without such sets.
+std::vector<char> never_failing_bonds(const Case& from, const Points& points, const Bonds& bonds) {
+  const std::vector<std::string>& sets = from.material.damage.no_fail;
+  if (sets.empty()) return {};
+  std::vector<char> of_point(std::size_t(points.count())), of_bond(std::size_t(bonds.count()));
+  for (const std::string& set : sets) {
+    const auto members = points.sets.find(set);
+    if (members == points.sets.end())
+      throw InputError("material.damage.no_fail", '"' + set + '"', "no set of this name");
+    for (const Index i : members->second) of_point[i] = 1;
+  }
+  for (Index i = 0; i < bonds.points(); ++i) {
+    for (Offset bond = bonds.offset[i]; bond < bonds.offset[i + 1]; ++bond) {
+      of_bond[bond] = of_point[i] | of_point[bonds.partner[bond]];
+    }
+  }
+  return of_bond;
+}
+
 /// Refuses a lattice that can't fit before any of its points is made.
 void require_memory_for_lattice(const Case& from, const Lattice& lattice) {
   const double points = estimate_points(lattice);
@@ -122,10 +156,14 @@ Points make_points_of(const Case& from) {
       points.sets[rule.name] = std::move(members);
     }
     for (std::size_t k = 0; k < from.probes.size(); ++k) {
-      if (!points.sets.contains(from.probes[k].set)) {
-        throw InputError("probe[" + std::to_string(k) + "].set", '"' + from.probes[k].set + '"',
-                         "no set of this name");
-      }
+      const ProbeSpecification& probe = from.probes[k];
+      const std::string table = "probe[" + std::to_string(k) + "]";
+      const auto require = [&](const std::string& key, const std::string& set) {
+        if (set.empty() || points.sets.contains(set)) return;
+        throw InputError(table + key, '"' + set + '"', "no set of this name");
+      };
+      require(".set", probe.set);
+      require(".other", probe.other);
     }
     return points;
   });
@@ -161,15 +199,44 @@ std::unique_ptr<const Body> make_body(const Case& from, int threads) {
       const Stopwatch watch(body.seconds_neighbourhood);
       Bonds bonds = make_bonds(body.points, {from.volume_correction, from.surface_correction},
                                body.setting, threads);
-      body.model = from.material.model == MaterialModel::cpd
-                       ? make_cpd_model(from, body.points, body.setting, std::move(bonds), threads)
-                       : Model{std::move(bonds), Harmonic{micromodulus_of(from, body.setting)}};
+      const Offset whole = bonds.count();
+      if (from.material.model == MaterialModel::cpd) {
+        body.model = make_cpd_model(from, body.points, body.setting, std::move(bonds),
+                                    body.cut_weight, threads);
+      } else {
+        // Corrections near surfaces are those of the whole body: a crack is no surface.
+        body.cut_weight = cut_bonds(bonds, body.points, from.cracks);
+        body.model = Model{std::move(bonds), bond_potential(from.material.damage,
+                                                            micromodulus_of(from, body.setting))};
+      }
+      body.cut_bonds = whole - body.model.bonds.count();
+      body.model.never_fails = never_failing_bonds(from, body.points, body.model.bonds);
     }
     body.conditions = std::make_unique<Conditions>(body.points, from.supports, from.loads);
     const Stopwatch watch(body.seconds_neighbourhood);
     store_interactions(body, threads);
   });
   return owned;
+}
+
+std::optional<Model> make_elastic_stand_in(const Case& from, const Body& body, int threads) {
+  if (from.solver.elastic_horizon_ratio == 0.0 || from.solver.mode != Mode::adaptive) return {};
+  return located_errors(from, [&]() -> std::optional<Model> {
+    const std::string key = "solver.elastic_horizon_ratio";
+    if (from.material.model != MaterialModel::bond || !from.material.youngs_modulus)
+      throw InputError(key, number_text(from.solver.elastic_horizon_ratio),
+                       "needs the bond model with a youngs_modulus: a micromodulus belongs to one "
+                       "horizon");
+    BondSetting setting = body.setting;
+    setting.horizon = from.solver.elastic_horizon_ratio * body.points.spacing;
+    Bonds bonds = make_bonds(body.points, {from.volume_correction, from.surface_correction},
+                             setting, threads);
+    static_cast<void>(cut_bonds(bonds, body.points, from.cracks));
+    if (!free_motions(body.points, bonds, body.conditions->prescribed()).empty())
+      throw InputError(key, number_text(from.solver.elastic_horizon_ratio),
+                       "leaves points that may move freely");
+    return Model{std::move(bonds), Harmonic{micromodulus(*from.material.youngs_modulus, setting)}};
+  });
 }
 
 MemoryEstimate estimate_memory(const Body& body) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -31,6 +32,8 @@ struct Body {
   Model model;
   std::unique_ptr<Conditions> conditions;  // refers to points
   InteractionStorage interaction_storage;
+  std::vector<double> cut_weight;  ///< per point, of the bonds that pre-cracks have cut [m6]
+  Offset cut_bonds = 0;
   double seconds_neighbourhood = 0.0;
 
   [[nodiscard]] double horizon_ratio() const { return setting.horizon / points.spacing; }
@@ -44,6 +47,11 @@ struct Body {
 /// The whole body.
 /// @throws InputError (with place), MemoryError if the estimate exceeds the memory available
 [[nodiscard]] std::unique_ptr<const Body> make_body(const Case& from, int threads);
+
+/// The same points and conditions with elastic bonds of another horizon (solver.
+/// elastic_horizon_ratio), or nothing if the case asks for none.
+[[nodiscard]] std::optional<Model> make_elastic_stand_in(const Case& from, const Body& body,
+                                                         int threads);
 
 /// Body size for the memory estimate.
 [[nodiscard]] BodySize size_of(const Points& points);

@@ -69,12 +69,13 @@ std::string set_name(const TomlTable& table, Context& context) {
 }
 
 /// Name of a set that must be there.
-std::string known_set(const TomlTable& table, const Context& context) {
-  const std::string text = table.string("set");
+std::string known_set(const TomlTable& table, const Context& context,
+                      const std::string& key = "set") {
+  const std::string text = table.string(key);
   if (context.names.count(text) > 0 || context.sets_from_file) return text;
   std::vector<std::string> names;
-  for (const auto& [key, path] : context.names) names.push_back(key);
-  table.refuse("set",
+  for (const auto& [known, path] : context.names) names.push_back(known);
+  table.refuse(key,
                "no set or layer of this name" + did_you_mean(text, names) +
                    (names.empty() ? "; the case has none" : "  (there: " + listed(names) + ")"));
 }
@@ -273,6 +274,44 @@ MaterialSpecification read_material(const TomlTable& table, int dimension) {
   return material;
 }
 
+DamageSpecification read_damage(const TomlTable& table, const Context& context) {
+  DamageSpecification damage;
+  damage.law = table.choice("law", damage_laws, damage.law);
+  for (const std::string& set : table.strings("no_fail")) {
+    if (context.names.count(set) == 0 && !context.sets_from_file)
+      table.refuse("no_fail", "there is no set or layer \"" + set + "\"");
+    damage.no_fail.push_back(set);
+  }
+  if (damage.law == DamageLaw::none) return damage;
+  damage.critical = table.number("critical", Range::between(1e-9, 1e3));
+  if (damage.law == DamageLaw::critical_stretch) {
+    for (const char* key : {"onset", "rate"})
+      if (table.has(key)) table.refuse(key, "is for the tanh laws");
+    return damage;
+  }
+  damage.onset = table.number("onset", Range::between(1e-9, 1e3));
+  if (!(damage.onset < damage.critical * (1.0 - 1e-9)))
+    table.refuse("onset", "must be smaller than critical");
+  damage.rate = table.number("rate", Range::between(0.1, 50.0), damage.rate);
+  return damage;
+}
+
+Crack read_crack(const TomlTable& table, int dimension) {
+  Crack crack;
+  if (dimension == 2) {
+    if (table.has("vertices")) table.refuse("vertices", "is for dimension 3; 2D has from and to");
+    crack = CrackSegment{coordinates(table, "from", 2), coordinates(table, "to", 2)};
+  } else if (dimension == 3) {
+    for (const char* key : {"from", "to"})
+      if (table.has(key)) table.refuse(key, "is for dimension 2; 3D has vertices");
+    crack = CrackPolygon{table.triples("vertices")};
+  } else {
+    table.refuse("", "there are no cracks in dimension 1; subtract a box instead");
+  }
+  check_crack(crack, dimension, table.path());
+  return crack;
+}
+
 SupportSpecification read_support(const TomlTable& table, const Context& context) {
   SupportSpecification support;
   support.set = known_set(table, context);
@@ -319,12 +358,14 @@ LoadingSpecification read_loading(const TomlTable& table) {
     table.refuse("smallest_step", "must not be larger than the first step, 1 / steps");
   if (loading.largest_step < step)
     table.refuse("largest_step", "must not be smaller than the first step, 1 / steps");
+  loading.max_broken_bonds = static_cast<int>(
+      table.integer("max_broken_bonds", 0, 1'000'000'000, loading.max_broken_bonds));
   return loading;
 }
 
 SolverSpecification read_solver(const TomlTable& table) {
   SolverSpecification solver;
-  solver.mode = table.one_of("mode", {"newton"}, solver.mode);
+  solver.mode = table.choice("mode", modes, solver.mode);
   solver.linear = table.one_of("linear", {"auto", "cholesky"}, solver.linear);
   solver.predictor = table.choice("predictor", predictors, solver.predictor);
   solver.projection = table.choice("projection", projections, solver.projection);
@@ -332,7 +373,43 @@ SolverSpecification read_solver(const TomlTable& table) {
       table.number("relative_tolerance", Range::between(1e-14, 1e-2), solver.relative_tolerance);
   solver.max_iterations =
       static_cast<int>(table.integer("max_iterations", 1, 1000, solver.max_iterations));
+  solver.fragments = table.choice("fragments", fragment_remedies, solver.fragments);
+  if (table.has("elastic_horizon_ratio"))
+    solver.elastic_horizon_ratio = table.number("elastic_horizon_ratio", Range::between(1.0, 1e3));
   return solver;
+}
+
+RelaxationSpecification read_relaxation(const TomlTable& table, int default_steps,
+                                        double relative_tolerance) {
+  RelaxationSpecification relaxation;
+  RelaxationOptions& options = relaxation.options;
+  const auto count = [&](const char* key, std::int64_t low, int fallback) {
+    return static_cast<int>(table.integer(key, low, 1'000'000'000, fallback));
+  };
+  relaxation.moving = table.one_of("load", {"fixed", "moving"}, "fixed") == "moving";
+  relaxation.steps = count("steps", 1, default_steps);
+  if (relaxation.moving) {
+    for (const char* key : {"ramp", "quiet_iterations"})
+      if (table.has(key)) table.refuse(key, "is for load = \"fixed\"");
+    relaxation.iterations = count("iterations", 1, relaxation.iterations);
+    if (relaxation.iterations < relaxation.steps)
+      table.refuse("iterations", "must not be fewer than the steps that are told");
+  } else if (table.has("iterations")) {
+    table.refuse("iterations", "is for load = \"moving\"");
+  }
+  options.holds = !relaxation.moving;
+  options.ramp =
+      relaxation.moving ? relaxation.iterations / relaxation.steps : count("ramp", 1, options.ramp);
+  options.breaking = table.choice("breaking", breakings,
+                                  relaxation.moving ? Breaking::transient : options.breaking);
+  options.damping = table.choice("damping", dampings, options.damping);
+  options.mass_factor = table.number("mass_factor", Range::between(1.0, 1e6), options.mass_factor);
+  options.max_iterations = count("max_iterations", 1, options.max_iterations);
+  options.quiet_iterations = count("quiet_iterations", 0, options.quiet_iterations);
+  options.displacement_tolerance = table.number("displacement_tolerance", Range::between(0.0, 1.0),
+                                                options.displacement_tolerance);
+  options.relative_tolerance = relative_tolerance;
+  return relaxation;
 }
 
 /// results/FOLDER_STEM, so that shipped cases of one name in several folders don't collide.
@@ -348,6 +425,7 @@ OutputSpecification read_output(const TomlTable& table, const std::filesystem::p
   output.directory = table.string("directory", default_directory(case_file).string());
   if (output.directory.empty()) table.refuse("directory", "is empty");
   output.every = static_cast<int>(table.integer("every", 1, 1'000'000'000, output.every));
+  output.count_cracks = table.boolean("count_cracks", output.count_cracks);
   return output;
 }
 
@@ -357,12 +435,23 @@ ProbeSpecification read_probe(const TomlTable& table, const Context& context,
   probe.name = name(table);
   if (!names.insert(probe.name).second) table.refuse("name", "another probe has this name");
   probe.set = known_set(table, context);
-  probe.field = table.one_of(
-      "field", {"displacement", "force", "damage", "energy_density", "poisson_ratio"}, probe.field);
-  const bool is_ratio = probe.field == "poisson_ratio";
+  probe.field = table.one_of("field",
+                             {"displacement", "force", "damage", "stretch", "energy_density",
+                              "poisson_ratio", "opening", "crack_length"},
+                             probe.field);
+  const bool is_ratio = probe.field == "poisson_ratio", is_length = probe.field == "crack_length";
   if (is_ratio && context.dimension == 1)
     table.refuse("field", "there is no Poisson's ratio in dimension 1");
-  if (!is_ratio && table.has("axis")) table.refuse("axis", "is for field \"poisson_ratio\"");
+  if (!is_ratio && !is_length && table.has("axis"))
+    table.refuse("axis", "is for fields \"poisson_ratio\" and \"crack_length\"");
+  if (is_length)
+    probe.threshold = table.number("threshold", Range::between(1e-6, 1.0), probe.threshold);
+  else if (table.has("threshold"))
+    table.refuse("threshold", "is for field \"crack_length\"");
+  if (probe.field == "opening")
+    probe.other = known_set(table, context, "other");
+  else if (table.has("other"))
+    table.refuse("other", "is for field \"opening\"");
   const std::vector<std::string> axes{"x", "y", "z"};
   const std::vector<std::string> present(axes.begin(), axes.begin() + context.dimension);
   probe.axis = table.one_of("axis", present, "x")[0] - 'x';
@@ -418,7 +507,13 @@ void read_document(const TomlValue& document, const std::filesystem::path& file,
 
   result.weights = quadrature.choice("weights", interaction_weights, result.weights);
 
-  result.material = read_material(root.table("material"), result.dimension);
+  for (const auto& crack : root.tables("crack"))
+    result.cracks.push_back(read_crack(crack, result.dimension));
+
+  const TomlTable material = root.table("material");
+  result.material = read_material(material, result.dimension);
+  if (material.has("damage"))
+    result.material.damage = read_damage(material.table("damage"), context);
   const bool is_cpd = result.material.model == MaterialModel::cpd;
   const std::vector<std::string> not_of_model =
       is_cpd ? std::vector<std::string>{"volume_correction", "surface_correction"}
@@ -433,6 +528,8 @@ void read_document(const TomlValue& document, const std::filesystem::path& file,
   for (const auto& load : root.tables("load")) result.loads.push_back(read_load(load, context));
   result.loading = read_loading(optional_table("loading"));
   result.solver = read_solver(optional_table("solver"));
+  result.relaxation = read_relaxation(optional_table("relaxation"), result.loading.steps,
+                                      result.solver.relative_tolerance);
   result.output = read_output(optional_table("output"), file);
   std::set<std::string> probe_names;
   for (const auto& probe : root.tables("probe"))

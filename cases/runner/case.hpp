@@ -10,10 +10,11 @@
 #include <vector>
 
 #include "cases/runner/case_location.hpp"
-#include "solvers/newton.hpp"
+#include "solvers/load_stepping.hpp"
 #include "src/conditions/specification.hpp"
 #include "src/input_error.hpp"
 #include "src/materials/bond_constants.hpp"
+#include "src/neighbourhood/crack.hpp"
 #include "src/neighbourhood/effective_volumes.hpp"
 #include "src/neighbourhood/quadrature.hpp"
 #include "src/points/lattice.hpp"
@@ -34,6 +35,17 @@ enum class MaterialModel { bond, cpd };
 /// What constants from E and nu are to be right on.
 enum class Calibration { lattice, continuum };
 
+/// How bonds fail.
+enum class DamageLaw { none, critical_stretch, tanh, tanh_continuous };
+
+struct DamageSpecification {
+  DamageLaw law = DamageLaw::none;
+  double onset = 0.0;                ///< s_m, of the tanh laws
+  double critical = 0.0;             ///< s_c
+  double rate = 3.0;                 ///< beta, of the tanh laws
+  std::vector<std::string> no_fail;  ///< sets whose points' bonds never fail
+};
+
 struct MaterialSpecification {
   MaterialModel model = MaterialModel::bond;
   PlaneState plane = PlaneState::stress;
@@ -45,6 +57,7 @@ struct MaterialSpecification {
   double c3 = 0.0;                       ///< C3 [N/m14]; with c1 only
   Calibration calibration = Calibration::lattice;
   std::optional<double> density;  ///< [kg/m3], for dynamics only
+  DamageSpecification damage;
 };
 
 struct LoadingSpecification {
@@ -52,28 +65,44 @@ struct LoadingSpecification {
   bool adaptive = true;         ///< cut and grow; otherwise a failed step ends the run
   double smallest_step = 1e-6;  ///< of the load factor
   double largest_step = 0.0;  ///< of the load factor; 0 means 1 / steps (the reader writes it out)
+  int max_broken_bonds = 0;   ///< in one implicit step; 0: no limit
 };
 
 struct SolverSpecification {
-  std::string mode = "newton";
+  Mode mode = Mode::newton;
   std::string linear = "auto";
   Projection projection = Projection::automatic;
   Predictor predictor = Predictor::consistent;
   double relative_tolerance = 1e-10;
   int max_iterations = 25;  ///< of Newton in a step
+  FragmentRemedy fragments = FragmentRemedy::hold;
+  /// Horizon / spacing of the elastic stand-in that the adaptive mode uses until damage begins; 0:
+  /// none.
+  double elastic_horizon_ratio = 0.0;
+};
+
+/// Table [relaxation]: steps of the load factor, and how each is relaxed.
+struct RelaxationSpecification {
+  int steps = 1;
+  bool moving = false;      ///< the load moves in every iteration, as in [ADAPT]; nothing is held
+  int iterations = 10'000;  ///< of the whole load, if it moves
+  RelaxationOptions options;
 };
 
 struct OutputSpecification {
   std::filesystem::path directory;  ///< default results/FOLDER_STEM of the case file
   int every = 1;                    ///< fields of every n-th accepted step; the last always
+  bool count_cracks = false;        ///< whether bonds that a pre-crack has cut count as damage
 };
 
 /// Mean of a field over a set, reported at every accepted step.
 struct ProbeSpecification {
   std::string name, set;
-  /// displacement, force, damage, energy_density, or poisson_ratio
+  /// displacement, force, damage, stretch, energy_density, poisson_ratio, opening, or crack_length
   std::string field = "displacement";
-  int axis = 0;  ///< for poisson_ratio: direction that is pulled
+  int axis = 0;             ///< poisson_ratio: direction that is pulled; crack_length: of the crack
+  std::string other;        ///< opening: set whose mean displacement is taken off
+  double threshold = 0.35;  ///< crack_length: damage from which a point belongs to the crack
 };
 
 /// A case as read and checked once; constant from then on.
@@ -84,6 +113,7 @@ struct Case {
   double horizon_ratio = 3.015;  ///< horizon / spacing, for a lattice
   std::vector<SetRule> sets;
   VolumeCorrection volume_correction = VolumeCorrection::none;
+  std::vector<Crack> cracks;
   SurfaceCorrection surface_correction = SurfaceCorrection::none;
   InteractionWeights weights = InteractionWeights::mean;
   MaterialSpecification material;
@@ -91,6 +121,7 @@ struct Case {
   std::vector<LoadSpecification> loads;
   LoadingSpecification loading;
   SolverSpecification solver;
+  RelaxationSpecification relaxation;
   OutputSpecification output;
   std::vector<ProbeSpecification> probes;
 

@@ -16,8 +16,8 @@ const std::map<std::string, std::vector<std::string>>& case_keys() {
   static const auto keys = [] {
     std::map<std::string, std::vector<std::string>> tables{
         {"",
-         {"title", "dimension", "lattice", "points", "set", "quadrature", "material", "support",
-          "load", "loading", "solver", "output", "probe"}},
+         {"title", "dimension", "lattice", "points", "set", "crack", "quadrature", "material",
+          "support", "load", "loading", "solver", "relaxation", "output", "probe"}},
         {"lattice",
          {"spacing", "horizon_ratio", "thickness", "area", "origin", "perturbation", "seed",
           "shape", "layer"}},
@@ -27,17 +27,23 @@ const std::map<std::string, std::vector<std::string>>& case_keys() {
         {"points", {"file", "horizon", "thickness", "area"}},
         {"set", {"name", "where", "shape"}},
         {"set.shape", {"box", "disk", "cylinder", "sphere", "polygon"}},
+        {"crack", {"from", "to", "vertices"}},
         {"quadrature", {"volume_correction", "surface_correction", "weights"}},
         {"material",
          {"model", "plane", "youngs_modulus", "micromodulus", "poisson_ratio", "c1", "c2", "c3",
-          "calibration", "density"}},
+          "calibration", "density", "damage"}},
+        {"material.damage", {"law", "onset", "critical", "rate", "no_fail"}},
         {"support", {"set", "displacement"}},
         {"load", {"set", "body_force", "total_force"}},
-        {"loading", {"steps", "adaptive", "smallest_step", "largest_step"}},
+        {"loading", {"steps", "adaptive", "smallest_step", "largest_step", "max_broken_bonds"}},
         {"solver",
-         {"mode", "linear", "relative_tolerance", "max_iterations", "projection", "predictor"}},
-        {"output", {"directory", "every"}},
-        {"probe", {"name", "set", "field", "axis"}}};
+         {"mode", "linear", "relative_tolerance", "max_iterations", "projection", "predictor",
+          "fragments", "elastic_horizon_ratio"}},
+        {"relaxation",
+         {"steps", "load", "iterations", "ramp", "breaking", "damping", "mass_factor",
+          "max_iterations", "quiet_iterations", "displacement_tolerance"}},
+        {"output", {"directory", "every", "count_cracks"}},
+        {"probe", {"name", "set", "other", "field", "axis", "threshold"}}};
     for (const auto& [kind, own] : shape_keys()) tables["set.shape." + kind] = own;
     return tables;
   }();

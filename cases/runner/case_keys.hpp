@@ -38,6 +38,19 @@ inline const Choices<Projection> projections{
     {"auto", Projection::automatic}, {"never", Projection::never}, {"always", Projection::always}};
 inline const Choices<Predictor> predictors{{"consistent", Predictor::consistent},
                                            {"none", Predictor::none}};
+inline const Choices<DamageLaw> damage_laws{{"none", DamageLaw::none},
+                                            {"critical_stretch", DamageLaw::critical_stretch},
+                                            {"tanh", DamageLaw::tanh},
+                                            {"tanh_continuous", DamageLaw::tanh_continuous}};
+inline const Choices<Mode> modes{
+    {"newton", Mode::newton}, {"relaxation", Mode::relaxation}, {"adaptive", Mode::adaptive}};
+inline const Choices<FragmentRemedy> fragment_remedies{{"hold", FragmentRemedy::hold},
+                                                       {"remove", FragmentRemedy::remove},
+                                                       {"stop", FragmentRemedy::stop}};
+inline const Choices<Damping> dampings{{"adaptive", Damping::adaptive},
+                                       {"kinetic", Damping::kinetic}};
+inline const Choices<Breaking> breakings{{"at_equilibrium", Breaking::at_equilibrium},
+                                         {"transient", Breaking::transient}};
 inline const Choices<PlaneState> plane_states{{"stress", PlaneState::stress},
                                               {"strain", PlaneState::strain}};
 

@@ -133,6 +133,36 @@ void write_set(Writer& out, const SetRule& set, int dimension) {
   out.raw("shape", "{ " + shape.kind + " = { " + inside + " } }");
 }
 
+void write_damage(Writer& out, const DamageSpecification& damage) {
+  out.header("material.damage");
+  out.string("law", choice_name(damage_laws, damage.law));
+  if (damage.law == DamageLaw::none) return;
+  out.number("critical", damage.critical);
+  if (damage.law != DamageLaw::critical_stretch) {
+    out.number("onset", damage.onset);
+    out.number("rate", damage.rate);
+  }
+  if (!damage.no_fail.empty()) out.raw("no_fail", array_text(damage.no_fail, toml_string));
+}
+
+void write_relaxation(Writer& out, const RelaxationSpecification& relaxation) {
+  const RelaxationOptions& options = relaxation.options;
+  out.header("relaxation");
+  out.integer("steps", relaxation.steps);
+  out.string("load", relaxation.moving ? "moving" : "fixed");
+  if (relaxation.moving) {
+    out.integer("iterations", relaxation.iterations);
+  } else {
+    out.integer("ramp", options.ramp);
+    out.integer("quiet_iterations", options.quiet_iterations);
+  }
+  out.string("breaking", choice_name(breakings, options.breaking));
+  out.string("damping", choice_name(dampings, options.damping));
+  out.number("mass_factor", options.mass_factor);
+  out.integer("max_iterations", options.max_iterations);
+  out.number("displacement_tolerance", options.displacement_tolerance);
+}
+
 }  // namespace
 
 std::string resolved_text(const Case& from) {
@@ -145,6 +175,18 @@ std::string resolved_text(const Case& from) {
   else
     write_points(out, std::get<PointSource>(from.body), from.dimension);
   for (const auto& set : from.sets) write_set(out, set, from.dimension);
+
+  for (const Crack& crack : from.cracks) {
+    out.element("crack");
+    if (const auto* segment = std::get_if<CrackSegment>(&crack)) {
+      out.raw("from", coordinates_text(segment->from, 2));
+      out.raw("to", coordinates_text(segment->to, 2));
+    } else {
+      out.raw("vertices",
+              array_text(std::get<CrackPolygon>(crack).vertices,
+                         [](const Coordinates& vertex) { return coordinates_text(vertex, 3); }));
+    }
+  }
 
   out.header("quadrature");
   const MaterialSpecification& material = from.material;
@@ -170,6 +212,7 @@ std::string resolved_text(const Case& from) {
     out.string("calibration", choice_name(calibrations, material.calibration));
   }
   out.number_if_any("density", material.density);
+  write_damage(out, material.damage);
 
   for (const auto& support : from.supports) {
     out.element("support");
@@ -192,25 +235,34 @@ std::string resolved_text(const Case& from) {
   out.boolean("adaptive", from.loading.adaptive);
   out.number("smallest_step", from.loading.smallest_step);
   out.number("largest_step", from.loading.largest_step);
+  out.integer("max_broken_bonds", from.loading.max_broken_bonds);
 
   out.header("solver");
-  out.string("mode", from.solver.mode);
+  out.string("mode", choice_name(modes, from.solver.mode));
   out.string("linear", from.solver.linear);
   out.string("predictor", choice_name(predictors, from.solver.predictor));
   out.string("projection", choice_name(projections, from.solver.projection));
   out.number("relative_tolerance", from.solver.relative_tolerance);
   out.integer("max_iterations", from.solver.max_iterations);
+  out.string("fragments", choice_name(fragment_remedies, from.solver.fragments));
+  if (from.solver.elastic_horizon_ratio > 0.0)
+    out.number("elastic_horizon_ratio", from.solver.elastic_horizon_ratio);
+  write_relaxation(out, from.relaxation);
 
   out.header("output");
   out.string("directory", from.output.directory.string());
   out.integer("every", from.output.every);
+  out.boolean("count_cracks", from.output.count_cracks);
 
   for (const auto& probe : from.probes) {
     out.element("probe");
     out.string("name", probe.name);
     out.string("set", probe.set);
     out.string("field", probe.field);
-    if (probe.field == "poisson_ratio") out.string("axis", std::string(1, "xyz"[probe.axis]));
+    if (probe.field == "poisson_ratio" || probe.field == "crack_length")
+      out.string("axis", std::string(1, "xyz"[probe.axis]));
+    if (probe.field == "crack_length") out.number("threshold", probe.threshold);
+    if (probe.field == "opening") out.string("other", probe.other);
   }
   return out.text();
 }

@@ -5,13 +5,19 @@
 namespace peristat {
 namespace {
 
+/// @param bonds of the whole body, which the effective volumes belong to: a crack is no surface
+/// @param left those that pre-cracks have not cut; an interaction with a cut bond is lost
 template <class Measure>
 InteractionTerm<Measure> make_term(const Case& from, const Points& points, const Bonds& bonds,
-                                   const BulkNeighbourhood& bulk, double horizon, double constant,
-                                   int threads) {
+                                   const Bonds& left, const BulkNeighbourhood& bulk, double horizon,
+                                   double constant, int threads) {
   Interactions<Measure> interactions(points, bonds, horizon, threads);
-  interactions.set_shares(weight_shares<Measure>(
-      points, effective_volumes(interactions, neighbour_counts(bonds), bulk, from.weights)));
+  const auto shares = weight_shares<Measure>(
+      points, effective_volumes(interactions, neighbour_counts(bonds), bulk, from.weights));
+  if (left.count() < bonds.count()) {
+    interactions = Interactions<Measure>(points, left, horizon, threads);
+  }
+  interactions.set_shares(shares);
   return {std::move(interactions), Harmonic{constant}};
 }
 
@@ -34,19 +40,20 @@ CpdConstants cpd_constants_of(const Case& from, const Points& points, const Bond
 }
 
 Model make_cpd_model(const Case& from, const Points& points, const BondSetting& setting,
-                     Bonds bonds, int threads) {
+                     Bonds bonds, std::vector<double>& cut_weight, int threads) {
   const CpdConstants constants = cpd_constants_of(from, points, setting);
   const BulkNeighbourhood bulk =
       bulk_neighbourhood(from.dimension, points.spacing, setting.horizon, setting.cross_section);
-  Model model{std::move(bonds), Harmonic{constants.c1}};
-  set_one_neighbour_weights(model.bonds, points, bulk);
+  set_one_neighbour_weights(bonds, points, bulk);
+  Model model{bonds, Harmonic{constants.c1}};
+  cut_weight = cut_bonds(model.bonds, points, from.cracks);
   if (constants.c2 != 0.0) {
-    model.triangles =
-        make_term<Area>(from, points, model.bonds, bulk, setting.horizon, constants.c2, threads);
+    model.triangles = make_term<Area>(from, points, bonds, model.bonds, bulk, setting.horizon,
+                                      constants.c2, threads);
   }
   if (constants.c3 != 0.0) {
-    model.tetrahedra =
-        make_term<Volume>(from, points, model.bonds, bulk, setting.horizon, constants.c3, threads);
+    model.tetrahedra = make_term<Volume>(from, points, bonds, model.bonds, bulk, setting.horizon,
+                                         constants.c3, threads);
   }
   return model;
 }

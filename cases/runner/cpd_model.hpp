@@ -15,7 +15,9 @@ namespace peristat {
 
 /// Model of a case of model "cpd".
 /// @param bonds whose weights are to be set
+/// @param cut_weight gets the weight of the bonds that pre-cracks have cut, per point
 [[nodiscard]] Model make_cpd_model(const Case& from, const Points& points,
-                                   const BondSetting& setting, Bonds bonds, int threads);
+                                   const BondSetting& setting, Bonds bonds,
+                                   std::vector<double>& cut_weight, int threads);
 
 }  // namespace peristat

@@ -1,5 +1,8 @@
 #include "cases/runner/probe.hpp"
 
+#include <algorithm>
+#include <limits>
+
 #include <Eigen/QR>
 
 namespace peristat {
@@ -15,6 +18,7 @@ ProbedField field_of(const std::string& name) {
   if (name == "displacement") return {&StepFields::displacement, true, "m"};
   if (name == "force") return {&StepFields::force, true, "N"};
   if (name == "damage") return {&StepFields::damage, false, "1"};
+  if (name == "stretch") return {&StepFields::stretch, false, "1"};
   return {&StepFields::energy_density, false, "J/m3"};
 }
 
@@ -43,10 +47,35 @@ double fitted_poisson_ratio(const ProbeSpecification& probe, const Points& point
   return axial == 0.0 ? 0.0 : -lateral / axial;
 }
 
+std::vector<double> mean_of(const std::vector<double>& values, const std::vector<Index>& members,
+                            int components) {
+  std::vector<double> mean(components, 0.0);
+  for (const Index point : members) {
+    for (int c = 0; c < components; ++c) mean[c] += values[std::size_t(point) * components + c];
+  }
+  for (double& value : mean) value /= double(members.size());
+  return mean;
+}
+
+/// Extent along the axis of the points of a set that the crack has passed, one spacing included.
+double crack_length(const ProbeSpecification& probe, const Points& points,
+                    const std::vector<double>& damage) {
+  double least = std::numeric_limits<double>::infinity(), most = -least;
+  for (const Index point : points.sets.at(probe.set)) {
+    if (damage[point] < probe.threshold) continue;
+    const double at = points.position(point)[probe.axis];
+    least = std::min(least, at);
+    most = std::max(most, at);
+  }
+  return most < least ? 0.0 : most - least + points.spacing;
+}
+
 }  // namespace
 
 ProbeColumns columns_of(const ProbeSpecification& probe, int dimension) {
   if (probe.field == "poisson_ratio") return {probe.name, 1, "1"};
+  if (probe.field == "crack_length") return {probe.name, 1, "m"};
+  if (probe.field == "opening") return {probe.name, dimension, "m"};
   const ProbedField field = field_of(probe.field);
   return {probe.name, field.is_vector ? dimension : 1, field.unit};
 }
@@ -56,16 +85,17 @@ std::vector<double> probe_values(const ProbeSpecification& probe, const Points& 
   if (probe.field == "poisson_ratio") {
     return {fitted_poisson_ratio(probe, points, *fields.displacement)};
   }
-  const ProbedField field = field_of(probe.field);
-  const std::vector<double>& values = *(fields.*(field.field));
+  if (probe.field == "crack_length") return {crack_length(probe, points, *fields.damage)};
   const std::vector<Index>& members = points.sets.at(probe.set);
-  const int components = field.is_vector ? points.dimension : 1;
-  std::vector<double> mean(components, 0.0);
-  for (Index point : members) {
-    for (int c = 0; c < components; ++c) mean[c] += values[std::size_t(point) * components + c];
+  if (probe.field == "opening") {
+    std::vector<double> opening = mean_of(*fields.displacement, members, points.dimension);
+    const std::vector<double> other =
+        mean_of(*fields.displacement, points.sets.at(probe.other), points.dimension);
+    for (std::size_t c = 0; c < opening.size(); ++c) opening[c] -= other[c];
+    return opening;
   }
-  for (double& value : mean) value /= double(members.size());
-  return mean;
+  const ProbedField field = field_of(probe.field);
+  return mean_of(*(fields.*(field.field)), members, field.is_vector ? points.dimension : 1);
 }
 
 }  // namespace peristat

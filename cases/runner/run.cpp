@@ -10,9 +10,11 @@
 #include <H5public.h>
 #include <fmt/format.h>
 
+#include "assembly/damage.hpp"
 #include "cases/runner/body.hpp"
 #include "cases/runner/probe.hpp"
 #include "cases/runner/progress.hpp"
+#include "cases/runner/solver_options.hpp"
 #include "solvers/linear/cholesky.hpp"
 #include "solvers/load_stepping.hpp"
 #include "src/input_error.hpp"
@@ -85,9 +87,12 @@ class Recorder {
         assembler_(assembler),
         results_(results),
         progress_(progress),
+        body_(body),
         force_(body.points.reference.size()),
         damage_(body.points.volume.size(), 0.0),
-        energy_density_(body.points.volume.size()) {}
+        energy_density_(body.points.volume.size()),
+        stretch_(body.points.volume.size()),
+        fragment_(body.points.volume.size(), 0.0) {}
 
   void iteration(const IterationRecord& record) {
     relative_residual_ = record.relative_residual;
@@ -95,11 +100,18 @@ class Recorder {
     progress_.iteration(record);
   }
 
-  void accepted(StepRecord record, const NewtonResult& equilibrium) {
-    displacement_ = equilibrium.state.displacement;
-    std::transform(equilibrium.state.gradient.begin(), equilibrium.state.gradient.end(),
-                   force_.begin(), [](double gradient) { return -gradient; });
-    record.max_stretch = assembler_.point_energies(displacement_, energy_density_);
+  void accepted(StepRecord record, const AcceptedState& state) {
+    displacement_ = state.trial.displacement;
+    std::transform(state.trial.gradient.begin(), state.trial.gradient.end(), force_.begin(),
+                   [](double gradient) { return -gradient; });
+    static_cast<void>(assembler_.point_energies(displacement_, energy_density_));
+    assembler_.point_stretches(displacement_, stretch_);
+    record.max_stretch = *std::max_element(stretch_.begin(), stretch_.end());
+    const auto cut_weight =
+        case_.output.count_cracks ? std::span(body_.cut_weight) : std::span<const double>();
+    record.max_damage = assess_damage(body_.model, state.history, cut_weight, damage_).max_damage;
+    std::copy(state.piece.begin(), state.piece.end(), fragment_.begin());
+    tell_broken_bonds(record, state.history);
     for (Index i = 0; i < points_.count(); ++i) energy_density_[i] /= points_.volume[i];
     const StepFields fields = present_fields();
     for (const ProbeSpecification& probe : case_.probes) {
@@ -121,7 +133,24 @@ class Recorder {
 
  private:
   [[nodiscard]] StepFields present_fields() const {
-    return {&displacement_, &force_, &damage_, &energy_density_};
+    return {&displacement_, &force_, &damage_, &energy_density_, &stretch_, &fragment_};
+  }
+
+  /// Adds the bonds that have broken since the last step to the results.
+  void tell_broken_bonds(const StepRecord& record, std::span<const double> history) {
+    std::vector<char> broken = broken_bonds(body_.model, history);
+    if (broken.empty()) return;
+    broken_.resize(broken.size(), 0);
+    std::vector<BrokenBondRecord> records;
+    const Bonds& bonds = body_.model.bonds;
+    for (Index i = 0; i < bonds.points(); ++i) {
+      for (Offset bond = bonds.offset[i]; bond < bonds.offset[i + 1]; ++bond) {
+        if (!broken[bond] || broken_[bond]) continue;
+        records.push_back({record.step, record.load_factor, i, bonds.partner[bond]});
+      }
+    }
+    broken_ = std::move(broken);
+    results_.add(records);
   }
 
   const Case& case_;
@@ -129,10 +158,30 @@ class Recorder {
   Assembler& assembler_;
   Results& results_;
   Progress& progress_;
-  std::vector<double> displacement_, force_, damage_, energy_density_;
+  const Body& body_;
+  std::vector<double> displacement_, force_, damage_, energy_density_, stretch_, fragment_;
+  std::vector<char> broken_;  // per bond, in the last accepted state
   double relative_residual_ = 0.0;
   std::optional<StepRecord> last_;
 };
+
+LoadSteppingResult follow_with_stand_in(const Case& from, const Body& body,
+                                        const SolvedBody& solved, const Model& stand_in,
+                                        const FreeDofs& free,
+                                        const LoadSteppingObserver& observer) {
+  const Pattern pattern(stand_in.bonds);
+  Assembler assembler(body.points, stand_in, solved.assembler.threads());
+  Tangent tangent(pattern, from.dimension);
+  Cholesky solver;
+  if (solver.analyze(pattern, free) != LinearOutcome::solved) {
+    LoadSteppingResult result;
+    result.outcome = Outcome::out_of_memory;
+    return result;
+  }
+  const SolvedBody standing_in{assembler, solver, tangent};
+  return follow_loading(solved, *body.conditions, load_stepping_options(from), newton_options(from),
+                        observer, &standing_in);
+}
 
 std::string failure_reason(const LoadSteppingResult& result) {
   std::string reason = explanation(result.outcome);
@@ -213,28 +262,23 @@ Exit run(const Case& from, const RunOptions& options) {
     results->add(record);
     progress.decision(record);
   };
-  observer.accepted = [&](const StepRecord& record, const NewtonResult& equilibrium) {
-    recorder.accepted(record, equilibrium);
+  observer.accepted = [&](const StepRecord& record, const AcceptedState& state) {
+    recorder.accepted(record, state);
   };
   observer.interrupted = [] { return interrupt_requested.load(); };
   interrupt_requested = false;
   std::signal(SIGINT, request_interrupt);
   std::signal(SIGTERM, request_interrupt);
 
-  LoadSteppingOptions stepping;
-  stepping.steps = from.loading.steps;
-  stepping.adaptive = from.loading.adaptive;
-  stepping.smallest_step = from.loading.smallest_step;
-  stepping.largest_step = from.loading.largest_step;
-  NewtonOptions newton_options;
-  newton_options.relative_tolerance = from.solver.relative_tolerance;
-  newton_options.max_iterations = from.solver.max_iterations;
-  newton_options.predictor = from.solver.predictor;
-  newton_options.projection = from.solver.projection;
-  const EquilibriumProblem problem{assembler, *body.conditions, free};
   LoadSteppingResult result;
   if (analysis == LinearOutcome::solved) {
-    result = follow_loading(problem, solver, tangent, stepping, newton_options, observer);
+    const SolvedBody solved{assembler, solver, tangent};
+    if (const std::optional<Model> stand_in = make_elastic_stand_in(from, body, options.threads)) {
+      result = follow_with_stand_in(from, body, solved, *stand_in, free, observer);
+    } else {
+      result = follow_loading(solved, *body.conditions, load_stepping_options(from),
+                              newton_options(from), observer);
+    }
   } else {
     result.outcome = Outcome::out_of_memory;
   }

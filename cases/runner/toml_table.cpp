@@ -209,16 +209,39 @@ std::vector<double> TomlTable::numbers(const std::string& key, std::size_t count
   return numbers;
 }
 
-std::vector<std::array<double, 2>> TomlTable::pairs(const std::string& key) const {
-  std::vector<std::array<double, 2>> pairs;
-  for (const auto& item : items(key, 0, "pairs [x, y]")) {
-    const std::string at = path(key) + "[" + std::to_string(pairs.size()) + "]";
-    if (item.kind != TomlValue::Kind::array || item.items.size() != 2)
-      refuse(item, at, "must be a pair of numbers [x, y]");
-    pairs.push_back({checked_number(item.items[0], at + "[0]", Range{}),
-                     checked_number(item.items[1], at + "[1]", Range{})});
+template <std::size_t count>
+std::vector<std::array<double, count>> TomlTable::tuples(const std::string& key,
+                                                         const std::string& what) const {
+  std::vector<std::array<double, count>> tuples;
+  for (const auto& item : items(key, 0, what)) {
+    const std::string at = path(key) + "[" + std::to_string(tuples.size()) + "]";
+    if (item.kind != TomlValue::Kind::array || item.items.size() != count)
+      refuse(item, at, "must be one of the " + what);
+    for (std::size_t k = 0; k < count; ++k) {
+      if (k == 0) tuples.emplace_back();
+      tuples.back()[k] = checked_number(item.items[k], at + "[" + std::to_string(k) + "]", Range{});
+    }
   }
-  return pairs;
+  return tuples;
+}
+
+std::vector<std::array<double, 2>> TomlTable::pairs(const std::string& key) const {
+  return tuples<2>(key, "pairs of numbers [x, y]");
+}
+
+std::vector<std::array<double, 3>> TomlTable::triples(const std::string& key) const {
+  return tuples<3>(key, "triples of numbers [x, y, z]");
+}
+
+std::vector<std::string> TomlTable::strings(const std::string& key) const {
+  std::vector<std::string> strings;
+  if (!has(key)) return strings;
+  for (const auto& item : items(key, 0, "strings")) {
+    if (item.kind != TomlValue::Kind::string)
+      refuse(item, path(key) + "[" + std::to_string(strings.size()) + "]", "must be a string");
+    strings.push_back(item.string);
+  }
+  return strings;
 }
 
 std::vector<std::string> TomlTable::components(const std::string& key, std::size_t count) const {

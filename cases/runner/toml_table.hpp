@@ -77,6 +77,10 @@ class TomlTable {
                                             const Range& range) const;
   /// An array of pairs of numbers.
   [[nodiscard]] std::vector<std::array<double, 2>> pairs(const std::string& key) const;
+  /// An array of triples of numbers.
+  [[nodiscard]] std::vector<std::array<double, 3>> triples(const std::string& key) const;
+  /// An array of strings; without the key there are none.
+  [[nodiscard]] std::vector<std::string> strings(const std::string& key) const;
   /// An array of numbers and strings, all as text.
   [[nodiscard]] std::vector<std::string> components(const std::string& key,
                                                     std::size_t count) const;
@@ -86,6 +90,9 @@ class TomlTable {
   [[nodiscard]] std::vector<TomlTable> tables(const std::string& key) const;
 
  private:
+  template <std::size_t count>
+  std::vector<std::array<double, count>> tuples(const std::string& key,
+                                                const std::string& what) const;
   const TomlValue* find(const std::string& key) const;
   const TomlValue& need(const std::string& key) const;
   double checked_number(const TomlValue& value, const std::string& path, const Range& range) const;

@@ -73,6 +73,12 @@ struct Degraded {
            !is_broken(largest_stretch);
   }
 
+  /// Stretch over that beyond which the bond is damaged (further).
+  [[nodiscard]] double utilisation(double e, double largest_stretch) const {
+    if (largest_stretch == never_fails || is_broken(largest_stretch)) return 0.0;
+    return e / std::max(law.onset(), largest_stretch);
+  }
+
   [[nodiscard]] bool is_broken(double largest_stretch) const {
     return largest_stretch >= law.critical();
   }

@@ -54,7 +54,9 @@ struct DecisionRecord {
   double load_factor = 0.0;  ///< that was attempted
   double increment = 0.0;    ///< of the load factor that was attempted
   std::string outcome;       ///< name of the equilibrium search's outcome
-  std::string action;        ///< "accept", "accept and grow", "cut", "stop"
+  /// "accept", "accept and grow", "cut", "stop", "hand over to relaxation", "hand back to newton",
+  /// "hold fragments", "remove fragments"
+  std::string action;
   double next_increment = 0.0;
   std::string reason;
 };
@@ -65,6 +67,15 @@ struct StepFields {
   const std::vector<double>* force = nullptr;           ///< internal force -dE/dx [N]
   const std::vector<double>* damage = nullptr;          ///< per point, 0 intact to 1
   const std::vector<double>* energy_density = nullptr;  ///< per point [J/m3]
+  const std::vector<double>* stretch = nullptr;   ///< per point, largest of its unbroken bonds
+  const std::vector<double>* fragment = nullptr;  ///< per point, number of its floating piece or 0
+};
+
+/// A bond that has broken (a row of broken_bonds.csv).
+struct BrokenBondRecord {
+  int step = 0;
+  double load_factor = 0.0;
+  Index first_point = 0, second_point = 0;
 };
 
 }  // namespace peristat

@@ -118,6 +118,18 @@ Row make_row(const DecisionRecord& record) {
                            record.outcome, record.action, record.next_increment, record.reason});
 }
 
+std::vector<Column> broken_bond_columns() {
+  return {{integer, "step", "1", "step that broke the bond"},
+          {number, "load_factor", "1", "load factor of the step"},
+          {integer, "first_point", "1", "number of the bond's lower point"},
+          {integer, "second_point", "1", "number of its upper point"}};
+}
+
+Row make_row(const BrokenBondRecord& record) {
+  return {std::int64_t{record.step}, record.load_factor, std::int64_t{record.first_point},
+          std::int64_t{record.second_point}};
+}
+
 Row make_row(const StepRecord& record, const std::vector<std::string>& support_sets,
              const std::vector<ProbeColumns>& probes) {
   if (record.reactions.size() != support_sets.size() || record.probes.size() != probes.size()) {

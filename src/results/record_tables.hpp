@@ -11,6 +11,7 @@ namespace peristat {
 
 [[nodiscard]] std::vector<Column> iteration_columns();
 [[nodiscard]] std::vector<Column> decision_columns();
+[[nodiscard]] std::vector<Column> broken_bond_columns();
 
 /// The step's own columns, then reaction_x:SET, reaction_y:SET, reaction_z:SET per support set,
 /// then the probes: NAME of one component, NAME_x, NAME_y, NAME_z of more.
@@ -23,6 +24,7 @@ namespace peristat {
 /// @throws std::logic_error that names the column
 [[nodiscard]] Row make_row(const IterationRecord& record);
 [[nodiscard]] Row make_row(const DecisionRecord& record);
+[[nodiscard]] Row make_row(const BrokenBondRecord& record);
 [[nodiscard]] Row make_row(const StepRecord& record, const std::vector<std::string>& support_sets,
                            const std::vector<ProbeColumns>& probes);
 

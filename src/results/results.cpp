@@ -66,7 +66,15 @@ std::vector<Field> present_fields(const StepFields& fields, Index count, int dim
       {"energy_density",
        {"J/m3", "stored energy per volume of each point"},
        false,
-       fields.energy_density}};
+       fields.energy_density},
+      {"stretch",
+       {"1", "largest stretch of the unbroken bonds of each point: current / reference length - 1"},
+       false,
+       fields.stretch},
+      {"fragment",
+       {"1", "number of the floating piece that the point belongs to; 0: held by the supports"},
+       false,
+       fields.fragment}};
   std::erase_if(present, [](const Field& field) { return field.values == nullptr; });
   for (const Field& field : present) {
     const std::vector<double>& values = *field.values;
@@ -173,14 +181,14 @@ struct Results::Files {
   std::vector<ProbeColumns> probes;
   std::vector<Column> history_header;  // before the folder: a bad probe leaves it alone
   ResultsFolder folder;
-  CsvTable history, iterations, decisions;
+  CsvTable history, iterations, decisions, broken_bonds;
   Hdf5File master;  ///< results.h5 with links to the parts; lives in memory
   XdmfSeries xdmf;
   StepTotals totals;
   ConvergenceTable convergence;
   bool xdmf_is_behind = false;
   Clock::time_point xdmf_time{};  ///< when it was last published
-  std::vector<Row> pending_iterations, pending_decisions;
+  std::vector<Row> pending_iterations, pending_decisions, pending_broken_bonds;
   std::vector<WrittenStep> written_steps;
   int last_step = std::numeric_limits<int>::min();
   bool closed = false;
@@ -200,6 +208,7 @@ Results::Files::Files(const std::filesystem::path& directory, const Points& poin
       history(folder.history(), history_header),
       iterations(folder.iterations(), iteration_columns()),
       decisions(folder.decisions(), decision_columns()),
+      broken_bonds(folder.broken_bonds(), broken_bond_columns()),
       master(Hdf5File::in_memory(folder.results().string() + " (in memory)", master_growth)),
       xdmf(points.count()) {
   master.set_attribute("/", "title", text.title);
@@ -215,6 +224,7 @@ Results::Files::Files(const std::filesystem::path& directory, const Points& poin
   master.make_table("/history", history_header);
   master.make_table("/iterations", iteration_columns());
   master.make_table("/decisions", decision_columns());
+  master.make_table("/broken_bonds", broken_bond_columns());
   master.make_group("/steps");
   if (has_views()) master.make_group("/xdmf");
 
@@ -232,6 +242,8 @@ void Results::Files::append_pending() {
   pending_iterations.clear();
   master.append("/decisions", decision_columns(), pending_decisions);
   pending_decisions.clear();
+  master.append("/broken_bonds", broken_bond_columns(), pending_broken_bonds);
+  pending_broken_bonds.clear();
 }
 
 void Results::Files::write_views(Hdf5File& file, const std::string& group, const std::string& step,
@@ -391,6 +403,16 @@ void Results::add(const DecisionRecord& record) {
   Row row = make_row(record);
   files_->decisions.append(row);
   files_->pending_decisions.push_back(std::move(row));
+}
+
+void Results::add(const std::vector<BrokenBondRecord>& records) {
+  const Stopwatch stopwatch(files_->seconds);
+  if (files_->closed) throw std::logic_error("results: closed");
+  for (const BrokenBondRecord& record : records) {
+    Row row = make_row(record);
+    files_->broken_bonds.append(row);
+    files_->pending_broken_bonds.push_back(std::move(row));
+  }
 }
 
 void Results::add(const StepRecord& record, const std::optional<StepFields>& fields) {

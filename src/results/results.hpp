@@ -50,7 +50,7 @@ struct ProbeColumns {
 };
 
 /// Writer of a results folder (docs/results.md): results.h5, results.xdmf, history.csv,
-/// iterations.csv, decisions.csv, summary.json.
+/// iterations.csv, decisions.csv, broken_bonds.csv, summary.json.
 ///
 /// A kill at any moment leaves every accepted step readable: each step's fields go to a file of
 /// their own, `parts/NNNNNN.h5`, and results.h5, which links to them, is published by renaming a
@@ -76,6 +76,8 @@ class Results {
 
   void add(const IterationRecord& record);
   void add(const DecisionRecord& record);
+  /// Bonds that the step added next has broken.
+  void add(const std::vector<BrokenBondRecord>& records);
   /// Adds an accepted step and publishes it, together with the iterations and decisions so far.
   /// `fields` is empty for steps that only enter the history. Step numbers ascend; the record holds
   /// a reaction of every support set and every probe.

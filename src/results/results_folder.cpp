@@ -14,8 +14,8 @@ namespace fs = std::filesystem;
 
 /// The history stands last, so that a folder whose removal was interrupted is still recognised.
 std::vector<fs::path> own_files(const ResultsFolder& folder) {
-  return {folder.results(),     folder.xdmf(),    folder.iterations(), folder.decisions(),
-          folder.convergence(), folder.summary(), folder.history()};
+  return {folder.results(),      folder.xdmf(),        folder.iterations(), folder.decisions(),
+          folder.broken_bonds(), folder.convergence(), folder.summary(),    folder.history()};
 }
 
 bool is_part(const fs::path& file) {
@@ -68,7 +68,8 @@ ResultsFolder prepare_results_folder(const fs::path& directory) {
     if (fs::is_directory(plots)) {
       std::vector<fs::path> pictures;
       for (const auto& entry : fs::directory_iterator(plots)) {
-        if (entry.path().extension() == ".png") pictures.push_back(entry.path());
+        if (entry.path().extension() == ".png" || entry.path().extension() == ".gif")
+          pictures.push_back(entry.path());
       }
       for (const fs::path& picture : pictures) fs::remove(picture);
     }

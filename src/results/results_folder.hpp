@@ -13,6 +13,9 @@ struct ResultsFolder {
   [[nodiscard]] std::filesystem::path history() const { return directory / "history.csv"; }
   [[nodiscard]] std::filesystem::path iterations() const { return directory / "iterations.csv"; }
   [[nodiscard]] std::filesystem::path decisions() const { return directory / "decisions.csv"; }
+  [[nodiscard]] std::filesystem::path broken_bonds() const {
+    return directory / "broken_bonds.csv";
+  }
   [[nodiscard]] std::filesystem::path convergence() const { return directory / "convergence.csv"; }
   [[nodiscard]] std::filesystem::path summary() const { return directory / "summary.json"; }
   [[nodiscard]] std::filesystem::path parts() const { return directory / "parts"; }

@@ -1,0 +1,28 @@
+#include "cases/runner/solver_options.hpp"
+
+namespace peristat {
+
+LoadSteppingOptions load_stepping_options(const Case& from) {
+  LoadSteppingOptions options;
+  options.mode = from.solver.mode;
+  options.steps = from.loading.steps;
+  options.adaptive = from.loading.adaptive;
+  options.smallest_step = from.loading.smallest_step;
+  options.largest_step = from.loading.largest_step;
+  options.max_broken_bonds = from.loading.max_broken_bonds;
+  options.fragments = from.solver.fragments;
+  options.relaxation_steps = from.relaxation.steps;
+  options.relaxation = from.relaxation.options;
+  return options;
+}
+
+NewtonOptions newton_options(const Case& from) {
+  NewtonOptions options;
+  options.relative_tolerance = from.solver.relative_tolerance;
+  options.max_iterations = from.solver.max_iterations;
+  options.predictor = from.solver.predictor;
+  options.projection = from.solver.projection;
+  return options;
+}
+
+}  // namespace peristat
