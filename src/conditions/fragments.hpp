@@ -45,11 +45,12 @@ inline constexpr double independence_tolerance = 2.5e-7;
 /// of a loose point i are not independent in all dimensions (independence_tolerance). They are then
 /// pinned one by one, the one that needs the fewest pins first: as many of its components as are
 /// missing, the axis first that the directions cover least. Once pinned, a point supports the other
-/// loose ones by its unbroken bonds. A chain thus hangs on, free of stress, however the body that
-/// it hangs on moves, and a pair of points that broke off may neither move nor be strained.
+/// loose ones by its unbroken bonds. So a chain that hangs on the body follows it, and a pair of
+/// points that broke off is held like a rigid body, both free of stress.
 ///
 /// The others form cores, connected by unbroken bonds among themselves. The rigid motions that its
-/// prescribed degrees of freedom leave to a core are suppressed by as many pins, far apart.
+/// prescribed degrees of freedom leave to a core are suppressed by as many pins, far apart. A core
+/// that only loose points join to a piece that is held has pins of its own, but does not float.
 ///
 /// Not found are hinges inside of a core: two blocks that share a point or fewer bonds than it
 /// takes to hold one on the other, or a chain between two blocks that is not straight. Each of

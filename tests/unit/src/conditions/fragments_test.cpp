@@ -457,6 +457,17 @@ TEST(Fragments, OfAFewPointsInARowMayBend) {
   }
 }
 
+TEST(Fragments, HoldABlockThatHangsOnALoosePoint) {
+  Web web(2);
+  web.add_block({3, 3, 1}).add({{3.0, 1.0}}).add_block({3, 3, 1}, {4.0}).bond().hold({0, 1, 2});
+  web.leave(9, {7, 11});  // (2, 1) - (3, 1) - (4, 1)
+  const Fragments fragments = web.find();
+  EXPECT_EQ(fragments.count, 0);  // as one body it is held
+  EXPECT_EQ(fragments.loose, (std::vector<Index>{9}));
+  EXPECT_EQ(total(fragments.pinned), 4);  // of the block, that the chain holds along x, and of 9
+  EXPECT_EQ(web.soft_motions(fragments.pinned), 0);
+}
+
 TEST(Fragments, OfFewPointsMindTheirSupports) {
   Web web(2);
   web.add({{0.0, 0.0}, {1.0, 0.0}, {2.0, 0.0}}).bond(1.01).hold(0, 0).hold(2, 1);
