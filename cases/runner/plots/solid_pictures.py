@@ -71,7 +71,7 @@ def draw_damaged_solid(results, step):
 
 def draw_solid(results, step, values, value_range, label, colours):
     """Deformed body coloured by a value per point."""
-    factor = exaggeration(results.reference, step.displacement)
+    factor = exaggeration(results.reference, step)
     spacing, reference, displacement, damage, values = merged(
         results.reference, results.spacing, MOST_CELLS, step.displacement, step.damage, values
     )

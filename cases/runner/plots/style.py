@@ -13,6 +13,7 @@ FAINT = "#8a949e"  # secondary text
 GHOST = "#c3cad1"  # reference configuration
 GRID = "#e6e9ec"
 WARNING = "#b4531b"
+PIECE = "#1668b8"  # pieces that have come off
 LINES = ["#1f6f9f", "#d1603d", "#3f8f5f", "#7a5aa6", "#b58a1b", "#4d5964"]
 
 DOTS_PER_INCH = 100
@@ -44,6 +45,7 @@ matplotlib.rcParams.update(
 LENGTHS = (("m", 1.0), ("mm", 1e-3), ("µm", 1e-6), ("nm", 1e-9))
 FORCES = (("MN", 1e6), ("kN", 1e3), ("N", 1.0), ("mN", 1e-3), ("µN", 1e-6))
 ENERGY_DENSITIES = (("GJ/m³", 1e9), ("MJ/m³", 1e6), ("kJ/m³", 1e3), ("J/m³", 1.0), ("mJ/m³", 1e-3))
+ENERGIES = (("GJ", 1e9), ("MJ", 1e6), ("kJ", 1e3), ("J", 1.0), ("mJ", 1e-3), ("µJ", 1e-6), ("nJ", 1e-9))
 
 
 def unit_for(largest: float, units, least: float = 0.3) -> tuple[str, float]:

@@ -33,6 +33,9 @@ HISTORY = (
 ).split(",")
 ITERATIONS = "step,iteration,residual,relative_residual,energy,step_length,linear_iterations,changed_bonds".split(",")
 
+BROKEN_BONDS = ["step", "load_factor", "first_point", "second_point"]
+CRACKED = ("deformed", "fields", "damage", "broken_bonds", "sequence", "load_displacement", "energies", "convergence")
+
 
 def lattice(*counts: int) -> np.ndarray:
     """Cell centres of a box, count x dimension [m]."""
@@ -81,6 +84,84 @@ def write_folder(folder: Path, reference: np.ndarray, steps: int = 3, damaged: b
             for iteration, residual in enumerate((1.0, 1e-2, 1e-5, 1e-11, 0.0)):
                 table.writerow([step, iteration, residual, residual, 0, 1, 0, 0])
     (folder / "summary.json").write_text(json.dumps({"status": "completed"}))
+
+
+def rewrite(path: Path, change) -> None:
+    """Lets a function change the rows (dictionaries) of a CSV file."""
+    with open(path, newline="") as file:
+        table = csv.DictReader(file)
+        names, rows = table.fieldnames, list(table)
+    for row in rows:
+        change(row)
+    with open(path, "w", newline="") as file:
+        table = csv.DictWriter(file, names)
+        table.writeheader()
+        table.writerows(rows)
+
+
+def write_cracked_folder(folder: Path, counts: tuple[int, int], steps: int = 12) -> None:
+    """A plate pulled in x: from half of the load on a crack runs up its middle and tears it in two.
+
+    The steps of the crack are found by relaxation. A crumb beside the crack comes off near the end. Bonds reach
+    over three points, stiffness falls with the crack's length, dissipated energy grows with it.
+    """
+    reference = lattice(*counts)
+    write_folder(folder, reference, steps)
+    x, y = (reference - [reference[:, 0].mean(), 0.0]).T / SPACING
+    tip = [counts[1] * np.clip((step / steps - 0.5) / 0.35, 0.0, 1.0) for step in range(1, steps + 1)]
+    number = {tuple(place): point for point, place in enumerate(np.rint(reference / SPACING - 0.5).astype(int))}
+    broken = []
+    for (i, j), point in number.items():
+        for across, up in ((a, b) for a in range(1, 4) for b in range(-3, 4) if a * a + b * b < 9.1):
+            end = number.get((i + across, j + up))
+            if end is not None and x[point] < 0.0 <= x[end]:
+                height = y[point] + (y[end] - y[point]) * x[point] / (x[point] - x[end])
+                step = next((k + 1 for k in range(steps) if tip[k] > height), None)
+                broken += [] if step is None else [(step, step / steps, point, end)]
+    broken.sort()
+    crumb = (x > 0.0) & (x < 6.0) & (abs(y - 0.4 * counts[1]) < 4.0)
+
+    with h5py.File(folder / "results.h5", "a") as file:
+        for step in range(1, steps + 1):
+            group, load = file[f"steps/{step:06d}"], step / steps
+            group.attrs["mode"] = "relaxation" if 0.0 < tip[step - 1] < counts[1] else "newton"
+            opening = np.clip((tip[step - 1] - y) / 8.0, 0.0, 1.0) * load
+            group["displacement"][:, 0] = 1e-3 * SPACING * counts[0] * (
+                0.3 * x / counts[0] * load * (1 - opening) + np.sign(x) * (0.5 * opening - 0.1 * crumb * opening))
+            group["damage"][...] = np.where(y < tip[step - 1], np.clip(0.5 - 0.16 * (abs(x) - 0.5), 0.0, 1.0), 0.0)
+            group["fragment"] = np.where(crumb & (load > 0.8), 1, 0)
+            group["stretch"] = 0.01 * opening
+            if load > 0.8:
+                group["damage"][...] = np.maximum(group["damage"][...], np.where(crumb, 0.3, 0.0))
+        for column, values in zip(BROKEN_BONDS, zip(*broken)):
+            file[f"broken_bonds/{column}"] = np.array(values)
+    with open(folder / "broken_bonds.csv", "w", newline="") as file:
+        csv.writer(file).writerows([BROKEN_BONDS, *broken])
+
+    def fracture(row):
+        step, load = int(row["step"]), float(row["load_factor"])
+        share = tip[step - 1] / counts[1]
+        force, stored = 5e4 * load * (1 - share) ** 0.7, 2.5 * load**2 * (1 - share)
+        dissipated, drained = 0.5 * share, 0.7 * share**2
+        row.update({
+            "mode": "relaxation" if 0.0 < share < 1.0 else "newton", "max_damage": 0.6 * (share > 0.0),
+            "broken_bonds": sum(bond[0] <= step for bond in broken), "stored_energy": stored,
+            "dissipated_energy": dissipated, "drained_energy": drained, "balance_error": 1e-4 * load,
+            "external_work": stored + dissipated + drained + 1e-4 * load,
+            "reaction_x:left": -force, "reaction_x:right": force,
+        })  # fmt: skip
+
+    rewrite(folder / "history.csv", fracture)
+    first, last = (next(step for step in range(steps) if tip[step] > height) for height in (0.0, counts[1] - 1e-9))
+    with open(folder / "decisions.csv", "w", newline="") as file:
+        table = csv.writer(file)
+        table.writerow("step,load_factor,increment,outcome,action,next_increment,reason".split(","))
+        for step in range(steps):
+            for place, outcome, action in ((first, "unstable", "hand over to relaxation"),
+                                           (last, "converged", "hand back to newton")):  # fmt: skip
+                if step == place:
+                    table.writerow([step + 1, (step + 1) / steps, 1 / steps, outcome, action, 1 / steps, "a test"])
+            table.writerow([step + 1, (step + 1) / steps, 1 / steps, "converged", "accept", 1 / steps, ""])
 
 
 class Pictures(unittest.TestCase):
