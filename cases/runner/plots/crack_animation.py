@@ -6,20 +6,25 @@ from pathlib import Path
 import numpy as np
 from matplotlib.animation import PillowWriter
 from matplotlib.cm import ScalarMappable
-from matplotlib.collections import LineCollection, PolyCollection
+from matplotlib.collections import LineCollection, PathCollection
 from matplotlib.colors import Normalize
+from matplotlib.path import Path as Outline
 from PIL import Image
 
 from curve_pictures import abscissa_of, find_abscissa, has_reactions, reactions
 from field_pictures import DAMAGE_COLOURS, deformed_plate, exaggeration, exaggeration_words, rims
-from fracture_pictures import OPENING, bond_words
-from style import FORCES, GHOST, LINES, PIECE, colour_bar, heading, new_figure, step_words, unit_for
+from fracture_pictures import OPENING
+from style import (
+    FORCES, GHOST, LINES, PIECE,
+    bond_words, colour_bar, heading, new_figure, piece_words, step_words, unit_for,
+)  # fmt: skip
 
 MOST_FRAMES = 60
 MOST_INTACT_FRAMES = 12  # of them before the first damage
 MOST_CELLS = 20_000
 MOST_BYTES = 950_000
-COLOURS = 96
+COLOURS = 64  # of damage, and as many of everything else
+LEVELS = np.linspace(0.0, 1.0, COLOURS)
 SECONDS = 7.0
 SECONDS_AT_THE_END = 2.0
 
@@ -49,13 +54,31 @@ def _spread(numbers: list[int], most: int) -> list[int]:
     return [numbers[round(i * (len(numbers) - 1) / max(count - 1, 1))] for i in range(count)]
 
 
+def _by_colour(squares: np.ndarray, damage: np.ndarray) -> list[Outline]:
+    """The squares (count x 4 x 2) of every colour as one outline, which is much faster to draw than each alone."""
+    level = np.rint(np.clip(damage, 0.0, 1.0) * (len(LEVELS) - 1)).astype(int)
+    codes = np.array([Outline.MOVETO, Outline.LINETO, Outline.LINETO, Outline.LINETO, Outline.CLOSEPOLY], np.uint8)
+    outlines = []
+    for number in range(len(LEVELS)):
+        own = squares[level == number][:, [0, 1, 2, 3, 0]].reshape(-1, 2)
+        outlines.append(Outline(own, np.resize(codes, len(own))))
+    return outlines
+
+
 class _SmallGif(PillowWriter):
-    """Frames in the colours of the first one, which must show all; every second one is left out as long as
-    the file is too large."""
+    """All frames have the same few colours; every second frame is left out as long as the file is too large.
+
+    The colours are white, those of damage, and those of the figure as it is at the start.
+    """
 
     def setup(self, fig, outfile, dpi=None):
         super().setup(fig, outfile, dpi)
-        self._palette = self._image().quantize(COLOURS, dither=Image.Dither.NONE)
+        scenery = self._image().quantize(COLOURS, dither=Image.Dither.NONE).getpalette()[: 3 * COLOURS]
+        scenery = np.reshape(scenery, (-1, 3))
+        scenery = scenery[scenery.min(axis=1) < 248]  # almost white would replace white
+        damage = DAMAGE_COLOURS(LEVELS, bytes=True)[:, :3]
+        self._palette = Image.new("P", (1, 1))
+        self._palette.putpalette(np.concatenate([[[255, 255, 255]], damage, scenery]).ravel().tolist())
 
     def _image(self) -> Image.Image:
         return Image.fromarray(np.asarray(self.fig.canvas.buffer_rgba())[:, :, :3].copy())
@@ -86,10 +109,10 @@ class _Stage:
         scale = min(5.4 / width, 4.2 / height)
         width, height = scale * (high - low)
         has_curve = has_reactions(results)
-        total_width = max(0.4 + width + (5.0 if has_curve else 0.4), 7.5)
+        total_width = max(0.4 + width + (5.0 if has_curve else 0.4), 8.6)
         total_height = 1.25 + max(height, 2.6) + 1.05
         self.figure = new_figure(total_width, total_height)
-        left = 0.4 if has_curve else 0.5 * (total_width - width)
+        left = 0.4 + 0.5 * (total_width - 5.4 - width) if has_curve else 0.5 * (total_width - width)
         bottom = 1.05 + 0.5 * max(2.6 - height, 0.0)
         self.axes = self.figure.add_axes([left / total_width, bottom / total_height,
                                           width / total_width, height / total_height])  # fmt: skip
@@ -102,8 +125,7 @@ class _Stage:
                0.14 / total_height]  # fmt: skip
         colour_bar(self.figure, bar, ScalarMappable(norm, DAMAGE_COLOURS), "damage", orientation="horizontal")
 
-        none = np.zeros((0, 4, 2))
-        self.cells = PolyCollection(none, cmap=DAMAGE_COLOURS, norm=norm, linewidths=0.0, antialiased=False,
+        self.cells = PathCollection([], facecolors=DAMAGE_COLOURS(LEVELS), linewidths=0.0, antialiased=False,
                                     animated=True)  # fmt: skip
         self.pieces = LineCollection([], colors=PIECE, linewidths=1.4, animated=True, zorder=4)
         for collection in (self.cells, self.pieces):
@@ -115,6 +137,8 @@ class _Stage:
         heading(self.figure, results, [""])
         self.facts = self.figure.text(0.35 / total_width, 1 - 0.74 / total_height, "", fontsize=13, color="#5b656e",
                                       va="top", animated=True)  # fmt: skip
+        self.remark = self.figure.text(left / total_width, 1 - 1.04 / total_height, "", fontsize=11, color=PIECE,
+                                       va="top", animated=True)  # fmt: skip
         self.figure.canvas.draw()
         self.scenery = self.figure.canvas.copy_from_bbox(self.figure.bbox)
         self.show(last)
@@ -147,8 +171,7 @@ class _Stage:
     def show(self, step) -> None:
         """Draws a step on the scenery."""
         plate = self._plate(step)
-        self.cells.set_verts(plate.moved)
-        self.cells.set_array(plate.values)
+        self.cells.set_paths(_by_colour(plate.moved, plate.values))
         self.pieces.set_segments(rims(plate.cells, plate.moved, plate.floating))
         if len(self.artists) > 2:
             steps = self.results.history.get("step", [])
@@ -158,8 +181,10 @@ class _Stage:
         mode = {"newton": "Newton's method", "relaxation": "relaxation"}.get(step.mode)
         words = [exaggeration_words(self.factor), step_words(step)[0], *bond_words(self.results, step)]
         self.facts.set_text("  ·  ".join(words + ([mode] if mode else [])))
+        self.remark.set_text(piece_words(step) if step.floating.any() else "")
         canvas = self.figure.canvas
         canvas.restore_region(self.scenery)
         for artist in self.artists:
             artist.axes.draw_artist(artist)
-        self.figure.draw_artist(self.facts)
+        for text in (self.facts, self.remark):
+            self.figure.draw_artist(text)

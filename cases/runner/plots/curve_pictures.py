@@ -13,9 +13,9 @@ MOST_STEPS = 8  # curves in the picture of convergence
 MOST_VALUES_READ = 20_000_000  # of displacements, to find how far the supports moved
 AXES = "xyz"
 MARKERS = "osD^vP"
-HAND_OVERS = (  # actions of decisions.csv, colour and dashes
-    ("hand over to relaxation", "#b58a1b", (0, (5, 2))),
-    ("hand back to newton", "#7a5aa6", (0, (1, 2))),
+HAND_OVERS = (  # actions of decisions.csv, words, colour and dashes
+    ("hand over to relaxation", "hand-over to relaxation", "#b58a1b", (0, (5, 2))),
+    ("hand back to newton", "hand-back to Newton's method", "#7a5aa6", (0, (1, 2))),
 )
 HISTORY_COLUMNS = {
     "step", "load_factor", "mode", "newton_iterations", "relaxation_iterations", "stored_energy",
@@ -92,20 +92,23 @@ def draw_fracture(axes, results, curves, places, size, words, all_curves=None):
     words   what is said of the peak's place, "at {} mm"
     """
     names = [name for name, _, _ in all_curves or curves]
+    mark = np.clip(400 / len(places), 3.5, 7)
+    for line in axes.get_lines():
+        line.set(markersize=mark, markeredgewidth=0.0)
     relaxed = np.array([mode == "relaxation" for mode in results.history.get("mode", [])], dtype=bool)
     if len(relaxed) == len(places) and relaxed.any():
         for name, _, values in curves:
             style = names.index(name)
             axes.plot(places[relaxed], values[relaxed] / size, linestyle="none", marker=MARKERS[style % len(MARKERS)],
-                      markersize=np.clip(300 / len(places), 3.5, 7), markerfacecolor="white",
+                      markersize=mark, markerfacecolor="white",
                       markeredgecolor=LINES[style % len(LINES)], markeredgewidth=1.2, zorder=4)  # fmt: skip
-        for colour, label in ((INK, "step by Newton's method"), ("white", "step by relaxation")):
+        for colour, label in ((INK, "Newton's method"), ("white", "relaxation")):
             axes.plot([], [], linestyle="none", marker="o", markersize=7, markerfacecolor=colour,
                       markeredgecolor=INK, markeredgewidth=1.2, label=label)  # fmt: skip
-    for action, colour, dashes in HAND_OVERS:
+    for action, label, colour, dashes in HAND_OVERS:
         for place, load in enumerate(_hand_overs(results, action)):
             axes.axvline(_at_load(results, places, load), color=colour, linewidth=1.0, linestyle=dashes, zorder=1.5,
-                         label=action if place == 0 else None)  # fmt: skip
+                         label=label if place == 0 else None)  # fmt: skip
     _mark_peak(axes, curves, places, size, words)
 
 
@@ -129,7 +132,9 @@ def _at_load(results, places, load: float) -> float:
 
 def _mark_peak(axes, curves, places, size, words) -> None:
     """A ring about the largest reaction, and its value and place above (or below) all curves."""
-    values = max((values for _, _, values in curves), key=lambda values: np.abs(values).max()) / size
+    largest = max(np.abs(values).max() for _, _, values in curves)
+    alike = [values / size for _, _, values in curves if np.abs(values).max() > (1.0 - 1e-3) * largest]
+    values = max(alike, key=max)  # of opposite reactions the one that points up
     peak = int(np.argmax(np.abs(values)))
     up = values[peak] >= 0.0
     axes.plot(places[peak], values[peak], "o", markersize=13, markerfacecolor="none", markeredgecolor=WARNING,

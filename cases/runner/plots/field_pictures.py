@@ -6,7 +6,7 @@ import numpy as np
 from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.colors import LinearSegmentedColormap, Normalize
 
-from cells import Cells, merged
+from cells import Cells, at_the_rim, merged
 from style import (
     ENERGY_DENSITIES, GHOST, INK, LENGTHS, LINES,
     colour_bar, heading, new_figure, number, round_factor, step_words, unit_for,
@@ -86,20 +86,11 @@ def deformed_plate(results, step, factor: float, values: np.ndarray, size: float
     cells = Cells(reference / size, spacing / size)
     loose = damage > LOOSE_DAMAGE
     if floating.any():
-        loose = loose | _at_the_rim(cells, floating)
+        loose = loose | at_the_rim(cells, floating)
     order = [0, 2, 3, 1]  # of going round
     still = cells.corners(reference / size, np.zeros_like(reference), loose)[:, order]
     moved = cells.corners(reference / size, factor * displacement / size, loose)[:, order]
     return Plate(cells, still, moved, damage, floating, values)
-
-
-def _at_the_rim(cells: Cells, floating: np.ndarray) -> np.ndarray:
-    """Cells with a neighbour that floats while they don't, or the other way round."""
-    rim = np.zeros(len(floating), dtype=bool)
-    for side in SIDES:
-        other = cells.neighbours(*side)
-        rim |= (other >= 0) & (floating != floating[other])
-    return rim
 
 
 def draw_deformed_plane(results, step):

@@ -4,7 +4,6 @@ import numpy as np
 from matplotlib.cm import ScalarMappable
 from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.colors import LinearSegmentedColormap, Normalize
-from matplotlib.patches import Patch
 from matplotlib.ticker import MaxNLocator
 
 from cells import merged
@@ -12,7 +11,9 @@ from field_pictures import (
     DAMAGE_COLOURS, MOST_CELLS, SEAM, Plate,
     deformed_plate, draw_plane, exaggeration, exaggeration_words, framed, rims,
 )  # fmt: skip
-from style import LENGTHS, PIECE, colour_bar, heading, new_figure, number, unit_for
+from style import (
+    LENGTHS, PIECE, bond_words, colour_bar, heading, new_figure, number, piece_legend, piece_words, unit_for,
+)  # fmt: skip
 
 OPENING = 0.05  # largest displacement over the body's size: a crack is seen to open, the body keeps its shape
 MOST_BONDS = 150_000  # more broken bonds are thinned out
@@ -20,19 +21,6 @@ POINT_COLOUR = "#d8dde2"
 STEP_COLOURS = LinearSegmentedColormap.from_list(  # as dark at the end as to be seen on the points
     "steps", ["#20104f", "#6a1b83", "#b5305f", "#e0602c", "#eda31b"]
 )
-
-
-def bond_words(results, step) -> list[str]:
-    """How many bonds had broken at a step as a fact for a heading; nothing if it is not known."""
-    broken = results.in_history(step.number, "broken_bonds")
-    return [] if broken is None else [f"{number(broken)} broken bond{'s' * (broken != 1)}"]
-
-
-def piece_words(step) -> str:
-    """How many pieces have come off, and of how many points they are."""
-    pieces = len(np.unique(np.rint(step.fragment[step.floating])))
-    points = int(step.floating.sum())
-    return f"{number(pieces)} floating piece{'s' * (pieces != 1)}: {number(points)} point{'s' * (points != 1)}"
 
 
 def draw_damaged_plane(results, step):
@@ -43,27 +31,20 @@ def draw_damaged_plane(results, step):
     if plate.floating.any():
         for collection in piece_marks(plate):
             axes.add_collection(collection, autolim=False)
-        words = piece_words(step)
         low, high = np.array([axes.get_xlim(), axes.get_ylim()]).T
-        if ((plate.moved < low) | (plate.moved > high)).any():
-            words += ", in part outside the picture"
-        figure.legend(handles=[_piece_patch(words)], loc="lower left", bbox_to_anchor=(0.0, 0.0), fontsize=12,
-                      borderaxespad=0.4)  # fmt: skip
+        outside = ((plate.moved < low) | (plate.moved > high)).any()
+        piece_legend(figure, piece_words(step) + ", in part outside the picture" * bool(outside))
     return figure
 
 
 def piece_marks(plate: Plate) -> list:
     """A hatch over the squares of floating pieces, and their outline."""
     return [
-        PolyCollection(plate.moved[plate.floating], facecolors=PIECE, alpha=0.22, linewidths=0.0,
-                       antialiased=False, zorder=4),
+        PolyCollection(plate.moved[plate.floating], facecolors="none", edgecolors=PIECE, hatch="////",
+                       linewidths=0.0, zorder=4),
         LineCollection(rims(plate.cells, plate.moved, plate.floating), colors=PIECE, linewidths=1.6,
                        capstyle="projecting", zorder=5),
     ]  # fmt: skip
-
-
-def _piece_patch(words: str) -> Patch:
-    return Patch(facecolor=(0.086, 0.408, 0.722, 0.22), edgecolor=PIECE, linewidth=1.6, label=words)
 
 
 def draw_damage_sequence(results, steps):
