@@ -137,7 +137,7 @@ class _Stage:
         heading(self.figure, results, [""])
         self.facts = self.figure.text(0.35 / total_width, 1 - 0.74 / total_height, "", fontsize=13, color="#5b656e",
                                       va="top", animated=True)  # fmt: skip
-        self.remark = self.figure.text(left / total_width, 1 - 1.04 / total_height, "", fontsize=11, color=PIECE,
+        self.remark = self.figure.text(0.35 / total_width, 1 - 1.03 / total_height, "", fontsize=11, color=PIECE,
                                        va="top", animated=True)  # fmt: skip
         self.figure.canvas.draw()
         self.scenery = self.figure.canvas.copy_from_bbox(self.figure.bbox)

@@ -13,10 +13,12 @@ import unittest
 import warnings
 from contextlib import redirect_stderr, redirect_stdout
 from pathlib import Path
+from unittest import mock
 
 import h5py
 import matplotlib.image
 import numpy as np
+from PIL import Image
 
 PLOTS = Path(__file__).resolve().parents[3] / "cases" / "runner" / "plots"
 sys.path.insert(0, str(PLOTS))
@@ -24,6 +26,8 @@ sys.path.insert(0, str(PLOTS))
 import plot  # noqa: E402
 from cells import Cells, merged  # noqa: E402
 from curve_pictures import observed_order  # noqa: E402
+from field_pictures import deformed_plate  # noqa: E402
+from results_folder import read_results_folder  # noqa: E402
 from style import round_factor  # noqa: E402
 
 SPACING = 1e-3
@@ -182,6 +186,7 @@ class Pictures(unittest.TestCase):
     def assert_pictures(self, *names: str) -> None:
         """Exactly these pictures exist, of a size to look at and with more than a few colours."""
         drawn = sorted(path.stem for path in (self.folder / "plots").glob("*.png"))
+        self.assertTrue({f"{name}.png" for name in drawn} <= set(plot.PICTURES))
         self.assertEqual(drawn, sorted(names))
         for name in names:
             image = matplotlib.image.imread(self.folder / "plots" / f"{name}.png")
@@ -213,11 +218,140 @@ class Pictures(unittest.TestCase):
         self.plot()
         self.assert_pictures("deformed", "fields", "damage", "sequence", "load_displacement", "convergence")
 
+    def test_cracked_plate(self):
+        write_cracked_folder(self.folder, (40, 30))
+        self.assertIn("crack.gif", self.plot())
+        self.assert_pictures(*CRACKED)
+        with Image.open(self.folder / "plots" / "crack.gif") as animation:
+            self.assertEqual(animation.n_frames, 12)
+            self.assertTrue(700 <= animation.width <= 1200 and 300 <= animation.height <= 800)
+            self.assertEqual(animation.convert("RGB").getpixel((2, 2)), (255, 255, 255))
+
+    def test_elastic_plate_has_no_pictures_of_fracture(self):
+        write_folder(self.folder, lattice(30, 10))
+        self.plot()
+        for name in ("damage.png", "broken_bonds.png", "sequence.png", "energies.png", "crack.gif"):
+            self.assertFalse((self.folder / "plots" / name).exists(), name)
+
+    def test_animation_of_many_points_and_steps_is_small(self):
+        write_cracked_folder(self.folder, (160, 50), steps=100)
+        self.plot()
+        animation = self.folder / "plots" / "crack.gif"
+        self.assertLess(animation.stat().st_size, 1_000_000)
+        with Image.open(animation) as image:
+            self.assertTrue(30 <= image.n_frames <= 60, image.n_frames)
+
+    def test_animation_that_would_be_too_large_loses_frames(self):
+        write_cracked_folder(self.folder, (40, 30))
+        with mock.patch("crack_animation.MOST_BYTES", 60_000):
+            self.plot()
+        animation = self.folder / "plots" / "crack.gif"
+        with Image.open(animation) as image:
+            self.assertTrue(2 <= image.n_frames < 12)
+
+    def test_animation_without_its_library_is_named(self):
+        write_cracked_folder(self.folder, (20, 20), steps=6)
+        with mock.patch.dict(sys.modules, {"PIL": None}):
+            sys.modules.pop("crack_animation", None)
+            self.assertIn("python3-pil", self.plot())
+        self.assert_pictures(*CRACKED)
+        self.assertFalse((self.folder / "plots" / "crack.gif").exists())
+
+    def test_cracked_plate_of_an_older_folder(self):
+        """Without fragments, stretches, broken bonds, decisions, and with damage alone in the history."""
+        write_cracked_folder(self.folder, (20, 20), steps=6)
+        with h5py.File(self.folder / "results.h5", "a") as file:
+            del file["broken_bonds"]
+            for step in file["steps"].values():
+                del step["fragment"], step["stretch"], step.attrs["mode"]
+        for name in ("broken_bonds.csv", "decisions.csv"):
+            (self.folder / name).unlink()
+        unknown = ("broken_bonds", "dissipated_energy", "drained_energy", "external_work", "balance_error", "mode")
+        rewrite(self.folder / "history.csv", lambda row: row.update(dict.fromkeys(unknown, "")))
+        self.plot()
+        self.assert_pictures(*sorted(set(CRACKED) - {"broken_bonds", "energies"}))
+
+    def test_broken_bonds_are_read_from_either_file(self):
+        write_cracked_folder(self.folder, (20, 20), steps=6)
+        results = read_results_folder(self.folder)
+        ends, steps = results.broken_bonds()
+        self.assertGreater(len(steps), 100)
+        self.assertTrue((np.diff(steps) >= 0).all())
+        x = results.reference[ends, 0]
+        self.assertTrue(((x[:, 0] < 0.01) & (x[:, 1] > 0.01)).all())  # across the middle
+        with h5py.File(self.folder / "results.h5", "a") as file:
+            del file["broken_bonds"]
+        for one, other in zip((ends, steps), results.broken_bonds()):
+            np.testing.assert_array_equal(one, other)
+
+    def test_broken_bonds_that_cannot_be_are_reported(self):
+        write_cracked_folder(self.folder, (20, 20), steps=6)
+        with h5py.File(self.folder / "results.h5", "a") as file:
+            file["broken_bonds/second_point"][:3] = 400  # one more than the last
+        self.assertIn("do not exist", self.plot())
+        with h5py.File(self.folder / "results.h5", "a") as file:
+            del file["broken_bonds/second_point"]
+            file["broken_bonds/second_point"] = np.zeros(2, dtype=int)  # not as many as the others
+        self.assertIn("broken bonds can't be read", self.plot())
+
+    def test_plate_all_of_which_floats_far_away(self):
+        write_cracked_folder(self.folder, (20, 20), steps=6)
+        with h5py.File(self.folder / "results.h5", "a") as file:
+            file["steps/000006/fragment"][:200] = 1
+            file["steps/000006/fragment"][200:] = 2
+            file["steps/000006/displacement"][:200, 0] -= 1.0
+        self.plot()
+        self.assert_pictures(*CRACKED)
+
+    def test_crumb_that_flew_far_does_not_shrink_the_plate(self):
+        write_cracked_folder(self.folder, (20, 20), steps=6)
+        results = read_results_folder(self.folder)
+        step = results.step(6)
+        before = deformed_plate(results, step, 1.0, step.damage).frame()
+        step.displacement[step.floating] += 1.0
+        low, high = deformed_plate(results, step, 1.0, step.damage).frame()
+        self.assertGreater(step.floating.sum(), 10)
+        for one, other in zip(before, (low, high)):
+            np.testing.assert_allclose(one, other, rtol=0, atol=0.5 * SPACING)
+
+    def test_cracked_plate_under_compression(self):
+        write_cracked_folder(self.folder, (20, 20), steps=6)
+
+        def push(row):
+            for name in ("left", "right"):
+                row[f"reaction_x:{name}"] = -float(row[f"reaction_x:{name}"])
+
+        rewrite(self.folder / "history.csv", push)
+        self.plot()
+        self.assert_pictures(*CRACKED)
+
+    def test_cloud_with_pieces(self):
+        for dimension in (2, 3):
+            with self.subTest(dimension=dimension):
+                self.folder = self.folder.with_name(f"pieces_{dimension}")
+                write_folder(self.folder, np.random.default_rng(5).uniform(0.0, 0.02, (300, dimension)), damaged=True)
+                with h5py.File(self.folder / "results.h5", "a") as file:
+                    file["steps/000003/fragment"] = np.arange(300) % 3
+                self.plot()
+                self.assertTrue((self.folder / "plots" / "damage.png").is_file())
+
+    def test_energies_of_a_load_that_turns_are_drawn_over_steps(self):
+        write_cracked_folder(self.folder, (20, 20), steps=6)
+
+        def turn(row):
+            row["load_factor"] = 3.0 - abs(3.0 - float(row["step"]))
+
+        rewrite(self.folder / "history.csv", turn)
+        self.plot()
+        self.assert_pictures(*CRACKED)
+
     def test_pictures_of_an_earlier_run_do_not_stay(self):
         write_folder(self.folder, lattice(10, 10))
         (self.folder / "plots").mkdir()
-        (self.folder / "plots" / "damage.png").write_text("old")
+        for name in ("damage.png", "energies.png", "crack.gif"):
+            (self.folder / "plots" / name).write_text("old")
         self.plot()
+        self.assertFalse((self.folder / "plots" / "crack.gif").exists())
         self.assert_pictures("deformed", "fields", "load_displacement", "convergence")
 
     def test_solid(self):
@@ -236,6 +370,13 @@ class Pictures(unittest.TestCase):
 
     def test_damaged_solid(self):
         write_folder(self.folder, lattice(12, 6, 6), damaged=True)
+        self.plot()
+        self.assert_pictures("deformed", "damage", "load_displacement", "convergence")
+
+    def test_damaged_solid_with_a_floating_piece(self):
+        write_folder(self.folder, lattice(12, 6, 6), damaged=True)
+        with h5py.File(self.folder / "results.h5", "a") as file:
+            file["steps/000003/fragment"] = (file["points/reference"][:, 0] > 0.008).astype(float)
         self.plot()
         self.assert_pictures("deformed", "damage", "load_displacement", "convergence")
 
