@@ -106,28 +106,31 @@ def draw_fracture(axes, results, curves, places, size, words, all_curves=None):
             axes.plot([], [], linestyle="none", marker="o", markersize=7, markerfacecolor=colour,
                       markeredgecolor=INK, markeredgewidth=1.2, label=label)  # fmt: skip
     for action, label, colour, dashes in HAND_OVERS:
-        for place, load in enumerate(_hand_overs(results, action)):
-            axes.axvline(_at_load(results, places, load), color=colour, linewidth=1.0, linestyle=dashes, zorder=1.5,
+        for place, (step, load) in enumerate(hand_overs(results, action)):
+            axes.axvline(on_the_way(results, places, step, load), color=colour, linewidth=1.0, linestyle=dashes, zorder=1.5,
                          label=label if place == 0 else None)  # fmt: skip
     _mark_peak(axes, curves, places, size, words)
 
 
-def _hand_overs(results, action: str) -> list[float]:
-    """Load factors at which an action was decided; without decisions, at which the mode changed."""
+def hand_overs(results, action: str) -> list[tuple[float, float]]:
+    """Step and load factor of decisions for an action; without decisions, of changes of the mode."""
     table = results.decisions
     if table.get("action"):
-        decided = zip(table.get("load_factor", []), table["action"])
-        return sorted({load for load, taken in decided if taken == action and isinstance(load, float)})
-    modes, loads = results.history.get("mode", []), results.history["load_factor"]
+        decided = zip(table.get("step", []), table.get("load_factor", []), table["action"])
+        return sorted({(step, load) for step, load, taken in decided
+                       if taken == action and isinstance(step, float) and isinstance(load, float)})  # fmt: skip
     new = "relaxation" if "relaxation" in action else "newton"
-    return [load for before, mode, load in zip(modes, modes[1:], loads[1:]) if before != mode == new]
+    rows = list(zip(*(results.history.get(name, []) for name in ("mode", "step", "load_factor"))))
+    return [(step, load) for (before, _, _), (mode, step, load) in zip(rows, rows[1:]) if before != mode == new]
 
 
-def _at_load(results, places, load: float) -> float:
-    """Abscissa that belongs to a load factor, between those of the accepted steps."""
-    loads = np.concatenate([[0.0], results.history["load_factor"]])
-    order = np.argsort(loads, kind="stable")
-    return float(np.interp(load, loads[order], np.concatenate([[0.0], places])[order]))
+def on_the_way(results, places, step: float, load: float) -> float:
+    """Abscissa of a load factor on the way to a step from the accepted one before it."""
+    after = min(int(np.searchsorted(results.history["step"], step)), len(places) - 1)
+    loads = np.concatenate([[0.0], results.history["load_factor"]])[after : after + 2]
+    ends = np.concatenate([[0.0], places])[after : after + 2]
+    share = (load - loads[0]) / (loads[1] - loads[0]) if loads[1] != loads[0] else 1.0
+    return float(ends[0] + np.clip(share, 0.0, 1.0) * (ends[1] - ends[0]))
 
 
 def _mark_peak(axes, curves, places, size, words) -> None:

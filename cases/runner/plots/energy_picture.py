@@ -1,6 +1,7 @@
 """Picture of where the external work went."""
 
 import numpy as np
+from matplotlib.ticker import MaxNLocator
 
 from style import ENERGIES, INK, heading, new_figure, number, unit_for
 
@@ -47,6 +48,8 @@ def draw_energies(results):
         axes.plot(place, below, color="white", linewidth=1.0, zorder=3)
     axes.plot(place, work, color=INK, linewidth=2.0, zorder=4, label="external work")
     axes.set_xlabel("load factor" if grows else "step")
+    if not grows:
+        axes.xaxis.set_major_locator(MaxNLocator(integer=True))
     axes.set_ylabel(f"energy [{unit}]")
     axes.set_xlim(place.min(), place.max() if place.max() > place.min() else place.min() + 1.0)
     axes.set_ylim(min(0.0, work.min()), 1.06 * max(work.max(), below.max()))

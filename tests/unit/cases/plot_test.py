@@ -25,7 +25,7 @@ sys.path.insert(0, str(PLOTS))
 
 import plot  # noqa: E402
 from cells import Cells, merged  # noqa: E402
-from curve_pictures import observed_order  # noqa: E402
+from curve_pictures import hand_overs, observed_order, on_the_way  # noqa: E402
 from field_pictures import deformed_plate  # noqa: E402
 from results_folder import read_results_folder  # noqa: E402
 from style import round_factor  # noqa: E402
@@ -344,6 +344,19 @@ class Pictures(unittest.TestCase):
         rewrite(self.folder / "history.csv", turn)
         self.plot()
         self.assert_pictures(*CRACKED)
+
+    def test_hand_overs_stand_between_the_steps_that_they_are_of(self):
+        write_cracked_folder(self.folder, (20, 20), steps=6)
+        results = read_results_folder(self.folder)
+        places = np.array([1.0, 2.0, 3.0, 5.0, 8.0, 9.0])  # m, of the six steps
+        for action, step, place in (("hand over to relaxation", 4, 5.0), ("hand back to newton", 6, 9.0)):
+            results.decisions = {}
+            self.assertEqual(hand_overs(results, action), [(step, step / 6)])  # from the modes
+            results.decisions = read_results_folder(self.folder).decisions
+            self.assertEqual(hand_overs(results, action), [(step, step / 6)])
+            self.assertAlmostEqual(on_the_way(results, places, step, step / 6), place, delta=1e-12)
+        self.assertAlmostEqual(on_the_way(results, places, 5, 4.5 / 6), 6.5, delta=1e-12)
+        self.assertAlmostEqual(on_the_way(results, places, 7, 7 / 6), 9.0, delta=1e-12)  # was never accepted
 
     def test_pictures_of_an_earlier_run_do_not_stay(self):
         write_folder(self.folder, lattice(10, 10))
