@@ -99,16 +99,16 @@ def draw_fracture(axes, results, curves, places, size, words, all_curves=None):
     if len(relaxed) == len(places) and relaxed.any():
         for name, _, values in curves:
             style = names.index(name)
-            axes.plot(places[relaxed], values[relaxed] / size, linestyle="none", marker=MARKERS[style % len(MARKERS)],
-                      markersize=mark, markerfacecolor="white",
+            axes.plot(places[relaxed], values[relaxed] / size, linestyle="none",
+                      marker=MARKERS[style % len(MARKERS)], markersize=mark, markerfacecolor="white",
                       markeredgecolor=LINES[style % len(LINES)], markeredgewidth=1.2, zorder=4)  # fmt: skip
         for colour, label in ((INK, "Newton's method"), ("white", "relaxation")):
             axes.plot([], [], linestyle="none", marker="o", markersize=7, markerfacecolor=colour,
                       markeredgecolor=INK, markeredgewidth=1.2, label=label)  # fmt: skip
     for action, label, colour, dashes in HAND_OVERS:
         for place, (step, load) in enumerate(hand_overs(results, action)):
-            axes.axvline(on_the_way(results, places, step, load), color=colour, linewidth=1.0, linestyle=dashes, zorder=1.5,
-                         label=label if place == 0 else None)  # fmt: skip
+            axes.axvline(on_the_way(results, places, step, load), color=colour, linewidth=1.0, linestyle=dashes,
+                         zorder=1.5, label=label if place == 0 else None)  # fmt: skip
     _mark_peak(axes, curves, places, size, words)
 
 
