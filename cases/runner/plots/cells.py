@@ -90,6 +90,15 @@ class Cells:
         return gradient
 
 
+def at_the_rim(cells: Cells, floating: np.ndarray) -> np.ndarray:
+    """Cells with a neighbour that floats while they don't, or the other way round."""
+    rim = np.zeros(len(floating), dtype=bool)
+    for axis, sign in product(range(cells.dimension), (-1, 1)):
+        other = cells.neighbours(axis, sign)
+        rim |= (other >= 0) & (floating != floating[other])
+    return rim
+
+
 def corner_signs(dimension: int) -> np.ndarray:
     """Signs of a cell's corners, 2^dimension x dimension; the last axis changes fastest."""
     return np.array(list(product((-1.0, 1.0), repeat=dimension)))

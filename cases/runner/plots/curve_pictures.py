@@ -4,7 +4,7 @@ import numpy as np
 from matplotlib import colormaps
 from matplotlib.ticker import MaxNLocator
 
-from style import FAINT, FORCES, GHOST, LENGTHS, LINES, WARNING, heading, new_figure, number, unit_for
+from style import FAINT, FORCES, GHOST, INK, LENGTHS, LINES, WARNING, heading, new_figure, number, unit_for
 
 # Relative residuals below are round-off and show no order: in slender bodies the forces of single
 # bonds are orders of magnitude larger than the residual's scale, and so is their round-off.
@@ -13,6 +13,10 @@ MOST_STEPS = 8  # curves in the picture of convergence
 MOST_VALUES_READ = 20_000_000  # of displacements, to find how far the supports moved
 AXES = "xyz"
 MARKERS = "osD^vP"
+HAND_OVERS = (  # actions of decisions.csv, words, colour and dashes
+    ("hand over to relaxation", "hand-over to relaxation", "#b58a1b", (0, (5, 2))),
+    ("hand back to newton", "hand-back to Newton's method", "#7a5aa6", (0, (1, 2))),
+)
 HISTORY_COLUMNS = {
     "step", "load_factor", "mode", "newton_iterations", "relaxation_iterations", "stored_energy",
     "dissipated_energy", "drained_energy", "external_work", "balance_error", "broken_bonds",
@@ -24,45 +28,140 @@ HISTORY_COLUMNS = {
 
 
 def draw_load_displacement(results):
-    """Reactions of the support sets over the load factor, and over a displacement if one is known."""
-    load = np.array(results.history["load_factor"])
-    curves = _reactions(results.history, len(load))
-    unit, size = unit_for(max(np.abs(values).max() for _, _, values in curves), FORCES, 1.0)
-    abscissa = _probe(results) or _moved_support(results, curves)
+    """Reactions of the support sets over the load factor, and over a displacement if one is known.
 
-    figure = new_figure(16.0, 7.2)
-    panels = [figure.add_axes([0.075, 0.115, 0.40 if abscissa else 0.80, 0.71])]
+    Once there is damage, also how the steps were found, the peak, and the hand-overs between the solvers.
+    """
+    load = np.array(results.history["load_factor"])
+    curves = reactions(results.history, len(load))
+    unit, size = unit_for(max(np.abs(values).max() for _, _, values in curves), FORCES, 1.0)
+    abscissa = find_abscissa(results, curves)
+
+    foot = 0.65 if results.is_fractured else 0.0  # inches for the legend
+    height = 7.2 + foot
+    bottom, panel_height = (0.115 * 7.2 + foot) / height, 0.71 * 7.2 / height
+    figure = new_figure(16.0, height)
+    panels = [figure.add_axes([0.075, bottom, 0.40 if abscissa else 0.80, panel_height])]
     _draw_reactions(panels[0], curves, lambda name: load, size)
     panels[0].set_xlabel("load factor")
     panels[0].set_ylabel(f"reaction [{unit}]")
+    if results.is_fractured:
+        draw_fracture(panels[0], results, curves, load, size, "at load factor {}")
     if abscissa:
-        label, places, only, sign = abscissa
-        panels.append(figure.add_axes([0.565, 0.115, 0.40, 0.71]))
-        shown = [curve for curve in curves if only in (None, curve[0])]
-        shown = [(name, axis, sign * values) for name, axis, values in shown]
-        length, length_size = unit_for(np.abs(places).max(), LENGTHS) if "[m]" in label else ("", 1.0)
-        _draw_reactions(panels[1], shown, lambda name: places / length_size, size, curves)
-        panels[1].set_xlabel(label.replace("[m]", f"[{length}]"))
+        label, places, shown, words = abscissa_of(abscissa, curves)
+        panels.append(figure.add_axes([0.565, bottom, 0.40, panel_height]))
+        _draw_reactions(panels[1], shown, lambda name: places, size, curves)
+        panels[1].set_xlabel(label)
         panels[1].set_ylabel(f"reaction [{unit}]")
+        if results.is_fractured:
+            draw_fracture(panels[1], results, shown, places, size, words, curves)
         if abs(places.min()) > places.max():
             panels[1].invert_xaxis()  # the curve starts at the left
     for axes in panels:
         axes.axhline(0.0, color=GHOST, linewidth=1.2, zorder=1)
         axes.axvline(0.0, color=GHOST, linewidth=1.2, zorder=1)
-        axes.legend(loc="best" if len(curves) > 1 else "upper left", fontsize=12)
+        if not results.is_fractured:
+            axes.legend(loc="best" if len(curves) > 1 else "upper left", fontsize=12)
+    if results.is_fractured:
+        handles, labels = panels[0].get_legend_handles_labels()
+        figure.legend(handles, labels, loc="lower center", ncol=min(len(labels), 6), fontsize=12,
+                      bbox_to_anchor=(0.52, 0.0), borderaxespad=0.5)  # fmt: skip
     steps = len(load)
     heading(figure, results, ["reactions of the supports", f"{number(steps)} accepted step{'s' * (steps != 1)}",
                               f"load factor up to {number(load.max())}"])  # fmt: skip
     return figure
 
 
+def find_abscissa(results, curves):
+    """The displacement to draw over, see `abscissa_of`; None if none is known."""
+    return _probe(results) or _moved_support(results, curves)
+
+
+def abscissa_of(abscissa, curves):
+    """Of a displacement to draw over: label, values in its unit, the curves to draw, words for a value."""
+    label, places, only, sign = abscissa
+    shown = [(name, axis, sign * values) for name, axis, values in curves if only in (None, name)]
+    length, size = unit_for(np.abs(places).max(), LENGTHS) if "[m]" in label else ("", 1.0)
+    return label.replace("[m]", f"[{length}]"), places / size, shown, f"at {{}} {length}".rstrip()
+
+
+def draw_fracture(axes, results, curves, places, size, words, all_curves=None):
+    """Open marks of the steps found by relaxation, lines of the hand-overs, and the peak with its value.
+
+    places  abscissa of the accepted steps
+    words   what is said of the peak's place, "at {} mm"
+    """
+    names = [name for name, _, _ in all_curves or curves]
+    mark = np.clip(400 / len(places), 3.5, 7)
+    for line in axes.get_lines():
+        line.set(markersize=mark, markeredgewidth=0.0)
+    relaxed = np.array([mode == "relaxation" for mode in results.history.get("mode", [])], dtype=bool)
+    if len(relaxed) == len(places) and relaxed.any():
+        for name, _, values in curves:
+            style = names.index(name)
+            axes.plot(places[relaxed], values[relaxed] / size, linestyle="none",
+                      marker=MARKERS[style % len(MARKERS)], markersize=mark, markerfacecolor="white",
+                      markeredgecolor=LINES[style % len(LINES)], markeredgewidth=1.2, zorder=4)  # fmt: skip
+        for colour, label in ((INK, "Newton's method"), ("white", "relaxation")):
+            axes.plot([], [], linestyle="none", marker="o", markersize=7, markerfacecolor=colour,
+                      markeredgecolor=INK, markeredgewidth=1.2, label=label)  # fmt: skip
+    for action, label, colour, dashes in HAND_OVERS:
+        for place, (step, load) in enumerate(hand_overs(results, action)):
+            axes.axvline(on_the_way(results, places, step, load), color=colour, linewidth=1.0, linestyle=dashes,
+                         zorder=1.5, label=label if place == 0 else None)  # fmt: skip
+    _mark_peak(axes, curves, places, size, words)
+
+
+def hand_overs(results, action: str) -> list[tuple[float, float]]:
+    """Step and load factor of decisions for an action; without decisions, of changes of the mode."""
+    table = results.decisions
+    if table.get("action"):
+        decided = zip(table.get("step", []), table.get("load_factor", []), table["action"])
+        return sorted({(step, load) for step, load, taken in decided
+                       if taken == action and isinstance(step, float) and isinstance(load, float)})  # fmt: skip
+    new = "relaxation" if "relaxation" in action else "newton"
+    rows = list(zip(*(results.history.get(name, []) for name in ("mode", "step", "load_factor"))))
+    return [(step, load) for (before, _, _), (mode, step, load) in zip(rows, rows[1:]) if before != mode == new]
+
+
+def on_the_way(results, places, step: float, load: float) -> float:
+    """Abscissa of a load factor on the way to a step from the accepted one before it."""
+    after = min(int(np.searchsorted(results.history["step"], step)), len(places) - 1)
+    loads = np.concatenate([[0.0], results.history["load_factor"]])[after : after + 2]
+    ends = np.concatenate([[0.0], places])[after : after + 2]
+    share = (load - loads[0]) / (loads[1] - loads[0]) if loads[1] != loads[0] else 1.0
+    return float(ends[0] + np.clip(share, 0.0, 1.0) * (ends[1] - ends[0]))
+
+
+def _mark_peak(axes, curves, places, size, words) -> None:
+    """A ring about the largest reaction, and its value and place above (or below) all curves."""
+    largest = max(np.abs(values).max() for _, _, values in curves)
+    alike = [values / size for _, _, values in curves if np.abs(values).max() > (1.0 - 1e-3) * largest]
+    values = max(alike, key=max)  # of opposite reactions the one that points up
+    peak = int(np.argmax(np.abs(values)))
+    up = values[peak] >= 0.0
+    axes.plot(places[peak], values[peak], "o", markersize=13, markerfacecolor="none", markeredgecolor=WARNING,
+              markeredgewidth=1.8, zorder=5, label="peak")  # fmt: skip
+    low, high = axes.get_ylim()
+    axes.set_ylim((low, high + 0.09 * (high - low)) if up else (low - 0.09 * (high - low), high))
+    left, right = axes.get_xlim()
+    share = (places[peak] - left) / (right - left) if right > left else 0.5
+    share = 1.0 - share if np.abs(places.min()) > places.max() and places.min() < 0.0 else share
+    unit = axes.get_ylabel().split("[")[-1].rstrip("]")
+    text = f"{number(abs(values[peak]))} {unit} {words.format(number(places[peak]))}"
+    axes.annotate(text, (places[peak], values[peak]), xytext=(0, 13 if up else -13), textcoords="offset points",
+                  ha="left" if share < 0.25 else "right" if share > 0.75 else "center",
+                  va="bottom" if up else "top", fontsize=12, fontweight="bold", color=WARNING, zorder=6,
+                  bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.85, "pad": 1.5})  # fmt: skip
+
+
 def has_reactions(results) -> bool:
     """Whether the history has accepted steps with reactions."""
     load = results.history.get("load_factor", [])
-    return bool(load) and isinstance(load[0], float) and bool(_reactions(results.history, len(load)))
+    return bool(load) and isinstance(load[0], float) and bool(reactions(results.history, len(load)))
 
 
-def _reactions(history, count):
+def reactions(history, count):
     """Per support set: name, dominating component (0, 1, 2) and its values [N]."""
     sets = {}
     for column, values in history.items():

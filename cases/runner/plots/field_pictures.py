@@ -1,11 +1,12 @@
 """Pictures of the fields of a step for one- and two-dimensional bodies."""
 
+from dataclasses import dataclass
+
 import numpy as np
-from matplotlib.cm import ScalarMappable
 from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.colors import LinearSegmentedColormap, Normalize
 
-from cells import Cells, merged
+from cells import Cells, at_the_rim, merged
 from style import (
     ENERGY_DENSITIES, GHOST, INK, LENGTHS, LINES,
     colour_bar, heading, new_figure, number, round_factor, step_words, unit_for,
@@ -13,17 +14,20 @@ from style import (
 
 MOST_CELLS = 60_000  # drawn in one panel; more points are averaged over blocks
 LOOSE_DAMAGE = 0.35  # a cell this damaged lies at a crack and moves with its point alone
+FLIGHT = 0.25  # share of the body's size that floating pieces may lie outside it in a picture
+SIDES = {(0, -1): [0, 3], (0, 1): [1, 2], (1, -1): [0, 1], (1, 1): [3, 2]}  # of a square, and their ends
 SEAM = 0.75  # width of a cell's own edge [point]: covers the hairline between neighbours
 DAMAGE_COLOURS = LinearSegmentedColormap.from_list(  # lightness falls steadily
     "damage", ["#d9dfe5", "#f0b36a", "#d8562f", "#8c1c2b", "#2b0a18"]
 )
 
 
-def exaggeration(reference: np.ndarray, displacement: np.ndarray) -> float:
-    """Round factor that makes the largest displacement at most an eighth of the body's size."""
+def exaggeration(reference: np.ndarray, step, share: float = 0.125) -> float:
+    """Round factor that makes the largest displacement of the held body at most a share of its size."""
+    held = step.displacement if step.floating.all() else step.displacement[~step.floating]
     size = np.linalg.norm(np.ptp(reference, axis=0))
-    largest = np.linalg.norm(displacement, axis=1).max()
-    return round_factor(size / 8.0 / largest) if largest > 1e-14 * size else 1.0
+    largest = np.linalg.norm(held, axis=1).max()
+    return round_factor(size * share / largest) if largest > 1e-14 * size else 1.0
 
 
 def exaggeration_words(factor: float) -> str:
@@ -48,51 +52,76 @@ def displacement_magnitude(displacement: np.ndarray):
 # ---------------------------------------------------------------------------------------------- 2D
 
 
+@dataclass
+class Plate:
+    """The squares of a deformed plate, fewer than the points if these are too many to draw."""
+
+    cells: Cells
+    still: np.ndarray  # corners in the reference configuration: count x 4 x 2
+    moved: np.ndarray  # corners after the deformation
+    damage: np.ndarray
+    floating: np.ndarray  # whether the square belongs to a piece that has come off
+    values: np.ndarray  # what colours the squares
+
+    def frame(self) -> tuple[np.ndarray, np.ndarray]:
+        """Corners of a box around the plate before and after; pieces that flew far stay outside."""
+        low, high = self.still.min(axis=(0, 1)), self.still.max(axis=(0, 1))
+        air = FLIGHT * (high - low).max()
+        shown = self.moved
+        if self.floating.any():
+            near = ((self.moved > low - air) & (self.moved < high + air)).all(axis=(1, 2))
+            shown = self.moved[~self.floating | near]
+        both = np.concatenate([self.still, shown])
+        return both.min(axis=(0, 1)), both.max(axis=(0, 1))
+
+
+def deformed_plate(results, step, factor: float, values: np.ndarray, size: float = 1.0,
+                   limit: int = MOST_CELLS) -> Plate:  # fmt: skip
+    """Squares with displacements times a factor; lengths are in units of `size` metres."""
+    spacing, reference, displacement, damage, floating, values = merged(
+        results.reference, results.spacing, limit,
+        step.displacement, step.damage, step.floating.astype(float), values,
+    )  # fmt: skip
+    floating = floating > 0.5
+    cells = Cells(reference / size, spacing / size)
+    loose = damage > LOOSE_DAMAGE
+    if floating.any():
+        loose = loose | at_the_rim(cells, floating)
+    order = [0, 2, 3, 1]  # of going round
+    still = cells.corners(reference / size, np.zeros_like(reference), loose)[:, order]
+    moved = cells.corners(reference / size, factor * displacement / size, loose)[:, order]
+    return Plate(cells, still, moved, damage, floating, values)
+
+
 def draw_deformed_plane(results, step):
     """Deformed plate coloured by the magnitude of the displacement."""
     values, value_range, label = displacement_magnitude(step.displacement)
-    return _plane(results, step, values, value_range, label, "viridis")
+    factor = exaggeration(results.reference, step)
+    return draw_plane(results, step, factor, values, value_range, label, "viridis")[0]
 
 
-def draw_damaged_plane(results, step):
-    """Deformed plate coloured by damage."""
-    return _plane(results, step, step.damage, (0.0, 1.0), "damage", DAMAGE_COLOURS)
-
-
-def _plane(results, step, values, value_range, label, colours):
-    factor = exaggeration(results.reference, step.displacement)
-    spacing, reference, displacement, damage, values = merged(
-        results.reference, results.spacing, MOST_CELLS, step.displacement, step.damage, values
-    )
-    unit, size = unit_for(np.ptp(reference, axis=0).max(), LENGTHS)
-    cells = Cells(reference / size, spacing / size)
-    polygons = _quadrilaterals(cells, reference / size, factor * displacement / size, damage)
-    still = _quadrilaterals(cells, reference / size, np.zeros_like(reference), damage)
-
-    low = np.minimum(polygons.min(axis=(0, 1)), still.min(axis=(0, 1)))
-    high = np.maximum(polygons.max(axis=(0, 1)), still.max(axis=(0, 1)))
+def draw_plane(results, step, factor, values, value_range, label, colours, words=()):
+    """Deformed plate coloured by a value per point, with more words in the heading: figure, axes, plate."""
+    unit, size = unit_for(np.ptp(results.reference, axis=0).max(), LENGTHS)
+    plate = deformed_plate(results, step, factor, values, size)
+    low, high = plate.frame()
     margin = 0.03 * (high - low).max()
-    figure, axes, bar_place = _framed(low - margin, high + margin)
-    _draw_outline(axes, cells, still)
+    figure, axes, bar_place = framed(low - margin, high + margin)
+    _draw_outline(axes, plate)
     collection = PolyCollection(
-        polygons, array=values, cmap=colours, norm=Normalize(*value_range),
+        plate.moved, array=plate.values, cmap=colours, norm=Normalize(*value_range),
         edgecolors="face", linewidths=SEAM, zorder=2,
     )  # fmt: skip
     axes.add_collection(collection, autolim=False)
     axes.set_xlabel(f"x [{unit}]")
     axes.set_ylabel(f"y [{unit}]")
     colour_bar(figure, bar_place, collection, label)
-    heading(figure, results, [exaggeration_words(factor), *step_words(step),
+    heading(figure, results, [exaggeration_words(factor), *step_words(step), *words,
                               f"{number(len(results.volume))} points"])  # fmt: skip
-    return figure
+    return figure, axes, plate
 
 
-def _quadrilaterals(cells: Cells, reference, displacement, damage) -> np.ndarray:
-    """Corners of the deformed squares in the order of going round."""
-    return cells.corners(reference, displacement, damage > LOOSE_DAMAGE)[:, [0, 2, 3, 1]]
-
-
-def _framed(low, high):
+def framed(low, high):
     """A figure whose axes show the box in true proportion: figure, axes, place of the colour bar."""
     width_of_body, height_of_body = high - low
     left, right, bottom, top = 1.0, 1.75, 0.75, 1.25  # margins [inch]
@@ -115,17 +144,25 @@ def _framed(low, high):
     return figure, axes, bar
 
 
-def _draw_outline(axes, cells: Cells, still: np.ndarray) -> None:
+def _draw_outline(axes, plate: Plate) -> None:
     """Boundary of the reference configuration, filled faintly so that the motion is seen."""
-    if cells.is_lattice:
-        sides = {(0, -1): [0, 3], (0, 1): [1, 2], (1, -1): [0, 1], (1, 1): [3, 2]}
-        edges = [still[cells.neighbours(*side) < 0][:, ends] for side, ends in sides.items()]
+    if plate.cells.is_lattice:
+        everybody = np.ones(len(plate.still), dtype=bool)
         axes.add_collection(
-            LineCollection(np.concatenate(edges), colors=GHOST, linewidths=1.4, zorder=3, capstyle="projecting"),
-            autolim=False,
-        )
-    axes.add_collection(PolyCollection(still, facecolors="#f1f3f5", edgecolors="#f1f3f5",
+            LineCollection(rims(plate.cells, plate.still, everybody), colors=GHOST, linewidths=1.4, zorder=3,
+                           capstyle="projecting"), autolim=False,
+        )  # fmt: skip
+    axes.add_collection(PolyCollection(plate.still, facecolors="#f1f3f5", edgecolors="#f1f3f5",
                                        linewidths=SEAM, zorder=0), autolim=False)  # fmt: skip
+
+
+def rims(cells: Cells, corners: np.ndarray, members: np.ndarray) -> np.ndarray:
+    """Edges between the squares that are members and what is none: count x 2 ends x 2."""
+    edges = []
+    for side, ends in SIDES.items():
+        other = cells.neighbours(*side)
+        edges.append(corners[members & ((other < 0) | ~members[other])][:, ends])
+    return np.concatenate(edges)
 
 
 def draw_plane_fields(results, step):
@@ -135,7 +172,8 @@ def draw_plane_fields(results, step):
     )
     unit, size = unit_for(np.ptp(reference, axis=0).max(), LENGTHS)
     cells = Cells(reference / size, spacing / size)
-    still = _quadrilaterals(cells, reference / size, np.zeros_like(reference), np.zeros(len(reference)))
+    nobody = np.zeros(len(reference), dtype=bool)
+    still = cells.corners(reference / size, np.zeros_like(reference), nobody)[:, [0, 2, 3, 1]]
     length, length_size = unit_for(np.abs(displacement).max(), LENGTHS)
     density, density_size = unit_for(np.percentile(energy, 99.5), ENERGY_DENSITIES)
     panels = [
@@ -205,50 +243,12 @@ def _small_multiples(count: int, columns: int, aspect: float):
     return figure, places
 
 
-def draw_damage_sequence(results, steps):
-    """Damage on the deformed plate in up to six steps."""
-    factor = exaggeration(results.reference, steps[-1].displacement)
-    frames = []
-    for step in steps:
-        spacing, reference, displacement, damage = merged(
-            results.reference, results.spacing, MOST_CELLS // 3, step.displacement, step.damage
-        )
-        cells = Cells(reference, spacing)
-        frames.append((step, _quadrilaterals(cells, reference, factor * displacement, damage), damage))
-    low = np.min([polygons.min(axis=(0, 1)) for _, polygons, _ in frames], axis=0)
-    high = np.max([polygons.max(axis=(0, 1)) for _, polygons, _ in frames], axis=0)
-    aspect = (high - low)[1] / (high - low)[0]
-    columns = min(len(frames), 3 if aspect > 0.5 else 2)
-    rows = -(-len(frames) // columns)
-    panel_width = 14.6 / columns
-    panel_height = max(min(panel_width * aspect, 7.5), 0.8)
-    width, height = 16.0, 1.5 + rows * (panel_height + 0.45)
-    figure = new_figure(width, height)
-    for place, (step, polygons, damage) in enumerate(frames):
-        x = 0.3 + (place % columns) * panel_width
-        y = height - 1.15 - (place // columns + 1) * (panel_height + 0.45)
-        axes = figure.add_axes([x / width, y / height, 0.96 * panel_width / width, panel_height / height])
-        axes.add_collection(
-            PolyCollection(polygons, array=damage, cmap=DAMAGE_COLOURS, norm=Normalize(0, 1),
-                           edgecolors="face", linewidths=SEAM), autolim=False,
-        )  # fmt: skip
-        axes.set_xlim(low[0], high[0])
-        axes.set_ylim(low[1], high[1])
-        axes.set_aspect("equal")
-        axes.axis("off")
-        axes.set_title(f"load factor {number(step.load_factor)}", fontsize=13, loc="left")
-    mappable = ScalarMappable(Normalize(0, 1), DAMAGE_COLOURS)
-    colour_bar(figure, [15.0 / width, 0.3 / height, 0.2 / width, (height - 1.9) / height], mappable, "damage")
-    heading(figure, results, ["damage as the load grows", exaggeration_words(factor)])
-    return figure
-
-
 # ---------------------------------------------------------------------------------------------- 1D
 
 
 def draw_deformed_bar(results, step):
     """Displacement over x, and the bar before and after."""
-    factor = exaggeration(results.reference, step.displacement)
+    factor = exaggeration(results.reference, step)
     order = np.argsort(results.reference[:, 0])
     x, u = results.reference[order, 0], step.displacement[order, 0]
     damage = step.damage[order]

@@ -32,6 +32,12 @@ class Step:
     displacement: np.ndarray  # [m]
     damage: np.ndarray  # 0 intact to 1
     energy_density: np.ndarray  # [J/m3]
+    fragment: np.ndarray  # 0 in the held body, else the number of a floating piece
+
+    @property
+    def floating(self) -> np.ndarray:
+        """Whether each point belongs to a piece that has come off."""
+        return self.fragment > 0.5
 
 
 @dataclass
@@ -47,6 +53,7 @@ class ResultsFolder:
     step_numbers: list[int]  # with readable fields, ascending
     history: dict[str, list]  # columns of history.csv
     iterations: dict[str, list]  # columns of iterations.csv
+    decisions: dict[str, list]  # columns of decisions.csv, empty if there is none
     summary: dict
     case: dict  # the resolved case
     missing: list[str] = field(default_factory=list)  # sentences for a person
@@ -65,9 +72,10 @@ class ResultsFolder:
             group = file[f"steps/{number:06d}"]
             count = len(self.volume)
 
-            def values(name, shape):
+            def values(name, shape, expected=True):
                 if name not in group:
-                    self._report(f"step {number} has no {name}")
+                    if expected:
+                        self._report(f"step {number} has no {name}")
                     return np.zeros(shape)
                 array = np.asarray(group[name][...], dtype=float).reshape(shape)
                 if not np.isfinite(array).all():
@@ -82,6 +90,7 @@ class ResultsFolder:
                 values("displacement", self.reference.shape),
                 values("damage", count),
                 values("energy_density", count),
+                values("fragment", count, expected=False),
             )
 
     def displacement(self, number: int) -> np.ndarray:
@@ -94,6 +103,39 @@ class ResultsFolder:
         with h5py.File(self.path / "results.h5", "r") as file:
             name = f"steps/{number:06d}/damage"
             return name in file and bool(np.nanmax(file[name][...], initial=0.0) > 0.0)
+
+    @property
+    def is_fractured(self) -> bool:
+        """Whether the history knows of damage."""
+        return any(isinstance(value, float) and value > 0.0
+                   for column in ("max_damage", "broken_bonds") for value in self.history.get(column, []))  # fmt: skip
+
+    def in_history(self, step: int, column: str) -> float | None:
+        """A number of an accepted step's row in the history."""
+        rows = zip(self.history.get("step", []), self.history.get(column, []))
+        return next((value for own, value in rows if own == step and isinstance(value, float)), None)
+
+    def broken_bonds(self) -> tuple[np.ndarray, np.ndarray]:
+        """Bonds that broke, in the order of breaking: their two points (count x 2) and the step (count)."""
+        names = ("step", "first_point", "second_point")
+        table = {}
+        with h5py.File(self.path / "results.h5", "r") as file:
+            group = file.get("broken_bonds", {})
+            if all(name in group for name in names):
+                table = {name: group[name][...] for name in names}
+        if not table and (self.path / "broken_bonds.csv").is_file():
+            table = _table(self.path / "broken_bonds.csv", self.missing)
+        try:
+            step, first, second = (np.asarray(table.get(name, []), dtype=np.int64) for name in names)
+            ends = np.stack([first, second], axis=1)
+        except ValueError as error:
+            self._report(f"the broken bonds can't be read ({error})")
+            return np.zeros((0, 2), dtype=np.int64), np.zeros(0, dtype=np.int64)
+        known = ((ends >= 0) & (ends < len(self.volume))).all(axis=1)
+        if not known.all():
+            self._report("broken bonds of points that do not exist are left out")
+        order = np.argsort(step[known], kind="stable")
+        return ends[known][order], step[known][order]
 
     def _report(self, sentence: str) -> None:
         if sentence not in self.missing:
@@ -134,7 +176,7 @@ def read_results_folder(path: Path) -> ResultsFolder:
     return ResultsFolder(
         path, title, reference, volume, spacing, sets, step_numbers,
         _table(path / "history.csv", missing), _table(path / "iterations.csv", missing),
-        summary, case, missing,
+        _table(path / "decisions.csv", []), summary, case, missing,
     )  # fmt: skip
 
 

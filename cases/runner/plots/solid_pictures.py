@@ -8,13 +8,16 @@ import numpy as np
 from matplotlib import colormaps
 from matplotlib.cm import ScalarMappable
 from matplotlib.collections import PolyCollection
-from matplotlib.colors import Normalize
+from matplotlib.colors import Normalize, to_rgba
 
-from cells import Cells, corner_signs, merged
+from cells import Cells, at_the_rim, corner_signs, merged
 from field_pictures import (
     DAMAGE_COLOURS, LOOSE_DAMAGE, displacement_magnitude, exaggeration, exaggeration_words,
 )  # fmt: skip
-from style import DOTS_PER_INCH, GHOST, INK, LENGTHS, colour_bar, heading, new_figure, number, step_words, unit_for
+from style import (
+    DOTS_PER_INCH, GHOST, INK, LENGTHS, PIECE,
+    bond_words, colour_bar, heading, new_figure, number, piece_legend, piece_words, step_words, unit_for,
+)  # fmt: skip
 
 MOST_CELLS = 250_000  # more points are averaged over blocks
 # Corners of the faces of a cube, going round so that the normal points outwards.
@@ -65,20 +68,26 @@ def draw_deformed_solid(results, step):
 
 
 def draw_damaged_solid(results, step):
-    """Deformed body coloured by damage."""
-    return draw_solid(results, step, step.damage, (0.0, 1.0), "damage", DAMAGE_COLOURS)
+    """Deformed body coloured by damage, edges of floating pieces marked."""
+    figure = draw_solid(results, step, step.damage, (0.0, 1.0), "damage", DAMAGE_COLOURS, mark_pieces=True)
+    if step.floating.any():
+        piece_legend(figure, piece_words(step), side="right", hatch=None)
+    return figure
 
 
-def draw_solid(results, step, values, value_range, label, colours):
-    """Deformed body coloured by a value per point."""
-    factor = exaggeration(results.reference, step.displacement)
-    spacing, reference, displacement, damage, values = merged(
-        results.reference, results.spacing, MOST_CELLS, step.displacement, step.damage, values
-    )
+def draw_solid(results, step, values, value_range, label, colours, mark_pieces=False):
+    """Deformed body coloured by a value per point; damage and pieces in the heading and the picture if wanted."""
+    factor = exaggeration(results.reference, step)
+    spacing, reference, displacement, damage, floating, values = merged(
+        results.reference, results.spacing, MOST_CELLS,
+        step.displacement, step.damage, step.floating.astype(float), values,
+    )  # fmt: skip
     camera = Camera(reference, displacement)
     cells = Cells(reference, spacing)
-    corners = cells.corners(reference, factor * displacement, damage > LOOSE_DAMAGE)
-    faces, owners = _visible_faces(cells, corners, damage > LOOSE_DAMAGE, camera)
+    floating = floating > 0.5
+    loose = (damage > LOOSE_DAMAGE) | at_the_rim(cells, floating)
+    corners = cells.corners(reference, factor * displacement, loose)
+    faces, owners = _visible_faces(cells, corners, loose, camera)
     box = _bounding_box(reference, spacing)
 
     picture = camera.project(faces)
@@ -91,6 +100,8 @@ def draw_solid(results, step, values, value_range, label, colours):
     face_colours = _lit(colormaps.get_cmap(colours)(norm(values[owners])), faces, camera)
     edge = spacing * scale * DOTS_PER_INCH
     edges, width = (face_colours, 0.4) if edge < 7.0 else (_darker(face_colours, 0.84), min(0.07 * edge, 1.0))
+    if mark_pieces and floating.any():
+        edges, width = np.where(floating[owners, None], to_rgba(PIECE), edges), max(width, 0.8)
     axes.add_collection(
         PolyCollection(picture, facecolors=face_colours, edgecolors=edges, linewidths=width,
                        joinstyle="round", zorder=2), autolim=False,
@@ -100,6 +111,7 @@ def draw_solid(results, step, values, value_range, label, colours):
     unit, size = unit_for(np.ptp(box, axis=0).max(), LENGTHS)
     extent = " × ".join(number(length / size) for length in np.ptp(box, axis=0))
     heading(figure, results, [exaggeration_words(factor), *step_words(step),
+                              *(bond_words(results, step) if mark_pieces else []),
                               f"{number(len(results.volume))} points", f"{extent} {unit}"])  # fmt: skip
     return figure
 

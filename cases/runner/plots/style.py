@@ -7,12 +7,14 @@ matplotlib.use("Agg")
 import numpy as np
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
+from matplotlib.patches import Patch
 
 INK = "#22282e"  # text and axes
 FAINT = "#8a949e"  # secondary text
 GHOST = "#c3cad1"  # reference configuration
 GRID = "#e6e9ec"
 WARNING = "#b4531b"
+PIECE = "#1668b8"  # pieces that have come off
 LINES = ["#1f6f9f", "#d1603d", "#3f8f5f", "#7a5aa6", "#b58a1b", "#4d5964"]
 
 DOTS_PER_INCH = 100
@@ -36,6 +38,7 @@ matplotlib.rcParams.update(
         "xtick.labelcolor": INK,
         "ytick.labelcolor": INK,
         "legend.frameon": False,
+        "hatch.linewidth": 1.2,
         "axes.formatter.limits": (-4, 5),
         "axes.formatter.use_mathtext": True,
     }
@@ -44,6 +47,7 @@ matplotlib.rcParams.update(
 LENGTHS = (("m", 1.0), ("mm", 1e-3), ("µm", 1e-6), ("nm", 1e-9))
 FORCES = (("MN", 1e6), ("kN", 1e3), ("N", 1.0), ("mN", 1e-3), ("µN", 1e-6))
 ENERGY_DENSITIES = (("GJ/m³", 1e9), ("MJ/m³", 1e6), ("kJ/m³", 1e3), ("J/m³", 1.0), ("mJ/m³", 1e-3))
+ENERGIES = (("GJ", 1e9), ("MJ", 1e6), ("kJ", 1e3), ("J", 1.0), ("mJ", 1e-3), ("µJ", 1e-6), ("nJ", 1e-9))
 
 
 def unit_for(largest: float, units, least: float = 0.3) -> tuple[str, float]:
@@ -95,6 +99,27 @@ def heading(figure: Figure, results, words: list[str]) -> None:
 def step_words(step) -> list[str]:
     """Load factor and step as facts for a heading."""
     return [f"load factor {number(step.load_factor)}", f"step {step.number}"]
+
+
+def bond_words(results, step) -> list[str]:
+    """How many bonds had broken at a step as a fact for a heading; nothing if it is not known."""
+    broken = results.in_history(step.number, "broken_bonds")
+    return [] if broken is None else [f"{number(broken)} broken bond{'s' * (broken != 1)}"]
+
+
+def piece_words(step) -> str:
+    """How many pieces have come off, and of how many points they are."""
+    pieces = len(np.unique(np.rint(step.fragment[step.floating])))
+    points = int(step.floating.sum())
+    return f"{number(pieces)} floating piece{'s' * (pieces != 1)}: {number(points)} point{'s' * (points != 1)}"
+
+
+def piece_legend(figure: Figure, words: str, side: str = "left", hatch: str | None = "////") -> None:
+    """Says in a lower corner what the marks of floating pieces mean."""
+    mark = Patch(facecolor="none", edgecolor=PIECE, linewidth=1.4, hatch=hatch, label=words)
+    margin = 0.25 / figure.get_size_inches()[0]
+    figure.legend(handles=[mark], loc=f"lower {side}", fontsize=12, borderaxespad=0.4,
+                  bbox_to_anchor=(margin if side == "left" else 1.0 - margin, 0.0))  # fmt: skip
 
 
 def colour_bar(figure: Figure, place, mappable, label: str, **options) -> None:

@@ -13,17 +13,21 @@ import unittest
 import warnings
 from contextlib import redirect_stderr, redirect_stdout
 from pathlib import Path
+from unittest import mock
 
 import h5py
 import matplotlib.image
 import numpy as np
+from PIL import Image
 
 PLOTS = Path(__file__).resolve().parents[3] / "cases" / "runner" / "plots"
 sys.path.insert(0, str(PLOTS))
 
 import plot  # noqa: E402
 from cells import Cells, merged  # noqa: E402
-from curve_pictures import observed_order  # noqa: E402
+from curve_pictures import hand_overs, observed_order, on_the_way  # noqa: E402
+from field_pictures import deformed_plate  # noqa: E402
+from results_folder import read_results_folder  # noqa: E402
 from style import round_factor  # noqa: E402
 
 SPACING = 1e-3
@@ -32,6 +36,9 @@ HISTORY = (
     "drained_energy,external_work,balance_error,broken_bonds,max_damage,max_stretch"
 ).split(",")
 ITERATIONS = "step,iteration,residual,relative_residual,energy,step_length,linear_iterations,changed_bonds".split(",")
+
+BROKEN_BONDS = ["step", "load_factor", "first_point", "second_point"]
+CRACKED = ("deformed", "fields", "damage", "broken_bonds", "sequence", "load_displacement", "energies", "convergence")
 
 
 def lattice(*counts: int) -> np.ndarray:
@@ -83,6 +90,84 @@ def write_folder(folder: Path, reference: np.ndarray, steps: int = 3, damaged: b
     (folder / "summary.json").write_text(json.dumps({"status": "completed"}))
 
 
+def rewrite(path: Path, change) -> None:
+    """Lets a function change the rows (dictionaries) of a CSV file."""
+    with open(path, newline="") as file:
+        table = csv.DictReader(file)
+        names, rows = table.fieldnames, list(table)
+    for row in rows:
+        change(row)
+    with open(path, "w", newline="") as file:
+        table = csv.DictWriter(file, names)
+        table.writeheader()
+        table.writerows(rows)
+
+
+def write_cracked_folder(folder: Path, counts: tuple[int, int], steps: int = 12) -> None:
+    """A plate pulled in x: from half of the load on a crack runs up its middle and tears it in two.
+
+    The steps of the crack are found by relaxation. A crumb beside the crack comes off near the end. Bonds reach
+    over three points, stiffness falls with the crack's length, dissipated energy grows with it.
+    """
+    reference = lattice(*counts)
+    write_folder(folder, reference, steps)
+    x, y = (reference - [reference[:, 0].mean(), 0.0]).T / SPACING
+    tip = [counts[1] * np.clip((step / steps - 0.5) / 0.35, 0.0, 1.0) for step in range(1, steps + 1)]
+    number = {tuple(place): point for point, place in enumerate(np.rint(reference / SPACING - 0.5).astype(int))}
+    broken = []
+    for (i, j), point in number.items():
+        for across, up in ((a, b) for a in range(1, 4) for b in range(-3, 4) if a * a + b * b < 9.1):
+            end = number.get((i + across, j + up))
+            if end is not None and x[point] < 0.0 <= x[end]:
+                height = y[point] + (y[end] - y[point]) * x[point] / (x[point] - x[end])
+                step = next((k + 1 for k in range(steps) if tip[k] > height), None)
+                broken += [] if step is None else [(step, step / steps, point, end)]
+    broken.sort()
+    crumb = (x > 0.0) & (x < 6.0) & (abs(y - 0.4 * counts[1]) < 4.0)
+
+    with h5py.File(folder / "results.h5", "a") as file:
+        for step in range(1, steps + 1):
+            group, load = file[f"steps/{step:06d}"], step / steps
+            group.attrs["mode"] = "relaxation" if 0.0 < tip[step - 1] < counts[1] else "newton"
+            opening = np.clip((tip[step - 1] - y) / 8.0, 0.0, 1.0) * load
+            group["displacement"][:, 0] = 1e-3 * SPACING * counts[0] * (
+                0.3 * x / counts[0] * load * (1 - opening) + np.sign(x) * (0.5 * opening - 0.1 * crumb * opening))
+            group["damage"][...] = np.where(y < tip[step - 1], np.clip(0.5 - 0.16 * (abs(x) - 0.5), 0.0, 1.0), 0.0)
+            group["fragment"] = np.where(crumb & (load > 0.8), 1, 0)
+            group["stretch"] = 0.01 * opening
+            if load > 0.8:
+                group["damage"][...] = np.maximum(group["damage"][...], np.where(crumb, 0.3, 0.0))
+        for column, values in zip(BROKEN_BONDS, zip(*broken)):
+            file[f"broken_bonds/{column}"] = np.array(values)
+    with open(folder / "broken_bonds.csv", "w", newline="") as file:
+        csv.writer(file).writerows([BROKEN_BONDS, *broken])
+
+    def fracture(row):
+        step, load = int(row["step"]), float(row["load_factor"])
+        share = tip[step - 1] / counts[1]
+        force, stored = 5e4 * load * (1 - share) ** 0.7, 2.5 * load**2 * (1 - share)
+        dissipated, drained = 0.5 * share, 0.7 * share**2
+        row.update({
+            "mode": "relaxation" if 0.0 < share < 1.0 else "newton", "max_damage": 0.6 * (share > 0.0),
+            "broken_bonds": sum(bond[0] <= step for bond in broken), "stored_energy": stored,
+            "dissipated_energy": dissipated, "drained_energy": drained, "balance_error": 1e-4 * load,
+            "external_work": stored + dissipated + drained + 1e-4 * load,
+            "reaction_x:left": -force, "reaction_x:right": force,
+        })  # fmt: skip
+
+    rewrite(folder / "history.csv", fracture)
+    first, last = (next(step for step in range(steps) if tip[step] > height) for height in (0.0, counts[1] - 1e-9))
+    with open(folder / "decisions.csv", "w", newline="") as file:
+        table = csv.writer(file)
+        table.writerow("step,load_factor,increment,outcome,action,next_increment,reason".split(","))
+        for step in range(steps):
+            for place, outcome, action in ((first, "unstable", "hand over to relaxation"),
+                                           (last, "converged", "hand back to newton")):  # fmt: skip
+                if step == place:
+                    table.writerow([step + 1, (step + 1) / steps, 1 / steps, outcome, action, 1 / steps, "a test"])
+            table.writerow([step + 1, (step + 1) / steps, 1 / steps, "converged", "accept", 1 / steps, ""])
+
+
 class Pictures(unittest.TestCase):
     def setUp(self):
         temporary = tempfile.TemporaryDirectory(prefix="peristat_plot_test_")
@@ -101,6 +186,7 @@ class Pictures(unittest.TestCase):
     def assert_pictures(self, *names: str) -> None:
         """Exactly these pictures exist, of a size to look at and with more than a few colours."""
         drawn = sorted(path.stem for path in (self.folder / "plots").glob("*.png"))
+        self.assertTrue({f"{name}.png" for name in drawn} <= set(plot.PICTURES))
         self.assertEqual(drawn, sorted(names))
         for name in names:
             image = matplotlib.image.imread(self.folder / "plots" / f"{name}.png")
@@ -132,11 +218,153 @@ class Pictures(unittest.TestCase):
         self.plot()
         self.assert_pictures("deformed", "fields", "damage", "sequence", "load_displacement", "convergence")
 
+    def test_cracked_plate(self):
+        write_cracked_folder(self.folder, (40, 30))
+        self.assertIn("crack.gif", self.plot())
+        self.assert_pictures(*CRACKED)
+        with Image.open(self.folder / "plots" / "crack.gif") as animation:
+            self.assertEqual(animation.n_frames, 12)
+            self.assertTrue(700 <= animation.width <= 1200 and 300 <= animation.height <= 800)
+            self.assertEqual(animation.convert("RGB").getpixel((2, 2)), (255, 255, 255))
+
+    def test_elastic_plate_has_no_pictures_of_fracture(self):
+        write_folder(self.folder, lattice(30, 10))
+        self.plot()
+        for name in ("damage.png", "broken_bonds.png", "sequence.png", "energies.png", "crack.gif"):
+            self.assertFalse((self.folder / "plots" / name).exists(), name)
+
+    def test_animation_of_many_points_and_steps_is_small(self):
+        write_cracked_folder(self.folder, (160, 50), steps=100)
+        self.plot()
+        animation = self.folder / "plots" / "crack.gif"
+        self.assertLess(animation.stat().st_size, 1_000_000)
+        with Image.open(animation) as image:
+            self.assertTrue(30 <= image.n_frames <= 60, image.n_frames)
+
+    def test_animation_that_would_be_too_large_loses_frames(self):
+        write_cracked_folder(self.folder, (40, 30))
+        with mock.patch("crack_animation.MOST_BYTES", 60_000):
+            self.plot()
+        animation = self.folder / "plots" / "crack.gif"
+        with Image.open(animation) as image:
+            self.assertTrue(2 <= image.n_frames < 12)
+
+    def test_animation_without_its_library_is_named(self):
+        write_cracked_folder(self.folder, (20, 20), steps=6)
+        with mock.patch.dict(sys.modules, {"PIL": None}):
+            sys.modules.pop("crack_animation", None)
+            self.assertIn("python3-pil", self.plot())
+        self.assert_pictures(*CRACKED)
+        self.assertFalse((self.folder / "plots" / "crack.gif").exists())
+
+    def test_cracked_plate_of_an_older_folder(self):
+        """Without fragments, stretches, broken bonds, decisions, and with damage alone in the history."""
+        write_cracked_folder(self.folder, (20, 20), steps=6)
+        with h5py.File(self.folder / "results.h5", "a") as file:
+            del file["broken_bonds"]
+            for step in file["steps"].values():
+                del step["fragment"], step["stretch"], step.attrs["mode"]
+        for name in ("broken_bonds.csv", "decisions.csv"):
+            (self.folder / name).unlink()
+        unknown = ("broken_bonds", "dissipated_energy", "drained_energy", "external_work", "balance_error", "mode")
+        rewrite(self.folder / "history.csv", lambda row: row.update(dict.fromkeys(unknown, "")))
+        self.plot()
+        self.assert_pictures(*sorted(set(CRACKED) - {"broken_bonds", "energies"}))
+
+    def test_broken_bonds_are_read_from_either_file(self):
+        write_cracked_folder(self.folder, (20, 20), steps=6)
+        results = read_results_folder(self.folder)
+        ends, steps = results.broken_bonds()
+        self.assertGreater(len(steps), 100)
+        self.assertTrue((np.diff(steps) >= 0).all())
+        x = results.reference[ends, 0]
+        self.assertTrue(((x[:, 0] < 0.01) & (x[:, 1] > 0.01)).all())  # across the middle
+        with h5py.File(self.folder / "results.h5", "a") as file:
+            del file["broken_bonds"]
+        for one, other in zip((ends, steps), results.broken_bonds()):
+            np.testing.assert_array_equal(one, other)
+
+    def test_broken_bonds_that_cannot_be_are_reported(self):
+        write_cracked_folder(self.folder, (20, 20), steps=6)
+        with h5py.File(self.folder / "results.h5", "a") as file:
+            file["broken_bonds/second_point"][:3] = 400  # one more than the last
+        self.assertIn("do not exist", self.plot())
+        with h5py.File(self.folder / "results.h5", "a") as file:
+            del file["broken_bonds/second_point"]
+            file["broken_bonds/second_point"] = np.zeros(2, dtype=int)  # not as many as the others
+        self.assertIn("broken bonds can't be read", self.plot())
+
+    def test_plate_all_of_which_floats_far_away(self):
+        write_cracked_folder(self.folder, (20, 20), steps=6)
+        with h5py.File(self.folder / "results.h5", "a") as file:
+            file["steps/000006/fragment"][:200] = 1
+            file["steps/000006/fragment"][200:] = 2
+            file["steps/000006/displacement"][:200, 0] -= 1.0
+        self.plot()
+        self.assert_pictures(*CRACKED)
+
+    def test_crumb_that_flew_far_does_not_shrink_the_plate(self):
+        write_cracked_folder(self.folder, (20, 20), steps=6)
+        results = read_results_folder(self.folder)
+        step = results.step(6)
+        before = deformed_plate(results, step, 1.0, step.damage).frame()
+        step.displacement[step.floating] += 1.0
+        low, high = deformed_plate(results, step, 1.0, step.damage).frame()
+        self.assertGreater(step.floating.sum(), 10)
+        for one, other in zip(before, (low, high)):
+            np.testing.assert_allclose(one, other, rtol=0, atol=0.5 * SPACING)
+
+    def test_cracked_plate_under_compression(self):
+        write_cracked_folder(self.folder, (20, 20), steps=6)
+
+        def push(row):
+            for name in ("left", "right"):
+                row[f"reaction_x:{name}"] = -float(row[f"reaction_x:{name}"])
+
+        rewrite(self.folder / "history.csv", push)
+        self.plot()
+        self.assert_pictures(*CRACKED)
+
+    def test_cloud_with_pieces(self):
+        for dimension in (2, 3):
+            with self.subTest(dimension=dimension):
+                self.folder = self.folder.with_name(f"pieces_{dimension}")
+                write_folder(self.folder, np.random.default_rng(5).uniform(0.0, 0.02, (300, dimension)), damaged=True)
+                with h5py.File(self.folder / "results.h5", "a") as file:
+                    file["steps/000003/fragment"] = np.arange(300) % 3
+                self.plot()
+                self.assertTrue((self.folder / "plots" / "damage.png").is_file())
+
+    def test_energies_of_a_load_that_turns_are_drawn_over_steps(self):
+        write_cracked_folder(self.folder, (20, 20), steps=6)
+
+        def turn(row):
+            row["load_factor"] = 3.0 - abs(3.0 - float(row["step"]))
+
+        rewrite(self.folder / "history.csv", turn)
+        self.plot()
+        self.assert_pictures(*CRACKED)
+
+    def test_hand_overs_stand_between_the_steps_that_they_are_of(self):
+        write_cracked_folder(self.folder, (20, 20), steps=6)
+        results = read_results_folder(self.folder)
+        places = np.array([1.0, 2.0, 3.0, 5.0, 8.0, 9.0])  # m, of the six steps
+        for action, step, place in (("hand over to relaxation", 4, 5.0), ("hand back to newton", 6, 9.0)):
+            results.decisions = {}
+            self.assertEqual(hand_overs(results, action), [(step, step / 6)])  # from the modes
+            results.decisions = read_results_folder(self.folder).decisions
+            self.assertEqual(hand_overs(results, action), [(step, step / 6)])
+            self.assertAlmostEqual(on_the_way(results, places, step, step / 6), place, delta=1e-12)
+        self.assertAlmostEqual(on_the_way(results, places, 5, 4.5 / 6), 6.5, delta=1e-12)
+        self.assertAlmostEqual(on_the_way(results, places, 7, 7 / 6), 9.0, delta=1e-12)  # was never accepted
+
     def test_pictures_of_an_earlier_run_do_not_stay(self):
         write_folder(self.folder, lattice(10, 10))
         (self.folder / "plots").mkdir()
-        (self.folder / "plots" / "damage.png").write_text("old")
+        for name in ("damage.png", "energies.png", "crack.gif"):
+            (self.folder / "plots" / name).write_text("old")
         self.plot()
+        self.assertFalse((self.folder / "plots" / "crack.gif").exists())
         self.assert_pictures("deformed", "fields", "load_displacement", "convergence")
 
     def test_solid(self):
@@ -155,6 +383,13 @@ class Pictures(unittest.TestCase):
 
     def test_damaged_solid(self):
         write_folder(self.folder, lattice(12, 6, 6), damaged=True)
+        self.plot()
+        self.assert_pictures("deformed", "damage", "load_displacement", "convergence")
+
+    def test_damaged_solid_with_a_floating_piece(self):
+        write_folder(self.folder, lattice(12, 6, 6), damaged=True)
+        with h5py.File(self.folder / "results.h5", "a") as file:
+            file["steps/000003/fragment"] = (file["points/reference"][:, 0] > 0.008).astype(float)
         self.plot()
         self.assert_pictures("deformed", "damage", "load_displacement", "convergence")
 

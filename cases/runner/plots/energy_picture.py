@@ -1,0 +1,64 @@
+"""Picture of where the external work went."""
+
+import numpy as np
+from matplotlib.ticker import MaxNLocator
+
+from style import ENERGIES, INK, heading, new_figure, number, unit_for
+
+PARTS = (  # columns of the history, words and colours, from below
+    ("stored_energy", "stored", "#8fb8d4"),
+    ("dissipated_energy", "dissipated by damage", "#d98a68"),
+    ("drained_energy", "drained by relaxation", "#c9b26a"),
+)
+
+
+def _column(results, name: str) -> np.ndarray:
+    values = results.history.get(name, [])
+    return np.nan_to_num(np.array(values if all(isinstance(value, float) for value in values) else [], dtype=float))
+
+
+def has_lost_energy(results) -> bool:
+    """Whether the history has energies, and some was dissipated or drained."""
+    columns = [_column(results, name) for name in ("load_factor", "external_work", *(name for name, _, _ in PARTS))]
+    lengths = {len(column) for column in columns}
+    return len(lengths) == 1 and lengths != {0} and any(column.any() for column in columns[3:])
+
+
+def draw_energies(results):
+    """Stored, dissipated and drained energy on top of each other, and the external work that they add up to.
+
+    Over the load factor while it only grows, else over the steps.
+    """
+    load, work = _column(results, "load_factor"), _column(results, "external_work")
+    parts = [_column(results, name) for name, _, _ in PARTS]
+    grows = (np.diff(load) >= 0.0).all() and load[0] >= 0.0
+    place = load if grows else np.arange(1.0, len(load) + 1)
+    unit, size = unit_for(max(np.abs(work).max(), sum(parts).max()), ENERGIES, 1.0)
+    start = [0.0] if place[0] > 0.0 else []
+    place, work = np.concatenate([start, place]), np.concatenate([start, work]) / size
+    parts = [np.concatenate([start, values]) / size for values in parts]
+
+    figure = new_figure(12.0, 7.2)
+    axes = figure.add_axes([0.085, 0.115, 0.885, 0.71])
+    shown = [(values, *looks) for values, (_, *looks) in zip(parts, PARTS) if values.any()]
+    below = np.zeros_like(work)
+    for values, words, colour in shown:
+        axes.fill_between(place, below, below + values, color=colour, linewidth=0.0, label=words, zorder=2)
+        below = below + values
+        axes.plot(place, below, color="white", linewidth=1.0, zorder=3)
+    axes.plot(place, work, color=INK, linewidth=2.0, zorder=4, label="external work")
+    axes.set_xlabel("load factor" if grows else "step")
+    if not grows:
+        axes.xaxis.set_major_locator(MaxNLocator(integer=True))
+    axes.set_ylabel(f"energy [{unit}]")
+    axes.set_xlim(place.min(), place.max() if place.max() > place.min() else place.min() + 1.0)
+    axes.set_ylim(min(0.0, work.min()), 1.06 * max(work.max(), below.max()))
+    handles, labels = axes.get_legend_handles_labels()
+    axes.legend(handles[::-1], labels[::-1], loc="upper left", fontsize=12.5)  # as they lie on each other
+    words = ["where the external work went"]
+    error = _column(results, "balance_error")
+    if len(error) and np.abs(work).max() > 0.0:
+        share = np.abs(error).max() / (np.abs(work).max() * size)
+        words.append(f"balance error at most {number(100.0 * share, 2)} % of the largest external work")
+    heading(figure, results, words)
+    return figure

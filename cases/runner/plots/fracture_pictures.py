@@ -1,0 +1,114 @@
+"""Pictures of damage and cracks in two-dimensional bodies."""
+
+import numpy as np
+from matplotlib.cm import ScalarMappable
+from matplotlib.collections import LineCollection, PolyCollection
+from matplotlib.colors import LinearSegmentedColormap, Normalize
+from matplotlib.ticker import MaxNLocator
+
+from cells import merged
+from field_pictures import (
+    DAMAGE_COLOURS, MOST_CELLS, SEAM, Plate,
+    deformed_plate, draw_plane, exaggeration, exaggeration_words, framed, rims,
+)  # fmt: skip
+from style import (
+    LENGTHS, PIECE, bond_words, colour_bar, heading, new_figure, number, piece_legend, piece_words, unit_for,
+)  # fmt: skip
+
+OPENING = 0.05  # largest displacement over the body's size: a crack is seen to open, the body keeps its shape
+MOST_BONDS = 150_000  # more broken bonds are thinned out
+POINT_COLOUR = "#d8dde2"
+STEP_COLOURS = LinearSegmentedColormap.from_list(  # as dark at the end as to be seen on the points
+    "steps", ["#20104f", "#6a1b83", "#b5305f", "#e0602c", "#eda31b"]
+)
+
+
+def draw_damaged_plane(results, step):
+    """Deformed plate coloured by damage, floating pieces outlined."""
+    factor = exaggeration(results.reference, step, OPENING)
+    figure, axes, plate = draw_plane(results, step, factor, step.damage, (0.0, 1.0), "damage", DAMAGE_COLOURS,
+                                     bond_words(results, step))  # fmt: skip
+    if plate.floating.any():
+        for collection in piece_marks(plate):
+            axes.add_collection(collection, autolim=False)
+        low, high = np.array([axes.get_xlim(), axes.get_ylim()]).T
+        outside = ((plate.moved < low) | (plate.moved > high)).any()
+        piece_legend(figure, piece_words(step) + ", in part outside the picture" * bool(outside))
+    return figure
+
+
+def piece_marks(plate: Plate) -> list:
+    """A hatch over the squares of floating pieces, and their outline."""
+    return [
+        PolyCollection(plate.moved[plate.floating], facecolors="none", edgecolors=PIECE, hatch="////",
+                       linewidths=0.0, zorder=4),
+        LineCollection(rims(plate.cells, plate.moved, plate.floating), colors=PIECE, linewidths=1.6,
+                       capstyle="projecting", zorder=5),
+    ]  # fmt: skip
+
+
+def draw_damage_sequence(results, steps):
+    """Damage on the deformed plate in up to six steps."""
+    factor = exaggeration(results.reference, steps[-1], OPENING)
+    plates = [deformed_plate(results, step, factor, step.damage, limit=MOST_CELLS // 3) for step in steps]
+    frames = [plate.frame() for plate in plates]
+    low = np.min([low for low, _ in frames], axis=0)
+    high = np.max([high for _, high in frames], axis=0)
+    aspect = (high - low)[1] / (high - low)[0]
+    columns = min(len(steps), 3 if aspect > 0.5 else 2)
+    rows = -(-len(steps) // columns)
+    panel_width = 14.6 / columns
+    panel_height = max(min(panel_width * aspect, 7.5), 0.8)
+    width, height = 16.0, 1.5 + rows * (panel_height + 0.45)
+    figure = new_figure(width, height)
+    for place, (step, plate) in enumerate(zip(steps, plates)):
+        x = 0.3 + (place % columns) * panel_width
+        y = height - 1.15 - (place // columns + 1) * (panel_height + 0.45)
+        axes = figure.add_axes([x / width, y / height, 0.96 * panel_width / width, panel_height / height])
+        axes.add_collection(
+            PolyCollection(plate.moved, array=plate.values, cmap=DAMAGE_COLOURS, norm=Normalize(0, 1),
+                           edgecolors="face", linewidths=SEAM), autolim=False,
+        )  # fmt: skip
+        axes.set_xlim(low[0], high[0])
+        axes.set_ylim(low[1], high[1])
+        axes.set_aspect("equal")
+        axes.axis("off")
+        axes.set_title(f"load factor {number(step.load_factor)}", fontsize=13, loc="left")
+    mappable = ScalarMappable(Normalize(0, 1), DAMAGE_COLOURS)
+    colour_bar(figure, [15.0 / width, 0.3 / height, 0.2 / width, (height - 1.9) / height], mappable, "damage")
+    heading(figure, results, ["damage as the load grows", exaggeration_words(factor)])
+    return figure
+
+
+def draw_broken_bonds(results, ends: np.ndarray, steps: np.ndarray):
+    """Bonds that broke as lines between their points in the reference configuration: the cracks' paths.
+
+    ends   count x 2, numbers of the points
+    steps  count, ascending; colours the lines
+    """
+    unit, size = unit_for(np.ptp(results.reference, axis=0).max(), LENGTHS)
+    spacing, points = merged(results.reference, results.spacing, MOST_CELLS)
+    low, high = points.min(axis=0) - spacing, points.max(axis=0) + spacing
+    figure, axes, bar_place = framed(low / size, high / size)
+    inches = (axes.get_position().width * figure.get_size_inches()[0]) / (high - low)[0]
+    dot = np.clip(0.45 * inches * spacing * 72.0, 0.6, 9.0)
+    axes.scatter(*points.T / size, s=dot**2, color=POINT_COLOUR, linewidths=0, zorder=1)
+
+    every = -(-len(steps) // MOST_BONDS)
+    width = np.clip(0.10 * inches * results.spacing * 72.0, 0.35, 1.6)
+    norm = Normalize(steps.min() - 0.5, steps.max() + 0.5)
+    lines = LineCollection(results.reference[ends[::every]] / size, array=steps[::every].astype(float), norm=norm,
+                           cmap=STEP_COLOURS, linewidths=width, capstyle="round", zorder=2)  # fmt: skip
+    axes.add_collection(lines, autolim=False)
+    axes.set_xlabel(f"x [{unit}]")
+    axes.set_ylabel(f"y [{unit}]")
+    colour_bar(figure, bar_place, lines, "step in which the bond broke", ticks=MaxNLocator(integer=True, nbins=8))
+    first, last = (results.in_history(int(step), "load_factor") for step in (steps[0], steps[-1]))
+    words = ["broken bonds in the reference configuration", f"{number(len(steps))} bond{'s' * (len(steps) != 1)}"]
+    if first is not None and last is not None:
+        several = first != last
+        words.append(f"load factor {number(first)}" + f" to {number(last)}" * several)
+    if every > 1:
+        words.append(f"one line in {every} drawn")
+    heading(figure, results, words)
+    return figure
