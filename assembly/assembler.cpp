@@ -62,7 +62,7 @@ template <bool commits>
 Stored Assembler::pass(std::span<const double> displacement, std::span<double> gradient) {
   const Stopwatch watch(seconds_);
   const int dimension = points().dimension;
-  Stored stored = dispatch(dimension, model().potential, [&]<class P>(auto d, const P& law) {
+  Stored stored = dispatch(dimension, workspace_->potential, [&]<class P>(auto d, const P& law) {
     constexpr bool moves_history = commits && PotentialWithHistory<P>;
     return BondKernels<decltype(d)::value>::template gradient<moves_history>(
         *workspace_, law, displacement, gradient);
@@ -93,6 +93,14 @@ std::span<const double> Assembler::history() const {
   return std::span(largest).first(largest.empty() ? 0 : std::size_t(model().bonds.count()));
 }
 
+void Assembler::hold_damage(bool holds) {
+  std::visit(
+      [&]<class P>(P& law) {
+        if constexpr (PotentialWithHistory<P>) law.holds_damage = holds;
+      },
+      workspace_->potential);
+}
+
 void Assembler::restore(std::span<const double> history) {
   std::copy(history.begin(), history.end(), workspace_->largest_stretch.begin());
 }
@@ -100,7 +108,7 @@ void Assembler::restore(std::span<const double> history) {
 void Assembler::tangent(std::span<const double> displacement, Tangent& tangent, double projection) {
   const Stopwatch watch(seconds_);
   const int dimension = points().dimension;
-  dispatch(dimension, model().potential, [&](auto d, const auto& law) {
+  dispatch(dimension, workspace_->potential, [&](auto d, const auto& law) {
     BondKernels<decltype(d)::value>::tangent(*workspace_, law, displacement, projection, tangent);
   });
   if (model().has_only_bonds()) return;
@@ -113,7 +121,7 @@ void Assembler::product(std::span<const double> displacement, std::span<const do
                         std::span<double> product) {
   const Stopwatch watch(seconds_);
   const int dimension = points().dimension;
-  dispatch(dimension, model().potential, [&](auto d, const auto& law) {
+  dispatch(dimension, workspace_->potential, [&](auto d, const auto& law) {
     BondKernels<decltype(d)::value>::product(*workspace_, law, displacement, v, product);
   });
   if (model().has_only_bonds()) return;
@@ -125,7 +133,7 @@ void Assembler::product(std::span<const double> displacement, std::span<const do
 double Assembler::point_energies(std::span<const double> displacement, std::span<double> energies) {
   const Stopwatch watch(seconds_);
   const int dimension = points().dimension;
-  const double longest = dispatch(dimension, model().potential, [&](auto d, const auto& law) {
+  const double longest = dispatch(dimension, workspace_->potential, [&](auto d, const auto& law) {
     return BondKernels<decltype(d)::value>::point_energies(*workspace_, law, displacement,
                                                            energies);
   });

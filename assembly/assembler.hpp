@@ -42,6 +42,10 @@ class Assembler {
   /// before, Degraded::never_fails where the model says so); empty for a potential without history.
   [[nodiscard]] std::span<const double> history() const;
 
+  /// Whether bonds follow their secants beyond their histories, too: a state in which `growth` is
+  /// then zero is one of the body.
+  void hold_damage(bool holds);
+
   /// Takes up a history again that was read before.
   void restore(std::span<const double> history);
 

@@ -7,6 +7,7 @@ namespace peristat {
 Workspace::Workspace(const Points& of, const Model& with, int threads)
     : points(of),
       model(with),
+      potential(with.potential),
       ranges(partition_rows(Pattern(with.bonds), threads)),
       rows(std::size_t(of.count()) * row_width(of.dimension)),
       sums(ranges.size()),

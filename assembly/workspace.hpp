@@ -33,6 +33,7 @@ struct Workspace {
 
   const Points& points;
   const Model& model;
+  BondPotential potential;  ///< the model's, or with its damage held
   std::vector<RowRange> ranges;
   AlignedVector<double> rows;               ///< per point, what kernels gather; see pack
   std::vector<AlignedVector<double>> sums;  ///< per thread, rows first..reach of what it adds up

@@ -7,6 +7,7 @@
 
 #include <omp.h>
 
+#include "assembly/damage.hpp"
 #include "solvers/vector_verbs.hpp"
 
 namespace peristat {
@@ -120,7 +121,7 @@ class Relaxation {
       s[0] += 0.25 * residual_[e] * velocity_[e];
     });
     kinetic_energy_ = sums[0];
-    result_.drained_energy += sums[0];
+    result_.damped_energy += sums[0];
   }
 
   /// V^(n+1/2) from V^(n-1/2).
@@ -142,11 +143,11 @@ class Relaxation {
       for (std::size_t e = 0; e < dofs_.size(); ++e) {
         velocity_[e] -= residual_[e] * inverse_density_[e];
       }
-      result_.drained_energy += energy_of_motion();
+      result_.damped_energy += energy_of_motion();
       set_off();
       return;
     }
-    result_.drained_energy += sums[0];
+    result_.damped_energy += sums[0];
     kinetic_energy_ = sums[1];
   }
 
@@ -272,6 +273,17 @@ double scale_of_step(const EquilibriumProblem& problem, const Way& way, const Tr
   return residual_scale(problem, way.end_force(), start, after_jump);
 }
 
+/// Energy that the bonds have taken up, stored or dissipated, since the history they began with
+/// [J].
+double taken_up(const EquilibriumProblem& problem, const RelaxationOptions& options,
+                const Trial& at) {
+  if (options.breaking == Breaking::at_equilibrium) return at.stored_energy;
+  std::vector<double> damage(std::size_t(problem.assembler.points().count()));
+  return at.stored_energy +
+         assess_damage(problem.assembler.model(), problem.assembler.history(), {}, damage)
+             .dissipated_energy;
+}
+
 }  // namespace
 
 RelaxationResult relax(const EquilibriumProblem& problem, Tangent& tangent, const State& from,
@@ -286,6 +298,8 @@ RelaxationResult relax(const EquilibriumProblem& problem, Tangent& tangent, cons
   evaluate(problem, result.external_force, result.state);
   result.scale =
       std::max(scale_of_step(problem, way, result.state, options.holds), options.least_scale);
+
+  const double taken_up_at_start = taken_up(problem, options, result.state);
 
   const bool goes_on = motion.velocity.size() == std::size_t(problem.free.count());
   if (!goes_on) motion.velocity.assign(std::size_t(problem.free.count()), 0.0);
@@ -333,12 +347,13 @@ RelaxationResult relax(const EquilibriumProblem& problem, Tangent& tangent, cons
   state.total_energy = state.stored_energy - dot(result.external_force, state.displacement);
   const double moving = relaxation.energy_of_motion();
   if (options.holds) {
-    result.drained_energy += moving;
+    result.damped_energy += moving;
     motion.velocity.clear();
   } else {
-    result.kinetic_energy = moving;
     relaxation.accelerate();
   }
+  result.drained_energy =
+      result.external_work - (taken_up(problem, options, state) - taken_up_at_start);
   if (observer && !state.degenerate) static_cast<void>(observer(relaxation.record()));
   return result;
 }

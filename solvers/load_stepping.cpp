@@ -151,7 +151,12 @@ class LoadPath {
   bool implicit_step() {
     const double load_factor = result_.state.load_factor;
     const double target = implicit_.target(load_factor), attempted = target - load_factor;
+    // Damage is relaxation's: where an implicit state would damage a bond does not matter, but that
+    // it would.
+    const bool holds_damage = options_.mode == Mode::adaptive;
+    assembler().hold_damage(holds_damage);
     Attempt attempt = search(result_.state, target, newton_options_);
+    assembler().hold_damage(false);
     if (attempt.outcome != Outcome::converged)
       return implicit_failure(std::move(attempt), attempted);
 
@@ -285,7 +290,6 @@ class LoadPath {
     double drained = relaxed.drained_energy, work = relaxed.external_work;
     int iterations = relaxed.iterations;
     DamageGrowth growth = relaxed.growth;
-    const double in_motion = relaxed.kinetic_energy;
     const double scale = relaxed.scale, energy = relaxed.state.total_energy;
     Attempt attempt = to_attempt(std::move(relaxed), target);
     if (newton_finishes && attempt.outcome == Outcome::converged) {
@@ -329,7 +333,6 @@ class LoadPath {
 
     external_work_ += work;
     drained_energy_ += drained;
-    in_motion_ = in_motion;
     if (options.breaking == Breaking::at_equilibrium) {
       growth = assembler().growth(attempt.state.displacement);
     }
@@ -389,7 +392,7 @@ class LoadPath {
     record.load_factor = attempt.load_factor;
     record.stored_energy = attempt.state.stored_energy;
     record.dissipated_energy = damaged.dissipated_energy;
-    record.drained_energy = drained_energy_ + in_motion_;
+    record.drained_energy = drained_energy_;
     record.external_work = external_work_;
     record.balance_error =
         external_work_ - record.stored_energy - record.dissipated_energy - record.drained_energy;
@@ -464,7 +467,6 @@ class LoadPath {
   RelaxationMotion motion_;
   std::vector<double> force_;  // that does work, in the last accepted state
   double external_work_ = 0.0, drained_energy_ = 0.0;
-  double in_motion_ = 0.0;  // kinetic energy of relaxation that does not hold
   LoadSteppingResult result_;
 };
 

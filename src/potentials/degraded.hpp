@@ -32,11 +32,12 @@ template <class Law>
 struct Degraded {
   double modulus = 0.0;  ///< c [N/m6]
   Law law;
+  bool holds_damage = false;  ///< phi' = c T(kappa) s at every stretch, also beyond kappa
 
   /// @param e stretch s
   /// @param largest_stretch kappa; `never_fails` for a bond that is harmonic whatever happens
   [[nodiscard]] PotentialDensity<double> operator()(double e, double largest_stretch) const {
-    if (!is_loading(e, largest_stretch)) {
+    if (holds_damage || !is_loading(e, largest_stretch)) {
       const double secant = modulus * integrity_after(largest_stretch);
       return {0.5 * secant * e * e, secant * e, secant};
     }
