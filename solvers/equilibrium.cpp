@@ -27,6 +27,8 @@ std::string name(Outcome outcome) {
       return "out_of_memory";
     case Outcome::linear_solver_inaccurate:
       return "linear_solver_inaccurate";
+    case Outcome::limit_point:
+      return "limit_point";
     case Outcome::damage_limit:
       return "damage_limit";
     case Outcome::fragmented:
@@ -59,6 +61,10 @@ std::string explanation(Outcome outcome) {
       return "the factorisation does not fit in memory";
     case Outcome::linear_solver_inaccurate:
       return "the linear solution is inaccurate: the tangent is close to singular";
+    case Outcome::limit_point:
+      return "a limit point: softening bonds give the tangent negative pivots, and however small "
+             "the "
+             "step of the load, no equilibrium near the last one is found";
     case Outcome::damage_limit:
       return "more bonds break at one load than loading.max_broken_bonds allows, however small the "
              "step: a limit point, from which the crack runs by itself";

@@ -28,6 +28,7 @@ enum class Outcome {
   degenerate,             ///< an interaction has collapsed to zero, or values are not finite
   out_of_memory,          ///< of the linear solver
   linear_solver_inaccurate,
+  limit_point,   ///< damage makes the body unstable: no equilibrium near at a higher load
   damage_limit,  ///< more bonds break at once than allowed, however small the step
   fragmented,    ///< a piece has come off, and that is to end the run
   interrupted,   ///< by the person

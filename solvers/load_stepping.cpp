@@ -15,6 +15,9 @@ namespace {
 /// A remainder of the load factor below this is round-off of the sum of steps.
 constexpr double end_tolerance = 1e-9;
 
+/// Newton iterations that may finish a relaxed step: quadratic convergence needs no more.
+constexpr int most_finishing_iterations = 8;
+
 /// Where an implicit step that would damage a bond is cut to: this share of the interpolated way
 /// to the onset of damage.
 constexpr double share_to_onset = 0.98;
@@ -42,6 +45,7 @@ Attempt to_attempt(NewtonResult result, double load_factor) {
   return {result.outcome,
           result.iterations,
           load_factor,
+          result.scale,
           result.inertia,
           result.unstable_start,
           std::move(result.state),
@@ -52,6 +56,7 @@ Attempt to_attempt(RelaxationResult result, double load_factor) {
   return {result.outcome,
           result.iterations,
           load_factor,
+          result.scale,
           {},
           false,
           std::move(result.state),
@@ -214,7 +219,19 @@ class LoadPath {
       tell(target, attempted, attempt.outcome, "cut", next, reason);
       return true;
     }
+    if (is_limit_point(attempt)) {
+      reason = explanation(Outcome::limit_point) + "; the last search ended with: " + reason;
+      attempt.outcome = Outcome::limit_point;
+    }
     return stop(std::move(attempt), attempted, reason);
+  }
+
+  /// Whether a step as small as allowed has failed because bonds soften.
+  [[nodiscard]] bool is_limit_point(const Attempt& attempt) {
+    const bool softens =
+        !assembler().history().empty() && attempt.inertia && attempt.inertia->negative != 0;
+    return softens && options_.adaptive && worth_cutting(attempt) &&
+           attempt.outcome != Outcome::damage_limit;
   }
 
   Attempt search(const State& from, double target, const NewtonOptions& options) {
@@ -269,83 +286,118 @@ class LoadPath {
 
   // ---- Relaxed steps
 
+  /// A relaxed step on its way: where it is, and its share of the ledger.
+  struct RelaxedStep {
+    Attempt attempt;
+    int newton_iterations = 0, relaxation_iterations = 0;
+    double scale = 0.0;  // norm that the residual is measured against [N]
+    double external_work = 0.0, drained_energy = 0.0;
+    DamageGrowth growth;
+  };
+
   bool relaxation_step() {
     const double load_factor = result_.state.load_factor;
     const double target = relaxed_.target(load_factor), attempted = target - load_factor;
-    const bool may_fail = !main_.assembler.history().empty();
-    std::vector<double> history(assembler().history().begin(), assembler().history().end());
+    const std::vector<double> history(assembler().history().begin(), assembler().history().end());
     const RelaxationMotion motion = motion_;
-    const int step = next_step();
-    const RelaxationObserver observer = [&](IterationRecord row) { return told(step, row); };
+    const bool with_newton = options_.mode == Mode::adaptive && options_.relaxation.holds;
 
-    RelaxationOptions options = options_.relaxation;
-    const bool newton_finishes = options_.mode == Mode::adaptive && options.holds;
-    if (newton_finishes) {
-      options.relative_tolerance =
-          std::max(options_.newton_takes_over_at, options.relative_tolerance);
+    RelaxedStep step;
+    step.attempt.state.displacement = result_.state.displacement;
+    step.attempt.load_factor = load_factor;
+    if (with_newton) {
+      relax_and_finish(step, target);
+    } else {
+      relax_towards(step, target, options_.relaxation);
     }
-    RelaxationResult relaxed =
-        relax(problem(), active_->tangent, result_.state, target, options, motion_, observer);
-    int newton_iterations = 0;
-    double drained = relaxed.drained_energy, work = relaxed.external_work;
-    int iterations = relaxed.iterations;
-    DamageGrowth growth = relaxed.growth;
-    const double scale = relaxed.scale, energy = relaxed.state.total_energy;
-    Attempt attempt = to_attempt(std::move(relaxed), target);
-    if (newton_finishes && attempt.outcome == Outcome::converged) {
-      const State near{attempt.state.displacement, target};
-      NewtonOptions finish = newton_options_;
-      finish.least_scale = scale;
-      Attempt finished = search(near, target, finish);
-      newton_iterations = finished.iterations;
-      if (finished.outcome == Outcome::converged) {
-        drained += energy - finished.state.total_energy;
-        work += dot(finished.external_force, finished.state.displacement) -
-                dot(finished.external_force, attempt.state.displacement);
-        attempt = std::move(finished);
-      } else if (worth_relaxing(finished)) {
-        options.relative_tolerance = options_.relaxation.relative_tolerance;
-        options.least_scale = scale;
-        RelaxationResult rest =
-            relax(problem(), active_->tangent, near, target, options, motion_, observer);
-        iterations += rest.iterations;
-        drained += rest.drained_energy;
-        work += rest.external_work;
-        growth.degrading += rest.growth.degrading;
-        growth.breaking += rest.growth.breaking;
-        attempt = to_attempt(std::move(rest), target);
-      } else {
-        attempt = std::move(finished);
-      }
-    }
-    if (attempt.outcome != Outcome::converged) {
+
+    if (step.attempt.outcome != Outcome::converged) {
       assembler().restore(history);
       motion_ = motion;
-      const double next = attempted * options_.cut;
-      const std::string reason = explanation(attempt.outcome);
-      if (worth_cutting(attempt) && relaxed_.can_cut_to(next)) {
-        relaxed_.cut_to(next);
-        tell(target, attempted, attempt.outcome, "cut", next, reason);
-        return true;
-      }
-      return stop(std::move(attempt), attempted, reason);
+      return relaxation_failure(std::move(step.attempt), attempted);
     }
+    return accept_relaxed(std::move(step), attempted);
+  }
 
-    external_work_ += work;
-    drained_energy_ += drained;
-    if (options.breaking == Breaking::at_equilibrium) {
-      growth = assembler().growth(attempt.state.displacement);
+  /// Relaxes until Newton's method is able to finish.
+  void relax_and_finish(RelaxedStep& step, double target) {
+    RelaxationOptions options = options_.relaxation;
+    const double last = options.relative_tolerance;
+    for (double tolerance = options_.newton_takes_over_at;; tolerance *= 1e-2) {
+      options.relative_tolerance = std::max(tolerance, last);
+      relax_towards(step, target, options);
+      const bool goes_on = step.attempt.outcome == Outcome::converged && tolerance > last;
+      if (!goes_on || finish(step)) return;
+    }
+  }
+
+  void relax_towards(RelaxedStep& step, double target, RelaxationOptions options) {
+    const int number = next_step();
+    const State from{step.attempt.state.displacement, step.attempt.load_factor};
+    if (from.load_factor == target && options.holds) options.ramp = 1;
+    options.least_scale = step.scale;
+    RelaxationResult relaxed = relax(problem(), active_->tangent, from, target, options, motion_,
+                                     [&](IterationRecord row) { return told(number, row); });
+    step.relaxation_iterations += relaxed.iterations;
+    step.external_work += relaxed.external_work;
+    step.drained_energy += relaxed.drained_energy;
+    step.growth.degrading += relaxed.growth.degrading;
+    step.growth.breaking += relaxed.growth.breaking;
+    step.scale = relaxed.scale;
+    step.attempt = to_attempt(std::move(relaxed), target);
+  }
+
+  /// Newton's last iterations at the fixed load. Only a stable equilibrium close by is taken;
+  /// anything else is left to relaxation.
+  /// @return false if relaxation has to go on
+  bool finish(RelaxedStep& step) {
+    NewtonOptions options = newton_options_;
+    options.least_scale = step.scale;
+    options.projection = Projection::never;
+    options.factorizes_first = false;
+    options.counts_pivots = false;
+    options.max_iterations = std::min(options.max_iterations, most_finishing_iterations);
+    const State near{step.attempt.state.displacement, step.attempt.load_factor};
+    Attempt finished = search(near, near.load_factor, options);
+    if (finished.outcome != Outcome::converged && worth_relaxing(finished)) return false;
+    step.newton_iterations += finished.iterations;
+    if (finished.outcome == Outcome::converged) {
+      step.drained_energy += step.attempt.state.total_energy - finished.state.total_energy;
+      step.external_work += dot(finished.external_force, finished.state.displacement) -
+                            dot(finished.external_force, near.displacement);
+    }
+    step.attempt = std::move(finished);
+    return true;
+  }
+
+  bool relaxation_failure(Attempt attempt, double attempted) {
+    const double next = attempted * options_.cut;
+    const std::string reason = explanation(attempt.outcome);
+    if (worth_cutting(attempt) && relaxed_.can_cut_to(next)) {
+      relaxed_.cut_to(next);
+      tell(attempt.load_factor, attempted, attempt.outcome, "cut", next, reason);
+      return true;
+    }
+    return stop(std::move(attempt), attempted, reason);
+  }
+
+  bool accept_relaxed(RelaxedStep step, double attempted) {
+    external_work_ += step.external_work;
+    drained_energy_ += step.drained_energy;
+    if (options_.relaxation.breaking == Breaking::at_equilibrium) {
+      step.growth = assembler().growth(step.attempt.state.displacement);
     }
     const bool grew = relaxed_.grow();
-    tell(target, attempted, attempt.outcome, grew ? "accept and grow" : "accept", relaxed_.value(),
-         std::to_string(iterations) + " iterations of relaxation");
+    tell(step.attempt.load_factor, attempted, step.attempt.outcome,
+         grew ? "accept and grow" : "accept", relaxed_.value(),
+         std::to_string(step.relaxation_iterations) + " iterations of relaxation");
     StepRecord record;
     record.mode = "relaxation";
-    record.relaxation_iterations = iterations;
-    record.newton_iterations = newton_iterations;
-    if (!accept(std::move(record), std::move(attempt), growth)) return false;
+    record.relaxation_iterations = step.relaxation_iterations;
+    record.newton_iterations = step.newton_iterations;
+    if (!accept(std::move(record), std::move(step.attempt), step.growth)) return false;
     const bool hands_back =
-        options_.mode == Mode::adaptive && options.holds && (!may_fail || growth.degrading == 0);
+        options_.mode == Mode::adaptive && options_.relaxation.holds && step.growth.degrading == 0;
     if (hands_back && 1.0 - result_.state.load_factor > end_tolerance) hand_back();
     return true;
   }

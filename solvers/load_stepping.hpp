@@ -66,6 +66,7 @@ struct Attempt {
   Outcome outcome = Outcome::converged;
   int iterations = 0;
   double load_factor = 0.0;
+  double scale = 0.0;  ///< norm that the residual was measured against [N]
   std::optional<Inertia> inertia;
   bool unstable_start = false;
   Trial state;

@@ -126,6 +126,8 @@ NewtonResult newton(const EquilibriumProblem& problem, LinearSolver& solver, Tan
   const double scale =
       std::max(residual_scale(problem, external_force, old_state, current), options.least_scale);
 
+  result.scale = scale;
+
   const auto record = [&](IterationRecord row) {
     row.residual = current.residual_norm;
     row.relative_residual = scale > 0.0 ? current.residual_norm / scale : 0.0;
@@ -143,6 +145,7 @@ NewtonResult newton(const EquilibriumProblem& problem, LinearSolver& solver, Tan
   }
   if (converged()) return result;
 
+  solver.count_pivots(options.counts_pivots);
   Trial next = current;
   Linearisation linearisation(problem, solver, tangent, external_force);
   std::vector<double> direction(dofs);
@@ -156,10 +159,9 @@ NewtonResult newton(const EquilibriumProblem& problem, LinearSolver& solver, Tan
     LineSearchResult search;
     for (double projection = options.projection == Projection::always ? 1.0 : 0.0;;) {
       const bool exact = projection == 0.0;
-      // The first tangent of a load step is always factorised: its pivots tell whether the state
-      // that the step starts from is stable.
-      const FactorUse use =
-          iteration == 1 || !exact ? FactorUse::factorize_now : FactorUse::may_reuse;
+      const FactorUse use = (iteration == 1 && options.factorizes_first) || !exact
+                                ? FactorUse::factorize_now
+                                : FactorUse::may_reuse;
       const LinearOutcome linear = linearisation.solve(
           linearised_at, projection, use,
           is_predictor ? std::span<const double>(jump) : std::span<const double>(), direction);

@@ -89,16 +89,26 @@ void Progress::decision(const DecisionRecord& record) {
   }
   const std::string what = record.action == "cut"
                                ? fmt::format("step cut to {:.4g}", record.next_increment)
-                               : std::string("stop");
-  say(fmt::format("  load {:.6g}: {} ({}); {}", record.load_factor, record.outcome, record.reason,
-                  what));
+                               : record.action;
+  // Where a search has converged, what follows from its state is told, not that it has.
+  const std::string why = record.outcome == "converged"
+                              ? record.reason
+                              : fmt::format("{} ({})", record.outcome, record.reason);
+  say(fmt::format("  load {:.6g}: {}; {}", record.load_factor, why, what));
 }
 
 void Progress::accepted(const StepRecord& record, double relative_residual) {
   load_factor_ = record.load_factor;
-  say(fmt::format("step {:4}  load {:<8.6g}  {:2} iterations  residual {:.1e}  damage {:.3g}{}",
-                  record.step, record.load_factor, record.newton_iterations, relative_residual,
-                  record.max_damage, time_left()));
+  const std::string relaxed =
+      record.relaxation_iterations > 0
+          ? fmt::format("  after {} of relaxation", record.relaxation_iterations)
+          : std::string();
+  const std::string broken =
+      record.broken_bonds > 0 ? fmt::format(", {} bonds broken", record.broken_bonds)
+                              : std::string();
+  say(fmt::format("step {:4}  load {:<8.6g}  {:2} iterations{}  residual {:.1e}  damage {:.3g}{}{}",
+                  record.step, record.load_factor, record.newton_iterations, relaxed,
+                  relative_residual, record.max_damage, broken, time_left()));
 }
 
 }  // namespace peristat

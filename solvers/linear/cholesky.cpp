@@ -50,6 +50,7 @@ struct Cholesky::Cholmod {
   ConjugateGradients gradients;
   std::vector<double> full_in, full_out;
   int last_iterations = 0;
+  bool counts_pivots = true;
   bool factor_valid = false;    // factor holds numbers
   bool factor_current = false;  // of the present tangent
 
@@ -231,9 +232,10 @@ struct Cholesky::Cholmod {
     return largest;
   }
 
-  /// Inertia by LDL^T (Sylvester's law), where it is affordable.
+  /// Inertia by LDL^T (Sylvester's law), where it is wanted and affordable.
   LinearOutcome count_pivots() {
-    if (estimate.flops > largest_inertia_flops) return LinearOutcome::not_positive_definite;
+    if (!counts_pivots || estimate.flops > largest_inertia_flops)
+      return LinearOutcome::not_positive_definite;
     cholmod_factor* signs = cholmod_l_copy_factor(factor, &common);
     if (!signs) return LinearOutcome::not_positive_definite;
     cholmod_l_change_factor(CHOLMOD_PATTERN, 0, 0, 1, 1, signs, &common);
@@ -347,6 +349,8 @@ LinearOutcome Cholesky::analyze(const Pattern& pattern, const FreeDofs& free) {
       cholmod_l_allocate_dense(free.count(), 1, free.count(), CHOLMOD_REAL, &c.common);
   return c.right_hand_side ? LinearOutcome::solved : c.outcome_of_status();
 }
+
+void Cholesky::count_pivots(bool counts) { cholmod_->counts_pivots = counts; }
 
 LinearOutcome Cholesky::factorize(const Tangent& tangent, FactorUse use) {
   Cholmod& c = *cholmod_;

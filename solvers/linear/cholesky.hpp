@@ -40,6 +40,7 @@ class Cholesky : public LinearSolver {
   ~Cholesky() override;
 
   LinearOutcome analyze(const Pattern& pattern, const FreeDofs& free) override;
+  void count_pivots(bool counts) override;
   LinearOutcome factorize(const Tangent& tangent, FactorUse use) override;
   LinearOutcome solve(std::span<const double> b, std::span<double> x) override;
   [[nodiscard]] std::optional<Inertia> inertia() const override;

@@ -50,6 +50,10 @@ class LinearSolver {
   /// Takes a new tangent, which must live until the last solve with it.
   [[nodiscard]] virtual LinearOutcome factorize(const Tangent& tangent, FactorUse use) = 0;
 
+  /// Whether a tangent that is not positive definite has its pivots' signs counted, where that is
+  /// affordable: it costs far more than finding out. Otherwise such a tangent may be singular, too.
+  virtual void count_pivots(bool counts) = 0;
+
   /// x and b have one entry per equation.
   [[nodiscard]] virtual LinearOutcome solve(std::span<const double> b, std::span<double> x) = 0;
 
