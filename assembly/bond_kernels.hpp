@@ -150,7 +150,10 @@ template <class P>
 template <int D, class P>
 inline void commit(const P& potential, const Batch<D>& batch, const Lanes& stretch,
                    std::vector<double>& largest_stretch, DamageGrowth& growth) {
-  if (std::experimental::all_of(stretch <= potential.law.onset())) return;
+  const Lanes before(&largest_stretch[std::size_t(batch.first)],
+                     std::experimental::element_aligned);
+  const auto may_grow = stretch > potential.law.onset() && before < potential.law.critical();
+  if (std::experimental::none_of(may_grow)) return;
   for (int l = 0; l < batch.count; ++l) {
     double& largest = largest_stretch[std::size_t(batch.first + l)];
     const double s = stretch[l];

@@ -85,7 +85,8 @@ class Increment {
   Increment(int steps, double largest, const LoadSteppingOptions& options)
       : options_(options),
         largest_(largest > 0.0 ? largest : 1.0 / steps),
-        value_(std::min(1.0 / steps, largest_)) {}
+        first_(std::min(1.0 / steps, largest_)),
+        value_(first_) {}
 
   [[nodiscard]] double value() const { return value_; }
 
@@ -105,11 +106,11 @@ class Increment {
     value_ = std::min(options_.growth * value_, largest_);
     return true;
   }
-  void reset() { value_ = largest_; }
+  void start_again() { value_ = first_; }
 
  private:
   const LoadSteppingOptions& options_;
-  double largest_, value_;
+  double largest_, first_, value_;
 };
 
 class LoadPath {
@@ -124,7 +125,7 @@ class LoadPath {
         newton_options_(newton_options),
         observer_(observer),
         implicit_(options.steps, options.largest_step, options),
-        relaxed_(options.relaxation_steps, 0.0, options),
+        relaxed_(options.relaxation_steps, options.largest_relaxation_step, options),
         relaxes_(options.mode == Mode::relaxation),
         pinned_(conditions.prescribed().size(), 0) {
     number_free_dofs();
@@ -279,7 +280,7 @@ class LoadPath {
 
   void hand_back() {
     relaxes_ = false;
-    implicit_.reset();
+    implicit_.start_again();
     tell(result_.state.load_factor, 0.0, Outcome::converged, "hand back to newton",
          implicit_.value(), "no bond was damaged in the last step, which ended in equilibrium");
   }
@@ -387,7 +388,9 @@ class LoadPath {
     if (options_.relaxation.breaking == Breaking::at_equilibrium) {
       step.growth = assembler().growth(step.attempt.state.displacement);
     }
-    const bool grew = relaxed_.grow();
+    const bool few = step.growth.breaking < options_.few_broken_bonds;
+    const bool grew = few && relaxed_.grow();
+    if (!few) relaxed_.start_again();
     tell(step.attempt.load_factor, attempted, step.attempt.outcome,
          grew ? "accept and grow" : "accept", relaxed_.value(),
          std::to_string(step.relaxation_iterations) + " iterations of relaxation");

@@ -103,9 +103,9 @@ void Progress::accepted(const StepRecord& record, double relative_residual) {
       record.relaxation_iterations > 0
           ? fmt::format("  after {} of relaxation", record.relaxation_iterations)
           : std::string();
-  const std::string broken =
-      record.broken_bonds > 0 ? fmt::format(", {} bonds broken", record.broken_bonds)
-                              : std::string();
+  const std::string broken = record.broken_bonds > 0
+                                 ? fmt::format(", {} bonds broken", record.broken_bonds)
+                                 : std::string();
   say(fmt::format("step {:4}  load {:<8.6g}  {:2} iterations{}  residual {:.1e}  damage {:.3g}{}{}",
                   record.step, record.load_factor, record.newton_iterations, relaxed,
                   relative_residual, record.max_damage, broken, time_left()));

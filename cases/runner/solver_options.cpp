@@ -12,6 +12,8 @@ LoadSteppingOptions load_stepping_options(const Case& from) {
   options.max_broken_bonds = from.loading.max_broken_bonds;
   options.fragments = from.solver.fragments;
   options.relaxation_steps = from.relaxation.steps;
+  options.largest_relaxation_step = from.relaxation.largest_step;
+  options.few_broken_bonds = from.relaxation.few_broken_bonds;
   options.relaxation = from.relaxation.options;
   return options;
 }

@@ -50,10 +50,14 @@ struct Degraded {
 
   [[nodiscard]] PotentialDensity<Lanes> operator()(const Lanes& e,
                                                    const Lanes& largest_stretch) const {
-    const Lanes onset = law.onset();
-    if (std::experimental::all_of(std::experimental::max(e, largest_stretch) <= onset)) {
-      const Lanes first = modulus * e;
-      return {0.5 * first * e, first, Lanes(modulus)};
+    const auto broken = largest_stretch >= law.critical();
+    const auto degraded = std::experimental::max(e, largest_stretch) > law.onset();
+    if (std::experimental::none_of(degraded && !broken)) {
+      // Whole bonds and broken ones: nearly all there are.
+      Lanes secant = modulus;
+      std::experimental::where(broken, secant) = 0.0;
+      const Lanes first = secant * e;
+      return {0.5 * first * e, first, secant};
     }
     PotentialDensity<Lanes> result;
     for (int l = 0; l < lane_count; ++l) {
