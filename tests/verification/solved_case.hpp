@@ -7,8 +7,8 @@
 
 #include "cases/runner/body.hpp"
 #include "cases/runner/case.hpp"
+#include "cases/runner/solver_options.hpp"
 #include "solvers/linear/cholesky.hpp"
-#include "solvers/load_stepping.hpp"
 
 namespace peristat {
 
@@ -47,21 +47,14 @@ inline SolvedCase solve_case(const std::string& name,
     solved.result.outcome = Outcome::out_of_memory;
     return solved;
   }
-  LoadSteppingOptions stepping;
-  stepping.steps = solved.from.loading.steps;
-  stepping.adaptive = solved.from.loading.adaptive;
-  NewtonOptions options;
-  options.relative_tolerance = solved.from.solver.relative_tolerance;
-  options.max_iterations = solved.from.solver.max_iterations;
-  options.predictor = solved.from.solver.predictor;
-  options.projection = solved.from.solver.projection;
   LoadSteppingObserver observer;
   observer.iteration = [&](const IterationRecord& row) { solved.iterations.push_back(row); };
-  observer.accepted = [&](const StepRecord& row, const NewtonResult&) {
+  observer.accepted = [&](const StepRecord& row, const AcceptedState&) {
     solved.steps.push_back(row);
   };
-  solved.result = follow_loading({assembler, *solved.body->conditions, free}, solver, tangent,
-                                 stepping, options, observer);
+  solved.result =
+      follow_loading({assembler, solver, tangent}, *solved.body->conditions,
+                     load_stepping_options(solved.from), newton_options(solved.from), observer);
   return solved;
 }
 

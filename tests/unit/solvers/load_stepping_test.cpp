@@ -31,13 +31,13 @@ Followed follow(Problem& problem, const LoadSteppingOptions& options,
   LoadSteppingObserver observer;
   observer.iteration = [&](const IterationRecord& row) { followed.iterations.push_back(row); };
   observer.decision = [&](const DecisionRecord& row) { followed.decisions.push_back(row); };
-  observer.accepted = [&](const StepRecord& row, const NewtonResult& equilibrium) {
+  observer.accepted = [&](const StepRecord& row, const AcceptedState& state) {
     followed.steps.push_back(row);
-    followed.displacements.push_back(equilibrium.state.displacement);
+    followed.displacements.push_back(state.trial.displacement);
   };
   observer.interrupted = [&] { return int(followed.steps.size()) == interrupt_after; };
-  followed.result = follow_loading(problem.equilibrium, solver, problem.tangent, options,
-                                   newton_options, observer);
+  followed.result = follow_loading({problem.assembler, solver, problem.tangent}, problem.conditions,
+                                   options, newton_options, observer);
   return followed;
 }
 
