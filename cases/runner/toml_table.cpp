@@ -35,7 +35,10 @@ std::string suggestion(const std::string& key, const std::vector<std::string>& k
   std::vector<std::string> elsewhere;
   for (const auto& [table, keys] : case_keys())
     if (contains(keys, key)) elsewhere.push_back(table.empty() ? key : table + "." + key);
-  return elsewhere.size() == 1 ? "; did you mean " + elsewhere.front() + "?" : "";
+  constexpr std::size_t most_told = 2;
+  if (elsewhere.empty() || elsewhere.size() > most_told) return "";
+  for (const auto& place : elsewhere) text += (text.empty() ? "" : " or ") + place;
+  return "; did you mean " + text + "?";
 }
 
 }  // namespace

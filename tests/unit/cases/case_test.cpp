@@ -284,7 +284,7 @@ const std::vector<BadInput> bad_inputs{
      "[material]",
      "[material]\nsteps = 3",
      18,
-     {"material.steps = 3: unknown key; did you mean loading.steps?"}},
+     {"material.steps = 3: unknown key; did you mean loading.steps or relaxation.steps?"}},
     {"UnknownTable", "[material]", "[materials]", 17, {"materials", "did you mean material?"}},
     {"UnknownKeyInAnArray",
      "displacement = ",
@@ -471,9 +471,9 @@ const std::vector<BadInput> bad_inputs{
      {"axis", "poisson_ratio"}},
     {"WrongMode",
      "[material]",
-     "[solver]\nmode = \"adaptive\"\n[material]",
+     "[solver]\nmode = \"explicit\"\n[material]",
      18,
-     {"allowed: newton"}},
+     {"allowed: newton, relaxation, adaptive"}},
     {"WrongLinear",
      "[material]",
      "[solver]\nlinear = \"choleski\"\n[material]",
@@ -656,7 +656,7 @@ TEST_F(CaseOverride, IsCheckedLikeTheFile) {
   EXPECT_EQ(
       refusal(plate, {{"loading.stepz", "50"}}),
       "--set loading.stepz=50: loading.stepz = 50: unknown key; did you mean steps?  (allowed: "
-      "steps, adaptive, smallest_step, largest_step)");
+      "steps, adaptive, smallest_step, largest_step, max_broken_bonds)");
   EXPECT_EQ(refusal(plate, {{"lattice.spacing", "-1"}}),
             "--set lattice.spacing=-1: lattice.spacing = -1: must be a positive number [m]");
   EXPECT_EQ(refusal(plate, {{"lattice.spacing", "small"}})
