@@ -69,8 +69,13 @@ Stored Assembler::pass(std::span<const double> displacement, std::span<double> g
   });
   if (model().has_only_bonds()) return stored;
   with_dimension(dimension, [&](auto d) {
-    const Stored higher =
-        LocalKernels<decltype(d)::value>::gradient(*workspace_, displacement, gradient);
+    using Kernels = LocalKernels<decltype(d)::value>;
+    if (stored.growth.degrading > 0) {
+      stored.released = Kernels::gradient(*workspace_, displacement, {}).energy;
+      workspace_->find_integrity();
+    }
+    const Stored higher = Kernels::gradient(*workspace_, displacement, gradient);
+    if (stored.growth.degrading > 0) stored.released -= higher.energy;
     stored.energy += higher.energy;
     stored.degenerate |= higher.degenerate;
   });
@@ -103,6 +108,7 @@ void Assembler::hold_damage(bool holds) {
 
 void Assembler::restore(std::span<const double> history) {
   std::copy(history.begin(), history.end(), workspace_->largest_stretch.begin());
+  workspace_->find_integrity();
 }
 
 void Assembler::tangent(std::span<const double> displacement, Tangent& tangent, double projection) {

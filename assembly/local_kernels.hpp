@@ -80,9 +80,11 @@ struct LocalKernels {
            (model.tetrahedra && !model.tetrahedra->interactions.is_stored());
   }
 
-  static void move_to(LocalWorkspace<D>& w, Index i, Span displacement, bool find_pairs) {
+  static void move_to(const Workspace& a, LocalWorkspace<D>& w, Index i, Span displacement,
+                      bool find_pairs) {
     w.local.move_to(i);
     if (find_pairs) w.local.upper.find_pairs();
+    w.find_integrity(a.integrity, a.degraded_points, a.model.bonds.offset[i], find_pairs);
     assign_relative(w, displacement, w.displacement);
   }
 
@@ -93,8 +95,11 @@ struct LocalKernels {
                     [&](int a, int c) { return field[std::size_t(partner[a]) * D + c] - own[c]; });
   }
 
-  static Lanes weight_of(const InteractionBlock& block) {
-    return Lanes(block.weight, std::experimental::element_aligned);
+  /// Quadrature weight of a block's interactions, times the integrity of their bonds.
+  template <class Group>
+  static Lanes weight_of(const LocalWorkspace<D>& w, const Group& group,
+                         const InteractionBlock& block) {
+    return Lanes(block.weight, std::experimental::element_aligned) * w.integrity_of(group, block);
   }
 
   /// Adds partners' totals to their rows, and minus their sum to the point's own.
@@ -123,7 +128,7 @@ struct LocalKernels {
       Lanes smallest_measure = std::numeric_limits<double>::infinity();
       double energy = 0.0;
       for (Index i = range.first; i < range.last; ++i) {
-        move_to(w, i, displacement, find_pairs);
+        move_to(a, w, i, displacement, find_pairs);
         w.clear(D);
         Lanes row_energy = 0.0;
         for_each_term(a.model, [&](auto kind, const auto& interactions, const auto& potential) {
@@ -134,7 +139,7 @@ struct LocalKernels {
             Arms<last, D, Lanes> fixed{};
             for (const InteractionBlock& block : group.blocks) {
               const auto measure = arms.measure(block);
-              const auto psi = interaction_energy(weight_of(block), potential, measure);
+              const auto psi = interaction_energy(weight_of(w, group, block), potential, measure);
               row_energy += psi.value;
               if constexpr (Measure::template singular_at_zero<D>) {
                 smallest_measure = std::experimental::min(smallest_measure, measure.current);
@@ -168,7 +173,7 @@ struct LocalKernels {
     const auto body = [&](int thread, RowRange range, double* sums) {
       LocalWorkspace<D>& w = a.template local_of<D>(thread);
       for (Index i = range.first; i < range.last; ++i) {
-        move_to(w, i, displacement, find_pairs);
+        move_to(a, w, i, displacement, find_pairs);
         assign_relative(w, v, w.vector);
         w.clear(D);
         for_each_term(a.model, [&](auto kind, const auto& interactions, const auto& potential) {
@@ -181,7 +186,7 @@ struct LocalKernels {
             Arms<last, D, Lanes> fixed{};
             for (const InteractionBlock& block : group.blocks) {
               const auto measure = arms.measure(block);
-              const auto psi = interaction_energy(weight_of(block), potential, measure);
+              const auto psi = interaction_energy(weight_of(w, group, block), potential, measure);
               vectors[last] = w.vector.block(block.first);
               const auto force = energy_hessian_times(psi, measure, vectors);
               for (int p = 0; p < last; ++p) fixed[p] = plus<D>(fixed[p], force[p]);
@@ -206,7 +211,7 @@ struct LocalKernels {
     const auto body = [&](int thread, RowRange range, double* sums) {
       LocalWorkspace<D>& w = a.template local_of<D>(thread);
       for (Index i = range.first; i < range.last; ++i) {
-        move_to(w, i, displacement, find_pairs);
+        move_to(a, w, i, displacement, find_pairs);
         w.clear(1);
         Lanes own = 0.0;
         for_each_term(a.model, [&](auto kind, const auto& interactions, const auto& potential) {
@@ -216,7 +221,8 @@ struct LocalKernels {
             BatchArms<Measure, D> arms(w, group);
             Lanes of_group = 0.0;
             for (const InteractionBlock& block : group.blocks) {
-              const auto psi = interaction_energy(weight_of(block), potential, arms.measure(block));
+              const auto psi =
+                  interaction_energy(weight_of(w, group, block), potential, arms.measure(block));
               of_group += share * psi.value;
               w.template add_to_last<1>(block.first, {share * psi.value});
             }
@@ -331,7 +337,7 @@ struct LocalKernels {
           }
         };
         const auto measure = arms.measure(block);
-        const auto psi = interaction_energy(weight_of(block), potential, measure);
+        const auto psi = interaction_energy(weight_of(w, group, block), potential, measure);
         if (projection == 0.0) {
           for_each_pair_of_arms<arms_count>([&](auto p, auto q) __attribute__((always_inline)) {
             add(p, q, energy_hessian<p, q>(psi, measure));
@@ -370,7 +376,7 @@ struct LocalKernels {
                                    : &beyond[std::size_t(bond - first_beyond) * entries];
       };
       for (Index i = range.first; i < range.last; ++i) {
-        move_to(w, i, displacement, true);
+        move_to(a, w, i, displacement, true);
         w.clear(half_entries);
         w.clear_hessian();
         for_each_term(a.model, [&](auto kind, const auto& interactions, const auto& potential) {

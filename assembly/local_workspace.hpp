@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <bit>
 #include <cstddef>
+#include <span>
+#include <vector>
 
 #include "src/aligned_vector.hpp"
 #include "src/lanes.hpp"
@@ -30,6 +32,41 @@ struct LocalWorkspace {
   LocalVectors<D> displacement;  ///< of the partners relative to the point [m]
   LocalVectors<D> vector;        ///< another such field, for the product
   InteractionScratch scratch;
+
+  /// Takes up the integrities of the bonds among the point and its partners.
+  /// @param of_bond integrity of each bond; empty: all are whole
+  /// @param degraded per point, whether one of its bonds is not whole
+  void find_integrity(std::span<const double> of_bond, const std::vector<char>& degraded,
+                      Offset first_bond, bool pairs_are_known) {
+    const std::span<const Index> partners = local.upper.points();
+    is_degraded_ =
+        !of_bond.empty() && (degraded[local.upper.own()] ||
+                             std::any_of(partners.begin(), partners.end(),
+                                         [&](Index partner) { return degraded[partner] != 0; }));
+    if (!is_degraded_) return;
+    if (!pairs_are_known) local.upper.find_pairs();
+    std::copy_n(of_bond.begin() + first_bond, partners.size(), own_integrity_.begin());
+    for (const UpperNeighbourhood::Pair& pair : local.upper.pairs()) {
+      pair_integrity_[std::size_t(pair.a) * stride_ + std::size_t(pair.b)] = of_bond[pair.bond];
+    }
+  }
+
+  /// Integrity of a block's interactions: the product of those of the bonds that they stand on.
+  template <class Group>
+  [[nodiscard]] Lanes integrity_of(const Group& group, const InteractionBlock& block) const {
+    if (!is_degraded_) return 1.0;
+    const auto lanes_at = [](const double* from) {
+      return Lanes(from, std::experimental::element_aligned);
+    };
+    Lanes product = lanes_at(&own_integrity_[std::size_t(block.first)]);
+    const auto& fixed = group.partners;
+    for (std::size_t p = 0; p < fixed.size(); ++p) {
+      const double* row = &pair_integrity_[std::size_t(fixed[p]) * stride_];
+      product *= own_integrity_[std::size_t(fixed[p])] * lanes_at(row + block.first);
+      for (std::size_t q = p + 1; q < fixed.size(); ++q) product *= row[fixed[q]];
+    }
+    return product;
+  }
 
   void clear(int width) {
     const std::size_t count = std::size_t(local.upper.count());
@@ -100,6 +137,8 @@ struct LocalWorkspace {
         vector(most),
         scratch(most),
         stride_(std::size_t(block_count(most)) * lane_count),
+        own_integrity_(stride_, 1.0),
+        pair_integrity_(std::size_t(most) * stride_, 1.0),
         of_fixed_(std::size_t(most) * most_width * lane_count),
         of_last_(stride_ * most_width),
         hessian_(std::size_t(most) * stride_ * entries) {}
@@ -120,9 +159,12 @@ struct LocalWorkspace {
   }
 
   std::size_t stride_;
-  AlignedVector<double> of_fixed_;  // [partner][width][lane]
-  AlignedVector<double> of_last_;   // [block][width][lane]
-  AlignedVector<double> hessian_;   // [partner][block][entry][lane]
+  bool is_degraded_ = false;
+  std::vector<double> own_integrity_;   // of the bonds to the partners
+  std::vector<double> pair_integrity_;  // of those between partners a < b
+  AlignedVector<double> of_fixed_;      // [partner][width][lane]
+  AlignedVector<double> of_last_;       // [block][width][lane]
+  AlignedVector<double> hessian_;       // [partner][block][entry][lane]
 };
 
 }  // namespace peristat

@@ -22,6 +22,11 @@ using TetrahedronTerm = InteractionTerm<Volume>;
 /// The discrete energy of a body: the sum of w psi(m; M) over its bonds (measure l), and in
 /// continuum-kinematics-inspired peridynamics over its triangles (a) and tetrahedra (v)
 /// ([CPD] eq. 14). Constant in a solve.
+///
+/// A triangle or tetrahedron loses its stiffness with the bonds it stands on: its energy is
+/// multiplied by the product of the integrities T(kappa) that the committed histories leave to
+/// them. These are constant between commits, so that the product has no derivative of its own, and
+/// forces and tangent stay those of one energy.
 struct Model {
   Bonds bonds;
   BondPotential potential;

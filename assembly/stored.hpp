@@ -19,6 +19,9 @@ struct Stored {
   bool degenerate = false;  ///< a measure without gradient at zero has reached it, or a value is
                             ///< not finite: reject the state
   DamageGrowth growth{};    ///< only of a pass that commits
+  /// Only of a pass that commits: energy that triangles and tetrahedra lose with the integrity of
+  /// their bonds [J].
+  double released = 0.0;
 };
 
 }  // namespace peristat

@@ -43,4 +43,24 @@ Workspace::Workspace(const Points& of, const Model& with, int threads)
   if (of.dimension == 3) make_local(std::integral_constant<int, 3>{});
 }
 
+void Workspace::find_integrity() {
+  if (largest_stretch.empty() || model.has_only_bonds()) return;
+  const Bonds& bonds = model.bonds;
+  integrity.resize(std::size_t(bonds.count()));
+  degraded_points.assign(std::size_t(bonds.points()), 0);
+  std::visit(
+      [&]<class P>(const P& law) {
+        if constexpr (PotentialWithHistory<P>) {
+          for (Index i = 0; i < bonds.points(); ++i) {
+            for (Offset bond = bonds.offset[i]; bond < bonds.offset[i + 1]; ++bond) {
+              integrity[bond] = law.integrity_after(largest_stretch[bond]);
+              if (integrity[bond] == 1.0) continue;
+              degraded_points[i] = degraded_points[bonds.partner[bond]] = 1;
+            }
+          }
+        }
+      },
+      model.potential);
+}
+
 }  // namespace peristat

@@ -45,6 +45,8 @@ struct Workspace {
   std::vector<double> largest_stretch;
 
   // Only for models with more than bonds.
+  std::vector<double> integrity;            ///< of each bond by its history; empty: all are whole
+  std::vector<char> degraded_points;        ///< whether one of a point's bonds is not whole
   std::vector<std::vector<double>> blocks;  ///< per thread, off-diagonal blocks of rows last..reach
   std::variant<std::monostate, std::vector<std::unique_ptr<LocalWorkspace<2>>>,
                std::vector<std::unique_ptr<LocalWorkspace<3>>>>
@@ -102,6 +104,9 @@ struct Workspace {
   void sum_rows(const Body& body, const Write& write) {
     sum_rows<width>(body, write, [](int, RowRange) {});
   }
+
+  /// Takes the integrity of the bonds from their histories.
+  void find_integrity();
 
   /// What the threads found, together.
   [[nodiscard]] Stored total_stored() const {

@@ -96,6 +96,7 @@ class Relaxation {
                               : assembler.gradient(at_.displacement, at_.gradient);
     result_.growth.degrading += stored.growth.degrading;
     result_.growth.breaking += stored.growth.breaking;
+    result_.released_energy += stored.released;
     at_.stored_energy = stored.energy;
     residual_.swap(last_residual_);
     const std::vector<double>& force = result_.external_force;
@@ -352,8 +353,8 @@ RelaxationResult relax(const EquilibriumProblem& problem, Tangent& tangent, cons
   } else {
     relaxation.accelerate();
   }
-  result.drained_energy =
-      result.external_work - (taken_up(problem, options, state) - taken_up_at_start);
+  result.drained_energy = result.external_work - result.released_energy -
+                          (taken_up(problem, options, state) - taken_up_at_start);
   if (observer && !state.degenerate) static_cast<void>(observer(relaxation.record()));
   return result;
 }

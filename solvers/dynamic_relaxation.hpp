@@ -41,11 +41,12 @@ struct RelaxationResult {
   int iterations = 0;
   Trial state;  ///< last state; equilibrium only if converged and held
   std::vector<double> external_force;
-  double scale = 0.0;           ///< norm that the residual was measured against [N]
-  double external_work = 0.0;   ///< of supports and loads [J]
-  double drained_energy = 0.0;  ///< external work minus what the bonds have taken up [J]
-  double damped_energy = 0.0;   ///< by damping, and by stopping motion: see relax [J]
-  DamageGrowth growth;          ///< of transient breaking
+  double scale = 0.0;            ///< norm that the residual was measured against [N]
+  double external_work = 0.0;    ///< of supports and loads [J]
+  double drained_energy = 0.0;   ///< external work minus what the bonds have taken up [J]
+  double damped_energy = 0.0;    ///< by damping, and by stopping motion: see relax [J]
+  DamageGrowth growth;           ///< of transient breaking
+  double released_energy = 0.0;  ///< of transient breaking, see Stored::released [J]
 };
 
 /// Motion of the pseudo dynamics that lasts from one step to the next where a step does not hold.

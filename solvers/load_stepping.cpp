@@ -15,6 +15,9 @@ namespace {
 /// A remainder of the load factor below this is round-off of the sum of steps.
 constexpr double end_tolerance = 1e-9;
 
+/// Commits of one step of a body with triangles or tetrahedra, each of which may damage more bonds.
+constexpr int most_commits = 1000;
+
 /// Newton iterations that may finish a relaxed step: quadratic convergence needs no more.
 constexpr int most_finishing_iterations = 8;
 
@@ -174,6 +177,25 @@ class LoadPath {
       attempt.outcome = Outcome::damage_limit;
       return implicit_failure(std::move(attempt), attempted, bonds_text(growth.breaking));
     }
+    const std::vector<double> history(assembler().history().begin(), assembler().history().end());
+    double released = 0.0;
+    DamageGrowth damaged;
+    if (growth.degrading > 0) {
+      commit(attempt, damaged, released, [&] {
+        const State from{attempt.state.displacement, target};
+        NewtonOptions options = newton_options_;
+        options.least_scale = attempt.scale;
+        const int before = attempt.iterations;
+        attempt = search(from, target, options);
+        attempt.iterations += before;
+        return attempt.outcome;
+      });
+      if (attempt.outcome != Outcome::converged) {
+        assembler().restore(history);
+        return implicit_failure(std::move(attempt), attempted);
+      }
+      released_energy_ += released;
+    }
     const bool grows = attempt.iterations <= options_.easy_iterations && implicit_.grow();
     tell(target, attempted, attempt.outcome, grows ? "accept and grow" : "accept",
          implicit_.value(), std::to_string(attempt.iterations) + " iterations");
@@ -184,7 +206,7 @@ class LoadPath {
         working_force(*free_, attempt.external_force, attempt.state.gradient);
     external_work_ +=
         trapezoidal_work(force_, next, result_.state.displacement, attempt.state.displacement);
-    return accept(std::move(record), std::move(attempt), growth);
+    return accept(std::move(record), std::move(attempt), damaged);
   }
 
   /// An implicit step has converged to a state that would damage bonds.
@@ -292,7 +314,7 @@ class LoadPath {
     Attempt attempt;
     int newton_iterations = 0, relaxation_iterations = 0;
     double scale = 0.0;  // norm that the residual is measured against [N]
-    double external_work = 0.0, drained_energy = 0.0;
+    double external_work = 0.0, drained_energy = 0.0, released_energy = 0.0;
     DamageGrowth growth;
   };
 
@@ -306,10 +328,17 @@ class LoadPath {
     RelaxedStep step;
     step.attempt.state.displacement = result_.state.displacement;
     step.attempt.load_factor = load_factor;
-    if (with_newton) {
-      relax_and_finish(step, target);
-    } else {
-      relax_towards(step, target, options_.relaxation);
+    const auto equilibrate = [&] {
+      if (with_newton) {
+        relax_and_finish(step, target);
+      } else {
+        relax_towards(step, target, options_.relaxation);
+      }
+      return step.attempt.outcome;
+    };
+    if (equilibrate() == Outcome::converged &&
+        options_.relaxation.breaking == Breaking::at_equilibrium) {
+      commit(step.attempt, step.growth, step.released_energy, equilibrate);
     }
 
     if (step.attempt.outcome != Outcome::converged) {
@@ -344,6 +373,7 @@ class LoadPath {
     step.drained_energy += relaxed.drained_energy;
     step.growth.degrading += relaxed.growth.degrading;
     step.growth.breaking += relaxed.growth.breaking;
+    step.released_energy += relaxed.released_energy;
     step.scale = relaxed.scale;
     step.attempt = to_attempt(std::move(relaxed), target);
   }
@@ -385,9 +415,7 @@ class LoadPath {
   bool accept_relaxed(RelaxedStep step, double attempted) {
     external_work_ += step.external_work;
     drained_energy_ += step.drained_energy;
-    if (options_.relaxation.breaking == Breaking::at_equilibrium) {
-      step.growth = assembler().growth(step.attempt.state.displacement);
-    }
+    released_energy_ += step.released_energy;
     const bool few = step.growth.breaking < options_.few_broken_bonds;
     const bool grew = few && relaxed_.grow();
     if (!few) relaxed_.start_again();
@@ -428,11 +456,27 @@ class LoadPath {
     return false;
   }
 
-  /// Commits a state, finds what has come off and tells the step.
-  bool accept(StepRecord record, Attempt attempt, const DamageGrowth& growth) {
-    if (!is_standing_in() && growth.degrading > 0) {
-      attempt.state.stored_energy = assembler().commit(attempt.state.displacement).energy;
+  /// Commits an equilibrium. Triangles and tetrahedra then lose what their bonds have lost, so that
+  /// the body is out of equilibrium again: it is equilibrated at the fixed load and committed until
+  /// nothing more is damaged.
+  /// @param equilibrate leaves the next equilibrium in `attempt`, and its outcome
+  template <class Equilibrate>
+  void commit(Attempt& attempt, DamageGrowth& growth, double& released,
+              const Equilibrate& equilibrate) {
+    for (int pass = 0; pass < most_commits; ++pass) {
+      const Stored committed = assembler().commit(attempt.state.displacement);
+      growth.degrading += committed.growth.degrading;
+      growth.breaking += committed.growth.breaking;
+      released += committed.released;
+      attempt.state.stored_energy = committed.energy;
+      if (committed.growth.degrading == 0 || assembler().model().has_only_bonds()) return;
+      if (equilibrate() != Outcome::converged) return;
     }
+    attempt.outcome = Outcome::iteration_limit;
+  }
+
+  /// Finds what has come off and tells the step.
+  bool accept(StepRecord record, Attempt attempt, const DamageGrowth& growth) {
     result_.state = {attempt.state.displacement, attempt.load_factor};
     ++result_.steps;
     is_near_onset_ = is_near_onset_ && !relaxes_;
@@ -446,7 +490,7 @@ class LoadPath {
     record.step = result_.steps;
     record.load_factor = attempt.load_factor;
     record.stored_energy = attempt.state.stored_energy;
-    record.dissipated_energy = damaged.dissipated_energy;
+    record.dissipated_energy = damaged.dissipated_energy + released_energy_;
     record.drained_energy = drained_energy_;
     record.external_work = external_work_;
     record.balance_error =
@@ -522,6 +566,7 @@ class LoadPath {
   RelaxationMotion motion_;
   std::vector<double> force_;  // that does work, in the last accepted state
   double external_work_ = 0.0, drained_energy_ = 0.0;
+  double released_energy_ = 0.0;  // by triangles and tetrahedra whose bonds were damaged
   LoadSteppingResult result_;
 };
 

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "cases/runner/bond_potential.hpp"
 #include "cases/runner/cpd_model.hpp"
 #include "src/input_error.hpp"
 #include "src/number_text.hpp"
@@ -62,21 +63,6 @@ double micromodulus_of(const Case& from, const BondSetting& setting) {
   const MaterialSpecification& material = from.material;
   return material.micromodulus ? *material.micromodulus
                                : micromodulus(*material.youngs_modulus, setting);
-}
-
-BondPotential bond_potential(const DamageSpecification& damage, double micromodulus) {
-  switch (damage.law) {
-    case DamageLaw::none:
-      return Harmonic{micromodulus};
-    case DamageLaw::critical_stretch:
-      return Degraded<CriticalStretch>{micromodulus, {damage.critical}};
-    case DamageLaw::tanh:
-      return Degraded<TanhDegradation>{micromodulus, {damage.onset, damage.critical, damage.rate}};
-    case DamageLaw::tanh_continuous:
-      break;
-  }
-  return Degraded<TanhDegradation>{
-      micromodulus, TanhDegradation::continuous(damage.onset, damage.critical, damage.rate)};
 }
 
 /// Flags of the bonds of the points of the sets that never fail; empty without such sets.

@@ -1,5 +1,6 @@
 #include "cases/runner/cpd_model.hpp"
 
+#include "cases/runner/bond_potential.hpp"
 #include "src/input_error.hpp"
 
 namespace peristat {
@@ -45,7 +46,7 @@ Model make_cpd_model(const Case& from, const Points& points, const BondSetting& 
   const BulkNeighbourhood bulk =
       bulk_neighbourhood(from.dimension, points.spacing, setting.horizon, setting.cross_section);
   set_one_neighbour_weights(bonds, points, bulk);
-  Model model{bonds, Harmonic{constants.c1}};
+  Model model{bonds, bond_potential(from.material.damage, constants.c1)};
   cut_weight = cut_bonds(model.bonds, points, from.cracks);
   if (constants.c2 != 0.0) {
     model.triangles = make_term<Area>(from, points, bonds, model.bonds, bulk, setting.horizon,
