@@ -2,7 +2,8 @@
 
 Every figure stands beside the DGEMM and STREAM triad of the same run. Targets are for one thread of a
 machine with 55 GF/s and 35 GB/s and are scaled by what this run measures: those of passes over bonds by
-the slower of the two ratios, those of the factorisation are shares of DGEMM already.
+the slower of the two ratios, those of the factorisation are shares of DGEMM already, and those of relaxation
+are matrix-free products of the same bonds in the same state.
 
     benchmarks/run.py [OPTION of Google Benchmark]...
 """
@@ -31,6 +32,8 @@ ROWS = {
     "factorisation": ("flop", 1e9, "GF/s", None),
 }
 FACTORISATION_SHARE = {"100": 0.45, "300": 0.65}
+PRODUCTS_PER_ITERATION = 1.7  # of relaxation
+LAWS = ["elastic", "tanh", "tanh with 2 % of the bonds broken"]
 
 
 def measure(program, threads, options):
@@ -51,6 +54,17 @@ def measure(program, threads, options):
     return best
 
 
+def print_relaxation(name, one, many):
+    """A row of iterations of relaxation, counted in products."""
+    case = name.partition("/")[2]
+    dimension, law, transient = (part.split(":")[-1] for part in case.split("/"))
+    product = f"relaxation_product/{case}"
+    breaking = ", breaking in every iteration" if transient == "1" else ""
+    print(f"| relaxation iteration, {dimension}D, {LAWS[int(law)]}{breaking} | products "
+          f"| {one[product] / one[name]:.2f} | {many[product] / many[name]:.2f} "
+          f"| {many[name] / one[name]:.2f} | at most {PRODUCTS_PER_ITERATION} |")
+
+
 def print_table(threads, one, many):
     dgemm, triad = one["dgemm"], one["stream_triad"]
     scale = min(dgemm / REFERENCE_DGEMM, triad / REFERENCE_TRIAD, 1.0)
@@ -62,6 +76,8 @@ def print_table(threads, one, many):
           f"| {many['stream_triad'] / triad:.2f} | |")
     for name, rate in one.items():
         kind, _, case = name.partition("/")
+        if kind == "relaxation":
+            print_relaxation(name, one, many)
         if kind not in ROWS:
             continue
         _, unit, unit_text, target = ROWS[kind]
