@@ -2,7 +2,8 @@
 
 Every figure stands beside the DGEMM and STREAM triad of the same run. Targets are for one thread of a
 machine with 55 GF/s and 35 GB/s and are scaled by what this run measures: those of passes over bonds by
-the slower of the two ratios, those of the factorisation are shares of DGEMM already.
+the slower of the two ratios, those of the factorisation are shares of DGEMM already, and those of relaxation
+are matrix-free products of the same bonds in the same state.
 
     benchmarks/run.py [OPTION of Google Benchmark]...
 """
@@ -31,6 +32,8 @@ ROWS = {
     "factorisation": ("flop", 1e9, "GF/s", None),
 }
 FACTORISATION_SHARE = {"100": 0.45, "300": 0.65}
+PRODUCTS_PER_ITERATION = 1.7  # of relaxation
+LAWS = ["elastic", "tanh", "tanh with 2 % of the bonds broken"]
 
 
 def measure(program, threads, options):
@@ -49,6 +52,17 @@ def measure(program, threads, options):
         rate = next(run[key] for key in ("bond", "interaction", "flop", "byte") if key in run)
         best[name] = max(best.get(name, 0.0), rate)
     return best
+
+
+def print_relaxation(name, one, many):
+    """A row of iterations of relaxation, counted in products."""
+    case = name.partition("/")[2]
+    dimension, law, transient = (part.split(":")[-1] for part in case.split("/"))
+    product = f"relaxation_product/{case}"
+    breaking = ", breaking in every iteration" if transient == "1" else ""
+    print(f"| relaxation iteration, {dimension}D, {LAWS[int(law)]}{breaking} | products "
+          f"| {one[product] / one[name]:.2f} | {many[product] / many[name]:.2f} "
+          f"| {many[name] / one[name]:.2f} | at most {PRODUCTS_PER_ITERATION} |")
 
 
 def print_table(threads, one, many):
@@ -79,6 +93,9 @@ def print_table(threads, one, many):
             goal = f"{scale * target / unit:.0f}" if target else ""
         print(f"| {kind.replace('_', ' ')}, {told} | {rate / unit:.1f} | {many[name] / unit:.1f} "
               f"| {many[name] / rate:.2f} | {goal} |")
+    for name in sorted(one):
+        if name.startswith("relaxation/"):
+            print_relaxation(name, one, many)
 
 
 def main():
