@@ -67,7 +67,8 @@ using RelaxationObserver = std::function<bool(const IterationRecord&)>;
 ///   c_n = 2 sqrt(U.K1 U / U.U),  K1_i = -(F_i^n - F_i^(n-1)) / (lambda_i V_i^(n-1/2))
 ///
 /// F is the residual f_ext - dE/dx on the free degrees of freedom, over which the sums of c_n go;
-/// they are global, so that the result does not depend on the number of threads. Where V_i = 0 the
+/// they are global, so that the result depends on the number of threads by round-off alone (which
+/// c_n amplifies: what breaks in a burst may differ). Where V_i = 0 the
 /// term is left out; a negative quotient gives c_n = 0, and c_n > 2 gives 1.9, as is customary.
 ///
 /// The work of supports and loads is summed over the iterations with the trapezoidal rule. What the

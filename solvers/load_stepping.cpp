@@ -8,6 +8,7 @@
 #include "assembly/damage.hpp"
 #include "solvers/vector_verbs.hpp"
 #include "src/conditions/fragments.hpp"
+#include "src/stopwatch.hpp"
 
 namespace peristat {
 namespace {
@@ -336,8 +337,7 @@ class LoadPath {
       }
       return step.attempt.outcome;
     };
-    if (equilibrate() == Outcome::converged &&
-        options_.relaxation.breaking == Breaking::at_equilibrium) {
+    if (equilibrate() == Outcome::converged && options_.relaxation.holds) {
       commit(step.attempt, step.growth, step.released_energy, equilibrate);
     }
 
@@ -366,6 +366,7 @@ class LoadPath {
     const State from{step.attempt.state.displacement, step.attempt.load_factor};
     if (from.load_factor == target && options.holds) options.ramp = 1;
     options.least_scale = step.scale;
+    const Stopwatch watch(result_.relaxation_seconds);
     RelaxationResult relaxed = relax(problem(), active_->tangent, from, target, options, motion_,
                                      [&](IterationRecord row) { return told(number, row); });
     step.relaxation_iterations += relaxed.iterations;

@@ -79,8 +79,9 @@ struct Attempt {
 
 struct LoadSteppingResult {
   Outcome outcome = Outcome::converged;
-  int steps = 0;  ///< accepted
-  State state;    ///< last accepted
+  int steps = 0;                    ///< accepted
+  State state;                      ///< last accepted
+  double relaxation_seconds = 0.0;  ///< wall time in relaxation
   Attempt last_attempt;
 };
 

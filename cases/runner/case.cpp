@@ -398,7 +398,10 @@ RelaxationSpecification read_relaxation(const TomlTable& table, int default_step
       if (table.has(key)) table.refuse(key, "is for load = \"fixed\"");
     relaxation.iterations = count("iterations", 1, relaxation.iterations);
     if (relaxation.iterations < relaxation.steps)
-      table.refuse("iterations", "must not be fewer than the steps that are told");
+      table.refuse("iterations", "must not be fewer than relaxation.steps");
+    if (relaxation.iterations % relaxation.steps != 0)
+      table.refuse("iterations",
+                   "must be a multiple of relaxation.steps, " + std::to_string(relaxation.steps));
   } else if (table.has("iterations")) {
     table.refuse("iterations", "is for load = \"moving\"");
   }

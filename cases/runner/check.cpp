@@ -47,7 +47,8 @@ std::string seconds_text(double seconds) {
 
 void print_constants(const Case& from, const Body& body) {
   if (from.material.model == MaterialModel::bond) {
-    const double modulus = std::visit([](const auto& law) { return law.modulus; }, body.model.potential);
+    const double modulus =
+        std::visit([](const auto& law) { return law.modulus; }, body.model.potential);
     fmt::print(
         "constants   micromodulus {:.6g} N/m6, Young's modulus {:.6g} Pa, Poisson's ratio {:.4g}\n",
         modulus, youngs_modulus_of(modulus, body.setting), poisson_ratio(body.setting));

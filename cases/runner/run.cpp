@@ -297,6 +297,7 @@ Exit run(const Case& from, const RunOptions& options) {
   summary.max_displacement = largest_displacement(recorder.displacement(), from.dimension);
   summary.seconds.neighbourhood = body.seconds_neighbourhood;
   summary.seconds.assembly = assembler.seconds_spent();
+  summary.seconds.relaxation = result.relaxation_seconds;
   summary.seconds.linear = solver.statistics().seconds;
   summary.seconds.output = results->seconds_spent();
   summary.threads = options.threads;
