@@ -143,6 +143,10 @@ class LoadPath {
   }
 
   LoadSteppingResult follow() {
+    if (options_.has_cracks) {
+      find_pieces();
+      if (!resolve_fragments()) return std::move(result_);
+    }
     while (1.0 - result_.state.load_factor > end_tolerance) {
       const bool goes_on = relaxes_ ? relaxation_step() : implicit_step();
       if (!goes_on) break;
@@ -234,7 +238,8 @@ class LoadPath {
     if (attempt.inertia && attempt.inertia->negative > 0) {
       reason += " (" + std::to_string(attempt.inertia->negative) + " negative pivots)";
     }
-    if (options_.mode == Mode::adaptive && worth_relaxing(attempt)) {
+    const bool may_fail = !assembler().history().empty() || is_standing_in();
+    if (options_.mode == Mode::adaptive && may_fail && worth_relaxing(attempt)) {
       return hand_over(target, attempted, attempt.outcome, reason);
     }
     const double next = attempted * options_.cut;
@@ -252,10 +257,11 @@ class LoadPath {
 
   /// Whether a step as small as allowed has failed because bonds soften.
   [[nodiscard]] bool is_limit_point(const Attempt& attempt) {
-    const bool softens =
-        !assembler().history().empty() && attempt.inertia && attempt.inertia->negative != 0;
-    return softens && options_.adaptive && worth_cutting(attempt) &&
-           attempt.outcome != Outcome::damage_limit;
+    if (assembler().history().empty() || !options_.adaptive) return false;
+    const bool has_negative_pivots = attempt.inertia && attempt.inertia->negative > 0;
+    return attempt.outcome == Outcome::not_positive_definite ||
+           (has_negative_pivots && worth_cutting(attempt) &&
+            attempt.outcome != Outcome::damage_limit);
   }
 
   Attempt search(const State& from, double target, const NewtonOptions& options) {

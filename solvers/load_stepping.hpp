@@ -21,7 +21,7 @@ enum class Mode {
 /// What becomes of pieces that come off, and of points that hang on too few bonds.
 enum class FragmentRemedy {
   hold,    ///< just enough of their degrees of freedom are pinned that they can't move freely
-  remove,  ///< all of their degrees of freedom leave the equations
+  remove,  ///< all degrees of freedom of a piece leave the equations; loose points are held
   stop,    ///< the run ends
 };
 
@@ -46,6 +46,7 @@ struct LoadSteppingOptions {
   /// in adaptive mode.
   double newton_takes_over_at = 1e-5;
   FragmentRemedy fragments = FragmentRemedy::hold;
+  bool has_cracks = false;  ///< from the start, which may leave points on too few bonds
 };
 
 /// What an accepted state is made of besides its record.

@@ -536,8 +536,14 @@ void read_document(const TomlValue& document, const std::filesystem::path& file,
   for (const auto& load : root.tables("load")) result.loads.push_back(read_load(load, context));
   result.loading = read_loading(optional_table("loading"));
   result.solver = read_solver(optional_table("solver"));
-  result.relaxation = read_relaxation(optional_table("relaxation"), result.loading.steps,
-                                      result.solver.relative_tolerance);
+  // Damage grows in steps that are smaller than elastic ones.
+  constexpr int steps_of_damage = 50;
+  const bool hands_over =
+      result.solver.mode == Mode::adaptive && result.material.damage.law != DamageLaw::none;
+  result.relaxation = read_relaxation(
+      optional_table("relaxation"),
+      hands_over ? std::max(result.loading.steps, steps_of_damage) : result.loading.steps,
+      result.solver.relative_tolerance);
   result.output = read_output(optional_table("output"), file);
   std::set<std::string> probe_names;
   for (const auto& probe : root.tables("probe"))

@@ -11,6 +11,7 @@ LoadSteppingOptions load_stepping_options(const Case& from) {
   options.largest_step = from.loading.largest_step;
   options.max_broken_bonds = from.loading.max_broken_bonds;
   options.fragments = from.solver.fragments;
+  options.has_cracks = !from.cracks.empty();
   options.relaxation_steps = from.relaxation.steps;
   options.largest_relaxation_step = from.relaxation.largest_step;
   options.few_broken_bonds = from.relaxation.few_broken_bonds;

@@ -19,7 +19,8 @@ struct IterationRecord {
   double energy = 0.0;        ///< stored energy minus work of the present dead loads [J]
   double step_length = 0.0;   ///< of the line search
   int linear_iterations = 0;  ///< of the linear solver; 0 for a direct solve
-  Index changed_bonds = 0;    ///< bonds whose damage this iteration changed
+  Index changed_bonds = 0;    ///< of transient relaxation: damaged since it began, each as often as
+                              ///< it was
   double projection = 0.0;    ///< share by which the tangent's interactions were projected to their
                               ///< positive semidefinite part: 0 is the exact tangent
   /// Of the exact tangent; 0 also where it was solved without a factorisation of its own, -1 where

@@ -35,12 +35,14 @@ const std::vector<Column>& step_columns() {
       {integer, "relaxation_iterations", "1", "iterations of dynamic relaxation of the step"},
       {number, "stored_energy", "J", "energy stored in the interactions"},
       {number, "dissipated_energy", "J", "energy dissipated by damage since the start"},
-      {number, "drained_energy", "J", "energy taken out by the damping of dynamic relaxation"},
+      {number, "drained_energy", "J",
+       "external work that relaxation has taken out: by damping, and by stopping motion"},
       {number, "external_work", "J", "work of supports and loads since the start"},
       {number, "balance_error", "J", "external work - stored - dissipated - drained energy"},
       {integer, "broken_bonds", "1", "number of broken bonds"},
       {number, "max_damage", "1", "largest damage of a point, 0 intact to 1"},
-      {number, "max_stretch", "1", "largest stretch of a bond: current / reference length - 1"},
+      {number, "max_stretch", "1",
+       "largest stretch of an unbroken bond: current / reference length - 1"},
   };
   return columns;
 }
@@ -57,7 +59,8 @@ std::vector<Column> iteration_columns() {
       {number, "energy", "J", "stored energy minus work of the present dead loads"},
       {number, "step_length", "1", "step length of the line search"},
       {integer, "linear_iterations", "1", "iterations of the linear solver, 0 for a direct solve"},
-      {integer, "changed_bonds", "1", "bonds whose damage this iteration changed"},
+      {integer, "changed_bonds", "1",
+       "relaxation: bonds damaged since it began, each as often as it was"},
       {number, "projection", "1",
        "share by which the tangent's interactions were projected to their positive semidefinite "
        "part; 0 is the exact tangent"},
