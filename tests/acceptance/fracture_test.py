@@ -316,10 +316,10 @@ class Fracture(unittest.TestCase):
         bonds = bonds_of(places, 10 * REACH)
         self.assertEqual(self.completed(self.changed(STRIP, CRACK, ""), self.WEAK).summary["bonds"], len(bonds))
         counts = {}
-        for segment in (((100, -10), (100, 43)), ((100, -10), (100, 45)), ((83, -10), (117, 52)), ((100, 38), (100, 38 + 4))):
+        for segment in (((100, -10), (100, 43)), ((100, -10), (100, 45)), ((83, -10), (117, 52)), ((100, 38), (100, 42))):
             start, end = segment
             case = self.changed(STRIP, CRACK, f"[[crack]]\nfrom = [{start[0]}e-4, {start[1]}e-4]\nto = [{end[0]}e-4, {end[1]}e-4]\n")
-            cut = [bond for bond in bonds if cut_by(segment, (places[bond[0]], places[bond[1]]))]
+            cut = [bond for bond in bonds if cut_by(segment, [places[end].tolist() for end in bond])]
             counts[segment] = len(cut)
             with self.subTest(segment):
                 run = self.completed(case, self.WEAK)
@@ -411,14 +411,15 @@ class Fracture(unittest.TestCase):
                 # from the hole's rim to the edge
                 self.assertLessEqual(abs(length[-1] - 20e-3), 2 * SPACING)
 
-    def test_threads_do_not_change_the_answer(self):
+    def test_threads_do_not_change_the_states(self):
         one, two = (self.completed(STRIP, threads=threads) for threads in (1, 2))
         self.assertEqual((one.summary["threads"], two.summary["threads"]), (1, 2))
+        self.assertGreater(one.summary["broken_bonds"], 50)
         self.assertEqual(one.summary["broken_bonds"], two.summary["broken_bonds"])
         work = one.summary["energy"]["external_work"]
-        for key, energy in one.summary["energy"].items():
-            # sums in another order differ by round-off, which damage may magnify
-            self.assertAlmostEqual(energy, two.summary["energy"][key], delta=1e-8 * work, msg=key)
+        for key in ("stored", "dissipated"):
+            # of equilibria whose residuals are 1e-10 of the forces
+            self.assertAlmostEqual(one.summary["energy"][key], two.summary["energy"][key], delta=1e-8 * work, msg=key)
 
     # ---- pieces -----------------------------------------------------------------------------------
 
