@@ -1,0 +1,498 @@
+"""Fracture through the command line: cracks, the three modes, fragments and probes."""
+
+import csv
+import functools
+import itertools
+import json
+import math
+import os
+import pathlib
+import subprocess
+import tempfile
+import unittest
+
+import h5py
+import numpy
+
+PROGRAM = os.environ["PERISTAT_PROGRAM"]
+SQUARE = pathlib.Path(__file__).resolve().parents[2] / "cases/plate_with_hole/square.toml"
+
+# 20 x 10 points, half cut at x = 10 mm, and a layer of three columns at either end.
+CRACK = """\
+[[crack]]
+from = [0.01, -1e-3]
+to = [0.01, 0.0043]
+"""
+DAMAGE = """\
+[material.damage]
+law = "tanh"
+onset = 0.015
+critical = 0.020
+"""
+STRIP = f"""\
+dimension = 2
+[lattice]
+spacing = 1e-3
+thickness = 1e-3
+[[lattice.shape]]
+add = "box"
+min = [0.0, 0.0]
+max = [0.02, 0.01]
+[[lattice.layer]]
+name = "left"
+side = "x-"
+[[lattice.layer]]
+name = "right"
+side = "x+"
+[[set]]
+name = "all"
+where = "x > -1"
+{CRACK}[material]
+micromodulus = 1e22
+{DAMAGE}[[support]]
+set = "left"
+displacement = [0, 0]
+[[support]]
+set = "right"
+displacement = ["5e-4*load", "0"]
+[[probe]]
+name = "pulled"
+set = "right"
+[[probe]]
+name = "body"
+set = "all"
+[[probe]]
+name = "gap"
+set = "right"
+other = "all"
+field = "opening"
+[solver]
+mode = "adaptive"
+[relaxation]
+steps = 40
+"""
+SPACING, MICROMODULUS, REACH = 1e-3, 1e22, 3.015
+
+
+def cut_by(segment, bond):
+    """Whether two closed segments meet; exact for whole numbers."""
+    (p, q), (a, b) = segment, bond
+
+    def side(o, m, n):
+        area = (m[0] - o[0]) * (n[1] - o[1]) - (m[1] - o[1]) * (n[0] - o[0])
+        return (area > 0) - (area < 0)
+
+    def within(o, m, n):  # n, on the line o-m, lies between them
+        return all(min(o[c], m[c]) <= n[c] <= max(o[c], m[c]) for c in (0, 1))
+
+    turns = side(p, q, a), side(p, q, b), side(a, b, p), side(a, b, q)
+    if turns[0] * turns[1] < 0 and turns[2] * turns[3] < 0:
+        return True
+    ends = (p, q, a), (p, q, b), (a, b, p), (a, b, q)
+    return any(turn == 0 and within(*end) for turn, end in zip(turns, ends))
+
+
+def bonds_of(places, reach):
+    """Pairs of points (i < j) that are no further apart than `reach`."""
+    pairs = []
+    for i in range(len(places) - 1):
+        near = ((places[i + 1 :] - places[i]) ** 2).sum(axis=1) <= reach**2
+        pairs += [(i, i + 1 + int(j)) for j in numpy.flatnonzero(near)]
+    return pairs
+
+
+def strip_places():
+    """Points of the strip and its layers in whole tenths of a millimetre."""
+    return numpy.array([(10 * i + 5, 10 * j + 5) for i in range(-3, 23) for j in range(10)])
+
+
+class Ended:
+    """What a run has left."""
+
+    def __init__(self, process, folder):
+        self.code, self.said, self.folder = process.returncode, process.stdout + process.stderr, folder
+
+    def table(self, name):
+        with open(self.folder / f"{name}.csv", newline="") as file:
+            return list(csv.DictReader(file))
+
+    @functools.cached_property
+    def history(self):
+        return [{key: value if key == "mode" else float(value) for key, value in row.items()}
+                for row in self.table("history")]  # fmt: skip
+
+    @functools.cached_property
+    def summary(self):
+        return json.loads((self.folder / "summary.json").read_text())
+
+    def column(self, name):
+        return numpy.array([row[name] for row in self.history])
+
+    def last_iterations(self):
+        """Of every accepted step."""
+        last = {int(row["step"]): row for row in self.table("iterations")}
+        return [last[int(row["step"])] for row in self.history]
+
+    def points(self, name):
+        with h5py.File(self.folder / "results.h5") as file:
+            return file[f"points/{name}"][...]
+
+    def field(self, name, step=-1):
+        with h5py.File(self.folder / "results.h5") as file:
+            return file[f"steps/{sorted(file['steps'])[step]}/{name}"][...]
+
+
+class Fracture(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        folder = tempfile.TemporaryDirectory(prefix="peristat_acceptance_")
+        cls.addClassCleanup(folder.cleanup)
+        cls.folder = pathlib.Path(folder.name)
+        cls.count = itertools.count()
+        cls.ended = {}
+
+    def run_case(self, case, *settings, threads=2):
+        """Runs a case, given by path or by text, once for all tests."""
+        key = (case, settings, threads)
+        if key not in self.ended:
+            number = next(self.count)
+            path = case
+            if isinstance(case, str):
+                path = self.folder / f"case_{number}.toml"
+                path.write_text(case)
+            words = [word for setting in settings for word in ("--set", setting)]
+            out = self.folder / f"out_{number}"
+            process = subprocess.run([PROGRAM, "run", str(path), "--output", str(out), "--quiet",
+                                      "--threads", str(threads), *words], cwd=self.folder, text=True,
+                                     timeout=300, stdin=subprocess.DEVNULL, capture_output=True)  # fmt: skip
+            self.ended[key] = Ended(process, out)
+        return self.ended[key]
+
+    def completed(self, case, *settings, **options):
+        run = self.run_case(case, *settings, **options)
+        self.assertEqual(run.code, 0, run.said)
+        self.assertEqual(run.summary["status"], "completed")
+        self.assertEqual(run.history[-1]["load_factor"], 1.0)
+        return run
+
+    def changed(self, text, old, new):
+        self.assertIn(old, text)
+        return text.replace(old, new, 1)
+
+    # ---- the square plate in the three modes ------------------------------------------------------
+
+    RELAXATION = ("solver.mode=relaxation", "relaxation.steps=36")
+    # 100 steps divide 10 000 iterations without a remainder
+    MOVING = ("solver.mode=relaxation", "relaxation.load=moving", "relaxation.iterations=10000", "relaxation.steps=100")
+
+    def square_runs(self):
+        return {"adaptive": self.completed(SQUARE), "relaxation": self.completed(SQUARE, *self.RELAXATION),
+                "moving": self.completed(SQUARE, *self.MOVING)}  # fmt: skip
+
+    def assert_balanced(self, run, sets, axes, points):
+        """Reactions sum up to minus the residual's sum, as bonds pull their ends equally: at most
+        the residual's 2-norm times the root of the number of its components, and round-off."""
+        for row, last in zip(run.history, run.last_iterations()):
+            bound = math.sqrt(points) * float(last["residual"])
+            for axis in axes:
+                forces = [row[f"reaction_{axis}:{name}"] for name in sets]
+                # the forces of the bonds that are summed up are some 100 of the reaction
+                round_off = 1e-12 * max(map(abs, run.column(f"reaction_y:{sets[0]}")))
+                self.assertLessEqual(abs(sum(forces)), bound + round_off, row["step"])
+
+    def test_square_plate_breaks_in_each_mode(self):
+        for mode, run in self.square_runs().items():
+            with self.subTest(mode):
+                # [ADAPT] sec. 5.2 and its variants of mode and step: two cracks of 20 columns, each of
+                # some 20 bonds with a horizon of three spacings
+                self.assertGreaterEqual(run.summary["broken_bonds"], 700)
+                self.assertLessEqual(run.summary["broken_bonds"], 880)
+                self.assert_balanced(run, ("top", "bottom"), "xy", run.summary["points"])
+                pull = run.column("reaction_y:top")
+                self.assertGreater(pull.max(), 0.0)
+                self.assertLess(abs(pull[-1]), 0.02 * pull.max())  # nothing but single bonds is left
+
+    def test_square_plate_has_the_same_reaction_before_damage(self):
+        weak = ("support[0].displacement=['0','-1e-4*load']", "support[1].displacement=['0','1e-4*load']", "relaxation.steps=2")
+        pulls = []
+        for mode in ("newton", "adaptive", "relaxation"):
+            run = self.completed(SQUARE, *weak, f"solver.mode={mode}")
+            self.assertEqual(run.summary["energy"]["dissipated"], 0.0)
+            pulls.append(run.history[-1]["reaction_y:top"])
+        self.assertGreater(pulls[0], 0.0)
+        # residuals are relaxed to 1e-10; single long waves of the plate answer 1e3 times stronger
+        for pull in pulls:
+            self.assertLess(abs(pull / pulls[0] - 1.0), 1e-6)
+
+    def test_moving_load_and_adaptive_mode_agree_on_the_strength(self):
+        runs = self.square_runs()
+        peaks = [runs[mode].column("reaction_y:top").max() for mode in ("adaptive", "moving")]
+        # both sample the curve: the plate's inertia and steps of 1/100 or less of the load count
+        self.assertLess(abs(peaks[0] / peaks[1] - 1.0), 0.1)
+
+    def test_cracks_of_the_square_plate_reach_the_free_edges(self):
+        for mode, run in self.square_runs().items():
+            with self.subTest(mode):
+                places = run.points("reference")
+                broken = {(int(row["first_point"]), int(row["second_point"])) for row in run.table("broken_bonds")}
+                self.assertEqual(len(broken), run.summary["broken_bonds"])  # each is told once
+                bonds = bonds_of(places, REACH * SPACING)
+                self.assertEqual(len(bonds), run.summary["bonds"])
+                self.assertLessEqual(broken, set(bonds))
+                touched = places[sorted(set(itertools.chain(*broken)))]
+                for sign in (-1, 1):
+                    self.assertGreater((sign * touched[:, 0]).max(), 0.024)  # the last column
+                    for column in numpy.arange(5.5e-3, 25e-3, 1e-3):
+                        self.assertLess(abs(sign * touched[:, 0] - column).min(), 1e-9)
+
+    def test_ledger_of_the_square_plate(self):
+        for mode, run in self.square_runs().items():
+            with self.subTest(mode):
+                work, error = run.column("external_work"), run.column("balance_error")
+                stored, dissipated = run.column("stored_energy"), run.column("dissipated_energy")
+                drained = run.column("drained_energy")
+                # round-off of energies of order `work`
+                self.assertLess(abs(work - stored - dissipated - drained - error).max(), 1e-12 * work.max())
+                before = 0.0
+                for row in run.history:
+                    if row["mode"] == "relaxation":  # newton's is the error of the trapezoidal rule
+                        self.assertLessEqual(abs(row["balance_error"] - before), 1e-8 * row["external_work"])
+                    before = row["balance_error"]
+                self.assertTrue((numpy.diff(dissipated) >= 0.0).all())
+                self.assertTrue((numpy.diff(run.column("broken_bonds")) >= 0).all())
+                # damping takes energy out: what is drained in moving load includes motion that swings
+                if mode != "moving":
+                    self.assertTrue((numpy.diff(drained, prepend=0.0) >= -1e-8 * work.max()).all())
+                self.assertGreater(dissipated[-1], 0.0)
+                damage = run.column("max_damage")
+                self.assertTrue(((damage >= 0.0) & (damage <= 1.0)).all())
+                for step in range(len(run.history)):
+                    field = run.field("damage", step)
+                    self.assertTrue(((field >= 0.0) & (field <= 1.0)).all())
+                    self.assertAlmostEqual(field.max(), damage[step], delta=1e-14)
+
+    def test_newton_mode_ends_with_a_name(self):
+        # a coarser plate and few cuts: each failed step costs many factorisations
+        run = self.run_case(SQUARE, "solver.mode=newton", "lattice.spacing=2e-3", "loading.smallest_step=0.01")
+        self.assertIn(run.code, (0, 3), run.said)
+        if run.code == 3:
+            named = ("limit_point", "iteration_limit", "not_positive_definite", "singular_tangent", "no_descent", "line_search_failed")
+            self.assertTrue(run.summary["reason"].startswith(named), run.summary["reason"])
+        self.assertGreater(len(run.history), 0)
+        for name in ("history.csv", "iterations.csv", "decisions.csv", "summary.json"):
+            self.assertNotRegex((run.folder / name).read_text(), r"\b(nan|inf)\b")
+        for row in run.history:
+            self.assertTrue(all(math.isfinite(value) for key, value in row.items() if key != "mode"))
+
+    # ---- equilibrium and decisions ----------------------------------------------------------------
+
+    def test_accepted_steps_are_in_equilibrium(self):
+        newton = self.run_case(SQUARE, "solver.mode=newton", "lattice.spacing=2e-3", "loading.smallest_step=0.01")
+        for run in (self.completed(SQUARE), self.completed(SQUARE, *self.RELAXATION), newton, self.completed(STRIP)):
+            self.assertGreater(len(run.history), 0)
+            for row in run.last_iterations():
+                self.assertLessEqual(float(row["relative_residual"]), 1e-10)  # the default tolerance
+
+    def test_decisions_explain_the_modes(self):
+        run = self.completed(SQUARE)
+        switches = [row for row in run.table("decisions") if row["action"].startswith("hand ")]
+        self.assertLessEqual({"hand over to relaxation", "hand back to newton"}, {row["action"] for row in switches})
+        modes = {"hand over to relaxation": "relaxation", "hand back to newton": "newton"}
+        for row in switches:
+            self.assertIn("damaged", row["reason"])
+        for row in run.history:
+            past = [one["action"] for one in switches if int(one["step"]) <= row["step"]]
+            self.assertEqual(row["mode"], modes[past[-1]] if past else "newton", row["step"])
+        self.assertEqual({row["mode"] for row in run.history}, {"newton", "relaxation"})
+        self.assertTrue(all(row["mode"] == "relaxation" for row in self.completed(SQUARE, *self.RELAXATION).history))
+
+    # ---- cracks that are there from the start -----------------------------------------------------
+
+    ELASTIC = ("solver.mode=newton", "material.damage.law=none")
+    WEAK = "support[1].displacement=['1e-6*load','0']"
+
+    def test_a_crack_cuts_the_bonds_that_it_meets(self):
+        places = strip_places()
+        bonds = bonds_of(places, 10 * REACH)
+        self.assertEqual(self.completed(self.changed(STRIP, CRACK, ""), self.WEAK).summary["bonds"], len(bonds))
+        counts = {}
+        for segment in (((100, -10), (100, 43)), ((100, -10), (100, 45)), ((83, -10), (117, 52)), ((100, 38), (100, 42))):
+            start, end = segment
+            case = self.changed(STRIP, CRACK, f"[[crack]]\nfrom = [{start[0]}e-4, {start[1]}e-4]\nto = [{end[0]}e-4, {end[1]}e-4]\n")
+            cut = [bond for bond in bonds if cut_by(segment, [places[end].tolist() for end in bond])]
+            counts[segment] = len(cut)
+            with self.subTest(segment):
+                run = self.completed(case, self.WEAK)
+                self.assertGreater(len(cut), 0)
+                self.assertEqual(len(bonds) - run.summary["bonds"], len(cut))
+        # the end lies on the bonds between the points left and right of it
+        self.assertGreater(counts[(100, -10), (100, 45)], counts[(100, -10), (100, 43)])
+
+    def test_cut_bonds_are_damage_on_request_only(self):
+        run = self.completed(STRIP, self.WEAK)
+        self.assertEqual(run.field("damage", 0).max(), 0.0)
+        self.assertEqual(run.history[0]["max_damage"], 0.0)
+        run = self.completed(STRIP, self.WEAK, "output.count_cracks=true")
+        places = strip_places()
+        # points in the order of the results; all volumes are equal
+        number = {(round(1e4 * x), round(1e4 * y)): k for k, (x, y) in enumerate(run.points("reference"))}
+        whole, cut = numpy.zeros(len(places)), numpy.zeros(len(places))
+        for bond in bonds_of(places, 10 * REACH):
+            ends = [tuple(places[end].tolist()) for end in bond]
+            for end in ends:
+                whole[number[end]] += 1
+                cut[number[end]] += cut_by(((100, -10), (100, 43)), ends)
+        self.assertGreater(cut.max(), 0)
+        numpy.testing.assert_allclose(run.field("damage", 0), cut / whole, rtol=0.0, atol=1e-14)
+        self.assertAlmostEqual(run.history[0]["max_damage"], (cut / whole).max(), delta=1e-14)
+        self.assertEqual(run.summary["broken_bonds"], 0)
+
+    def test_bad_input_is_refused_at_its_place(self):
+        plane = "[[crack]]\nvertices = [[0, 0, 0], [1, 0, 0], [0, 1, 0]]\n"
+        bar = 'dimension = 1\n[lattice]\nspacing = 0.1\n[[lattice.shape]]\nadd = "box"\nmin = [0]\nmax = [1]\n[[lattice.layer]]\nname = "left"\nside = "x-"\n[material]\nyoungs_modulus = 1.0\n[[support]]\nset = "left"\ndisplacement = [0]\n'
+        self.completed(bar)
+        bad = {
+            "crack in 1D": (bar + "[[crack]]\nfrom = [0]\nto = [1]\n", (), ["crack[0]"], "[[crack]]"),
+            "vertices in 2D": (self.changed(STRIP, CRACK, plane), (), ["crack[0].vertices"], "vertices"),
+            "law": (self.changed(STRIP, '"tanh"', '"tan"'), (), ["material.damage.law", "tanh"], 'law = "tan"'),
+            "onset": (self.changed(STRIP, "onset = 0.015", "onset = 0.02"), (), ["material.damage.onset", "critical"], "onset"),
+            "critical": (self.changed(STRIP, "critical = 0.020\n", ""), (), ["material.damage.critical", "missing"], "[material.damage]"),
+            "no_fail": (self.changed(STRIP, "onset", 'no_fail = ["lefft"]\nonset'), (), ["material.damage.no_fail", "lefft"], "no_fail"),
+            "other": (self.changed(STRIP, 'other = "all"\n', ""), (), ["probe[2].other"], 'name = "gap"'),
+            "iterations": (self.changed(STRIP, "steps = 40", "iterations = 100"), (), ["relaxation.iterations", "moving"], "iterations"),
+            "override": (STRIP, ("relaxation.iterations=100",), ["--set relaxation.iterations=100", "moving"], None),
+        }  # fmt: skip
+        for name, (text, settings, fragments, at) in bad.items():
+            with self.subTest(name):
+                run = self.run_case(text, *settings)
+                self.assertEqual(run.code, 2, run.said)
+                for fragment in fragments:
+                    self.assertIn(fragment, run.said)
+                if at:
+                    line = next(k for k, one in enumerate(text.splitlines(), 1) if one.startswith(at))
+                    # where a key is missing the place is its table's, whose header stands right above
+                    self.assertTrue(f".toml:{line}:" in run.said or f".toml:{line - 1}:" in run.said, run.said)
+                self.assertFalse(run.folder.exists())
+
+    # ---- no_fail, probes, threads -----------------------------------------------------------------
+
+    def test_sets_that_never_fail(self):
+        self.assertGreater(self.completed(STRIP).summary["broken_bonds"], 50)
+        run = self.completed(STRIP, "material.damage.no_fail=['all']")
+        self.assertEqual((run.summary["broken_bonds"], run.summary["energy"]["dissipated"]), (0, 0.0))
+        self.assertEqual(run.table("broken_bonds"), [])
+        elastic = self.completed(STRIP, *self.ELASTIC)
+        # both in equilibrium to 1e-10
+        self.assertAlmostEqual(run.history[-1]["reaction_x:right"] / elastic.history[-1]["reaction_x:right"], 1.0, delta=1e-8)
+        part = self.changed(STRIP, 'where = "x > -1"', 'where = "y > 7e-3"')
+        run = self.completed(part, "material.damage.no_fail=['all']")
+        places, broken = run.points("reference"), run.table("broken_bonds")
+        self.assertGreater(len(broken), 0)
+        for row in broken:
+            for end in ("first_point", "second_point"):
+                self.assertLess(places[int(row[end])][1], 7e-3)
+
+    def test_opening_is_a_difference_of_displacements(self):
+        run = self.completed(STRIP)
+        for row in run.history:
+            for axis in "xy":
+                # the same sums, told with all digits
+                self.assertAlmostEqual(row[f"gap_{axis}"], row[f"pulled_{axis}"] - row[f"body_{axis}"], delta=1e-18)
+            self.assertAlmostEqual(row["pulled_x"], 5e-4 * row["load_factor"], delta=1e-15)
+
+    def test_crack_length_of_the_square_plate(self):
+        for sign, name in (("", "right"), ("-", "left")):
+            probe = f'\n[[set]]\nname = "ligament"\nwhere = "{sign}x > 0 && abs(y) < 6e-3"\n[[probe]]\nname = "crack"\nset = "ligament"\nfield = "crack_length"\n'
+            with self.subTest(name):
+                run = self.completed(SQUARE.read_text() + probe)
+                length = run.column("crack")
+                self.assertEqual(length[0], 0.0)
+                self.assertTrue((numpy.diff(length) >= 0.0).all())
+                # from the hole's rim to the edge
+                self.assertLessEqual(abs(length[-1] - 20e-3), 2 * SPACING)
+
+    def test_threads_do_not_change_the_states(self):
+        one, two = (self.completed(STRIP, threads=threads) for threads in (1, 2))
+        self.assertEqual((one.summary["threads"], two.summary["threads"]), (1, 2))
+        self.assertGreater(one.summary["broken_bonds"], 50)
+        self.assertEqual(one.summary["broken_bonds"], two.summary["broken_bonds"])
+        work = one.summary["energy"]["external_work"]
+        for key in ("stored", "dissipated"):
+            # of equilibria whose residuals are 1e-10 of the forces
+            self.assertAlmostEqual(one.summary["energy"][key], two.summary["energy"][key], delta=1e-8 * work, msg=key)
+
+    # FAILS: adaptive damping divides by velocities that are nothing but round-off, so the path of a
+    # relaxation, and with it work and drained energy, differs by per cent; kinetic damping's doesn't.
+    def test_threads_do_not_change_the_ledger(self):
+        elastic = ("material.damage.law=none", "solver.mode=relaxation", "relaxation.steps=2")
+        one, two = (self.completed(STRIP, *elastic, threads=threads) for threads in (1, 2))
+        work = one.summary["energy"]["external_work"]
+        for key, energy in one.summary["energy"].items():
+            # a stable motion adds up round-off of some 1e-16 per iteration
+            self.assertAlmostEqual(energy, two.summary["energy"][key], delta=1e-8 * work, msg=key)
+
+    # ---- pieces -----------------------------------------------------------------------------------
+
+    APART = "support[1].displacement=['4e-3*load','0']"
+
+    def test_a_body_in_two_held_pieces_goes_on(self):
+        for remedy in ("hold", "remove"):
+            run = self.completed(STRIP, self.APART, f"solver.fragments={remedy}")
+            pull = run.column("reaction_x:right")
+            # the pieces are free of stress to the solver's tolerance, 1e-10 of the peak or less
+            self.assertLess(abs(pull[-1]), 1e-6 * pull.max())
+            self.assertGreater(run.summary["broken_bonds"], 0)
+
+    # The supports jump away by a spacing in the first iteration, with the body still at rest: each
+    # of their bonds with the body, of three spacings or less, is stretched by a fourth or more.
+    TORN = (*(f"support[{k}].displacement=['{sign}1e-3*min(2*load,1)','0']" for k, sign in ((0, "-"), (1, ""))),
+            "solver.mode=relaxation", "relaxation.ramp=1", "relaxation.steps=2", "relaxation.breaking=transient")  # fmt: skip
+
+    def torn(self):
+        damage = '[material.damage]\nlaw = "critical_stretch"\ncritical = 0.02\n'
+        return self.changed(self.changed(STRIP, CRACK, ""), DAMAGE, damage)
+
+    def test_a_body_torn_from_its_supports_is_a_piece(self):
+        places = strip_places()
+        inside = (places[:, 0] > 0) & (places[:, 0] < 200)
+        torn = [(i, j) for i, j in bonds_of(places, 10 * REACH) if inside[i] != inside[j]]
+        lengths = 1e-4 * numpy.sqrt(((places[[i for i, _ in torn]] - places[[j for _, j in torn]]) ** 2).sum(axis=1))
+        for remedy in ("hold", "remove"):
+            with self.subTest(remedy):
+                run = self.completed(self.torn(), *self.TORN, f"solver.fragments={remedy}")
+                self.assertEqual(run.summary["broken_bonds"], len(torn))
+                # 1/2 c s_c^2 per bond, length and both volumes; sums of some 100 terms
+                dissipated = 0.5 * MICROMODULUS * 0.02**2 * lengths.sum() * (SPACING**3) ** 2
+                self.assertAlmostEqual(run.history[-1]["dissipated_energy"] / dissipated, 1.0, delta=1e-12)
+                x = run.points("reference")[:, 0]
+                for step in (0, 1):
+                    fragment = run.field("fragment", step)
+                    self.assertTrue((fragment == ((x > 0) & (x < 0.02))).all())
+                self.assertEqual(run.field("force").max(), 0.0)
+                self.assertIn(f"{remedy} fragments", [row["action"] for row in run.table("decisions")])
+
+    def test_a_run_may_end_with_the_first_piece(self):
+        run = self.run_case(self.torn(), *self.TORN, "solver.fragments=stop")
+        self.assertEqual(run.code, 3, run.said)
+        self.assertTrue(run.summary["reason"].startswith("fragmented"), run.summary["reason"])
+        self.assertIn("fragmented", run.said)
+        self.assertEqual(len(run.history), 1)  # the step that tore it off is kept
+        self.assertEqual(run.field("fragment").max(), 1)
+
+    # ---- without damage ---------------------------------------------------------------------------
+
+    def test_without_damage_the_modes_agree(self):
+        newton = self.completed(STRIP, *self.ELASTIC)
+        adaptive = self.completed(STRIP, *self.ELASTIC[1:])
+        for ours, theirs in zip(newton.history, adaptive.history, strict=True):
+            self.assertEqual(ours, theirs)
+        numpy.testing.assert_array_equal(newton.field("displacement"), adaptive.field("displacement"))
+        tight = "solver.relative_tolerance=1e-12"
+        exact = self.completed(STRIP, *self.ELASTIC, tight).field("displacement")
+        relaxed = self.completed(STRIP, self.ELASTIC[1], tight, "solver.mode=relaxation", "relaxation.steps=2").field("displacement")
+        # the tangent of 20 x 10 points has a condition number of some 1e3
+        self.assertLess(abs(relaxed - exact).max(), 1e-8 * abs(exact).max())
+
+
+if __name__ == "__main__":
+    unittest.main()
