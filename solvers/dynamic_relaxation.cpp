@@ -14,6 +14,10 @@ namespace peristat {
 namespace {
 
 constexpr double largest_damping = 1.9;
+
+/// Velocity, relative to the mean square of all, below which a component stands still: round-off
+/// would decide its share of c_n.
+constexpr double standing = 1e-8;
 constexpr int iterations_per_record = 100;
 
 /// Iterations between two looks at which bonds a state would break.
@@ -107,7 +111,7 @@ class Relaxation {
       s[0] += residual * residual;
       const double squared = at_.displacement[dofs_[e]] * at_.displacement[dofs_[e]];
       s[2] += squared;
-      if (velocity_[e] == 0.0) return;
+      if (std::abs(velocity_[e]) <= standing * mean_speed_) return;
       s[1] -= squared * (residual - last_residual_[e]) * inverse_density_[e] / velocity_[e];
     });
     at_.residual_norm = std::sqrt(sums[0]);
@@ -169,6 +173,7 @@ class Relaxation {
       s[0] += velocity_[e] * velocity_[e];
       s[1] += displacement * displacement;
     });
+    mean_speed_ = std::sqrt(sums[0] / std::max(1.0, double(dofs_.size())));
     relative_change_ = sums[1] > 0.0 ? std::sqrt(sums[0] / sums[1]) : 1.0;
     add_half_work_of_loads();
     if (share != share_) {
@@ -259,6 +264,7 @@ class Relaxation {
   std::vector<double> last_reaction_;             // dE/dx on prescribed degrees of freedom
   double quotient_ = 0.0;                         // U.K1 U / U.U
   double kinetic_energy_ = 0.0, relative_change_ = 1.0;
+  double mean_speed_ = 0.0;  // root mean square of the velocities of the last move
   double share_ = 0.0, share_change_ = 0.0;
 };
 

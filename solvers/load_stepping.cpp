@@ -46,25 +46,28 @@ double trapezoidal_work(const std::vector<double>& force0, const std::vector<dou
 }
 
 Attempt to_attempt(NewtonResult result, double load_factor) {
-  return {result.outcome,
-          result.iterations,
-          load_factor,
-          result.scale,
-          result.inertia,
-          result.unstable_start,
-          std::move(result.state),
-          std::move(result.external_force)};
+  Attempt attempt;
+  attempt.outcome = result.outcome;
+  attempt.iterations = result.iterations;
+  attempt.load_factor = load_factor;
+  attempt.scale = result.scale;
+  attempt.inertia = result.inertia;
+  attempt.has_negative_pivots = result.has_negative_pivots;
+  attempt.unstable_start = result.unstable_start;
+  attempt.state = std::move(result.state);
+  attempt.external_force = std::move(result.external_force);
+  return attempt;
 }
 
 Attempt to_attempt(RelaxationResult result, double load_factor) {
-  return {result.outcome,
-          result.iterations,
-          load_factor,
-          result.scale,
-          {},
-          false,
-          std::move(result.state),
-          std::move(result.external_force)};
+  Attempt attempt;
+  attempt.outcome = result.outcome;
+  attempt.iterations = result.iterations;
+  attempt.load_factor = load_factor;
+  attempt.scale = result.scale;
+  attempt.state = std::move(result.state);
+  attempt.external_force = std::move(result.external_force);
+  return attempt;
 }
 
 /// Whether a smaller step can help.
@@ -258,9 +261,8 @@ class LoadPath {
   /// Whether a step as small as allowed has failed because bonds soften.
   [[nodiscard]] bool is_limit_point(const Attempt& attempt) {
     if (assembler().history().empty() || !options_.adaptive) return false;
-    const bool has_negative_pivots = attempt.inertia && attempt.inertia->negative > 0;
     return attempt.outcome == Outcome::not_positive_definite ||
-           (has_negative_pivots && worth_cutting(attempt) &&
+           (attempt.has_negative_pivots && worth_cutting(attempt) &&
             attempt.outcome != Outcome::damage_limit);
   }
 
@@ -362,8 +364,14 @@ class LoadPath {
     for (double tolerance = options_.newton_takes_over_at;; tolerance *= 1e-2) {
       options.relative_tolerance = std::max(tolerance, last);
       relax_towards(step, target, options);
+      if (step.attempt.outcome == Outcome::iteration_limit) {
+        // A motion without much stiffness, as of a part that hangs on its last bonds: relaxation
+        // hardly sees it, a search with projected tangents does.
+        finish(step, newton_options_);
+        return;
+      }
       const bool goes_on = step.attempt.outcome == Outcome::converged && tolerance > last;
-      if (!goes_on || finish(step)) return;
+      if (!goes_on || finish(step, finishing_options())) return;
     }
   }
 
@@ -385,16 +393,20 @@ class LoadPath {
     step.attempt = to_attempt(std::move(relaxed), target);
   }
 
-  /// Newton's last iterations at the fixed load. Only a stable equilibrium close by is taken;
-  /// anything else is left to relaxation.
-  /// @return false if relaxation has to go on
-  bool finish(RelaxedStep& step) {
+  /// Only a stable equilibrium close by is taken; anything else is left to relaxation.
+  [[nodiscard]] NewtonOptions finishing_options() const {
     NewtonOptions options = newton_options_;
-    options.least_scale = step.scale;
     options.projection = Projection::never;
     options.factorizes_first = false;
     options.counts_pivots = false;
     options.max_iterations = std::min(options.max_iterations, most_finishing_iterations);
+    return options;
+  }
+
+  /// Newton's last iterations at the fixed load.
+  /// @return false if relaxation has to go on
+  bool finish(RelaxedStep& step, NewtonOptions options) {
+    options.least_scale = step.scale;
     const State near{step.attempt.state.displacement, step.attempt.load_factor};
     Attempt finished = search(near, near.load_factor, options);
     if (finished.outcome != Outcome::converged && worth_relaxing(finished)) return false;
@@ -456,7 +468,16 @@ class LoadPath {
     observer_.decision(decision);
   }
 
+  /// Of the state that a search has ended in, for what is told of it.
+  void count_pivots(Attempt& attempt) {
+    assembler().tangent(attempt.state.displacement, active_->tangent);
+    active_->solver.count_pivots(true);
+    static_cast<void>(active_->solver.factorize(active_->tangent, FactorUse::factorize_now));
+    attempt.inertia = active_->solver.inertia();
+  }
+
   bool stop(Attempt attempt, double attempted, const std::string& reason) {
+    if (!attempt.inertia && attempt.has_negative_pivots) count_pivots(attempt);
     tell(attempt.load_factor, attempted, attempt.outcome, "stop", 0.0, reason);
     result_.outcome = attempt.outcome;
     result_.last_attempt = std::move(attempt);

@@ -73,6 +73,7 @@ struct Attempt {
   double load_factor = 0.0;
   double scale = 0.0;  ///< norm that the residual was measured against [N]
   std::optional<Inertia> inertia;
+  bool has_negative_pivots = false;
   bool unstable_start = false;
   Trial state;
   std::vector<double> external_force;

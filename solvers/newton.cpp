@@ -145,7 +145,6 @@ NewtonResult newton(const EquilibriumProblem& problem, LinearSolver& solver, Tan
   }
   if (converged()) return result;
 
-  solver.count_pivots(options.counts_pivots);
   Trial next = current;
   Linearisation linearisation(problem, solver, tangent, external_force);
   std::vector<double> direction(dofs);
@@ -156,6 +155,9 @@ NewtonResult newton(const EquilibriumProblem& problem, LinearSolver& solver, Tan
     const Trial& linearised_at = is_predictor ? old_state : current;
     IterationRecord row;
     row.iteration = iteration;
+    // Those of the old state tell whether it is stable; on the way counting would cost more than
+    // solving.
+    solver.count_pivots(options.counts_pivots && iteration == 1);
     LineSearchResult search;
     for (double projection = options.projection == Projection::always ? 1.0 : 0.0;;) {
       const bool exact = projection == 0.0;
@@ -168,6 +170,7 @@ NewtonResult newton(const EquilibriumProblem& problem, LinearSolver& solver, Tan
       if (exact) {
         result.inertia = solver.inertia();
         row.negative_pivots = told_negative_pivots(linear, result.inertia);
+        result.has_negative_pivots = row.negative_pivots != 0;
         if (is_predictor) {
           result.unstable_start = linear == LinearOutcome::not_positive_definite;
           start_inertia = result.inertia;

@@ -37,16 +37,17 @@ struct NewtonOptions {
   /// Whether the first tangent is factorised even where an earlier factor would do, so that its
   /// pivots tell whether the old state is stable.
   bool factorizes_first = true;
-  bool counts_pivots = true;  ///< of a tangent that is not positive definite
+  bool counts_pivots = true;  ///< of the first tangent, if it is not positive definite
 };
 
 struct NewtonResult {
   Outcome outcome = Outcome::converged;
   int iterations = 0;
-  std::optional<Inertia> inertia;  ///< of the last exact tangent that was factorised, if known
-  double scale = 0.0;              ///< norm that the residual was measured against [N]
-  bool unstable_start = false;     ///< the exact tangent of the old state has negative pivots
-  Trial state;                     ///< last state reached; equilibrium only if converged
+  std::optional<Inertia> inertia;    ///< of the last exact tangent that was factorised, if known
+  double scale = 0.0;                ///< norm that the residual was measured against [N]
+  bool has_negative_pivots = false;  ///< of the last exact tangent
+  bool unstable_start = false;       ///< the exact tangent of the old state has negative pivots
+  Trial state;                       ///< last state reached; equilibrium only if converged
   std::vector<double> external_force;
 };
 

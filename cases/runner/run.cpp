@@ -12,6 +12,7 @@
 
 #include "assembly/damage.hpp"
 #include "cases/runner/body.hpp"
+#include "cases/runner/dossier.hpp"
 #include "cases/runner/probe.hpp"
 #include "cases/runner/progress.hpp"
 #include "cases/runner/solver_options.hpp"
@@ -258,7 +259,9 @@ Exit run(const Case& from, const RunOptions& options) {
   Recorder recorder(from, body, assembler, *results, progress);
   LoadSteppingObserver observer;
   observer.iteration = [&](const IterationRecord& record) { recorder.iteration(record); };
+  std::vector<DecisionRecord> decisions;
   observer.decision = [&](const DecisionRecord& record) {
+    decisions.push_back(record);
     results->add(record);
     progress.decision(record);
   };
@@ -302,6 +305,10 @@ Exit run(const Case& from, const RunOptions& options) {
   summary.seconds.output = results->seconds_spent();
   summary.threads = options.threads;
   recorder.finish();
+  if (!completed && !interrupted) {
+    const Dossier dossier = make_dossier(from, body, result, recorder.last(), decisions);
+    results->add_dossier(dossier.text, dossier.residual, dossier.displacement);
+  }
   total.reset();
   results->close(summary);
 
@@ -315,6 +322,7 @@ Exit run(const Case& from, const RunOptions& options) {
   progress.problem(summary.reason);
   progress.problem(
       fmt::format("{} accepted steps are in {}", result.steps, from.output.directory.string()));
+  if (!interrupted) progress.problem("dossier.txt there tells where it failed and what to do");
   if (interrupted) return Exit::interrupted;
   return result.outcome == Outcome::out_of_memory ? Exit::out_of_memory : Exit::not_converged;
 }

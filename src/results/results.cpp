@@ -427,6 +427,22 @@ void Results::add_fields(const StepRecord& record, const StepFields& fields) {
   files_->add_fields(record, fields);
 }
 
+void Results::add_dossier(const std::string& text, const std::vector<double>& residual,
+                          const std::vector<double>& displacement) {
+  const Stopwatch stopwatch(files_->seconds);
+  if (files_->closed) throw std::logic_error("results: closed");
+  const Hdf5File::Shape shape{static_cast<std::uint64_t>(files_->count),
+                              static_cast<std::uint64_t>(files_->dimension)};
+  files_->master.make_group("/dossier");
+  files_->master.write("/dossier/residual", residual, shape,
+                       {"N",
+                        "residual of the state in which the last search ended, 0 where "
+                        "displacements are prescribed"});
+  files_->master.write("/dossier/displacement", displacement, shape,
+                       {"m", "displacement of the state in which the last search ended"});
+  publish_file(files_->folder.dossier(), text);
+}
+
 void Results::close(Summary summary) {
   const Stopwatch stopwatch(files_->seconds);
   if (files_->closed) throw std::logic_error("results: closed");

@@ -50,7 +50,7 @@ struct ProbeColumns {
 };
 
 /// Writer of a results folder (docs/results.md): results.h5, results.xdmf, history.csv,
-/// iterations.csv, decisions.csv, broken_bonds.csv, summary.json.
+/// iterations.csv, decisions.csv, broken_bonds.csv, summary.json, dossier.txt.
 ///
 /// A kill at any moment leaves every accepted step readable: each step's fields go to a file of
 /// their own, `parts/NNNNNN.h5`, and results.h5, which links to them, is published by renaming a
@@ -86,6 +86,11 @@ class Results {
   /// Publishes the fields of the step added last, unless they were added with it: for the end of a
   /// run whose last step was one that only enters the history.
   void add_fields(const StepRecord& record, const StepFields& fields);
+
+  /// Adds what is known of a search that failed: dossier.txt, and in results.h5 its residual [N]
+  /// and the displacement [m] of the state it ended in (points x dimension).
+  void add_dossier(const std::string& text, const std::vector<double>& residual,
+                   const std::vector<double>& displacement);
 
   /// Writes summary.json (counts and energies are taken from the last step record, sums of
   /// iterations from all) and gathers the parts. Nothing can be added afterwards. If the parts

@@ -14,8 +14,9 @@ namespace fs = std::filesystem;
 
 /// The history stands last, so that a folder whose removal was interrupted is still recognised.
 std::vector<fs::path> own_files(const ResultsFolder& folder) {
-  return {folder.results(),      folder.xdmf(),        folder.iterations(), folder.decisions(),
-          folder.broken_bonds(), folder.convergence(), folder.summary(),    folder.history()};
+  return {folder.results(),   folder.xdmf(),         folder.iterations(),
+          folder.decisions(), folder.broken_bonds(), folder.convergence(),
+          folder.dossier(),   folder.summary(),      folder.history()};
 }
 
 bool is_part(const fs::path& file) {

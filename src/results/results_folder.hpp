@@ -17,6 +17,7 @@ struct ResultsFolder {
     return directory / "broken_bonds.csv";
   }
   [[nodiscard]] std::filesystem::path convergence() const { return directory / "convergence.csv"; }
+  [[nodiscard]] std::filesystem::path dossier() const { return directory / "dossier.txt"; }
   [[nodiscard]] std::filesystem::path summary() const { return directory / "summary.json"; }
   [[nodiscard]] std::filesystem::path parts() const { return directory / "parts"; }
 };
