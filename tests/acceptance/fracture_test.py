@@ -283,6 +283,14 @@ class Fracture(unittest.TestCase):
             self.assertNotRegex((run.folder / name).read_text(), r"\b(nan|inf)\b")
         for row in run.history:
             self.assertTrue(all(math.isfinite(value) for key, value in row.items() if key != "mode"))
+        if run.code == 3:
+            dossier = (run.folder / "dossier.txt").read_text()
+            for told in (run.summary["reason"].split()[0], "What to do", "Last accepted state: step", "pivots", "Worst points", "cut;"):
+                self.assertIn(told, dossier)
+            with h5py.File(run.folder / "results.h5") as file:
+                residual = numpy.linalg.norm(file["dossier/residual"], axis=1)
+            worst = int(dossier[dossier.index("reference position [m]"):].split("\n")[1].split()[0])
+            self.assertEqual(worst, int(residual.argmax()))
 
     # ---- equilibrium and decisions ----------------------------------------------------------------
 
