@@ -71,7 +71,7 @@ std::vector<double> test_direction(const Points& points) {
 /// Adds a little of the gradient's direction: where steps have to be small, the slope along a
 /// random direction alone may be, too, and drown in round-off.
 void steepen(const std::vector<double>& gradient, double size, std::vector<double>& direction) {
-  constexpr double share = 0.02;
+  constexpr double share = 0.05;
   double largest = 0.0;
   for (const double entry : gradient) largest = std::max(largest, std::abs(entry));
   if (largest > 0.0) add_scaled(direction, share * size / largest, gradient);
