@@ -297,6 +297,7 @@ class LoadPath {
   /// Equilibrium of the body itself at the load that its stand-in has reached.
   bool take_up_body() {
     active_ = &main_;
+    if (!pieces_.pinned.empty() && !analyze()) return false;
     const double load_factor = result_.state.load_factor;
     Attempt attempt = search(result_.state, load_factor, newton_options_);
     if (attempt.outcome != Outcome::converged) {
@@ -565,6 +566,11 @@ class LoadPath {
          relaxes_ ? relaxed_.value() : implicit_.value(), what);
     number_free_dofs();
     motion_ = {};
+    return analyze();
+  }
+
+  /// Prepares the solver for other free degrees of freedom.
+  bool analyze() {
     if (active_->solver.analyze(active_->tangent.pattern, *free_) == LinearOutcome::solved) {
       return true;
     }
