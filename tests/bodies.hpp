@@ -4,11 +4,13 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <random>
 #include <span>
 #include <string>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include "assembly/model.hpp"
@@ -71,6 +73,8 @@ struct BoxSetting {
   /// Stiffness of triangles and tetrahedra relative to that of the bonds, roughly; 0: none.
   double triangles = 0.0, tetrahedra = 0.0;
   bool stored = false;  ///< store them
+  /// Of the bonds, from their micromodulus; empty: Harmonic.
+  std::function<BondPotential(double micromodulus)> potential{};
 };
 
 /// The setting of a small box of unequal sides.
@@ -102,6 +106,12 @@ struct BoxSetting {
           setting.cross_section};
 }
 
+[[nodiscard]] inline BondPotential bond_potential(const BoxSetting& box,
+                                                  const BondSetting& setting) {
+  const double modulus = micromodulus(box.youngs_modulus, setting);
+  return box.potential ? box.potential(modulus) : Harmonic{modulus};
+}
+
 /// A body without supports and loads.
 struct BoxBody {
   Points points;
@@ -114,7 +124,7 @@ struct BoxBody {
       : points(std::move(from)),
         setting(bond_setting(box)),
         model{make_bonds(points, box.quadrature, setting, threads),
-              Harmonic{micromodulus(box.youngs_modulus, setting)},
+              bond_potential(box, setting),
               {},
               {}} {
     add(model.triangles, box.triangles, box, threads);
@@ -134,7 +144,8 @@ struct BoxBody {
                                   InteractionWeights::mean)));
     // psi is C M e^2 / 2 with M of the order of horizon^arms, and there are V_H^arms of them.
     const double unit = std::pow(setting.horizon * bulk.volume, 1 - Measure::arms);
-    const double micromodulus_of_bonds = std::get<Harmonic>(model.potential).modulus;
+    const double micromodulus_of_bonds =
+        std::visit([](const auto& law) { return law.modulus; }, model.potential);
     if (box.stored) interactions.store(points, model.bonds, threads);
     to.emplace(InteractionTerm<Measure>{std::move(interactions),
                                         Harmonic{stiffness * unit * micromodulus_of_bonds}});

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <map>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -21,19 +24,34 @@ struct Followed {
   std::vector<IterationRecord> iterations;
   std::vector<DecisionRecord> decisions;
   std::vector<std::vector<double>> displacements;
+  std::vector<std::vector<double>> histories;     // at accepted states
+  std::vector<std::vector<std::int32_t>> pieces;  // at accepted states
+  int iterations_with_another_history = 0;        // than that of the last accepted state
 };
 
-Followed follow(Problem& problem, const LoadSteppingOptions& options,
+/// @param problem with a body, conditions, an assembler and a tangent
+template <class AnyProblem>
+Followed follow(AnyProblem& problem, const LoadSteppingOptions& options,
                 const NewtonOptions& newton_options = {}, int interrupt_after = -1) {
   Followed followed;
   Cholesky solver;
   EXPECT_EQ(problem.analyze(solver), LinearOutcome::solved);
   LoadSteppingObserver observer;
-  observer.iteration = [&](const IterationRecord& row) { followed.iterations.push_back(row); };
+  std::vector<double> committed(problem.assembler.history().begin(),
+                                problem.assembler.history().end());
+  observer.iteration = [&](const IterationRecord& row) {
+    followed.iterations.push_back(row);
+    const std::span<const double> now = problem.assembler.history();
+    followed.iterations_with_another_history +=
+        !std::equal(now.begin(), now.end(), committed.begin(), committed.end());
+  };
   observer.decision = [&](const DecisionRecord& row) { followed.decisions.push_back(row); };
   observer.accepted = [&](const StepRecord& row, const AcceptedState& state) {
     followed.steps.push_back(row);
     followed.displacements.push_back(state.trial.displacement);
+    committed.assign(state.history.begin(), state.history.end());
+    followed.histories.push_back(committed);
+    followed.pieces.emplace_back(state.piece.begin(), state.piece.end());
   };
   observer.interrupted = [&] { return int(followed.steps.size()) == interrupt_after; };
   followed.result = follow_loading({problem.assembler, solver, problem.tangent}, problem.conditions,
@@ -278,6 +296,294 @@ TEST(LoadStepping, LedgerOfALinearBodyCloses) {
   for (const StepRecord& step : followed.steps) {
     EXPECT_GT(step.stored_energy, 0.0);
     EXPECT_NEAR(step.external_work / step.stored_energy, 1.0, 1e-12);
+  }
+}
+
+// ---- Damage
+
+constexpr double onset = 0.01, critical = 0.03;
+
+BondPotential softening(double micromodulus) {
+  return Degraded<TanhDegradation>{micromodulus, TanhDegradation::continuous(onset, critical, 3.0)};
+}
+
+/// A strip with a notch from below in its middle, or whose bonds across the middle alone may fail.
+struct Strip {
+  enum class Middle { notched, weak };
+  tests::BoxSetting box;
+  tests::BoxBody body;
+  Conditions conditions;
+  FreeDofs free;
+  Assembler assembler;
+  Tangent tangent;
+
+  Strip(Middle middle, const std::vector<SupportSpecification>& supports, int threads = 1)
+      : box(setting()),
+        body(tests::points_with_ends(box), box),
+        conditions((change(middle), body.points), supports, {}),
+        free(conditions.prescribed(), 2),
+        assembler(body.points, body.model, threads),
+        tangent(Pattern(body.model.bonds), 2) {}
+  Strip(const Strip&) = delete;
+  Strip& operator=(const Strip&) = delete;
+
+  LinearOutcome analyze(LinearSolver& solver) const {
+    return solver.analyze(tangent.pattern, free);
+  }
+
+  static tests::BoxSetting setting() {
+    tests::BoxSetting strip = tests::small_box(2);
+    strip.extent = {15, 7, 0};
+    strip.potential = softening;
+    return strip;
+  }
+
+ private:
+  void change(Middle middle) {
+    Bonds& bonds = body.model.bonds;
+    const auto crosses = [&](Index i, Offset bond) {
+      const double a = body.points.position(i)[0] - 0.7,
+                   b = body.points.position(bonds.partner[bond])[0] - 0.7;
+      return a * b < 0.0;
+    };
+    if (middle == Middle::notched) {
+      bonds.remove_if([&](Index i, Offset bond) {
+        return crosses(i, bond) && body.points.position(i)[1] < 0.3 &&
+               body.points.position(bonds.partner[bond])[1] < 0.3;
+      });
+      return;
+    }
+    body.model.never_fails.assign(std::size_t(bonds.count()), 1);
+    tests::for_each_bond(bonds, [&](Index i, Index, Offset bond) {
+      if (crosses(i, bond)) body.model.never_fails[std::size_t(bond)] = 0;
+    });
+  }
+};
+
+std::vector<SupportSpecification> drawn(const std::string& displacement) {
+  return {support("left", "0", "0"), support("right", displacement, "0")};
+}
+
+LoadSteppingOptions in_mode(Mode mode, int implicit_steps, int relaxation_steps) {
+  LoadSteppingOptions options = steps(implicit_steps);
+  options.mode = mode;
+  options.relaxation_steps = relaxation_steps;
+  return options;
+}
+
+int count_of(const Followed& followed, const std::string& action) {
+  return int(std::count_if(followed.decisions.begin(), followed.decisions.end(),
+                           [&](const DecisionRecord& row) { return row.action == action; }));
+}
+
+/// Histories only grow, and follow accepted states alone: a broken bond stays broken.
+void expect_no_healing(const Followed& followed) {
+  ASSERT_EQ(followed.histories.size(), followed.steps.size());
+  EXPECT_EQ(followed.iterations_with_another_history, 0);
+  for (std::size_t k = 1; k < followed.histories.size(); ++k) {
+    for (std::size_t b = 0; b < followed.histories[k].size(); ++b) {
+      ASSERT_GE(followed.histories[k][b], followed.histories[k - 1][b]) << "step " << k;
+    }
+    EXPECT_GE(followed.steps[k].broken_bonds, followed.steps[k - 1].broken_bonds);
+    EXPECT_GE(followed.steps[k].dissipated_energy, followed.steps[k - 1].dissipated_energy);
+  }
+  for (std::size_t k = 0; k < followed.histories.size(); ++k) {
+    const std::vector<double>& history = followed.histories[k];
+    EXPECT_EQ(followed.steps[k].broken_bonds,
+              std::count_if(history.begin(), history.end(),
+                            [](double kappa) { return kappa >= critical; }));
+  }
+}
+
+/// Every accepted state is one of equilibrium, looked at anew with its history.
+void expect_equilibria(const Followed& followed, Strip& strip, double tolerance) {
+  std::map<int, double> scale;
+  for (const IterationRecord& row : followed.iterations) {
+    if (row.relative_residual > 0.0) {
+      scale[row.step] = std::max(scale[row.step], row.residual / row.relative_residual);
+    }
+  }
+  Assembler assembler(strip.body.points, strip.body.model, 1);
+  std::vector<double> gradient(strip.body.dofs());
+  for (std::size_t k = 0; k < followed.steps.size(); ++k) {
+    assembler.restore(followed.histories[k]);
+    (void)assembler.gradient(followed.displacements[k], gradient);
+    double squared = 0.0;
+    for (const Index dof : strip.free.dof) squared += gradient[dof] * gradient[dof];
+    ASSERT_GT(scale[int(k) + 1], 0.0);
+    // A sum in the same order as the program's, of nearly the same displacements' forces.
+    EXPECT_LE(std::sqrt(squared), 1.01 * tolerance * scale[int(k) + 1]) << "step " << k + 1;
+    EXPECT_EQ(assembler.growth(followed.displacements[k]).degrading, 0) << "step " << k + 1;
+  }
+}
+
+TEST(LoadStepping, AdaptiveModeRelaxesWhileDamageGrows) {
+  // Pulled and then let go.
+  Strip strip(Strip::Middle::notched, drawn("0.045*min(load, 1.2 - load)"));
+  LoadSteppingOptions options = in_mode(Mode::adaptive, 10, 50);
+  const Followed followed = follow(strip, options);
+  ASSERT_EQ(followed.result.outcome, Outcome::converged);
+  expect_consistent(followed);
+  expect_no_healing(followed);
+  expect_equilibria(followed, strip, 1e-10);
+  EXPECT_EQ(followed.steps.back().load_factor, 1.0);
+  EXPECT_GT(followed.steps.back().dissipated_energy, 0.0);
+  EXPECT_GT(followed.steps.back().broken_bonds, 0);
+  EXPECT_GE(count_of(followed, "hand over to relaxation"), 1);
+  EXPECT_EQ(count_of(followed, "hand over to relaxation"),
+            count_of(followed, "hand back to newton"));
+  // Newton's steps damage nothing; every relaxed one does but the last, after which it hands back.
+  std::string mode = "newton";
+  std::size_t accepted = 0;
+  double dissipated = 0.0;
+  for (const DecisionRecord& decision : followed.decisions) {
+    if (decision.action == "hand over to relaxation") {
+      EXPECT_EQ(mode, "newton");
+      mode = "relaxation";
+    } else if (decision.action == "hand back to newton") {
+      EXPECT_EQ(mode, "relaxation");
+      ASSERT_GE(accepted, 2u);
+      EXPECT_EQ(followed.histories[accepted - 1], followed.histories[accepted - 2]);
+      mode = "newton";
+    } else if (decision.action.rfind("accept", 0) == 0) {
+      const StepRecord& step = followed.steps.at(accepted);
+      EXPECT_EQ(step.mode, mode);
+      EXPECT_EQ(step.relaxation_iterations > 0, mode == "relaxation");
+      if (mode == "newton") {
+        EXPECT_EQ(step.dissipated_energy, dissipated);
+      }
+      dissipated = step.dissipated_energy;
+      ++accepted;
+    }
+  }
+  EXPECT_EQ(mode, "newton");
+}
+
+TEST(LoadStepping, AdaptiveModeWithoutDamageIsNewton) {
+  const tests::BoxSetting box = tests::small_box(2);
+  Problem problem(box, pulled(box, 0.2), {});
+  for (const int max_iterations : {3, 25}) {
+    LoadSteppingOptions options = steps(3);
+    NewtonOptions newton_options;
+    newton_options.max_iterations = max_iterations;
+    const Followed newton = follow(problem, options, newton_options);
+    options.mode = Mode::adaptive;
+    const Followed adaptive = follow(problem, options, newton_options);
+    ASSERT_EQ(newton.result.outcome, Outcome::converged);
+    ASSERT_EQ(adaptive.result.outcome, Outcome::converged);
+    EXPECT_EQ(adaptive.displacements, newton.displacements);
+    ASSERT_EQ(adaptive.decisions.size(), newton.decisions.size());
+    for (std::size_t k = 0; k < newton.decisions.size(); ++k) {
+      EXPECT_EQ(adaptive.decisions[k].action, newton.decisions[k].action);
+      EXPECT_EQ(adaptive.decisions[k].load_factor, newton.decisions[k].load_factor);
+    }
+    for (std::size_t k = 0; k < newton.steps.size(); ++k) {
+      EXPECT_EQ(adaptive.steps[k].external_work, newton.steps[k].external_work);
+    }
+  }
+}
+
+TEST(LoadStepping, LedgerOfRelaxationClosesThroughDamage) {
+  for (const int threads : {1, 2}) {
+    Strip strip(Strip::Middle::notched, drawn("0.03*load"), threads);
+    const Followed followed = follow(strip, in_mode(Mode::relaxation, 1, 30));
+    ASSERT_EQ(followed.result.outcome, Outcome::converged);
+    expect_consistent(followed);
+    expect_no_healing(followed);
+    expect_equilibria(followed, strip, 1e-10);
+    ASSERT_GT(followed.steps.back().broken_bonds, 0);
+    for (const StepRecord& step : followed.steps) {
+      EXPECT_EQ(step.mode, "relaxation");
+      EXPECT_DOUBLE_EQ(step.balance_error, step.external_work - step.stored_energy -
+                                               step.dissipated_energy - step.drained_energy);
+      EXPECT_LE(std::abs(step.balance_error), 1e-12 * step.external_work);
+    }
+  }
+}
+
+/// Bonds that broke in each accepted step.
+std::vector<Index> broken_in_steps(const Followed& followed) {
+  std::vector<Index> result;
+  Index before = 0;
+  for (const StepRecord& step : followed.steps) {
+    result.push_back(step.broken_bonds - before);
+    before = step.broken_bonds;
+  }
+  return result;
+}
+
+TEST(LoadStepping, CutsStepsInWhichTooManyBondsBreak) {
+  // All points move along x so that bonds are stretched by the more the further they are to the
+  // right: they break column by column, at loads that are close where columns of bonds are equal.
+  const std::vector<SupportSpecification> supports{support("all", "0.04*load*x*x"),
+                                                   support("left", std::nullopt, "0")};
+  LoadSteppingOptions options = steps(4);
+  options.smallest_step = 1e-3;
+  Strip free(Strip::Middle::notched, supports);
+  const Followed unlimited = follow(free, options);
+  ASSERT_EQ(unlimited.result.outcome, Outcome::converged);
+  EXPECT_EQ(count_of(unlimited, "cut"), 0);
+  const std::vector<Index> most = broken_in_steps(unlimited);
+  ASSERT_GT(*std::max_element(most.begin(), most.end()), 40);
+
+  for (const int limit : {40, 1}) {
+    SCOPED_TRACE(limit);
+    Strip strip(Strip::Middle::notched, supports);
+    options.max_broken_bonds = limit;
+    const Followed followed = follow(strip, options);
+    expect_consistent(followed);
+    expect_no_healing(followed);
+    for (const Index broken : broken_in_steps(followed)) EXPECT_LE(broken, limit);
+    int cuts = 0;  // for broken bonds; softening ones make searches fail, too
+    for (const DecisionRecord& decision : followed.decisions) {
+      if (decision.action != "cut") continue;
+      cuts += decision.outcome == "damage_limit";
+      EXPECT_DOUBLE_EQ(decision.next_increment, 0.5 * decision.increment);
+    }
+    EXPECT_GE(cuts, 1);
+    if (limit == 40) {
+      EXPECT_EQ(followed.result.outcome, Outcome::converged);
+      EXPECT_GT(followed.steps.size(), unlimited.steps.size());
+      EXPECT_GT(followed.steps.back().broken_bonds, limit);
+    } else {
+      // The bonds of a column break at the same load, however small the step.
+      EXPECT_EQ(followed.result.outcome, Outcome::damage_limit);
+      EXPECT_EQ(followed.decisions.back().action, "stop");
+      EXPECT_EQ(followed.decisions.back().outcome, "damage_limit");
+      EXPECT_LT(0.5 * followed.decisions.back().increment, options.smallest_step);
+      EXPECT_GT(strip.assembler.growth(followed.result.last_attempt.state.displacement).breaking,
+                limit);
+    }
+  }
+}
+
+TEST(LoadStepping, HoldsRemovesOrStopsAtFragments) {
+  // Only x is held on the right: once the strip is pulled in two, that half is free along y.
+  for (const FragmentRemedy remedy :
+       {FragmentRemedy::hold, FragmentRemedy::remove, FragmentRemedy::stop}) {
+    SCOPED_TRACE(int(remedy));
+    Strip strip(Strip::Middle::weak, {support("left", "0", "0"), support("right", "0.1*load")});
+    LoadSteppingOptions options = in_mode(Mode::adaptive, 10, 20);
+    options.fragments = remedy;
+    const Followed followed = follow(strip, options);
+    expect_consistent(followed);
+    expect_no_healing(followed);
+    const bool stops = remedy == FragmentRemedy::stop;
+    EXPECT_EQ(followed.result.outcome, stops ? Outcome::fragmented : Outcome::converged);
+    EXPECT_GT(followed.steps.back().broken_bonds, 0);
+    ASSERT_FALSE(followed.pieces.back().empty());
+    for (Index i = 0; i < strip.body.points.count(); ++i) {
+      EXPECT_EQ(followed.pieces.back()[std::size_t(i)], strip.body.points.position(i)[0] > 0.7);
+    }
+    EXPECT_EQ(count_of(followed, "hold fragments"), remedy == FragmentRemedy::hold ? 1 : 0);
+    EXPECT_EQ(count_of(followed, "remove fragments"), remedy == FragmentRemedy::remove ? 1 : 0);
+    EXPECT_EQ(count_of(followed, "stop"), stops ? 1 : 0);
+    if (stops) {
+      EXPECT_LT(followed.steps.back().load_factor, 1.0);
+      EXPECT_EQ(followed.decisions.back().outcome, "fragmented");
+    } else {
+      EXPECT_EQ(followed.steps.back().load_factor, 1.0);
+    }
   }
 }
 
