@@ -31,7 +31,8 @@ class Assembler {
   [[nodiscard]] Stored gradient(std::span<const double> displacement, std::span<double> gradient);
 
   /// Commits a state: moves the history of every bond that it damages to it. E is then what is
-  /// stored after that, and dE/dx, unless it is left out, the same as before. Only accepted states
+  /// stored after that. dE/dx, unless it is left out, is the bonds' as before and that of triangles
+  /// and tetrahedra after their loss. Only accepted states
   /// are committed, and in relaxation that breaks bonds on the way, every iteration.
   Stored commit(std::span<const double> displacement, std::span<double> gradient = {});
 

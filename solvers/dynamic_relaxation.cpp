@@ -275,7 +275,10 @@ double scale_of_step(const EquilibriumProblem& problem, const Way& way, const Tr
   for (const Index dof : way.prescribed()) {
     after_jump.displacement[dof] = way.end_displacement()[dof];
   }
+  // A jump that tears bonds would leave no residual to measure against.
+  problem.assembler.hold_damage(true);
   evaluate(problem, way.end_force(), after_jump);
+  problem.assembler.hold_damage(false);
   if (after_jump.degenerate) after_jump.residual_norm = 0.0;  // a jump onto a neighbour
   return residual_scale(problem, way.end_force(), start, after_jump);
 }

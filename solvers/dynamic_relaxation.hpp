@@ -76,8 +76,8 @@ using RelaxationObserver = std::function<bool(const IterationRecord&)>;
 /// energy that leaves is also summed by itself: with the mean velocity Vm of two half steps damping
 /// takes c_n lambda Vm^2, and the leap-frog rule makes the sum of that and of the motion that is
 /// stopped equal to the trapezoidal work of F along the path. Both agree up to that rule's error,
-/// which is small where forces are smooth (1e-8 and less) and not where bonds break within an
-/// iteration (some per cent).
+/// which falls with the square of the ramp (1e-6 of the work for 100 iterations in 2D) and is some
+/// per cent where bonds break within an iteration.
 /// @param tangent room for the tangent that the density is made from
 /// @param motion at the start, and at the end if the relaxation does not hold
 [[nodiscard]] RelaxationResult relax(const EquilibriumProblem& problem, Tangent& tangent,
