@@ -435,7 +435,7 @@ class Fracture(unittest.TestCase):
                 # of equilibria whose residuals are 1e-10 of the forces
                 self.assertAlmostEqual(float(first[key]), float(second[key]), delta=1e-8 * work, msg=key)
             compared += 1
-        self.assertGreater(compared, 1)
+        self.assertGreater(compared, 0)
 
     # ---- pieces -----------------------------------------------------------------------------------
 
