@@ -45,29 +45,31 @@ double trapezoidal_work(const std::vector<double>& force0, const std::vector<dou
   return work;
 }
 
-Attempt to_attempt(NewtonResult result, double load_factor) {
+/// What searches of both kinds end with.
+template <class Result>
+Attempt common_attempt(Result result, double load_factor) {
   Attempt attempt;
   attempt.outcome = result.outcome;
   attempt.iterations = result.iterations;
   attempt.load_factor = load_factor;
   attempt.scale = result.scale;
-  attempt.inertia = result.inertia;
-  attempt.has_negative_pivots = result.has_negative_pivots;
-  attempt.unstable_start = result.unstable_start;
   attempt.state = std::move(result.state);
   attempt.external_force = std::move(result.external_force);
   return attempt;
 }
 
-Attempt to_attempt(RelaxationResult result, double load_factor) {
-  Attempt attempt;
-  attempt.outcome = result.outcome;
-  attempt.iterations = result.iterations;
-  attempt.load_factor = load_factor;
-  attempt.scale = result.scale;
-  attempt.state = std::move(result.state);
-  attempt.external_force = std::move(result.external_force);
+Attempt to_attempt(NewtonResult result, double load_factor) {
+  const std::optional<Inertia> inertia = result.inertia;
+  const bool negative = result.has_negative_pivots, unstable = result.unstable_start;
+  Attempt attempt = common_attempt(std::move(result), load_factor);
+  attempt.inertia = inertia;
+  attempt.has_negative_pivots = negative;
+  attempt.unstable_start = unstable;
   return attempt;
+}
+
+Attempt to_attempt(RelaxationResult result, double load_factor) {
+  return common_attempt(std::move(result), load_factor);
 }
 
 /// Whether a smaller step can help.
@@ -132,7 +134,7 @@ class LoadPath {
         newton_options_(newton_options),
         observer_(observer),
         implicit_(options.steps, options.largest_step, options),
-        relaxed_(options.relaxation_steps, options.largest_relaxation_step, options),
+        relaxed_(options.relaxation_steps, 0.0, options),
         relaxes_(options.mode == Mode::relaxation),
         pinned_(conditions.prescribed().size(), 0) {
     number_free_dofs();
@@ -436,9 +438,7 @@ class LoadPath {
     external_work_ += step.external_work;
     drained_energy_ += step.drained_energy;
     released_energy_ += step.released_energy;
-    const bool few = step.growth.breaking < options_.few_broken_bonds;
-    const bool grew = few && relaxed_.grow();
-    if (!few) relaxed_.start_again();
+    const bool grew = relaxed_.grow();
     tell(step.attempt.load_factor, attempted, step.attempt.outcome,
          grew ? "accept and grow" : "accept", relaxed_.value(),
          std::to_string(step.relaxation_iterations) + " iterations of relaxation");

@@ -37,10 +37,6 @@ struct LoadSteppingOptions {
   /// Bonds that may break in one implicit step; a step with more is cut. 0: no limit.
   int max_broken_bonds = 0;
   int relaxation_steps = 1;  ///< equal steps of the load factor in relaxation
-  /// Of the load factor: relaxed steps double up to it while fewer bonds break in them than
-  /// few_broken_bonds, and start again from 1 / relaxation_steps otherwise. 0: they don't.
-  double largest_relaxation_step = 0.0;
-  int few_broken_bonds = 20;
   RelaxationOptions relaxation;
   /// Relative residual of a relaxed step at which Newton's method takes its last iterations over,
   /// in adaptive mode.

@@ -388,11 +388,6 @@ RelaxationSpecification read_relaxation(const TomlTable& table, int default_step
   };
   relaxation.moving = table.one_of("load", {"fixed", "moving"}, "fixed") == "moving";
   relaxation.steps = count("steps", 1, default_steps);
-  const double step = 1.0 / relaxation.steps;
-  relaxation.largest_step = table.number("largest_step", Range::between(1e-12, 1.0), step);
-  if (relaxation.largest_step < step)
-    table.refuse("largest_step", "must not be smaller than the first step, 1 / steps");
-  relaxation.few_broken_bonds = count("few_broken_bonds", 0, relaxation.few_broken_bonds);
   if (relaxation.moving) {
     for (const char* key : {"ramp", "quiet_iterations"})
       if (table.has(key)) table.refuse(key, "is for load = \"fixed\"");

@@ -84,10 +84,8 @@ struct SolverSpecification {
 /// Table [relaxation]: steps of the load factor, and how each is relaxed.
 struct RelaxationSpecification {
   int steps = 1;
-  double largest_step = 0.0;  ///< of the load factor; 0: 1 / steps (the reader writes it out)
-  int few_broken_bonds = 20;  ///< in a step, below which the next one doubles, up to that
-  bool moving = false;        ///< the load moves in every iteration, as in [ADAPT]; nothing is held
-  int iterations = 10'000;    ///< of the whole load, if it moves
+  bool moving = false;      ///< the load moves in every iteration, as in [ADAPT]; nothing is held
+  int iterations = 10'000;  ///< of the whole load, if it moves
   RelaxationOptions options;
 };
 

@@ -40,9 +40,8 @@ const std::map<std::string, std::vector<std::string>>& case_keys() {
          {"mode", "linear", "relative_tolerance", "max_iterations", "projection", "predictor",
           "fragments", "elastic_horizon_ratio"}},
         {"relaxation",
-         {"steps", "largest_step", "few_broken_bonds", "load", "iterations", "ramp", "breaking",
-          "damping", "mass_factor", "max_iterations", "quiet_iterations",
-          "displacement_tolerance"}},
+         {"steps", "load", "iterations", "ramp", "breaking", "damping", "mass_factor",
+          "max_iterations", "quiet_iterations", "displacement_tolerance"}},
         {"output", {"directory", "every", "count_cracks"}},
         {"probe", {"name", "set", "other", "field", "axis", "threshold"}}};
     for (const auto& [kind, own] : shape_keys()) tables["set.shape." + kind] = own;

@@ -149,8 +149,6 @@ void write_relaxation(Writer& out, const RelaxationSpecification& relaxation) {
   const RelaxationOptions& options = relaxation.options;
   out.header("relaxation");
   out.integer("steps", relaxation.steps);
-  out.number("largest_step", relaxation.largest_step);
-  out.integer("few_broken_bonds", relaxation.few_broken_bonds);
   out.string("load", relaxation.moving ? "moving" : "fixed");
   if (relaxation.moving) {
     out.integer("iterations", relaxation.iterations);

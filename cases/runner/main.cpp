@@ -15,6 +15,7 @@
 #include "cases/runner/memory.hpp"
 #include "cases/runner/run.hpp"
 #include "cases/runner/runtime_environment.hpp"
+#include "cases/runner/toml_text.hpp"
 #include "src/input_error.hpp"
 
 namespace {
@@ -39,7 +40,7 @@ std::vector<std::pair<std::string, std::string>> overrides(const CommandLine& li
     }
     result.emplace_back(setting.substr(0, equals), setting.substr(equals + 1));
   }
-  if (!line.output.empty()) result.emplace_back("output.directory", '"' + line.output + '"');
+  if (!line.output.empty()) result.emplace_back("output.directory", toml_string(line.output));
   return result;
 }
 

@@ -166,10 +166,19 @@ class Recorder {
   std::optional<StepRecord> last_;
 };
 
+/// Adds what assembly and linear solver have cost to the summary.
+void add_costs(const Assembler& assembler, const LinearSolver& solver, Summary& summary) {
+  const LinearStatistics statistics = solver.statistics();
+  summary.factorisations += statistics.factorisations;
+  summary.linear_iterations += statistics.iterations;
+  summary.seconds.linear += statistics.seconds;
+  summary.seconds.assembly += assembler.seconds_spent();
+}
+
 LoadSteppingResult follow_with_stand_in(const Case& from, const Body& body,
                                         const SolvedBody& solved, const Model& stand_in,
-                                        const FreeDofs& free,
-                                        const LoadSteppingObserver& observer) {
+                                        const FreeDofs& free, const LoadSteppingObserver& observer,
+                                        Summary& summary) {
   const Pattern pattern(stand_in.bonds);
   Assembler assembler(body.points, stand_in, solved.assembler.threads());
   Tangent tangent(pattern, from.dimension);
@@ -180,8 +189,10 @@ LoadSteppingResult follow_with_stand_in(const Case& from, const Body& body,
     return result;
   }
   const SolvedBody standing_in{assembler, solver, tangent};
-  return follow_loading(solved, *body.conditions, load_stepping_options(from), newton_options(from),
-                        observer, &standing_in);
+  LoadSteppingResult result = follow_loading(solved, *body.conditions, load_stepping_options(from),
+                                             newton_options(from), observer, &standing_in);
+  add_costs(assembler, solver, summary);
+  return result;
 }
 
 std::string failure_reason(const LoadSteppingResult& result) {
@@ -277,7 +288,7 @@ Exit run(const Case& from, const RunOptions& options) {
   if (analysis == LinearOutcome::solved) {
     const SolvedBody solved{assembler, solver, tangent};
     if (const std::optional<Model> stand_in = make_elastic_stand_in(from, body, options.threads)) {
-      result = follow_with_stand_in(from, body, solved, *stand_in, free, observer);
+      result = follow_with_stand_in(from, body, solved, *stand_in, free, observer, summary);
     } else {
       result = follow_loading(solved, *body.conditions, load_stepping_options(from),
                               newton_options(from), observer);
@@ -295,13 +306,10 @@ Exit run(const Case& from, const RunOptions& options) {
   summary.bonds = body.model.bonds.count();
   if (body.model.triangles) summary.triangles = body.model.triangles->interactions.count();
   if (body.model.tetrahedra) summary.tetrahedra = body.model.tetrahedra->interactions.count();
-  summary.factorisations = solver.statistics().factorisations;
-  summary.linear_iterations = solver.statistics().iterations;
+  add_costs(assembler, solver, summary);
   summary.max_displacement = largest_displacement(recorder.displacement(), from.dimension);
   summary.seconds.neighbourhood = body.seconds_neighbourhood;
-  summary.seconds.assembly = assembler.seconds_spent();
   summary.seconds.relaxation = result.relaxation_seconds;
-  summary.seconds.linear = solver.statistics().seconds;
   summary.seconds.output = results->seconds_spent();
   summary.threads = options.threads;
   recorder.finish();

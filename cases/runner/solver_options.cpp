@@ -13,8 +13,6 @@ LoadSteppingOptions load_stepping_options(const Case& from) {
   options.fragments = from.solver.fragments;
   options.has_cracks = !from.cracks.empty();
   options.relaxation_steps = from.relaxation.steps;
-  options.largest_relaxation_step = from.relaxation.largest_step;
-  options.few_broken_bonds = from.relaxation.few_broken_bonds;
   options.relaxation = from.relaxation.options;
   return options;
 }

@@ -15,7 +15,8 @@ import h5py
 import numpy
 
 PROGRAM = os.environ["PERISTAT_PROGRAM"]
-SQUARE = pathlib.Path(__file__).resolve().parents[2] / "cases/plate_with_hole/square.toml"
+CASES = pathlib.Path(__file__).resolve().parents[2] / "cases"
+SQUARE = CASES / "plate_with_hole/square.toml"
 
 # 20 x 10 points, half cut at x = 10 mm, and a layer of three columns at either end.
 CRACK = """\
@@ -291,6 +292,36 @@ class Fracture(unittest.TestCase):
                 residual = numpy.linalg.norm(file["dossier/residual"], axis=1)
             worst = int(dossier[dossier.index("reference position [m]"):].split("\n")[1].split()[0])
             self.assertEqual(worst, int(residual.argmax()))
+
+    def test_crack_of_the_notched_plate_runs_to_the_load(self):
+        run = self.completed(CASES / "three_point_bending/notched.toml")
+        pull = abs(run.column("reaction_y:load"))
+        self.assertTrue(0 < pull.argmax() < len(pull) - 1)  # the curve has its peak inside
+        self.assertLess(pull[-1], 0.1 * pull.max())
+        with h5py.File(run.folder / "results.h5") as file:
+            reference = file["points/reference"][:]
+        middle = numpy.array([reference[[int(row["first_point"]), int(row["second_point"])]].mean(axis=0)
+                              for row in run.table("broken_bonds")])  # fmt: skip
+        path = middle[abs(middle[:, 0]) < 10 * 1.2e-3]
+        # from the notch's tip at 18 mm to within the horizon of the loaded edge at 60 mm, without a gap
+        heights = numpy.concatenate([[18e-3], numpy.sort(path[:, 1]), [60e-3]])
+        self.assertLess(numpy.diff(heights).max(), 3.015 * 1.2e-3 + 1e-12)
+
+    def test_a_stand_in_carries_the_body_to_the_onset(self):
+        # the four holes on a coarser lattice, with half their horizon until damage begins
+        run = self.completed(CASES / "four_holes/tension.toml", "lattice.spacing=2e-3",
+                             "lattice.horizon_ratio=4.015", "solver.elastic_horizon_ratio=2.015")  # fmt: skip
+        handed = [row for row in run.table("decisions") if row["action"] == "hand over to relaxation"]
+        self.assertIn("stand-in", handed[0]["reason"])
+        self.assertNotIn("stand-in", "".join(row["reason"] for row in handed[1:]))
+        modes = [row["mode"] for row in run.history]
+        first = modes.index("relaxation")
+        self.assertGreater(first, 0)
+        self.assertEqual(run.history[first - 1]["broken_bonds"], 0)
+        self.assertGreater(run.summary["broken_bonds"], 0)
+        # The body's ledger begins with what it stores; relaxation's closes to round-off, and an
+        # implicit step's error falls with the cube of its strain, 1e-2 at most.
+        self.assertLess(abs(run.history[first]["balance_error"]), 1e-3 * run.history[first]["external_work"])
 
     # ---- equilibrium and decisions ----------------------------------------------------------------
 
