@@ -114,6 +114,9 @@ void Assembler::restore(std::span<const double> history) {
 void Assembler::tangent(std::span<const double> displacement, Tangent& tangent, double projection) {
   const Stopwatch watch(seconds_);
   const int dimension = points().dimension;
+  for (std::size_t k = 0; k < displacement.size(); ++k) {
+    tangent.position[k] = points().reference[k] + displacement[k];
+  }
   dispatch(dimension, workspace_->potential, [&](auto d, const auto& law) {
     BondKernels<decltype(d)::value>::tangent(*workspace_, law, displacement, projection, tangent);
   });

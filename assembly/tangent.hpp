@@ -3,25 +3,23 @@
 #include <span>
 #include <vector>
 
-#include "assembly/pattern.hpp"
+#include "assembly/tangent_operator.hpp"
 
 namespace peristat {
 
-/// Tangent K = d2E/dx2 [N/m] of the stored energy over all degrees of freedom: the symmetric half,
-/// in dimension x dimension blocks (row major). Block (j, i) is the transpose of block (i, j).
-struct Tangent {
-  Tangent(const Pattern& of, int dimension_of_points);
+/// Tangent whose blocks are stored: the symmetric half.
+struct Tangent : TangentOperator {
+  Tangent(const Pattern& of, int dimension_of_points, int threads = 1);
 
-  Pattern pattern;
-  int dimension;
-  std::vector<double> diagonal;  ///< points x d x d
   std::vector<double>
       off_diagonal;  ///< bonds x d x d, block (i, partner) in the order of the bonds
 
-  [[nodiscard]] Offset dofs() const { return Offset(pattern.points()) * dimension; }
-
-  /// result = K v; both have one entry per degree of freedom and must not overlap.
-  void multiply(std::span<const double> v, std::span<double> result) const;
+  void linearise(Assembler& assembler, std::span<const double> displacement,
+                 double projection) override;
+  void multiply(std::span<const double> v, std::span<double> result) const override;
+  void for_each_row(const RowVisitor& visit) const override;
+  [[nodiscard]] const Tangent* stored() const override { return this; }
+  [[nodiscard]] Tangent* stored() override { return this; }
 
   /// Sums of the absolute entries of each row, sum_j |K_ij| [N/m]: Gershgorin's bound of the
   /// largest eigenvalue, per degree of freedom.

@@ -29,7 +29,7 @@ Outcome outcome_of(LinearOutcome linear) {
 /// Linear systems of the iterations, with room for their vectors.
 class Linearisation {
  public:
-  Linearisation(const EquilibriumProblem& problem, LinearSolver& solver, Tangent& tangent,
+  Linearisation(const EquilibriumProblem& problem, LinearSolver& solver, TangentOperator& tangent,
                 std::span<const double> external_force)
       : problem_(problem),
         solver_(solver),
@@ -44,8 +44,10 @@ class Linearisation {
   /// may
   ///        follow at the same state
   /// @param jump of the prescribed displacements; empty for none
+  /// @param tolerance of the linear system's relative residual
   [[nodiscard]] LinearOutcome solve(const Trial& at, double projection, FactorUse use,
-                                    std::span<const double> jump, std::span<double> direction) {
+                                    std::span<const double> jump, double tolerance,
+                                    std::span<double> direction) {
     assemble(at, projection);
     if (!jump.empty()) tangent_.multiply(jump, force_of_jump_);
     for (std::size_t e = 0; e < right_hand_side_.size(); ++e) {
@@ -54,15 +56,18 @@ class Linearisation {
       if (!jump.empty()) right_hand_side_[e] -= force_of_jump_[dof];
     }
     LinearOutcome outcome = solver_.factorize(tangent_, use);
-    if (outcome == LinearOutcome::solved) outcome = solver_.solve(right_hand_side_, solution_);
+    if (outcome == LinearOutcome::solved) {
+      outcome = solver_.solve(right_hand_side_, solution_, tolerance);
+    }
     problem_.free.extend_by_zero(solution_, direction);
     return outcome;
   }
 
  private:
   void assemble(const Trial& at, double projection) {
-    if (projection == 0.0 || !exact_is_known_) {
-      problem_.assembler.tangent(at.displacement, tangent_, projection);
+    Tangent* const stored = tangent_.stored();
+    if (projection == 0.0 || !exact_is_known_ || !stored) {
+      tangent_.linearise(problem_.assembler, at.displacement, projection);
       exact_is_known_ = projection == 0.0;
       to_projected_.reset();
       projection_ = projection;
@@ -70,25 +75,36 @@ class Linearisation {
     }
     // Linear in the share: the projection of every interaction, which is what costs, is done once.
     if (!to_projected_) {
-      to_projected_.emplace(tangent_.pattern, tangent_.dimension);
+      to_projected_.emplace(stored->pattern, stored->dimension, stored->threads());
       problem_.assembler.tangent(at.displacement, *to_projected_, 1.0);
-      add_scaled(to_projected_->diagonal, -1.0, tangent_.diagonal);
-      add_scaled(to_projected_->off_diagonal, -1.0, tangent_.off_diagonal);
+      add_scaled(to_projected_->diagonal, -1.0, stored->diagonal);
+      add_scaled(to_projected_->off_diagonal, -1.0, stored->off_diagonal);
     }
-    add_scaled(tangent_.diagonal, projection - projection_, to_projected_->diagonal);
-    add_scaled(tangent_.off_diagonal, projection - projection_, to_projected_->off_diagonal);
+    add_scaled(stored->diagonal, projection - projection_, to_projected_->diagonal);
+    add_scaled(stored->off_diagonal, projection - projection_, to_projected_->off_diagonal);
     projection_ = projection;
   }
 
   const EquilibriumProblem& problem_;
   LinearSolver& solver_;
-  Tangent& tangent_;
+  TangentOperator& tangent_;
   std::optional<Tangent> to_projected_;  // projected minus exact, of the present state
   double projection_ = 0.0;
   bool exact_is_known_ = false;
   std::span<const double> external_force_;
   std::vector<double> right_hand_side_, solution_, force_of_jump_;
 };
+
+/// Relative residual to which a linear system is solved (choice 2 of Eisenstat and Walker, SIAM J.
+/// Sci. Comput. 17, 1996, with exponent 2, for which Newton stays quadratic): the square of the
+/// last iteration's gain, but no more digits than the target needs.
+/// @param last that of the iteration before, 0 in the first one
+double forcing_term(double residual, double last, double target) {
+  constexpr double largest = 1e-3, share_of_target = 0.1;
+  const double gain = last > 0.0 ? residual / last : 1.0;
+  const double enough = residual > 0.0 ? share_of_target * target / residual : largest;
+  return std::min(largest, std::max(gain * gain, enough));
+}
 
 /// Negative pivots for the history.
 std::int64_t told_negative_pivots(LinearOutcome linear, const std::optional<Inertia>& inertia) {
@@ -104,9 +120,9 @@ bool projection_may_help(Outcome outcome) {
 
 }  // namespace
 
-NewtonResult newton(const EquilibriumProblem& problem, LinearSolver& solver, Tangent& tangent,
-                    const State& from, double load_factor, const NewtonOptions& options,
-                    const IterationObserver& observer) {
+NewtonResult newton(const EquilibriumProblem& problem, LinearSolver& solver,
+                    TangentOperator& tangent, const State& from, double load_factor,
+                    const NewtonOptions& options, const IterationObserver& observer) {
   const std::size_t dofs = from.displacement.size();
   NewtonResult result;
   result.external_force.resize(dofs);
@@ -149,10 +165,13 @@ NewtonResult newton(const EquilibriumProblem& problem, LinearSolver& solver, Tan
   Linearisation linearisation(problem, solver, tangent, external_force);
   std::vector<double> direction(dofs);
   std::optional<Inertia> start_inertia;
-  double last_projection = 0.0;
+  double last_projection = 0.0, last_residual = 0.0;
   for (int iteration = 1; iteration <= options.max_iterations; ++iteration) {
     const bool is_predictor = iteration == 1 && options.predictor == Predictor::consistent;
     const Trial& linearised_at = is_predictor ? old_state : current;
+    const double forcing =
+        forcing_term(current.residual_norm, last_residual, options.relative_tolerance * scale);
+    last_residual = current.residual_norm;
     IterationRecord row;
     row.iteration = iteration;
     // Those of the old state tell whether it is stable; on the way counting would cost more than
@@ -166,7 +185,8 @@ NewtonResult newton(const EquilibriumProblem& problem, LinearSolver& solver, Tan
                                 : FactorUse::may_reuse;
       const LinearOutcome linear = linearisation.solve(
           linearised_at, projection, use,
-          is_predictor ? std::span<const double>(jump) : std::span<const double>(), direction);
+          is_predictor ? std::span<const double>(jump) : std::span<const double>(), forcing,
+          direction);
       if (exact) {
         result.inertia = solver.inertia();
         row.negative_pivots = told_negative_pivots(linear, result.inertia);

@@ -64,6 +64,8 @@ using IterationObserver = std::function<bool(const IterationRecord&)>;
 /// so that it already spreads the jump du_p of the prescribed displacements over the body; all
 /// later ones are K_ff du_f = f_ext - dE/dx_f(u). Each is followed by an energy line search.
 ///
+/// Linear systems are solved as exactly as the present residual deserves.
+///
 /// The exact tangent always comes first, so that convergence is quadratic. Where it has negative
 /// pivots, or its direction does not lower the energy, every interaction's Hessian is moved towards
 /// its positive semidefinite part, by as small a share as gives positive pivots: a full projection
@@ -77,7 +79,7 @@ using IterationObserver = std::function<bool(const IterationRecord&)>;
 /// of
 /// ||f_ext||, the reactions' norm in the old state, and the residual of iteration 0.
 [[nodiscard]] NewtonResult newton(const EquilibriumProblem& problem, LinearSolver& solver,
-                                  Tangent& tangent, const State& from, double load_factor,
+                                  TangentOperator& tangent, const State& from, double load_factor,
                                   const NewtonOptions& options, const IterationObserver& observer);
 
 }  // namespace peristat

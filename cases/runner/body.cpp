@@ -98,7 +98,8 @@ void require_memory_for_lattice(const Case& from, const Lattice& lattice) {
       estimate_memory(from.dimension, size, from.horizon_ratio, bonds, points * from.dimension);
   // This estimate counts the bounding box: only what cannot fit even if half of it is cut away is
   // refused here; the points themselves tell the rest.
-  require_memory(0.5 * estimate.bytes, fmt::format("the case with up to {:.3g} points", points));
+  require_memory(0.5 * estimate.least_bytes(),
+                 fmt::format("the case with up to {:.3g} points", points));
 }
 
 /// Stores triangles and tetrahedra if they fit into half of what everything else leaves.
@@ -109,7 +110,7 @@ void store_interactions(Body& body, int threads) {
   };
   InteractionStorage& storage = body.interaction_storage;
   for_each_term([&](const auto& term) { storage.needed += term.stored_bytes(); });
-  storage.room = std::max(0.5 * (available_memory() - estimate_memory(body).bytes), 0.0);
+  storage.room = std::max(0.5 * (available_memory() - estimate_memory(body).least_bytes()), 0.0);
   if (!storage.fits()) return;
   for_each_term([&](auto& term) { term.store(body.points, body.model.bonds, threads); });
 }
@@ -179,7 +180,7 @@ std::unique_ptr<const Body> make_body(const Case& from, int threads) {
         body.points.count() * bonds_per_point(from.dimension, body.horizon_ratio());
     require_memory(estimate_memory(from.dimension, size_of(body.points), body.horizon_ratio(),
                                    expected_bonds, double(body.points.reference.size()))
-                       .bytes,
+                       .least_bytes(),
                    "the case with " + std::to_string(body.points.count()) + " points");
     {
       const Stopwatch watch(body.seconds_neighbourhood);
@@ -233,7 +234,7 @@ MemoryEstimate estimate_memory(const Body& body) {
                       double(body.model.bonds.count()), double(free));
   const auto add_stored = [&](const auto& term) {
     if (term && term->interactions.is_stored()) {
-      estimate.bytes += term->interactions.stored_bytes();
+      estimate.body_bytes += term->interactions.stored_bytes();
     }
   };
   add_stored(body.model.triangles);

@@ -366,7 +366,9 @@ LoadingSpecification read_loading(const TomlTable& table) {
 SolverSpecification read_solver(const TomlTable& table) {
   SolverSpecification solver;
   solver.mode = table.choice("mode", modes, solver.mode);
-  solver.linear = table.one_of("linear", {"auto", "cholesky"}, solver.linear);
+  solver.linear = table.choice("linear", linear_methods, solver.linear);
+  solver.preconditioner =
+      table.choice("preconditioner", preconditioner_kinds, solver.preconditioner);
   solver.predictor = table.choice("predictor", predictors, solver.predictor);
   solver.projection = table.choice("projection", projections, solver.projection);
   solver.relative_tolerance =

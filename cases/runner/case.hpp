@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "cases/runner/case_location.hpp"
+#include "solvers/linear/make_linear_solver.hpp"
 #include "solvers/load_stepping.hpp"
 #include "src/conditions/specification.hpp"
 #include "src/input_error.hpp"
@@ -70,7 +71,8 @@ struct LoadingSpecification {
 
 struct SolverSpecification {
   Mode mode = Mode::newton;
-  std::string linear = "auto";
+  LinearMethod linear = LinearMethod::automatic;
+  PreconditionerKind preconditioner = PreconditionerKind::automatic;
   Projection projection = Projection::automatic;
   Predictor predictor = Predictor::consistent;
   double relative_tolerance = 1e-10;

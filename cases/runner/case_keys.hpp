@@ -36,6 +36,17 @@ inline const Choices<Calibration> calibrations{{"lattice", Calibration::lattice}
                                                {"continuum", Calibration::continuum}};
 inline const Choices<Projection> projections{
     {"auto", Projection::automatic}, {"never", Projection::never}, {"always", Projection::always}};
+inline const Choices<LinearMethod> linear_methods{{"auto", LinearMethod::automatic},
+                                                  {"cholesky", LinearMethod::cholesky},
+                                                  {"pcg", LinearMethod::conjugate_gradients}};
+
+inline const Choices<PreconditionerKind> preconditioner_kinds{
+    {"auto", PreconditionerKind::automatic},
+    {"jacobi", PreconditionerKind::jacobi},
+    {"block_jacobi", PreconditionerKind::block_jacobi},
+    {"rigid_pieces", PreconditionerKind::rigid_pieces},
+    {"surrogate", PreconditionerKind::surrogate}};
+
 inline const Choices<Predictor> predictors{{"consistent", Predictor::consistent},
                                            {"none", Predictor::none}};
 inline const Choices<DamageLaw> damage_laws{{"none", DamageLaw::none},

@@ -239,7 +239,8 @@ std::string resolved_text(const Case& from) {
 
   out.header("solver");
   out.string("mode", choice_name(modes, from.solver.mode));
-  out.string("linear", from.solver.linear);
+  out.string("linear", choice_name(linear_methods, from.solver.linear));
+  out.string("preconditioner", choice_name(preconditioner_kinds, from.solver.preconditioner));
   out.string("predictor", choice_name(predictors, from.solver.predictor));
   out.string("projection", choice_name(projections, from.solver.projection));
   out.number("relative_tolerance", from.solver.relative_tolerance);

@@ -6,15 +6,11 @@
 
 #include "cases/runner/body.hpp"
 #include "cases/runner/cpd_model.hpp"
-#include "solvers/linear/cholesky.hpp"
+#include "cases/runner/solver_options.hpp"
+#include "solvers/linear/make_linear_solver.hpp"
 
 namespace peristat {
 namespace {
-
-/// Speed of factorisation that the time estimate assumes [flop/s per thread], and the Newton
-/// iterations and factorisations of a load step.
-constexpr double assumed_speed = 2.5e10;
-constexpr double assumed_factorisations_per_step = 1.0;
 
 struct NeighbourCounts {
   Index least = 0, most = 0, isolated = 0;
@@ -105,22 +101,20 @@ Exit check(const Case& from, int threads) {
     fmt::print("isolated    {} points have no neighbour\n", neighbours.isolated);
   }
 
-  MemoryEstimate estimate = estimate_memory(body);
-  require_memory(estimate.bytes, fmt::format("the case with {} points", points.count()));
+  const MemoryEstimate estimate = estimate_memory(body);
   const FreeDofs free(prescribed, points.dimension);
   const Pattern pattern(body.model.bonds);
-  Cholesky solver;
-  if (solver.analyze(pattern, free) == LinearOutcome::solved) {
-    estimate = with_factor(estimate, solver.estimate().entries);
-    estimate.factor_flops = solver.estimate().flops;
-    fmt::print("solver      {}\n", solver.describe());
+  const ChosenSolver chosen =
+      make_linear_solver(linear_solver_options(from), linear_problem(from, estimate), {});
+  require_memory(estimate.bytes(chosen.is_direct),
+                 fmt::format("the case with {} points", points.count()));
+  if (chosen.solver->analyze(pattern, free) == LinearOutcome::solved) {
+    fmt::print("solver      {} ({})\n", chosen.solver->describe(), chosen.reason);
   }
-  const double factorisations = assumed_factorisations_per_step * from.loading.steps;
-  fmt::print("memory      about {} of {} available\n", bytes_text(estimate.bytes),
+  fmt::print("memory      about {} of {} available\n", bytes_text(estimate.bytes(chosen.is_direct)),
              bytes_text(available_memory()));
   fmt::print("time        {} for {} load steps, if none has to be cut\n",
-             seconds_text(factorisations * estimate.factor_flops / (assumed_speed * threads)),
-             from.loading.steps);
+             seconds_text(chosen.seconds * from.loading.steps / threads), from.loading.steps);
   refuse_free_motions(from, body);
   return Exit::done;
 }

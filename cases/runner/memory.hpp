@@ -15,9 +15,18 @@ class MemoryError : public std::runtime_error {
 /// What a run needs, estimated from counts alone.
 struct MemoryEstimate {
   double points = 0.0, bonds = 0.0, free_dofs = 0.0;
-  double factor_entries = 0.0;  ///< of the Cholesky factor
-  double factor_flops = 0.0;    ///< of one factorisation
-  double bytes = 0.0;           ///< of the whole run
+  double factor_entries = 0.0;   ///< of the Cholesky factor
+  double factor_flops = 0.0;     ///< of one factorisation
+  double body_bytes = 0.0;       ///< of the run without its linear solver
+  double matrix_bytes = 0.0;     ///< of a direct solver without its factor
+  double iterative_bytes = 0.0;  ///< of conjugate gradients with rigid pieces
+
+  [[nodiscard]] double direct_bytes() const;
+  /// Of the whole run, by the solver that takes least, or by a direct or an iterative one.
+  [[nodiscard]] double least_bytes() const;
+  [[nodiscard]] double bytes(bool is_direct) const {
+    return body_bytes + (is_direct ? direct_bytes() : iterative_bytes);
+  }
 };
 
 /// Extent of a body in points: how many, and along its longest direction.
@@ -29,14 +38,11 @@ struct BodySize {
 /// Bonds of a point, each counted at one of its ends: half the volume of the horizon in cells.
 [[nodiscard]] double bonds_per_point(int dimension, double horizon_ratio);
 
-/// Estimate for a body solved by Cholesky. The factor's size is the smaller of what nested
-/// dissection and what the natural order along the longest direction leave; their constants are
-/// fitted to the measured table in docs/performance.md and hold within a factor of 1.5.
+/// The factor's size is the smaller of what nested dissection and what the natural order along the
+/// longest direction leave; their constants are fitted to the measured table in
+/// docs/performance.md and hold within a factor of 1.5.
 [[nodiscard]] MemoryEstimate estimate_memory(int dimension, const BodySize& size,
                                              double horizon_ratio, double bonds, double free_dofs);
-
-/// The estimate once the factor's size is known.
-[[nodiscard]] MemoryEstimate with_factor(MemoryEstimate estimate, double factor_entries);
 
 /// Memory that this process may still take [bytes]: what the system calls available, limited by the
 /// control group and by the limit of the address space.

@@ -182,7 +182,12 @@ LoadSteppingResult follow_with_stand_in(const Case& from, const Body& body,
   const Pattern pattern(stand_in.bonds);
   Assembler assembler(body.points, stand_in, solved.assembler.threads());
   Tangent tangent(pattern, from.dimension);
-  Cholesky solver;
+  const MemoryEstimate estimate =
+      estimate_memory(from.dimension, size_of(body.points), from.solver.elastic_horizon_ratio,
+                      double(stand_in.bonds.count()), double(free.count()));
+  const ChosenSolver chosen =
+      make_linear_solver(linear_solver_options(from), linear_problem(from, estimate), {});
+  LinearSolver& solver = *chosen.solver;
   if (solver.analyze(pattern, free) != LinearOutcome::solved) {
     LoadSteppingResult result;
     result.outcome = Outcome::out_of_memory;
@@ -237,8 +242,26 @@ Exit run(const Case& from, const RunOptions& options) {
   const std::unique_ptr<const Body> made = make_body(from, options.threads);
   const Body& body = *made;
   refuse_free_motions(from, body);
+  std::optional<Results> results;
+  std::vector<DecisionRecord> decisions;
+  const auto decide = [&](const DecisionRecord& record) {
+    decisions.push_back(record);
+    results->add(record);
+    progress.decision(record);
+  };
+  StepRecord last_step;
   const MemoryEstimate estimate = estimate_memory(body);
-  require_memory(estimate.bytes, fmt::format("the case with {} points", body.points.count()));
+  const ChosenSolver chosen = make_linear_solver(
+      linear_solver_options(from), linear_problem(from, estimate), [&](const std::string& reason) {
+        DecisionRecord record;
+        record.step = last_step.step + 1;
+        record.load_factor = last_step.load_factor;
+        record.action = "change linear solver";
+        record.reason = reason;
+        decide(record);
+      });
+  require_memory(estimate.bytes(chosen.is_direct),
+                 fmt::format("the case with {} points", body.points.count()));
   const FreeDofs free(body.conditions->prescribed(), from.dimension);
   progress.say(fmt::format("{} points, {} bonds, {} free degrees of freedom, {} threads",
                            body.points.count(), body.model.bonds.count(), free.count(),
@@ -247,7 +270,6 @@ Exit run(const Case& from, const RunOptions& options) {
 
   std::vector<ProbeColumns> probes;
   for (const auto& probe : from.probes) probes.push_back(columns_of(probe, from.dimension));
-  std::optional<Results> results;
   try {
     results.emplace(from.output.directory, body.points,
                     CaseText{from.as_read, from.as_resolved, from.title, versions()},
@@ -259,25 +281,18 @@ Exit run(const Case& from, const RunOptions& options) {
 
   const Pattern pattern(body.model.bonds);
   Assembler assembler(body.points, body.model, options.threads);
-  Tangent tangent(pattern, from.dimension);
-  Cholesky solver;
+  Tangent tangent(pattern, from.dimension, options.threads);
+  LinearSolver& solver = *chosen.solver;
   const LinearOutcome analysis = solver.analyze(pattern, free);
-  require_memory(solver.estimate().bytes(), "the factor of the tangent");
-  progress.say(fmt::format(
-      "linear solver: {} ({})", solver.describe(),
-      from.solver.linear == "auto" ? "auto: the one solver of this version" : "as the case asks"));
+  progress.say(fmt::format("linear solver: {} ({})", solver.describe(), chosen.reason));
 
   Recorder recorder(from, body, assembler, *results, progress);
   LoadSteppingObserver observer;
   observer.iteration = [&](const IterationRecord& record) { recorder.iteration(record); };
-  std::vector<DecisionRecord> decisions;
-  observer.decision = [&](const DecisionRecord& record) {
-    decisions.push_back(record);
-    results->add(record);
-    progress.decision(record);
-  };
+  observer.decision = decide;
   observer.accepted = [&](const StepRecord& record, const AcceptedState& state) {
     recorder.accepted(record, state);
+    last_step = record;
   };
   observer.interrupted = [] { return interrupt_requested.load(); };
   interrupt_requested = false;

@@ -2,6 +2,23 @@
 
 namespace peristat {
 
+LinearSolverOptions linear_solver_options(const Case& from) {
+  LinearSolverOptions options;
+  options.method = from.solver.linear;
+  options.preconditioner = from.solver.preconditioner;
+  return options;
+}
+
+LinearProblem linear_problem(const Case& from, const MemoryEstimate& estimate) {
+  LinearProblem problem;
+  problem.bonds = estimate.bonds;
+  problem.factor_flops = estimate.factor_flops;
+  problem.factor_bytes = estimate.direct_bytes();
+  problem.available_bytes = available_memory() - estimate.body_bytes;
+  problem.may_soften = from.material.damage.law != DamageLaw::none;
+  return problem;
+}
+
 LoadSteppingOptions load_stepping_options(const Case& from) {
   LoadSteppingOptions options;
   options.mode = from.solver.mode;

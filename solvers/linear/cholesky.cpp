@@ -5,9 +5,11 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <stdexcept>
 
 #include <suitesparse/cholmod.h>
 
+#include "assembly/tangent.hpp"
 #include "solvers/linear/conjugate_gradients.hpp"
 #include "solvers/vector_verbs.hpp"
 #include "src/stopwatch.hpp"
@@ -352,10 +354,11 @@ LinearOutcome Cholesky::analyze(const Pattern& pattern, const FreeDofs& free) {
 
 void Cholesky::count_pivots(bool counts) { cholmod_->counts_pivots = counts; }
 
-LinearOutcome Cholesky::factorize(const Tangent& tangent, FactorUse use) {
+LinearOutcome Cholesky::factorize(const TangentOperator& tangent, FactorUse use) {
   Cholmod& c = *cholmod_;
   const Stopwatch watch(c.statistics.seconds);
-  c.tangent = &tangent;
+  c.tangent = tangent.stored();
+  if (!c.tangent) throw std::logic_error("a direct solver needs a stored tangent");
   c.factor_current = false;
   if (c.free->count() == 0) return LinearOutcome::solved;
   if (use == FactorUse::may_reuse && c.factor_valid && c.affordable_iterations() > 0) {
@@ -364,7 +367,7 @@ LinearOutcome Cholesky::factorize(const Tangent& tangent, FactorUse use) {
   return c.factorize();
 }
 
-LinearOutcome Cholesky::solve(std::span<const double> b, std::span<double> x) {
+LinearOutcome Cholesky::solve(std::span<const double> b, std::span<double> x, double tolerance) {
   Cholmod& c = *cholmod_;
   const Stopwatch watch(c.statistics.seconds);
   c.last_iterations = 0;
@@ -373,7 +376,7 @@ LinearOutcome Cholesky::solve(std::span<const double> b, std::span<double> x) {
   const GradientsResult result = c.gradients.solve(
       [&](std::span<const double> v, std::span<double> product) { c.multiply(v, product); },
       [&](std::span<const double> v, std::span<double> product) { c.apply_factor(v, product); }, b,
-      x, c.reuse.tolerance, c.affordable_iterations());
+      x, std::min(tolerance, c.reuse.tolerance), c.affordable_iterations());
   c.statistics.iterations += result.iterations;
   if (result.outcome != GradientsOutcome::converged) return c.solve_directly(b, x);
   c.last_iterations = result.iterations;

@@ -19,7 +19,7 @@ struct FactorReuse {
   /// Of conjugate gradients per solve; 0 factorises every tangent. The actual limit is lower where
   /// so many iterations would cost more than half a factorisation.
   int max_iterations = 12;
-  double tolerance = 1e-12;  ///< relative residual of those solves
+  double tolerance = 1e-12;  ///< relative residual of those solves, whatever would suffice
 };
 
 /// Direct solver: CHOLMOD's supernodal LL^T with 64-bit indices, analysed once per pattern.
@@ -41,8 +41,9 @@ class Cholesky : public LinearSolver {
 
   LinearOutcome analyze(const Pattern& pattern, const FreeDofs& free) override;
   void count_pivots(bool counts) override;
-  LinearOutcome factorize(const Tangent& tangent, FactorUse use) override;
-  LinearOutcome solve(std::span<const double> b, std::span<double> x) override;
+  /// @throws std::logic_error for a tangent without stored blocks
+  LinearOutcome factorize(const TangentOperator& tangent, FactorUse use) override;
+  LinearOutcome solve(std::span<const double> b, std::span<double> x, double tolerance) override;
   [[nodiscard]] std::optional<Inertia> inertia() const override;
   [[nodiscard]] LinearStatistics statistics() const override;
   [[nodiscard]] int last_iterations() const override;

@@ -5,7 +5,7 @@
 #include <span>
 #include <string>
 
-#include "assembly/tangent.hpp"
+#include "assembly/tangent_operator.hpp"
 #include "solvers/linear/free_dofs.hpp"
 
 namespace peristat {
@@ -48,14 +48,17 @@ class LinearSolver {
   [[nodiscard]] virtual LinearOutcome analyze(const Pattern& pattern, const FreeDofs& free) = 0;
 
   /// Takes a new tangent, which must live until the last solve with it.
-  [[nodiscard]] virtual LinearOutcome factorize(const Tangent& tangent, FactorUse use) = 0;
+  [[nodiscard]] virtual LinearOutcome factorize(const TangentOperator& tangent, FactorUse use) = 0;
 
   /// Whether a tangent that is not positive definite has its pivots' signs counted, where that is
   /// affordable: it costs far more than finding out. Otherwise such a tangent may be singular, too.
   virtual void count_pivots(bool counts) = 0;
 
   /// x and b have one entry per equation.
-  [[nodiscard]] virtual LinearOutcome solve(std::span<const double> b, std::span<double> x) = 0;
+  /// @param tolerance of the relative residual ||b - K_ff x|| / ||b||; direct solvers reach what
+  ///        they can and only fail where that is gross
+  [[nodiscard]] virtual LinearOutcome solve(std::span<const double> b, std::span<double> x,
+                                            double tolerance) = 0;
 
   /// Signs of the pivots of the last factorised tangent, if they are known.
   [[nodiscard]] virtual std::optional<Inertia> inertia() const = 0;

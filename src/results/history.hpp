@@ -56,7 +56,7 @@ struct DecisionRecord {
   double increment = 0.0;    ///< of the load factor that was attempted
   std::string outcome;       ///< name of the equilibrium search's outcome
   /// "accept", "accept and grow", "cut", "stop", "hand over to relaxation", "hand back to newton",
-  /// "hold fragments", "remove fragments"
+  /// "hold fragments", "remove fragments", "change linear solver"
   std::string action;
   double next_increment = 0.0;
   std::string reason;

@@ -638,7 +638,7 @@ TEST_F(CaseOverride, ReplacesAndAddsKeys) {
                                     {"probe[1]", "{ name = \"all\", set = \"left\" }"}});
   EXPECT_EQ(std::get<Lattice>(changed.body).spacing, 0.05);
   EXPECT_EQ(changed.loading.steps, 50);
-  EXPECT_EQ(changed.solver.linear, "cholesky");
+  EXPECT_EQ(changed.solver.linear, LinearMethod::cholesky);
   EXPECT_EQ(changed.surface_correction, SurfaceCorrection::energy);
   EXPECT_EQ(changed.supports[0].displacement[0], "1");
   EXPECT_FALSE(changed.supports[0].displacement[1]);

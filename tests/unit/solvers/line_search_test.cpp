@@ -44,7 +44,7 @@ struct Search {
         full(problem.body.dofs());
     for (std::size_t k = 0; k < full.size(); ++k) full[k] = external_force[k] - from.gradient[k];
     problem.free.restrict_to_free(full, residual);
-    EXPECT_EQ(solver.solve(residual, solution), LinearOutcome::solved);
+    EXPECT_EQ(solver.solve(residual, solution, 1e-12), LinearOutcome::solved);
     problem.free.extend_by_zero(solution, direction);
   }
 

@@ -62,7 +62,7 @@ struct System {
 
   LinearOutcome solve(LinearSolver& solver, FactorUse use = FactorUse::factorize_now) {
     LinearOutcome outcome = solver.factorize(tangent, use);
-    if (outcome == LinearOutcome::solved) outcome = solver.solve(b, x);
+    if (outcome == LinearOutcome::solved) outcome = solver.solve(b, x, 1e-12);
     return outcome;
   }
 };

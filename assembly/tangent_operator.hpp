@@ -1,0 +1,49 @@
+#pragma once
+
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "assembly/pattern.hpp"
+
+namespace peristat {
+
+class Assembler;
+struct Tangent;
+
+/// Tangent K = d2E/dx2 [N/m] of the stored energy over all degrees of freedom, as solvers see it:
+/// they multiply by it, and read its blocks (i, j), i <= j, each dimension x dimension, row major;
+/// block (j, i) is the transpose of block (i, j).
+struct TangentOperator {
+  /// Called with the off-diagonal blocks (i, partner) of row i, in the order of its bonds.
+  using RowVisitor = std::function<void(int thread, Index i, std::span<const double> blocks)>;
+
+  TangentOperator(const Pattern& of, int dimension_of_points, int threads);
+  virtual ~TangentOperator() = default;
+
+  Pattern pattern;
+  int dimension;
+  std::vector<RowRange> ranges;  ///< rows of each thread
+  std::vector<double> diagonal;  ///< points x d x d
+  std::vector<double> position;  ///< current, where K is linearised; points x d [m]
+
+  [[nodiscard]] Offset dofs() const { return Offset(pattern.points()) * dimension; }
+  [[nodiscard]] int threads() const { return static_cast<int>(ranges.size()); }
+
+  /// Makes this the tangent at a displacement [m].
+  /// @param projection see Assembler::tangent
+  virtual void linearise(Assembler& assembler, std::span<const double> displacement,
+                         double projection) = 0;
+
+  /// result = K v; both have one entry per degree of freedom and must not overlap.
+  virtual void multiply(std::span<const double> v, std::span<double> result) const = 0;
+
+  /// Visits all rows, those of a thread in ascending order and the threads side by side.
+  virtual void for_each_row(const RowVisitor& visit) const = 0;
+
+  /// Itself with its stored blocks, or nothing if they are computed anew each time.
+  [[nodiscard]] virtual const Tangent* stored() const { return nullptr; }
+  [[nodiscard]] virtual Tangent* stored() { return nullptr; }
+};
+
+}  // namespace peristat

@@ -1,0 +1,116 @@
+#include "solvers/linear/make_linear_solver.hpp"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "solvers/linear/block_jacobi.hpp"
+#include "solvers/linear/cholesky.hpp"
+#include "solvers/linear/iterative_solver.hpp"
+#include "solvers/linear/rigid_pieces.hpp"
+#include "solvers/linear/surrogate.hpp"
+
+namespace peristat {
+namespace {
+
+/// Speeds of a plain machine on one thread, as in benchmarks/RESULTS.md: of factorisations [flop/s]
+/// and of products [bonds/s].
+constexpr double factorisation_speed = 3e10, product_speed = 1.5e8;
+
+/// Products that a load step takes by conjugate gradients with rigid pieces: some four solves of
+/// 15 iterations, and builds of the preconditioner, each worth 30.
+constexpr double products_of_a_step = 120.0;
+
+/// Factorisations up to this are done whatever the alternative [flop], and up to the second for the
+/// sake of pivots.
+constexpr double small_factorisation = 3e9, affordable_factorisation = 2e10;
+
+/// Iterations in one solve that no choice of the user's own should exceed.
+constexpr int most_iterations = 20'000;
+
+std::unique_ptr<Preconditioner> make_preconditioner(PreconditionerKind kind) {
+  switch (kind) {
+    case PreconditionerKind::jacobi:
+      return std::make_unique<BlockJacobi>(BlockJacobi::Blocks::entries);
+    case PreconditionerKind::block_jacobi:
+      return std::make_unique<BlockJacobi>(BlockJacobi::Blocks::points);
+    case PreconditionerKind::surrogate:
+      return std::make_unique<Surrogate>();
+    case PreconditionerKind::rigid_pieces:
+    case PreconditionerKind::automatic:
+      break;
+  }
+  return std::make_unique<RigidPieces>();
+}
+
+std::unique_ptr<LinearSolver> make_iterative(PreconditionerKind kind, int max_iterations) {
+  return std::make_unique<IterativeSolver>(make_preconditioner(kind), max_iterations);
+}
+
+/// Estimated seconds of a load step.
+struct Seconds {
+  double direct, product, iterative;
+  explicit Seconds(const LinearProblem& problem)
+      : direct(problem.factor_flops / factorisation_speed),
+        product(problem.bonds / product_speed),
+        iterative(products_of_a_step * product) {}
+};
+
+ChosenSolver choose(const LinearProblem& problem, SolverLadder::Teller tell) {
+  const auto [direct, product, iterative] = Seconds(problem);
+  // A solve by iterations may take three times what factorising is estimated at.
+  const int patience =
+      static_cast<int>(std::clamp(3.0 * direct / std::max(product, 1e-9), 200.0, 2000.0));
+  const SolverLadder::Rung cholesky{"cholesky", [] { return std::make_unique<Cholesky>(); }};
+  const SolverLadder::Rung pieces{
+      "pcg with rigid_pieces",
+      [patience] { return make_iterative(PreconditionerKind::rigid_pieces, patience); }};
+  const SolverLadder::Rung surrogate{
+      "pcg with surrogate",
+      [patience] { return make_iterative(PreconditionerKind::surrogate, patience); }};
+  const SolverLadder::Rung patient{
+      "pcg with block_jacobi",
+      [] { return make_iterative(PreconditionerKind::block_jacobi, most_iterations); }};
+  const bool fits = problem.factor_bytes <= problem.available_bytes;
+  const bool is_small = problem.factor_flops <= small_factorisation;
+  const bool for_stability = problem.may_soften && problem.factor_flops <= affordable_factorisation;
+  std::vector<SolverLadder::Rung> rungs;
+  std::string reason;
+  const bool is_direct = fits && (is_small || for_stability || direct <= iterative);
+  if (is_direct) {
+    rungs = {cholesky, pieces, surrogate, patient};
+    reason =
+        is_small ? fmt::format("a factorisation of {:.2g} flops is small", problem.factor_flops)
+        : for_stability
+            ? std::string("its pivots tell whether the softening body is stable")
+            : fmt::format("a factorisation is estimated at {:.2g} s, iterations at {:.2g} s a step",
+                          direct, iterative);
+  } else {
+    rungs = {pieces, surrogate, fits ? cholesky : patient};
+    reason = fits ? fmt::format(
+                        "a factorisation is estimated at {:.2g} s, iterations at {:.2g} s a step",
+                        direct, iterative)
+                  : fmt::format("a factor would need about {:.2g} GB of {:.2g} GB available",
+                                problem.factor_bytes / 1e9, problem.available_bytes / 1e9);
+  }
+  return {std::make_unique<SolverLadder>(std::move(rungs), std::move(tell)), is_direct,
+          is_direct ? direct : iterative, fmt::format("auto: {}", reason)};
+}
+
+}  // namespace
+
+ChosenSolver make_linear_solver(const LinearSolverOptions& options, const LinearProblem& problem,
+                                SolverLadder::Teller tell) {
+  switch (options.method) {
+    case LinearMethod::cholesky:
+      return {std::make_unique<Cholesky>(), true, Seconds(problem).direct, "as the case asks"};
+    case LinearMethod::conjugate_gradients:
+      return {make_iterative(options.preconditioner, most_iterations), false,
+              Seconds(problem).iterative, "as the case asks"};
+    case LinearMethod::automatic:
+      break;
+  }
+  return choose(problem, std::move(tell));
+}
+
+}  // namespace peristat

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "solvers/linear/linear_solver.hpp"
+#include "solvers/linear/solver_ladder.hpp"
+
+namespace peristat {
+
+enum class LinearMethod { automatic, cholesky, conjugate_gradients };
+
+enum class PreconditionerKind { automatic, jacobi, block_jacobi, rigid_pieces, surrogate };
+
+struct LinearSolverOptions {
+  LinearMethod method = LinearMethod::automatic;
+  PreconditionerKind preconditioner = PreconditionerKind::automatic;
+};
+
+/// What the choice of a solver goes by.
+struct LinearProblem {
+  double bonds = 0.0;         ///< blocks of the tangent
+  double factor_flops = 0.0;  ///< of one factorisation, as estimated from dimension, size and shape
+  double factor_bytes = 0.0;  ///< of the direct solver
+  double available_bytes = 0.0;
+  bool may_soften = false;  ///< bonds may lose their stiffness, so that stability is in question
+};
+
+/// A solver with the reason for its choice, in words.
+struct ChosenSolver {
+  std::unique_ptr<LinearSolver> solver;
+  bool is_direct = true;
+  double seconds = 0.0;  ///< estimated for the systems of a load step [s]
+  std::string reason;
+};
+
+/// Solver of a body's linear systems. `automatic` takes the direct solver where a factorisation is
+/// a matter of a tenth of a second, where pivots are to tell whether a softening body is stable and
+/// a factorisation takes less than a second, and where it is estimated to be faster; otherwise
+/// conjugate gradients with rigid pieces. Both give way to others when they fail (SolverLadder).
+/// @param tell of a ladder's falls; may be empty
+[[nodiscard]] ChosenSolver make_linear_solver(const LinearSolverOptions& options,
+                                              const LinearProblem& problem,
+                                              SolverLadder::Teller tell);
+
+}  // namespace peristat

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <span>
+#include <string>
+
+#include "assembly/tangent_operator.hpp"
+#include "solvers/linear/free_dofs.hpp"
+#include "solvers/linear/linear_solver.hpp"
+
+namespace peristat {
+
+/// Approximate inverse of K_ff, symmetric and positive definite.
+class Preconditioner {
+ public:
+  virtual ~Preconditioner() = default;
+
+  /// Once per pattern. The degrees of freedom outlive the preconditioner.
+  virtual void analyze(const Pattern& pattern, const FreeDofs& free) = 0;
+
+  /// Takes up the numbers of a tangent, which need not live on.
+  /// @return solved; not_positive_definite or singular where the tangent turns out to be so;
+  ///         inaccurate where only the preconditioner fails; out_of_memory
+  [[nodiscard]] virtual LinearOutcome build(const TangentOperator& tangent) = 0;
+
+  /// correction = M^-1 residual, one entry per equation each; they must not overlap.
+  virtual void apply(std::span<const double> residual, std::span<double> correction) = 0;
+
+  /// A few words for the log.
+  [[nodiscard]] virtual std::string describe() const = 0;
+};
+
+}  // namespace peristat

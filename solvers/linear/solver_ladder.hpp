@@ -1,0 +1,52 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "solvers/linear/linear_solver.hpp"
+
+namespace peristat {
+
+/// Solvers in the order in which they are tried. One that fails for a reason of its own (too many
+/// iterations, a preconditioner that cannot be built, memory) gives way to the next, for good, and
+/// the system is solved again; what a solver finds out about the tangent (negative curvature) is
+/// passed on.
+class SolverLadder : public LinearSolver {
+ public:
+  struct Rung {
+    std::string name;
+    std::function<std::unique_ptr<LinearSolver>()> make;
+  };
+  /// Told of every fall, in words.
+  using Teller = std::function<void(const std::string& reason)>;
+
+  SolverLadder(std::vector<Rung> rungs, Teller tell);
+
+  LinearOutcome analyze(const Pattern& pattern, const FreeDofs& free) override;
+  void count_pivots(bool counts) override;
+  LinearOutcome factorize(const TangentOperator& tangent, FactorUse use) override;
+  LinearOutcome solve(std::span<const double> b, std::span<double> x, double tolerance) override;
+  [[nodiscard]] std::optional<Inertia> inertia() const override;
+  [[nodiscard]] LinearStatistics statistics() const override;
+  [[nodiscard]] int last_iterations() const override;
+  [[nodiscard]] std::string describe() const override;
+
+ private:
+  /// Takes the next rung that can be analysed.
+  LinearOutcome climb_down(LinearOutcome why);
+  LinearOutcome stand_on(std::size_t rung);
+
+  std::vector<Rung> rungs_;
+  Teller tell_;
+  std::size_t rung_ = 0;
+  std::unique_ptr<LinearSolver> solver_;
+  std::optional<Pattern> pattern_;
+  const FreeDofs* free_ = nullptr;
+  const TangentOperator* tangent_ = nullptr;
+  LinearStatistics before_;  // of the rungs above
+  bool counts_pivots_ = true;
+};
+
+}  // namespace peristat

@@ -1,0 +1,206 @@
+#include "solvers/linear/surrogate.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include <fmt/format.h>
+
+#include "assembly/tangent.hpp"
+#include "solvers/linear/block_jacobi.hpp"
+#include "solvers/linear/cholesky.hpp"
+
+namespace peristat {
+namespace {
+
+/// Bonds up to this many distances of the nearest neighbours are short: on a lattice those to the
+/// face diagonals, sqrt(2) spacings long.
+constexpr double short_in_spacings = 1.5;
+
+/// Share of block Jacobi; anything between 0.3 and 1 gives nearly the same iterations.
+constexpr double share_of_jacobi = 0.5;
+
+/// A point whose springs hold less than this share of its own stiffness, because its short bonds
+/// are broken, is held in place by its diagonal block instead.
+constexpr double loose = 1e-3;
+
+}  // namespace
+
+struct Surrogate::StandIn {
+  const FreeDofs* free = nullptr;
+  BlockJacobi fine{BlockJacobi::Blocks::points};
+  Bonds short_bonds;
+  std::vector<char> is_short;  // per bond of the pattern; empty before the first tangent
+  std::unique_ptr<Tangent> springs;
+  Cholesky solver{FactorReuse{.max_iterations = 0}};
+  std::vector<double> correction;
+
+  static double squared_length(const TangentOperator& tangent, Index i, Index j) {
+    const int d = tangent.dimension;
+    double squared = 0.0;
+    for (int c = 0; c < d; ++c) {
+      const double x =
+          tangent.position[std::size_t(j) * d + c] - tangent.position[std::size_t(i) * d + c];
+      squared += x * x;
+    }
+    return squared;
+  }
+
+  /// Chooses the short bonds, in the configuration of the first tangent.
+  LinearOutcome choose_bonds(const TangentOperator& tangent) {
+    const Pattern& pattern = tangent.pattern;
+    const Index points = pattern.points();
+    // Spacing about a point: the mean distance of as many nearest neighbours as a lattice's point
+    // has at one spacing.
+    constexpr std::size_t most = 6;
+    const std::size_t nearest = 2 * std::size_t(tangent.dimension);
+    std::vector<std::array<double, most>> distances(points);
+    for (auto& list : distances) list.fill(std::numeric_limits<double>::infinity());
+    const auto for_each_bond = [&](const auto& visit) {
+      for (Index i = 0; i < points; ++i) {
+        for (Offset bond = pattern.offset[i]; bond < pattern.offset[i + 1]; ++bond) {
+          visit(i, pattern.partner[bond], bond);
+        }
+      }
+    };
+    const auto insert = [&](std::array<double, most>& list, double length) {
+      if (length >= list[nearest - 1]) return;
+      list[nearest - 1] = length;
+      std::sort(list.begin(), list.begin() + std::ptrdiff_t(nearest));
+    };
+    for_each_bond([&](Index i, Index j, Offset) {
+      const double length = std::sqrt(squared_length(tangent, i, j));
+      insert(distances[i], length);
+      insert(distances[j], length);
+    });
+    std::vector<double> spacing(points);
+    for (Index i = 0; i < points; ++i) {
+      double sum = 0.0;
+      std::size_t count = 0;
+      for (; count < nearest && std::isfinite(distances[i][count]); ++count) {
+        sum += distances[i][count];
+      }
+      spacing[i] = count > 0 ? sum / double(count) : 0.0;
+    }
+    is_short.assign(std::size_t(pattern.blocks()), 0);
+    short_bonds.offset.assign(std::size_t(points) + 1, 0);
+    for_each_bond([&](Index i, Index j, Offset bond) {
+      const double limit = short_in_spacings * std::max(spacing[i], spacing[j]);
+      if (squared_length(tangent, i, j) > limit * limit) return;
+      is_short[bond] = 1;
+      short_bonds.partner.push_back(j);
+      ++short_bonds.offset[i + 1];
+    });
+    for (Index i = 0; i < points; ++i) short_bonds.offset[i + 1] += short_bonds.offset[i];
+    springs = std::make_unique<Tangent>(Pattern(short_bonds), tangent.dimension, tangent.threads());
+    return solver.analyze(springs->pattern, *free);
+  }
+
+  void find_springs(const TangentOperator& tangent) {
+    const Pattern& pattern = tangent.pattern;
+    const int d = tangent.dimension, entries = d * d;
+    const auto count = std::size_t(tangent.threads());
+    std::vector<double> moment(count, 0.0), short_moment(count, 0.0);
+    tangent.for_each_row([&](int thread, Index i, std::span<const double> blocks) {
+      Offset spring = short_bonds.offset[i];
+      for (Offset bond = pattern.offset[i]; bond < pattern.offset[i + 1]; ++bond) {
+        const double* block = &blocks[std::size_t(bond - pattern.offset[i]) * entries];
+        const Index j = pattern.partner[bond];
+        std::array<double, 3> arm{};
+        double squared = 0.0, along = 0.0;
+        for (int c = 0; c < d; ++c) {
+          arm[c] =
+              tangent.position[std::size_t(j) * d + c] - tangent.position[std::size_t(i) * d + c];
+          squared += arm[c] * arm[c];
+        }
+        for (int r = 0; r < d; ++r) {
+          for (int c = 0; c < d; ++c) along -= arm[r] * block[r * d + c] * arm[c];
+        }
+        const double k_l2 = std::max(along, 0.0);  // k l^2
+        moment[thread] += k_l2;
+        if (!is_short[bond]) continue;
+        short_moment[thread] += k_l2;
+        double* to = &springs->off_diagonal[std::size_t(spring) * entries];
+        const double scale = squared > 0.0 ? -k_l2 / (squared * squared) : 0.0;
+        for (int r = 0; r < d; ++r) {
+          for (int c = 0; c < d; ++c) to[r * d + c] = scale * arm[r] * arm[c];
+        }
+        ++spring;
+      }
+    });
+    double all = 0.0, of_short = 0.0;
+    for (const double part : moment) all += part;
+    for (const double part : short_moment) of_short += part;
+    const double gamma = of_short > 0.0 ? all / of_short : 1.0;
+    std::fill(springs->diagonal.begin(), springs->diagonal.end(), 0.0);
+    for (Index i = 0; i < pattern.points(); ++i) {
+      for (Offset spring = short_bonds.offset[i]; spring < short_bonds.offset[i + 1]; ++spring) {
+        const std::size_t j = std::size_t(short_bonds.partner[spring]);
+        double* block = &springs->off_diagonal[std::size_t(spring) * entries];
+        for (int k = 0; k < entries; ++k) {
+          block[k] *= gamma;
+          springs->diagonal[std::size_t(i) * entries + k] -= block[k];
+          springs->diagonal[j * entries + k] -= block[k];
+        }
+      }
+    }
+    for (std::size_t i = 0; i < std::size_t(pattern.points()); ++i) {
+      double* own = &springs->diagonal[i * entries];
+      const double* whole = &tangent.diagonal[i * entries];
+      double trace = 0.0, whole_trace = 0.0;
+      for (int c = 0; c < d; ++c) {
+        trace += own[c * (d + 1)];
+        whole_trace += whole[c * (d + 1)];
+      }
+      const bool is_loose = trace < loose * whole_trace;
+      for (int k = 0; k < entries; ++k) own[k] += (is_loose ? 1.0 : 1e-12) * whole[k];
+    }
+  }
+};
+
+Surrogate::Surrogate() : stand_in_(std::make_unique<StandIn>()) {}
+Surrogate::~Surrogate() = default;
+
+void Surrogate::analyze(const Pattern& pattern, const FreeDofs& free) {
+  StandIn& s = *stand_in_;
+  s.free = &free;
+  s.fine.analyze(pattern, free);
+  s.is_short.clear();
+  s.short_bonds = {};
+  s.solver.count_pivots(false);
+  s.correction.resize(std::size_t(free.count()));
+}
+
+LinearOutcome Surrogate::build(const TangentOperator& tangent) {
+  StandIn& s = *stand_in_;
+  const LinearOutcome outcome = s.fine.build(tangent);
+  if (outcome != LinearOutcome::solved) return outcome;
+  if (s.is_short.empty()) {
+    const LinearOutcome analysis = s.choose_bonds(tangent);
+    if (analysis != LinearOutcome::solved) return analysis;
+  }
+  s.find_springs(tangent);
+  const LinearOutcome factor = s.solver.factorize(*s.springs, FactorUse::factorize_now);
+  if (factor == LinearOutcome::solved || factor == LinearOutcome::out_of_memory) return factor;
+  return LinearOutcome::inaccurate;  // S is singular; the tangent need not be
+}
+
+void Surrogate::apply(std::span<const double> residual, std::span<double> correction) {
+  StandIn& s = *stand_in_;
+  // A factor with numbers always solves; how exactly is the outer iteration's matter.
+  if (s.solver.solve(residual, correction, 1.0) == LinearOutcome::out_of_memory) {
+    std::fill(correction.begin(), correction.end(), 0.0);
+  }
+  s.fine.add(share_of_jacobi, residual, correction);
+}
+
+std::string Surrogate::describe() const {
+  const StandIn& s = *stand_in_;
+  if (s.short_bonds.offset.empty()) return "surrogate";
+  const double points = double(std::max<std::size_t>(s.short_bonds.offset.size(), 2) - 1);
+  return fmt::format("surrogate of {:.1f} neighbours per point ({})",
+                     2.0 * double(s.short_bonds.count()) / points, s.solver.describe());
+}
+
+}  // namespace peristat

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <memory>
+
+#include "solvers/linear/preconditioner.hpp"
+
+namespace peristat {
+
+/// A stand-in of short horizon: springs along the bonds to the nearest neighbours alone (2 in 1D, 8
+/// on a square lattice, 18 on a cubic one), with the block Jacobi preconditioner beside them,
+///
+///   M^-1 = S^-1 + D^-1 / 2,   S = sum over short bonds of gamma k n n^T,
+///
+/// k = max(-n.K_ij n, 0) the bond's own stiffness in the tangent and n its current direction, so
+/// that S is positive semidefinite, indifferent to rotations, and cut by the same cracks. The one
+/// number gamma makes its second moment, sum k l^2, that of all bonds: long waves then meet the
+/// body's stiffness. At short waves S is stiffer than K, by a factor of 5 at horizon 3.015 and more
+/// at longer ones; there K is about its own diagonal, and D^-1 / 2 fills the gap. The condition
+/// number depends on neither size nor shape: 12 to 16 iterations to 1e-8.
+///
+/// S is factorised by Cholesky; its factor is some ten times smaller than that of K in 2D and 3D.
+class Surrogate : public Preconditioner {
+ public:
+  Surrogate();
+  ~Surrogate() override;
+
+  void analyze(const Pattern& pattern, const FreeDofs& free) override;
+  /// Negative pivots of a diagonal block are the tangent's, too.
+  /// @return inaccurate as well, where S is singular and the tangent need not be: short bonds are
+  ///         broken and long ones are not
+  [[nodiscard]] LinearOutcome build(const TangentOperator& tangent) override;
+  void apply(std::span<const double> residual, std::span<double> correction) override;
+  [[nodiscard]] std::string describe() const override;
+
+ private:
+  struct StandIn;
+  std::unique_ptr<StandIn> stand_in_;
+};
+
+}  // namespace peristat
