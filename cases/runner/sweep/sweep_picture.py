@@ -23,10 +23,15 @@ class Curves:
     completed: bool
     load: np.ndarray  # load factors of the accepted steps
     reactions: dict[str, np.ndarray]  # their norm by support set [N]
-    x: np.ndarray  # along the midline [m], NaN in gaps
+    midlines: list["Midline"]  # along each axis
+    largest_damage: float  # of all points
+
+
+@dataclass
+class Midline:
+    place: np.ndarray  # along an axis [m], NaN in gaps
     damage: np.ndarray
     displacement: np.ndarray  # its magnitude [m]
-    largest_damage: float  # of all points
 
 
 @dataclass
@@ -73,9 +78,9 @@ def draw_sweep(keys: list[str], values: list[tuple[str, ...]], folders: list[Pat
 def _curves(results: ResultsFolder, label: str, looks: dict, completed: bool) -> Curves:
     step = results.step(results.step_numbers[-1])
     magnitude = np.linalg.norm(step.displacement, axis=1)
-    x, damage, displacement = midline(results, step.damage, magnitude)
+    midlines = [Midline(*midline(results, axis, step.damage, magnitude)) for axis in range(results.dimension)]
     return Curves(results.title, label, looks, completed, np.array(results.history["load_factor"]),
-                  _reactions(results.history), x, damage, displacement, step.damage.max())  # fmt: skip
+                  _reactions(results.history), midlines, step.damage.max())  # fmt: skip
 
 
 def _reactions(history: dict[str, list]) -> dict[str, np.ndarray]:
@@ -84,8 +89,8 @@ def _reactions(history: dict[str, list]) -> dict[str, np.ndarray]:
     return {name: np.linalg.norm([history[f"reaction_{axis}:{name}"] for axis in "xyz"], axis=0) for name in names}
 
 
-def midline(results: ResultsFolder, *fields: np.ndarray) -> list[np.ndarray]:
-    """Places x and fields of the points nearest to the line along x through the middle of the body.
+def midline(results: ResultsFolder, axis: int, *fields: np.ndarray) -> list[np.ndarray]:
+    """Places and fields of the points nearest to the line along an axis through the middle of the body.
 
     Points of layers are no part of the body. Points that are equally near (the two rows beside the
     line) are averaged. NaN stands where the body has no point near the line, as in a hole.
@@ -97,15 +102,15 @@ def midline(results: ResultsFolder, *fields: np.ndarray) -> list[np.ndarray]:
     points = np.flatnonzero(body)
     reference = results.reference[points]
     middle = 0.5 * (reference.min(axis=0) + reference.max(axis=0))
-    distance = np.linalg.norm((reference - middle)[:, 1:], axis=1)
-    cell = np.rint((reference[:, 0] - reference[:, 0].min()) / spacing).astype(int)
+    distance = np.linalg.norm(np.delete(reference - middle, axis, axis=1), axis=1)
+    cell = np.rint((reference[:, axis] - reference[:, axis].min()) / spacing).astype(int)
 
     least = np.full(cell.max() + 1, np.inf)
     np.minimum.at(least, cell, distance)
     near = (distance <= least[cell] + 0.1 * spacing) & (distance <= spacing * max(results.dimension - 1, 1) ** 0.5)
     count = np.bincount(cell[near], minlength=len(least))
     columns = [np.bincount(cell[near], values[points][near], len(least))[count > 0] / count[count > 0]
-               for values in (results.reference[:, 0], *fields)]  # fmt: skip
+               for values in (results.reference[:, axis], *fields)]  # fmt: skip
     gaps = np.flatnonzero(np.diff(columns[0]) > 2.2 * spacing) + 1
     return [np.insert(column, gaps, np.nan) for column in columns]
 
@@ -196,17 +201,25 @@ def _draw_reactions(axes, shown: list[Curves]) -> None:
 
 
 def _draw_midlines(axes, shown: list[Curves]) -> None:
-    """Damage, if there is any, or displacement along the midline at the last accepted step."""
+    """Damage, if there is any, or displacement at the last step, along the midline that has most of it."""
     damaged = max(curves.largest_damage for curves in shown) > 0.0
-    places = max(np.nanmax(np.abs(curves.x)) for curves in shown)
-    length, length_size = unit_for(places, LENGTHS)
-    unit, size = unit_for(max(np.nanmax(curves.displacement) for curves in shown), LENGTHS)
+
+    def largest(axis: int) -> float:
+        return max(np.nanmax(_field(curves.midlines[axis], damaged)) for curves in shown)
+
+    axis = max(range(min(len(curves.midlines) for curves in shown)), key=largest)  # the first of equals
+    length, length_size = unit_for(max(np.nanmax(np.abs(curves.midlines[axis].place)) for curves in shown), LENGTHS)
+    unit, size = ("", 1.0) if damaged else unit_for(largest(axis), LENGTHS)
     for curves, width in zip(shown, _widths(len(shown))):
-        values = curves.damage if damaged else curves.displacement / size
-        axes.plot(curves.x / length_size, values, linewidth=width, zorder=3, **curves.looks)
+        line = curves.midlines[axis]
+        axes.plot(line.place / length_size, _field(line, damaged) / size, linewidth=width, zorder=3, **curves.looks)
     _draw_axis(axes)
-    axes.set_xlabel(f"x along the midline [{length}]")
+    axes.set_xlabel(f"{'xyz'[axis]} along the midline [{length}]")
     axes.set_ylabel("damage at the last step" if damaged else f"displacement at the last step [{unit}]")
+
+
+def _field(line: Midline, damaged: bool) -> np.ndarray:
+    return line.damage if damaged else line.displacement
 
 
 def _widths(count: int):

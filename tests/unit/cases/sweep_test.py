@@ -66,28 +66,33 @@ class Picture(unittest.TestCase):
     def test_a_middle_row_or_the_mean_of_two_is_the_midline(self):
         for rows, expected in ((5, 2.0), (4, 1.5)):
             points = lattice(6, rows)
-            x, y = midline(body(points), points[:, 1])
+            x, y = midline(body(points), 0, points[:, 1])
             np.testing.assert_allclose(x, np.arange(6))
             np.testing.assert_allclose(y, expected)
 
     def test_dimensions_one_and_three(self):
         points = lattice(5, 4, 2)
-        x, y, z = midline(body(points), points[:, 1], points[:, 2])
+        x, y, z = midline(body(points), 0, points[:, 1], points[:, 2])
         np.testing.assert_allclose((x, y, z), (np.arange(5), [1.5] * 5, [0.5] * 5))
-        (x,) = midline(body(lattice(5)))
+        (x,) = midline(body(lattice(5)), 0)
         np.testing.assert_allclose(x, np.arange(5))
+
+    def test_along_another_axis(self):
+        points = lattice(5, 4)
+        y, x = midline(body(points), 1, points[:, 0])
+        np.testing.assert_allclose((y, x), (np.arange(4), [2.0] * 4))
 
     def test_layers_are_no_part_of_the_body(self):
         points = lattice(6, 7)
         layers = {"left": np.flatnonzero(points[:, 0] < 1), "top": np.flatnonzero(points[:, 1] > 4)}
-        x, y = midline(body(points, layers), points[:, 1])
+        x, y = midline(body(points, layers), 0, points[:, 1])
         np.testing.assert_allclose(x, np.arange(1, 6))
         np.testing.assert_allclose(y, 2.0)
 
     def test_a_hole_is_a_gap(self):
         points = lattice(11, 11)
         points = points[np.abs(points - 5).max(axis=1) > 2]
-        x, y = midline(body(points), points[:, 1])
+        x, y = midline(body(points), 0, points[:, 1])
         np.testing.assert_allclose(x, [0, 1, 2, np.nan, 8, 9, 10])
         np.testing.assert_allclose(y, [5, 5, 5, np.nan, 5, 5, 5])
 
