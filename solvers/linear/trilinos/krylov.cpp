@@ -22,7 +22,9 @@
 #include <Tpetra_MultiVector.hpp>
 #include <Tpetra_Operator.hpp>
 
-namespace peristat {
+#include "solvers/linear/trilinos/module.hpp"
+
+namespace peristat::trilinos {
 namespace {
 
 using Teuchos::RCP;
@@ -75,12 +77,12 @@ class MapOperator : public Operator {
 class TrueResidual {
  public:
   TrueResidual(const VectorMap& matrix, const double* b, int size)
-      : matrix_(matrix), b_(b), values(b, b + size), norm(peristat::norm(values)) {}
+      : matrix_(matrix), b_(b), values(b, b + size), norm(trilinos::norm(values)) {}
 
   void update(const double* x) {
     matrix_(x, values.data());
     for (std::size_t k = 0; k < values.size(); ++k) values[k] = b_[k] - values[k];
-    norm = peristat::norm(values);
+    norm = trilinos::norm(values);
   }
 
  private:
@@ -341,4 +343,4 @@ KrylovResult solve_krylov(int size, const VectorMap& matrix, const VectorMap& pr
   }
 }
 
-}  // namespace peristat
+}  // namespace peristat::trilinos

@@ -43,7 +43,8 @@ using VectorMap = std::function<void(const double* v, double* result)>;
 /// Recursive residuals drift away from the true one. Where Belos has converged and b - A x has not,
 /// the correction is solved for from there (iterative refinement), as long as that helps.
 ///
-/// Prints nothing and throws nothing of its own; what the maps throw is a breakdown.
+/// Prints nothing. What the maps throw is a breakdown; the one exception that leaves is
+/// std::runtime_error where Trilinos can't be loaded.
 ///
 /// @param preconditioner an approximate inverse of A, or empty
 /// @param solution the best that was reached, whatever the outcome

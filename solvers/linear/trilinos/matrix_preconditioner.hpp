@@ -41,19 +41,19 @@ enum class MatrixPreconditionerKind {
 struct MatrixPreconditionerOptions {
   int level_of_fill = 0;     ///< riluk: 0 keeps the pattern of A
   int chebyshev_degree = 4;  ///< products with A per application are one less
-  /// chebyshev, multigrid: to estimate the largest eigenvalue of D^-1 A. Ten, Trilinos' default,
-  /// give 1.35 for 1.60 on lattices: a polynomial that is negative there, and an indefinite
-  /// preconditioner.
-  int power_iterations = 80;
+  /// chebyshev, multigrid: to estimate the largest eigenvalue of D^-1 A. Taken too small, the
+  /// polynomial is negative beyond, and the preconditioner indefinite.
+  int lanczos_steps = 30;
   int largest_coarse_system = 1000;  ///< multigrid: equations that are solved directly
 };
 
 /// Approximate inverse M of an assembled symmetric positive definite matrix A; M is symmetric
 /// positive definite, too, up to round-off, and fit for conjugate gradients.
 ///
-/// Works on one thread. Prints and throws nothing.
+/// Works on one thread. Prints nothing.
 class MatrixPreconditioner {
  public:
+  /// Throws std::runtime_error where Trilinos can't be loaded.
   explicit MatrixPreconditioner(MatrixPreconditionerKind kind,
                                 const MatrixPreconditionerOptions& options = {});
   ~MatrixPreconditioner();
@@ -71,8 +71,8 @@ class MatrixPreconditioner {
   [[nodiscard]] std::string describe() const;
 
  private:
-  struct Trilinos;
-  std::unique_ptr<Trilinos> trilinos_;
+  struct Implementation;
+  std::unique_ptr<Implementation> implementation_;
 };
 
 /// Version of Trilinos.

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 #include <stdexcept>
+#include <string>
 #include <vector>
 
 #include <Eigen/Dense>
@@ -65,13 +66,15 @@ double true_residual(const MatrixXd& matrix, const VectorXd& x) {
 
 class Krylov : public testing::TestWithParam<KrylovMethod> {};
 
+std::string name_of(const testing::TestParamInfo<KrylovMethod>& tested) {
+  const std::vector<std::string> names{"ConjugateGradients", "Minres", "Gmres"};
+  return names[std::size_t(tested.param)];
+}
+
 INSTANTIATE_TEST_SUITE_P(Methods, Krylov,
                          testing::Values(KrylovMethod::conjugate_gradients, KrylovMethod::minres,
                                          KrylovMethod::gmres),
-                         [](const auto& tested) {
-                           return std::vector<std::string>{"ConjugateGradients", "Minres",
-                                                           "Gmres"}[std::size_t(tested.param)];
-                         });
+                         name_of);
 
 TEST_P(Krylov, AgreesWithADenseSolve) {
   const MatrixXd matrix = symmetric_matrix(0);
