@@ -75,7 +75,7 @@ class MatrixPreconditioner {
   std::unique_ptr<Implementation> implementation_;
 };
 
-/// Version of Trilinos.
+/// Version of Trilinos, which this loads.
 [[nodiscard]] std::string trilinos_version();
 
 }  // namespace peristat
