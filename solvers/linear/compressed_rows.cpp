@@ -1,0 +1,103 @@
+#include "solvers/linear/compressed_rows.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+namespace peristat {
+
+CompressedRows compressed_rows(const Tangent& tangent, const FreeDofs& free) {
+  const Pattern& pattern = tangent.pattern;
+  const Index points = pattern.points();
+  const int d = tangent.dimension;
+
+  // The bonds to lower partners, which the pattern keeps with those; ascending, as i ascends.
+  std::vector<Offset> lower_offset(std::size_t(points) + 1, 0);
+  for (const Index j : pattern.partner) ++lower_offset[std::size_t(j) + 1];
+  for (Index i = 0; i < points; ++i) lower_offset[i + 1] += lower_offset[i];
+  struct Lower {
+    Index partner;
+    Offset bond;
+  };
+  std::vector<Lower> lower(pattern.partner.size());
+  std::vector<Offset> filled(lower_offset.begin(), lower_offset.end() - 1);
+  for (Index i = 0; i < points; ++i) {
+    for (Offset bond = pattern.offset[i]; bond < pattern.offset[i + 1]; ++bond) {
+      lower[filled[pattern.partner[bond]]++] = {i, bond};
+    }
+  }
+
+  CompressedRows rows;
+  rows.rows = free.count();
+  rows.begin.reserve(std::size_t(rows.rows) + 1);
+  rows.begin.push_back(0);
+  const std::size_t entries =
+      std::size_t(2 * pattern.blocks() + points) * std::size_t(d) * std::size_t(d);
+  rows.column.reserve(entries);
+  rows.value.reserve(entries);
+  for (Index i = 0; i < points; ++i) {
+    for (int r = 0; r < d; ++r) {
+      if (free.equation[std::size_t(i) * d + r] == FreeDofs::none) continue;
+      // Row r of a block: entries lie `stride` apart, d where the block is stored transposed.
+      const auto append = [&](Index j, const double* first, int stride) {
+        for (int c = 0; c < d; ++c) {
+          const Index equation = free.equation[std::size_t(j) * d + c];
+          if (equation == FreeDofs::none) continue;
+          rows.column.push_back(equation);
+          rows.value.push_back(first[c * stride]);
+        }
+      };
+      for (Offset k = lower_offset[i]; k < lower_offset[i + 1]; ++k) {
+        append(lower[k].partner, tangent.off_diagonal.data() + lower[k].bond * d * d + r, d);
+      }
+      append(i, tangent.diagonal.data() + Offset(i) * d * d + r * d, 1);
+      for (Offset bond = pattern.offset[i]; bond < pattern.offset[i + 1]; ++bond) {
+        append(pattern.partner[bond], tangent.off_diagonal.data() + bond * d * d + r * d, 1);
+      }
+      rows.begin.push_back(rows.column.size());
+    }
+  }
+  return rows;
+}
+
+EquationBlocks equation_blocks(const FreeDofs& free) { return {free.dimension, free.dof}; }
+
+NearNullSpace rigid_motions(std::span<const double> positions, const FreeDofs& free) {
+  const int d = free.dimension;
+  const std::size_t equations = free.dof.size();
+  // Centred, so that rotations and translations are far from parallel.
+  std::array<double, 3> centre{};
+  for (std::size_t dof = 0; dof < positions.size(); ++dof) centre[dof % d] += positions[dof];
+  for (double& component : centre) component /= std::max(1.0, double(positions.size()) / d);
+  double size = 0.0;
+  for (std::size_t dof = 0; dof < positions.size(); ++dof) {
+    size = std::max(size, std::abs(positions[dof] - centre[dof % d]));
+  }
+  if (size == 0.0) size = 1.0;
+
+  NearNullSpace motions;
+  const auto add = [&](const auto& displacement) {
+    ++motions.count;
+    for (std::size_t e = 0; e < equations; ++e) {
+      motions.values.push_back(displacement(free.dof[e] / d, free.dof[e] % d));
+    }
+  };
+  for (int axis = 0; axis < d; ++axis) {
+    add([axis](Index, int component) { return component == axis ? 1.0 : 0.0; });
+  }
+  // The rotation in the plane of axes a and b moves x_a by -x_b and x_b by x_a.
+  for (int a = 0; a < d; ++a) {
+    for (int b = a + 1; b < d; ++b) {
+      add([&](Index point, int component) {
+        if (component != a && component != b) return 0.0;
+        const int other = component == a ? b : a;
+        const double arm = (positions[std::size_t(point) * d + other] - centre[other]) / size;
+        return component == a ? -arm : arm;
+      });
+    }
+  }
+  return motions;
+}
+
+}  // namespace peristat

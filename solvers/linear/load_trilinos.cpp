@@ -1,0 +1,69 @@
+#include <new>
+#include <stdexcept>
+
+#include <dlfcn.h>
+
+#include "solvers/linear/trilinos/module.hpp"
+
+namespace peristat {
+namespace {
+
+/// Loads the module at the first call. It stays: Kokkos is stopped when the process ends.
+const trilinos::Module& module() {
+  static const trilinos::Module* const loaded = [] {
+    // Found by the run path of the program. BLAS is the program's own: symbols that it already has
+    // come first.
+    void* const library = dlopen(trilinos::module_file, RTLD_LAZY | RTLD_LOCAL);
+    void* const symbol = library ? dlsym(library, trilinos::module_symbol) : nullptr;
+    if (!symbol) throw std::runtime_error(std::string("Trilinos can't be loaded: ") + dlerror());
+    return reinterpret_cast<const trilinos::Module* (*)()>(symbol)();
+  }();
+  return *loaded;
+}
+
+}  // namespace
+
+KrylovResult solve_krylov(int size, const VectorMap& matrix, const VectorMap& preconditioner,
+                          const double* right_hand_side, double* solution,
+                          const KrylovOptions& options) {
+  return module().solve_krylov(size, matrix, preconditioner, right_hand_side, solution, options);
+}
+
+struct MatrixPreconditioner::Implementation {
+  std::unique_ptr<trilinos::Preconditioner> preconditioner;
+  std::string failure;
+};
+
+MatrixPreconditioner::MatrixPreconditioner(MatrixPreconditionerKind kind,
+                                           const MatrixPreconditionerOptions& options)
+    : implementation_(new Implementation{module().make_preconditioner(kind, options), {}}) {}
+
+MatrixPreconditioner::~MatrixPreconditioner() = default;
+
+bool MatrixPreconditioner::build(const CompressedRows& matrix, const EquationBlocks& blocks,
+                                 const NearNullSpace& near_null_space) {
+  implementation_->failure.clear();
+  try {
+    implementation_->preconditioner->build(matrix, blocks, near_null_space);
+    return true;
+  } catch (const std::bad_alloc&) {
+    implementation_->failure = "out of memory";
+  } catch (const std::exception& error) {
+    implementation_->failure = error.what();
+  }
+  return false;
+}
+
+const std::string& MatrixPreconditioner::failure() const { return implementation_->failure; }
+
+void MatrixPreconditioner::apply(const double* r, double* z) {
+  implementation_->preconditioner->apply(r, z);
+}
+
+std::string MatrixPreconditioner::describe() const {
+  return implementation_->preconditioner->describe();
+}
+
+std::string trilinos_version() { return module().version(); }
+
+}  // namespace peristat

@@ -1,0 +1,348 @@
+#include "solvers/linear/trilinos/krylov.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <exception>
+#include <stdexcept>
+#include <utility>
+#include <vector>
+
+#include <BelosBlockGmresSolMgr.hpp>
+#include <BelosLinearProblem.hpp>
+#include <BelosMinresIter.hpp>
+#include <BelosMultiVecTraits_Tpetra.hpp>
+#include <BelosOperatorTraits_Tpetra.hpp>
+#include <BelosOutputManager.hpp>
+#include <BelosPseudoBlockCGIter.hpp>
+#include <BelosStatusTest.hpp>
+#include <Teuchos_DefaultSerialComm.hpp>
+#include <Teuchos_oblackholestream.hpp>
+#include <Tpetra_Map.hpp>
+#include <Tpetra_MultiVector.hpp>
+#include <Tpetra_Operator.hpp>
+
+#include "solvers/linear/trilinos/module.hpp"
+
+namespace peristat::trilinos {
+namespace {
+
+using Teuchos::RCP;
+using Teuchos::rcp;
+
+// The only types that Debian's Tpetra is instantiated for.
+using Map = Tpetra::Map<int, long long>;
+using Vector = Tpetra::MultiVector<double, int, long long>;
+using Operator = Tpetra::Operator<double, int, long long>;
+using Problem = Belos::LinearProblem<double, Vector, Operator>;
+using Iteration = Belos::Iteration<double, Vector, Operator>;
+
+double norm(const std::vector<double>& v) {
+  double squared = 0.0;
+  for (double entry : v) squared += entry * entry;
+  return std::sqrt(squared);
+}
+
+/// One of our maps as Tpetra sees it.
+class MapOperator : public Operator {
+ public:
+  MapOperator(RCP<const Map> rows, const VectorMap& map) : rows_(std::move(rows)), map_(map) {}
+
+  RCP<const Map> getDomainMap() const override { return rows_; }
+  RCP<const Map> getRangeMap() const override { return rows_; }
+
+  /// y = A x. Belos asks for nothing else.
+  void apply(const Vector& x, Vector& y, Teuchos::ETransp mode, double alpha,
+             double beta) const override {
+    if (mode != Teuchos::NO_TRANS || alpha != 1.0 || beta != 0.0) {
+      throw std::logic_error("MapOperator: only y = A x");
+    }
+    if (argument_is_zero) {
+      y.putScalar(0.0);
+      return;
+    }
+    for (std::size_t column = 0; column < x.getNumVectors(); ++column) {
+      map_(x.getData(column).getRawPtr(), y.getDataNonConst(column).getRawPtr());
+    }
+  }
+
+  bool argument_is_zero = false;  ///< spares the product with a start vector of zero
+
+ private:
+  RCP<const Map> rows_;
+  const VectorMap& map_;
+};
+
+/// b - A x, without Trilinos.
+class TrueResidual {
+ public:
+  TrueResidual(const VectorMap& matrix, const double* b, int size)
+      : matrix_(matrix), b_(b), values(b, b + size), norm(trilinos::norm(values)) {}
+
+  void update(const double* x) {
+    matrix_(x, values.data());
+    for (std::size_t k = 0; k < values.size(); ++k) values[k] = b_[k] - values[k];
+    norm = trilinos::norm(values);
+  }
+
+ private:
+  const VectorMap& matrix_;
+  const double* b_;
+
+ public:
+  std::vector<double> values;
+  double norm;
+};
+
+/// Ends an iteration of Belos: at the target, at the limit, at values that are not finite, or where
+/// the true residual no longer follows the iteration's own.
+class StoppingRule : public Belos::StatusTest<double, Vector, Operator> {
+ public:
+  /// @param target of the 2-norm of the residual
+  StoppingRule(double target, int max_iterations)
+      : target_(target), max_iterations_(max_iterations) {}
+
+  Belos::StatusType checkStatus(Iteration* iteration) override {
+    stops_ = reached(*iteration);
+    return getStatus();
+  }
+  Belos::StatusType getStatus() const override { return stops_ ? Belos::Passed : Belos::Failed; }
+  void reset() override { stops_ = false; }
+  void print(std::ostream&, int) const override {}
+
+  [[nodiscard]] bool at_limit() const { return at_limit_; }
+  [[nodiscard]] bool not_finite() const { return not_finite_; }
+
+ protected:
+  /// Whether the present state is good enough, or will never be.
+  [[nodiscard]] virtual bool satisfied(const Iteration&, double residual) {
+    return residual <= target_;
+  }
+
+  double target_;
+
+ private:
+  [[nodiscard]] bool reached(const Iteration& iteration) {
+    // Either the residual or its norm; which one depends on the method.
+    std::vector<double> norms(1, 0.0);
+    const RCP<const Vector> residual = iteration.getNativeResiduals(&norms);
+    if (!residual.is_null()) residual->norm2(norms);
+    not_finite_ = !std::isfinite(norms[0]);
+    if (not_finite_ || satisfied(iteration, norms[0])) return true;
+    at_limit_ = iteration.getNumIters() >= max_iterations_;
+    return at_limit_;
+  }
+
+  int max_iterations_;
+  bool stops_ = false, at_limit_ = false, not_finite_ = false;
+};
+
+/// MINRES knows its residual in the norm of the preconditioner only, sqrt(r.M r). Once that has
+/// fallen as far as the 2-norm should, the true residual decides, and says how far there is to go.
+class MinresStoppingRule : public StoppingRule {
+ public:
+  MinresStoppingRule(double start, double target, int max_iterations)
+      : StoppingRule(target, max_iterations), last_norm_(start) {}
+
+ private:
+  [[nodiscard]] bool satisfied(const Iteration& iteration, double residual) override {
+    if (threshold_ < 0.0) threshold_ = residual * target_ / last_norm_;
+    if (residual > threshold_) return false;
+    const Problem& problem = iteration.getProblem();
+    Vector difference(*problem.getRHS(), Teuchos::Copy);
+    problem.computeCurrResVec(&difference);
+    std::vector<double> norms(1);
+    difference.norm2(norms);
+    if (norms[0] <= target_) return true;
+    // Between two looks the recursive residual halves at least. A true one that doesn't is at its
+    // end; refinement goes on from there.
+    if (!(norms[0] < 0.9 * last_norm_)) return true;
+    last_norm_ = norms[0];
+    threshold_ = residual * std::clamp(target_ / norms[0], 0.1, 0.5);
+    return false;
+  }
+
+  double threshold_ = -1.0;  ///< of sqrt(r.M r), where to look at the true residual
+  double last_norm_;         ///< the true one, where it was looked at last
+};
+
+/// One run of Belos on A d = r from d = 0.
+struct Run {
+  KrylovOutcome outcome = KrylovOutcome::breakdown;
+  int iterations = 0;
+};
+
+Run outcome_of(const StoppingRule& rule, int iterations) {
+  if (rule.not_finite()) return {KrylovOutcome::breakdown, iterations};
+  if (rule.at_limit()) return {KrylovOutcome::iteration_limit, iterations};
+  return {KrylovOutcome::converged, iterations};
+}
+
+RCP<Belos::OutputManager<double>> silence() {
+  return rcp(new Belos::OutputManager<double>(Belos::Errors, rcp(new Teuchos::oblackholestream)));
+}
+
+Run run_conjugate_gradients(const RCP<Problem>& problem, double target, int max_iterations) {
+  const RCP<StoppingRule> rule = rcp(new StoppingRule(target, max_iterations));
+  Teuchos::ParameterList parameters;
+  Belos::PseudoBlockCGIter<double, Vector, Operator> iteration(problem, silence(), rule,
+                                                               parameters);
+  Belos::CGIterationState<double, Vector> start;
+  start.R = problem->getInitResVec();
+  try {
+    iteration.initializeCG(start);
+    iteration.iterate();
+  } catch (const Belos::CGIterateFailure&) {
+    // Either p.A p <= 0 or r.M r < 0; the latter at the start, too, before there is an A p. A
+    // direction of zero is M's fault as well: M r = 0.
+    Run run{KrylovOutcome::breakdown, iteration.getNumIters()};
+    if (run.iterations == 0) return run;
+    const auto state = iteration.getState();
+    std::vector<double> curvature(1), length(1);
+    state.P->dot(*state.AP, curvature);
+    state.P->norm2(length);
+    if (curvature[0] <= 0.0 && length[0] > 0.0) run.outcome = KrylovOutcome::negative_curvature;
+    return run;
+  } catch (const std::exception&) {
+    return {KrylovOutcome::breakdown, iteration.getNumIters()};
+  }
+  return outcome_of(*rule, iteration.getNumIters());
+}
+
+Run run_minres(const RCP<Problem>& problem, double start_norm, double target, int max_iterations) {
+  const RCP<MinresStoppingRule> rule =
+      rcp(new MinresStoppingRule(start_norm, target, max_iterations));
+  Teuchos::ParameterList parameters;
+  Belos::MinresIter<double, Vector, Operator> iteration(problem, silence(), rule, parameters);
+  Belos::MinresIterationState<double, Vector> start;
+  start.Y = problem->getInitResVec();
+  try {
+    iteration.initializeMinres(start);
+    iteration.iterate();
+  } catch (const std::exception&) {  // r.M r < 0
+    return {KrylovOutcome::breakdown, iteration.getNumIters()};
+  }
+  return outcome_of(*rule, iteration.getNumIters());
+}
+
+Run run_gmres(const RCP<Problem>& problem, double relative_target, int max_iterations,
+              int restart) {
+  const RCP<Teuchos::ParameterList> parameters = rcp(new Teuchos::ParameterList);
+  parameters->set("Convergence Tolerance", relative_target);
+  parameters->set("Maximum Iterations", max_iterations);
+  parameters->set("Maximum Restarts", max_iterations);
+  parameters->set("Num Blocks", std::min(restart, max_iterations));
+  parameters->set("Implicit Residual Scaling", "Norm of RHS");
+  parameters->set("Verbosity", int(Belos::Errors));
+  parameters->set("Output Stream", RCP<std::ostream>(rcp(new Teuchos::oblackholestream)));
+  Belos::BlockGmresSolMgr<double, Vector, Operator> solver(problem, parameters);
+  try {
+    const bool converged = solver.solve() == Belos::Converged;
+    // Where its own residual and the true one part, Belos gives up; refinement goes on.
+    if (converged || solver.isLOADetected()) {
+      return {KrylovOutcome::converged, solver.getNumIters()};
+    }
+    const bool at_limit = solver.getNumIters() >= max_iterations;
+    return {at_limit ? KrylovOutcome::iteration_limit : KrylovOutcome::breakdown,
+            solver.getNumIters()};
+  } catch (const std::exception&) {
+    return {KrylovOutcome::breakdown, solver.getNumIters()};
+  }
+}
+
+/// Solves for the correction of a solution with that residual.
+Run run_belos(const RCP<const Map>& rows, const VectorMap& matrix, const VectorMap& preconditioner,
+              const std::vector<double>& residual, double residual_norm, double target,
+              int max_iterations, const KrylovOptions& options, std::vector<double>& correction) {
+  const RCP<MapOperator> matrix_operator = rcp(new MapOperator(rows, matrix));
+  const RCP<Vector> d = rcp(new Vector(rows, 1)), r = rcp(new Vector(rows, 1));
+  std::copy(residual.begin(), residual.end(), r->getDataNonConst(0).begin());
+
+  const RCP<Problem> problem = rcp(new Problem(matrix_operator, d, r));
+  problem->setHermitian();
+  // From the right, also where the method makes no difference: from the left, Belos would
+  // precondition the start's residual once for nothing.
+  if (preconditioner) problem->setRightPrec(rcp(new MapOperator(rows, preconditioner)));
+  matrix_operator->argument_is_zero = true;
+  problem->setProblem();
+  matrix_operator->argument_is_zero = false;
+
+  Run run;
+  if (options.method == KrylovMethod::gmres) {
+    run = run_gmres(problem, target / residual_norm, max_iterations, options.restart);
+  } else {
+    problem->setLSIndex({0});
+    run = options.method == KrylovMethod::minres
+              ? run_minres(problem, residual_norm, target, max_iterations)
+              : run_conjugate_gradients(problem, target, max_iterations);
+    problem->setCurrLS();
+  }
+  const Teuchos::ArrayRCP<const double> values = d->getData(0);
+  std::copy(values.begin(), values.end(), correction.begin());
+  return run;
+}
+
+/// Runs until the true residual is small enough, or until another run doesn't help.
+KrylovResult refine(int size, const VectorMap& matrix, const VectorMap& preconditioner,
+                    const double* b, double* x, const KrylovOptions& options) {
+  TrueResidual residual(matrix, b, size);
+  const double scale = residual.norm, target = options.tolerance * scale;
+  if (scale == 0.0) return {};
+  KrylovResult result{KrylovOutcome::breakdown, 0, 1.0};
+  if (!std::isfinite(scale)) {
+    result.relative_residual = scale;
+    return result;
+  }
+  if (options.max_iterations <= 0) {
+    result.outcome = KrylovOutcome::iteration_limit;
+    return result;
+  }
+
+  const RCP<const Map> rows = rcp(new Map(size, 0, rcp(new Teuchos::SerialComm<int>)));
+  std::vector<double> correction(static_cast<std::size_t>(size)), candidate(correction.size());
+  while (true) {
+    const double before = residual.norm;
+    const Run run = run_belos(rows, matrix, preconditioner, residual.values, before, target,
+                              options.max_iterations - result.iterations, options, correction);
+    result.iterations += run.iterations;
+    for (std::size_t k = 0; k < candidate.size(); ++k) candidate[k] = x[k] + correction[k];
+    residual.update(candidate.data());
+
+    // A failed run may leave something worse than it started from, or not finite.
+    const bool improved = residual.norm < before;
+    result.outcome = run.outcome;
+    if (improved) {
+      std::copy(candidate.begin(), candidate.end(), x);
+      result.relative_residual = residual.norm / scale;
+    }
+    if (improved && residual.norm <= target) {
+      result.outcome = KrylovOutcome::converged;
+      return result;
+    }
+    if (run.outcome != KrylovOutcome::converged) return result;
+    if (result.iterations >= options.max_iterations) {
+      result.outcome = KrylovOutcome::iteration_limit;
+      return result;
+    }
+    if (!(residual.norm <= 0.5 * before)) {
+      result.outcome = KrylovOutcome::breakdown;
+      return result;
+    }
+  }
+}
+
+}  // namespace
+
+KrylovResult solve_krylov(int size, const VectorMap& matrix, const VectorMap& preconditioner,
+                          const double* right_hand_side, double* solution,
+                          const KrylovOptions& options) {
+  std::fill(solution, solution + size, 0.0);
+  if (size == 0) return {};
+  try {
+    return refine(size, matrix, preconditioner, right_hand_side, solution, options);
+  } catch (const std::exception&) {
+    return {KrylovOutcome::breakdown, 0, 1.0};
+  }
+}
+
+}  // namespace peristat::trilinos

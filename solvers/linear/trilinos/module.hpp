@@ -1,0 +1,48 @@
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "solvers/linear/trilinos/krylov.hpp"
+#include "solvers/linear/trilinos/matrix_preconditioner.hpp"
+
+// Trilinos brings a hundred shared libraries, which cost every start of the program 60 ms and
+// 40 MB. So what uses it is a module that is loaded at the first call (load_trilinos.cpp), and this
+// is all that the two know of each other.
+
+namespace peristat::trilinos {
+
+/// A MatrixPreconditioner, from the inside. build() throws where there is none.
+class Preconditioner {
+ public:
+  virtual ~Preconditioner() = default;
+  virtual void build(const CompressedRows& matrix, const EquationBlocks& blocks,
+                     const NearNullSpace& near_null_space) = 0;
+  virtual void apply(const double* r, double* z) = 0;
+  [[nodiscard]] virtual std::string describe() const = 0;
+};
+
+using SolveKrylov = KrylovResult(int size, const VectorMap& matrix, const VectorMap& preconditioner,
+                                 const double* right_hand_side, double* solution,
+                                 const KrylovOptions& options);
+SolveKrylov solve_krylov;
+
+using MakePreconditioner = std::unique_ptr<Preconditioner>(
+    MatrixPreconditionerKind kind, const MatrixPreconditionerOptions& options);
+MakePreconditioner make_preconditioner;
+
+using Version = std::string();
+Version version;
+
+struct Module {
+  SolveKrylov* solve_krylov;
+  MakePreconditioner* make_preconditioner;
+  Version* version;
+};
+
+/// The module's one symbol, of type `const Module*()`.
+inline constexpr const char* module_symbol = "peristat_trilinos_module";
+/// Its file, beside the program.
+inline constexpr const char* module_file = "peristat_trilinos.so";
+
+}  // namespace peristat::trilinos

@@ -1,0 +1,244 @@
+#include "solvers/linear/trilinos/krylov.hpp"
+
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include <Eigen/Dense>
+#include <gtest/gtest.h>
+
+#include "tests/bodies.hpp"
+
+namespace peristat {
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr int size = 40;
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+VectorMap map_of(const MatrixXd& matrix) {
+  return [&matrix](const double* v, double* result) {
+    Eigen::Map<VectorXd>(result, size) = matrix * Eigen::Map<const VectorXd>(v, size);
+  };
+}
+
+MatrixXd random_matrix(std::uint64_t seed) {
+  const std::vector<double> numbers = tests::Random(seed).vector(size * size);
+  return Eigen::Map<const MatrixXd>(numbers.data(), size, size);
+}
+
+/// A symmetric matrix with eigenvalues from 1 to 100, of which the first few may be negated.
+MatrixXd symmetric_matrix(int negative) {
+  const MatrixXd basis = random_matrix(2).householderQr().householderQ();
+  VectorXd eigenvalues = VectorXd::LinSpaced(size, 1.0, 100.0);
+  eigenvalues.head(negative) *= -1.0;
+  return basis * eigenvalues.asDiagonal() * basis.transpose();
+}
+
+struct Solve {
+  KrylovResult result;
+  VectorXd x = VectorXd::Constant(size, 7.0);
+};
+
+const std::vector<double>& right_hand_side() {
+  static const std::vector<double> b = tests::Random(1).vector(size);
+  return b;
+}
+
+Solve solve(KrylovMethod method, const VectorMap& matrix, const VectorMap& preconditioner = {},
+            double tolerance = 1e-12, int max_iterations = 200,
+            const std::vector<double>& b = right_hand_side()) {
+  Solve solved;
+  solved.result = solve_krylov(size, matrix, preconditioner, b.data(), solved.x.data(),
+                               {method, tolerance, max_iterations, size});
+  return solved;
+}
+
+VectorXd b_vector() { return Eigen::Map<const VectorXd>(right_hand_side().data(), size); }
+
+double true_residual(const MatrixXd& matrix, const VectorXd& x) {
+  return (b_vector() - matrix * x).norm() / b_vector().norm();
+}
+
+class Krylov : public testing::TestWithParam<KrylovMethod> {};
+
+std::string name_of(const testing::TestParamInfo<KrylovMethod>& tested) {
+  const std::vector<std::string> names{"ConjugateGradients", "Minres", "Gmres"};
+  return names[std::size_t(tested.param)];
+}
+
+INSTANTIATE_TEST_SUITE_P(Methods, Krylov,
+                         testing::Values(KrylovMethod::conjugate_gradients, KrylovMethod::minres,
+                                         KrylovMethod::gmres),
+                         name_of);
+
+TEST_P(Krylov, AgreesWithADenseSolve) {
+  const MatrixXd matrix = symmetric_matrix(0);
+  const MatrixXd jacobi = matrix.diagonal().cwiseInverse().asDiagonal();
+  const VectorXd expected = matrix.ldlt().solve(b_vector());
+  for (const VectorMap& preconditioner : {VectorMap{}, map_of(jacobi)}) {
+    const Solve solved = solve(GetParam(), map_of(matrix), preconditioner);
+    EXPECT_EQ(solved.result.outcome, KrylovOutcome::converged);
+    EXPECT_GT(solved.result.iterations, 10);
+    EXPECT_LE(solved.result.relative_residual, 1e-12);
+    EXPECT_GT(solved.result.relative_residual, 0.0);
+    // It may be as small as round-off, which depends on the order of the sums.
+    EXPECT_NEAR(solved.result.relative_residual, true_residual(matrix, solved.x), 1e-14);
+    // 1e-12 in the residual times the condition number of 100.
+    EXPECT_LT((solved.x - expected).norm(), 1e-10 * expected.norm());
+  }
+}
+
+TEST_P(Krylov, NeedsOneIterationWithTheInverse) {
+  const MatrixXd matrix = symmetric_matrix(0), inverse = matrix.inverse();
+  const Solve solved = solve(GetParam(), map_of(matrix), map_of(inverse), 1e-10);
+  EXPECT_EQ(solved.result.outcome, KrylovOutcome::converged);
+  EXPECT_EQ(solved.result.iterations, 1);
+}
+
+TEST_P(Krylov, GivesZeroForAZeroRightHandSide) {
+  const MatrixXd matrix = symmetric_matrix(0);
+  const Solve solved = solve(GetParam(), map_of(matrix), {}, 1e-12, 10, std::vector(size, 0.0));
+  EXPECT_EQ(solved.result.outcome, KrylovOutcome::converged);
+  EXPECT_EQ(solved.result.iterations, 0);
+  EXPECT_EQ(solved.result.relative_residual, 0.0);
+  EXPECT_EQ(solved.x.norm(), 0.0);
+}
+
+TEST_P(Krylov, HandsOverWhatTheLimitAllowed) {
+  const MatrixXd matrix = symmetric_matrix(0);
+  const Solve few = solve(GetParam(), map_of(matrix), {}, 1e-12, 12);
+  EXPECT_EQ(few.result.outcome, KrylovOutcome::iteration_limit);
+  EXPECT_EQ(few.result.iterations, 12);
+  EXPECT_LT(few.result.relative_residual, 0.5);
+  EXPECT_NEAR(few.result.relative_residual, true_residual(matrix, few.x), 1e-12);
+  const Solve none = solve(GetParam(), map_of(matrix), {}, 1e-12, 0);
+  EXPECT_EQ(none.result.outcome, KrylovOutcome::iteration_limit);
+  EXPECT_EQ(none.result.relative_residual, 1.0);
+  EXPECT_EQ(none.x.norm(), 0.0);
+}
+
+TEST_P(Krylov, BreaksDownAtValuesThatAreNotFinite) {
+  const MatrixXd matrix = symmetric_matrix(0), broken = nan * matrix;
+  std::vector<double> b = right_hand_side();
+  b[3] = nan;
+  EXPECT_EQ(solve(GetParam(), map_of(broken)).result.outcome, KrylovOutcome::breakdown);
+  EXPECT_EQ(solve(GetParam(), map_of(matrix), map_of(broken)).result.outcome,
+            KrylovOutcome::breakdown);
+  EXPECT_EQ(solve(GetParam(), map_of(matrix), {}, 1e-12, 10, b).result.outcome,
+            KrylovOutcome::breakdown);
+}
+
+TEST_P(Krylov, BreaksDownWhereTheResidualCanFallNoFurther) {
+  // A singular matrix and a right-hand side outside its range.
+  MatrixXd matrix = MatrixXd::Identity(size, size);
+  matrix(0, 0) = 0.0;
+  const Solve solved = solve(GetParam(), map_of(matrix));
+  EXPECT_NE(solved.result.outcome, KrylovOutcome::converged);
+  EXPECT_GE(solved.result.relative_residual, std::abs(right_hand_side()[0]) / b_vector().norm());
+}
+
+TEST_P(Krylov, ReportsWhatItReachedWhenTooMuchIsAsked) {
+  const MatrixXd matrix = symmetric_matrix(0);
+  const Solve solved = solve(GetParam(), map_of(matrix), {}, 1e-18);
+  EXPECT_NE(solved.result.outcome, KrylovOutcome::converged);
+  EXPECT_LT(solved.result.relative_residual, 1e-13);
+  EXPECT_LT(true_residual(matrix, solved.x), 1e-13);
+}
+
+TEST_P(Krylov, LetsNoExceptionOut) {
+  const VectorMap throwing = [](const double*, double*) { throw std::runtime_error("thrown"); };
+  EXPECT_EQ(solve(GetParam(), throwing).result.outcome, KrylovOutcome::breakdown);
+}
+
+TEST_P(Krylov, PrintsNothing) {
+  const MatrixXd matrix = symmetric_matrix(0), negative = -matrix, broken = nan * matrix;
+  testing::internal::CaptureStdout();
+  testing::internal::CaptureStderr();
+  for (const MatrixXd* each : {&matrix, &negative, &broken}) {
+    (void)solve(GetParam(), map_of(*each), map_of(negative));
+  }
+  EXPECT_EQ(testing::internal::GetCapturedStdout(), "");
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+}
+
+TEST_P(Krylov, RefinesWhatTheRecursionMissed) {
+  // The first products are off by 1e-4. Recursive residuals never learn of it.
+  const MatrixXd matrix = symmetric_matrix(0);
+  tests::Random noise(5);
+  int products = 0;
+  const VectorMap rough_at_first = [&](const double* v, double* result) {
+    map_of(matrix)(v, result);
+    if (++products > 15) return;
+    for (int k = 0; k < size; ++k) result[k] *= 1.0 + 1e-4 * noise.number();
+  };
+  const Solve solved = solve(GetParam(), rough_at_first, {}, 1e-11, 1000);
+  EXPECT_EQ(solved.result.outcome, KrylovOutcome::converged);
+  EXPECT_LE(true_residual(matrix, solved.x), 1.01e-11);
+  // One run takes 40 iterations at most in exact arithmetic, and not many more in ours.
+  EXPECT_GT(solved.result.iterations, solve(GetParam(), map_of(matrix)).result.iterations);
+}
+
+TEST(Minres, SolvesIndefiniteSystems) {
+  const MatrixXd matrix = symmetric_matrix(7);
+  const MatrixXd scaling = VectorXd::LinSpaced(size, 0.5, 2.0).asDiagonal();
+  const VectorXd expected = matrix.partialPivLu().solve(b_vector());
+  for (const VectorMap& preconditioner : {VectorMap{}, map_of(scaling)}) {
+    const Solve solved = solve(KrylovMethod::minres, map_of(matrix), preconditioner);
+    EXPECT_EQ(solved.result.outcome, KrylovOutcome::converged);
+    EXPECT_LT((solved.x - expected).norm(), 1e-10 * expected.norm());
+  }
+}
+
+TEST(Gmres, SolvesWithAnUnsymmetricPreconditionerAndRestarts) {
+  const MatrixXd matrix = symmetric_matrix(0);
+  const MatrixXd preconditioner =
+      (matrix + 0.02 * matrix.norm() / size * random_matrix(6)).inverse();
+  const VectorXd expected = matrix.ldlt().solve(b_vector());
+  VectorXd x(size);
+  const KrylovResult result =
+      solve_krylov(size, map_of(matrix), map_of(preconditioner), right_hand_side().data(), x.data(),
+                   {KrylovMethod::gmres, 1e-12, 200, 4});
+  EXPECT_EQ(result.outcome, KrylovOutcome::converged);
+  EXPECT_GT(result.iterations, 4);
+  EXPECT_LT((x - expected).norm(), 1e-10 * expected.norm());
+}
+
+TEST(ConjugateGradientsOfBelos, NameNegativeCurvature) {
+  const auto outcome = [](const MatrixXd& matrix) {
+    return solve(KrylovMethod::conjugate_gradients, map_of(matrix)).result.outcome;
+  };
+  EXPECT_EQ(outcome(symmetric_matrix(1)), KrylovOutcome::negative_curvature);
+  EXPECT_EQ(outcome(-symmetric_matrix(0)), KrylovOutcome::negative_curvature);
+  EXPECT_EQ(outcome(MatrixXd::Zero(size, size)), KrylovOutcome::negative_curvature);
+}
+
+TEST(ConjugateGradientsOfBelos, BreakDownWithAnIndefinitePreconditioner) {
+  const MatrixXd matrix = symmetric_matrix(0);
+  for (const MatrixXd& preconditioner :
+       {symmetric_matrix(1), MatrixXd(-matrix), MatrixXd(MatrixXd::Zero(size, size))}) {
+    const KrylovOutcome outcome =
+        solve(KrylovMethod::conjugate_gradients, map_of(matrix), map_of(preconditioner))
+            .result.outcome;
+    EXPECT_EQ(outcome, KrylovOutcome::breakdown);
+  }
+}
+
+TEST(Minres, BreaksDownWithAnIndefinitePreconditioner) {
+  const MatrixXd matrix = symmetric_matrix(0), preconditioner = -matrix;
+  EXPECT_EQ(solve(KrylovMethod::minres, map_of(matrix), map_of(preconditioner)).result.outcome,
+            KrylovOutcome::breakdown);
+}
+
+TEST(SolveKrylov, HasNothingToDoWithoutEquations) {
+  const KrylovResult result = solve_krylov(0, {}, {}, nullptr, nullptr, {});
+  EXPECT_EQ(result.outcome, KrylovOutcome::converged);
+  EXPECT_EQ(result.iterations, 0);
+}
+
+}  // namespace
+}  // namespace peristat
