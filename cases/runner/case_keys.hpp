@@ -38,14 +38,19 @@ inline const Choices<Projection> projections{
     {"auto", Projection::automatic}, {"never", Projection::never}, {"always", Projection::always}};
 inline const Choices<LinearMethod> linear_methods{{"auto", LinearMethod::automatic},
                                                   {"cholesky", LinearMethod::cholesky},
-                                                  {"pcg", LinearMethod::conjugate_gradients}};
+                                                  {"pcg", LinearMethod::conjugate_gradients},
+                                                  {"minres", LinearMethod::minres},
+                                                  {"gmres", LinearMethod::gmres}};
 
 inline const Choices<PreconditionerKind> preconditioner_kinds{
     {"auto", PreconditionerKind::automatic},
     {"jacobi", PreconditionerKind::jacobi},
     {"block_jacobi", PreconditionerKind::block_jacobi},
     {"rigid_pieces", PreconditionerKind::rigid_pieces},
-    {"surrogate", PreconditionerKind::surrogate}};
+    {"surrogate", PreconditionerKind::surrogate},
+    {"riluk", PreconditionerKind::riluk},
+    {"chebyshev", PreconditionerKind::chebyshev},
+    {"multigrid", PreconditionerKind::multigrid}};
 
 inline const Choices<Predictor> predictors{{"consistent", Predictor::consistent},
                                            {"none", Predictor::none}};

@@ -10,7 +10,7 @@
 #include <suitesparse/cholmod.h>
 
 #include "assembly/tangent.hpp"
-#include "solvers/linear/conjugate_gradients.hpp"
+#include "solvers/linear/trilinos/krylov.hpp"
 #include "solvers/vector_verbs.hpp"
 #include "src/stopwatch.hpp"
 
@@ -49,7 +49,6 @@ struct Cholesky::Cholmod {
   FactorEstimate estimate;
   LinearStatistics statistics;
   std::optional<Inertia> inertia;
-  ConjugateGradients gradients;
   std::vector<double> full_in, full_out;
   int last_iterations = 0;
   bool counts_pivots = true;
@@ -373,12 +372,21 @@ LinearOutcome Cholesky::solve(std::span<const double> b, std::span<double> x, do
   c.last_iterations = 0;
   if (b.empty()) return LinearOutcome::solved;
   if (c.factor_current || !c.factor_valid) return c.solve_directly(b, x);
-  const GradientsResult result = c.gradients.solve(
-      [&](std::span<const double> v, std::span<double> product) { c.multiply(v, product); },
-      [&](std::span<const double> v, std::span<double> product) { c.apply_factor(v, product); }, b,
-      x, std::min(tolerance, c.reuse.tolerance), c.affordable_iterations());
+  const std::size_t size = b.size();
+  KrylovOptions options;
+  options.tolerance = std::min(tolerance, c.reuse.tolerance);
+  options.max_iterations = c.affordable_iterations();
+  const KrylovResult result = solve_krylov(
+      int(size),
+      [&](const double* v, double* product) {
+        c.multiply({v, size}, {product, size});
+      },
+      [&](const double* v, double* product) {
+        c.apply_factor({v, size}, {product, size});
+      },
+      b.data(), x.data(), options);
   c.statistics.iterations += result.iterations;
-  if (result.outcome != GradientsOutcome::converged) return c.solve_directly(b, x);
+  if (result.outcome != KrylovOutcome::converged) return c.solve_directly(b, x);
   c.last_iterations = result.iterations;
   return LinearOutcome::solved;
 }

@@ -14,28 +14,23 @@ namespace {
 
 constexpr double worn_out = 1.5;
 
-/// Runs of refinement; each gains at least a digit, or the tolerance is beyond round-off.
-constexpr int most_runs = 4;
-
-/// What the true residual may exceed the tolerance by.
-constexpr double slack = 1.1;
-
 /// Round-off of b - K x, in units of epsilon times the largest diagonal entry of K times ||x||. A
 /// slender body's displacements are so large that no solver's residual goes below.
 constexpr double round_off = 20.0 * std::numeric_limits<double>::epsilon();
 
 }  // namespace
 
-IterativeSolver::IterativeSolver(std::unique_ptr<Preconditioner> preconditioner, int max_iterations)
-    : preconditioner_(std::move(preconditioner)), max_iterations_(max_iterations) {}
+IterativeSolver::IterativeSolver(KrylovMethod method,
+                                 std::unique_ptr<Preconditioner> preconditioner, int max_iterations)
+    : method_(method),
+      preconditioner_(std::move(preconditioner)),
+      max_iterations_(max_iterations) {}
 
 LinearOutcome IterativeSolver::analyze(const Pattern& pattern, const FreeDofs& free) {
   const Stopwatch watch(statistics_.seconds);
   free_ = &free;
   full_in_.resize(free.equation.size());
   full_out_.resize(free.equation.size());
-  residual_.resize(std::size_t(free.count()));
-  refinement_.resize(std::size_t(free.count()));
   built_ = false;
   preconditioner_->analyze(pattern, free);
   return LinearOutcome::solved;
@@ -61,6 +56,13 @@ LinearOutcome IterativeSolver::factorize(const TangentOperator& tangent, FactorU
     if (!std::isfinite(entry)) return LinearOutcome::singular;
     largest_diagonal_ = std::max(largest_diagonal_, std::abs(entry));
   }
+  const std::size_t d = std::size_t(tangent.dimension);
+  for (const Index dof : free_->dof) {
+    // A point without stiffness.
+    if (tangent.diagonal[std::size_t(dof) * d + std::size_t(dof) % d] == 0.0) {
+      return LinearOutcome::singular;
+    }
+  }
   if (use == FactorUse::may_reuse && built_ && !worn_) return LinearOutcome::solved;
   return build();
 }
@@ -73,36 +75,29 @@ void IterativeSolver::multiply(std::span<const double> v, std::span<double> prod
 
 LinearOutcome IterativeSolver::iterate(std::span<const double> b, std::span<double> x,
                                        double tolerance) {
-  const double target = slack * tolerance * norm(b);
-  const int before = last_iterations_;
-  std::fill(x.begin(), x.end(), 0.0);
-  std::copy(b.begin(), b.end(), residual_.begin());
-  double reached = norm(b);
-  for (int run = 0; run < most_runs && reached > target; ++run) {
-    const GradientsResult result = gradients_.solve(
-        [&](std::span<const double> v, std::span<double> product) { multiply(v, product); },
-        [&](std::span<const double> v, std::span<double> product) {
-          preconditioner_->apply(v, product);
-        },
-        residual_, refinement_, std::min(0.5, tolerance * norm(b) / reached),
-        max_iterations_ - (last_iterations_ - before));
-    last_iterations_ += result.iterations;
-    statistics_.iterations += result.iterations;
-    if (result.outcome == GradientsOutcome::negative_curvature) {
-      return LinearOutcome::not_positive_definite;
-    }
-    if (result.outcome == GradientsOutcome::not_finite) return LinearOutcome::singular;
-    add_scaled(x, 1.0, refinement_);
-    multiply(x, residual_);
-    for (std::size_t e = 0; e < b.size(); ++e) residual_[e] = b[e] - residual_[e];
-    const double now = norm(residual_);
-    const bool stalls = !(now < 0.1 * reached);
-    reached = now;
-    if (result.outcome == GradientsOutcome::iteration_limit || stalls) break;
+  const std::size_t size = b.size();
+  KrylovOptions options;
+  options.method = method_;
+  options.tolerance = tolerance;
+  options.max_iterations = max_iterations_;
+  const KrylovResult result = solve_krylov(
+      int(size),
+      [&](const double* v, double* product) {
+        multiply({v, size}, {product, size});
+      },
+      [&](const double* v, double* product) {
+        preconditioner_->apply({v, size}, {product, size});
+      },
+      b.data(), x.data(), options);
+  last_iterations_ += result.iterations;
+  statistics_.iterations += result.iterations;
+  if (result.outcome == KrylovOutcome::converged) return LinearOutcome::solved;
+  if (result.outcome == KrylovOutcome::negative_curvature) {
+    return LinearOutcome::not_positive_definite;
   }
   const double attainable = round_off * largest_diagonal_ * norm(x);
-  return reached <= std::max(target, attainable) ? LinearOutcome::solved
-                                                 : LinearOutcome::inaccurate;
+  return result.relative_residual * norm(b) <= attainable ? LinearOutcome::solved
+                                                          : LinearOutcome::inaccurate;
 }
 
 LinearOutcome IterativeSolver::solve(std::span<const double> b, std::span<double> x,
@@ -125,7 +120,10 @@ LinearOutcome IterativeSolver::solve(std::span<const double> b, std::span<double
 }
 
 std::string IterativeSolver::describe() const {
-  return fmt::format("conjugate gradients preconditioned by {}", preconditioner_->describe());
+  const char* method = method_ == KrylovMethod::minres  ? "MINRES"
+                       : method_ == KrylovMethod::gmres ? "GMRES"
+                                                        : "conjugate gradients";
+  return fmt::format("{} preconditioned by {}", method, preconditioner_->describe());
 }
 
 }  // namespace peristat

@@ -3,25 +3,26 @@
 #include <memory>
 #include <vector>
 
-#include "solvers/linear/conjugate_gradients.hpp"
 #include "solvers/linear/preconditioner.hpp"
+#include "solvers/linear/trilinos/krylov.hpp"
 
 namespace peristat {
 
-/// Preconditioned Krylov solver. Every solution's true residual b - K x is computed; where
-/// rounding has parted it from the recursive one, the solution is refined, down to the tolerance or
-/// to the round-off of b - K x itself.
+/// Preconditioned Krylov solver. Every solution's true residual b - K x is computed, and is below
+/// the tolerance or of the size of its own round-off.
 ///
 /// Where reuse is allowed, the preconditioner stays that of an earlier tangent until a solve takes
 /// more than one and a half times the iterations per digit of the first one after it was built.
 class IterativeSolver : public LinearSolver {
  public:
-  IterativeSolver(std::unique_ptr<Preconditioner> preconditioner, int max_iterations);
+  IterativeSolver(KrylovMethod method, std::unique_ptr<Preconditioner> preconditioner,
+                  int max_iterations);
 
   LinearOutcome analyze(const Pattern& pattern, const FreeDofs& free) override;
   void count_pivots(bool) override {}  // they are never known
   LinearOutcome factorize(const TangentOperator& tangent, FactorUse use) override;
-  /// @return not_positive_definite on negative curvature, inaccurate at the iteration limit
+  /// @return not_positive_definite where conjugate gradients meet negative curvature, inaccurate at
+  ///         the iteration limit or where a preconditioner fails
   LinearOutcome solve(std::span<const double> b, std::span<double> x, double tolerance) override;
   [[nodiscard]] std::optional<Inertia> inertia() const override { return std::nullopt; }
   [[nodiscard]] LinearStatistics statistics() const override { return statistics_; }
@@ -33,11 +34,11 @@ class IterativeSolver : public LinearSolver {
   LinearOutcome iterate(std::span<const double> b, std::span<double> x, double tolerance);
   void multiply(std::span<const double> v, std::span<double> product);
 
+  KrylovMethod method_;
   std::unique_ptr<Preconditioner> preconditioner_;
   int max_iterations_;
   const FreeDofs* free_ = nullptr;
   const TangentOperator* tangent_ = nullptr;
-  ConjugateGradients gradients_;
   LinearStatistics statistics_;
   bool built_ = false;                 // the preconditioner holds numbers
   bool built_now_ = false;             // of the present tangent
@@ -45,7 +46,7 @@ class IterativeSolver : public LinearSolver {
   double iterations_per_digit_ = 0.0;  // of the first solve after it was built; 0: none yet
   double largest_diagonal_ = 0.0;
   int last_iterations_ = 0;
-  std::vector<double> full_in_, full_out_, residual_, refinement_;
+  std::vector<double> full_in_, full_out_;
 };
 
 }  // namespace peristat

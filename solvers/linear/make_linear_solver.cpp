@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "solvers/linear/assembled_preconditioner.hpp"
 #include "solvers/linear/block_jacobi.hpp"
 #include "solvers/linear/cholesky.hpp"
 #include "solvers/linear/iterative_solver.hpp"
@@ -36,6 +37,12 @@ std::unique_ptr<Preconditioner> make_preconditioner(PreconditionerKind kind) {
       return std::make_unique<BlockJacobi>(BlockJacobi::Blocks::points);
     case PreconditionerKind::surrogate:
       return std::make_unique<Surrogate>();
+    case PreconditionerKind::riluk:
+      return std::make_unique<AssembledPreconditioner>(MatrixPreconditionerKind::riluk);
+    case PreconditionerKind::chebyshev:
+      return std::make_unique<AssembledPreconditioner>(MatrixPreconditionerKind::chebyshev);
+    case PreconditionerKind::multigrid:
+      return std::make_unique<AssembledPreconditioner>(MatrixPreconditionerKind::multigrid);
     case PreconditionerKind::rigid_pieces:
     case PreconditionerKind::automatic:
       break;
@@ -43,8 +50,15 @@ std::unique_ptr<Preconditioner> make_preconditioner(PreconditionerKind kind) {
   return std::make_unique<RigidPieces>();
 }
 
-std::unique_ptr<LinearSolver> make_iterative(PreconditionerKind kind, int max_iterations) {
-  return std::make_unique<IterativeSolver>(make_preconditioner(kind), max_iterations);
+std::unique_ptr<LinearSolver> make_iterative(
+    PreconditionerKind kind, int max_iterations,
+    KrylovMethod method = KrylovMethod::conjugate_gradients) {
+  return std::make_unique<IterativeSolver>(method, make_preconditioner(kind), max_iterations);
+}
+
+KrylovMethod krylov_method(LinearMethod method) {
+  if (method == LinearMethod::minres) return KrylovMethod::minres;
+  return method == LinearMethod::gmres ? KrylovMethod::gmres : KrylovMethod::conjugate_gradients;
 }
 
 /// Estimated seconds of a load step.
@@ -105,8 +119,11 @@ ChosenSolver make_linear_solver(const LinearSolverOptions& options, const Linear
     case LinearMethod::cholesky:
       return {std::make_unique<Cholesky>(), true, Seconds(problem).direct, "as the case asks"};
     case LinearMethod::conjugate_gradients:
-      return {make_iterative(options.preconditioner, most_iterations), false,
-              Seconds(problem).iterative, "as the case asks"};
+    case LinearMethod::minres:
+    case LinearMethod::gmres:
+      return {
+          make_iterative(options.preconditioner, most_iterations, krylov_method(options.method)),
+          false, Seconds(problem).iterative, "as the case asks"};
     case LinearMethod::automatic:
       break;
   }

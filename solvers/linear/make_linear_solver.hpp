@@ -8,9 +8,18 @@
 
 namespace peristat {
 
-enum class LinearMethod { automatic, cholesky, conjugate_gradients };
+enum class LinearMethod { automatic, cholesky, conjugate_gradients, minres, gmres };
 
-enum class PreconditionerKind { automatic, jacobi, block_jacobi, rigid_pieces, surrogate };
+enum class PreconditionerKind {
+  automatic,
+  jacobi,
+  block_jacobi,
+  rigid_pieces,
+  surrogate,
+  riluk,
+  chebyshev,
+  multigrid
+};
 
 struct LinearSolverOptions {
   LinearMethod method = LinearMethod::automatic;

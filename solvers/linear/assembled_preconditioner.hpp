@@ -1,0 +1,29 @@
+#pragma once
+
+#include "solvers/linear/preconditioner.hpp"
+#include "solvers/linear/trilinos/matrix_preconditioner.hpp"
+
+namespace peristat {
+
+/// Preconditioners of Trilinos: incomplete factors, Chebyshev polynomial or multigrid of the stored
+/// tangent, as a matrix of its own. Multigrid is given the rigid motions of the current
+/// configuration.
+class AssembledPreconditioner : public Preconditioner {
+ public:
+  explicit AssembledPreconditioner(MatrixPreconditionerKind kind) : preconditioner_(kind) {}
+
+  void analyze(const Pattern&, const FreeDofs& free) override { free_ = &free; }
+  /// @throws std::logic_error for a tangent without stored blocks
+  [[nodiscard]] LinearOutcome build(const TangentOperator& tangent) override;
+  void apply(std::span<const double> residual, std::span<double> correction) override {
+    preconditioner_.apply(residual.data(), correction.data());
+  }
+  [[nodiscard]] std::string describe() const override { return description_; }
+
+ private:
+  MatrixPreconditioner preconditioner_;
+  const FreeDofs* free_ = nullptr;
+  std::string description_ = "Trilinos";
+};
+
+}  // namespace peristat
