@@ -118,7 +118,13 @@ void Assembler::tangent(std::span<const double> displacement, Tangent& tangent, 
     tangent.position[k] = points().reference[k] + displacement[k];
   }
   dispatch(dimension, workspace_->potential, [&](auto d, const auto& law) {
-    BondKernels<decltype(d)::value>::tangent(*workspace_, law, displacement, projection, tangent);
+    constexpr std::size_t entries = decltype(d)::value * decltype(d)::value;
+    BondKernels<decltype(d)::value>::tangent(
+        *workspace_, law, displacement, projection,
+        [&](int, Index i) {
+          return tangent.off_diagonal.data() + std::size_t(tangent.pattern.offset[i]) * entries;
+        },
+        [](int, Index) {}, tangent.diagonal);
   });
   if (model().has_only_bonds()) return;
   with_dimension(dimension, [&](auto d) {
@@ -126,12 +132,37 @@ void Assembler::tangent(std::span<const double> displacement, Tangent& tangent, 
   });
 }
 
+void Assembler::visit_tangent(std::span<const double> displacement, double projection,
+                              const TangentOperator::RowVisitor& visit,
+                              std::span<double> diagonal) {
+  const Stopwatch watch(seconds_);
+  const std::vector<Offset>& offset = model().bonds.offset;
+  Offset longest = 0;
+  for (std::size_t i = 1; i < offset.size(); ++i) {
+    longest = std::max(longest, offset[i] - offset[i - 1]);
+  }
+  dispatch(points().dimension, workspace_->potential, [&](auto d, const auto& law) {
+    constexpr std::size_t entries = decltype(d)::value * decltype(d)::value;
+    std::vector<std::vector<double>> rows(std::size_t(threads()),
+                                          std::vector<double>(std::size_t(longest) * entries));
+    BondKernels<decltype(d)::value>::tangent(
+        *workspace_, law, displacement, projection,
+        [&](int thread, Index) { return rows[std::size_t(thread)].data(); },
+        [&](int thread, Index i) {
+          const std::size_t bonds = std::size_t(offset[i + 1] - offset[i]);
+          visit(thread, i, std::span(rows[std::size_t(thread)]).first(bonds * entries));
+        },
+        diagonal);
+  });
+}
+
 void Assembler::product(std::span<const double> displacement, std::span<const double> v,
-                        std::span<double> product) {
+                        std::span<double> product, double projection) {
   const Stopwatch watch(seconds_);
   const int dimension = points().dimension;
   dispatch(dimension, workspace_->potential, [&](auto d, const auto& law) {
-    BondKernels<decltype(d)::value>::product(*workspace_, law, displacement, v, product);
+    BondKernels<decltype(d)::value>::product(*workspace_, law, displacement, v, projection,
+                                             product);
   });
   if (model().has_only_bonds()) return;
   with_dimension(dimension, [&](auto d) {

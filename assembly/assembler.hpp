@@ -16,7 +16,7 @@ struct Workspace;
 /// E(u) = sum over interactions of w psi(m; M), visiting each unique bond, triangle and tetrahedron
 /// once, on several threads.
 ///
-/// All arrays are points x dimension, row major. No call allocates. For a given number of threads
+/// All arrays are points x dimension, row major. No call but visit_tangent allocates. For a given number of threads
 /// every result is reproducible to the last bit.
 class Assembler {
  public:
@@ -57,8 +57,14 @@ class Assembler {
   void tangent(std::span<const double> displacement, Tangent& tangent, double projection = 0.0);
 
   /// product = d2E/dx2(displacement) v, without a stored tangent.
+  /// @param projection as of `tangent`; other than 0 only for models of bonds alone
   void product(std::span<const double> displacement, std::span<const double> v,
-               std::span<double> product);
+               std::span<double> product, double projection = 0.0);
+
+  /// Visits the rows of the tangent of a model of bonds alone, without storing it.
+  /// @param diagonal blocks as in TangentOperator; empty: not wanted
+  void visit_tangent(std::span<const double> displacement, double projection,
+                     const TangentOperator::RowVisitor& visit, std::span<double> diagonal);
 
   /// Energy of each point, an equal share of its interactions' [J], and the largest stretch l/L - 1
   /// of a bond.

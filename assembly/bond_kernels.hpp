@@ -255,14 +255,18 @@ struct BondKernels {
     return a.total_stored().growth;
   }
 
-  template <class P>
+  /// @param blocks_of(thread, i) where the off-diagonal blocks of row i go
+  /// @param done(thread, i) called once they are there
+  /// @param diagonal blocks; empty: not wanted
+  template <class P, class BlocksOf, class Done>
   static void tangent(Workspace& a, const P& potential, Span displacement, double projection,
-                      Tangent& result) {
+                      const BlocksOf& blocks_of, const Done& done, std::span<double> diagonal) {
     a.pack<D>(a.points.reference, displacement);
     const Bonds& bonds = a.model.bonds;
     constexpr int width = block_width(D);
-    const auto body = [&](int, RowRange range, double* sums) {
+    const auto body = [&](int thread, RowRange range, double* sums) {
       for (Index i = range.first; i < range.last; ++i) {
+        double* const blocks = blocks_of(thread, i);
         std::array<Lanes, width> own;
         own.fill(Lanes(0.0));
         for_each_batch<D>(
@@ -273,18 +277,20 @@ struct BondKernels {
                   interaction_energy(batch.weight, at_history(a, potential, batch.first), measure);
               if (projection > 0.0) psi = projected(psi, projection);
               const Matrix<D, Lanes> block = energy_hessian<0, 0>(psi, measure);
-              store_blocks<D>(&result.off_diagonal[std::size_t(batch.first) * D * D], batch.count,
-                              block);
+              store_blocks<D>(blocks + std::size_t(batch.first - bonds.offset[i]) * D * D,
+                              batch.count, block);
               const auto half = upper_half<D>(block);
               for (int c = 0; c < width; ++c) own[c] += half[c];
               add_to_partners<D>(sums, batch.partner, half);
             });
         for (int c = 0; c < D * (D + 1) / 2; ++c)
           sums[std::ptrdiff_t(i) * width + c] += sum(own[c]);
+        done(thread, i);
       }
     };
     a.sum_rows<width>(body, [&](Index i, const double* total) {
-      double* block = &result.diagonal[std::size_t(i) * D * D];
+      if (diagonal.empty()) return;
+      double* block = &diagonal[std::size_t(i) * D * D];
       int k = 0;
       for (int r = 0; r < D; ++r) {
         for (int c = r; c < D; ++c) block[r * D + c] = block[c * D + r] = total[k++];
@@ -294,7 +300,7 @@ struct BondKernels {
 
   template <class P>
   static void product(Workspace& a, const P& potential, Span displacement, Span v,
-                      std::span<double> result) {
+                      double projection, std::span<double> result) {
     a.pack<D>(displacement, v);
     constexpr int row = row_width(D);
     const Index count = a.points.count();
@@ -314,8 +320,9 @@ struct BondKernels {
             bonds, a.rows.data(), i, [&](const Batch<D>& batch) __attribute__((always_inline)) {
               const auto measure =
                   Length::from_current<D, Lanes>(batch.inverse_length, {batch.vector0});
-              const auto psi =
+              auto psi =
                   interaction_energy(batch.weight, at_history(a, potential, batch.first), measure);
+              if (projection > 0.0) psi = projected(psi, projection);
               const Vector<D, Lanes> force =
                   energy_hessian_times(psi, measure, Arms<1, D, Lanes>{batch.vector1})[0];
               for (int c = 0; c < D; ++c) own[c] -= force[c];

@@ -88,26 +88,6 @@ void Tangent::for_each_row(const RowVisitor& visit) const {
   }
 }
 
-void Tangent::absolute_row_sums(std::span<double> sums) const {
-  const int d = dimension;
-  std::fill(sums.begin(), sums.end(), 0.0);
-  for (Index i = 0; i < pattern.points(); ++i) {
-    const auto add = [&](Index row, Index column, const double* block) {
-      for (int r = 0; r < d; ++r) {
-        for (int c = 0; c < d; ++c) {
-          const double size = std::abs(block[r * d + c]);
-          sums[std::size_t(row) * d + r] += size;
-          if (row != column) sums[std::size_t(column) * d + c] += size;
-        }
-      }
-    };
-    add(i, i, &diagonal[std::size_t(i) * d * d]);
-    for (Offset bond = pattern.offset[i]; bond < pattern.offset[i + 1]; ++bond) {
-      add(i, pattern.partner[bond], &off_diagonal[std::size_t(bond) * d * d]);
-    }
-  }
-}
-
 double Tangent::asymmetry() const {
   const int d = dimension;
   double largest = 0.0, difference = 0.0;

@@ -21,10 +21,6 @@ struct Tangent : TangentOperator {
   [[nodiscard]] const Tangent* stored() const override { return this; }
   [[nodiscard]] Tangent* stored() override { return this; }
 
-  /// Sums of the absolute entries of each row, sum_j |K_ij| [N/m]: Gershgorin's bound of the
-  /// largest eigenvalue, per degree of freedom.
-  void absolute_row_sums(std::span<double> sums) const;
-
   /// Largest |K - K^T| over largest |K|. The off-diagonal blocks are stored once, so only diagonal
   /// blocks can be unsymmetric; whether an off-diagonal block is right in both its places is a
   /// matter of the derivative, which finite differences check.

@@ -1,5 +1,8 @@
 #include "assembly/tangent_operator.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 namespace peristat {
 
 TangentOperator::TangentOperator(const Pattern& of, int dimension_of_points, int threads)
@@ -8,5 +11,32 @@ TangentOperator::TangentOperator(const Pattern& of, int dimension_of_points, int
       ranges(partition_rows(of, threads)),
       diagonal(std::size_t(of.points()) * dimension * dimension),
       position(std::size_t(of.points()) * dimension) {}
+
+void TangentOperator::absolute_row_sums(std::span<double> sums) const {
+  const std::size_t d = std::size_t(dimension), entries = d * d;
+  std::vector<std::vector<double>> parts;  // rows first..reach of each thread
+  for (const RowRange& range : ranges)
+    parts.emplace_back(std::size_t(range.reach - range.first) * d);
+  for_each_row([&](int thread, Index i, std::span<const double> blocks) {
+    double* const part = parts[std::size_t(thread)].data();
+    const Index first = ranges[std::size_t(thread)].first;
+    double* const own = part + std::size_t(i - first) * d;
+    const double* block = &diagonal[std::size_t(i) * entries];
+    for (std::size_t k = 0; k < entries; ++k) own[k / d] += std::abs(block[k]);
+    block = blocks.data();
+    for (Offset bond = pattern.offset[i]; bond < pattern.offset[i + 1]; ++bond, block += entries) {
+      double* const other = part + std::size_t(pattern.partner[bond] - first) * d;
+      for (std::size_t k = 0; k < entries; ++k) {
+        own[k / d] += std::abs(block[k]);
+        other[k % d] += std::abs(block[k]);
+      }
+    }
+  });
+  std::fill(sums.begin(), sums.end(), 0.0);
+  for (std::size_t thread = 0; thread < parts.size(); ++thread) {
+    const std::size_t first = std::size_t(ranges[thread].first) * d;
+    for (std::size_t k = 0; k < parts[thread].size(); ++k) sums[first + k] += parts[thread][k];
+  }
+}
 
 }  // namespace peristat

@@ -41,6 +41,10 @@ struct TangentOperator {
   /// Visits all rows, those of a thread in ascending order and the threads side by side.
   virtual void for_each_row(const RowVisitor& visit) const = 0;
 
+  /// Sums of the absolute entries of each row, sum_j |K_ij| [N/m]: Gershgorin's bound of the
+  /// largest eigenvalue, per degree of freedom.
+  void absolute_row_sums(std::span<double> sums) const;
+
   /// Itself with its stored blocks, or nothing if they are computed anew each time.
   [[nodiscard]] virtual const Tangent* stored() const { return nullptr; }
   [[nodiscard]] virtual Tangent* stored() { return nullptr; }

@@ -81,8 +81,8 @@ class Relaxation {
     for (const Index dof : way.prescribed()) last_reaction_.push_back(at_.gradient[dof]);
   }
 
-  void find_density(Tangent& tangent) {
-    problem_.assembler.tangent(at_.displacement, tangent);
+  void find_density(TangentOperator& tangent) {
+    tangent.linearise(problem_.assembler, at_.displacement, 0.0);
     std::vector<double> sums(at_.displacement.size());
     tangent.absolute_row_sums(sums);
     for (std::size_t e = 0; e < dofs_.size(); ++e) {
@@ -296,8 +296,8 @@ double taken_up(const EquilibriumProblem& problem, const RelaxationOptions& opti
 
 }  // namespace
 
-RelaxationResult relax(const EquilibriumProblem& problem, Tangent& tangent, const State& from,
-                       double load_factor, const RelaxationOptions& options,
+RelaxationResult relax(const EquilibriumProblem& problem, TangentOperator& tangent,
+                       const State& from, double load_factor, const RelaxationOptions& options,
                        RelaxationMotion& motion, const RelaxationObserver& observer) {
   RelaxationResult result;
   result.state.displacement = from.displacement;

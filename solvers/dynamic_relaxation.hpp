@@ -80,7 +80,7 @@ using RelaxationObserver = std::function<bool(const IterationRecord&)>;
 /// per cent where bonds break within an iteration.
 /// @param tangent room for the tangent that the density is made from
 /// @param motion at the start, and at the end if the relaxation does not hold
-[[nodiscard]] RelaxationResult relax(const EquilibriumProblem& problem, Tangent& tangent,
+[[nodiscard]] RelaxationResult relax(const EquilibriumProblem& problem, TangentOperator& tangent,
                                      const State& from, double load_factor,
                                      const RelaxationOptions& options, RelaxationMotion& motion,
                                      const RelaxationObserver& observer);

@@ -471,7 +471,7 @@ class LoadPath {
 
   /// Of the state that a search has ended in, for what is told of it.
   void count_pivots(Attempt& attempt) {
-    assembler().tangent(attempt.state.displacement, active_->tangent);
+    active_->tangent.linearise(assembler(), attempt.state.displacement, 0.0);
     active_->solver.count_pivots(true);
     static_cast<void>(active_->solver.factorize(active_->tangent, FactorUse::factorize_now));
     attempt.inertia = active_->solver.inertia();

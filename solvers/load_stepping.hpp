@@ -87,7 +87,7 @@ struct LoadSteppingResult {
 struct SolvedBody {
   Assembler& assembler;
   LinearSolver& solver;  ///< analyzed for the body's pattern and the supports
-  Tangent& tangent;
+  TangentOperator& tangent;
 };
 
 /// Follows the equilibrium from load factor 0 to 1 in steps; every decision is told.

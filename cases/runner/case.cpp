@@ -369,6 +369,12 @@ SolverSpecification read_solver(const TomlTable& table) {
   solver.linear = table.choice("linear", linear_methods, solver.linear);
   solver.preconditioner =
       table.choice("preconditioner", preconditioner_kinds, solver.preconditioner);
+  solver.tangent = table.choice("tangent", tangent_storages, solver.tangent);
+  if (solver.tangent == TangentStorage::matrix_free &&
+      !can_be_matrix_free({solver.linear, solver.preconditioner}))
+    table.refuse("tangent",
+                 "does not go with this solver.linear or solver.preconditioner, which "
+                 "need the stored tangent");
   solver.predictor = table.choice("predictor", predictors, solver.predictor);
   solver.projection = table.choice("projection", projections, solver.projection);
   solver.relative_tolerance =
@@ -533,6 +539,9 @@ void read_document(const TomlValue& document, const std::filesystem::path& file,
   for (const auto& load : root.tables("load")) result.loads.push_back(read_load(load, context));
   result.loading = read_loading(optional_table("loading"));
   result.solver = read_solver(optional_table("solver"));
+  if (result.solver.tangent == TangentStorage::matrix_free &&
+      result.material.model != MaterialModel::bond)
+    optional_table("solver").refuse("tangent", "is for material.model = \"bond\"");
   // Damage grows in steps that are smaller than elastic ones.
   constexpr int steps_of_damage = 50;
   const bool hands_over =

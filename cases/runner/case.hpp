@@ -73,6 +73,7 @@ struct SolverSpecification {
   Mode mode = Mode::newton;
   LinearMethod linear = LinearMethod::automatic;
   PreconditionerKind preconditioner = PreconditionerKind::automatic;
+  TangentStorage tangent = TangentStorage::automatic;
   Projection projection = Projection::automatic;
   Predictor predictor = Predictor::consistent;
   double relative_tolerance = 1e-10;

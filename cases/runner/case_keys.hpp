@@ -42,6 +42,10 @@ inline const Choices<LinearMethod> linear_methods{{"auto", LinearMethod::automat
                                                   {"minres", LinearMethod::minres},
                                                   {"gmres", LinearMethod::gmres}};
 
+inline const Choices<TangentStorage> tangent_storages{{"auto", TangentStorage::automatic},
+                                                      {"stored", TangentStorage::stored},
+                                                      {"matrix_free", TangentStorage::matrix_free}};
+
 inline const Choices<PreconditionerKind> preconditioner_kinds{
     {"auto", PreconditionerKind::automatic},
     {"jacobi", PreconditionerKind::jacobi},

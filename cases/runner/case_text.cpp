@@ -241,6 +241,7 @@ std::string resolved_text(const Case& from) {
   out.string("mode", choice_name(modes, from.solver.mode));
   out.string("linear", choice_name(linear_methods, from.solver.linear));
   out.string("preconditioner", choice_name(preconditioner_kinds, from.solver.preconditioner));
+  out.string("tangent", choice_name(tangent_storages, from.solver.tangent));
   out.string("predictor", choice_name(predictors, from.solver.predictor));
   out.string("projection", choice_name(projections, from.solver.projection));
   out.number("relative_tolerance", from.solver.relative_tolerance);

@@ -104,14 +104,13 @@ Exit check(const Case& from, int threads) {
   const MemoryEstimate estimate = estimate_memory(body);
   const FreeDofs free(prescribed, points.dimension);
   const Pattern pattern(body.model.bonds);
-  const ChosenSolver chosen =
-      make_linear_solver(linear_solver_options(from), linear_problem(from, estimate), {});
-  require_memory(estimate.bytes(chosen.is_direct),
-                 fmt::format("the case with {} points", points.count()));
+  const LinearSystems systems = choose_linear_systems(from, estimate, {});
+  const ChosenSolver& chosen = systems.chosen;
+  require_memory(systems.bytes, fmt::format("the case with {} points", points.count()));
   if (chosen.solver->analyze(pattern, free) == LinearOutcome::solved) {
     fmt::print("solver      {} ({})\n", chosen.solver->describe(), chosen.reason);
   }
-  fmt::print("memory      about {} of {} available\n", bytes_text(estimate.bytes(chosen.is_direct)),
+  fmt::print("memory      about {} of {} available\n", bytes_text(systems.bytes),
              bytes_text(available_memory()));
   fmt::print("time        {} for {} load steps, if none has to be cut\n",
              seconds_text(chosen.seconds * from.loading.steps / threads), from.loading.steps);

@@ -97,9 +97,8 @@ MemoryEstimate estimate_memory(int dimension, const BodySize& size, double horiz
 
   const double blocks = (bonds + size.points) * d * d;
   const double vectors = 20.0 * size.points * d + 28.0 * size.points;
-  estimate.body_bytes = base_bytes + 20.0 * bonds + 8.0 * size.points +  // bonds
-                        8.0 * blocks +                                   // tangent
-                        8.0 * vectors;
+  estimate.body_bytes = base_bytes + 20.0 * bonds + 8.0 * size.points + 8.0 * vectors;
+  estimate.tangent_bytes = 8.0 * blocks;
   estimate.matrix_bytes = 16.0 * blocks;
   // Krylov vectors, block Jacobi's inverse and the basis of the pieces' motions.
   const double motions = 0.5 * d * (d + 1.0);
@@ -109,10 +108,6 @@ MemoryEstimate estimate_memory(int dimension, const BodySize& size, double horiz
 
 double MemoryEstimate::direct_bytes() const {
   return matrix_bytes + 8.0 * factor_overhead * factor_entries;
-}
-
-double MemoryEstimate::least_bytes() const {
-  return body_bytes + std::min(direct_bytes(), iterative_bytes);
 }
 
 double available_memory() {

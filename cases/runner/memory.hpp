@@ -17,16 +17,19 @@ struct MemoryEstimate {
   double points = 0.0, bonds = 0.0, free_dofs = 0.0;
   double factor_entries = 0.0;   ///< of the Cholesky factor
   double factor_flops = 0.0;     ///< of one factorisation
-  double body_bytes = 0.0;       ///< of the run without its linear solver
+  double body_bytes = 0.0;       ///< of the run without its tangent and linear solver
+  double tangent_bytes = 0.0;    ///< of a stored tangent
   double matrix_bytes = 0.0;     ///< of a direct solver without its factor
   double iterative_bytes = 0.0;  ///< of conjugate gradients with rigid pieces
 
   [[nodiscard]] double direct_bytes() const;
-  /// Of the whole run, by the solver that takes least, or by a direct or an iterative one.
-  [[nodiscard]] double least_bytes() const;
-  [[nodiscard]] double bytes(bool is_direct) const {
-    return body_bytes + (is_direct ? direct_bytes() : iterative_bytes);
+  /// Of the whole run by a direct or an iterative solver, with or without a stored tangent.
+  [[nodiscard]] double bytes(bool is_direct, bool is_stored) const {
+    return body_bytes + (is_stored ? tangent_bytes : 0.0) +
+           (is_direct ? direct_bytes() : iterative_bytes);
   }
+  /// By whatever takes least.
+  [[nodiscard]] double least_bytes() const { return bytes(false, false); }
 };
 
 /// Extent of a body in points: how many, and along its longest direction.

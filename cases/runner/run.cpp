@@ -181,19 +181,18 @@ LoadSteppingResult follow_with_stand_in(const Case& from, const Body& body,
                                         Summary& summary) {
   const Pattern pattern(stand_in.bonds);
   Assembler assembler(body.points, stand_in, solved.assembler.threads());
-  Tangent tangent(pattern, from.dimension);
   const MemoryEstimate estimate =
       estimate_memory(from.dimension, size_of(body.points), from.solver.elastic_horizon_ratio,
                       double(stand_in.bonds.count()), double(free.count()));
-  const ChosenSolver chosen =
-      make_linear_solver(linear_solver_options(from), linear_problem(from, estimate), {});
-  LinearSolver& solver = *chosen.solver;
+  const LinearSystems systems = choose_linear_systems(from, estimate, {});
+  LinearSolver& solver = *systems.chosen.solver;
+  const std::unique_ptr<TangentOperator> tangent = systems.make_tangent(assembler);
   if (solver.analyze(pattern, free) != LinearOutcome::solved) {
     LoadSteppingResult result;
     result.outcome = Outcome::out_of_memory;
     return result;
   }
-  const SolvedBody standing_in{assembler, solver, tangent};
+  const SolvedBody standing_in{assembler, solver, *tangent};
   LoadSteppingResult result = follow_loading(solved, *body.conditions, load_stepping_options(from),
                                              newton_options(from), observer, &standing_in);
   add_costs(assembler, solver, summary);
@@ -251,8 +250,8 @@ Exit run(const Case& from, const RunOptions& options) {
   };
   StepRecord last_step;
   const MemoryEstimate estimate = estimate_memory(body);
-  const ChosenSolver chosen = make_linear_solver(
-      linear_solver_options(from), linear_problem(from, estimate), [&](const std::string& reason) {
+  const LinearSystems systems =
+      choose_linear_systems(from, estimate, [&](const std::string& reason) {
         DecisionRecord record;
         record.step = last_step.step + 1;
         record.load_factor = last_step.load_factor;
@@ -260,8 +259,7 @@ Exit run(const Case& from, const RunOptions& options) {
         record.reason = reason;
         decide(record);
       });
-  require_memory(estimate.bytes(chosen.is_direct),
-                 fmt::format("the case with {} points", body.points.count()));
+  require_memory(systems.bytes, fmt::format("the case with {} points", body.points.count()));
   const FreeDofs free(body.conditions->prescribed(), from.dimension);
   progress.say(fmt::format("{} points, {} bonds, {} free degrees of freedom, {} threads",
                            body.points.count(), body.model.bonds.count(), free.count(),
@@ -281,10 +279,12 @@ Exit run(const Case& from, const RunOptions& options) {
 
   const Pattern pattern(body.model.bonds);
   Assembler assembler(body.points, body.model, options.threads);
-  Tangent tangent(pattern, from.dimension, options.threads);
-  LinearSolver& solver = *chosen.solver;
+  const std::unique_ptr<TangentOperator> tangent = systems.make_tangent(assembler);
+  LinearSolver& solver = *systems.chosen.solver;
   const LinearOutcome analysis = solver.analyze(pattern, free);
-  progress.say(fmt::format("linear solver: {} ({})", solver.describe(), chosen.reason));
+  progress.say(fmt::format("linear solver: {}{} ({})", solver.describe(),
+                           systems.is_stored ? "" : ", tangent matrix-free",
+                           systems.chosen.reason));
 
   Recorder recorder(from, body, assembler, *results, progress);
   LoadSteppingObserver observer;
@@ -301,7 +301,7 @@ Exit run(const Case& from, const RunOptions& options) {
 
   LoadSteppingResult result;
   if (analysis == LinearOutcome::solved) {
-    const SolvedBody solved{assembler, solver, tangent};
+    const SolvedBody solved{assembler, solver, *tangent};
     if (const std::optional<Model> stand_in = make_elastic_stand_in(from, body, options.threads)) {
       result = follow_with_stand_in(from, body, solved, *stand_in, free, observer, summary);
     } else {

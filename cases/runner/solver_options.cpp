@@ -1,5 +1,8 @@
 #include "cases/runner/solver_options.hpp"
 
+#include "assembly/matrix_free_tangent.hpp"
+#include "assembly/tangent.hpp"
+
 namespace peristat {
 
 LinearSolverOptions linear_solver_options(const Case& from) {
@@ -9,14 +12,33 @@ LinearSolverOptions linear_solver_options(const Case& from) {
   return options;
 }
 
-LinearProblem linear_problem(const Case& from, const MemoryEstimate& estimate) {
+LinearSystems choose_linear_systems(const Case& from, const MemoryEstimate& estimate,
+                                    SolverLadder::Teller tell) {
+  const LinearSolverOptions options = linear_solver_options(from);
   LinearProblem problem;
   problem.bonds = estimate.bonds;
   problem.factor_flops = estimate.factor_flops;
   problem.factor_bytes = estimate.direct_bytes();
-  problem.available_bytes = available_memory() - estimate.body_bytes;
+  problem.available_bytes = available_memory() - estimate.body_bytes - estimate.tangent_bytes;
   problem.may_soften = from.material.damage.law != DamageLaw::none;
-  return problem;
+  problem.is_stored = from.solver.tangent != TangentStorage::matrix_free;
+  LinearSystems systems;
+  systems.chosen = make_linear_solver(options, problem, tell);
+  // Products computed anew are faster than stored ones, which wait for memory.
+  if (from.solver.tangent == TangentStorage::automatic && !systems.chosen.is_direct &&
+      from.material.model == MaterialModel::bond && can_be_matrix_free(options)) {
+    problem.is_stored = false;
+    systems.chosen = make_linear_solver(options, problem, std::move(tell));
+  }
+  systems.is_stored = problem.is_stored;
+  systems.bytes = estimate.bytes(systems.chosen.is_direct, systems.is_stored);
+  return systems;
+}
+
+std::unique_ptr<TangentOperator> LinearSystems::make_tangent(Assembler& assembler) const {
+  if (!is_stored) return std::make_unique<MatrixFreeTangent>(assembler);
+  return std::make_unique<Tangent>(Pattern(assembler.model().bonds), assembler.points().dimension,
+                                   assembler.threads());
 }
 
 LoadSteppingOptions load_stepping_options(const Case& from) {

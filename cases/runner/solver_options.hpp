@@ -9,8 +9,19 @@ namespace peristat {
 /// Options of the linear solver as a case gives them.
 [[nodiscard]] LinearSolverOptions linear_solver_options(const Case& from);
 
-/// What the choice of a linear solver goes by, for a case and what its body is estimated to need.
-[[nodiscard]] LinearProblem linear_problem(const Case& from, const MemoryEstimate& estimate);
+/// How the linear systems of a case are solved.
+struct LinearSystems {
+  ChosenSolver chosen;
+  bool is_stored = true;  ///< the tangent
+  double bytes = 0.0;     ///< estimated for the whole run
+
+  [[nodiscard]] std::unique_ptr<TangentOperator> make_tangent(Assembler& assembler) const;
+};
+
+/// @param estimate what the body is estimated to need
+/// @param tell see make_linear_solver
+[[nodiscard]] LinearSystems choose_linear_systems(const Case& from, const MemoryEstimate& estimate,
+                                                  SolverLadder::Teller tell);
 
 /// Options of the load stepping as a case gives them.
 [[nodiscard]] LoadSteppingOptions load_stepping_options(const Case& from);

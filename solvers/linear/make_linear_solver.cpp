@@ -85,7 +85,7 @@ ChosenSolver choose(const LinearProblem& problem, SolverLadder::Teller tell) {
   const SolverLadder::Rung patient{
       "pcg with block_jacobi",
       [] { return make_iterative(PreconditionerKind::block_jacobi, most_iterations); }};
-  const bool fits = problem.factor_bytes <= problem.available_bytes;
+  const bool fits = problem.is_stored && problem.factor_bytes <= problem.available_bytes;
   const bool is_small = problem.factor_flops <= small_factorisation;
   const bool for_stability = problem.may_soften && problem.factor_flops <= affordable_factorisation;
   std::vector<SolverLadder::Rung> rungs;
@@ -101,17 +101,27 @@ ChosenSolver choose(const LinearProblem& problem, SolverLadder::Teller tell) {
                           direct, iterative);
   } else {
     rungs = {pieces, surrogate, fits ? cholesky : patient};
-    reason = fits ? fmt::format(
-                        "a factorisation is estimated at {:.2g} s, iterations at {:.2g} s a step",
-                        direct, iterative)
-                  : fmt::format("a factor would need about {:.2g} GB of {:.2g} GB available",
-                                problem.factor_bytes / 1e9, problem.available_bytes / 1e9);
+    reason =
+        direct > iterative
+            ? fmt::format("a factorisation is estimated at {:.2g} s, iterations at {:.2g} s a step",
+                          direct, iterative)
+        : !problem.is_stored
+            ? std::string("a factorisation needs the stored tangent")
+            : fmt::format("a factor would need about {:.2g} GB of {:.2g} GB available",
+                          problem.factor_bytes / 1e9, problem.available_bytes / 1e9);
   }
   return {std::make_unique<SolverLadder>(std::move(rungs), std::move(tell)), is_direct,
           is_direct ? direct : iterative, fmt::format("auto: {}", reason)};
 }
 
 }  // namespace
+
+bool can_be_matrix_free(const LinearSolverOptions& options) {
+  return options.method != LinearMethod::cholesky &&
+         options.preconditioner != PreconditionerKind::riluk &&
+         options.preconditioner != PreconditionerKind::chebyshev &&
+         options.preconditioner != PreconditionerKind::multigrid;
+}
 
 ChosenSolver make_linear_solver(const LinearSolverOptions& options, const LinearProblem& problem,
                                 SolverLadder::Teller tell) {

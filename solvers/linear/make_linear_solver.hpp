@@ -10,6 +10,8 @@ namespace peristat {
 
 enum class LinearMethod { automatic, cholesky, conjugate_gradients, minres, gmres };
 
+enum class TangentStorage { automatic, stored, matrix_free };
+
 enum class PreconditionerKind {
   automatic,
   jacobi,
@@ -26,12 +28,16 @@ struct LinearSolverOptions {
   PreconditionerKind preconditioner = PreconditionerKind::automatic;
 };
 
+/// Whether a solver with these options can do without a stored tangent.
+[[nodiscard]] bool can_be_matrix_free(const LinearSolverOptions& options);
+
 /// What the choice of a solver goes by.
 struct LinearProblem {
   double bonds = 0.0;         ///< blocks of the tangent
   double factor_flops = 0.0;  ///< of one factorisation, as estimated from dimension, size and shape
   double factor_bytes = 0.0;  ///< of the direct solver
   double available_bytes = 0.0;
+  bool is_stored = true;    ///< the tangent: direct solvers and Trilinos' preconditioners need it
   bool may_soften = false;  ///< bonds may lose their stiffness, so that stability is in question
 };
 

@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "assembly/assembler.hpp"
+#include "assembly/matrix_free_tangent.hpp"
 #include "assembly/tangent.hpp"
 #include "solvers/linear/assembled_preconditioner.hpp"
 #include "solvers/linear/block_jacobi.hpp"
@@ -214,6 +215,27 @@ TEST(IterativeSolver, SolvesWhatTheDirectSolverSolves) {
         EXPECT_GT(solver.last_iterations(), 0);
         EXPECT_LE(tests::distance(system.x, expected), 1e-8 * tests::norm(expected));
       }
+    }
+  }
+}
+
+TEST(IterativeSolver, IteratesAlikeWithAndWithoutStoredBlocks) {
+  for (const int dimension : {1, 2, 3}) {
+    System system(box_of(dimension, {dimension == 1 ? 60 : 12, 10, 8}));
+    Assembler assembler(system.body.points, system.body.model, 2);
+    MatrixFreeTangent tangent(assembler);
+    tangent.linearise(assembler, std::vector<double>(system.body.dofs(), 0.0), 0.0);
+    const std::vector<double> expected = system.direct_solution();
+    for (const Kind kind :
+         {Kind::jacobi, Kind::block_jacobi, Kind::rigid_pieces, Kind::surrogate}) {
+      SCOPED_TRACE(name_of(kind));
+      const int stored_iterations = system.iterations(kind, 1e-10);
+      IterativeSolver solver(cg, make(kind), 5000);
+      ASSERT_EQ(solver.analyze(tangent.pattern, system.free), LinearOutcome::solved);
+      ASSERT_EQ(solver.factorize(tangent, FactorUse::factorize_now), LinearOutcome::solved);
+      ASSERT_EQ(solver.solve(system.b, system.x, 1e-10), LinearOutcome::solved);
+      EXPECT_NEAR(solver.last_iterations(), stored_iterations, 1);
+      EXPECT_LE(tests::distance(system.x, expected), 1e-7 * tests::norm(expected));
     }
   }
 }

@@ -1,0 +1,175 @@
+// Linear solvers side by side: ./peristat bench --linear [BODY...] [--solvers a,b,...]
+//
+// Each body is a lattice of horizon 3.015 at rest, held over three layers at one end, with a random
+// right-hand side; K x = b is solved to a relative residual of 1e-8. Prints a table.
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <functional>
+#include <map>
+#include <memory>
+#include <random>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <omp.h>
+
+#include "assembly/assembler.hpp"
+#include "assembly/matrix_free_tangent.hpp"
+#include "assembly/tangent.hpp"
+#include "benchmarks/lattice_bodies.hpp"
+#include "solvers/linear/make_linear_solver.hpp"
+
+namespace {
+
+using namespace peristat;
+
+struct BodyShape {
+  int dimension = 3;
+  std::array<int, 3> extent{};
+  bool is_cracked = false;  // two thirds through, in the middle
+};
+
+const std::vector<std::pair<std::string, BodyShape>> bodies{
+    {"cube-10", {3, {10, 10, 10}}},
+    {"cube-20", {3, {20, 20, 20}}},
+    {"cube-30", {3, {30, 30, 30}}},
+    {"cube-40", {3, {40, 40, 40}}},
+    {"cube-50", {3, {50, 50, 50}}},
+    {"cube-60", {3, {60, 60, 60}}},
+    {"cube-20-cracked", {3, {20, 20, 20}, true}},
+    {"cube-30-cracked", {3, {30, 30, 30}, true}},
+    {"bar-10", {3, {80, 8, 8}}},
+    {"bar-30", {3, {240, 8, 8}}},
+    {"bar-100", {3, {800, 8, 8}}},
+    {"bar-100-cracked", {3, {800, 8, 8}, true}},
+    {"plate-100", {2, {100, 100, 0}}},
+    {"plate-300", {2, {300, 300, 0}}},
+    {"plate-300-cracked", {2, {300, 300, 0}, true}},
+    {"plate-1000", {2, {1000, 1000, 0}}},
+};
+
+struct SolverKind {
+  LinearMethod method;
+  PreconditionerKind preconditioner;
+  bool is_stored;
+};
+
+constexpr auto pcg = LinearMethod::conjugate_gradients;
+const std::vector<std::pair<std::string, SolverKind>> solvers{
+    {"cholesky", {LinearMethod::cholesky, PreconditionerKind::automatic, true}},
+    {"jacobi", {pcg, PreconditionerKind::jacobi, false}},
+    {"block_jacobi", {pcg, PreconditionerKind::block_jacobi, false}},
+    {"rigid_pieces", {pcg, PreconditionerKind::rigid_pieces, false}},
+    {"rigid_pieces-stored", {pcg, PreconditionerKind::rigid_pieces, true}},
+    {"surrogate", {pcg, PreconditionerKind::surrogate, false}},
+    {"multigrid", {pcg, PreconditionerKind::multigrid, true}},
+    {"riluk", {pcg, PreconditionerKind::riluk, true}},
+    {"chebyshev", {pcg, PreconditionerKind::chebyshev, true}},
+};
+
+double seconds_of(const std::function<void()>& work) {
+  const auto start = std::chrono::steady_clock::now();
+  work();
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+void cut(Model& model, const Points& points, const BodyShape& shape) {
+  const double plane = 0.5 * shape.extent[0], height = 2.0 / 3.0 * shape.extent[1];
+  model.bonds.remove_if([&](Index i, Offset bond) {
+    const Coordinates a = points.position(i), b = points.position(model.bonds.partner[bond]);
+    return (a[0] - plane) * (b[0] - plane) < 0.0 && 0.5 * (a[1] + b[1]) < height;
+  });
+}
+
+void measure(const std::string& name, const BodyShape& shape,
+             const std::vector<std::string>& wanted) {
+  const Points points = benchmark_bodies::box(shape.dimension, shape.extent);
+  Model model = benchmark_bodies::model(points);
+  if (shape.is_cracked) cut(model, points, shape);
+  Assembler assembler(points, model, omp_get_max_threads());
+  std::vector<char> prescribed(points.reference.size(), 0);
+  for (std::size_t k = 0; k < prescribed.size(); ++k) {
+    prescribed[k] = points.reference[k - k % std::size_t(shape.dimension)] < 3.0;
+  }
+  const FreeDofs free(prescribed, shape.dimension);
+  const Pattern pattern(model.bonds);
+  std::vector<double> b(std::size_t(free.count())), x(b.size());
+  std::mt19937_64 engine(3);
+  for (double& entry : b) entry = double(engine() >> 11) * 0x1p-52 - 1.0;
+  const std::vector<double> at_rest(points.reference.size(), 0.0);
+
+  for (const auto& [solver_name, kind] : solvers) {
+    if (std::find(wanted.begin(), wanted.end(), solver_name) == wanted.end()) continue;
+    std::unique_ptr<TangentOperator> tangent;
+    if (kind.is_stored) {
+      tangent = std::make_unique<Tangent>(pattern, shape.dimension, assembler.threads());
+    } else {
+      tangent = std::make_unique<MatrixFreeTangent>(assembler);
+    }
+    const auto solver = make_linear_solver({kind.method, kind.preconditioner}, {}, {}).solver;
+    LinearOutcome outcome = LinearOutcome::solved;
+    const double analysis = seconds_of([&] { outcome = solver->analyze(pattern, free); });
+    const double assembly = seconds_of([&] { tangent->linearise(assembler, at_rest, 0.0); });
+    const double build = seconds_of([&] {
+      if (outcome == LinearOutcome::solved) {
+        outcome = solver->factorize(*tangent, FactorUse::factorize_now);
+      }
+    });
+    const double solve = seconds_of([&] {
+      if (outcome == LinearOutcome::solved) outcome = solver->solve(b, x, 1e-8);
+    });
+    const std::string result = outcome == LinearOutcome::solved
+                                   ? std::to_string(solver->last_iterations())
+                                   : peristat::name(outcome);
+    fmt::print("| {} | {} | {} | {} | {:.3f} | {:.3f} | {:.3f} | {:.3f} |\n", name, points.count(),
+               solver_name, result, analysis + assembly, build, solve,
+               analysis + assembly + build + solve);
+    std::fflush(stdout);
+  }
+}
+
+std::vector<std::string> split(const std::string& text) {
+  std::vector<std::string> parts;
+  std::istringstream stream(text);
+  for (std::string part; std::getline(stream, part, ',');) parts.push_back(part);
+  return parts;
+}
+
+}  // namespace
+
+int main(int count, char** arguments) {
+  std::vector<std::string> wanted_bodies, wanted_solvers;
+  for (int k = 1; k < count; ++k) {
+    const std::string argument = arguments[k];
+    if (argument == "--solvers" && k + 1 < count) {
+      wanted_solvers = split(arguments[++k]);
+    } else {
+      wanted_bodies.push_back(argument);
+    }
+  }
+  if (wanted_solvers.empty()) {
+    wanted_solvers = {"cholesky", "jacobi", "rigid_pieces", "surrogate", "multigrid"};
+  }
+  if (wanted_bodies.empty()) wanted_bodies = {"cube-20", "bar-30", "plate-100"};
+  for (const std::string& name : wanted_bodies) {
+    const auto same = [&](const auto& known) { return known.first == name; };
+    if (std::none_of(bodies.begin(), bodies.end(), same)) {
+      fmt::print(stderr, "no body {}: it is one of", name);
+      for (const auto& known : bodies) fmt::print(stderr, " {}", known.first);
+      fmt::print(stderr, "\n");
+      return 2;
+    }
+  }
+  fmt::print(
+      "| body | points | solver | iterations | analysis and assembly [s] | build [s] | solve [s] | "
+      "total [s] |\n|---|---|---|---|---|---|---|---|\n");
+  for (const auto& [name, shape] : bodies) {
+    if (std::find(wanted_bodies.begin(), wanted_bodies.end(), name) != wanted_bodies.end()) {
+      measure(name, shape, wanted_solvers);
+    }
+  }
+  return 0;
+}
