@@ -1,0 +1,98 @@
+"""Linear solvers through the command line: their choice, their results, their refusals."""
+
+import csv
+import json
+import os
+import pathlib
+import subprocess
+import tempfile
+import unittest
+
+PROGRAM = os.environ["PERISTAT_PROGRAM"]
+CASES = pathlib.Path(__file__).resolve().parents[2] / "cases"
+BEAM = CASES / "cantilever" / "beam.toml"
+# A shorter and coarser beam: 20 x 5 x 5 points and the clamp.
+SMALL = ["lattice.spacing=0.02", "lattice.shape[0].max=[0.4, 0.05, 0.05]", "set[0].where='x > 0.4 - spacing'"]
+
+
+class LinearSolvers(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory(prefix="peristat_acceptance_")
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+
+    def peristat(self, command, case, *settings):
+        words = [word for setting in settings for word in ("--set", setting)]
+        return subprocess.run([PROGRAM, command, str(case), *words], cwd=self.folder, text=True, timeout=300,
+                              stdin=subprocess.DEVNULL, capture_output=True)  # fmt: skip
+
+    def run_case(self, case, *settings):
+        run = self.peristat("run", case, "output.directory='out'", *settings)
+        self.assertEqual(run.returncode, 0, run.stdout + run.stderr)
+        return run.stdout, json.loads((self.folder / "out/summary.json").read_text())
+
+    def iterations(self):
+        with open(self.folder / "out/iterations.csv", newline="") as file:
+            return list(csv.DictReader(file))
+
+    def test_every_solver_and_preconditioner_gives_the_same_tip(self):
+        _, direct = self.run_case(BEAM, *SMALL, "solver.linear=cholesky")
+        tip = direct["probes"]["tip"]
+        counted = {}
+        for linear in ("pcg", "minres", "gmres"):
+            for preconditioner in ("auto", "jacobi", "block_jacobi", "rigid_pieces", "surrogate", "riluk",
+                                   "chebyshev", "multigrid"):  # fmt: skip
+                with self.subTest(linear=linear, preconditioner=preconditioner):
+                    told, summary = self.run_case(BEAM, *SMALL, f"solver.linear={linear}",
+                                                  f"solver.preconditioner={preconditioner}")  # fmt: skip
+                    for found, expected in zip(summary["probes"]["tip"], tip):
+                        self.assertAlmostEqual(found, expected, delta=1e-9 * max(map(abs, tip)))
+                    self.assertGreater(summary["linear_iterations"], 0)
+                    self.assertEqual(sum(int(row["linear_iterations"]) for row in self.iterations()),
+                                     summary["linear_iterations"])  # fmt: skip
+                    self.assertIn("(as the case asks)", told)
+                    counted[linear, preconditioner] = summary["linear_iterations"]
+        for better in ("rigid_pieces", "surrogate", "multigrid"):
+            self.assertLess(counted["pcg", better], 0.5 * counted["pcg", "jacobi"])
+
+    def test_stored_and_matrix_free_tangents_give_the_same(self):
+        stored, first = self.run_case(BEAM, *SMALL, "solver.linear=pcg", "solver.tangent=stored")
+        free, second = self.run_case(BEAM, *SMALL, "solver.linear=pcg", "solver.tangent=matrix_free")
+        self.assertNotIn("matrix-free", stored)
+        self.assertIn("tangent matrix-free", free)
+        for one, other in zip(first["probes"]["tip"], second["probes"]["tip"]):
+            self.assertAlmostEqual(one, other, delta=1e-9 * abs(first["probes"]["tip"][1]))
+
+    def test_auto_says_what_it_chooses_and_why(self):
+        told = self.peristat("check", BEAM).stdout
+        self.assertRegex(told, r"solver +conjugate gradients preconditioned by rigid pieces \(auto: a factorisation "
+                               r"is estimated at .* s, iterations at .* s a step\)")  # fmt: skip
+        told = self.peristat("check", CASES / "bar/tension.toml").stdout
+        self.assertRegex(told, r"solver +CHOLMOD .* \(auto: .*\)")
+        told = self.peristat("check", CASES / "plate_with_hole/square.toml").stdout
+        self.assertRegex(told, r"solver +CHOLMOD .* \(auto: .*\)")
+
+    def test_newton_stays_quadratic_with_iterations(self):
+        self.run_case(BEAM, *SMALL)
+        residuals = [float(row["relative_residual"]) for row in self.iterations()]
+        self.assertLess(residuals[-1], 1e-10)
+        self.assertLessEqual(len(residuals), 6)
+
+    def test_what_does_not_go_together_is_refused(self):
+        for settings, fragment in (
+            (("solver.tangent=matrix_free", "solver.linear=cholesky"), "solver.tangent"),
+            (("solver.tangent=matrix_free", "solver.preconditioner=multigrid"), "solver.tangent"),
+            (("solver.preconditioner=ilu",), "rigid_pieces"),
+            (("solver.linear=cg",), "did you mean pcg"),
+        ):
+            with self.subTest(settings=settings):
+                run = self.peristat("check", BEAM, *settings)
+                self.assertEqual(run.returncode, 2, run.stdout + run.stderr)
+                self.assertIn(fragment, run.stderr)
+        run = self.peristat("check", CASES / "cpd/square.toml", "solver.tangent=matrix_free")
+        self.assertEqual(run.returncode, 2, run.stdout + run.stderr)
+        self.assertIn('material.model = "bond"', run.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()
