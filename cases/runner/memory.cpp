@@ -14,8 +14,8 @@ namespace {
 
 constexpr double unlimited = std::numeric_limits<double>::infinity();
 
-/// Program, libraries and files [bytes].
-constexpr double base_bytes = 60e6;
+/// Program, libraries and files; Trilinos, which is loaded where it is used [bytes].
+constexpr double base_bytes = 27e6, trilinos_bytes = 45e6;
 
 /// CHOLMOD's workspace beside the factor, as measured: 460 MB for the beam of
 /// cases/cantilever, 1.56 GB for the plate with a hole at 120 000 points.
@@ -58,6 +58,21 @@ double control_group_room() {
   return room;
 }
 
+/// Vectors and preconditioner of conjugate gradients with rigid pieces.
+double iterative_bytes(int dimension, double points, double horizon_ratio) {
+  const double d = dimension;
+  const double motions = 0.5 * d * (d + 1.0);
+  // Krylov vectors, block Jacobi's inverse and the basis of the pieces' motions.
+  const double fine = 8.0 * points * d * (9.0 + d + motions);
+  const double pieces = points / std::pow(4.0 / 3.0 * horizon_ratio, d), coarse = motions * pieces;
+  // Each piece has blocks with its 26 (3D), 8 or 2 neighbours, half of them stored, and itself;
+  // while they are gathered each entry takes 48 bytes.
+  const double gathered = 48.0 * motions * motions * pieces * 0.5 * (std::pow(3.0, d) + 1.0);
+  const double factor = dimension == 3 ? 11.0 * std::pow(coarse, 4.0 / 3.0)
+                                       : 3.2 * coarse * std::log2(std::max(coarse, 2.0));
+  return fine + gathered + 8.0 * factor_overhead * factor;
+}
+
 }  // namespace
 
 double bonds_per_point(int dimension, double horizon_ratio) {
@@ -96,13 +111,15 @@ MemoryEstimate estimate_memory(int dimension, const BodySize& size, double horiz
   estimate.factor_flops = std::min(natural_flops, dissection_flops);
 
   const double blocks = (bonds + size.points) * d * d;
-  const double vectors = 20.0 * size.points * d + 28.0 * size.points;
-  estimate.body_bytes = base_bytes + 20.0 * bonds + 8.0 * size.points + 8.0 * vectors;
+  estimate.body_bytes = base_bytes + 20.0 * bonds + 8.0 * size.points * (20.0 * d + 58.0);
   estimate.tangent_bytes = 8.0 * blocks;
   estimate.matrix_bytes = 16.0 * blocks;
-  // Krylov vectors, block Jacobi's inverse and the basis of the pieces' motions.
-  const double motions = 0.5 * d * (d + 1.0);
-  estimate.iterative_bytes = 8.0 * size.points * d * (9.0 + d + motions);
+  estimate.iterative_bytes =
+      trilinos_bytes + iterative_bytes(dimension, size.points, horizon_ratio);
+  // Conjugate gradients with an old factor are worth their while from here: see Cholesky.
+  if (estimate.factor_flops > 96.0 * estimate.factor_entries) {
+    estimate.matrix_bytes += trilinos_bytes;
+  }
   return estimate;
 }
 

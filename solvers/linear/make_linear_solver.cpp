@@ -14,9 +14,9 @@
 namespace peristat {
 namespace {
 
-/// Speeds of a plain machine on one thread, as in benchmarks/RESULTS.md: of factorisations [flop/s]
-/// and of products [bonds/s].
-constexpr double factorisation_speed = 3e10, product_speed = 1.5e8;
+/// Speeds of a plain machine on one thread, as in benchmarks/RESULTS.md: of factorisations
+/// [flop/s], of what a small one mostly takes, fresh memory [bytes/s], and of products [bonds/s].
+constexpr double factorisation_speed = 3e10, memory_speed = 1e9, product_speed = 1.5e8;
 
 /// Products that a load step takes by conjugate gradients with rigid pieces: some four solves of
 /// 15 iterations, and builds of the preconditioner, each worth 30.
@@ -24,7 +24,7 @@ constexpr double products_of_a_step = 120.0;
 
 /// Factorisations up to this are done whatever the alternative [flop], and up to the second for the
 /// sake of pivots.
-constexpr double small_factorisation = 3e9, affordable_factorisation = 2e10;
+constexpr double small_factorisation = 1e8, affordable_factorisation = 2e10;
 
 /// Iterations in one solve that no choice of the user's own should exceed.
 constexpr int most_iterations = 20'000;
@@ -65,7 +65,7 @@ KrylovMethod krylov_method(LinearMethod method) {
 struct Seconds {
   double direct, product, iterative;
   explicit Seconds(const LinearProblem& problem)
-      : direct(problem.factor_flops / factorisation_speed),
+      : direct(problem.factor_flops / factorisation_speed + problem.factor_bytes / memory_speed),
         product(problem.bonds / product_speed),
         iterative(products_of_a_step * product) {}
 };
