@@ -20,7 +20,9 @@ LinearSystems choose_linear_systems(const Case& from, const MemoryEstimate& esti
   problem.factor_flops = estimate.factor_flops;
   problem.factor_bytes = estimate.direct_bytes();
   problem.available_bytes = available_memory() - estimate.body_bytes - estimate.tangent_bytes;
-  problem.may_soften = from.material.damage.law != DamageLaw::none;
+  // Elsewhere damage grows in relaxation, which finds stable states alone.
+  problem.may_soften =
+      from.material.damage.law != DamageLaw::none && from.solver.mode == Mode::newton;
   problem.is_stored = from.solver.tangent != TangentStorage::matrix_free;
   LinearSystems systems;
   systems.chosen = make_linear_solver(options, problem, tell);

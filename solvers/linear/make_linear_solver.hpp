@@ -38,7 +38,7 @@ struct LinearProblem {
   double factor_bytes = 0.0;  ///< of the direct solver
   double available_bytes = 0.0;
   bool is_stored = true;    ///< the tangent: direct solvers and Trilinos' preconditioners need it
-  bool may_soften = false;  ///< bonds may lose their stiffness, so that stability is in question
+  bool may_soften = false;  ///< damage grows in implicit steps: stability is in question
 };
 
 /// A solver with the reason for its choice, in words.

@@ -252,6 +252,12 @@ RCP<Operator> make_multigrid(const RCP<Matrix>& matrix, double eigenvalue, int b
     const std::size_t equations = embedding.row_of_equation.size();
     for (int motion = 0; motion < near_null_space.count; ++motion) {
       const Teuchos::ArrayRCP<double> column = motions->getDataNonConst(std::size_t(motion));
+      // MueLu refuses aggregates in which a motion vanishes, such as those of points that may only
+      // move along one axis. In rows that stand for prescribed components motions are noise, too
+      // small to matter beside a free one.
+      for (int row = 0; row < embedding.rows; ++row) {
+        column[row] = 1e-6 * std::cos(double(row) * double(2 * motion + 1) + double(motion));
+      }
       for (std::size_t e = 0; e < equations; ++e) {
         column[embedding.row_of_equation[e]] =
             near_null_space.values[std::size_t(motion) * equations + e];

@@ -197,6 +197,15 @@ TEST(IterativeSolver, SolvesWhatTheDirectSolverSolves) {
   for (std::size_t k = 0; k < some.size(); k += 7) some[k] = 1;
   add("partly prescribed", BoxBody(plate), some);
 
+  // Faces that may only slide: whole groups of points without one of the motions.
+  const BoxSetting block = box_of(3, {9, 8, 7}, 2.015);
+  const BoxBody sliding(block);
+  std::vector<char> faces(sliding.dofs(), 0);
+  for (std::size_t k = 0; k < faces.size(); ++k) {
+    faces[k] = sliding.points.reference[k] < 3.0 * block.spacing;
+  }
+  add("sliding", BoxBody(block), faces);
+
   for (const auto& body : bodies) {
     System& system = body->system;
     const std::vector<double> expected = system.direct_solution();
