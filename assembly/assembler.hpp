@@ -16,8 +16,8 @@ struct Workspace;
 /// E(u) = sum over interactions of w psi(m; M), visiting each unique bond, triangle and tetrahedron
 /// once, on several threads.
 ///
-/// All arrays are points x dimension, row major. No call but visit_tangent allocates. For a given number of threads
-/// every result is reproducible to the last bit.
+/// All arrays are points x dimension, row major. No call but visit_tangent allocates. For a given
+/// number of threads every result is reproducible to the last bit.
 class Assembler {
  public:
   /// Points and model must outlive the assembler.
