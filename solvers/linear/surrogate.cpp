@@ -4,12 +4,14 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include <fmt/format.h>
 
 #include "assembly/tangent.hpp"
 #include "solvers/linear/block_jacobi.hpp"
 #include "solvers/linear/cholesky.hpp"
+#include "solvers/linear/compressed_rows.hpp"
 
 namespace peristat {
 namespace {
@@ -17,6 +19,9 @@ namespace {
 /// Bonds up to this many distances of the nearest neighbours are short: on a lattice those to the
 /// face diagonals, sqrt(2) spacings long.
 constexpr double short_in_spacings = 1.5;
+
+/// Springs whose factorisation takes more than this are given to multigrid [flop].
+constexpr double largest_factorisation = 1e11;
 
 /// Share of block Jacobi; anything between 0.3 and 1 gives nearly the same iterations.
 constexpr double share_of_jacobi = 0.5;
@@ -34,6 +39,7 @@ struct Surrogate::StandIn {
   std::vector<char> is_short;  // per bond of the pattern; empty before the first tangent
   std::unique_ptr<Tangent> springs;
   Cholesky solver{FactorReuse{.max_iterations = 0}};
+  std::optional<MatrixPreconditioner> multigrid;  // instead of the factor, if it holds one
   std::vector<double> correction;
 
   static double squared_length(const TangentOperator& tangent, Index i, Index j) {
@@ -94,7 +100,14 @@ struct Surrogate::StandIn {
     });
     for (Index i = 0; i < points; ++i) short_bonds.offset[i + 1] += short_bonds.offset[i];
     springs = std::make_unique<Tangent>(Pattern(short_bonds), tangent.dimension, tangent.threads());
-    return solver.analyze(springs->pattern, *free);
+    multigrid.reset();
+    const LinearOutcome analysis = solver.analyze(springs->pattern, *free);
+    if (analysis == LinearOutcome::out_of_memory ||
+        solver.estimate().flops > largest_factorisation) {
+      multigrid.emplace(MatrixPreconditionerKind::multigrid);
+      return LinearOutcome::solved;
+    }
+    return analysis;
   }
 
   void find_springs(const TangentOperator& tangent) {
@@ -181,6 +194,12 @@ LinearOutcome Surrogate::build(const TangentOperator& tangent) {
     if (analysis != LinearOutcome::solved) return analysis;
   }
   s.find_springs(tangent);
+  if (s.multigrid) {
+    return s.multigrid->build(compressed_rows(*s.springs, *s.free), equation_blocks(*s.free),
+                              rigid_motions(tangent.position, *s.free))
+               ? LinearOutcome::solved
+               : LinearOutcome::inaccurate;
+  }
   const LinearOutcome factor = s.solver.factorize(*s.springs, FactorUse::factorize_now);
   if (factor == LinearOutcome::solved || factor == LinearOutcome::out_of_memory) return factor;
   return LinearOutcome::inaccurate;  // S is singular; the tangent need not be
@@ -188,8 +207,10 @@ LinearOutcome Surrogate::build(const TangentOperator& tangent) {
 
 void Surrogate::apply(std::span<const double> residual, std::span<double> correction) {
   StandIn& s = *stand_in_;
-  // A factor with numbers always solves; how exactly is the outer iteration's matter.
-  if (s.solver.solve(residual, correction, 1.0) == LinearOutcome::out_of_memory) {
+  if (s.multigrid) {
+    s.multigrid->apply(residual.data(), correction.data());
+    // A factor with numbers always solves; how exactly is the outer iteration's matter.
+  } else if (s.solver.solve(residual, correction, 1.0) == LinearOutcome::out_of_memory) {
     std::fill(correction.begin(), correction.end(), 0.0);
   }
   s.fine.add(share_of_jacobi, residual, correction);
@@ -200,7 +221,8 @@ std::string Surrogate::describe() const {
   if (s.short_bonds.offset.empty()) return "surrogate";
   const double points = double(std::max<std::size_t>(s.short_bonds.offset.size(), 2) - 1);
   return fmt::format("surrogate of {:.1f} neighbours per point ({})",
-                     2.0 * double(s.short_bonds.count()) / points, s.solver.describe());
+                     2.0 * double(s.short_bonds.count()) / points,
+                     s.multigrid ? "multigrid" : s.solver.describe());
 }
 
 }  // namespace peristat

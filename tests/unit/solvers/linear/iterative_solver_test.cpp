@@ -286,6 +286,30 @@ TEST(IterativeSolver, PreconditionersDoNotFeelCracks) {
   }
 }
 
+TEST(IterativeSolver, HeldFragmentsDoNotSpoilConvergence) {
+  // A plate in two, the loose half held by a statically determinate set of pins, and a few loose
+  // points that are held in place.
+  const BoxSetting box = box_of(2, {48, 36, 0});
+  BoxBody body = cracked(box, 25.0, 100.0);
+  const Index points = body.points.count();
+  std::vector<char> prescribed = System::clamp(body, 2 * box.spacing);
+  const std::size_t last = std::size_t(points) - 1;
+  prescribed[last * 2] = prescribed[last * 2 + 1] = prescribed[(last - 20) * 2] = 1;
+  for (const Index loose : {points / 2, points / 3}) {
+    body.model.bonds.remove_if([&](Index i, Offset bond) {
+      return i == loose || body.model.bonds.partner[bond] == loose;
+    });
+    prescribed[std::size_t(loose) * 2] = prescribed[std::size_t(loose) * 2 + 1] = 1;
+  }
+  System system(std::move(body), prescribed);
+  const std::vector<double> expected = system.direct_solution();
+  EXPECT_LE(system.iterations(Kind::rigid_pieces), 60);
+  EXPECT_LE(tests::distance(system.x, expected), 1e-4 * tests::norm(expected));
+  EXPECT_LE(system.iterations(Kind::surrogate), 25);
+  EXPECT_LE(tests::distance(system.x, expected), 1e-4 * tests::norm(expected));
+  EXPECT_GE(system.iterations(Kind::block_jacobi), 200);
+}
+
 TEST(IterativeSolver, DamagedBondsDivideTheRigidPieces) {
   // Broken bonds keep their place in the pattern, with a block of zeros.
   const BoxSetting box = box_of(2, {48, 36, 0});
