@@ -46,6 +46,7 @@ struct Cholesky::Cholmod {
   const FreeDofs* free = nullptr;
   const Tangent* tangent = nullptr;
   FactorReuse reuse;
+  double largest_factor = 0.0;
   FactorEstimate estimate;
   LinearStatistics statistics;
   std::optional<Inertia> inertia;
@@ -305,7 +306,10 @@ struct Cholesky::Cholmod {
   }
 };
 
-Cholesky::Cholesky(FactorReuse reuse) : cholmod_(std::make_unique<Cholmod>(reuse)) {}
+Cholesky::Cholesky(FactorReuse reuse, double largest_factor)
+    : cholmod_(std::make_unique<Cholmod>(reuse)) {
+  cholmod_->largest_factor = largest_factor;
+}
 Cholesky::~Cholesky() = default;
 
 LinearOutcome Cholesky::analyze(const Pattern& pattern, const FreeDofs& free) {
@@ -346,6 +350,7 @@ LinearOutcome Cholesky::analyze(const Pattern& pattern, const FreeDofs& free) {
   if (!c.factor) return c.outcome_of_status();
   c.estimate.entries = double(c.factor->xsize);
   c.estimate.flops = c.common.fl;
+  if (c.estimate.bytes() > c.largest_factor) return LinearOutcome::out_of_memory;
   c.right_hand_side =
       cholmod_l_allocate_dense(free.count(), 1, free.count(), CHOLMOD_REAL, &c.common);
   return c.right_hand_side ? LinearOutcome::solved : c.outcome_of_status();

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <memory>
 
 #include "solvers/linear/linear_solver.hpp"
@@ -36,7 +37,10 @@ struct FactorReuse {
 /// where that costs no more than `largest_inertia_flops`.
 class Cholesky : public LinearSolver {
  public:
-  explicit Cholesky(FactorReuse reuse = {});
+  /// @param largest_factor [bytes]; analyze ends as out_of_memory for a larger one, before any of
+  ///        it is taken
+  explicit Cholesky(FactorReuse reuse = {},
+                    double largest_factor = std::numeric_limits<double>::infinity());
   ~Cholesky() override;
 
   LinearOutcome analyze(const Pattern& pattern, const FreeDofs& free) override;

@@ -75,7 +75,9 @@ ChosenSolver choose(const LinearProblem& problem, SolverLadder::Teller tell) {
   // A solve by iterations may take three times what factorising is estimated at.
   const int patience =
       static_cast<int>(std::clamp(3.0 * direct / std::max(product, 1e-9), 200.0, 2000.0));
-  const SolverLadder::Rung cholesky{"cholesky", [] { return std::make_unique<Cholesky>(); }};
+  const SolverLadder::Rung cholesky{"cholesky", [available = problem.available_bytes] {
+                                      return std::make_unique<Cholesky>(FactorReuse{}, available);
+                                    }};
   const SolverLadder::Rung pieces{
       "pcg with rigid_pieces",
       [patience] { return make_iterative(PreconditionerKind::rigid_pieces, patience); }};
@@ -127,7 +129,8 @@ ChosenSolver make_linear_solver(const LinearSolverOptions& options, const Linear
                                 SolverLadder::Teller tell) {
   switch (options.method) {
     case LinearMethod::cholesky:
-      return {std::make_unique<Cholesky>(), true, Seconds(problem).direct, "as the case asks"};
+      return {std::make_unique<Cholesky>(FactorReuse{}, problem.available_bytes), true,
+              Seconds(problem).direct, "as the case asks"};
     case LinearMethod::conjugate_gradients:
     case LinearMethod::minres:
     case LinearMethod::gmres:

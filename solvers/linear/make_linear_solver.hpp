@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <memory>
 #include <string>
 
@@ -36,7 +37,7 @@ struct LinearProblem {
   double bonds = 0.0;         ///< blocks of the tangent
   double factor_flops = 0.0;  ///< of one factorisation, as estimated from dimension, size and shape
   double factor_bytes = 0.0;  ///< of the direct solver
-  double available_bytes = 0.0;
+  double available_bytes = std::numeric_limits<double>::infinity();
   bool is_stored = true;    ///< the tangent: direct solvers and Trilinos' preconditioners need it
   bool may_soften = false;  ///< damage grows in implicit steps: stability is in question
 };

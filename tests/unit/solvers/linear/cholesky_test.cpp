@@ -260,5 +260,17 @@ TEST(Cholesky, DescribesItself) {
   EXPECT_GT(solver.estimate().flops, solver.estimate().entries);
 }
 
+TEST(Cholesky, RefusesAFactorThatIsTooLarge) {
+  const tests::BoxSetting box = tests::small_box(2);
+  const BoxBody body(box);
+  System system(box, some_prescribed(body), std::vector<double>(body.dofs(), 0.0));
+  Cholesky unlimited;
+  ASSERT_EQ(unlimited.analyze(system.tangent.pattern, system.free), LinearOutcome::solved);
+  const double bytes = unlimited.estimate().bytes();
+  Cholesky enough(FactorReuse{}, bytes), too_little(FactorReuse{}, bytes - 1.0);
+  EXPECT_EQ(enough.analyze(system.tangent.pattern, system.free), LinearOutcome::solved);
+  EXPECT_EQ(too_little.analyze(system.tangent.pattern, system.free), LinearOutcome::out_of_memory);
+}
+
 }  // namespace
 }  // namespace peristat
