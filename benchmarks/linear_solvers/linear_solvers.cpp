@@ -131,6 +131,20 @@ void measure(const std::string& name, const BodyShape& shape,
   }
 }
 
+/// Names the first word that is not in the list.
+template <class List>
+bool are_known(const char* what, const std::vector<std::string>& words, const List& list) {
+  for (const std::string& word : words) {
+    const auto same = [&](const auto& known) { return known.first == word; };
+    if (std::any_of(list.begin(), list.end(), same)) continue;
+    fmt::print(stderr, "no {} {}: it is one of", what, word);
+    for (const auto& known : list) fmt::print(stderr, " {}", known.first);
+    fmt::print(stderr, "\n");
+    return false;
+  }
+  return true;
+}
+
 std::vector<std::string> split(const std::string& text) {
   std::vector<std::string> parts;
   std::istringstream stream(text);
@@ -154,14 +168,8 @@ int main(int count, char** arguments) {
     wanted_solvers = {"cholesky", "jacobi", "rigid_pieces", "surrogate", "multigrid"};
   }
   if (wanted_bodies.empty()) wanted_bodies = {"cube-20", "bar-30", "plate-100"};
-  for (const std::string& name : wanted_bodies) {
-    const auto same = [&](const auto& known) { return known.first == name; };
-    if (std::none_of(bodies.begin(), bodies.end(), same)) {
-      fmt::print(stderr, "no body {}: it is one of", name);
-      for (const auto& known : bodies) fmt::print(stderr, " {}", known.first);
-      fmt::print(stderr, "\n");
-      return 2;
-    }
+  if (!are_known("body", wanted_bodies, bodies) || !are_known("solver", wanted_solvers, solvers)) {
+    return 2;
   }
   fmt::print(
       "| body | points | solver | iterations | analysis and assembly [s] | build [s] | solve [s] | "

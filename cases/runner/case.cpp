@@ -369,6 +369,14 @@ SolverSpecification read_solver(const TomlTable& table) {
   solver.linear = table.choice("linear", linear_methods, solver.linear);
   solver.preconditioner =
       table.choice("preconditioner", preconditioner_kinds, solver.preconditioner);
+  if (solver.linear == LinearMethod::cholesky &&
+      solver.preconditioner != PreconditionerKind::automatic)
+    table.refuse("preconditioner",
+                 "is for iterative solvers, not for solver.linear = \"cholesky\"");
+  // Who names a preconditioner wants it used.
+  if (solver.linear == LinearMethod::automatic &&
+      solver.preconditioner != PreconditionerKind::automatic)
+    solver.linear = LinearMethod::conjugate_gradients;
   solver.tangent = table.choice("tangent", tangent_storages, solver.tangent);
   if (solver.tangent == TangentStorage::matrix_free &&
       !can_be_matrix_free({solver.linear, solver.preconditioner}))

@@ -72,6 +72,11 @@ class LinearSolvers(unittest.TestCase):
         told = self.peristat("check", CASES / "plate_with_hole/square.toml", "solver.mode=newton").stdout
         self.assertRegex(told, r"solver +CHOLMOD .* \(auto: its pivots tell whether the softening body is stable\)")
 
+    def test_a_preconditioner_that_is_named_is_used(self):
+        told, _ = self.run_case(BEAM, *SMALL, "solver.preconditioner=surrogate")
+        self.assertIn("preconditioned by surrogate", told)
+        self.assertIn("(as the case asks)", told)
+
     def test_newton_stays_quadratic_with_iterations(self):
         self.run_case(BEAM, *SMALL)
         residuals = [float(row["relative_residual"]) for row in self.iterations()]
@@ -83,6 +88,7 @@ class LinearSolvers(unittest.TestCase):
             (("solver.tangent=matrix_free", "solver.linear=cholesky"), "solver.tangent"),
             (("solver.tangent=matrix_free", "solver.preconditioner=multigrid"), "solver.tangent"),
             (("solver.preconditioner=ilu",), "rigid_pieces"),
+            (("solver.linear=cholesky", "solver.preconditioner=surrogate"), "solver.preconditioner"),
             (("solver.linear=cg",), "did you mean pcg"),
         ):
             with self.subTest(settings=settings):
