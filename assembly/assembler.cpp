@@ -204,7 +204,7 @@ void Assembler::point_stretches(std::span<const double> displacement,
       for (Offset bond = bonds.offset[i]; bond < bonds.offset[i + 1]; ++bond) {
         if (!broken.empty() && broken[bond]) continue;
         const Index j = bonds.partner[bond];
-        const double stretch = Length::at<D, double>(bonds.inverse_length[bond],
+        const double stretch = Length::at<D, double>(bonds.inverse_length(bond),
                                                      {difference(points().reference, i, j)},
                                                      {difference(displacement, i, j)})
                                    .relative_change;

@@ -35,16 +35,20 @@ template <int D, class Visit>
   for (Offset first = bonds.offset[i]; first < end; first += lane_count) {
     batch.first = first;
     batch.count = static_cast<int>(std::min<Offset>(lane_count, end - first));
+    std::array<Offset, lane_count> bond;
     if (batch.count == lane_count) {
-      for (int l = 0; l < lane_count; ++l) batch.partner[l] = bonds.partner[first + l];
-      batch.weight.copy_from(&bonds.weight[first], std::experimental::element_aligned);
-      batch.inverse_length.copy_from(&bonds.inverse_length[first],
-                                     std::experimental::element_aligned);
+      for (int l = 0; l < lane_count; ++l) bond[l] = first + l;
     } else {
-      const auto bond = [&](int l) { return first + std::min(l, batch.count - 1); };
-      for (int l = 0; l < lane_count; ++l) batch.partner[l] = bonds.partner[bond(l)];
-      batch.weight = Lanes([&](int l) { return l < batch.count ? bonds.weight[first + l] : 0.0; });
-      batch.inverse_length = Lanes([&](int l) { return bonds.inverse_length[bond(l)]; });
+      for (int l = 0; l < lane_count; ++l) bond[l] = first + std::min(l, batch.count - 1);
+    }
+    std::array<const double*, lane_count> kind;
+    for (int l = 0; l < lane_count; ++l) {
+      batch.partner[l] = bonds.partner[bond[l]];
+      kind[l] = &bonds.kind[bond[l]].inverse_length;
+    }
+    load_transposed_pairs(kind, batch.inverse_length, batch.weight);
+    if (batch.count < lane_count) {
+      batch.weight = Lanes([&](int l) { return l < batch.count ? batch.weight[l] : 0.0; });
     }
     std::array<const double*, lane_count> row;
     for (int l = 0; l < lane_count; ++l) row[l] = rows + std::size_t(batch.partner[l]) * width;

@@ -27,7 +27,7 @@ DamageState assess_damage(const Model& model, std::span<const double> history,
   whole.resize(damage.size(), 0.0);
   std::vector<double> left(damage.size(), 0.0);
   const auto add = [&](Index i, Offset bond, double integrity) {
-    const double weight = bonds.weight[bond];
+    const double weight = bonds.weight(bond);
     for (const Index point : {i, bonds.partner[bond]}) {
       whole[point] += weight;
       left[point] += integrity * weight;
@@ -44,7 +44,7 @@ DamageState assess_damage(const Model& model, std::span<const double> history,
   with_law(model, history, [&](const auto& law) {
     for_each_bond([&](Offset bond) {
       const double largest = history[bond];
-      state.dissipated_energy += bonds.weight[bond] * bonds.length(bond) * law.dissipated(largest);
+      state.dissipated_energy += bonds.weight(bond) * bonds.length(bond) * law.dissipated(largest);
       state.broken_bonds += law.is_broken(largest);
       return law.integrity_after(largest);
     });

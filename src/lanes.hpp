@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstring>
 
 #include <experimental/simd>
@@ -74,6 +75,16 @@ inline void load_transposed(const double* row0, const double* row1, const double
   columns[1] = to_lanes(b);
   columns[2] = to_lanes(c);
   columns[3] = to_lanes(d);
+}
+
+/// The same for four rows of two consecutive doubles.
+inline void load_transposed_pairs(const std::array<const double*, 4>& row, Lanes& column0,
+                                  Lanes& column1) {
+  using namespace lanes_detail;
+  const Row even{row[0][0], row[0][1], row[2][0], row[2][1]};
+  const Row odd{row[1][0], row[1][1], row[3][0], row[3][1]};
+  column0 = to_lanes(__builtin_shuffle(even, odd, Order{0, 4, 2, 6}));
+  column1 = to_lanes(__builtin_shuffle(even, odd, Order{1, 5, 3, 7}));
 }
 
 /// The reverse: row l of `rows` gets lane l of the four columns.

@@ -170,6 +170,12 @@ void for_each_bond(const Bonds& bonds, const Visit& visit) {
   }
 }
 
+[[nodiscard]] inline std::vector<BondKind> kinds(const Bonds& bonds) {
+  std::vector<BondKind> all;
+  for (Offset bond = 0; bond < bonds.count(); ++bond) all.push_back(bonds.kind[bond]);
+  return all;
+}
+
 /// Reference distance of two points [m].
 [[nodiscard]] inline double reference_distance(const Points& points, Index i, Index j) {
   const Coordinates a = points.position(i), b = points.position(j);

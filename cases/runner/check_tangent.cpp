@@ -112,7 +112,7 @@ double keep_off_kinks(const Body& body, const std::vector<double>& displacement,
       const Index j = bonds.partner[bond];
       const Coordinates a = place(i), b = place(j);
       const double stretch =
-          std::hypot(b[0] - a[0], b[1] - a[1], b[2] - a[2]) * bonds.inverse_length[bond] - 1.0;
+          std::hypot(b[0] - a[0], b[1] - a[1], b[2] - a[2]) * bonds.inverse_length(bond) - 1.0;
       shortest = std::min(shortest, bonds.length(bond));
       const bool close = std::any_of(kinks.begin(), kinks.end(), [&](double kink) {
         return std::abs(stretch - kink) < margin;

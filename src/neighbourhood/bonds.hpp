@@ -1,8 +1,10 @@
 #pragma once
 
 #include <cstddef>
+#include <utility>
 #include <vector>
 
+#include "src/neighbourhood/bond_kinds.hpp"
 #include "src/types.hpp"
 
 namespace peristat {
@@ -13,10 +15,11 @@ namespace peristat {
 struct Bonds {
   std::vector<Offset> offset;          ///< points + 1
   std::vector<Index> partner;          ///< upper point of each bond
-  std::vector<double> inverse_length;  ///< 1/L, L the reference length: kernels divide by L [1/m]
-  std::vector<double> weight;          ///< quadrature weight w of the bond's energy [m6]
+  BondKinds kind;
 
-  [[nodiscard]] double length(Offset bond) const { return 1.0 / inverse_length[bond]; }  ///< L [m]
+  [[nodiscard]] double inverse_length(Offset bond) const { return kind[bond].inverse_length; }
+  [[nodiscard]] double length(Offset bond) const { return 1.0 / inverse_length(bond); }  ///< L [m]
+  [[nodiscard]] double weight(Offset bond) const { return kind[bond].weight; }
   [[nodiscard]] Offset count() const { return static_cast<Offset>(partner.size()); }
   [[nodiscard]] Index points() const { return static_cast<Index>(offset.size()) - 1; }
 
@@ -32,15 +35,26 @@ struct Bonds {
       for (; bond < end; ++bond) {
         if (drop(i, bond)) continue;
         partner[kept] = partner[bond];
-        inverse_length[kept] = inverse_length[bond];
-        weight[kept] = weight[bond];
+        kind.copy(bond, kept);
         ++kept;
       }
       offset[i + 1] = kept;
     }
     partner.resize(std::size_t(kept));
-    inverse_length.resize(std::size_t(kept));
-    weight.resize(std::size_t(kept));
+    kind.truncate(kept);
+  }
+
+  /// Gives every bond the weight weight_of(i, bond), i its lower point; asked in order.
+  template <class WeightOf>
+  void set_weights(const WeightOf& weight_of) {
+    BondKinds weighted;
+    weighted.reserve(partner.size());
+    for (Index i = 0; i < points(); ++i) {
+      for (Offset bond = offset[i]; bond < offset[i + 1]; ++bond) {
+        weighted.push_back({inverse_length(bond), weight_of(i, bond)});
+      }
+    }
+    kind = std::move(weighted);
   }
 };
 

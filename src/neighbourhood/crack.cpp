@@ -228,8 +228,8 @@ std::vector<double> cut_bonds(Bonds& bonds, const Points& points,
     const double slack = 2.0 * touching_tolerance * bonds.length(bond);  // more than cuts allows
     for (std::size_t k = 0; k < cracks.size(); ++k) {
       if (!overlap(box, boxes[k], slack) || !cuts(cracks[k], a, b)) continue;
-      removed[i] += bonds.weight[bond];
-      removed[j] += bonds.weight[bond];
+      removed[i] += bonds.weight(bond);
+      removed[j] += bonds.weight(bond);
       return true;
     }
     return false;

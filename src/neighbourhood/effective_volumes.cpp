@@ -28,11 +28,9 @@ double effective_neighbour_volume(const BulkNeighbourhood& bulk) {
 
 void set_one_neighbour_weights(Bonds& bonds, const Points& points, const BulkNeighbourhood& bulk) {
   const double v1 = effective_neighbour_volume(bulk);
-  for (Index i = 0; i < bonds.points(); ++i) {
-    for (Offset bond = bonds.offset[i]; bond < bonds.offset[i + 1]; ++bond) {
-      bonds.weight[bond] = 0.5 * (points.volume[i] + points.volume[bonds.partner[bond]]) * v1;
-    }
-  }
+  bonds.set_weights([&](Index i, Offset bond) {
+    return 0.5 * (points.volume[i] + points.volume[bonds.partner[bond]]) * v1;
+  });
 }
 
 template <class Measure>

@@ -21,7 +21,7 @@ std::array<double, 3> squared_direction(const Points& points, const Bonds& bonds
   std::array<double, 3> result{};
   const Coordinates from = points.position(i), to = points.position(bonds.partner[bond]);
   for (int a = 0; a < points.dimension; ++a) {
-    const double n = (to[a] - from[a]) * bonds.inverse_length[bond];
+    const double n = (to[a] - from[a]) * bonds.inverse_length(bond);
     result[a] = n * n;
   }
   return result;
@@ -36,7 +36,7 @@ void for_each_bond(const Bonds& bonds, const Visit& visit) {
 
 void apply_volume_correction(Bonds& bonds, const Points& points, const Quadrature& quadrature,
                              const BondSetting& setting) {
-  for_each_bond(bonds, [&](Index i, Offset bond) {
+  bonds.set_weights([&](Index i, Offset bond) {
     const Index j = bonds.partner[bond];
     double share = 1.0;
     if (quadrature.volume == VolumeCorrection::linear) {
@@ -45,12 +45,12 @@ void apply_volume_correction(Bonds& bonds, const Points& points, const Quadratur
       share = 0.5 * (linear_partial_volume(bonds.length(bond), setting.horizon, size_i) +
                      linear_partial_volume(bonds.length(bond), setting.horizon, size_j));
     }
-    bonds.weight[bond] = share * points.volume[i] * points.volume[j];
+    return share * points.volume[i] * points.volume[j];
   });
 }
 
 void drop_weightless(Bonds& bonds) {
-  bonds.remove_if([&](Index, Offset bond) { return bonds.weight[bond] == 0.0; });
+  bonds.remove_if([&](Index, Offset bond) { return bonds.weight(bond) == 0.0; });
 }
 
 /// Volume of the neighbourhood of a point far from surfaces, without its own: summed over the
@@ -84,12 +84,13 @@ void apply_volume_method(Bonds& bonds, const Points& points, const Quadrature& q
   std::vector<double> neighbourhood(points.volume.size(), 0.0);
   for_each_bond(bonds, [&](Index i, Offset bond) {
     const Index j = bonds.partner[bond];
-    neighbourhood[i] += bonds.weight[bond] / points.volume[i];
-    neighbourhood[j] += bonds.weight[bond] / points.volume[j];
+    neighbourhood[i] += bonds.weight(bond) / points.volume[i];
+    neighbourhood[j] += bonds.weight(bond) / points.volume[j];
   });
   const double bulk = bulk_neighbourhood_volume(points, quadrature, setting);
-  for_each_bond(bonds, [&](Index i, Offset bond) {
-    bonds.weight[bond] *= 2.0 * bulk / (neighbourhood[i] + neighbourhood[bonds.partner[bond]]);
+  bonds.set_weights([&](Index i, Offset bond) {
+    const double both = neighbourhood[i] + neighbourhood[bonds.partner[bond]];
+    return bonds.weight(bond) * 2.0 * bulk / both;
   });
 }
 
@@ -106,7 +107,7 @@ std::vector<std::array<double, 3>> confined_energy_ratio(const Points& points, c
     const std::array<double, 3> squared = squared_direction(points, bonds, i, bond);
     for (int a = 0; a < points.dimension; ++a) {
       const double energy =
-          factor * bonds.weight[bond] * bonds.length(bond) * squared[a] * squared[a];
+          factor * bonds.weight(bond) * bonds.length(bond) * squared[a] * squared[a];
       ratio[i][a] += energy / points.volume[i];
       ratio[j][a] += energy / points.volume[j];
     }
@@ -120,7 +121,7 @@ void apply_energy_method(Bonds& bonds, const Points& points, const BondSetting& 
     // An axis along which no bond of the point stretches has no energy to correct.
     for (double& axis : of_point) axis = axis > 0.0 ? 1.0 / axis : 1.0;
   }
-  for_each_bond(bonds, [&](Index i, Offset bond) {
+  bonds.set_weights([&](Index i, Offset bond) {
     const Index j = bonds.partner[bond];
     const std::array<double, 3> squared = squared_direction(points, bonds, i, bond);
     double sum = 0.0;
@@ -128,7 +129,7 @@ void apply_energy_method(Bonds& bonds, const Points& points, const BondSetting& 
       const double mean = 0.5 * (factor[i][a] + factor[j][a]);
       sum += squared[a] / (mean * mean);
     }
-    bonds.weight[bond] /= std::sqrt(sum);
+    return bonds.weight(bond) / std::sqrt(sum);
   });
 }
 

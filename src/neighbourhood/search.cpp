@@ -7,8 +7,6 @@
 #include <limits>
 #include <numeric>
 
-#include <omp.h>
-
 #include "src/neighbourhood/horizon.hpp"
 
 namespace peristat {
@@ -115,9 +113,14 @@ struct CellList {
   }
 };
 
+/// Rows that are searched together. Their number is that for any number of threads, so that kinds
+/// of bonds are, too.
+constexpr Index rows_per_part = 8192;
+
+/// Bonds of a part's rows.
 struct Found {
   std::vector<Index> partner;
-  std::vector<double> inverse_length;
+  BondKinds kind;
 };
 
 struct Candidate {
@@ -133,14 +136,14 @@ Bonds search(const Points& points, double radius, int threads) {
   const double squared_longest = longest * longest;
   Bonds bonds;
   bonds.offset.assign(std::size_t(count) + 1, 0);
-  std::vector<Found> found(threads);
+  const Index parts = (count + rows_per_part - 1) / rows_per_part;
+  std::vector<Found> found(static_cast<std::size_t>(parts));
 
-#pragma omp parallel num_threads(threads)
-  {
-    const int thread = omp_get_thread_num();
-    const Index first = static_cast<Index>(std::int64_t(count) * thread / threads);
-    const Index last = static_cast<Index>(std::int64_t(count) * (thread + 1) / threads);
-    Found& mine = found[thread];
+#pragma omp parallel for num_threads(threads) schedule(dynamic)
+  for (Index part = 0; part < parts; ++part) {
+    const Index first = part * rows_per_part;
+    const Index last = std::min(count - first, rows_per_part) + first;
+    Found& mine = found[std::size_t(part)];
     std::vector<Candidate> row;
     for (Index i = first; i < last; ++i) {
       std::array<double, D> at;
@@ -163,7 +166,7 @@ Bonds search(const Points& points, double radius, int threads) {
                 [](const Candidate& a, const Candidate& b) { return a.partner < b.partner; });
       for (std::size_t k = 0; k < kept; ++k) {
         mine.partner.push_back(row[k].partner);
-        mine.inverse_length.push_back(1.0 / std::sqrt(row[k].squared));
+        mine.kind.push_back({1.0 / std::sqrt(row[k].squared), 0.0});
       }
       bonds.offset[std::size_t(i) + 1] = static_cast<Offset>(kept);
     }
@@ -171,13 +174,11 @@ Bonds search(const Points& points, double radius, int threads) {
 
   for (Index i = 0; i < count; ++i) bonds.offset[std::size_t(i) + 1] += bonds.offset[i];
   bonds.partner.resize(std::size_t(bonds.offset[count]));
-  bonds.inverse_length.resize(bonds.partner.size());
-  bonds.weight.assign(bonds.partner.size(), 0.0);
+  bonds.kind.reserve(bonds.partner.size());
   std::size_t at = 0;
   for (Found& part : found) {
     std::copy(part.partner.begin(), part.partner.end(), bonds.partner.begin() + std::ptrdiff_t(at));
-    std::copy(part.inverse_length.begin(), part.inverse_length.end(),
-              bonds.inverse_length.begin() + std::ptrdiff_t(at));
+    bonds.kind.append(part.kind);
     at += part.partner.size();
     part = {};
   }

@@ -40,7 +40,9 @@ struct OneBond {
     points.spacing = length;
     points.reference = {0.1, 0.1 + length};
     points.volume = {1.0, 1.0};
-    model.bonds = {{0, 1, 1}, {1}, {1.0 / length}, {weight}};
+    model.bonds.offset = {0, 1, 1};
+    model.bonds.partner = {1};
+    model.bonds.kind.push_back({1.0 / length, weight});
   }
   [[nodiscard]] static std::vector<double> stretched(double s) { return {0.0, s * length}; }
 };
@@ -472,7 +474,7 @@ TEST(Damage, BondsThatNeverFailStayHarmonic) {
         damaged += !never && kappa > wide_onset;
         const double integrity = never ? 1.0 : softened(std::max(s[b], 0.0));
         energy += 0.5 * micromodulus(box.youngs_modulus, body.setting) * integrity * s[b] * s[b] *
-                  body.model.bonds.weight[b] * body.model.bonds.length(b);
+                  body.model.bonds.weight(b) * body.model.bonds.length(b);
       }
     }
     EXPECT_GT(damaged, 3);
@@ -497,7 +499,7 @@ TEST(Damage, HeldDamageLetsBondsFollowTheirSecants) {
     EXPECT_EQ(assembler.energy(state).energy, free);
     const auto potential = std::get<Degraded<TanhDegradation>>(damaged.body.model.potential);
     for (std::size_t b = 0; b < s.size(); ++b) {
-      const double scale = bonds.weight[b] * bonds.length(Offset(b));
+      const double scale = bonds.weight(b) * bonds.length(Offset(b));
       const double kappa = assembler.history()[b];
       secants += scale * 0.5 * c * softened(kappa) * s[b] * s[b];
       taken_up += scale * potential(s[b], kappa).value;
@@ -514,7 +516,7 @@ TEST(Damage, IsTheShareOfTheWeightThatIsLost) {
     (void)assembler.commit(damaging_state(body));
     const std::span<const double> history = assembler.history();
     const auto n = std::size_t(body.points.count());
-    std::vector<double> cut = tests::Random(3).vector(n, body.model.bonds.weight[0]);
+    std::vector<double> cut = tests::Random(3).vector(n, body.model.bonds.weight(0));
     for (double& weight : cut) weight = std::max(weight, 0.0);  // nothing is cut at some
     const auto potential = std::get<Degraded<TanhDegradation>>(body.model.potential);
 
@@ -527,7 +529,7 @@ TEST(Damage, IsTheShareOfTheWeightThatIsLost) {
         double whole = with_cut ? cut[p] : 0.0, left = 0.0;
         tests::for_each_bond(body.model.bonds, [&](Index i, Index j, Offset b) {
           if (std::size_t(i) != p && std::size_t(j) != p) return;
-          const double weight = body.model.bonds.weight[b];
+          const double weight = body.model.bonds.weight(b);
           whole += weight;
           left += weight * softened(history[b]);
         });
@@ -535,7 +537,7 @@ TEST(Damage, IsTheShareOfTheWeightThatIsLost) {
       }
       tests::for_each_bond(body.model.bonds, [&](Index, Index, Offset b) {
         broken += history[b] >= wide_critical;
-        dissipated += body.model.bonds.weight[b] * body.model.bonds.length(b) *
+        dissipated += body.model.bonds.weight(b) * body.model.bonds.length(b) *
                       potential.dissipated(history[b]);
       });
       const DamageState state =
@@ -565,7 +567,7 @@ TEST(Damage, WithoutHistoryIsWhatACrackHasCut) {
   const DamageState state = assess_damage(body.model, {}, cut, damage);
   double weight = 0.0;
   tests::for_each_bond(body.model.bonds, [&](Index i, Index j, Offset b) {
-    if (i == 3 || j == 3) weight += body.model.bonds.weight[b];
+    if (i == 3 || j == 3) weight += body.model.bonds.weight(b);
   });
   for (std::size_t p = 0; p < n; ++p) {
     EXPECT_NEAR(damage[p], p == 3 ? 1.0 / (1.0 + weight) : 0.0, 1e-14);

@@ -12,7 +12,7 @@ namespace {
 
 /// Three points in a row, bonds 0-1 and 1-2, with numbers that tell their place.
 struct Example {
-  Bonds bonds{{0, 1, 2, 2}, {1, 2}, {1.0, 1.0}, {1.0, 1.0}};
+  Bonds bonds{{0, 1, 2, 2}, {1, 2}, {}};
   Tangent tangent{Pattern(bonds), 2};
 
   Example() {
