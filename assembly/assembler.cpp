@@ -1,6 +1,7 @@
 #include "assembly/assembler.hpp"
 
 #include <algorithm>
+#include <stdexcept>
 #include <type_traits>
 
 #include "assembly/bond_kernels.hpp"
@@ -117,14 +118,22 @@ void Assembler::tangent(std::span<const double> displacement, Tangent& tangent, 
   for (std::size_t k = 0; k < displacement.size(); ++k) {
     tangent.position[k] = points().reference[k] + displacement[k];
   }
+  if (!model().has_only_bonds() && tangent.blocks != Tangent::Blocks::whole) {
+    throw std::logic_error("the blocks of triangles and tetrahedra are not symmetric");
+  }
   dispatch(dimension, workspace_->potential, [&](auto d, const auto& law) {
-    constexpr std::size_t entries = decltype(d)::value * decltype(d)::value;
-    BondKernels<decltype(d)::value>::tangent(
-        *workspace_, law, displacement, projection,
-        [&](int, Index i) {
-          return tangent.off_diagonal.data() + std::size_t(tangent.pattern.offset[i]) * entries;
-        },
-        [](int, Index) {}, tangent.diagonal);
+    using Kernels = BondKernels<decltype(d)::value>;
+    const auto blocks_of = [&](int, Index i) {
+      return &tangent.off_diagonal[std::size_t(tangent.pattern.offset[i]) * tangent.block_size()];
+    };
+    const auto done = [](int, Index) {};
+    if (tangent.blocks == Tangent::Blocks::whole) {
+      Kernels::template tangent<Tangent::Blocks::whole>(*workspace_, law, displacement, projection,
+                                                        blocks_of, done, tangent.diagonal);
+    } else {
+      Kernels::template tangent<Tangent::Blocks::upper_halves>(
+          *workspace_, law, displacement, projection, blocks_of, done, tangent.diagonal);
+    }
   });
   if (model().has_only_bonds()) return;
   with_dimension(dimension, [&](auto d) {
@@ -145,7 +154,7 @@ void Assembler::visit_tangent(std::span<const double> displacement, double proje
     constexpr std::size_t entries = decltype(d)::value * decltype(d)::value;
     std::vector<std::vector<double>> rows(std::size_t(threads()),
                                           std::vector<double>(std::size_t(longest) * entries));
-    BondKernels<decltype(d)::value>::tangent(
+    BondKernels<decltype(d)::value>::template tangent<Tangent::Blocks::whole>(
         *workspace_, law, displacement, projection,
         [&](int thread, Index) { return rows[std::size_t(thread)].data(); },
         [&](int thread, Index i) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstring>
 #include <limits>
 #include <span>
 
@@ -124,6 +125,28 @@ inline void store_blocks(double* blocks, int count, const Matrix<D, Lanes>& bloc
       store_row(blocks + l * 9, head[l]);
       store_row(blocks + l * 9 + 4, tail[l]);
       blocks[l * 9 + 8] = last[l];
+    }
+  }
+}
+
+/// Writes minus the upper half of the block of lane l for bond l.
+template <int D>
+inline void store_upper_halves(double* blocks, int count,
+                               const std::array<Lanes, block_width(D)>& half) {
+  if constexpr (D == 1) {
+    for (int l = 0; l < count; ++l) blocks[l] = -half[0][l];
+  } else {
+    lanes_detail::Row head[4];
+    store_transposed(-half[0], -half[1], -half[2], -half[3], head);
+    if constexpr (D == 2) {
+      for (int l = 0; l < count; ++l) std::memcpy(blocks + l * 3, &head[l], 3 * sizeof(double));
+    } else {
+      lanes_detail::Pair tail[4];
+      store_transposed(-half[4], -half[5], tail);
+      for (int l = 0; l < count; ++l) {
+        store_row(blocks + l * 6, head[l]);
+        std::memcpy(blocks + l * 6 + 4, &tail[l], sizeof tail[l]);
+      }
     }
   }
 }
@@ -262,7 +285,7 @@ struct BondKernels {
   /// @param blocks_of(thread, i) where the off-diagonal blocks of row i go
   /// @param done(thread, i) called once they are there
   /// @param diagonal blocks; empty: not wanted
-  template <class P, class BlocksOf, class Done>
+  template <Tangent::Blocks stored_as, class P, class BlocksOf, class Done>
   static void tangent(Workspace& a, const P& potential, Span displacement, double projection,
                       const BlocksOf& blocks_of, const Done& done, std::span<double> diagonal) {
     a.pack<D>(a.points.reference, displacement);
@@ -281,9 +304,13 @@ struct BondKernels {
                   interaction_energy(batch.weight, at_history(a, potential, batch.first), measure);
               if (projection > 0.0) psi = projected(psi, projection);
               const Matrix<D, Lanes> block = energy_hessian<0, 0>(psi, measure);
-              store_blocks<D>(blocks + std::size_t(batch.first - bonds.offset[i]) * D * D,
-                              batch.count, block);
               const auto half = upper_half<D>(block);
+              const std::ptrdiff_t place = batch.first - bonds.offset[i];
+              if constexpr (stored_as == Tangent::Blocks::whole) {
+                store_blocks<D>(blocks + place * D * D, batch.count, block);
+              } else {
+                store_upper_halves<D>(blocks + place * (D * (D + 1) / 2), batch.count, half);
+              }
               for (int c = 0; c < width; ++c) own[c] += half[c];
               add_to_partners<D>(sums, batch.partner, half);
             });

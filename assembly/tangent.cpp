@@ -1,7 +1,9 @@
 #include "assembly/tangent.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <type_traits>
 
 #include <omp.h>
 
@@ -10,9 +12,45 @@
 namespace peristat {
 namespace {
 
+/// A whole block of those stored.
+template <int D, Tangent::Blocks stored_as>
+[[gnu::always_inline]] inline std::array<double, D * D> whole_block(const double* stored) {
+  std::array<double, D * D> block;
+  if constexpr (stored_as == Tangent::Blocks::whole) {
+    for (int k = 0; k < D * D; ++k) block[k] = stored[k];
+  } else {
+    int k = 0;
+    for (int r = 0; r < D; ++r) {
+      for (int c = r; c < D; ++c) block[r * D + c] = block[c * D + r] = stored[k++];
+    }
+  }
+  return block;
+}
+
+constexpr int block_size_of(int dimension, Tangent::Blocks stored_as) {
+  return stored_as == Tangent::Blocks::whole ? dimension * dimension
+                                             : dimension * (dimension + 1) / 2;
+}
+
+/// Calls body with the dimension and the way of storing as compile-time constants.
+template <class Body>
+void dispatch(const Tangent& tangent, const Body& body) {
+  const auto with_dimension = [&](auto stored_as) {
+    if (tangent.dimension == 1) body(std::integral_constant<int, 1>{}, stored_as);
+    if (tangent.dimension == 2) body(std::integral_constant<int, 2>{}, stored_as);
+    if (tangent.dimension == 3) body(std::integral_constant<int, 3>{}, stored_as);
+  };
+  using Blocks = Tangent::Blocks;
+  if (tangent.blocks == Blocks::whole) {
+    with_dimension(std::integral_constant<Blocks, Blocks::whole>{});
+  } else {
+    with_dimension(std::integral_constant<Blocks, Blocks::upper_halves>{});
+  }
+}
+
 /// result = K v. Each thread adds up its own rows and, apart, what its bonds give to later threads'
 /// rows; these are added in the order of the threads.
-template <int D>
+template <int D, Tangent::Blocks stored_as>
 void multiply_rows(const Tangent& tangent, std::span<const double> v, std::span<double> result) {
   std::vector<std::vector<double>> spilled(tangent.ranges.size());
 #pragma omp parallel num_threads(tangent.threads())
@@ -25,14 +63,17 @@ void multiply_rows(const Tangent& tangent, std::span<const double> v, std::span<
     double* const beyond = spilled[thread].data();
     for (Index i = range.first; i < range.last; ++i) {
       const double* own = &v[std::size_t(i) * D];
-      const double* block = &tangent.diagonal[std::size_t(i) * D * D];
+      const double* diagonal = &tangent.diagonal[std::size_t(i) * D * D];
       double sum[D] = {};
       for (int r = 0; r < D; ++r) {
-        for (int c = 0; c < D; ++c) sum[r] += block[r * D + c] * own[c];
+        for (int c = 0; c < D; ++c) sum[r] += diagonal[r * D + c] * own[c];
       }
-      block = tangent.off_diagonal.data() + std::size_t(tangent.pattern.offset[i]) * D * D;
+      constexpr int size = block_size_of(D, stored_as);
+      const double* stored =
+          tangent.off_diagonal.data() + std::size_t(tangent.pattern.offset[i]) * size;
       for (Offset bond = tangent.pattern.offset[i]; bond < tangent.pattern.offset[i + 1];
-           ++bond, block += D * D) {
+           ++bond, stored += size) {
+        const auto block = whole_block<D, stored_as>(stored);
         const Index j = tangent.pattern.partner[bond];
         const double* other = &v[std::size_t(j) * D];
         double* to =
@@ -60,9 +101,22 @@ void multiply_rows(const Tangent& tangent, std::span<const double> v, std::span<
 
 }  // namespace
 
-Tangent::Tangent(const Pattern& of, int dimension_of_points, int threads)
+Tangent::Tangent(const Pattern& of, int dimension_of_points, int threads, Blocks stored_as)
     : TangentOperator(of, dimension_of_points, threads),
-      off_diagonal(std::size_t(of.blocks()) * dimension * dimension) {}
+      blocks(stored_as),
+      off_diagonal(std::size_t(of.blocks()) * block_size()) {}
+
+Tangent::Tangent(const Assembler& assembler)
+    : Tangent(Pattern(assembler.model().bonds), assembler.points().dimension, assembler.threads(),
+              assembler.model().has_only_bonds() ? Blocks::upper_halves : Blocks::whole) {}
+
+std::size_t Tangent::block_size() const { return std::size_t(block_size_of(dimension, blocks)); }
+
+std::size_t Tangent::place_in_block(int r, int c) const {
+  if (blocks == Blocks::whole) return std::size_t(r * dimension + c);
+  const int row = std::min(r, c), column = std::max(r, c);
+  return std::size_t(row * dimension - row * (row - 1) / 2 + column - row);
+}
 
 void Tangent::linearise(Assembler& assembler, std::span<const double> displacement,
                         double projection) {
@@ -70,29 +124,43 @@ void Tangent::linearise(Assembler& assembler, std::span<const double> displaceme
 }
 
 void Tangent::multiply(std::span<const double> v, std::span<double> result) const {
-  if (dimension == 1) multiply_rows<1>(*this, v, result);
-  if (dimension == 2) multiply_rows<2>(*this, v, result);
-  if (dimension == 3) multiply_rows<3>(*this, v, result);
+  dispatch(*this, [&](auto d, auto stored_as) {
+    multiply_rows<decltype(d)::value, decltype(stored_as)::value>(*this, v, result);
+  });
 }
 
 void Tangent::for_each_row(const RowVisitor& visit) const {
-  const std::size_t entries = std::size_t(dimension) * dimension;
+  dispatch(*this, [&](auto d, auto stored_as) {
+    constexpr int D = decltype(d)::value;
+    constexpr Blocks as = decltype(stored_as)::value;
+    constexpr std::size_t size = block_size_of(D, as);
 #pragma omp parallel num_threads(threads())
-  {
-    const int thread = omp_get_thread_num();
-    for (Index i = ranges[thread].first; i < ranges[thread].last; ++i) {
-      const std::size_t first = std::size_t(pattern.offset[i]),
-                        last = std::size_t(pattern.offset[i + 1]);
-      visit(thread, i, std::span(off_diagonal).subspan(first * entries, (last - first) * entries));
+    {
+      const int thread = omp_get_thread_num();
+      std::vector<double> row;
+      for (Index i = ranges[thread].first; i < ranges[thread].last; ++i) {
+        const std::size_t first = std::size_t(pattern.offset[i]),
+                          last = std::size_t(pattern.offset[i + 1]);
+        if constexpr (as == Blocks::whole) {
+          visit(thread, i, std::span(off_diagonal).subspan(first * size, (last - first) * size));
+        } else {
+          row.clear();
+          for (std::size_t bond = first; bond < last; ++bond) {
+            const auto block = whole_block<D, as>(off_diagonal.data() + bond * size);
+            row.insert(row.end(), block.begin(), block.end());
+          }
+          visit(thread, i, row);
+        }
+      }
     }
-  }
+  });
 }
 
 double Tangent::asymmetry() const {
   const int d = dimension;
   double largest = 0.0, difference = 0.0;
-  for (double entry : off_diagonal) largest = std::max(largest, std::abs(entry));
-  for (double entry : diagonal) largest = std::max(largest, std::abs(entry));
+  for (double stored : off_diagonal) largest = std::max(largest, std::abs(stored));
+  for (double stored : diagonal) largest = std::max(largest, std::abs(stored));
   for (Index i = 0; i < pattern.points(); ++i) {
     const double* block = &diagonal[std::size_t(i) * d * d];
     for (int r = 0; r < d; ++r) {
@@ -106,8 +174,12 @@ double Tangent::asymmetry() const {
 
 double Tangent::frobenius_norm() const {
   double sum = 0.0;
-  for (double entry : diagonal) sum += entry * entry;
-  for (double entry : off_diagonal) sum += 2.0 * entry * entry;
+  for (double of_diagonal : diagonal) sum += of_diagonal * of_diagonal;
+  for (Offset bond = 0; bond < pattern.blocks(); ++bond) {
+    for (int r = 0; r < dimension; ++r) {
+      for (int c = 0; c < dimension; ++c) sum += 2.0 * entry(bond, r, c) * entry(bond, r, c);
+    }
+  }
   return std::sqrt(sum);
 }
 

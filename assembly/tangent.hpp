@@ -7,12 +7,28 @@
 
 namespace peristat {
 
-/// Tangent whose blocks are stored: the symmetric half.
+/// Tangent whose blocks are stored: the symmetric half of K.
 struct Tangent : TangentOperator {
-  Tangent(const Pattern& of, int dimension_of_points, int threads = 1);
+  /// Off-diagonal blocks are stored whole, row major, or as their upper halves (xx xy xz yy yz zz):
+  /// those of bonds are symmetric, those of triangles and tetrahedra are not.
+  enum class Blocks { whole, upper_halves };
 
-  std::vector<double>
-      off_diagonal;  ///< bonds x d x d, block (i, partner) in the order of the bonds
+  Tangent(const Pattern& of, int dimension_of_points, int threads = 1,
+          Blocks stored_as = Blocks::whole);
+  /// For the assembler's model, with what its blocks need.
+  explicit Tangent(const Assembler& assembler);
+
+  Blocks blocks;
+  std::vector<double> off_diagonal;  ///< block (i, partner), in the order of the bonds [N/m]
+
+  /// Numbers that are stored of an off-diagonal block.
+  [[nodiscard]] std::size_t block_size() const;
+  /// Entry (r, c) of the block of a bond [N/m].
+  [[nodiscard]] double entry(Offset bond, int r, int c) const {
+    return off_diagonal[std::size_t(bond) * block_size() + place_in_block(r, c)];
+  }
+  /// Where a block keeps its entry (r, c).
+  [[nodiscard]] std::size_t place_in_block(int r, int c) const;
 
   void linearise(Assembler& assembler, std::span<const double> displacement,
                  double projection) override;

@@ -48,7 +48,7 @@ void assembly(benchmark::State& state) {
   const Points points = body(state);
   const Model model = benchmark_bodies::model(points);
   Assembler assembler(points, model, omp_get_max_threads());
-  Tangent tangent(Pattern(model.bonds), points.dimension);
+  Tangent tangent(assembler);
   const std::vector<double> displacement = wave(points, 1e-2, 7.0), v = wave(points, 1.0, 3.0);
   std::vector<double> result(v.size());
   for (auto _ : state) {

@@ -75,7 +75,7 @@ class Linearisation {
     }
     // Linear in the share: the projection of every interaction, which is what costs, is done once.
     if (!to_projected_) {
-      to_projected_.emplace(stored->pattern, stored->dimension, stored->threads());
+      to_projected_.emplace(stored->pattern, stored->dimension, stored->threads(), stored->blocks);
       problem_.assembler.tangent(at.displacement, *to_projected_, 1.0);
       add_scaled(to_projected_->diagonal, -1.0, stored->diagonal);
       add_scaled(to_projected_->off_diagonal, -1.0, stored->off_diagonal);

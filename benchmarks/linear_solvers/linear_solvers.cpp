@@ -105,7 +105,7 @@ void measure(const std::string& name, const BodyShape& shape,
     if (std::find(wanted.begin(), wanted.end(), solver_name) == wanted.end()) continue;
     std::unique_ptr<TangentOperator> tangent;
     if (kind.is_stored) {
-      tangent = std::make_unique<Tangent>(pattern, shape.dimension, assembler.threads());
+      tangent = std::make_unique<Tangent>(assembler);
     } else {
       tangent = std::make_unique<MatrixFreeTangent>(assembler);
     }

@@ -205,7 +205,7 @@ Exit check_tangent(const Case& from, const std::string& deformation, int threads
   if (stored.degenerate) {
     throw InputError("--deformation", '"' + text + '"', "collapses a bond to zero length");
   }
-  Tangent tangent(Pattern(body.model.bonds), points.dimension);
+  Tangent tangent(assembler);
   assembler.tangent(displacement, tangent);
   std::vector<double> direction = test_direction(points);
   const double largest_step = keep_off_kinks(body, displacement, gradient, direction, 0.05);

@@ -39,8 +39,7 @@ LinearSystems choose_linear_systems(const Case& from, const MemoryEstimate& esti
 
 std::unique_ptr<TangentOperator> LinearSystems::make_tangent(Assembler& assembler) const {
   if (!is_stored) return std::make_unique<MatrixFreeTangent>(assembler);
-  return std::make_unique<Tangent>(Pattern(assembler.model().bonds), assembler.points().dimension,
-                                   assembler.threads());
+  return std::make_unique<Tangent>(assembler);
 }
 
 LoadSteppingOptions load_stepping_options(const Case& from) {

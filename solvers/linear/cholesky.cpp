@@ -130,8 +130,8 @@ struct Cholesky::Cholmod {
     }
   }
 
-  /// visit(entry, value) with `value` the address of the tangent's number for each stored entry of
-  /// one column (the lower triangle) in ascending rows.
+  /// visit(row, on_diagonal, k, r, c) for each stored entry of one column (the lower triangle) in
+  /// ascending rows: entry (r, c) of the diagonal block of point k, or of the block of bond k.
   template <class Visit>
   void for_each_entry_of_column(const Pattern& pattern, Index equation, const Visit& visit) const {
     const int d = free->dimension;
@@ -140,13 +140,13 @@ struct Cholesky::Cholmod {
     const int r = dof % d;
     for (int c = r; c < d; ++c) {
       const Index row = free->equation[std::size_t(i) * d + c];
-      if (row != FreeDofs::none) visit(row, true, (std::size_t(i) * d + r) * d + c);
+      if (row != FreeDofs::none) visit(row, true, i, r, c);
     }
     for (Offset bond = pattern.offset[i]; bond < pattern.offset[i + 1]; ++bond) {
       const std::size_t j = std::size_t(pattern.partner[bond]);
       for (int c = 0; c < d; ++c) {
         const Index row = free->equation[j * d + c];
-        if (row != FreeDofs::none) visit(row, false, (std::size_t(bond) * d + r) * d + c);
+        if (row != FreeDofs::none) visit(row, false, bond, r, c);
       }
     }
   }
@@ -156,7 +156,7 @@ struct Cholesky::Cholmod {
     std::vector<Long> begin(std::size_t(size) + 1, 0);
     for (Index e = 0; e < size; ++e) {
       Long entries = 0;
-      for_each_entry_of_column(pattern, e, [&](Index, bool, std::size_t) { ++entries; });
+      for_each_entry_of_column(pattern, e, [&](Index, bool, Offset, int, int) { ++entries; });
       begin[std::size_t(e) + 1] = begin[e] + entries;
     }
     matrix = cholmod_l_allocate_sparse(size, size, std::size_t(begin.back()), 1, 1, -1,
@@ -166,21 +166,22 @@ struct Cholesky::Cholmod {
     Long* rows = static_cast<Long*>(matrix->i);
     for (Index e = 0; e < size; ++e) {
       Long* row = rows + begin[e];
-      for_each_entry_of_column(pattern, e, [&](Index at, bool, std::size_t) { *row++ = at; });
+      for_each_entry_of_column(pattern, e, [&](Index at, bool, Offset, int, int) { *row++ = at; });
     }
   }
 
   void fill_matrix() {
     double* values = static_cast<double*>(matrix->x);
     const Long* begin = static_cast<const Long*>(matrix->p);
-    const double* diagonal = tangent->diagonal.data();
-    const double* off_diagonal = tangent->off_diagonal.data();
+    const int d = tangent->dimension;
 #pragma omp parallel for schedule(static)
     for (Index e = 0; e < free->count(); ++e) {
       double* value = values + begin[e];
       for_each_entry_of_column(tangent->pattern, e,
-                               [&](Index, bool on_diagonal, std::size_t place) {
-                                 *value++ = (on_diagonal ? diagonal : off_diagonal)[place];
+                               [&](Index, bool on_diagonal, Offset k, int r, int c) {
+                                 *value++ = on_diagonal
+                                                ? tangent->diagonal[(std::size_t(k) * d + r) * d + c]
+                                                : tangent->entry(k, r, c);
                                });
     }
   }

@@ -39,21 +39,20 @@ CompressedRows compressed_rows(const Tangent& tangent, const FreeDofs& free) {
   for (Index i = 0; i < points; ++i) {
     for (int r = 0; r < d; ++r) {
       if (free.equation[std::size_t(i) * d + r] == FreeDofs::none) continue;
-      // Row r of a block: entries lie `stride` apart, d where the block is stored transposed.
-      const auto append = [&](Index j, const double* first, int stride) {
+      const auto append = [&](Index j, const auto& entry_of_column) {
         for (int c = 0; c < d; ++c) {
           const Index equation = free.equation[std::size_t(j) * d + c];
           if (equation == FreeDofs::none) continue;
           rows.column.push_back(equation);
-          rows.value.push_back(first[c * stride]);
+          rows.value.push_back(entry_of_column(c));
         }
       };
       for (Offset k = lower_offset[i]; k < lower_offset[i + 1]; ++k) {
-        append(lower[k].partner, tangent.off_diagonal.data() + lower[k].bond * d * d + r, d);
+        append(lower[k].partner, [&](int c) { return tangent.entry(lower[k].bond, c, r); });
       }
-      append(i, tangent.diagonal.data() + Offset(i) * d * d + r * d, 1);
+      append(i, [&](int c) { return tangent.diagonal[(std::size_t(i) * d + r) * d + c]; });
       for (Offset bond = pattern.offset[i]; bond < pattern.offset[i + 1]; ++bond) {
-        append(pattern.partner[bond], tangent.off_diagonal.data() + bond * d * d + r * d, 1);
+        append(pattern.partner[bond], [&](int c) { return tangent.entry(bond, r, c); });
       }
       rows.begin.push_back(rows.column.size());
     }

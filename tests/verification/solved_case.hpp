@@ -41,7 +41,7 @@ inline SolvedCase solve_case(const std::string& name,
   const FreeDofs free(solved.body->conditions->prescribed(), solved.from.dimension);
   Assembler assembler(solved.body->points, solved.body->model, threads);
   const Pattern pattern(solved.body->model.bonds);
-  Tangent tangent(pattern, solved.from.dimension);
+  Tangent tangent(assembler);
   Cholesky solver;
   if (solver.analyze(pattern, free) != LinearOutcome::solved) {
     solved.result.outcome = Outcome::out_of_memory;

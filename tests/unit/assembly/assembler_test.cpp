@@ -96,7 +96,7 @@ TEST(Assembler, TangentIsDerivativeOfGradientInEveryColumn) {
     const BoxBody body(box);
     Assembler assembler(body.points, body.model, 1);
     const std::vector<double> state = body.random_state(3);
-    Tangent tangent(Pattern(body.model.bonds), dimension);
+    Tangent tangent(assembler);
     assembler.tangent(state, tangent);
     for (std::size_t dof = 0; dof < body.dofs(); ++dof) {
       std::vector<double> unit(body.dofs(), 0.0), column(body.dofs());

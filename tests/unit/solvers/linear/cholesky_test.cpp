@@ -30,7 +30,7 @@ MatrixXd dense(const Tangent& tangent, const FreeDofs& free) {
       const Index j = tangent.pattern.partner[bond];
       for (int r = 0; r < d; ++r) {
         for (int c = 0; c < d; ++c) {
-          const double entry = tangent.off_diagonal[std::size_t(bond) * d * d + r * d + c];
+          const double entry = tangent.entry(bond, r, c);
           full(i * d + r, j * d + c) = full(j * d + c, i * d + r) = entry;
         }
       }
@@ -50,7 +50,7 @@ struct System {
          const std::vector<double>& state)
       : body(box),
         free(prescribed, box.dimension),
-        tangent(Pattern(body.model.bonds), box.dimension),
+        tangent(Assembler(body.points, body.model, 1)),
         b(tests::Random(3).vector(std::size_t(free.count()))),
         x(std::size_t(free.count()), 1e300) {
     assemble(state);

@@ -17,7 +17,7 @@ struct Assembled {
   Tangent tangent;
 
   explicit Assembled(int dimension, bool at_rest)
-      : body(tests::small_box(dimension)), tangent(Pattern(body.model.bonds), dimension) {
+      : body(tests::small_box(dimension)), tangent(Assembler(body.points, body.model, 1)) {
     const std::vector<double> rest(body.dofs(), 0.0);
     Assembler(body.points, body.model, 1).tangent(at_rest ? rest : body.random_state(4), tangent);
   }
