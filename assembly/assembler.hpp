@@ -56,7 +56,8 @@ class Assembler {
   ///        tangent
   void tangent(std::span<const double> displacement, Tangent& tangent, double projection = 0.0);
 
-  /// product = d2E/dx2(displacement) v, without a stored tangent.
+  /// product = d2E/dx2(displacement) v, without a stored tangent. For models of bonds alone both
+  /// may be the same array.
   /// @param projection as of `tangent`; other than 0 only for models of bonds alone
   void product(std::span<const double> displacement, std::span<const double> v,
                std::span<double> product, double projection = 0.0);

@@ -98,11 +98,17 @@ inline std::array<Lanes, block_width(D)> upper_half(const Matrix<D, Lanes>& bloc
 template <int D>
 inline void add_to_partners(double* sums, const std::array<Index, lane_count>& partner,
                             const std::array<Lanes, block_width(D)>& half) {
-  for (int part = 0; part < block_width(D); part += 4) {
-    lanes_detail::Row rows[4];
-    store_transposed(half[part], half[part + 1], half[part + 2], half[part + 3], rows);
+  constexpr int width = block_width(D);
+  lanes_detail::Row head[4];
+  store_transposed(half[0], half[1], half[2], half[3], head);
+  for (int l = 0; l < lane_count; ++l) {
+    add_row(sums + std::ptrdiff_t(partner[l]) * width, head[l]);
+  }
+  if constexpr (D == 3) {
+    lanes_detail::Pair tail[4];
+    store_transposed(half[4], half[5], tail);
     for (int l = 0; l < lane_count; ++l) {
-      add_row(sums + std::ptrdiff_t(partner[l]) * block_width(D) + part, rows[l]);
+      add_row(sums + std::ptrdiff_t(partner[l]) * width + 4, tail[l]);
     }
   }
 }

@@ -13,13 +13,17 @@ MatrixFreeTangent::MatrixFreeTangent(Assembler& assembler)
   }
 }
 
+std::vector<double> MatrixFreeTangent::positions() const {
+  std::vector<double> current = assembler_->points().reference;
+  for (std::size_t k = 0; k < displacement_.size(); ++k) current[k] += displacement_[k];
+  return current;
+}
+
 void MatrixFreeTangent::linearise(Assembler& assembler, std::span<const double> displacement,
                                   double projection) {
   assembler_ = &assembler;
   displacement_.assign(displacement.begin(), displacement.end());
   projection_ = projection;
-  const std::vector<double>& reference = assembler.points().reference;
-  for (std::size_t k = 0; k < position.size(); ++k) position[k] = reference[k] + displacement[k];
   assembler.visit_tangent(
       displacement, projection, [](int, Index, std::span<const double>) {}, diagonal);
 }

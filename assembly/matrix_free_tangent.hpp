@@ -11,9 +11,11 @@ namespace peristat {
 struct MatrixFreeTangent : TangentOperator {
   explicit MatrixFreeTangent(Assembler& assembler);
 
+  [[nodiscard]] std::vector<double> positions() const override;
   void linearise(Assembler& assembler, std::span<const double> displacement,
                  double projection) override;
   void multiply(std::span<const double> v, std::span<double> result) const override;
+  [[nodiscard]] bool multiplies_in_place() const override { return true; }
   void for_each_row(const RowVisitor& visit) const override;
 
  private:

@@ -104,7 +104,8 @@ void multiply_rows(const Tangent& tangent, std::span<const double> v, std::span<
 Tangent::Tangent(const Pattern& of, int dimension_of_points, int threads, Blocks stored_as)
     : TangentOperator(of, dimension_of_points, threads),
       blocks(stored_as),
-      off_diagonal(std::size_t(of.blocks()) * block_size()) {}
+      off_diagonal(std::size_t(of.blocks()) * block_size()),
+      position(std::size_t(of.points()) * dimension) {}
 
 Tangent::Tangent(const Assembler& assembler)
     : Tangent(Pattern(assembler.model().bonds), assembler.points().dimension, assembler.threads(),

@@ -20,6 +20,7 @@ struct Tangent : TangentOperator {
 
   Blocks blocks;
   std::vector<double> off_diagonal;  ///< block (i, partner), in the order of the bonds [N/m]
+  std::vector<double> position;      ///< see positions
 
   /// Numbers that are stored of an off-diagonal block.
   [[nodiscard]] std::size_t block_size() const;
@@ -30,6 +31,7 @@ struct Tangent : TangentOperator {
   /// Where a block keeps its entry (r, c).
   [[nodiscard]] std::size_t place_in_block(int r, int c) const;
 
+  [[nodiscard]] std::vector<double> positions() const override { return position; }
   void linearise(Assembler& assembler, std::span<const double> displacement,
                  double projection) override;
   void multiply(std::span<const double> v, std::span<double> result) const override;

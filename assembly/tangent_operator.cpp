@@ -9,8 +9,7 @@ TangentOperator::TangentOperator(const Pattern& of, int dimension_of_points, int
     : pattern(of),
       dimension(dimension_of_points),
       ranges(partition_rows(of, threads)),
-      diagonal(std::size_t(of.points()) * dimension * dimension),
-      position(std::size_t(of.points()) * dimension) {}
+      diagonal(std::size_t(of.points()) * dimension * dimension) {}
 
 void TangentOperator::absolute_row_sums(std::span<double> sums) const {
   const std::size_t d = std::size_t(dimension), entries = d * d;

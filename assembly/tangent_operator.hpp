@@ -25,18 +25,22 @@ struct TangentOperator {
   int dimension;
   std::vector<RowRange> ranges;  ///< rows of each thread
   std::vector<double> diagonal;  ///< points x d x d
-  std::vector<double> position;  ///< current, where K is linearised; points x d [m]
 
   [[nodiscard]] Offset dofs() const { return Offset(pattern.points()) * dimension; }
   [[nodiscard]] int threads() const { return static_cast<int>(ranges.size()); }
+
+  /// Current positions, where K is linearised; points x d [m].
+  [[nodiscard]] virtual std::vector<double> positions() const = 0;
 
   /// Makes this the tangent at a displacement [m].
   /// @param projection see Assembler::tangent
   virtual void linearise(Assembler& assembler, std::span<const double> displacement,
                          double projection) = 0;
 
-  /// result = K v; both have one entry per degree of freedom and must not overlap.
+  /// result = K v; both have one entry per degree of freedom. They are the same array, if
+  /// multiplies_in_place, or don't overlap.
   virtual void multiply(std::span<const double> v, std::span<double> result) const = 0;
+  [[nodiscard]] virtual bool multiplies_in_place() const { return false; }
 
   /// Visits all rows, those of a thread in ascending order and the threads side by side.
   virtual void for_each_row(const RowVisitor& visit) const = 0;

@@ -24,7 +24,7 @@ constexpr int row_width(int dimension) { return dimension == 3 ? 8 : 4; }
 
 /// Doubles of a point's sum: of a vector, and of the upper half of a symmetric block.
 constexpr int vector_width(int dimension) { return dimension == 3 ? 4 : dimension; }
-constexpr int block_width(int dimension) { return dimension == 3 ? 8 : 4; }
+constexpr int block_width(int dimension) { return dimension == 3 ? 6 : 4; }
 
 /// What the passes over the interactions work with: the threads' ranges of rows and their buffers,
 /// all allocated once.

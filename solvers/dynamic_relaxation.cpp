@@ -270,7 +270,7 @@ class Relaxation {
 
 double scale_of_step(const EquilibriumProblem& problem, const Way& way, const Trial& start,
                      bool holds) {
-  if (!holds) return residual_scale(problem, way.end_force(), start, start);
+  if (!holds) return residual_scale(problem, way.end_force(), start.gradient, start);
   Trial after_jump = start;
   for (const Index dof : way.prescribed()) {
     after_jump.displacement[dof] = way.end_displacement()[dof];
@@ -280,7 +280,7 @@ double scale_of_step(const EquilibriumProblem& problem, const Way& way, const Tr
   evaluate(problem, way.end_force(), after_jump);
   problem.assembler.hold_damage(false);
   if (after_jump.degenerate) after_jump.residual_norm = 0.0;  // a jump onto a neighbour
-  return residual_scale(problem, way.end_force(), start, after_jump);
+  return residual_scale(problem, way.end_force(), start.gradient, after_jump);
 }
 
 /// Energy that the bonds have taken up, stored or dissipated, since the history they began with
@@ -301,7 +301,6 @@ RelaxationResult relax(const EquilibriumProblem& problem, TangentOperator& tange
                        RelaxationMotion& motion, const RelaxationObserver& observer) {
   RelaxationResult result;
   result.state.displacement = from.displacement;
-  result.state.gradient.resize(from.displacement.size());
   result.external_force.resize(from.displacement.size());
   const Way way(problem, from, load_factor);
   way.load(0.0, result.external_force);

@@ -78,6 +78,7 @@ std::string explanation(Outcome outcome) {
 
 void evaluate(const EquilibriumProblem& problem, std::span<const double> external_force,
               Trial& trial) {
+  trial.gradient.resize(trial.displacement.size());
   const Stored stored = problem.assembler.gradient(trial.displacement, trial.gradient);
   trial.stored_energy = stored.energy;
   trial.total_energy = stored.energy - dot(external_force, trial.displacement);
@@ -91,11 +92,11 @@ void evaluate(const EquilibriumProblem& problem, std::span<const double> externa
 }
 
 double residual_scale(const EquilibriumProblem& problem, std::span<const double> external_force,
-                      const Trial& old_state, const Trial& after_jump) {
+                      std::span<const double> old_gradient, const Trial& after_jump) {
   double reactions = 0.0;
   for (std::size_t dof = 0; dof < external_force.size(); ++dof) {
     if (problem.free.equation[dof] != FreeDofs::none) continue;
-    const double reaction = old_state.gradient[dof] - external_force[dof];
+    const double reaction = old_gradient[dof] - external_force[dof];
     reactions += reaction * reaction;
   }
   return std::max({norm(external_force), std::sqrt(reactions), after_jump.residual_norm});

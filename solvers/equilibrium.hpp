@@ -63,7 +63,7 @@ void evaluate(const EquilibriumProblem& problem, std::span<const double> externa
 /// reactions in the old state, and of the residual right after the step's jump of supports and
 /// loads.
 [[nodiscard]] double residual_scale(const EquilibriumProblem& problem,
-                                    std::span<const double> external_force, const Trial& old_state,
-                                    const Trial& after_jump);
+                                    std::span<const double> external_force,
+                                    std::span<const double> old_gradient, const Trial& after_jump);
 
 }  // namespace peristat

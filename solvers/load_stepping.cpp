@@ -136,8 +136,8 @@ class LoadPath {
         implicit_(options.steps, options.largest_step, options),
         relaxed_(options.relaxation_steps, 0.0, options),
         relaxes_(options.mode == Mode::relaxation),
-        pinned_(conditions.prescribed().size(), 0) {
-    number_free_dofs();
+        pinned_(conditions.prescribed().size(), 0),
+        free_(&body.free) {
     const std::size_t dofs = pinned_.size();
     result_.state.displacement.assign(dofs, 0.0);
     std::vector<double> gradient(dofs), external_force(dofs);
@@ -153,6 +153,7 @@ class LoadPath {
       if (!resolve_fragments()) return std::move(result_);
     }
     while (1.0 - result_.state.load_factor > end_tolerance) {
+      result_.last_attempt = {};  // the vectors of a large body count
       const bool goes_on = relaxes_ ? relaxation_step() : implicit_step();
       if (!goes_on) break;
     }
@@ -582,7 +583,8 @@ class LoadPath {
   void number_free_dofs() {
     std::vector<char> without_equation = conditions_.prescribed();
     for (std::size_t dof = 0; dof < pinned_.size(); ++dof) without_equation[dof] |= pinned_[dof];
-    free_ = std::make_unique<FreeDofs>(without_equation, main_.assembler.points().dimension);
+    own_free_ = std::make_unique<FreeDofs>(without_equation, main_.assembler.points().dimension);
+    free_ = own_free_.get();
   }
 
   SolvedBody main_;
@@ -595,7 +597,8 @@ class LoadPath {
   bool relaxes_;
   bool is_near_onset_ = false;  // an implicit step was cut to end just before damage begins
   std::vector<char> pinned_;    // per degree of freedom
-  std::unique_ptr<FreeDofs> free_;
+  const FreeDofs* free_;
+  std::unique_ptr<FreeDofs> own_free_;  // once something is pinned
   Fragments pieces_;
   RelaxationMotion motion_;
   std::vector<double> force_;  // that does work, in the last accepted state

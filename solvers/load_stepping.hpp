@@ -86,8 +86,9 @@ struct LoadSteppingResult {
 /// A body, and what searches its equilibria.
 struct SolvedBody {
   Assembler& assembler;
-  LinearSolver& solver;  ///< analyzed for the body's pattern and the supports
+  LinearSolver& solver;  ///< analyzed for the body's pattern and `free`
   TangentOperator& tangent;
+  const FreeDofs& free;  ///< what the supports leave free
 };
 
 /// Follows the equilibrium from load factor 0 to 1 in steps; every decision is told.

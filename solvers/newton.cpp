@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 #include <optional>
+#include <utility>
 
 #include "solvers/vector_verbs.hpp"
 
@@ -26,48 +27,55 @@ Outcome outcome_of(LinearOutcome linear) {
   return Outcome::singular_tangent;
 }
 
-/// Linear systems of the iterations, with room for their vectors.
+/// Linear systems of the iterations. Of a large body the vectors count: none lives while a system
+/// is solved that isn't needed then.
 class Linearisation {
  public:
   Linearisation(const EquilibriumProblem& problem, LinearSolver& solver, TangentOperator& tangent,
                 std::span<const double> external_force)
-      : problem_(problem),
-        solver_(solver),
-        tangent_(tangent),
-        external_force_(external_force),
-        right_hand_side_(std::size_t(problem.free.count())),
-        solution_(right_hand_side_.size()),
-        force_of_jump_(external_force.size()) {}
+      : problem_(problem), solver_(solver), tangent_(tangent), external_force_(external_force) {}
 
   /// Finds the direction du with K_ff du_f = f_ext - dE/dx_f - K_fp jump_p at a state.
   /// @param projection of the interactions; after the exact tangent (0) of a state any other share
   /// may
   ///        follow at the same state
-  /// @param jump of the prescribed displacements; empty for none
+  /// @param after_jump displacement whose difference from the state's is the jump of the prescribed
+  ///        ones; empty for none
   /// @param tolerance of the linear system's relative residual
-  [[nodiscard]] LinearOutcome solve(const Trial& at, double projection, FactorUse use,
-                                    std::span<const double> jump, double tolerance,
-                                    std::span<double> direction) {
-    assemble(at, projection);
-    if (!jump.empty()) tangent_.multiply(jump, force_of_jump_);
-    for (std::size_t e = 0; e < right_hand_side_.size(); ++e) {
+  [[nodiscard]] LinearOutcome solve(std::span<const double> displacement,
+                                    std::span<const double> gradient, double projection,
+                                    FactorUse use, std::span<const double> after_jump,
+                                    double tolerance, std::vector<double>& direction) {
+    direction = std::vector<double>();
+    assemble(displacement, projection);
+    std::vector<double> right_hand_side(std::size_t(problem_.free.count()));
+    for (std::size_t e = 0; e < right_hand_side.size(); ++e) {
       const Index dof = problem_.free.dof[e];
-      right_hand_side_[e] = external_force_[dof] - at.gradient[dof];
-      if (!jump.empty()) right_hand_side_[e] -= force_of_jump_[dof];
+      right_hand_side[e] = external_force_[dof] - gradient[dof];
+    }
+    if (!after_jump.empty()) {
+      std::vector<double> jump(after_jump.begin(), after_jump.end()), force(jump.size());
+      add_scaled(jump, -1.0, displacement);
+      tangent_.multiply(jump, force);
+      for (std::size_t e = 0; e < right_hand_side.size(); ++e) {
+        right_hand_side[e] -= force[problem_.free.dof[e]];
+      }
     }
     LinearOutcome outcome = solver_.factorize(tangent_, use);
+    std::vector<double> solution(right_hand_side.size());
     if (outcome == LinearOutcome::solved) {
-      outcome = solver_.solve(right_hand_side_, solution_, tolerance);
+      outcome = solver_.solve(right_hand_side, solution, tolerance);
     }
-    problem_.free.extend_by_zero(solution_, direction);
+    direction.resize(displacement.size());
+    problem_.free.extend_by_zero(solution, direction);
     return outcome;
   }
 
  private:
-  void assemble(const Trial& at, double projection) {
+  void assemble(std::span<const double> displacement, double projection) {
     Tangent* const stored = tangent_.stored();
     if (projection == 0.0 || !exact_is_known_ || !stored) {
-      tangent_.linearise(problem_.assembler, at.displacement, projection);
+      tangent_.linearise(problem_.assembler, displacement, projection);
       exact_is_known_ = projection == 0.0;
       to_projected_.reset();
       projection_ = projection;
@@ -76,7 +84,7 @@ class Linearisation {
     // Linear in the share: the projection of every interaction, which is what costs, is done once.
     if (!to_projected_) {
       to_projected_.emplace(stored->pattern, stored->dimension, stored->threads(), stored->blocks);
-      problem_.assembler.tangent(at.displacement, *to_projected_, 1.0);
+      problem_.assembler.tangent(displacement, *to_projected_, 1.0);
       add_scaled(to_projected_->diagonal, -1.0, stored->diagonal);
       add_scaled(to_projected_->off_diagonal, -1.0, stored->off_diagonal);
     }
@@ -92,7 +100,6 @@ class Linearisation {
   double projection_ = 0.0;
   bool exact_is_known_ = false;
   std::span<const double> external_force_;
-  std::vector<double> right_hand_side_, solution_, force_of_jump_;
 };
 
 /// Relative residual to which a linear system is solved (choice 2 of Eisenstat and Walker, SIAM J.
@@ -131,16 +138,13 @@ NewtonResult newton(const EquilibriumProblem& problem, LinearSolver& solver,
 
   Trial& current = result.state;
   current.displacement = from.displacement;
-  current.gradient.resize(dofs);
   evaluate(problem, external_force, current);
-  const Trial old_state = current;
+  const std::vector<double> old_gradient = current.gradient;
 
   problem.conditions.prescribe(load_factor, current.displacement);
-  std::vector<double> jump = current.displacement;
-  add_scaled(jump, -1.0, from.displacement);
   evaluate(problem, external_force, current);
   const double scale =
-      std::max(residual_scale(problem, external_force, old_state, current), options.least_scale);
+      std::max(residual_scale(problem, external_force, old_gradient, current), options.least_scale);
 
   result.scale = scale;
 
@@ -161,14 +165,13 @@ NewtonResult newton(const EquilibriumProblem& problem, LinearSolver& solver,
   }
   if (converged()) return result;
 
-  Trial next = current;
+  Trial next;
   Linearisation linearisation(problem, solver, tangent, external_force);
-  std::vector<double> direction(dofs);
+  std::vector<double> direction;
   std::optional<Inertia> start_inertia;
   double last_projection = 0.0, last_residual = 0.0;
   for (int iteration = 1; iteration <= options.max_iterations; ++iteration) {
     const bool is_predictor = iteration == 1 && options.predictor == Predictor::consistent;
-    const Trial& linearised_at = is_predictor ? old_state : current;
     const double forcing =
         forcing_term(current.residual_norm, last_residual, options.relative_tolerance * scale);
     last_residual = current.residual_norm;
@@ -183,10 +186,11 @@ NewtonResult newton(const EquilibriumProblem& problem, LinearSolver& solver,
       const FactorUse use = (iteration == 1 && options.factorizes_first) || !exact
                                 ? FactorUse::factorize_now
                                 : FactorUse::may_reuse;
-      const LinearOutcome linear = linearisation.solve(
-          linearised_at, projection, use,
-          is_predictor ? std::span<const double>(jump) : std::span<const double>(), forcing,
-          direction);
+      const LinearOutcome linear =
+          is_predictor ? linearisation.solve(from.displacement, old_gradient, projection, use,
+                                             current.displacement, forcing, direction)
+                       : linearisation.solve(current.displacement, current.gradient, projection,
+                                             use, {}, forcing, direction);
       if (exact) {
         result.inertia = solver.inertia();
         row.negative_pivots = told_negative_pivots(linear, result.inertia);
@@ -222,7 +226,7 @@ NewtonResult newton(const EquilibriumProblem& problem, LinearSolver& solver,
                          : std::min(4.0 * projection, 1.0);
     }
     if (result.outcome != Outcome::converged) break;
-    std::swap(current, next);
+    current = std::exchange(next, {});
     if (row.projection > 0.0) last_projection = row.projection;
     result.iterations = iteration;
     row.step_length = search.step_length;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <variant>
 
 #include <fmt/format.h>
 
@@ -87,18 +88,21 @@ std::vector<char> never_failing_bonds(const Case& from, const Points& points, co
 /// Refuses a lattice that can't fit before any of its points is made.
 void require_memory_for_lattice(const Case& from, const Lattice& lattice) {
   const double points = estimate_points(lattice);
-  BodySize size{points, std::pow(points, 1.0 / from.dimension)};
+  BodySize size;
+  size.dimension = from.dimension;
+  size.points = points;
+  size.longest = std::pow(points, 1.0 / from.dimension);
+  size.horizon_ratio = from.horizon_ratio;
+  size.bonds = points * bonds_per_point(from.dimension, from.horizon_ratio);
+  size.free_dofs = points * from.dimension;
   const Box box = lattice.shapes.empty() ? Box{} : bounds(lattice.shapes.front().shape);
   for (int c = 0; c < from.dimension; ++c) {
     const double along = (box.max[c] - box.min[c]) / lattice.spacing;
     if (std::isfinite(along)) size.longest = std::max(size.longest, along);
   }
-  const double bonds = points * bonds_per_point(from.dimension, from.horizon_ratio);
-  const MemoryEstimate estimate =
-      estimate_memory(from.dimension, size, from.horizon_ratio, bonds, points * from.dimension);
   // This estimate counts the bounding box: only what cannot fit even if half of it is cut away is
   // refused here; the points themselves tell the rest.
-  require_memory(0.5 * estimate.least_bytes(),
+  require_memory(0.5 * estimate_memory(size).least_bytes(),
                  fmt::format("the case with up to {:.3g} points", points));
 }
 
@@ -157,7 +161,10 @@ Points make_points_of(const Case& from) {
 }
 
 BodySize size_of(const Points& points) {
-  BodySize size{double(points.count()), 1.0};
+  BodySize size;
+  size.dimension = points.dimension;
+  size.points = double(points.count());
+  size.free_dofs = double(points.reference.size());
   for (int c = 0; c < points.dimension; ++c) {
     double least = std::numeric_limits<double>::infinity(), most = -least;
     for (Index i = 0; i < points.count(); ++i) {
@@ -176,11 +183,10 @@ std::unique_ptr<const Body> make_body(const Case& from, int threads) {
   body.points = make_points_of(from);
   located_errors(from, [&] {
     body.setting = setting_of(from, body.points);
-    const double expected_bonds =
-        body.points.count() * bonds_per_point(from.dimension, body.horizon_ratio());
-    require_memory(estimate_memory(from.dimension, size_of(body.points), body.horizon_ratio(),
-                                   expected_bonds, double(body.points.reference.size()))
-                       .least_bytes(),
+    BodySize expected = size_of(body.points);
+    expected.horizon_ratio = body.horizon_ratio();
+    expected.bonds = expected.points * bonds_per_point(from.dimension, body.horizon_ratio());
+    require_memory(estimate_memory(expected).least_bytes(),
                    "the case with " + std::to_string(body.points.count()) + " points");
     {
       const Stopwatch watch(body.seconds_neighbourhood);
@@ -228,10 +234,15 @@ std::optional<Model> make_elastic_stand_in(const Case& from, const Body& body, i
 
 MemoryEstimate estimate_memory(const Body& body) {
   const auto& prescribed = body.conditions->prescribed();
-  const auto free = std::count(prescribed.begin(), prescribed.end(), 0);
-  MemoryEstimate estimate =
-      estimate_memory(body.points.dimension, size_of(body.points), body.horizon_ratio(),
-                      double(body.model.bonds.count()), double(free));
+  BodySize size = size_of(body.points);
+  size.horizon_ratio = body.horizon_ratio();
+  size.bonds = double(body.model.bonds.count());
+  size.bytes_per_bond = double(sizeof(Index) + body.model.bonds.kind.bytes_per_bond());
+  size.has_history =
+      std::visit([]<class P>(const P&) { return PotentialWithHistory<P>; }, body.model.potential);
+  size.has_only_bonds = body.model.has_only_bonds();
+  size.free_dofs = double(std::count(prescribed.begin(), prescribed.end(), 0));
+  MemoryEstimate estimate = estimate_memory(size);
   const auto add_stored = [&](const auto& term) {
     if (term && term->interactions.is_stored()) {
       estimate.body_bytes += term->interactions.stored_bytes();

@@ -104,11 +104,14 @@ Exit check(const Case& from, int threads) {
   const MemoryEstimate estimate = estimate_memory(body);
   const FreeDofs free(prescribed, points.dimension);
   const Pattern pattern(body.model.bonds);
-  const LinearSystems systems = choose_linear_systems(from, estimate, {});
+  std::string reason;
+  const LinearSystems systems =
+      choose_linear_systems(from, estimate, [&](const std::string& told) { reason = told; });
   const ChosenSolver& chosen = systems.chosen;
   require_memory(systems.bytes, fmt::format("the case with {} points", points.count()));
   if (chosen.solver->analyze(pattern, free) == LinearOutcome::solved) {
-    fmt::print("solver      {} ({})\n", chosen.solver->describe(), chosen.reason);
+    fmt::print("solver      {} ({})\n", chosen.solver->describe(),
+               reason.empty() ? chosen.reason : reason);
   }
   fmt::print("memory      about {} of {} available\n", bytes_text(systems.bytes),
              bytes_text(available_memory()));

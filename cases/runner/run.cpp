@@ -88,12 +88,7 @@ class Recorder {
         assembler_(assembler),
         results_(results),
         progress_(progress),
-        body_(body),
-        force_(body.points.reference.size()),
-        damage_(body.points.volume.size(), 0.0),
-        energy_density_(body.points.volume.size()),
-        stretch_(body.points.volume.size()),
-        fragment_(body.points.volume.size(), 0.0) {}
+        body_(body) {}
 
   void iteration(const IterationRecord& record) {
     relative_residual_ = record.relative_residual;
@@ -102,19 +97,22 @@ class Recorder {
   }
 
   void accepted(StepRecord record, const AcceptedState& state) {
-    displacement_ = state.trial.displacement;
-    std::transform(state.trial.gradient.begin(), state.trial.gradient.end(), force_.begin(),
-                   [](double gradient) { return -gradient; });
-    static_cast<void>(assembler_.point_energies(displacement_, energy_density_));
-    assembler_.point_stretches(displacement_, stretch_);
-    record.max_stretch = *std::max_element(stretch_.begin(), stretch_.end());
+    const std::size_t points = points_.volume.size();
+    Fields made{state.trial.displacement,    state.trial.gradient,
+                std::vector<double>(points), std::vector<double>(points),
+                std::vector<double>(points), std::vector<double>(points, 0.0)};
+    for (double& force : made.force) force = -force;
+    static_cast<void>(assembler_.point_energies(made.displacement, made.energy_density));
+    assembler_.point_stretches(made.displacement, made.stretch);
+    record.max_stretch = *std::max_element(made.stretch.begin(), made.stretch.end());
     const auto cut_weight =
         case_.output.count_cracks ? std::span(body_.cut_weight) : std::span<const double>();
-    record.max_damage = assess_damage(body_.model, state.history, cut_weight, damage_).max_damage;
-    std::copy(state.piece.begin(), state.piece.end(), fragment_.begin());
+    record.max_damage =
+        assess_damage(body_.model, state.history, cut_weight, made.damage).max_damage;
+    std::copy(state.piece.begin(), state.piece.end(), made.fragment.begin());
     tell_broken_bonds(record, state.history);
-    for (Index i = 0; i < points_.count(); ++i) energy_density_[i] /= points_.volume[i];
-    const StepFields fields = present_fields();
+    for (std::size_t i = 0; i < points; ++i) made.energy_density[i] /= points_.volume[i];
+    const StepFields fields = made.view();
     for (const ProbeSpecification& probe : case_.probes) {
       record.probes[probe.name] = probe_values(probe, points_, fields);
     }
@@ -122,20 +120,24 @@ class Recorder {
     results_.add(record, write_fields ? std::optional(fields) : std::nullopt);
     progress_.accepted(record, relative_residual_);
     last_ = std::move(record);
+    unwritten_.reset();
+    if (!write_fields) unwritten_ = std::move(made);
   }
 
   /// Writes the fields of the last accepted state, whatever output.every says.
   void finish() {
-    if (last_) results_.add_fields(*last_, present_fields());
+    if (unwritten_) results_.add_fields(*last_, unwritten_->view());
   }
 
   [[nodiscard]] const std::optional<StepRecord>& last() const { return last_; }
-  [[nodiscard]] const std::vector<double>& displacement() const { return displacement_; }
 
  private:
-  [[nodiscard]] StepFields present_fields() const {
-    return {&displacement_, &force_, &damage_, &energy_density_, &stretch_, &fragment_};
-  }
+  struct Fields {
+    std::vector<double> displacement, force, damage, energy_density, stretch, fragment;
+    [[nodiscard]] StepFields view() const {
+      return {&displacement, &force, &damage, &energy_density, &stretch, &fragment};
+    }
+  };
 
   /// Adds the bonds that have broken since the last step to the results.
   void tell_broken_bonds(const StepRecord& record, std::span<const double> history) {
@@ -160,8 +162,8 @@ class Recorder {
   Results& results_;
   Progress& progress_;
   const Body& body_;
-  std::vector<double> displacement_, force_, damage_, energy_density_, stretch_, fragment_;
-  std::vector<char> broken_;  // per bond, in the last accepted state
+  std::optional<Fields> unwritten_;  // of the last step, if it only entered the history
+  std::vector<char> broken_;         // per bond, in the last accepted state
   double relative_residual_ = 0.0;
   std::optional<StepRecord> last_;
 };
@@ -181,10 +183,11 @@ LoadSteppingResult follow_with_stand_in(const Case& from, const Body& body,
                                         Summary& summary) {
   const Pattern pattern(stand_in.bonds);
   Assembler assembler(body.points, stand_in, solved.assembler.threads());
-  const MemoryEstimate estimate =
-      estimate_memory(from.dimension, size_of(body.points), from.solver.elastic_horizon_ratio,
-                      double(stand_in.bonds.count()), double(free.count()));
-  const LinearSystems systems = choose_linear_systems(from, estimate, {});
+  BodySize size = size_of(body.points);
+  size.horizon_ratio = from.solver.elastic_horizon_ratio;
+  size.bonds = double(stand_in.bonds.count());
+  size.free_dofs = double(free.count());
+  const LinearSystems systems = choose_linear_systems(from, estimate_memory(size), {});
   LinearSolver& solver = *systems.chosen.solver;
   const std::unique_ptr<TangentOperator> tangent = systems.make_tangent(assembler);
   if (solver.analyze(pattern, free) != LinearOutcome::solved) {
@@ -192,7 +195,7 @@ LoadSteppingResult follow_with_stand_in(const Case& from, const Body& body,
     result.outcome = Outcome::out_of_memory;
     return result;
   }
-  const SolvedBody standing_in{assembler, solver, *tangent};
+  const SolvedBody standing_in{assembler, solver, *tangent, free};
   LoadSteppingResult result = follow_loading(solved, *body.conditions, load_stepping_options(from),
                                              newton_options(from), observer, &standing_in);
   add_costs(assembler, solver, summary);
@@ -301,7 +304,7 @@ Exit run(const Case& from, const RunOptions& options) {
 
   LoadSteppingResult result;
   if (analysis == LinearOutcome::solved) {
-    const SolvedBody solved{assembler, solver, *tangent};
+    const SolvedBody solved{assembler, solver, *tangent, free};
     if (const std::optional<Model> stand_in = make_elastic_stand_in(from, body, options.threads)) {
       result = follow_with_stand_in(from, body, solved, *stand_in, free, observer, summary);
     } else {
@@ -322,7 +325,7 @@ Exit run(const Case& from, const RunOptions& options) {
   if (body.model.triangles) summary.triangles = body.model.triangles->interactions.count();
   if (body.model.tetrahedra) summary.tetrahedra = body.model.tetrahedra->interactions.count();
   add_costs(assembler, solver, summary);
-  summary.max_displacement = largest_displacement(recorder.displacement(), from.dimension);
+  summary.max_displacement = largest_displacement(result.state.displacement, from.dimension);
   summary.seconds.neighbourhood = body.seconds_neighbourhood;
   summary.seconds.relaxation = result.relaxation_seconds;
   summary.seconds.output = results->seconds_spent();

@@ -16,7 +16,7 @@ LinearSystems choose_linear_systems(const Case& from, const MemoryEstimate& esti
                                     SolverLadder::Teller tell) {
   const LinearSolverOptions options = linear_solver_options(from);
   LinearProblem problem;
-  problem.bonds = estimate.bonds;
+  problem.bonds = estimate.size.bonds;
   problem.factor_flops = estimate.factor_flops;
   problem.factor_bytes = estimate.direct_bytes();
   problem.available_bytes = available_memory() - estimate.body_bytes - estimate.tangent_bytes;
@@ -33,7 +33,7 @@ LinearSystems choose_linear_systems(const Case& from, const MemoryEstimate& esti
     systems.chosen = make_linear_solver(options, problem, std::move(tell));
   }
   systems.is_stored = problem.is_stored;
-  systems.bytes = estimate.bytes(systems.chosen.is_direct, systems.is_stored);
+  systems.bytes = estimate.bytes(systems.chosen.is_direct, systems.is_stored, options);
   return systems;
 }
 

@@ -10,7 +10,7 @@ LinearOutcome AssembledPreconditioner::build(const TangentOperator& tangent) {
   if (!tangent.stored()) throw std::logic_error("this preconditioner needs a stored tangent");
   const bool built =
       preconditioner_.build(compressed_rows(*tangent.stored(), *free_), equation_blocks(*free_),
-                            rigid_motions(tangent.position, *free_));
+                            rigid_motions(tangent.positions(), *free_));
   description_ = built ? preconditioner_.describe() : preconditioner_.failure();
   if (built) return LinearOutcome::solved;
   return preconditioner_.failure() == "out of memory" ? LinearOutcome::out_of_memory

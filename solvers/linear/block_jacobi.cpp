@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 
 #include <Eigen/Cholesky>
@@ -49,15 +50,54 @@ LinearOutcome invert(const Index* equation, double* block) {
   return LinearOutcome::solved;
 }
 
+constexpr std::size_t upper_half(int dimension) {
+  return std::size_t(dimension) * std::size_t(dimension + 1) / 2;
+}
+
+/// @param entries_only whether blocks count as diagonal
 template <int D>
-LinearOutcome invert_all(const FreeDofs& free, std::vector<double>& blocks) {
+LinearOutcome invert_all(const FreeDofs& free, const std::vector<double>& blocks, bool entries_only,
+                         std::vector<double>& upper_halves) {
   LinearOutcome outcome = LinearOutcome::solved;
+  double* to = upper_halves.data();
   for (std::size_t i = 0; i < free.equation.size() / D; ++i) {
-    const LinearOutcome one = invert<D>(&free.equation[i * D], &blocks[i * D * D]);
+    double block[D * D];
+    for (int k = 0; k < D * D; ++k) {
+      block[k] = entries_only && k / D != k % D ? 0.0 : blocks[i * D * D + std::size_t(k)];
+    }
+    const LinearOutcome one = invert<D>(&free.equation[i * D], block);
     if (one == LinearOutcome::not_positive_definite) return one;
     if (one != LinearOutcome::solved) outcome = one;
+    for (int r = 0; r < D; ++r) {
+      for (int c = r; c < D; ++c) *to++ = block[r * D + c];
+    }
   }
   return outcome;
+}
+
+/// correction += scale M^-1 residual
+template <int D>
+void add_all(const FreeDofs& free, const std::vector<double>& upper_halves, int threads,
+             double scale, std::span<const double> residual, std::span<double> correction) {
+  const auto points = static_cast<std::ptrdiff_t>(free.equation.size() / D);
+#pragma omp parallel for num_threads(threads) schedule(static)
+  for (std::ptrdiff_t i = 0; i < points; ++i) {
+    const Index* equation = &free.equation[std::size_t(i) * D];
+    const double* entry = &upper_halves[std::size_t(i) * upper_half(D)];
+    double from[D], to[D] = {};
+    for (int c = 0; c < D; ++c)
+      from[c] = equation[c] == FreeDofs::none ? 0.0 : residual[equation[c]];
+    for (int r = 0; r < D; ++r) {
+      to[r] += *entry++ * from[r];
+      for (int c = r + 1; c < D; ++c, ++entry) {
+        to[r] += *entry * from[c];
+        to[c] += *entry * from[r];
+      }
+    }
+    for (int c = 0; c < D; ++c) {
+      if (equation[c] != FreeDofs::none) correction[equation[c]] += scale * to[c];
+    }
+  }
 }
 
 }  // namespace
@@ -65,16 +105,13 @@ LinearOutcome invert_all(const FreeDofs& free, std::vector<double>& blocks) {
 void BlockJacobi::analyze(const Pattern&, const FreeDofs& free) { free_ = &free; }
 
 LinearOutcome BlockJacobi::build(const TangentOperator& tangent) {
-  const std::size_t d = std::size_t(tangent.dimension);
   threads_ = tangent.threads();
-  inverse_ = tangent.diagonal;
-  if (blocks_ == Blocks::entries) {
-    for (std::size_t k = 0; k < inverse_.size(); ++k) {
-      if (k / d % d != k % d) inverse_[k] = 0.0;
-    }
-  }
-  if (d == 1) return invert_all<1>(*free_, inverse_);
-  return d == 2 ? invert_all<2>(*free_, inverse_) : invert_all<3>(*free_, inverse_);
+  const int d = tangent.dimension;
+  const bool entries_only = blocks_ == Blocks::entries;
+  inverse_.resize(std::size_t(tangent.pattern.points()) * upper_half(d));
+  if (d == 1) return invert_all<1>(*free_, tangent.diagonal, entries_only, inverse_);
+  if (d == 2) return invert_all<2>(*free_, tangent.diagonal, entries_only, inverse_);
+  return invert_all<3>(*free_, tangent.diagonal, entries_only, inverse_);
 }
 
 void BlockJacobi::apply(std::span<const double> residual, std::span<double> correction) {
@@ -84,18 +121,10 @@ void BlockJacobi::apply(std::span<const double> residual, std::span<double> corr
 
 void BlockJacobi::add(double scale, std::span<const double> residual,
                       std::span<double> correction) const {
-  const Index d = free_->dimension;
-#pragma omp parallel for num_threads(threads_) schedule(static)
-  for (Index e = 0; e < free_->count(); ++e) {
-    const Index dof = free_->dof[e], first = dof - dof % d;
-    const double* row = &inverse_[std::size_t(dof) * d];
-    double sum = 0.0;
-    for (Index c = 0; c < d; ++c) {
-      const Index other = free_->equation[first + c];
-      if (other != FreeDofs::none) sum += row[c] * residual[other];
-    }
-    correction[e] += scale * sum;
-  }
+  const int d = free_->dimension;
+  if (d == 1) add_all<1>(*free_, inverse_, threads_, scale, residual, correction);
+  if (d == 2) add_all<2>(*free_, inverse_, threads_, scale, residual, correction);
+  if (d == 3) add_all<3>(*free_, inverse_, threads_, scale, residual, correction);
 }
 
 std::string BlockJacobi::describe() const {

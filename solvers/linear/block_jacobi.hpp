@@ -25,7 +25,8 @@ class BlockJacobi : public Preconditioner {
   Blocks blocks_;
   const FreeDofs* free_ = nullptr;
   int threads_ = 1;
-  /// Of each point, the inverse block; rows and columns of prescribed degrees of freedom are zero.
+  /// Of each point, the upper half of the inverse block; rows and columns of prescribed degrees of
+  /// freedom are zero.
   std::vector<double> inverse_;
 };
 

@@ -177,12 +177,11 @@ struct Cholesky::Cholmod {
 #pragma omp parallel for schedule(static)
     for (Index e = 0; e < free->count(); ++e) {
       double* value = values + begin[e];
-      for_each_entry_of_column(tangent->pattern, e,
-                               [&](Index, bool on_diagonal, Offset k, int r, int c) {
-                                 *value++ = on_diagonal
-                                                ? tangent->diagonal[(std::size_t(k) * d + r) * d + c]
-                                                : tangent->entry(k, r, c);
-                               });
+      for_each_entry_of_column(
+          tangent->pattern, e, [&](Index, bool on_diagonal, Offset k, int r, int c) {
+            *value++ = on_diagonal ? tangent->diagonal[(std::size_t(k) * d + r) * d + c]
+                                   : tangent->entry(k, r, c);
+          });
     }
   }
 

@@ -6,6 +6,7 @@ namespace peristat {
 
 FreeDofs::FreeDofs(const std::vector<char>& prescribed, int dimension_of_points)
     : dimension(dimension_of_points), equation(prescribed.size(), none) {
+  dof.reserve(std::size_t(std::count(prescribed.begin(), prescribed.end(), 0)));
   for (std::size_t k = 0; k < prescribed.size(); ++k) {
     if (prescribed[k]) continue;
     equation[k] = static_cast<Index>(dof.size());

@@ -29,8 +29,7 @@ IterativeSolver::IterativeSolver(KrylovMethod method,
 LinearOutcome IterativeSolver::analyze(const Pattern& pattern, const FreeDofs& free) {
   const Stopwatch watch(statistics_.seconds);
   free_ = &free;
-  full_in_.resize(free.equation.size());
-  full_out_.resize(free.equation.size());
+  full_.resize(free.equation.size());
   built_ = false;
   preconditioner_->analyze(pattern, free);
   return LinearOutcome::solved;
@@ -68,9 +67,11 @@ LinearOutcome IterativeSolver::factorize(const TangentOperator& tangent, FactorU
 }
 
 void IterativeSolver::multiply(std::span<const double> v, std::span<double> product) {
-  free_->extend_by_zero(v, full_in_);
-  tangent_->multiply(full_in_, full_out_);
-  free_->restrict_to_free(full_out_, product);
+  free_->extend_by_zero(v, full_);
+  std::vector<double>& result = tangent_->multiplies_in_place() ? full_ : full_result_;
+  result.resize(full_.size());
+  tangent_->multiply(full_, result);
+  free_->restrict_to_free(result, product);
 }
 
 LinearOutcome IterativeSolver::iterate(std::span<const double> b, std::span<double> x,

@@ -46,7 +46,7 @@ class IterativeSolver : public LinearSolver {
   double iterations_per_digit_ = 0.0;  // of the first solve after it was built; 0: none yet
   double largest_diagonal_ = 0.0;
   int last_iterations_ = 0;
-  std::vector<double> full_in_, full_out_;
+  std::vector<double> full_, full_result_;  // per degree of freedom
 };
 
 }  // namespace peristat

@@ -6,7 +6,9 @@
 #include <cstdint>
 #include <limits>
 #include <numeric>
+#include <span>
 #include <unordered_map>
+#include <utility>
 
 #include <Eigen/CholmodSupport>
 #include <Eigen/Core>
@@ -15,6 +17,7 @@
 #include <omp.h>
 
 #include "solvers/linear/block_jacobi.hpp"
+#include "src/points/squared_distance.hpp"
 
 namespace peristat {
 namespace {
@@ -24,10 +27,21 @@ using Matrix = Eigen::SparseMatrix<double, Eigen::ColMajor, Long>;
 
 /// Width of the boxes that the body is divided into, in horizons: the smaller, the fewer iterations
 /// and the larger the coarse matrix. And the least, in bonds of the shortest kind.
-constexpr double box_in_horizons = 4.0 / 3.0, box_in_spacings = 2.5;
+constexpr double box_in_horizons = 5.0 / 3.0, box_in_spacings = 2.5;
 
-/// Pieces that the boxes of a body may be: beyond, boxes grow, for the sake of the coarse factor.
-constexpr std::array<double, 3> most_boxes{1e6, 2e5, 2e4};
+/// Whether the coarse factor of a grid of boxes is too large for a body; boxes then grow beyond
+/// that width.
+/// @param boxes along each direction
+bool is_too_fine(int dimension, const std::array<double, 3>& boxes, double points) {
+  const double all = boxes[0] * boxes[1] * boxes[2];
+  if (dimension < 3) return all > (dimension == 1 ? 1e6 : 2e5);
+  // Blocks of 6 x 6 numbers in the factor: nested dissection's, or those within the band of a
+  // slender body.
+  const double section = all / *std::max_element(boxes.begin(), boxes.end());
+  const double blocks = std::min(8.0 * std::pow(all, 4.0 / 3.0), 2.0 * section * all);
+  constexpr double bytes_per_point = 100.0, bytes_of_block = 36.0 * 8.0;
+  return bytes_of_block * blocks > bytes_per_point * points && all > 1.0;
+}
 
 /// A motion that keeps less than this of its length beside the others is one of theirs.
 constexpr double dependent = 1e-6;
@@ -40,14 +54,31 @@ constexpr double relative_shift = 1e-12;
 
 constexpr int motions_of(int dimension) { return dimension * (dimension + 1) / 2; }
 
-/// Component c of the motion m about a centre: translations, then rotations.
+/// What a vector at a point contributes to the rigid motions about a centre: itself to the
+/// translations, its moments in the planes of the axes to the rotations.
 template <int D>
-double motion(int m, int c, const std::array<double, 3>& arm) {
-  if (m < D) return c == m ? 1.0 : 0.0;
-  // Rotation in the plane of the axes a and b.
-  const int a = D == 2 ? 0 : m - D, b = D == 2 ? 1 : (a + 1) % 3;
-  if (c == a) return -arm[b];
-  return c == b ? arm[a] : 0.0;
+std::array<double, motions_of(D)> moments(const float* arm, const std::array<double, D>& vector) {
+  std::array<double, motions_of(D)> result{};
+  for (int c = 0; c < D; ++c) result[c] = vector[c];
+  for (int m = D; m < motions_of(D); ++m) {
+    const int a = D == 2 ? 0 : m - D, b = D == 2 ? 1 : (a + 1) % 3;
+    result[m] = arm[a] * vector[b] - arm[b] * vector[a];
+  }
+  return result;
+}
+
+/// The transposed map: displacement of a point by amounts of the motions.
+template <int D>
+std::array<double, D> displacement(const float* arm,
+                                   const std::array<double, motions_of(D)>& amount) {
+  std::array<double, D> result;
+  for (int c = 0; c < D; ++c) result[c] = amount[c];
+  for (int m = D; m < motions_of(D); ++m) {
+    const int a = D == 2 ? 0 : m - D, b = D == 2 ? 1 : (a + 1) % 3;
+    result[a] -= amount[m] * arm[b];
+    result[b] += amount[m] * arm[a];
+  }
+  return result;
 }
 
 Index root(std::vector<Index>& parent, Index i) {
@@ -61,58 +92,58 @@ struct RigidPieces::Levels {
   const FreeDofs* free = nullptr;
   BlockJacobi fine{BlockJacobi::Blocks::points};
   Eigen::CholmodSupernodalLLT<Matrix, Eigen::Lower> coarse;
-  std::vector<Index> box;     // per point
-  std::vector<Index> piece;   // per point
-  std::vector<double> basis;  // equations x motions
+  std::vector<Index> box;    // per point
+  std::vector<Index> piece;  // per point
+  /// Points x dimension, from the centre of their piece: Q is made of them whenever it is needed.
+  /// Single precision is enough for what is a choice of subspace.
+  std::vector<float> arm;
+  /// Pieces x motions x motions: column k has the amounts of the piece's motions that make its k-th
+  /// orthonormal one.
+  std::vector<double> to_basis;
   std::vector<Index> first;   // coarse equation of each piece, and their number
   std::vector<Index> member;  // points, grouped by piece
   std::vector<Index> offset;  // of each piece in member
   Eigen::VectorXd coarse_residual, coarse_correction;
+  double length_unit = 1.0;  // of the arms [m]: keeps them within what single precision holds
   int dimension = 0, threads = 1;
 
   /// Boxes in the configuration of the first tangent.
-  void find_boxes(const TangentOperator& tangent) {
+  void find_boxes(const TangentOperator& tangent, std::span<const double> position) {
     const int d = dimension;
     const Index points = tangent.pattern.points();
     double longest = 0.0, shortest = std::numeric_limits<double>::infinity();
     for (Index i = 0; i < points; ++i) {
       for (Offset bond = tangent.pattern.offset[i]; bond < tangent.pattern.offset[i + 1]; ++bond) {
-        double squared = 0.0;
-        for (int c = 0; c < d; ++c) {
-          const double x = tangent.position[std::size_t(tangent.pattern.partner[bond]) * d + c] -
-                           tangent.position[std::size_t(i) * d + c];
-          squared += x * x;
-        }
+        const double squared = squared_distance(position, d, i, tangent.pattern.partner[bond]);
         longest = std::max(longest, squared);
         shortest = std::min(shortest, squared);
       }
     }
     longest = std::sqrt(longest);
+    length_unit = longest > 0.0 ? longest : 1.0;
     shortest = std::sqrt(std::min(shortest, longest * longest));
     std::array<double, 3> least, most, count{1.0, 1.0, 1.0};
     least.fill(std::numeric_limits<double>::infinity());
     most.fill(-std::numeric_limits<double>::infinity());
-    for (std::size_t k = 0; k < tangent.position.size(); ++k) {
-      least[k % d] = std::min(least[k % d], tangent.position[k]);
-      most[k % d] = std::max(most[k % d], tangent.position[k]);
+    for (std::size_t k = 0; k < position.size(); ++k) {
+      least[k % d] = std::min(least[k % d], position[k]);
+      most[k % d] = std::max(most[k % d], position[k]);
     }
     double width = std::max({box_in_horizons * longest, box_in_spacings * shortest,
                              std::numeric_limits<double>::min()});
-    for (double boxes = std::numeric_limits<double>::infinity(); boxes > most_boxes[d - 1];
-         width *= 1.1) {
-      boxes = 1.0;
+    do {
       for (int c = 0; c < d; ++c) {
         count[c] = std::max(1.0, std::round((most[c] - least[c] + shortest) / width));
-        boxes *= count[c];
       }
-    }
+      width *= 1.1;
+    } while (is_too_fine(d, count, points));
     box.resize(points);
     for (Index i = 0; i < points; ++i) {
       double number = 0.0;
       for (int c = 0; c < d; ++c) {
         const double extent = most[c] - least[c];
         const double share =
-            extent > 0.0 ? (tangent.position[std::size_t(i) * d + c] - least[c]) / extent : 0.0;
+            extent > 0.0 ? (position[std::size_t(i) * d + c] - least[c]) / extent : 0.0;
         number = number * count[c] + std::min(std::floor(share * count[c]), count[c] - 1.0);
       }
       box[i] = static_cast<Index>(number);
@@ -129,24 +160,28 @@ struct RigidPieces::Levels {
       for (int c = 0; c < d; ++c) sum += tangent.diagonal[std::size_t(i) * entries + c * (d + 1)];
       return sum;
     };
-    // Bonds that join, found side by side; the union is serial.
-    std::vector<char> joins(std::size_t(pattern.blocks()), 0);
-    tangent.for_each_row([&](int, Index i, std::span<const double> blocks) {
+    std::vector<Index> parent(points);
+    std::iota(parent.begin(), parent.end(), 0);
+    const auto join = [&](Index i, Index j) { parent[root(parent, i)] = root(parent, j); };
+    // Bonds to later threads' points are left to the end.
+    std::vector<std::vector<std::pair<Index, Index>>> across(std::size_t(tangent.threads()));
+    tangent.for_each_row([&](int thread, Index i, std::span<const double> blocks) {
       for (Offset bond = pattern.offset[i]; bond < pattern.offset[i + 1]; ++bond) {
         const Index j = pattern.partner[bond];
         if (box[i] != box[j]) continue;
         const double* block = &blocks[std::size_t(bond - pattern.offset[i]) * entries];
         double largest = 0.0;
         for (int k = 0; k < entries; ++k) largest = std::max(largest, std::abs(block[k]));
-        joins[bond] = largest > broken * std::min(trace(i), trace(j));
+        if (!(largest > broken * std::min(trace(i), trace(j)))) continue;
+        if (j < tangent.ranges[std::size_t(thread)].last) {
+          join(i, j);
+        } else {
+          across[std::size_t(thread)].emplace_back(i, j);
+        }
       }
     });
-    std::vector<Index> parent(points);
-    std::iota(parent.begin(), parent.end(), 0);
-    for (Index i = 0; i < points; ++i) {
-      for (Offset bond = pattern.offset[i]; bond < pattern.offset[i + 1]; ++bond) {
-        if (joins[bond]) parent[root(parent, i)] = root(parent, pattern.partner[bond]);
-      }
+    for (const auto& pairs : across) {
+      for (const auto& [i, j] : pairs) join(i, j);
     }
     std::vector<Index> number(points, -1);
     piece.resize(points);
@@ -164,12 +199,45 @@ struct RigidPieces::Levels {
     for (Index i = 0; i < points; ++i) member[place[piece[i]]++] = i;
   }
 
+  /// Vector of a point's degrees of freedom, 0 where one is prescribed.
+  template <int D, class ValueOf>
+  std::array<double, D> at_free(Index i, const ValueOf& value_of) const {
+    std::array<double, D> result;
+    for (int c = 0; c < D; ++c) {
+      const Index e = free->equation[std::size_t(i) * D + c];
+      result[c] = e == FreeDofs::none ? 0.0 : value_of(c, e);
+    }
+    return result;
+  }
+
+  /// The motions of its piece at a point: motions x D, zero where a component is prescribed.
+  template <int D>
+  Eigen::Matrix<double, motions_of(D), D> motions_at(Index i) const {
+    Eigen::Matrix<double, motions_of(D), D> result;
+    for (int c = 0; c < D; ++c) {
+      const std::array<double, D> unit =
+          at_free<D>(i, [c](int component, Index) { return component == c ? 1.0 : 0.0; });
+      const auto column = moments<D>(&arm[std::size_t(i) * D], unit);
+      for (int m = 0; m < motions_of(D); ++m) result(m, c) = column[m];
+    }
+    return result;
+  }
+
+  template <int D>
+  auto basis_of(Index p) {
+    constexpr int motions = motions_of(D);
+    return Eigen::Map<Eigen::Matrix<double, motions, motions>>(
+        &to_basis[std::size_t(p) * motions * motions]);
+  }
+
   /// Orthonormal motions of each piece on its equations, by Gram and Schmidt's method done twice.
   template <int D>
-  void find_basis(const TangentOperator& tangent) {
+  void find_basis(std::span<const double> position) {
     constexpr int motions = motions_of(D);
+    using Vector = Eigen::Matrix<double, motions, 1>;
     const Index pieces = static_cast<Index>(offset.size()) - 1;
-    basis.assign(std::size_t(free->count()) * motions, 0.0);
+    arm.resize(position.size());
+    to_basis.assign(std::size_t(pieces) * motions * motions, 0.0);
     first.assign(std::size_t(pieces) + 1, 0);
 #pragma omp parallel for num_threads(threads) schedule(static)
     for (Index p = 0; p < pieces; ++p) {
@@ -177,40 +245,31 @@ struct RigidPieces::Levels {
                                            &member[offset[p]] + (offset[p + 1] - offset[p]));
       std::array<double, 3> centre{};
       for (const Index i : members) {
-        for (int c = 0; c < D; ++c) centre[c] += tangent.position[std::size_t(i) * D + c];
+        for (int c = 0; c < D; ++c) centre[c] += position[std::size_t(i) * D + c];
       }
       for (double& c : centre) c /= double(members.size());
-      int kept = 0;
-      const auto for_each_equation = [&](const auto& visit) {
-        for (const Index i : members) {
-          for (int c = 0; c < D; ++c) {
-            const Index e = free->equation[std::size_t(i) * D + c];
-            if (e != FreeDofs::none) visit(i, c, &basis[std::size_t(e) * motions]);
-          }
+      Eigen::Matrix<double, motions, motions> gram;
+      gram.setZero();
+      for (const Index i : members) {
+        for (int c = 0; c < D; ++c) {
+          const std::size_t dof = std::size_t(i) * D + c;
+          arm[dof] = static_cast<float>((position[dof] - centre[c]) / length_unit);
         }
-      };
+        const auto at_i = motions_at<D>(i);
+        gram.noalias() += at_i * at_i.transpose();
+      }
+      auto basis = basis_of<D>(p);
+      int kept = 0;
       for (int m = 0; m < motions; ++m) {
-        double before = 0.0, squared = 0.0;
-        for_each_equation([&](Index i, int c, double* row) {
-          std::array<double, 3> arm{};
-          for (int k = 0; k < D; ++k) {
-            arm[k] = tangent.position[std::size_t(i) * D + k] - centre[k];
-          }
-          row[kept] = motion<D>(m, c, arm);
-          before += row[kept] * row[kept];
-        });
+        Vector motion = Vector::Unit(m);
         for (int sweep = 0; sweep < 2; ++sweep) {
           for (int k = 0; k < kept; ++k) {
-            double shared = 0.0;
-            for_each_equation([&](Index, int, const double* row) { shared += row[k] * row[kept]; });
-            for_each_equation([&](Index, int, double* row) { row[kept] -= shared * row[k]; });
+            motion -= basis.col(k).dot(gram * motion) * Vector(basis.col(k));
           }
         }
-        for_each_equation([&](Index, int, const double* row) { squared += row[kept] * row[kept]; });
-        const bool is_new = squared > dependent * dependent * before && squared > 0.0;
-        const double scale = is_new ? 1.0 / std::sqrt(squared) : 0.0;
-        for_each_equation([&](Index, int, double* row) { row[kept] *= scale; });
-        kept += is_new;
+        const double squared = motion.dot(gram * motion);
+        if (!(squared > dependent * dependent * gram(m, m) && squared > 0.0)) continue;
+        basis.col(kept++) = motion / std::sqrt(squared);
       }
       first[p + 1] = kept;
     }
@@ -249,26 +308,9 @@ struct RigidPieces::Levels {
     std::size_t last_ = 0;
   };
 
-  /// Rows of the basis that belong to a point, zero where it is prescribed.
-  template <int D>
-  Eigen::Matrix<double, motions_of(D), D> motions_at(Index i) const {
-    constexpr int motions = motions_of(D);
-    Eigen::Matrix<double, motions, D> result;
-    for (int c = 0; c < D; ++c) {
-      const Index e = free->equation[std::size_t(i) * D + c];
-      if (e == FreeDofs::none) {
-        result.col(c).setZero();
-      } else {
-        result.col(c) =
-            Eigen::Map<const Eigen::Matrix<double, motions, 1>>(&basis[std::size_t(e) * motions]);
-      }
-    }
-    return result;
-  }
-
   /// Lower triangle of E.
   template <int D>
-  Matrix coarse_matrix(const TangentOperator& tangent) const {
+  Matrix coarse_matrix(const TangentOperator& tangent) {
     constexpr int motions = motions_of(D);
     using Motions = Eigen::Matrix<double, motions, D>;
     using Entries = Eigen::Map<const Eigen::Matrix<double, D, D, Eigen::RowMajor>>;
@@ -280,7 +322,8 @@ struct RigidPieces::Levels {
       const Motions at_i = motions_at<D>(i);
       part.between(own, own).noalias() +=
           at_i * Entries(&tangent.diagonal[std::size_t(i) * D * D]) * at_i.transpose();
-      // K_ij Q_j is added up over partners of the same piece, which mostly follow one another.
+      // K_ij times the motions at j, transposed, is added up over partners of the same piece, which
+      // mostly follow one another.
       Motions of_run = Motions::Zero();
       Index run = FreeDofs::none;
       const auto end_run = [&] {
@@ -301,34 +344,75 @@ struct RigidPieces::Levels {
           end_run();
           run = piece[j];
         }
-        of_run.noalias() +=
-            motions_at<D>(j) *
-            Entries(&blocks[std::size_t(bond - pattern.offset[i]) * D * D]).transpose();
+        const double* block = &blocks[std::size_t(bond - pattern.offset[i]) * D * D];
+        for (int r = 0; r < D; ++r) {
+          const auto column =
+              moments<D>(&arm[std::size_t(j) * D],
+                         at_free<D>(j, [&](int c, Index) { return block[r * D + c]; }));
+          for (int m = 0; m < motions; ++m) of_run(m, r) += column[m];
+        }
       }
       end_run();
     });
-    std::vector<Eigen::Triplet<double, Long>> triplets;
+    return gathered<D>(parts);
+  }
+
+  /// E from its blocks, which are in terms of the pieces' motions, not of the basis.
+  template <int D>
+  Matrix gathered(const std::vector<CoarseBlocks<D>>& parts) {
+    using Block = typename CoarseBlocks<D>::Block;
+    struct Part {
+      Index row, column;  // pieces
+      const Block* block;
+    };
+    std::vector<Part> all;
     for (const CoarseBlocks<D>& part : parts) {
-      part.for_each([&](Index a, Index b, const auto& block) {
-        for (int c = 0; c < first[b + 1] - first[b]; ++c) {
-          for (int r = a == b ? c : 0; r < first[a + 1] - first[a]; ++r) {
-            triplets.emplace_back(first[a] + r, first[b] + c, block(r, c));
-          }
+      part.for_each([&](Index a, Index b, const Block& block) { all.push_back({a, b, &block}); });
+    }
+    // Stable: the threads' parts of a block are added in the order of the threads.
+    std::stable_sort(all.begin(), all.end(), [](const Part& a, const Part& b) {
+      return std::pair(a.column, a.row) < std::pair(b.column, b.row);
+    });
+    const auto kept = [&](Index p) { return first[p + 1] - first[p]; };
+    // visit(row, column, the threads' parts of the block), columns ascending and their rows, too.
+    const auto for_each_block = [&](const auto& visit) {
+      for (std::size_t k = 0; k < all.size();) {
+        std::size_t end = k + 1;
+        while (end < all.size() && all[end].row == all[k].row && all[end].column == all[k].column) {
+          ++end;
         }
-      });
-    }
+        visit(all[k].row, all[k].column, std::span<const Part>(&all[k], end - k));
+        k = end;
+      }
+    };
     Matrix matrix(first.back(), first.back());
-    matrix.setFromTriplets(triplets.begin(), triplets.end());
-    for (Index k = 0; k < first.back(); ++k) {
-      // A coarse equation always has its diagonal entry.
-      matrix.coeffRef(k, k) *= 1.0 + relative_shift;
-    }
+    Long* const begin = matrix.outerIndexPtr();
+    std::fill(begin, begin + first.back() + 1, 0);
+    for_each_block([&](Index a, Index b, std::span<const Part>) {
+      for (int c = 0; c < kept(b); ++c) begin[first[b] + c + 1] += kept(a) - (a == b ? c : 0);
+    });
+    std::partial_sum(begin, begin + first.back() + 1, begin);
+    matrix.resizeNonZeros(begin[first.back()]);
+    std::vector<Long> next(begin, begin + first.back());
+    for_each_block([&](Index a, Index b, std::span<const Part> run) {
+      Block block = *run.front().block;
+      for (const Part& part : run.subspan(1)) block += *part.block;
+      const Block entries = basis_of<D>(a).transpose() * block * basis_of<D>(b);
+      for (int c = 0; c < kept(b); ++c) {
+        for (int r = a == b ? c : 0; r < kept(a); ++r) {
+          Long& place = next[std::size_t(first[b] + c)];
+          matrix.innerIndexPtr()[place] = first[a] + r;
+          const bool on_diagonal = a == b && r == c;
+          matrix.valuePtr()[place++] = entries(r, c) * (on_diagonal ? 1.0 + relative_shift : 1.0);
+        }
+      }
+    });
     return matrix;
   }
 
   template <int D>
   LinearOutcome build_coarse(const TangentOperator& tangent) {
-    find_basis<D>(tangent);
+    find_basis<D>(tangent.positions());
     if (first.back() == 0) return LinearOutcome::solved;
     coarse.compute(coarse_matrix<D>(tangent));
     const int status = coarse.cholmod().status;
@@ -344,30 +428,37 @@ struct RigidPieces::Levels {
   void add_coarse(std::span<const double> residual, std::span<double> correction) {
     constexpr int motions = motions_of(D);
     const Index pieces = static_cast<Index>(first.size()) - 1;
-    const auto for_each_row = [&](Index p, const auto& visit) {
-      for (Index place = offset[p]; place < offset[p + 1]; ++place) {
-        for (int c = 0; c < D; ++c) {
-          const Index e = free->equation[std::size_t(member[place]) * D + c];
-          if (e != FreeDofs::none) visit(e, &basis[std::size_t(e) * motions]);
-        }
-      }
+    const auto members = [&](Index p) {
+      return std::span<const Index>(member).subspan(std::size_t(offset[p]),
+                                                    std::size_t(offset[p + 1] - offset[p]));
     };
+    using Vector = Eigen::Matrix<double, motions, 1>;
 #pragma omp parallel for num_threads(threads) schedule(static)
     for (Index p = 0; p < pieces; ++p) {
-      std::array<double, motions> sum{};
-      for_each_row(p, [&](Index e, const double* row) {
-        for (int m = 0; m < motions; ++m) sum[m] += row[m] * residual[e];
-      });
-      for (Index k = first[p]; k < first[p + 1]; ++k) coarse_residual[k] = sum[k - first[p]];
+      Vector sum = Vector::Zero();
+      for (const Index i : members(p)) {
+        const auto at_i = moments<D>(&arm[std::size_t(i) * D],
+                                     at_free<D>(i, [&](int, Index e) { return residual[e]; }));
+        for (int m = 0; m < motions; ++m) sum[m] += at_i[m];
+      }
+      const Vector in_basis = basis_of<D>(p).transpose() * sum;
+      for (Index k = first[p]; k < first[p + 1]; ++k) coarse_residual[k] = in_basis[k - first[p]];
     }
     coarse_correction = coarse.solve(coarse_residual);
 #pragma omp parallel for num_threads(threads) schedule(static)
     for (Index p = 0; p < pieces; ++p) {
-      std::array<double, motions> amount{};
-      for (Index k = first[p]; k < first[p + 1]; ++k) amount[k - first[p]] = coarse_correction[k];
-      for_each_row(p, [&](Index e, const double* row) {
-        for (int m = 0; m < motions; ++m) correction[e] += row[m] * amount[m];
-      });
+      Vector in_basis = Vector::Zero();
+      for (Index k = first[p]; k < first[p + 1]; ++k) in_basis[k - first[p]] = coarse_correction[k];
+      const Vector of_piece = basis_of<D>(p) * in_basis;
+      std::array<double, motions> amount;
+      for (int m = 0; m < motions; ++m) amount[m] = of_piece[m];
+      for (const Index i : members(p)) {
+        const std::array<double, D> moved = displacement<D>(&arm[std::size_t(i) * D], amount);
+        for (int c = 0; c < D; ++c) {
+          const Index e = free->equation[std::size_t(i) * D + c];
+          if (e != FreeDofs::none) correction[e] += moved[c];
+        }
+      }
     }
   }
 };
@@ -390,7 +481,7 @@ LinearOutcome RigidPieces::build(const TangentOperator& tangent) {
   levels.first.assign(1, 0);
   const LinearOutcome outcome = levels.fine.build(tangent);
   if (outcome != LinearOutcome::solved) return outcome;
-  if (levels.box.empty()) levels.find_boxes(tangent);
+  if (levels.box.empty()) levels.find_boxes(tangent, tangent.positions());
   levels.find_pieces(tangent);
   if (tangent.dimension == 1) return levels.build_coarse<1>(tangent);
   if (tangent.dimension == 2) return levels.build_coarse<2>(tangent);

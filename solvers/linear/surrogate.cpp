@@ -12,6 +12,7 @@
 #include "solvers/linear/block_jacobi.hpp"
 #include "solvers/linear/cholesky.hpp"
 #include "solvers/linear/compressed_rows.hpp"
+#include "src/points/squared_distance.hpp"
 
 namespace peristat {
 namespace {
@@ -42,19 +43,8 @@ struct Surrogate::StandIn {
   std::optional<MatrixPreconditioner> multigrid;  // instead of the factor, if it holds one
   std::vector<double> correction;
 
-  static double squared_length(const TangentOperator& tangent, Index i, Index j) {
-    const int d = tangent.dimension;
-    double squared = 0.0;
-    for (int c = 0; c < d; ++c) {
-      const double x =
-          tangent.position[std::size_t(j) * d + c] - tangent.position[std::size_t(i) * d + c];
-      squared += x * x;
-    }
-    return squared;
-  }
-
   /// Chooses the short bonds, in the configuration of the first tangent.
-  LinearOutcome choose_bonds(const TangentOperator& tangent) {
+  LinearOutcome choose_bonds(const TangentOperator& tangent, std::span<const double> position) {
     const Pattern& pattern = tangent.pattern;
     const Index points = pattern.points();
     // Spacing about a point: the mean distance of as many nearest neighbours as a lattice's point
@@ -76,7 +66,7 @@ struct Surrogate::StandIn {
       std::sort(list.begin(), list.begin() + std::ptrdiff_t(nearest));
     };
     for_each_bond([&](Index i, Index j, Offset) {
-      const double length = std::sqrt(squared_length(tangent, i, j));
+      const double length = std::sqrt(squared_distance(position, tangent.dimension, i, j));
       insert(distances[i], length);
       insert(distances[j], length);
     });
@@ -93,7 +83,7 @@ struct Surrogate::StandIn {
     short_bonds.offset.assign(std::size_t(points) + 1, 0);
     for_each_bond([&](Index i, Index j, Offset bond) {
       const double limit = short_in_spacings * std::max(spacing[i], spacing[j]);
-      if (squared_length(tangent, i, j) > limit * limit) return;
+      if (squared_distance(position, tangent.dimension, i, j) > limit * limit) return;
       is_short[bond] = 1;
       short_bonds.partner.push_back(j);
       ++short_bonds.offset[i + 1];
@@ -110,7 +100,7 @@ struct Surrogate::StandIn {
     return analysis;
   }
 
-  void find_springs(const TangentOperator& tangent) {
+  void find_springs(const TangentOperator& tangent, std::span<const double> position) {
     const Pattern& pattern = tangent.pattern;
     const int d = tangent.dimension, entries = d * d;
     const auto count = std::size_t(tangent.threads());
@@ -123,8 +113,7 @@ struct Surrogate::StandIn {
         std::array<double, 3> arm{};
         double squared = 0.0, along = 0.0;
         for (int c = 0; c < d; ++c) {
-          arm[c] =
-              tangent.position[std::size_t(j) * d + c] - tangent.position[std::size_t(i) * d + c];
+          arm[c] = position[std::size_t(j) * d + c] - position[std::size_t(i) * d + c];
           squared += arm[c] * arm[c];
         }
         for (int r = 0; r < d; ++r) {
@@ -189,14 +178,15 @@ LinearOutcome Surrogate::build(const TangentOperator& tangent) {
   StandIn& s = *stand_in_;
   const LinearOutcome outcome = s.fine.build(tangent);
   if (outcome != LinearOutcome::solved) return outcome;
+  const std::vector<double> position = tangent.positions();
   if (s.is_short.empty()) {
-    const LinearOutcome analysis = s.choose_bonds(tangent);
+    const LinearOutcome analysis = s.choose_bonds(tangent, position);
     if (analysis != LinearOutcome::solved) return analysis;
   }
-  s.find_springs(tangent);
+  s.find_springs(tangent, position);
   if (s.multigrid) {
     return s.multigrid->build(compressed_rows(*s.springs, *s.free), equation_blocks(*s.free),
-                              rigid_motions(tangent.position, *s.free))
+                              rigid_motions(position, *s.free))
                ? LinearOutcome::solved
                : LinearOutcome::inaccurate;
   }

@@ -44,8 +44,8 @@ void BondKinds::keep_each_its_own() {
   own.reserve(number_.capacity());
   for (const std::uint16_t number : number_) own.push_back(kinds_[number]);
   kinds_ = std::move(own);
-  number_ = {};
-  known_ = {};
+  number_ = std::vector<std::uint16_t>();
+  known_ = decltype(known_)();
   numbered_ = false;
 }
 

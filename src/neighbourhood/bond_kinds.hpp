@@ -19,11 +19,11 @@ struct BondKind {
   bool operator==(const BondKind&) const = default;
 };
 
-/// One BondKind per bond. The bonds of a lattice are of few kinds: each kind is kept once and a bond
-/// keeps its number, 2 bytes instead of 16. Bonds whose two numbers agree to about 1e-12 are of one
-/// kind, that of the first of them, because points of a lattice stand where they should only up to
-/// round-off. Where there are more than 65536 kinds, as in a cloud of points, each bond keeps its
-/// own.
+/// One BondKind per bond. The bonds of a lattice are of few kinds: each kind is kept once and a
+/// bond keeps its number, 2 bytes instead of 16. Bonds whose two numbers agree to about 1e-12 are
+/// of one kind, that of the first of them, because points of a lattice stand where they should only
+/// up to round-off. Where there are more than 65536 kinds, as in a cloud of points, each bond keeps
+/// its own.
 class BondKinds {
  public:
   [[nodiscard]] const BondKind& operator[](Offset bond) const {

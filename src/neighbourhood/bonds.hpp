@@ -13,8 +13,8 @@ namespace peristat {
 /// partner[offset[i]] .. partner[offset[i+1]-1], ascending. The same graph is the sparsity pattern
 /// of every tangent: triangles and tetrahedra have all mutual distances within the horizon.
 struct Bonds {
-  std::vector<Offset> offset;          ///< points + 1
-  std::vector<Index> partner;          ///< upper point of each bond
+  std::vector<Offset> offset;  ///< points + 1
+  std::vector<Index> partner;  ///< upper point of each bond
   BondKinds kind;
 
   [[nodiscard]] double inverse_length(Offset bond) const { return kind[bond].inverse_length; }

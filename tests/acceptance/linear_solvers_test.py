@@ -4,6 +4,7 @@ import csv
 import json
 import os
 import pathlib
+import re
 import subprocess
 import tempfile
 import unittest
@@ -98,6 +99,38 @@ class LinearSolvers(unittest.TestCase):
         run = self.peristat("check", CASES / "cpd/square.toml", "solver.tangent=matrix_free")
         self.assertEqual(run.returncode, 2, run.stdout + run.stderr)
         self.assertIn('material.model = "bond"', run.stderr)
+
+    def beam_of(self, half_width):
+        return [f"lattice.shape[0].min=[0, -{half_width}, -{half_width}]",
+                f"lattice.shape[0].max=[1, {half_width}, {half_width}]"]  # fmt: skip
+
+    def test_check_estimates_the_memory_within_15_percent(self):
+        plate = CASES / "plate_with_hole" / "elastic.toml"
+        wide = self.beam_of(0.1)
+        for case, settings in [(BEAM, []), (BEAM, ["solver.tangent=stored"]), (BEAM, ["solver.linear=cholesky"]),
+                               (BEAM, wide), (BEAM, wide + ["solver.tangent=stored", "solver.linear=pcg"]),
+                               (BEAM, wide + ["solver.preconditioner=jacobi"]),
+                               (BEAM, wide + ["solver.linear=gmres"]),
+                               (plate, []), (plate, ["solver.linear=cholesky"]),
+                               (plate, ["solver.preconditioner=multigrid"])]:  # fmt: skip
+            with self.subTest(case=case.name, settings=settings):
+                check = self.peristat("check", case, *settings)
+                told = re.search(r"^memory +about ([0-9.]+) (MB|GB)", check.stdout, re.MULTILINE)
+                estimate = float(told[1]) * {"MB": 1e6, "GB": 1e9}[told[2]]
+                _, summary = self.run_case(case, *settings)
+                self.assertLess(abs(estimate / summary["peak_memory_bytes"] - 1.0), 0.15)
+
+    def test_memory_per_point_in_3d(self):
+        for tangent, most in [("matrix_free", 1200), ("stored", 5000)]:
+            with self.subTest(tangent=tangent):
+                used = []
+                for half_width in (0.1, 0.18):
+                    _, summary = self.run_case(BEAM, *self.beam_of(half_width), "solver.linear=pcg",
+                                               f"solver.tangent={tangent}")  # fmt: skip
+                    used.append((summary["points"], summary["peak_memory_bytes"]))
+                (few, less), (many, more) = used
+                self.assertGreater(many, 3 * few)
+                self.assertLess((more - less) / (many - few), most)
 
 
 if __name__ == "__main__":

@@ -53,7 +53,7 @@ inline SolvedCase solve_case(const std::string& name,
     solved.steps.push_back(row);
   };
   solved.result =
-      follow_loading({assembler, solver, tangent}, *solved.body->conditions,
+      follow_loading({assembler, solver, tangent, free}, *solved.body->conditions,
                      load_stepping_options(solved.from), newton_options(solved.from), observer);
   return solved;
 }

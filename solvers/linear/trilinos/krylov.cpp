@@ -57,16 +57,10 @@ class MapOperator : public Operator {
     if (mode != Teuchos::NO_TRANS || alpha != 1.0 || beta != 0.0) {
       throw std::logic_error("MapOperator: only y = A x");
     }
-    if (argument_is_zero) {
-      y.putScalar(0.0);
-      return;
-    }
     for (std::size_t column = 0; column < x.getNumVectors(); ++column) {
       map_(x.getData(column).getRawPtr(), y.getDataNonConst(column).getRawPtr());
     }
   }
-
-  bool argument_is_zero = false;  ///< spares the product with a start vector of zero
 
  private:
   RCP<const Map> rows_;
@@ -77,9 +71,14 @@ class MapOperator : public Operator {
 class TrueResidual {
  public:
   TrueResidual(const VectorMap& matrix, const double* b, int size)
-      : matrix_(matrix), b_(b), values(b, b + size), norm(trilinos::norm(values)) {}
+      : matrix_(matrix),
+        b_(b),
+        size_(std::size_t(size)),
+        values(b, b + size),
+        norm(trilinos::norm(values)) {}
 
   void update(const double* x) {
+    values.resize(size_);
     matrix_(x, values.data());
     for (std::size_t k = 0; k < values.size(); ++k) values[k] = b_[k] - values[k];
     norm = trilinos::norm(values);
@@ -88,9 +87,10 @@ class TrueResidual {
  private:
   const VectorMap& matrix_;
   const double* b_;
+  std::size_t size_;
 
  public:
-  std::vector<double> values;
+  std::vector<double> values;  ///< may be taken away until the next update
   double norm;
 };
 
@@ -251,21 +251,22 @@ Run run_gmres(const RCP<Problem>& problem, double relative_target, int max_itera
 }
 
 /// Solves for the correction of a solution with that residual.
+/// @return correction; the residual's memory is given back while Belos has its own
 Run run_belos(const RCP<const Map>& rows, const VectorMap& matrix, const VectorMap& preconditioner,
-              const std::vector<double>& residual, double residual_norm, double target,
-              int max_iterations, const KrylovOptions& options, std::vector<double>& correction) {
+              std::vector<double> residual, double residual_norm, double target, int max_iterations,
+              const KrylovOptions& options, RCP<Vector>& correction) {
   const RCP<MapOperator> matrix_operator = rcp(new MapOperator(rows, matrix));
   const RCP<Vector> d = rcp(new Vector(rows, 1)), r = rcp(new Vector(rows, 1));
   std::copy(residual.begin(), residual.end(), r->getDataNonConst(0).begin());
+  residual = std::vector<double>();
 
   const RCP<Problem> problem = rcp(new Problem(matrix_operator, d, r));
   problem->setHermitian();
   // From the right, also where the method makes no difference: from the left, Belos would
   // precondition the start's residual once for nothing.
   if (preconditioner) problem->setRightPrec(rcp(new MapOperator(rows, preconditioner)));
-  matrix_operator->argument_is_zero = true;
+  problem->setInitResVec(r);  // of the start at zero
   problem->setProblem();
-  matrix_operator->argument_is_zero = false;
 
   Run run;
   if (options.method == KrylovMethod::gmres) {
@@ -277,8 +278,7 @@ Run run_belos(const RCP<const Map>& rows, const VectorMap& matrix, const VectorM
               : run_conjugate_gradients(problem, target, max_iterations);
     problem->setCurrLS();
   }
-  const Teuchos::ArrayRCP<const double> values = d->getData(0);
-  std::copy(values.begin(), values.end(), correction.begin());
+  correction = d;
   return run;
 }
 
@@ -299,13 +299,19 @@ KrylovResult refine(int size, const VectorMap& matrix, const VectorMap& precondi
   }
 
   const RCP<const Map> rows = rcp(new Map(size, 0, rcp(new Teuchos::SerialComm<int>)));
-  std::vector<double> correction(static_cast<std::size_t>(size)), candidate(correction.size());
   while (true) {
     const double before = residual.norm;
-    const Run run = run_belos(rows, matrix, preconditioner, residual.values, before, target,
-                              options.max_iterations - result.iterations, options, correction);
+    RCP<Vector> correction;
+    const Run run =
+        run_belos(rows, matrix, preconditioner, std::move(residual.values), before, target,
+                  options.max_iterations - result.iterations, options, correction);
     result.iterations += run.iterations;
-    for (std::size_t k = 0; k < candidate.size(); ++k) candidate[k] = x[k] + correction[k];
+    std::vector<double> candidate(x, x + size);
+    {
+      const Teuchos::ArrayRCP<const double> values = correction->getData(0);
+      for (int k = 0; k < size; ++k) candidate[std::size_t(k)] += values[k];
+    }
+    correction = Teuchos::null;
     residual.update(candidate.data());
 
     // A failed run may leave something worse than it started from, or not finite.

@@ -36,7 +36,7 @@ TEST(MatrixFreeTangent, IsTheStoredTangent) {
           stored.linearise(assembler, state, projection);
           free.linearise(assembler, state, projection);
           EXPECT_EQ(free.diagonal, stored.diagonal);
-          EXPECT_EQ(free.position, stored.position);
+          EXPECT_EQ(free.positions(), stored.positions());
 
           std::vector<double> blocks(stored.off_diagonal.size(), 0.0);
           const std::size_t entries = std::size_t(dimension) * dimension;
@@ -49,6 +49,10 @@ TEST(MatrixFreeTangent, IsTheStoredTangent) {
           const std::vector<double> v = tests::Random(4).vector(body.dofs());
           std::vector<double> by_bonds(v.size()), by_blocks(v.size()), serial(v.size());
           free.multiply(v, by_bonds);
+          ASSERT_TRUE(free.multiplies_in_place());
+          std::vector<double> in_place = v;
+          free.multiply(in_place, in_place);
+          EXPECT_EQ(in_place, by_bonds);
           stored.multiply(v, by_blocks);
           EXPECT_LE(tests::distance(by_bonds, by_blocks), 1e-13 * tests::norm(by_blocks));
           Tangent one_thread(Pattern(body.model.bonds), dimension, 1);

@@ -414,7 +414,7 @@ TEST(IterativeSolver, OutcomesOfWhatCannotBeSolved) {
 
 TEST(IterativeSolver, KeepsAPreconditionerUntilItIsWorn) {
   System system(box_of(2, {20, 15, 0}));
-  IterativeSolver solver(cg, make(Kind::rigid_pieces), 500);
+  IterativeSolver solver(cg, make(Kind::rigid_pieces), 2000);
   ASSERT_EQ(solver.analyze(system.tangent.pattern, system.free), LinearOutcome::solved);
   ASSERT_EQ(system.solve(solver, 1e-10, FactorUse::may_reuse), LinearOutcome::solved);
   EXPECT_EQ(solver.statistics().factorisations, 1);
