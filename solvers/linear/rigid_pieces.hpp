@@ -12,13 +12,13 @@ namespace peristat {
 ///   M^-1 = D^-1 + Q E^-1 Q^T,   E = Q^T K_ff Q,
 ///
 /// Q an orthonormal basis of the motions, the translations and rotations of each piece about its
-/// centre in the current configuration. Pieces are boxes some 4/3 of a horizon wide, each divided
+/// centre in the current configuration. Pieces are boxes some 5/3 of a horizon wide, each divided
 /// where no unbroken bond joins it, so that a crack runs between pieces and never through one.
 ///
 /// Motions that are smooth over a piece cost little energy and are what block Jacobi is slow at; Q
 /// holds them, those of slender bodies, cracked bodies and fragments as well. What is left varies
 /// within a horizon, where the nonlocal K is about its own diagonal. Iterations therefore depend on
-/// neither the size nor the shape of a body: about 30 to 1e-8. The method is two-level additive
+/// neither the size nor the shape of a body: 30 to 50 to 1e-8. The method is two-level additive
 /// Schwarz with a coarse space of aggregates' rigid motions (Nicolaides, SIAM J. Numer. Anal. 24,
 /// 1987; Jönsthövel et al., Comput. Mech. 50, 2012).
 class RigidPieces : public Preconditioner {
