@@ -107,6 +107,15 @@ void Assembler::hold_damage(bool holds) {
       workspace_->potential);
 }
 
+bool Assembler::holds_damage() const {
+  return std::visit(
+      []<class P>(const P& law) {
+        if constexpr (PotentialWithHistory<P>) return law.holds_damage;
+        return false;
+      },
+      workspace_->potential);
+}
+
 void Assembler::restore(std::span<const double> history) {
   std::copy(history.begin(), history.end(), workspace_->largest_stretch.begin());
   workspace_->find_integrity();

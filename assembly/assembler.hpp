@@ -44,8 +44,9 @@ class Assembler {
   [[nodiscard]] std::span<const double> history() const;
 
   /// Whether bonds follow their secants beyond their histories, too: a state in which `growth` is
-  /// then zero is one of the body.
+  /// then zero is one of the body. Use DamageHold.
   void hold_damage(bool holds);
+  [[nodiscard]] bool holds_damage() const;
 
   /// Takes up a history again that was read before.
   void restore(std::span<const double> history);
@@ -85,6 +86,22 @@ class Assembler {
 
   std::unique_ptr<Workspace> workspace_;
   double seconds_ = 0.0;
+};
+
+/// Holds the damage of a body as long as it lives.
+class DamageHold {
+ public:
+  explicit DamageHold(Assembler& assembler, bool holds = true)
+      : assembler_(assembler), held_before_(assembler.holds_damage()) {
+    assembler_.hold_damage(held_before_ || holds);
+  }
+  ~DamageHold() { assembler_.hold_damage(held_before_); }
+  DamageHold(const DamageHold&) = delete;
+  DamageHold& operator=(const DamageHold&) = delete;
+
+ private:
+  Assembler& assembler_;
+  bool held_before_;
 };
 
 }  // namespace peristat

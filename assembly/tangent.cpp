@@ -5,9 +5,8 @@
 #include <cmath>
 #include <type_traits>
 
-#include <omp.h>
-
 #include "assembly/assembler.hpp"
+#include "src/threads.hpp"
 
 namespace peristat {
 namespace {
@@ -53,9 +52,7 @@ void dispatch(const Tangent& tangent, const Body& body) {
 template <int D, Tangent::Blocks stored_as>
 void multiply_rows(const Tangent& tangent, std::span<const double> v, std::span<double> result) {
   std::vector<std::vector<double>> spilled(tangent.ranges.size());
-#pragma omp parallel num_threads(tangent.threads())
-  {
-    const int thread = omp_get_thread_num();
+  run_on_threads(tangent.threads(), [&](int thread) {
     const RowRange range = tangent.ranges[thread];
     std::fill(result.begin() + std::ptrdiff_t(range.first) * D,
               result.begin() + std::ptrdiff_t(range.last) * D, 0.0);
@@ -96,7 +93,7 @@ void multiply_rows(const Tangent& tangent, std::span<const double> v, std::span<
         result[k] += spilled[earlier][k - std::ptrdiff_t(other.last) * D];
       }
     }
-  }
+  });
 }
 
 }  // namespace
@@ -135,9 +132,7 @@ void Tangent::for_each_row(const RowVisitor& visit) const {
     constexpr int D = decltype(d)::value;
     constexpr Blocks as = decltype(stored_as)::value;
     constexpr std::size_t size = block_size_of(D, as);
-#pragma omp parallel num_threads(threads())
-    {
-      const int thread = omp_get_thread_num();
+    run_on_threads(threads(), [&](int thread) {
       std::vector<double> row;
       for (Index i = ranges[thread].first; i < ranges[thread].last; ++i) {
         const std::size_t first = std::size_t(pattern.offset[i]),
@@ -153,24 +148,8 @@ void Tangent::for_each_row(const RowVisitor& visit) const {
           visit(thread, i, row);
         }
       }
-    }
+    });
   });
-}
-
-double Tangent::asymmetry() const {
-  const int d = dimension;
-  double largest = 0.0, difference = 0.0;
-  for (double stored : off_diagonal) largest = std::max(largest, std::abs(stored));
-  for (double stored : diagonal) largest = std::max(largest, std::abs(stored));
-  for (Index i = 0; i < pattern.points(); ++i) {
-    const double* block = &diagonal[std::size_t(i) * d * d];
-    for (int r = 0; r < d; ++r) {
-      for (int c = 0; c < r; ++c) {
-        difference = std::max(difference, std::abs(block[r * d + c] - block[c * d + r]));
-      }
-    }
-  }
-  return largest > 0.0 ? difference / largest : 0.0;
 }
 
 double Tangent::frobenius_norm() const {

@@ -39,11 +39,6 @@ struct Tangent : TangentOperator {
   [[nodiscard]] const Tangent* stored() const override { return this; }
   [[nodiscard]] Tangent* stored() override { return this; }
 
-  /// Largest |K - K^T| over largest |K|. The off-diagonal blocks are stored once, so only diagonal
-  /// blocks can be unsymmetric; whether an off-diagonal block is right in both its places is a
-  /// matter of the derivative, which finite differences check.
-  [[nodiscard]] double asymmetry() const;
-
   /// sqrt of the sum of squares of all entries, both halves counted [N/m].
   [[nodiscard]] double frobenius_norm() const;
 };

@@ -7,14 +7,13 @@
 #include <variant>
 #include <vector>
 
-#include <omp.h>
-
 #include "assembly/local_workspace.hpp"
 #include "assembly/model.hpp"
 #include "assembly/pattern.hpp"
 #include "assembly/stored.hpp"
 #include "src/aligned_vector.hpp"
 #include "src/points/points.hpp"
+#include "src/threads.hpp"
 
 namespace peristat {
 
@@ -78,9 +77,7 @@ struct Workspace {
   /// then finish(thread, range), and write(row, total) with the threads' sums added up in order.
   template <int width, class Body, class Write, class Finish>
   void sum_rows(const Body& body, const Write& write, const Finish& finish) {
-#pragma omp parallel num_threads(threads())
-    {
-      const int thread = omp_get_thread_num();
+    run_on_threads(threads(), [&](int thread) {
       const RowRange range = ranges[thread];
       double* own = sums[thread].data();
       std::fill_n(own, std::size_t(range.reach - range.first) * width, 0.0);
@@ -97,7 +94,7 @@ struct Workspace {
         }
         write(i, total);
       }
-    }
+    });
   }
 
   template <int width, class Body, class Write>

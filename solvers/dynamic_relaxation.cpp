@@ -5,10 +5,9 @@
 #include <cmath>
 #include <utility>
 
-#include <omp.h>
-
 #include "assembly/damage.hpp"
 #include "solvers/vector_verbs.hpp"
+#include "src/threads.hpp"
 
 namespace peristat {
 namespace {
@@ -224,13 +223,12 @@ class Relaxation {
   template <class Body>
   Sums sum(const Body& body) {
     const auto count = static_cast<Index>(dofs_.size());
-#pragma omp parallel num_threads(problem_.assembler.threads())
-    {
+    run_on_threads(problem_.assembler.threads(), [&](int thread) {
       Sums own{};
 #pragma omp for schedule(static) nowait
       for (Index e = 0; e < count; ++e) body(std::size_t(e), own);
-      partial_[std::size_t(omp_get_thread_num())] = own;
-    }
+      partial_[std::size_t(thread)] = own;
+    });
     Sums total{};
     for (const Sums& part : partial_) {
       for (std::size_t k = 0; k < total.size(); ++k) total[k] += part[k];
@@ -276,9 +274,8 @@ double scale_of_step(const EquilibriumProblem& problem, const Way& way, const Tr
     after_jump.displacement[dof] = way.end_displacement()[dof];
   }
   // A jump that tears bonds would leave no residual to measure against.
-  problem.assembler.hold_damage(true);
+  const DamageHold hold(problem.assembler);
   evaluate(problem, way.end_force(), after_jump);
-  problem.assembler.hold_damage(false);
   if (after_jump.degenerate) after_jump.residual_norm = 0.0;  // a jump onto a neighbour
   return residual_scale(problem, way.end_force(), start.gradient, after_jump);
 }
@@ -305,8 +302,8 @@ RelaxationResult relax(const EquilibriumProblem& problem, TangentOperator& tange
   const Way way(problem, from, load_factor);
   way.load(0.0, result.external_force);
   evaluate(problem, result.external_force, result.state);
-  result.scale =
-      std::max(scale_of_step(problem, way, result.state, options.holds), options.least_scale);
+  result.scale = options.scale > 0.0 ? options.scale
+                                     : scale_of_step(problem, way, result.state, options.holds);
 
   const double taken_up_at_start = taken_up(problem, options, result.state);
 
@@ -325,6 +322,7 @@ RelaxationResult relax(const EquilibriumProblem& problem, TangentOperator& tange
   Index breaking = 0;
   int quiet = 0;
   result.outcome = options.holds ? Outcome::iteration_limit : Outcome::converged;
+  result.largest_residual = -1.0;
   for (int n = 1; n <= last; ++n) {
     relaxation.move(std::min(double(n) / ramp, 1.0));
     relaxation.evaluate();
@@ -341,9 +339,11 @@ RelaxationResult relax(const EquilibriumProblem& problem, TangentOperator& tange
       if (now != breaking) quiet = 0;
       breaking = now;
     }
-    const bool still = relaxation.is_in_equilibrium() || relaxation.stands_still();
+    const bool balanced = relaxation.is_in_equilibrium();
+    const bool still = balanced || relaxation.stands_still();
     if (n >= ramp && options.holds && still && quiet >= options.quiet_iterations) {
       result.outcome = Outcome::converged;
+      if (balanced) result.largest_residual = options.relative_tolerance * result.scale;
       break;
     }
     if (n % iterations_per_record == 0 && observer && observer(relaxation.record())) {

@@ -11,8 +11,13 @@ namespace peristat {
 
 /// How dynamic relaxation takes energy out.
 enum class Damping {
-  adaptive,  ///< c_n from the Rayleigh quotient of the present motion
-  kinetic,   ///< none, but all motion stops whenever the kinetic energy has passed a peak
+  /// c_n from the Rayleigh quotient of the present motion, as published, with the mass factor 1. It
+  /// amplifies round-off, so that which bonds break may hang on the number of threads.
+  adaptive,
+  /// None, but all motion stops whenever the kinetic energy has passed a peak. At the mass factor 1
+  /// the highest mode sits at the limit of stability, and every second iteration looks like a peak;
+  /// 2 keeps clear of it.
+  kinetic,
 };
 
 /// When bonds lose their integrity in relaxation.
@@ -30,9 +35,9 @@ struct RelaxationOptions {
   bool holds = true;  ///< relaxes at the fixed load after the ramp; otherwise ends with it
   int max_iterations = 50'000;
   int quiet_iterations = 50;  ///< without a further broken bond before a state may be accepted
-  double least_scale = 0.0;   ///< the residual is measured against no less than this [N]
-  double mass_factor = 1.0;   ///< of the stable limit of the pseudo density
-  Damping damping = Damping::adaptive;
+  double scale = 0.0;         ///< that the residual is measured against [N]; 0: that of this step
+  double mass_factor = 2.0;   ///< of the stable limit of the pseudo density; see Damping
+  Damping damping = Damping::kinetic;
   Breaking breaking = Breaking::at_equilibrium;
 };
 
@@ -41,7 +46,10 @@ struct RelaxationResult {
   int iterations = 0;
   Trial state;  ///< last state; equilibrium only if converged and held
   std::vector<double> external_force;
-  double scale = 0.0;            ///< norm that the residual was measured against [N]
+  double scale = 0.0;  ///< norm that the residual was measured against [N]
+  /// Residual that counted as equilibrium [N]; negative: none was asked for, the state has merely
+  /// settled, or still moves.
+  double largest_residual = 0.0;
   double external_work = 0.0;    ///< of supports and loads [J]
   double drained_energy = 0.0;   ///< external work minus what the bonds have taken up [J]
   double damped_energy = 0.0;    ///< by damping, and by stopping motion: see relax [J]

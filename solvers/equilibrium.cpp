@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "solvers/vector_verbs.hpp"
 
@@ -33,6 +34,10 @@ std::string name(Outcome outcome) {
       return "damage_limit";
     case Outcome::fragmented:
       return "fragmented";
+    case Outcome::undefined_condition:
+      return "undefined_condition";
+    case Outcome::inconsistent:
+      return "inconsistent";
     case Outcome::interrupted:
       return "interrupted";
   }
@@ -63,13 +68,16 @@ std::string explanation(Outcome outcome) {
       return "the linear solution is inaccurate: the tangent is close to singular";
     case Outcome::limit_point:
       return "a limit point: softening bonds give the tangent negative pivots, and however small "
-             "the "
-             "step of the load, no equilibrium near the last one is found";
+             "the step of the load, no equilibrium near the last one is found";
     case Outcome::damage_limit:
       return "more bonds break at one load than loading.max_broken_bonds allows, however small the "
              "step: a limit point, from which the crack runs by itself";
     case Outcome::fragmented:
       return "a piece has come off (solver.fragments = \"stop\")";
+    case Outcome::undefined_condition:
+      return "supports or loads have no value at this load factor, or contradict each other";
+    case Outcome::inconsistent:
+      return "the state that was found contradicts a balance that it owes";
     case Outcome::interrupted:
       return "interrupted";
   }
@@ -82,24 +90,36 @@ void evaluate(const EquilibriumProblem& problem, std::span<const double> externa
   const Stored stored = problem.assembler.gradient(trial.displacement, trial.gradient);
   trial.stored_energy = stored.energy;
   trial.total_energy = stored.energy - dot(external_force, trial.displacement);
-  double squared = 0.0;
-  for (Index dof : problem.free.dof) {
-    const double residual = external_force[dof] - trial.gradient[dof];
-    squared += residual * residual;
-  }
-  trial.residual_norm = std::sqrt(squared);
-  trial.degenerate = stored.degenerate || !std::isfinite(squared);
+  trial.residual_norm = norm_of(problem.free.dof.size(), [&](std::size_t e) {
+    const Index dof = problem.free.dof[e];
+    return external_force[dof] - trial.gradient[dof];
+  });
+  trial.degenerate = stored.degenerate || !std::isfinite(trial.residual_norm);
 }
 
 double residual_scale(const EquilibriumProblem& problem, std::span<const double> external_force,
                       std::span<const double> old_gradient, const Trial& after_jump) {
-  double reactions = 0.0;
-  for (std::size_t dof = 0; dof < external_force.size(); ++dof) {
-    if (problem.free.equation[dof] != FreeDofs::none) continue;
-    const double reaction = old_gradient[dof] - external_force[dof];
-    reactions += reaction * reaction;
-  }
-  return std::max({norm(external_force), std::sqrt(reactions), after_jump.residual_norm});
+  const double reactions = norm_of(external_force.size(), [&](std::size_t dof) {
+    const bool is_free = problem.free.equation[dof] != FreeDofs::none;
+    return is_free ? 0.0 : old_gradient[dof] - external_force[dof];
+  });
+  return std::max({norm(external_force), reactions, after_jump.residual_norm});
+}
+
+double residual_round_off(const FreeDofs& free, const TangentOperator& tangent,
+                          std::span<const double> displacement) {
+  std::vector<double> sums(displacement.size());
+  tangent.absolute_row_sums(sums);
+  const std::size_t d = std::size_t(free.dimension);
+  constexpr double unit_round_off = 0.5 * std::numeric_limits<double>::epsilon();
+  return unit_round_off * norm_of(free.dof.size(), [&](std::size_t e) {
+           const std::size_t dof = std::size_t(free.dof[e]), first = dof - dof % d;
+           double largest = 0.0;
+           for (std::size_t c = 0; c < d; ++c) {
+             largest = std::max(largest, std::abs(displacement[first + c]));
+           }
+           return sums[dof] * largest;
+         });
 }
 
 }  // namespace peristat

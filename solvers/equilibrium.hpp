@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "assembly/assembler.hpp"
+#include "assembly/tangent_operator.hpp"
 #include "solvers/linear/free_dofs.hpp"
 #include "src/conditions/conditions.hpp"
 
@@ -28,10 +29,12 @@ enum class Outcome {
   degenerate,             ///< an interaction has collapsed to zero, or values are not finite
   out_of_memory,          ///< of the linear solver
   linear_solver_inaccurate,
-  limit_point,   ///< damage makes the body unstable: no equilibrium near at a higher load
-  damage_limit,  ///< more bonds break at once than allowed, however small the step
-  fragmented,    ///< a piece has come off, and that is to end the run
-  interrupted,   ///< by the person
+  limit_point,          ///< damage makes the body unstable: no equilibrium near at a higher load
+  damage_limit,         ///< more bonds break at once than allowed, however small the step
+  fragmented,           ///< a piece has come off, and that is to end the run
+  undefined_condition,  ///< supports or loads have no value, or two, at the load factor
+  inconsistent,         ///< a state found breaks a balance that it owes (solvers/consistency.hpp)
+  interrupted,          ///< by the person
 };
 
 [[nodiscard]] std::string name(Outcome outcome);
@@ -65,5 +68,16 @@ void evaluate(const EquilibriumProblem& problem, std::span<const double> externa
 [[nodiscard]] double residual_scale(const EquilibriumProblem& problem,
                                     std::span<const double> external_force,
                                     std::span<const double> old_gradient, const Trial& after_jump);
+
+/// What round-off leaves of the residual [N]. A displacement is known to a unit round-off of
+/// itself, so that a slender body, which moves far and strains little, has no state with less than
+/// about
+///
+///   ||eps sum_j |K_ij| max |u_i| ||
+///
+/// over its free degrees of freedom, u_i the displacement of the point.
+/// @param tangent near the state
+[[nodiscard]] double residual_round_off(const FreeDofs& free, const TangentOperator& tangent,
+                                        std::span<const double> displacement);
 
 }  // namespace peristat

@@ -6,12 +6,18 @@
 #include <utility>
 
 #include "assembly/damage.hpp"
+#include "solvers/consistency.hpp"
 #include "solvers/vector_verbs.hpp"
 #include "src/conditions/fragments.hpp"
+#include "src/input_error.hpp"
+#include "src/number_text.hpp"
 #include "src/stopwatch.hpp"
 
 namespace peristat {
 namespace {
+
+/// Share of the body's energy whose release in an implicit step is a jump over a limit point.
+constexpr double share_of_jump = 5e-3;
 
 /// A remainder of the load factor below this is round-off of the sum of steps.
 constexpr double end_tolerance = 1e-9;
@@ -53,6 +59,7 @@ Attempt common_attempt(Result result, double load_factor) {
   attempt.iterations = result.iterations;
   attempt.load_factor = load_factor;
   attempt.scale = result.scale;
+  attempt.largest_residual = result.largest_residual;
   attempt.state = std::move(result.state);
   attempt.external_force = std::move(result.external_force);
   return attempt;
@@ -61,7 +68,14 @@ Attempt common_attempt(Result result, double load_factor) {
 Attempt to_attempt(NewtonResult result, double load_factor) {
   const std::optional<Inertia> inertia = result.inertia;
   const bool negative = result.has_negative_pivots, unstable = result.unstable_start;
+  std::string note;
+  if (result.is_at_round_off) {
+    note = "converged to round-off: the residual is " + number_text(result.state.residual_norm) +
+           " N, above the tolerance, but displacements of this size are not known better than to " +
+           number_text(result.largest_residual) + " N";
+  }
   Attempt attempt = common_attempt(std::move(result), load_factor);
+  attempt.note = std::move(note);
   attempt.inertia = inertia;
   attempt.has_negative_pivots = negative;
   attempt.unstable_start = unstable;
@@ -81,7 +95,8 @@ bool worth_cutting(const Attempt& attempt) {
 
 /// Whether relaxation may succeed where an implicit search has failed.
 bool worth_relaxing(const Attempt& attempt) {
-  return attempt.outcome != Outcome::interrupted && attempt.outcome != Outcome::out_of_memory;
+  return attempt.outcome != Outcome::interrupted && attempt.outcome != Outcome::out_of_memory &&
+         attempt.outcome != Outcome::undefined_condition;
 }
 
 std::string bonds_text(Index count) {
@@ -144,14 +159,11 @@ class LoadPath {
     conditions.external_force(0.0, external_force);
     const Stored reference = assembler().gradient(result_.state.displacement, gradient);
     force_ = working_force(*free_, external_force, gradient);
-    external_work_ = reference.energy;  // of a body that is not free of stress in the reference
+    // Of a body that is not free of stress in the reference.
+    ledger_.external_work = ledger_.stored = reference.energy;
   }
 
   LoadSteppingResult follow() {
-    if (options_.has_cracks) {
-      find_pieces();
-      if (!resolve_fragments()) return std::move(result_);
-    }
     while (1.0 - result_.state.load_factor > end_tolerance) {
       result_.last_attempt = {};  // the vectors of a large body count
       const bool goes_on = relaxes_ ? relaxation_step() : implicit_step();
@@ -166,17 +178,53 @@ class LoadPath {
   [[nodiscard]] bool is_standing_in() const { return active_ != &main_; }
   [[nodiscard]] int next_step() const { return result_.steps + 1; }
 
+  /// A step that was found and may be accepted.
+  struct FoundStep {
+    StepRecord record;
+    DamageGrowth growth;
+    double released = 0.0;  // see Stored::released
+    struct Relaxed {
+      double work = 0.0, drained = 0.0;  // summed over the iterations [J]
+    };
+    std::optional<Relaxed> relaxed;
+    Ledger ledger;  // with the step
+  };
+
+  /// Whether supports and loads have a value at a load factor; otherwise why not.
+  std::optional<std::string> refusal_of_conditions(double load_factor) {
+    std::vector<double> values(pinned_.size());
+    try {
+      conditions_.prescribe(load_factor, values);
+      conditions_.external_force(load_factor, values);
+    } catch (const InputError& error) {
+      return observer_.describe ? observer_.describe(error) : error.what();
+    }
+    return std::nullopt;
+  }
+
+  [[nodiscard]] Attempt undefined_attempt(double load_factor) const {
+    Attempt attempt;
+    attempt.outcome = Outcome::undefined_condition;
+    attempt.load_factor = load_factor;
+    attempt.state.displacement = result_.state.displacement;
+    return attempt;
+  }
+
   // ---- Implicit steps
 
   bool implicit_step() {
     const double load_factor = result_.state.load_factor;
     const double target = implicit_.target(load_factor), attempted = target - load_factor;
+    if (const auto refusal = refusal_of_conditions(target)) {
+      return implicit_failure(undefined_attempt(target), attempted, *refusal);
+    }
     // Damage is relaxation's: where an implicit state would damage a bond does not matter, but that
     // it would.
     const bool holds_damage = options_.mode == Mode::adaptive;
-    assembler().hold_damage(holds_damage);
-    Attempt attempt = search(result_.state, target, newton_options_);
-    assembler().hold_damage(false);
+    Attempt attempt = [&] {
+      const DamageHold hold(assembler(), holds_damage);
+      return search(result_.state, target, newton_options_);
+    }();
     if (attempt.outcome != Outcome::converged)
       return implicit_failure(std::move(attempt), attempted);
 
@@ -189,35 +237,33 @@ class LoadPath {
       return implicit_failure(std::move(attempt), attempted, bonds_text(growth.breaking));
     }
     const std::vector<double> history(assembler().history().begin(), assembler().history().end());
-    double released = 0.0;
-    DamageGrowth damaged;
+    FoundStep found;
+    found.record.mode = "newton";
     if (growth.degrading > 0) {
-      commit(attempt, damaged, released, [&] {
+      commit(attempt, found, [&] {
         const State from{attempt.state.displacement, target};
         NewtonOptions options = newton_options_;
-        options.least_scale = attempt.scale;
+        options.scale = attempt.scale;
         const int before = attempt.iterations;
         attempt = search(from, target, options);
         attempt.iterations += before;
         return attempt.outcome;
       });
-      if (attempt.outcome != Outcome::converged) {
-        assembler().restore(history);
-        return implicit_failure(std::move(attempt), attempted);
-      }
-      released_energy_ += released;
+    }
+    found.record.newton_iterations = attempt.iterations;
+    if (const std::string fault = complete(found, attempt); attempt.outcome != Outcome::converged) {
+      assembler().restore(history);
+      return implicit_failure(std::move(attempt), attempted, fault);
     }
     const bool grows = attempt.iterations <= options_.easy_iterations && implicit_.grow();
-    tell(target, attempted, attempt.outcome, grows ? "accept and grow" : "accept",
-         implicit_.value(), std::to_string(attempt.iterations) + " iterations");
-    StepRecord record;
-    record.mode = "newton";
-    record.newton_iterations = attempt.iterations;
-    const std::vector<double> next =
-        working_force(*free_, attempt.external_force, attempt.state.gradient);
-    external_work_ +=
-        trapezoidal_work(force_, next, result_.state.displacement, attempt.state.displacement);
-    return accept(std::move(record), std::move(attempt), damaged);
+    const bool is_exact = attempt.note.empty();
+    tell(target, attempted, attempt.outcome,
+         !is_exact ? "accept at round-off"
+         : grows   ? "accept and grow"
+                   : "accept",
+         implicit_.value(),
+         is_exact ? std::to_string(attempt.iterations) + " iterations" : attempt.note);
+    return accept(std::move(found), std::move(attempt));
   }
 
   /// An implicit step has converged to a state that would damage bonds.
@@ -255,7 +301,9 @@ class LoadPath {
       return true;
     }
     if (is_limit_point(attempt)) {
-      reason = explanation(Outcome::limit_point) + "; the last search ended with: " + reason;
+      if (attempt.outcome != Outcome::limit_point) {
+        reason = explanation(Outcome::limit_point) + "; the last search ended with: " + reason;
+      }
       attempt.outcome = Outcome::limit_point;
     }
     return stop(std::move(attempt), attempted, reason);
@@ -265,6 +313,7 @@ class LoadPath {
   [[nodiscard]] bool is_limit_point(const Attempt& attempt) {
     if (assembler().history().empty() || !options_.adaptive) return false;
     return attempt.outcome == Outcome::not_positive_definite ||
+           attempt.outcome == Outcome::limit_point ||
            (attempt.has_negative_pivots && worth_cutting(attempt) &&
             attempt.outcome != Outcome::damage_limit);
   }
@@ -309,7 +358,8 @@ class LoadPath {
     }
     result_.state.displacement = attempt.state.displacement;
     force_ = working_force(*free_, attempt.external_force, attempt.state.gradient);
-    external_work_ = attempt.state.stored_energy;
+    ledger_ = {};
+    ledger_.external_work = ledger_.stored = attempt.state.stored_energy;
     return true;
   }
 
@@ -325,20 +375,23 @@ class LoadPath {
   /// A relaxed step on its way: where it is, and its share of the ledger.
   struct RelaxedStep {
     Attempt attempt;
-    int newton_iterations = 0, relaxation_iterations = 0;
+    FoundStep found;
     double scale = 0.0;  // norm that the residual is measured against [N]
-    double external_work = 0.0, drained_energy = 0.0, released_energy = 0.0;
-    DamageGrowth growth;
   };
 
   bool relaxation_step() {
     const double load_factor = result_.state.load_factor;
     const double target = relaxed_.target(load_factor), attempted = target - load_factor;
+    if (const auto refusal = refusal_of_conditions(target)) {
+      return relaxation_failure(undefined_attempt(target), attempted, *refusal);
+    }
     const std::vector<double> history(assembler().history().begin(), assembler().history().end());
     const RelaxationMotion motion = motion_;
     const bool with_newton = options_.mode == Mode::adaptive && options_.relaxation.holds;
 
     RelaxedStep step;
+    step.found.record.mode = "relaxation";
+    step.found.relaxed.emplace();
     step.attempt.state.displacement = result_.state.displacement;
     step.attempt.load_factor = load_factor;
     const auto equilibrate = [&] {
@@ -350,13 +403,14 @@ class LoadPath {
       return step.attempt.outcome;
     };
     if (equilibrate() == Outcome::converged && options_.relaxation.holds) {
-      commit(step.attempt, step.growth, step.released_energy, equilibrate);
+      commit(step.attempt, step.found, equilibrate);
     }
-
+    std::string fault;
+    if (step.attempt.outcome == Outcome::converged) fault = complete(step.found, step.attempt);
     if (step.attempt.outcome != Outcome::converged) {
       assembler().restore(history);
       motion_ = motion;
-      return relaxation_failure(std::move(step.attempt), attempted);
+      return relaxation_failure(std::move(step.attempt), attempted, fault);
     }
     return accept_relaxed(std::move(step), attempted);
   }
@@ -383,16 +437,17 @@ class LoadPath {
     const int number = next_step();
     const State from{step.attempt.state.displacement, step.attempt.load_factor};
     if (from.load_factor == target && options.holds) options.ramp = 1;
-    options.least_scale = step.scale;
+    options.scale = step.scale;
     const Stopwatch watch(result_.relaxation_seconds);
     RelaxationResult relaxed = relax(problem(), active_->tangent, from, target, options, motion_,
                                      [&](IterationRecord row) { return told(number, row); });
-    step.relaxation_iterations += relaxed.iterations;
-    step.external_work += relaxed.external_work;
-    step.drained_energy += relaxed.drained_energy;
-    step.growth.degrading += relaxed.growth.degrading;
-    step.growth.breaking += relaxed.growth.breaking;
-    step.released_energy += relaxed.released_energy;
+    step.found.record.relaxation_iterations += relaxed.iterations;
+    step.found.record.settled = relaxed.largest_residual < 0.0;
+    step.found.relaxed->work += relaxed.external_work;
+    step.found.relaxed->drained += relaxed.drained_energy;
+    step.found.growth.degrading += relaxed.growth.degrading;
+    step.found.growth.breaking += relaxed.growth.breaking;
+    step.found.released += relaxed.released_energy;
     step.scale = relaxed.scale;
     step.attempt = to_attempt(std::move(relaxed), target);
   }
@@ -410,23 +465,25 @@ class LoadPath {
   /// Newton's last iterations at the fixed load.
   /// @return false if relaxation has to go on
   bool finish(RelaxedStep& step, NewtonOptions options) {
-    options.least_scale = step.scale;
+    options.scale = step.scale;
     const State near{step.attempt.state.displacement, step.attempt.load_factor};
     Attempt finished = search(near, near.load_factor, options);
     if (finished.outcome != Outcome::converged && worth_relaxing(finished)) return false;
-    step.newton_iterations += finished.iterations;
+    step.found.record.newton_iterations += finished.iterations;
     if (finished.outcome == Outcome::converged) {
-      step.drained_energy += step.attempt.state.total_energy - finished.state.total_energy;
-      step.external_work += dot(finished.external_force, finished.state.displacement) -
-                            dot(finished.external_force, near.displacement);
+      step.found.record.settled = false;
+      step.found.relaxed->drained += step.attempt.state.total_energy - finished.state.total_energy;
+      step.found.relaxed->work += dot(finished.external_force, finished.state.displacement) -
+                                  dot(finished.external_force, near.displacement);
     }
     step.attempt = std::move(finished);
     return true;
   }
 
-  bool relaxation_failure(Attempt attempt, double attempted) {
+  bool relaxation_failure(Attempt attempt, double attempted, const std::string& what = {}) {
     const double next = attempted * options_.cut;
-    const std::string reason = explanation(attempt.outcome);
+    const std::string reason =
+        explanation(attempt.outcome) + (what.empty() ? "" : " (" + what + ")");
     if (worth_cutting(attempt) && relaxed_.can_cut_to(next)) {
       relaxed_.cut_to(next);
       tell(attempt.load_factor, attempted, attempt.outcome, "cut", next, reason);
@@ -436,20 +493,14 @@ class LoadPath {
   }
 
   bool accept_relaxed(RelaxedStep step, double attempted) {
-    external_work_ += step.external_work;
-    drained_energy_ += step.drained_energy;
-    released_energy_ += step.released_energy;
     const bool grew = relaxed_.grow();
+    const bool was_damaged = step.found.growth.degrading > 0;
     tell(step.attempt.load_factor, attempted, step.attempt.outcome,
          grew ? "accept and grow" : "accept", relaxed_.value(),
-         std::to_string(step.relaxation_iterations) + " iterations of relaxation");
-    StepRecord record;
-    record.mode = "relaxation";
-    record.relaxation_iterations = step.relaxation_iterations;
-    record.newton_iterations = step.newton_iterations;
-    if (!accept(std::move(record), std::move(step.attempt), step.growth)) return false;
+         std::to_string(step.found.record.relaxation_iterations) + " iterations of relaxation");
+    if (!accept(std::move(step.found), std::move(step.attempt))) return false;
     const bool hands_back =
-        options_.mode == Mode::adaptive && options_.relaxation.holds && step.growth.degrading == 0;
+        options_.mode == Mode::adaptive && options_.relaxation.holds && !was_damaged;
     if (hands_back && 1.0 - result_.state.load_factor > end_tolerance) hand_back();
     return true;
   }
@@ -491,13 +542,12 @@ class LoadPath {
   /// nothing more is damaged.
   /// @param equilibrate leaves the next equilibrium in `attempt`, and its outcome
   template <class Equilibrate>
-  void commit(Attempt& attempt, DamageGrowth& growth, double& released,
-              const Equilibrate& equilibrate) {
+  void commit(Attempt& attempt, FoundStep& found, const Equilibrate& equilibrate) {
     for (int pass = 0; pass < most_commits; ++pass) {
       const Stored committed = assembler().commit(attempt.state.displacement);
-      growth.degrading += committed.growth.degrading;
-      growth.breaking += committed.growth.breaking;
-      released += committed.released;
+      found.growth.degrading += committed.growth.degrading;
+      found.growth.breaking += committed.growth.breaking;
+      found.released += committed.released;
       attempt.state.stored_energy = committed.energy;
       if (committed.growth.degrading == 0 || assembler().model().has_only_bonds()) return;
       if (equilibrate() != Outcome::converged) return;
@@ -505,37 +555,88 @@ class LoadPath {
     attempt.outcome = Outcome::iteration_limit;
   }
 
+  /// Closes the ledger of a step whose damage is committed, and checks what it owes.
+  /// @return what is wrong with it; the attempt's outcome is then inconsistent
+  std::string complete(FoundStep& found, Attempt& attempt) {
+    const Assembler& assembler = active_->assembler;
+    std::vector<double> damage(std::size_t(assembler.points().count()));
+    const DamageState damaged = assess_damage(assembler.model(), assembler.history(), {}, damage);
+    found.record.broken_bonds = damaged.broken_bonds;
+    const double work = trapezoidal_work(
+        force_, working_force(*free_, attempt.external_force, attempt.state.gradient),
+        result_.state.displacement, attempt.state.displacement);
+    found.ledger = ledger_;
+    found.ledger.stored = attempt.state.stored_energy;
+    found.ledger.dissipated = damaged.dissipated_energy + released_energy_ + found.released;
+    found.ledger.external_work += work;
+    if (found.relaxed) {
+      found.ledger.numerical_work += found.relaxed->work - work;
+      found.ledger.drained += found.relaxed->drained;
+    }
+    if (attempt.outcome != Outcome::converged) return {};
+    if (attempt.iterations == 0) {  // no tangent was needed so far
+      active_->tangent.linearise(active_->assembler, attempt.state.displacement, 0.0);
+    }
+    std::string fault =
+        find_inconsistency(problem(), main_.assembler, active_->tangent,
+                           {attempt.state, attempt.external_force, attempt.largest_residual,
+                            found.relaxed.has_value(), ledger_, found.ledger});
+    if (!fault.empty()) {
+      attempt.outcome = Outcome::inconsistent;
+    } else if (!found.relaxed && found.growth.degrading > 0) {
+      fault = has_jumped(found.ledger);
+      if (!fault.empty()) attempt.outcome = Outcome::limit_point;
+    }
+    return fault;
+  }
+
+  /// Whether an implicit step in which damage grew has released what nobody takes up. A stable path
+  /// balances, but for the little that single bonds release as they snap; beyond a limit point the
+  /// search lands where its steps happen to lead.
+  [[nodiscard]] std::string has_jumped(const Ledger& after) const {
+    const double released = after.balance_error() - ledger_.balance_error();
+    if (released <= share_of_jump * std::max(ledger_.stored, after.external_work)) return {};
+    return number_text(released) + " J of " + number_text(after.external_work) +
+           " J are released and taken up by nobody: the body has jumped to another equilibrium";
+  }
+
   /// Finds what has come off and tells the step.
-  bool accept(StepRecord record, Attempt attempt, const DamageGrowth& growth) {
+  bool accept(FoundStep found, Attempt attempt) {
     result_.state = {attempt.state.displacement, attempt.load_factor};
     ++result_.steps;
     is_near_onset_ = is_near_onset_ && !relaxes_;
     force_ = working_force(*free_, attempt.external_force, attempt.state.gradient);
+    ledger_ = found.ledger;
+    released_energy_ += found.released;
+    if (found.growth.breaking > 0) find_pieces();
 
-    const Assembler& assembler = active_->assembler;
-    std::vector<double> damage(std::size_t(assembler.points().count()));
-    const DamageState damaged = assess_damage(assembler.model(), assembler.history(), {}, damage);
-    if (growth.breaking > 0) find_pieces();
-
+    StepRecord& record = found.record;
     record.step = result_.steps;
     record.load_factor = attempt.load_factor;
-    record.stored_energy = attempt.state.stored_energy;
-    record.dissipated_energy = damaged.dissipated_energy + released_energy_;
-    record.drained_energy = drained_energy_;
-    record.external_work = external_work_;
-    record.balance_error =
-        external_work_ - record.stored_energy - record.dissipated_energy - record.drained_energy;
-    record.broken_bonds = damaged.broken_bonds;
+    record.stored_energy = ledger_.stored;
+    record.dissipated_energy = ledger_.dissipated;
+    record.drained_energy = ledger_.drained;
+    record.external_work = ledger_.external_work;
+    record.numerical_work = ledger_.numerical_work;
+    record.balance_error = ledger_.balance_error();
+    record.pin_force = pin_force(attempt);
     record.reactions = conditions_.reactions(attempt.state.gradient, attempt.external_force);
     if (observer_.accepted) {
-      observer_.accepted(
-          record, {attempt.state, attempt.external_force, assembler.history(), pieces_.piece});
+      observer_.accepted(record, {attempt.state, attempt.external_force,
+                                  active_->assembler.history(), pieces_.piece});
     }
     result_.last_attempt = std::move(attempt);
     return resolve_fragments();
   }
 
   // ---- Fragments
+
+  /// Forces of the pins that hold what has come off: no support, and no reaction.
+  [[nodiscard]] double pin_force(const Attempt& attempt) const {
+    return norm_of(pinned_.size(), [&](std::size_t dof) {
+      return pinned_[dof] ? attempt.state.gradient[dof] - attempt.external_force[dof] : 0.0;
+    });
+  }
 
   void find_pieces() {
     const Assembler& assembler = active_->assembler;
@@ -602,7 +703,7 @@ class LoadPath {
   Fragments pieces_;
   RelaxationMotion motion_;
   std::vector<double> force_;  // that does work, in the last accepted state
-  double external_work_ = 0.0, drained_energy_ = 0.0;
+  Ledger ledger_;
   double released_energy_ = 0.0;  // by triangles and tetrahedra whose bonds were damaged
   LoadSteppingResult result_;
 };

@@ -8,6 +8,7 @@
 
 #include "solvers/dynamic_relaxation.hpp"
 #include "solvers/newton.hpp"
+#include "src/input_error.hpp"
 
 namespace peristat {
 
@@ -42,7 +43,6 @@ struct LoadSteppingOptions {
   /// in adaptive mode.
   double newton_takes_over_at = 1e-5;
   FragmentRemedy fragments = FragmentRemedy::hold;
-  bool has_cracks = false;  ///< from the start, which may leave points on too few bonds
 };
 
 /// What an accepted state is made of besides its record.
@@ -60,6 +60,8 @@ struct LoadSteppingObserver {
   /// An accepted state. The record's energies, damage and reactions are set.
   std::function<void(const StepRecord&, const AcceptedState&)> accepted;
   std::function<bool()> interrupted;
+  /// A sentence about an error of supports or loads that shows only at some load factor.
+  std::function<std::string(const InputError&)> describe;
 };
 
 /// The last search for equilibrium, for what is told when it failed.
@@ -71,6 +73,8 @@ struct Attempt {
   std::optional<Inertia> inertia;
   bool has_negative_pivots = false;
   bool unstable_start = false;
+  double largest_residual = 0.0;  ///< that counts as equilibrium [N]; negative: none was asked for
+  std::string note;               ///< what else is to be told if it is accepted
   Trial state;
   std::vector<double> external_force;
 };
@@ -99,9 +103,13 @@ struct SolvedBody {
 /// damage grows. In each of them Newton's method does the last iterations as soon as no further
 /// bond breaks and the residual is small. A relaxed step in which nothing was damaged hands back.
 ///
-/// External work is summed with the trapezoidal rule, in implicit steps over each step, of the
-/// loads on the free and of the reactions on the prescribed degrees of freedom; in relaxation over
-/// each iteration. The balance error is that rule's, and what unstable implicit steps release.
+/// External work is summed with the trapezoidal rule over each step, of the loads on the free and
+/// of the reactions on the prescribed degrees of freedom. Relaxation sums the work over each of its
+/// iterations, too: what that is more is the numerical work. The balance error is that rule's in
+/// implicit steps, and what unstable ones release.
+///
+/// Before a step is accepted it is checked against what it owes (find_inconsistency); a step that
+/// fails is cut like one that does not converge.
 ///
 /// @param stand_in a body with the same points that is elastic and has another horizon: it takes
 ///        the place of the body until damage begins. The body's ledger then begins with what it

@@ -113,6 +113,12 @@ double forcing_term(double residual, double last, double target) {
   return std::min(largest, std::max(gain * gain, enough));
 }
 
+/// An iteration that leaves more than this share of the residual has stagnated.
+constexpr double stagnation = 0.5;
+
+/// Largest relative residual that counts as converged because round-off leaves no less.
+constexpr double coarsest_round_off = 1e-6;
+
 /// Negative pivots for the history.
 std::int64_t told_negative_pivots(LinearOutcome linear, const std::optional<Inertia>& inertia) {
   if (inertia) return inertia->negative;
@@ -135,16 +141,22 @@ NewtonResult newton(const EquilibriumProblem& problem, LinearSolver& solver,
   result.external_force.resize(dofs);
   problem.conditions.external_force(load_factor, result.external_force);
   const std::vector<double>& external_force = result.external_force;
+  double last_residual = 0.0;
 
   Trial& current = result.state;
   current.displacement = from.displacement;
   evaluate(problem, external_force, current);
   const std::vector<double> old_gradient = current.gradient;
 
+  // Right after the jump bonds beside the supports are stretched as no equilibrium will ask for.
+  // Where they may break, nothing would be left to measure the residual against, and the search
+  // would begin in a torn body: damage is held until the predictor has spread the jump.
+  std::optional<DamageHold> hold(std::in_place, problem.assembler);
   problem.conditions.prescribe(load_factor, current.displacement);
   evaluate(problem, external_force, current);
-  const double scale =
-      std::max(residual_scale(problem, external_force, old_gradient, current), options.least_scale);
+  const double scale = options.scale > 0.0
+                           ? options.scale
+                           : residual_scale(problem, external_force, old_gradient, current);
 
   result.scale = scale;
 
@@ -155,7 +167,17 @@ NewtonResult newton(const EquilibriumProblem& problem, LinearSolver& solver,
     return observer && observer(row);
   };
   const auto converged = [&] {
-    return !current.degenerate && current.residual_norm <= options.relative_tolerance * scale;
+    if (current.degenerate) return false;
+    result.largest_residual = options.relative_tolerance * scale;
+    if (current.residual_norm <= result.largest_residual) return true;
+    if (result.iterations < 2 || current.residual_norm < stagnation * last_residual ||
+        current.residual_norm > coarsest_round_off * scale) {
+      return false;
+    }
+    const double round_off = residual_round_off(problem.free, tangent, current.displacement);
+    result.is_at_round_off = current.residual_norm <= round_off;
+    if (result.is_at_round_off) result.largest_residual = round_off;
+    return result.is_at_round_off;
   };
   // A state right after the jump may be degenerate (a support driven onto a neighbour); the
   // predictor is what moves the neighbours away, so only its result is judged.
@@ -169,11 +191,12 @@ NewtonResult newton(const EquilibriumProblem& problem, LinearSolver& solver,
   Linearisation linearisation(problem, solver, tangent, external_force);
   std::vector<double> direction;
   std::optional<Inertia> start_inertia;
-  double last_projection = 0.0, last_residual = 0.0;
+  double last_projection = 0.0;
   for (int iteration = 1; iteration <= options.max_iterations; ++iteration) {
     const bool is_predictor = iteration == 1 && options.predictor == Predictor::consistent;
-    const double forcing =
-        forcing_term(current.residual_norm, last_residual, options.relative_tolerance * scale);
+    const double forcing = std::min(
+        forcing_term(current.residual_norm, last_residual, options.relative_tolerance * scale),
+        options.linear_tolerance);
     last_residual = current.residual_norm;
     IterationRecord row;
     row.iteration = iteration;
@@ -202,6 +225,7 @@ NewtonResult newton(const EquilibriumProblem& problem, LinearSolver& solver,
       }
       row.projection = projection;
       row.linear_iterations = solver.last_iterations();
+      row.linear_tolerance = row.linear_iterations > 0 ? forcing : 0.0;
       result.outcome = outcome_of(linear);
       if (result.outcome == Outcome::converged) {
         search =
@@ -227,6 +251,10 @@ NewtonResult newton(const EquilibriumProblem& problem, LinearSolver& solver,
     }
     if (result.outcome != Outcome::converged) break;
     current = std::exchange(next, {});
+    if (hold) {
+      hold.reset();
+      if (!problem.assembler.holds_damage()) evaluate(problem, external_force, current);
+    }
     if (row.projection > 0.0) last_projection = row.projection;
     result.iterations = iteration;
     row.step_length = search.step_length;

@@ -27,13 +27,14 @@ enum class Predictor {
 struct NewtonOptions {
   double relative_tolerance = 1e-10;
   int max_iterations = 25;
+  double linear_tolerance = 1e-3;  ///< largest relative residual that linear systems are left with
   Projection projection = Projection::automatic;
   Predictor predictor = Predictor::consistent;
   /// A projection of a quarter of the last one is tried first, and while the tangent still has
   /// negative pivots, four times as much up to 1; this is the least.
   double least_projection = 1.0 / 16.0;
   LineSearchOptions line_search;
-  double least_scale = 0.0;  ///< the residual is measured against no less than this [N]
+  double scale = 0.0;  ///< that the residual is measured against [N]; 0: that of this step
   /// Whether the first tangent is factorised even where an earlier factor would do, so that its
   /// pivots tell whether the old state is stable.
   bool factorizes_first = true;
@@ -45,6 +46,8 @@ struct NewtonResult {
   int iterations = 0;
   std::optional<Inertia> inertia;    ///< of the last exact tangent that was factorised, if known
   double scale = 0.0;                ///< norm that the residual was measured against [N]
+  bool is_at_round_off = false;      ///< converged, above the tolerance, to what round-off leaves
+  double largest_residual = 0.0;     ///< that counted as converged [N]
   bool has_negative_pivots = false;  ///< of the last exact tangent
   bool unstable_start = false;       ///< the exact tangent of the old state has negative pivots
   Trial state;                       ///< last state reached; equilibrium only if converged
@@ -76,8 +79,12 @@ using IterationObserver = std::function<bool(const IterationRecord&)>;
 /// the search.
 ///
 /// The relative residual is ||f_ext - dE/dx|| over free degrees of freedom, divided by the largest
-/// of
-/// ||f_ext||, the reactions' norm in the old state, and the residual of iteration 0.
+/// of ||f_ext||, the reactions' norm in the old state, and the residual of iteration 0. Where an
+/// iteration hardly lowers it any more and it is within what round-off leaves, the state has
+/// converged, too.
+///
+/// Damage is held (Assembler::hold_damage) up to the end of the first iteration: iteration 0 and
+/// the predictor are those of the body as it was.
 [[nodiscard]] NewtonResult newton(const EquilibriumProblem& problem, LinearSolver& solver,
                                   TangentOperator& tangent, const State& from, double load_factor,
                                   const NewtonOptions& options, const IterationObserver& observer);

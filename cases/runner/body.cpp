@@ -9,7 +9,9 @@
 
 #include "cases/runner/bond_potential.hpp"
 #include "cases/runner/cpd_model.hpp"
+#include "src/conditions/fragments.hpp"
 #include "src/input_error.hpp"
+#include "src/neighbourhood/horizon.hpp"
 #include "src/number_text.hpp"
 #include "src/points/point_file.hpp"
 #include "src/stopwatch.hpp"
@@ -58,6 +60,18 @@ BondSetting setting_of(const Case& from, const Points& points) {
     }
   }
   return setting;
+}
+
+/// Refuses places whose digits don't tell neighbours from points beyond the horizon.
+void require_resolved(const Case& from, const Points& points, double horizon) {
+  double farthest = 0.0;
+  for (const double at : points.reference) farthest = std::max(farthest, std::abs(at));
+  if (farthest * std::numeric_limits<double>::epsilon() <= horizon_tolerance * horizon) return;
+  throw InputError(lattice_of(from) ? "lattice.shape" : "points.file", "",
+                   "a point stands at " + number_text(farthest) +
+                       " m, so far from the origin that round-off of its place is more than " +
+                       number_text(horizon_tolerance) + " of the horizon, " + number_text(horizon) +
+                       " m; move the body to the origin");
 }
 
 double micromodulus_of(const Case& from, const BondSetting& setting) {
@@ -183,6 +197,7 @@ std::unique_ptr<const Body> make_body(const Case& from, int threads) {
   body.points = make_points_of(from);
   located_errors(from, [&] {
     body.setting = setting_of(from, body.points);
+    require_resolved(from, body.points, body.setting.horizon);
     BodySize expected = size_of(body.points);
     expected.horizon_ratio = body.horizon_ratio();
     expected.bonds = expected.points * bonds_per_point(from.dimension, body.horizon_ratio());
@@ -301,12 +316,31 @@ std::string describe_free_motions(const Body& body) {
   return text;
 }
 
-void refuse_free_motions(const Case& from, const Body& body) {
+std::string describe_loose_points(const Body& body) {
+  const std::vector<double> at_rest(body.points.reference.size(), 0.0);
+  const Fragments fragments =
+      find_fragments(body.points, body.model.bonds, {}, body.conditions->prescribed(), at_rest);
+  if (fragments.loose.empty()) return {};
+  const std::size_t count = fragments.loose.size();
+  return fmt::format(
+      "{} {} on too few bonds to be held by them, {}at {} m", count,
+      count == 1 ? "point hangs" : "points hang", count == 1 ? "" : "one of them ",
+      place_text(body.points.position(fragments.loose.front()), body.points.dimension));
+}
+
+void refuse_unheld_bodies(const Case& from, const Body& body) {
   const std::string motions = describe_free_motions(body);
-  if (motions.empty()) return;
-  throw located(from, InputError("support", "",
-                                 "the supports do not hold the body: " + motions +
-                                     ". Prescribe displacements that prevent this"));
+  if (!motions.empty()) {
+    throw located(from, InputError("support", "",
+                                   "the supports do not hold the body: " + motions +
+                                       ". Prescribe displacements that prevent this"));
+  }
+  const std::string loose = describe_loose_points(body);
+  if (!loose.empty()) {
+    throw located(from, InputError(from.cracks.empty() ? "lattice" : "crack", "",
+                                   loose + ". Take such points away, move what cuts them off, or "
+                                           "give them more bonds (a larger horizon)"));
+  }
 }
 
 }  // namespace peristat

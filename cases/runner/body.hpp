@@ -66,7 +66,10 @@ struct Body {
 /// Sentence that tells which parts of the body may move freely; empty if none.
 [[nodiscard]] std::string describe_free_motions(const Body& body);
 
-/// @throws InputError if a part of the body may move freely
-void refuse_free_motions(const Case& from, const Body& body);
+/// Sentence that tells points that swing on too few bonds from the start; empty if none.
+[[nodiscard]] std::string describe_loose_points(const Body& body);
+
+/// @throws InputError if a part of the body may move freely, or points swing
+void refuse_unheld_bodies(const Case& from, const Body& body);
 
 }  // namespace peristat

@@ -389,6 +389,8 @@ SolverSpecification read_solver(const TomlTable& table) {
       table.number("relative_tolerance", Range::between(1e-14, 1e-2), solver.relative_tolerance);
   solver.max_iterations =
       static_cast<int>(table.integer("max_iterations", 1, 1000, solver.max_iterations));
+  solver.linear_tolerance =
+      table.number("linear_tolerance", Range::between(1e-14, 1e-1), solver.linear_tolerance);
   solver.fragments = table.choice("fragments", fragment_remedies, solver.fragments);
   if (table.has("elastic_horizon_ratio"))
     solver.elastic_horizon_ratio = table.number("elastic_horizon_ratio", Range::between(1.0, 1e3));
@@ -421,8 +423,11 @@ RelaxationSpecification read_relaxation(const TomlTable& table, int default_step
       relaxation.moving ? relaxation.iterations / relaxation.steps : count("ramp", 1, options.ramp);
   options.breaking = table.choice("breaking", breakings,
                                   relaxation.moving ? Breaking::transient : options.breaking);
-  options.damping = table.choice("damping", dampings, options.damping);
-  options.mass_factor = table.number("mass_factor", Range::between(1.0, 1e6), options.mass_factor);
+  // A moving load is the published procedure.
+  options.damping =
+      table.choice("damping", dampings, relaxation.moving ? Damping::adaptive : options.damping);
+  const double mass_factor = options.damping == Damping::adaptive ? 1.0 : options.mass_factor;
+  options.mass_factor = table.number("mass_factor", Range::between(1.0, 1e6), mass_factor);
   options.max_iterations = count("max_iterations", 1, options.max_iterations);
   options.quiet_iterations = count("quiet_iterations", 0, options.quiet_iterations);
   options.displacement_tolerance = table.number("displacement_tolerance", Range::between(0.0, 1.0),
@@ -550,6 +555,11 @@ void read_document(const TomlValue& document, const std::filesystem::path& file,
   if (result.solver.tangent == TangentStorage::matrix_free &&
       result.material.model != MaterialModel::bond)
     optional_table("solver").refuse("tangent", "is for material.model = \"bond\"");
+  if (result.solver.elastic_horizon_ratio > 0.0 && result.material.damage.law == DamageLaw::none)
+    optional_table("solver").refuse(
+        "elastic_horizon_ratio",
+        "is for bodies with damage: the stand-in takes the place of the body until damage begins, "
+        "and without damage it would do so to the end");
   // Damage grows in steps that are smaller than elastic ones.
   constexpr int steps_of_damage = 50;
   const bool hands_over =

@@ -77,7 +77,8 @@ struct SolverSpecification {
   Projection projection = Projection::automatic;
   Predictor predictor = Predictor::consistent;
   double relative_tolerance = 1e-10;
-  int max_iterations = 25;  ///< of Newton in a step
+  int max_iterations = 25;         ///< of Newton in a step
+  double linear_tolerance = 1e-3;  ///< largest relative residual of a linear system in it
   FragmentRemedy fragments = FragmentRemedy::hold;
   /// Horizon / spacing of the elastic stand-in that the adaptive mode uses until damage begins; 0:
   /// none.

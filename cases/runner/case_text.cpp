@@ -245,6 +245,7 @@ std::string resolved_text(const Case& from) {
   out.string("predictor", choice_name(predictors, from.solver.predictor));
   out.string("projection", choice_name(projections, from.solver.projection));
   out.number("relative_tolerance", from.solver.relative_tolerance);
+  out.number("linear_tolerance", from.solver.linear_tolerance);
   out.integer("max_iterations", from.solver.max_iterations);
   out.string("fragments", choice_name(fragment_remedies, from.solver.fragments));
   if (from.solver.elastic_horizon_ratio > 0.0)

@@ -117,7 +117,7 @@ Exit check(const Case& from, int threads) {
              bytes_text(available_memory()));
   fmt::print("time        {} for {} load steps, if none has to be cut\n",
              seconds_text(chosen.seconds * from.loading.steps / threads), from.loading.steps);
-  refuse_free_motions(from, body);
+  refuse_unheld_bodies(from, body);
   return Exit::done;
 }
 

@@ -39,14 +39,12 @@ std::string suggestion(Outcome outcome, Mode mode) {
                                         "and then stall want a looser solver.relative_tolerance.";
     case Outcome::singular_tangent:
       return "Look at the worst points below: they have too few bonds, or the supports leave them "
-             "a "
-             "motion. ./peristat check tells parts that may move freely; a larger "
+             "a motion. ./peristat check tells parts that may move freely; a larger "
              "lattice.horizon_ratio gives points more bonds.";
     case Outcome::no_descent:
     case Outcome::line_search_failed:
       return "Take smaller steps (loading.steps); solver.projection = \"always\" is slower and "
-             "more "
-             "robust.";
+             "more robust.";
     case Outcome::degenerate:
       return "Points collapse onto each other near the worst points below: take smaller steps, or "
              "see whether a support moves points onto their neighbours.";
@@ -55,6 +53,12 @@ std::string suggestion(Outcome outcome, Mode mode) {
     case Outcome::linear_solver_inaccurate:
       return "The tangent is close to singular: look for points that hang on few bonds near the "
              "worst points below.";
+    case Outcome::undefined_condition:
+      return "Mend the expression of the support or load that is named above.";
+    case Outcome::inconsistent:
+      return "What was found is no state of this body. Take smaller steps (loading.steps, "
+             "relaxation.steps, loading.smallest_step). If that does not help, the case shows a "
+             "fault of the program: please report it with its case file.";
     case Outcome::converged:
     case Outcome::out_of_memory:
     case Outcome::interrupted:

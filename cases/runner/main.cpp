@@ -17,6 +17,7 @@
 #include "cases/runner/runtime_environment.hpp"
 #include "cases/runner/toml_text.hpp"
 #include "src/input_error.hpp"
+#include "src/threads.hpp"
 
 namespace {
 
@@ -133,11 +134,14 @@ int main(int count, char** arguments) {
   const int threads = choose_threads(line.threads);
   restart_with_environment(threads, arguments);
   try {
+    require_threads(threads);
     return static_cast<int>(execute(program, line, threads));
   } catch (const InputError& error) {
     return told(error, Exit::wrong_input);
   } catch (const MemoryError& error) {
     return told(error, Exit::out_of_memory);
+  } catch (const ThreadError& error) {
+    return told(error, Exit::wrong_input);
   } catch (const std::bad_alloc&) {
     return told(std::runtime_error("out of memory"), Exit::out_of_memory);
   } catch (const std::exception& error) {

@@ -212,6 +212,12 @@ std::string failure_reason(const LoadSteppingResult& result) {
                      result.state.load_factor, reason);
 }
 
+std::string status_of(Outcome outcome) {
+  if (outcome == Outcome::converged) return "completed";
+  if (outcome == Outcome::interrupted) return "interrupted";
+  return outcome == Outcome::inconsistent ? "inconsistent" : "not_converged";
+}
+
 void tell_result(const Recorder& recorder, Progress& progress) {
   if (!recorder.last()) return;
   const StepRecord& last = *recorder.last();
@@ -243,7 +249,7 @@ Exit run(const Case& from, const RunOptions& options) {
 
   const std::unique_ptr<const Body> made = make_body(from, options.threads);
   const Body& body = *made;
-  refuse_free_motions(from, body);
+  refuse_unheld_bodies(from, body);
   std::optional<Results> results;
   std::vector<DecisionRecord> decisions;
   const auto decide = [&](const DecisionRecord& record) {
@@ -297,6 +303,9 @@ Exit run(const Case& from, const RunOptions& options) {
     recorder.accepted(record, state);
     last_step = record;
   };
+  observer.describe = [&](const InputError& error) {
+    return std::string(located(from, error).what());
+  };
   observer.interrupted = [] { return interrupt_requested.load(); };
   interrupt_requested = false;
   std::signal(SIGINT, request_interrupt);
@@ -317,7 +326,7 @@ Exit run(const Case& from, const RunOptions& options) {
 
   const bool interrupted = result.outcome == Outcome::interrupted;
   const bool completed = result.outcome == Outcome::converged;
-  summary.status = completed ? "completed" : interrupted ? "interrupted" : "not_converged";
+  summary.status = status_of(result.outcome);
   if (!completed) summary.reason = failure_reason(result);
   summary.points = body.points.count();
   summary.free_dofs = free.count();

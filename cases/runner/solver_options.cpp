@@ -52,7 +52,6 @@ LoadSteppingOptions load_stepping_options(const Case& from) {
   options.largest_step = from.loading.largest_step;
   options.max_broken_bonds = from.loading.max_broken_bonds;
   options.fragments = from.solver.fragments;
-  options.has_cracks = !from.cracks.empty();
   options.relaxation_steps = from.relaxation.steps;
   options.relaxation = from.relaxation.options;
   return options;
@@ -62,6 +61,7 @@ NewtonOptions newton_options(const Case& from) {
   NewtonOptions options;
   options.relative_tolerance = from.solver.relative_tolerance;
   options.max_iterations = from.solver.max_iterations;
+  options.linear_tolerance = from.solver.linear_tolerance;
   options.predictor = from.solver.predictor;
   options.projection = from.solver.projection;
   return options;

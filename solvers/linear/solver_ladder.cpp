@@ -16,6 +16,7 @@ SolverLadder::SolverLadder(std::vector<Rung> rungs, Teller tell)
     : rungs_(std::move(rungs)), tell_(std::move(tell)) {}
 
 LinearOutcome SolverLadder::stand_on(std::size_t rung) {
+  if (solver_) before_ = statistics();
   rung_ = rung;
   solver_ = rungs_[rung].make();
   solver_->count_pivots(counts_pivots_);
@@ -24,10 +25,6 @@ LinearOutcome SolverLadder::stand_on(std::size_t rung) {
 
 LinearOutcome SolverLadder::climb_down(LinearOutcome why) {
   while (is_the_solvers_own(why) && rung_ + 1 < rungs_.size()) {
-    const LinearStatistics last = solver_->statistics();
-    before_.factorisations += last.factorisations;
-    before_.iterations += last.iterations;
-    before_.seconds += last.seconds;
     const std::string from = rungs_[rung_].name, ended = name(why);
     why = stand_on(rung_ + 1);
     if (tell_)
@@ -39,8 +36,8 @@ LinearOutcome SolverLadder::climb_down(LinearOutcome why) {
 LinearOutcome SolverLadder::analyze(const Pattern& pattern, const FreeDofs& free) {
   pattern_.emplace(pattern);
   free_ = &free;
-  before_ = {};
-  return climb_down(stand_on(0));
+  // Once more means that pieces were pinned: the rung that failed before would fail again.
+  return climb_down(stand_on(rung_));
 }
 
 void SolverLadder::count_pivots(bool counts) {

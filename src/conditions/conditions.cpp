@@ -2,9 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <utility>
 
 #include "src/input_error.hpp"
+#include "src/number_text.hpp"
 
 namespace peristat {
 namespace {
@@ -46,11 +47,11 @@ Conditions::Conditions(const Points& points, const std::vector<SupportSpecificat
     for (int c = 0; c < points.dimension; ++c) {
       const auto& text = supports[k].displacement[c];
       if (!text) continue;
-      prescriptions_.push_back(
-          {supports[k].set, &members, c, with_key(table + ".displacement", [&] {
-             return Expression(*text, points.dimension, points.spacing,
-                               Expression::LoadFactor::allowed);
-           })});
+      const std::string key = indexed(table + ".displacement", std::size_t(c));
+      prescriptions_.push_back({key, supports[k].set, &members, c, with_key(key, [&] {
+                                  return Expression(*text, points.dimension, points.spacing,
+                                                    Expression::LoadFactor::allowed);
+                                })});
       for (Index point : members) prescribed_[std::size_t(point) * points.dimension + c] = 1;
     }
   }
@@ -64,8 +65,10 @@ Conditions::Conditions(const Points& points, const std::vector<SupportSpecificat
       for (Index point : members) volume += points.volume[point];
     }
     for (int c = 0; c < points.dimension; ++c) {
-      loads_.push_back({&members, c,
-                        with_key(table + (total ? ".total_force" : ".body_force"),
+      const std::string key =
+          indexed(table + (total ? ".total_force" : ".body_force"), std::size_t(c));
+      loads_.push_back({key, &members, c,
+                        with_key(key,
                                  [&] {
                                    return Expression(loads[k].value[c],
                                                      total ? 0 : points.dimension, points.spacing,
@@ -74,54 +77,79 @@ Conditions::Conditions(const Points& points, const std::vector<SupportSpecificat
                         volume});
     }
   }
-  refuse_contradictions();
+  find_shared();
+  try_load_factors();
 }
 
-void Conditions::refuse_contradictions() const {
-  constexpr double unset = std::numeric_limits<double>::quiet_NaN();
-  std::vector<double> value(prescribed_.size());
-  std::vector<const Prescription*> by(prescribed_.size(), nullptr);
-  for (const double load_factor : {0.0, 0.5, 1.0}) {
-    std::fill(value.begin(), value.end(), unset);
-    for (const Prescription& prescription : prescriptions_) {
-      for (Index point : *prescription.points) {
-        const std::size_t dof = std::size_t(point) * points_.dimension + prescription.component;
-        const double now = prescription.displacement(points_.position(point), load_factor);
-        if (!std::isnan(value[dof]) && value[dof] != now) {
-          const Coordinates at = points_.position(point);
-          const std::string axis(1, "xyz"[prescription.component]);
-          throw InputError("support", "",
-                           "the supports of sets " + by[dof]->set + " and " + prescription.set +
-                               " contradict each other: at point (" + std::to_string(at[0]) + ", " +
-                               std::to_string(at[1]) + ", " + std::to_string(at[2]) +
-                               ") m the displacement in " + axis + " is " +
-                               std::to_string(value[dof]) + " m by one and " + std::to_string(now) +
-                               " m by the other at load factor " + std::to_string(load_factor));
-        }
-        value[dof] = now;
-        by[dof] = &prescription;
-      }
+void Conditions::find_shared() {
+  std::vector<const Prescription*> first(prescribed_.size(), nullptr);
+  bool is_shared = false;
+  for (const Prescription& prescription : prescriptions_) {
+    for (Index point : *prescription.points) {
+      const Prescription*& of_dof = first[dof_of(prescription, point)];
+      is_shared |= of_dof != nullptr;
+      if (!of_dof) of_dof = &prescription;
     }
+  }
+  if (is_shared) first_ = std::move(first);
+}
+
+void Conditions::try_load_factors() {
+  std::vector<double> values(prescribed_.size(), 0.0);
+  const auto try_at = [&](double load_factor) {
+    prescribe(load_factor, values);
+    for (const double value : values) largest_ = std::max(largest_, std::abs(value));
+  };
+  // The ends first: they tell how large displacements are.
+  for (const double load_factor : {1.0, 0.0, 0.5}) try_at(load_factor);
+  if (first_.empty()) return;
+  // Load factors at which hardly any two different expressions agree.
+  for (const double load_factor : {0.0737, 0.1831, 0.2946, 0.3819, 0.6093, 0.7548, 0.8862}) {
+    try_at(load_factor);
   }
 }
 
+void Conditions::refuse_contradiction(const Prescription& second, Index point, double first_value,
+                                      double second_value, double load_factor) const {
+  const Prescription& first = *first_[dof_of(second, point)];
+  throw InputError(second.key, '"' + second.displacement.text() + '"',
+                   "the supports of sets " + first.set + " and " + second.set +
+                       " contradict each other: at point " +
+                       place_text(points_.position(point), points_.dimension) +
+                       " m the displacement in " + "xyz"[second.component] + " is " +
+                       number_text(first_value) + " m by one and " + number_text(second_value) +
+                       " m by the other at load factor " + number_text(load_factor));
+}
+
 void Conditions::prescribe(double load_factor, std::span<double> displacement) const {
+  // Two expressions of one value may differ in their last digits: 1e-5*load*3 and 3e-5*load.
+  constexpr double same = 1e-12;
   for (const Prescription& prescription : prescriptions_) {
-    for (Index point : *prescription.points) {
-      displacement[std::size_t(point) * points_.dimension + prescription.component] =
-          prescription.displacement(points_.position(point), load_factor);
-    }
+    with_key(prescription.key, [&] {
+      for (Index point : *prescription.points) {
+        const double value = prescription.displacement(points_.position(point), load_factor);
+        double& at = displacement[dof_of(prescription, point)];
+        if (first_.empty() || first_[dof_of(prescription, point)] == &prescription) {
+          at = value;
+        } else if (std::abs(value - at) >
+                   same * std::max({std::abs(value), std::abs(at), largest_})) {
+          refuse_contradiction(prescription, point, at, value, load_factor);
+        }
+      }
+    });
   }
 }
 
 void Conditions::external_force(double load_factor, std::span<double> force) const {
   std::fill(force.begin(), force.end(), 0.0);
   for (const Load& load : loads_) {
-    for (Index point : *load.points) {
-      force[std::size_t(point) * points_.dimension + load.component] +=
-          load.value(points_.position(point), load_factor) * points_.volume[point] /
-          load.spread_over;
-    }
+    with_key(load.key, [&] {
+      for (Index point : *load.points) {
+        force[std::size_t(point) * points_.dimension + load.component] +=
+            load.value(points_.position(point), load_factor) * points_.volume[point] /
+            load.spread_over;
+      }
+    });
   }
 }
 

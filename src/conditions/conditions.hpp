@@ -17,7 +17,7 @@ class Conditions {
  public:
   /// @throws InputError (keys "support[k].…", "load[k].…", k from 0) for a set that is unknown or
   ///         empty, a bad expression, or two supports that prescribe different displacements to one
-  ///         point and component (compared at load factors 0, 1/2 and 1)
+  ///         point and component (compared at some load factors, and whenever they are used)
   Conditions(const Points& points, const std::vector<SupportSpecification>& supports,
              const std::vector<LoadSpecification>& loads);
 
@@ -25,9 +25,11 @@ class Conditions {
   [[nodiscard]] const std::vector<char>& prescribed() const { return prescribed_; }
 
   /// Overwrites the prescribed entries with their displacement [m] at the load factor.
+  /// @throws InputError if one is not finite, or two supports contradict each other there
   void prescribe(double load_factor, std::span<double> displacement) const;
 
   /// External force of the loads [N] at the load factor, every entry overwritten.
+  /// @throws InputError if one is not finite
   void external_force(double load_factor, std::span<double> force) const;
 
   /// Reaction of each support's set [N]: the sum over its prescribed degrees of freedom of what the
@@ -37,24 +39,35 @@ class Conditions {
 
  private:
   struct Prescription {
-    std::string set;
+    std::string key, set;
     const std::vector<Index>* points;
     int component;
     Expression displacement;
   };
   struct Load {
+    std::string key;
     const std::vector<Index>* points;
     int component;
     Expression value;    // body force [N/m3], or total force [N]
     double spread_over;  // volume that a total force is spread over [m3]; 1 for a body force
   };
 
-  void refuse_contradictions() const;
+  void find_shared();
+  void try_load_factors();
+  [[nodiscard]] std::size_t dof_of(const Prescription& prescription, Index point) const {
+    return std::size_t(point) * points_.dimension + prescription.component;
+  }
+  [[noreturn]] void refuse_contradiction(const Prescription& second, Index point,
+                                         double first_value, double second_value,
+                                         double load_factor) const;
 
   const Points& points_;
   std::vector<Prescription> prescriptions_;
   std::vector<Load> loads_;
   std::vector<char> prescribed_;
+  /// First of the prescriptions of each degree of freedom; empty if none has more than one.
+  std::vector<const Prescription*> first_;
+  double largest_ = 0.0;  ///< displacement at the load factors that were tried [m]
 };
 
 }  // namespace peristat

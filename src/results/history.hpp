@@ -26,8 +26,10 @@ struct IterationRecord {
   /// Of the exact tangent; 0 also where it was solved without a factorisation of its own, -1 where
   /// there are some but counting them was too expensive.
   std::int64_t negative_pivots = 0;
-  int rejected_trials = 0;    ///< of the line search: the energy was too high
-  int degenerate_trials = 0;  ///< of the line search: a measure had no gradient
+  int rejected_trials = 0;        ///< of the line search: the energy was too high
+  int degenerate_trials = 0;      ///< of the line search: a measure had no gradient
+  double linear_tolerance = 0.0;  ///< relative residual that the linear iterations were to reach; 0
+                                  ///< for a direct solve
 };
 
 /// One accepted step (a row of history.csv).
@@ -40,11 +42,14 @@ struct StepRecord {
   double stored_energy = 0.0;      ///< [J]
   double dissipated_energy = 0.0;  ///< [J]
   double drained_energy = 0.0;     ///< [J]
-  double external_work = 0.0;      ///< [J]
-  double balance_error = 0.0;      ///< external work - stored - dissipated - drained [J]
+  double external_work = 0.0;      ///< of supports and loads over the accepted steps, int P du [J]
+  double numerical_work = 0.0;     ///< what relaxation has spent beyond it [J]
+  double balance_error = 0.0;  ///< external + numerical work - stored - dissipated - drained [J]
   Index broken_bonds = 0;
   double max_damage = 0.0;
   double max_stretch = 0.0;
+  double pin_force = 0.0;  ///< on what has come off and is pinned: 2-norm, 0 if nothing pulls [N]
+  bool settled = false;    ///< no equilibrium was asked for: see RelaxationResult
   std::map<std::string, Coordinates> reactions;       ///< by support set [N]
   std::map<std::string, std::vector<double>> probes;  ///< by probe name: components, or one scalar
 };
@@ -55,8 +60,8 @@ struct DecisionRecord {
   double load_factor = 0.0;  ///< that was attempted
   double increment = 0.0;    ///< of the load factor that was attempted
   std::string outcome;       ///< name of the equilibrium search's outcome
-  /// "accept", "accept and grow", "cut", "stop", "hand over to relaxation", "hand back to newton",
-  /// "hold fragments", "remove fragments", "change linear solver"
+  /// "accept", "accept and grow", "accept at round-off", "cut", "stop", "hand over to relaxation",
+  /// "hand back to newton", "hold fragments", "remove fragments", "change linear solver"
   std::string action;
   double next_increment = 0.0;
   std::string reason;

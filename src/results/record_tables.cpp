@@ -36,13 +36,22 @@ const std::vector<Column>& step_columns() {
       {number, "stored_energy", "J", "energy stored in the interactions"},
       {number, "dissipated_energy", "J", "energy dissipated by damage since the start"},
       {number, "drained_energy", "J",
-       "external work that relaxation has taken out: by damping, and by stopping motion"},
-      {number, "external_work", "J", "work of supports and loads since the start"},
-      {number, "balance_error", "J", "external work - stored - dissipated - drained energy"},
+       "work that relaxation has taken out: by damping, and by stopping motion"},
+      {number, "external_work", "J",
+       "work of supports and loads since the start, over the accepted steps: int P du"},
+      {number, "balance_error", "J",
+       "external + numerical work - stored - dissipated - drained energy"},
       {integer, "broken_bonds", "1", "number of broken bonds"},
       {number, "max_damage", "1", "largest damage of a point, 0 intact to 1"},
       {number, "max_stretch", "1",
        "largest stretch of an unbroken bond: current / reference length - 1"},
+      {number, "numerical_work", "J",
+       "what relaxation has spent since the start beyond the external work: against its pseudo "
+       "inertia, and along the way between two accepted steps"},
+      {number, "pin_force", "N",
+       "2-norm of the forces that hold pinned fragments; no reaction counts them"},
+      {integer, "settled", "1",
+       "1: the state was not asked to be in equilibrium (moving load, displacement tolerance)"},
   };
   return columns;
 }
@@ -66,7 +75,9 @@ std::vector<Column> iteration_columns() {
        "part; 0 is the exact tangent"},
       {integer, "negative_pivots", "1", "of the exact tangent; -1: not counted"},
       {integer, "rejected_trials", "1", "line search: trial states whose energy was too high"},
-      {integer, "degenerate_trials", "1", "line search: trial states without a gradient"}};
+      {integer, "degenerate_trials", "1", "line search: trial states without a gradient"},
+      {number, "linear_tolerance", "1",
+       "relative residual that the linear iterations were to reach, 0 for a direct solve"}};
 }
 
 std::vector<Column> decision_columns() {
@@ -112,7 +123,7 @@ Row make_row(const IterationRecord& record) {
                   record.relative_residual, record.energy, record.step_length,
                   std::int64_t{record.linear_iterations}, std::int64_t{record.changed_bonds},
                   record.projection, record.negative_pivots, std::int64_t{record.rejected_trials},
-                  std::int64_t{record.degenerate_trials}});
+                  std::int64_t{record.degenerate_trials}, record.linear_tolerance});
 }
 
 Row make_row(const DecisionRecord& record) {
@@ -138,13 +149,13 @@ Row make_row(const StepRecord& record, const std::vector<std::string>& support_s
   if (record.reactions.size() != support_sets.size() || record.probes.size() != probes.size()) {
     throw std::logic_error("results: a step needs the reactions and probes that were announced");
   }
-  Row row =
-      checked(step_columns(),
-              {std::int64_t{record.step}, record.load_factor, record.mode,
-               std::int64_t{record.newton_iterations}, std::int64_t{record.relaxation_iterations},
-               record.stored_energy, record.dissipated_energy, record.drained_energy,
-               record.external_work, record.balance_error, std::int64_t{record.broken_bonds},
-               record.max_damage, record.max_stretch});
+  Row row = checked(
+      step_columns(),
+      {std::int64_t{record.step}, record.load_factor, record.mode,
+       std::int64_t{record.newton_iterations}, std::int64_t{record.relaxation_iterations},
+       record.stored_energy, record.dissipated_energy, record.drained_energy, record.external_work,
+       record.balance_error, std::int64_t{record.broken_bonds}, record.max_damage,
+       record.max_stretch, record.numerical_work, record.pin_force, std::int64_t{record.settled}});
   const auto append = [&row](const std::string& name, double value) {
     if (!std::isfinite(value)) {
       throw std::logic_error("results: " + name + " is " + number_text(value));

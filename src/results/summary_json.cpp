@@ -82,6 +82,7 @@ std::string summary_json(const Summary& summary, const StepTotals& totals,
   energy.add("dissipated", last.dissipated_energy);
   energy.add("drained", last.drained_energy);
   energy.add("external_work", last.external_work);
+  energy.add("numerical_work", last.numerical_work);
   energy.add("balance_error", last.balance_error);
   Members reactions(1);
   for (const auto& [set, reaction] : last.reactions) reactions.add(set, std::span(reaction));

@@ -48,13 +48,6 @@ TEST(Tangent, FrobeniusNormCountsBothHalves) {
   EXPECT_DOUBLE_EQ(Example().tangent.frobenius_norm(), std::sqrt(squared));
 }
 
-TEST(Tangent, AsymmetryIsRelativeToTheLargestEntry) {
-  Example example;
-  EXPECT_EQ(example.tangent.asymmetry(), 0.0);
-  example.tangent.diagonal[5] += 0.5;
-  EXPECT_DOUBLE_EQ(example.tangent.asymmetry(), 0.5 / 23.0);
-}
-
 TEST(Tangent, StartsAtZero) {
   const tests::BoxBody body(tests::small_box(3));
   const Tangent tangent(Pattern(body.model.bonds), 3);
@@ -79,7 +72,6 @@ TEST(Tangent, OfBondsIsStoredByUpperHalves) {
     EXPECT_EQ(halves.diagonal, whole.diagonal);
     EXPECT_GT(whole.frobenius_norm(), 0.0);
     EXPECT_EQ(halves.frobenius_norm(), whole.frobenius_norm());
-    EXPECT_EQ(halves.asymmetry(), whole.asymmetry());
     for (Offset bond = 0; bond < body.model.bonds.count(); ++bond) {
       for (int r = 0; r < dimension; ++r) {
         for (int c = 0; c < dimension; ++c) {

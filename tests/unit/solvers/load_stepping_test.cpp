@@ -503,8 +503,9 @@ TEST(LoadStepping, LedgerOfRelaxationClosesThroughDamage) {
     ASSERT_GT(followed.steps.back().broken_bonds, 0);
     for (const StepRecord& step : followed.steps) {
       EXPECT_EQ(step.mode, "relaxation");
-      EXPECT_DOUBLE_EQ(step.balance_error, step.external_work - step.stored_energy -
-                                               step.dissipated_energy - step.drained_energy);
+      EXPECT_DOUBLE_EQ(step.balance_error, step.external_work + step.numerical_work -
+                                               step.stored_energy - step.dissipated_energy -
+                                               step.drained_energy);
       EXPECT_LE(std::abs(step.balance_error), 1e-12 * step.external_work);
     }
   }
@@ -547,9 +548,9 @@ std::vector<Index> broken_in_steps(const Followed& followed) {
 TEST(LoadStepping, CutsStepsInWhichTooManyBondsBreak) {
   // All points move along x so that bonds are stretched by the more the further they are to the
   // right: they break column by column, at loads that are close where columns of bonds are equal.
-  const std::vector<SupportSpecification> supports{support("all", "0.04*load*x*x"),
-                                                   support("left", std::nullopt, "0")};
-  LoadSteppingOptions options = steps(4);
+  // Nothing is free to jump as they do.
+  const std::vector<SupportSpecification> supports{support("all", "0.04*load*x*x", "0")};
+  LoadSteppingOptions options = steps(20);
   options.smallest_step = 1e-3;
   Strip free(Strip::Middle::notched, supports);
   const Followed unlimited = follow(free, options);

@@ -100,6 +100,20 @@ TEST(SolverLadder, FallsWhereverASolverFailsAndSolvesAgain) {
   }
 }
 
+TEST(SolverLadder, StaysOnItsRungWhenFreedomsChange) {
+  LadderOnABox box;
+  SolverLadder ladder = box.make(
+      {LadderOnABox::scripted("first", failing(&Scripted::of_solve, LinearOutcome::inaccurate)),
+       LadderOnABox::scripted("second", {})});
+  ASSERT_EQ(box.run(ladder), LinearOutcome::solved);
+  ASSERT_EQ(box.told.size(), 1u);
+  const LinearStatistics before = ladder.statistics();
+  EXPECT_EQ(box.run(ladder), LinearOutcome::solved);  // analyzed anew, as after pinning
+  EXPECT_EQ(box.told.size(), 1u);
+  EXPECT_EQ(ladder.statistics().iterations, before.iterations + 10);
+  EXPECT_EQ(ladder.statistics().factorisations, before.factorisations + 1);
+}
+
 TEST(SolverLadder, PassesOnWhatIsTrueOfTheTangent) {
   for (const auto outcome : {LinearOutcome::not_positive_definite, LinearOutcome::singular}) {
     LadderOnABox box;

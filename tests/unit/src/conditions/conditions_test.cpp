@@ -117,13 +117,35 @@ TEST(Conditions, RefusesSupportsThatContradictEachOther) {
     });
   };
   const InputError error = make("0.25", "x");
-  EXPECT_EQ(error.key(), "support");
-  for (const char* told : {"left", "middle", "contradict", "in x", "(1.0", "0.25"}) {
+  EXPECT_EQ(error.key(), "support[1].displacement[0]");
+  for (const char* told : {"left", "middle", "contradict", "in x", "(1,", "0.25"}) {
     EXPECT_NE(error.allowed().find(told), std::string::npos) << told << ": " << error.allowed();
   }
   make("load", "1.5*load");      // at the end
   make("load*(1 - load)", "0");  // only on the way
   make("1", "1 - load");         // not at the start
+  make("load*(load - 0.5)*(load - 1)", "0");
+}
+
+TEST(Conditions, RefusesContradictionsWhereverTheyAreUsed) {
+  const Points points = four_points();
+  const Conditions conditions(
+      points, {support("left", "load"), support("middle", "load + (abs(load - 0.42) < 1e-9)")}, {});
+  std::vector<double> displacement(8);
+  EXPECT_NO_THROW(conditions.prescribe(0.41, displacement));
+  const InputError error = refusal([&] { conditions.prescribe(0.42, displacement); });
+  EXPECT_EQ(error.key(), "support[1].displacement[0]");
+  EXPECT_NE(error.allowed().find("0.42 m by one and 1.42 m by the other"), std::string::npos)
+      << error.allowed();
+}
+
+TEST(Conditions, TakesExpressionsThatDifferInTheirLastDigits) {
+  const Points points = four_points();
+  const Conditions conditions(points,
+                              {support("left", "1e-5*load*3"), support("middle", "3e-5*load")}, {});
+  std::vector<double> displacement(8);
+  for (int k = 0; k <= 100; ++k) EXPECT_NO_THROW(conditions.prescribe(0.01 * k, displacement));
+  EXPECT_NEAR(displacement[2], 3e-5, 1e-17);
 }
 
 TEST(Conditions, RefusesUnknownAndEmptySets) {
@@ -144,16 +166,16 @@ TEST(Conditions, RefusesUnknownAndEmptySets) {
 TEST(Conditions, NamesTheKeyOfABadExpression) {
   const Points points = four_points();
   EXPECT_EQ(refusal([&] { Conditions(points, {support("left", "2*q")}, {}); }).key(),
-            "support[0].displacement");
+            "support[0].displacement[0]");
   EXPECT_EQ(refusal([&] {
               Conditions(points, {}, {load(body_force, "left", {"(", "0", "0"})});
             }).key(),
-            "load[0].body_force");
+            "load[0].body_force[0]");
   // A total force has no place.
   EXPECT_EQ(refusal([&] {
               Conditions(points, {}, {load(total_force, "left", {"x", "0", "0"})});
             }).key(),
-            "load[0].total_force");
+            "load[0].total_force[0]");
 }
 
 TEST(Conditions, TellsWhereATotalForceIsNotFinite) {

@@ -18,6 +18,13 @@ void add_search(ConvergenceTable& table, const std::vector<double>& residuals) {
   }
 }
 
+/// Ratios whose linear systems were solved to a tolerance.
+std::vector<ResidualRatio> ratios(const std::vector<double>& values, double tolerance = 0.0) {
+  std::vector<ResidualRatio> result;
+  for (const double value : values) result.push_back({value, tolerance});
+  return result;
+}
+
 TEST(ConvergenceTable, HasAColumnPerAcceptedStepNormalisedByItsJump) {
   ConvergenceTable table;
   add_search(table, {4.0, 2.0, 1.0});  // given up
@@ -51,16 +58,24 @@ TEST(ConvergenceTable, TakesAStepWithoutResidual) {
 
 TEST(ObservedOrder, IsThatOfTheLastResidualsAboveRoundOff) {
   // Table 3 of [CPD], increment 1: the last residual is round-off.
-  const auto order = observed_order({1.0, 8.97e-2, 1.14e-3, 2.41e-7, 1.23e-14});
+  const auto order = observed_order(ratios({1.0, 8.97e-2, 1.14e-3, 2.41e-7, 1.23e-14}));
   ASSERT_TRUE(order);
   EXPECT_NEAR(*order, std::log(2.41e-7 / 1.14e-3) / std::log(1.14e-3 / 8.97e-2), 1e-14);
   EXPECT_NEAR(*order, 1.94, 0.005);
-  const auto linear = observed_order({1.0, 1e-1, 1e-2, 1e-3});
+  const auto linear = observed_order(ratios({1.0, 1e-1, 1e-2, 1e-3}));
   ASSERT_TRUE(linear);
   EXPECT_NEAR(*linear, 1.0, 1e-14);
-  EXPECT_FALSE(observed_order({1.0, 1e-3, 1e-14}));    // one ratio only
-  EXPECT_FALSE(observed_order({1.0, 0.9, 0.5, 0.4}));  // still far
-  EXPECT_FALSE(observed_order({}));
+  EXPECT_FALSE(observed_order(ratios({1.0, 1e-3, 1e-14})));    // one ratio only
+  EXPECT_FALSE(observed_order(ratios({1.0, 0.9, 0.5, 0.4})));  // still far
+  EXPECT_FALSE(observed_order(ratios({})));
+}
+
+TEST(ObservedOrder, IsNotThatOfTheLinearSolver) {
+  const std::vector<double> quadratic{1.0, 1e-1, 1e-3, 1e-7};
+  EXPECT_TRUE(observed_order(ratios(quadratic, 1e-6)));
+  // Systems solved to a share of 1e-4 leave 1e-7 of 1e-3: what is seen is that.
+  EXPECT_FALSE(observed_order(ratios(quadratic, 1e-4)));
+  EXPECT_FALSE(observed_order(ratios({1.0, 1e-1, 1e-4, 1e-7}, 1e-3)));
 }
 
 }  // namespace

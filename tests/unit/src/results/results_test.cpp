@@ -213,6 +213,9 @@ StepRecord example_step(int step) {
   record.broken_bonds = 3;
   record.max_damage = 0.5;
   record.max_stretch = 0.01;
+  record.numerical_work = 0.0625;
+  record.pin_force = 0.75;
+  record.settled = true;
   record.reactions = {{"right", {1.0 * step, 2.0, 0.0}},
                       {"left, \"top\"", {-1.0 * step, -2.0, 0.0}}};
   record.probes = {{"tip", {0.5, -0.5 * step}}, {"crack", {9.0}}};
@@ -221,7 +224,7 @@ StepRecord example_step(int step) {
 
 void add_step(Results& results, int step, int dimension = 2) {
   results.add(IterationRecord{step, 0, 100.0, 1.0, -1.0, 1.0, 0, 0});
-  results.add(IterationRecord{step, 1, 1e-9, 1e-11, -2.0, 0.5, 17, 3, 0.25, 12, 4, 1});
+  results.add(IterationRecord{step, 1, 1e-9, 1e-11, -2.0, 0.5, 17, 3, 0.25, 12, 4, 1, 1e-6});
   results.add(DecisionRecord{step, 0.1 * step, 0.1, "converged", "accept and grow", 0.2,
                              "quick, \"easy\""});
   const ExampleFields fields(step, dimension);
@@ -386,17 +389,18 @@ TEST_F(ResultsTest, TablesHaveTheColumnsOfTheContract) {
             (std::vector<std::string>{
                 "step,load_factor,mode,newton_iterations,relaxation_iterations,stored_energy,"
                 "dissipated_energy,drained_energy,external_work,balance_error,broken_bonds,"
-                "max_damage,max_stretch,reaction_x:right,reaction_y:right,reaction_z:right,"
+                "max_damage,max_stretch,numerical_work,pin_force,settled,"
+                "reaction_x:right,reaction_y:right,reaction_z:right,"
                 "\"reaction_x:left, \"\"top\"\"\",\"reaction_y:left, \"\"top\"\"\","
                 "\"reaction_z:left, \"\"top\"\"\",tip_x,tip_y,crack",
-                "1,0.1,newton,4,100,0.3333333333333333,0.25,0.125,5,1e-17,3,0.5,0.01,1,2,0,-1,-2,0,"
-                "0.5,-0.5,9"}));
+                "1,0.1,newton,4,100,0.3333333333333333,0.25,0.125,5,1e-17,3,0.5,0.01,0.0625,0.75,"
+                "1,1,2,0,-1,-2,0,0.5,-0.5,9"}));
   EXPECT_EQ(lines(directory / "iterations.csv"),
             (std::vector<std::string>{
                 "step,iteration,residual,relative_residual,energy,step_length,"
                 "linear_iterations,changed_bonds,projection,negative_pivots,"
-                "rejected_trials,degenerate_trials",
-                "1,0,100,1,-1,1,0,0,0,0,0,0", "1,1,1e-09,1e-11,-2,0.5,17,3,0.25,12,4,1"}));
+                "rejected_trials,degenerate_trials,linear_tolerance",
+                "1,0,100,1,-1,1,0,0,0,0,0,0,0", "1,1,1e-09,1e-11,-2,0.5,17,3,0.25,12,4,1,1e-06"}));
   EXPECT_EQ(lines(directory / "decisions.csv"),
             (std::vector<std::string>{
                 "step,load_factor,increment,outcome,action,next_increment,reason",
@@ -481,6 +485,7 @@ TEST_F(ResultsTest, SummaryTakesSumsFromAllStepsAndTheRestFromTheLast) {
     "dissipated": 0.25,
     "drained": 0.125,
     "external_work": 5,
+    "numerical_work": 0.0625,
     "balance_error": 1e-17
   },
   "reactions": {
@@ -711,7 +716,7 @@ TEST_F(ResultsTest, AKillLeavesEveryAnnouncedStep) {
     EXPECT_EQ(file.numbers("/points/volume"), example_points(2).volume);
 
     for (const auto& [name, columns] : std::map<std::string, int>{
-             {"history.csv", 22}, {"iterations.csv", 12}, {"decisions.csv", 7}}) {
+             {"history.csv", 25}, {"iterations.csv", 13}, {"decisions.csv", 7}}) {
       EXPECT_EQ(read_text(folder / name).back(), '\n') << name;
       const std::vector<std::string> rows = lines(folder / name);
       ASSERT_GE(rows.size(), 1u + announced) << name;
