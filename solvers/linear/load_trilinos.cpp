@@ -1,12 +1,32 @@
+#include <cerrno>
+#include <cstring>
 #include <new>
 #include <stdexcept>
+#include <string>
 
 #include <dlfcn.h>
 
 #include "solvers/linear/trilinos/module.hpp"
+#include "src/machine_error.hpp"
 
 namespace peristat {
 namespace {
+
+/// The loader tells why in words alone: "cannot open shared object file: Error 24", "failed to map
+/// segment from shared object", "cannot allocate memory in static TLS block", ...
+[[noreturn]] void throw_why_not(const std::string& reason) {
+  for (const int cause : {EMFILE, ENFILE}) {
+    if (reason.ends_with("Error " + std::to_string(cause)) ||
+        reason.ends_with(std::strerror(cause))) {
+      throw MachineError("Trilinos can't be loaded: " + reason);
+    }
+  }
+  if (reason.find("map segment") != std::string::npos ||
+      reason.find("allocate memory") != std::string::npos) {
+    throw std::bad_alloc();
+  }
+  throw std::runtime_error("Trilinos can't be loaded: " + reason);
+}
 
 /// Loads the module at the first call. It stays: Kokkos is stopped when the process ends.
 const trilinos::Module& module() {
@@ -14,7 +34,8 @@ const trilinos::Module& module() {
     // Found by the run path of the program. BLAS is the program's own: symbols that it already has
     // come first.
     void* const library = dlopen(trilinos::module_file, RTLD_LAZY | RTLD_LOCAL);
-    void* const symbol = library ? dlsym(library, trilinos::module_symbol) : nullptr;
+    if (!library) throw_why_not(dlerror());
+    void* const symbol = dlsym(library, trilinos::module_symbol);
     if (!symbol) throw std::runtime_error(std::string("Trilinos can't be loaded: ") + dlerror());
     return reinterpret_cast<const trilinos::Module* (*)()>(symbol)();
   }();

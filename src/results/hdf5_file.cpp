@@ -246,6 +246,11 @@ void Hdf5File::set_attribute(const std::string& path, const std::string& name,
   write_attribute(object, name, text_type(), dataspace({pointers.size()}), pointers.data());
 }
 
+bool Hdf5File::has_attribute(const std::string& path, const std::string& name) const {
+  return checked(H5Aexists_by_name(id_, path.c_str(), name.c_str(), H5P_DEFAULT),
+                 "look for attribute " + name) > 0;
+}
+
 void Hdf5File::make_table(const std::string& group, const std::vector<Column>& columns) {
   make_group(group);
   // Small chunks keep the file of a short run small.
