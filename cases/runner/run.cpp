@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <cstdlib>
 #include <fstream>
 
@@ -387,6 +388,11 @@ Exit run(const Case& from, const RunOptions& options) {
     results->fail(summary, failure.message);
     progress.problem(failure.message);
     progress.problem(results->what_is_left());
+    if (failure.code == Exit::out_of_memory) {
+      // What HDF5 could not allocate it can't close either: it would end in a segmentation fault.
+      std::fflush(nullptr);
+      std::_Exit(static_cast<int>(failure.code));
+    }
     return failure.code;
   }
 }

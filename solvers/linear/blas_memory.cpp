@@ -12,9 +12,9 @@
 
 #include <cblas.h>
 #include <sched.h>
-#include <sys/mman.h>
 #include <unistd.h>
 
+#include "src/address_space.hpp"
 #include "src/machine_error.hpp"
 
 namespace peristat {
@@ -25,14 +25,6 @@ constexpr std::size_t buffer_bytes = std::size_t(128) << 20;
 // What else is allocated while libraries are loaded.
 constexpr std::size_t loading_bytes = std::size_t(16) << 20;
 constexpr int most_buffers = 128;  // OpenBLAS of Debian takes no more threads
-
-bool is_mappable(std::size_t bytes) {
-  void* const memory = mmap(nullptr, bytes, PROT_READ | PROT_WRITE,
-                            MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
-  if (memory == MAP_FAILED) return false;
-  munmap(memory, bytes);
-  return true;
-}
 
 /// Value of a variable among "NAME=value", or 0.
 int positive_variable(char** environment, const char* name) {
@@ -61,7 +53,7 @@ void require_room_to_load(int, char**, char** environment) {
       break;
     }
   }
-  if (is_mappable(std::size_t(buffers) * buffer_bytes + loading_bytes)) return;
+  if (has_address_space(std::size_t(buffers) * buffer_bytes + loading_bytes)) return;
   constexpr char message[] =
       "peristat: too little address space to start: the shell allows less than the libraries and "
       "their 134 MB per thread take. See \"ulimit -v\"; fewer threads (OMP_NUM_THREADS=1) take "
@@ -89,7 +81,7 @@ void try_threads(int count) {
 void claim_blas_memory(int threads) {
   const int buffers = std::min(threads, most_buffers) + 1;
   const int taken = std::min({threads, processors(), most_buffers});
-  if (!is_mappable(std::size_t(buffers - taken) * buffer_bytes)) throw std::bad_alloc();
+  if (!has_address_space(std::size_t(buffers - taken) * buffer_bytes)) throw std::bad_alloc();
   openblas_set_num_threads(threads);
   // The caller's own buffer is taken by its first product that is not a tiny one.
   constexpr int size = 64;
@@ -99,7 +91,7 @@ void claim_blas_memory(int threads) {
   try {
     try_threads(threads - 1);
   } catch (const std::system_error& error) {
-    if (!is_mappable(std::size_t(threads) * loading_bytes)) throw std::bad_alloc();
+    if (!has_address_space(std::size_t(threads) * loading_bytes)) throw std::bad_alloc();
     throw MachineError(std::string("the system gives no ") + std::to_string(threads) +
                        " threads: " + error.what());
   }

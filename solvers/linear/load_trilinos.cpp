@@ -7,10 +7,14 @@
 #include <dlfcn.h>
 
 #include "solvers/linear/trilinos/module.hpp"
+#include "src/address_space.hpp"
 #include "src/machine_error.hpp"
 
 namespace peristat {
 namespace {
+
+// Its solvers allocate in many small pieces, and where one fails in a thread the program ends.
+constexpr std::size_t room_for_work = std::size_t(64) << 20;
 
 /// The loader tells why in words alone: "cannot open shared object file: Error 24", "failed to map
 /// segment from shared object", "cannot allocate memory in static TLS block", ...
@@ -35,6 +39,7 @@ const trilinos::Module& module() {
     // come first.
     void* const library = dlopen(trilinos::module_file, RTLD_LAZY | RTLD_LOCAL);
     if (!library) throw_why_not(dlerror());
+    if (!has_address_space(room_for_work)) throw std::bad_alloc();
     void* const symbol = dlsym(library, trilinos::module_symbol);
     if (!symbol) throw std::runtime_error(std::string("Trilinos can't be loaded: ") + dlerror());
     return reinterpret_cast<const trilinos::Module* (*)()>(symbol)();
