@@ -325,8 +325,8 @@ TEST_F(ResultsTest, ClosedFileHoldsEverythingByItself) {
       names.insert(entry.path().filename().string());
     }
     EXPECT_EQ(names, (std::set<std::string>{"broken_bonds.csv", "convergence.csv", "decisions.csv",
-                                            "history.csv", "iterations.csv", "results.h5",
-                                            "results.xdmf", "summary.json"}));
+                                            "history.csv", "iterations.csv", "peristat.json",
+                                            "results.h5", "results.xdmf", "summary.json"}));
     const fs::path alone = base / "alone.h5";
     fs::rename(directory / "results.h5", alone);
     expect_contents(Reader(alone), dimension);
