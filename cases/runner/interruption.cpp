@@ -15,13 +15,16 @@ void request(int signal) {
 
 }  // namespace
 
+void make_write_faults_errors() {
+  std::signal(SIGPIPE, SIG_IGN);
+  std::signal(SIGXFSZ, SIG_IGN);
+}
+
 void heed_interruptions() {
   requested = false;
   std::signal(SIGINT, request);
   std::signal(SIGTERM, request);
   if (std::signal(SIGHUP, request) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);
-  std::signal(SIGPIPE, SIG_IGN);
-  std::signal(SIGXFSZ, SIG_IGN);
 }
 
 bool interruption_requested() { return requested; }

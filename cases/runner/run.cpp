@@ -377,6 +377,7 @@ Exit run_case(const Case& from, const RunOptions& options, Progress& progress, S
 }  // namespace
 
 Exit run(const Case& from, const RunOptions& options) {
+  make_write_faults_errors();
   Progress progress(options.quiet, options.log_file);
   Summary summary;
   std::optional<Results> results;
