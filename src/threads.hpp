@@ -1,17 +1,18 @@
 #pragma once
 
-#include <stdexcept>
 #include <string>
 
 #include <omp.h>
 
+#include "src/machine_error.hpp"
+
 namespace peristat {
 
 /// The system runs fewer threads than were asked for.
-class ThreadError : public std::runtime_error {
+class ThreadError : public MachineError {
  public:
   ThreadError(int granted, int asked_for)
-      : std::runtime_error("the system runs " + std::to_string(granted) + " of " +
+      : MachineError("the system runs " + std::to_string(granted) + " of " +
                            std::to_string(asked_for) +
                            " threads; ask for fewer (--threads, OMP_NUM_THREADS)") {}
 };

@@ -1,5 +1,6 @@
-#include <exception>
-#include <new>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
 #include <optional>
 #include <string>
 #include <utility>
@@ -12,11 +13,13 @@
 #include "cases/runner/case.hpp"
 #include "cases/runner/check.hpp"
 #include "cases/runner/check_tangent.hpp"
-#include "cases/runner/memory.hpp"
+#include "cases/runner/failure.hpp"
 #include "cases/runner/run.hpp"
 #include "cases/runner/runtime_environment.hpp"
 #include "cases/runner/toml_text.hpp"
+#include "solvers/linear/blas_memory.hpp"
 #include "src/input_error.hpp"
+#include "src/machine_error.hpp"
 #include "src/threads.hpp"
 
 namespace {
@@ -27,7 +30,7 @@ struct CommandLine {
   std::string case_file, output, log_file, deformation;
   std::vector<std::string> settings;
   int threads = 0;
-  bool quiet = false;
+  bool quiet = false, overwrite = false;
   CalibrationQuestion calibration;
 };
 
@@ -59,7 +62,7 @@ void add_case_options(CLI::App& command, CommandLine& line) {
   command.add_option("case", line.case_file, "case file (docs/case-file.md)")->required();
   add_settings(command, line);
   command.add_option("--threads", line.threads, "number of threads (default: all processors)")
-      ->check(CLI::Range(1, 1024));
+      ->check(CLI::PositiveNumber);
 }
 
 void add_calibration(CLI::App& command, CommandLine& line) {
@@ -92,18 +95,29 @@ Exit execute(const CLI::App& program, const CommandLine& line, int threads) {
   if (program.got_subcommand("check-tangent")) {
     return check_tangent(from, line.deformation, threads);
   }
-  return run(from, {threads, line.quiet, line.log_file});
+  return run(from, {threads, line.quiet, line.log_file, line.overwrite});
 }
 
-int told(const std::exception& error, Exit code) {
+/// Makes sure that what was printed has arrived: it is all that these commands give.
+void require_told() {
+  errno = 0;
+  if (std::fflush(stdout) == 0 && !std::ferror(stdout)) return;
+  throw MachineError(
+      fmt::format("standard output can't be written: {}", std::strerror(errno != 0 ? errno : EIO)));
+}
+
+/// Tells the exception that is being handled.
+int tell_failure() {
+  const Failure failure = current_failure();
   std::fflush(stdout);
-  fmt::print(stderr, "peristat: {}\n", error.what());
-  return static_cast<int>(code);
+  std::fputs(fmt::format("peristat: {}\n", failure.message).c_str(), stderr);
+  return static_cast<int>(failure.code);
 }
 
 }  // namespace
 
-int main(int count, char** arguments) {
+int main(int count, char** arguments) try {
+  open_standard_streams();
   CLI::App program("Implicit quasi-static peridynamics", "peristat");
   program.set_version_flag("--version", "peristat " PERISTAT_VERSION);
   program.require_subcommand(1);
@@ -111,6 +125,8 @@ int main(int count, char** arguments) {
   CLI::App* run_command = program.add_subcommand("run", "run a case");
   add_case_options(*run_command, line);
   run_command->add_option("--output", line.output, "results folder (default: the case's)");
+  run_command->add_flag("--overwrite", line.overwrite,
+                        "replace the results of another case, or of version 1, in the folder");
   run_command->add_flag("--quiet", line.quiet, "print nothing but problems");
   run_command->add_option("--log", line.log_file,
                           "write all that is said, and every iteration, here");
@@ -128,23 +144,17 @@ int main(int count, char** arguments) {
     program.parse(count, arguments);
   } catch (const CLI::ParseError& error) {
     const bool helped = program.exit(error) == 0;
+    if (helped) require_told();
     return static_cast<int>(helped ? Exit::done : Exit::wrong_input);
   }
 
   const int threads = choose_threads(line.threads);
   restart_with_environment(threads, arguments);
-  try {
-    require_threads(threads);
-    return static_cast<int>(execute(program, line, threads));
-  } catch (const InputError& error) {
-    return told(error, Exit::wrong_input);
-  } catch (const MemoryError& error) {
-    return told(error, Exit::out_of_memory);
-  } catch (const ThreadError& error) {
-    return told(error, Exit::wrong_input);
-  } catch (const std::bad_alloc&) {
-    return told(std::runtime_error("out of memory"), Exit::out_of_memory);
-  } catch (const std::exception& error) {
-    return told(error, Exit::bug);
-  }
+  require_threads(threads);
+  claim_blas_memory(threads);
+  const Exit exit = execute(program, line, threads);
+  if (exit == Exit::done && !program.got_subcommand("run")) require_told();
+  return static_cast<int>(exit);
+} catch (...) {
+  return tell_failure();
 }

@@ -3,13 +3,29 @@
 #include <cerrno>
 #include <cmath>
 #include <cstring>
+#include <utility>
 
 #include <fmt/format.h>
 #include <unistd.h>
 
 #include "src/input_error.hpp"
+#include "src/results/output_file.hpp"
 
 namespace peristat {
+namespace {
+
+/// @return the system's error, 0 for none
+int write_now(std::FILE* file, const std::string& text) {
+  errno = 0;
+  const bool is_written =
+      std::fwrite(text.data(), 1, text.size(), file) == text.size() && std::fflush(file) == 0;
+  return is_written ? 0 : (errno != 0 ? errno : EIO);
+}
+
+/// Standard error is the last place to tell anything: what it does not take is lost.
+void tell_standard_error(const std::string& line) { write_now(stderr, "peristat: " + line + "\n"); }
+
+}  // namespace
 
 Progress::Progress(bool quiet, const std::string& log_file)
     : quiet_(quiet),
@@ -18,7 +34,10 @@ Progress::Progress(bool quiet, const std::string& log_file)
   if (log_file.empty()) return;
   log_ = std::fopen(log_file.c_str(), "w");
   if (!log_) {
-    throw InputError("--log", log_file, std::string("can't be written: ") + std::strerror(errno));
+    const int error = errno;
+    const std::string why = std::string("can't be written: ") + std::strerror(error);
+    if (is_about_means(error)) throw OutputError(log_file + ": " + why, error);
+    throw InputError("--log", log_file, why);
   }
 }
 
@@ -27,32 +46,41 @@ Progress::~Progress() {
   if (log_) std::fclose(log_);
 }
 
+void Progress::tell_person(const std::string& text) {
+  if (quiet_) return;
+  const int error = write_now(stdout, text);
+  if (error == 0) return;
+  quiet_ = true;
+  live_ = false;
+  tell_standard_error(std::string("standard output can't be written (") + std::strerror(error) +
+                      "): the run goes on in silence");
+}
+
+void Progress::tell_log(const std::string& line) {
+  if (!log_) return;
+  const int error = write_now(log_, line + "\n");
+  if (error == 0) return;
+  std::fclose(std::exchange(log_, nullptr));
+  tell_standard_error(std::string("the log can't be written (") + std::strerror(error) +
+                      "): the run goes on without it");
+}
+
 void Progress::erase_live_line() {
   if (!live_line_shown_) return;
-  fmt::print("\r\033[K");
+  tell_person("\r\033[K");
   live_line_shown_ = false;
 }
 
 void Progress::say(const std::string& line) {
   erase_live_line();
-  if (!quiet_) {
-    fmt::print("{}\n", line);
-    std::fflush(stdout);
-  }
-  if (log_) {
-    fmt::print(log_, "{}\n", line);
-    std::fflush(log_);
-  }
+  tell_person(line + "\n");
+  tell_log(line);
 }
 
 void Progress::problem(const std::string& line) {
   erase_live_line();
-  std::fflush(stdout);
-  fmt::print(stderr, "peristat: {}\n", line);
-  if (log_) {
-    fmt::print(log_, "{}\n", line);
-    std::fflush(log_);
-  }
+  tell_standard_error(line);
+  tell_log(line);
 }
 
 std::string Progress::time_left() const {
@@ -68,16 +96,14 @@ std::string Progress::time_left() const {
 
 void Progress::iteration(const IterationRecord& record) {
   if (log_) {
-    fmt::print(log_,
-               "  step {} iteration {}: residual {:.3e} N, relative {:.3e}, step length {:g}\n",
-               record.step, record.iteration, record.residual, record.relative_residual,
-               record.step_length);
+    tell_log(fmt::format(
+        "  step {} iteration {}: residual {:.3e} N, relative {:.3e}, step length {:g}", record.step,
+        record.iteration, record.residual, record.relative_residual, record.step_length));
   }
   if (!live_) return;
   erase_live_line();
-  fmt::print("step {}  load {:.4g}  iteration {}  residual {:.1e}{}", record.step, load_factor_,
-             record.iteration, record.relative_residual, time_left());
-  std::fflush(stdout);
+  tell_person(fmt::format("step {}  load {:.4g}  iteration {}  residual {:.1e}{}", record.step,
+                          load_factor_, record.iteration, record.relative_residual, time_left()));
   live_line_shown_ = true;
 }
 

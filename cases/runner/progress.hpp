@@ -10,7 +10,8 @@ namespace peristat {
 
 /// What a run tells while it goes: one line per accepted step and decision; on a terminal a line
 /// that follows the iterations too, with the time that is left. Everything also goes to the log
-/// file.
+/// file. Where standard output or the log can't be written any more (nobody reads the pipe, the
+/// disk is full), that is told once on standard error, and the run goes on.
 class Progress {
  public:
   /// @param quiet nothing on the terminal, except what `problem` tells
@@ -29,6 +30,8 @@ class Progress {
   void accepted(const StepRecord& record, double relative_residual);
 
  private:
+  void tell_person(const std::string& text);
+  void tell_log(const std::string& line);
   void erase_live_line();
   [[nodiscard]] std::string time_left() const;
 

@@ -1,9 +1,8 @@
 #include "cases/runner/run.hpp"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
-#include <csignal>
+#include <cstdio>
 #include <cstdlib>
 #include <fstream>
 
@@ -12,7 +11,10 @@
 
 #include "assembly/damage.hpp"
 #include "cases/runner/body.hpp"
+#include "cases/runner/damage_histories.hpp"
 #include "cases/runner/dossier.hpp"
+#include "cases/runner/failure.hpp"
+#include "cases/runner/interruption.hpp"
 #include "cases/runner/probe.hpp"
 #include "cases/runner/progress.hpp"
 #include "cases/runner/solver_options.hpp"
@@ -25,17 +27,17 @@
 namespace peristat {
 namespace {
 
-std::atomic<bool> interrupt_requested{false};
-
-void request_interrupt(int signal) {
-  interrupt_requested = true;
-  std::signal(signal, SIG_DFL);  // a second one ends the program at once
-}
-
 void leave_note(const std::filesystem::path& directory) {
   const char* file = std::getenv("PERISTAT_NOTE");
   if (!file || !*file) return;
   std::ofstream(file) << std::filesystem::absolute(directory).string() << '\n';
+}
+
+/// The file as every way to it names it, so that a later run knows it again.
+std::filesystem::path identity(const std::filesystem::path& case_file) {
+  std::error_code error;
+  const std::filesystem::path file = std::filesystem::canonical(case_file, error);
+  return error ? std::filesystem::absolute(case_file) : file;
 }
 
 std::vector<std::string> support_sets(const Case& from) {
@@ -98,9 +100,13 @@ class Recorder {
 
   void accepted(StepRecord record, const AcceptedState& state) {
     const std::size_t points = points_.volume.size();
-    Fields made{state.trial.displacement,    state.trial.gradient,
-                std::vector<double>(points), std::vector<double>(points),
-                std::vector<double>(points), std::vector<double>(points, 0.0)};
+    Fields made{state.trial.displacement,
+                state.trial.gradient,
+                std::vector<double>(points),
+                std::vector<double>(points),
+                std::vector<double>(points),
+                std::vector<double>(points, 0.0),
+                told_histories_.changes(body_.model.bonds, state.history)};
     for (double& force : made.force) force = -force;
     static_cast<void>(assembler_.point_energies(made.displacement, made.energy_density));
     assembler_.point_stretches(made.displacement, made.stretch);
@@ -118,6 +124,7 @@ class Recorder {
     }
     const bool write_fields = record.step % case_.output.every == 0;
     results_.add(record, write_fields ? std::optional(fields) : std::nullopt);
+    if (write_fields) told_histories_.tell(state.history);
     progress_.accepted(record, relative_residual_);
     last_ = std::move(record);
     unwritten_.reset();
@@ -134,8 +141,15 @@ class Recorder {
  private:
   struct Fields {
     std::vector<double> displacement, force, damage, energy_density, stretch, fragment;
+    std::optional<BondHistories> histories;
     [[nodiscard]] StepFields view() const {
-      return {&displacement, &force, &damage, &energy_density, &stretch, &fragment};
+      return {&displacement,
+              &force,
+              &damage,
+              &energy_density,
+              &stretch,
+              &fragment,
+              histories ? &*histories : nullptr};
     }
   };
 
@@ -164,9 +178,21 @@ class Recorder {
   const Body& body_;
   std::optional<Fields> unwritten_;  // of the last step, if it only entered the history
   std::vector<char> broken_;         // per bond, in the last accepted state
+  DamageHistories told_histories_;   // in the last state that was written with fields
   double relative_residual_ = 0.0;
   std::optional<StepRecord> last_;
 };
+
+/// What is known of a run before its first step.
+void count(const Body& body, const FreeDofs& free, const RunOptions& options, Summary& summary) {
+  summary.points = body.points.count();
+  summary.free_dofs = free.count();
+  summary.bonds = body.model.bonds.count();
+  if (body.model.triangles) summary.triangles = body.model.triangles->interactions.count();
+  if (body.model.tetrahedra) summary.tetrahedra = body.model.tetrahedra->interactions.count();
+  summary.seconds.neighbourhood = body.seconds_neighbourhood;
+  summary.threads = options.threads;
+}
 
 /// Adds what assembly and linear solver have cost to the summary.
 void add_costs(const Assembler& assembler, const LinearSolver& solver, Summary& summary) {
@@ -241,16 +267,17 @@ std::map<std::string, std::string> versions() {
           {"compiler", fmt::format("GCC {}", __VERSION__)}};
 }
 
-Exit run(const Case& from, const RunOptions& options) {
-  Summary summary;
+namespace {
+
+/// @param results is made as soon as the case is known to be right
+Exit run_case(const Case& from, const RunOptions& options, Progress& progress, Summary& summary,
+              std::optional<Results>& results) {
   std::optional<Stopwatch> total(std::in_place, summary.seconds.total);
-  Progress progress(options.quiet, options.log_file);
   progress.say(from.title.empty() ? from.file : fmt::format("{} ({})", from.title, from.file));
 
   const std::unique_ptr<const Body> made = make_body(from, options.threads);
   const Body& body = *made;
   refuse_unheld_bodies(from, body);
-  std::optional<Results> results;
   std::vector<DecisionRecord> decisions;
   const auto decide = [&](const DecisionRecord& record) {
     decisions.push_back(record);
@@ -274,13 +301,16 @@ Exit run(const Case& from, const RunOptions& options) {
                            body.points.count(), body.model.bonds.count(), free.count(),
                            options.threads));
   for (const std::string& line : describe_interactions(body)) progress.say(line);
+  count(body, free, options, summary);
 
+  heed_interruptions();
   std::vector<ProbeColumns> probes;
   for (const auto& probe : from.probes) probes.push_back(columns_of(probe, from.dimension));
   try {
-    results.emplace(from.output.directory, body.points,
-                    CaseText{from.as_read, from.as_resolved, from.title, versions()},
-                    support_sets(from), probes, neighbour_counts_of(body));
+    results.emplace(
+        from.output.directory, body.points,
+        CaseText{from.as_read, from.as_resolved, from.title, versions(), identity(from.file)},
+        support_sets(from), probes, neighbour_counts_of(body), options.overwrite);
   } catch (const InputError& error) {
     throw located(from, error);
   }
@@ -302,14 +332,12 @@ Exit run(const Case& from, const RunOptions& options) {
   observer.accepted = [&](const StepRecord& record, const AcceptedState& state) {
     recorder.accepted(record, state);
     last_step = record;
+    summary.max_displacement = largest_displacement(state.trial.displacement, from.dimension);
   };
   observer.describe = [&](const InputError& error) {
     return std::string(located(from, error).what());
   };
-  observer.interrupted = [] { return interrupt_requested.load(); };
-  interrupt_requested = false;
-  std::signal(SIGINT, request_interrupt);
-  std::signal(SIGTERM, request_interrupt);
+  observer.interrupted = interruption_requested;
 
   LoadSteppingResult result;
   if (analysis == LinearOutcome::solved) {
@@ -328,17 +356,10 @@ Exit run(const Case& from, const RunOptions& options) {
   const bool completed = result.outcome == Outcome::converged;
   summary.status = status_of(result.outcome);
   if (!completed) summary.reason = failure_reason(result);
-  summary.points = body.points.count();
-  summary.free_dofs = free.count();
-  summary.bonds = body.model.bonds.count();
-  if (body.model.triangles) summary.triangles = body.model.triangles->interactions.count();
-  if (body.model.tetrahedra) summary.tetrahedra = body.model.tetrahedra->interactions.count();
   add_costs(assembler, solver, summary);
   summary.max_displacement = largest_displacement(result.state.displacement, from.dimension);
-  summary.seconds.neighbourhood = body.seconds_neighbourhood;
   summary.seconds.relaxation = result.relaxation_seconds;
   summary.seconds.output = results->seconds_spent();
-  summary.threads = options.threads;
   recorder.finish();
   if (!completed && !interrupted) {
     const Dossier dossier = make_dossier(from, body, result, recorder.last(), decisions);
@@ -360,6 +381,30 @@ Exit run(const Case& from, const RunOptions& options) {
   if (!interrupted) progress.problem("dossier.txt there tells where it failed and what to do");
   if (interrupted) return Exit::interrupted;
   return result.outcome == Outcome::out_of_memory ? Exit::out_of_memory : Exit::not_converged;
+}
+
+}  // namespace
+
+Exit run(const Case& from, const RunOptions& options) {
+  make_write_faults_errors();
+  Progress progress(options.quiet, options.log_file);
+  Summary summary;
+  std::optional<Results> results;
+  try {
+    return run_case(from, options, progress, summary, results);
+  } catch (...) {
+    if (!results) throw;
+    const Failure failure = current_failure();
+    results->fail(summary, failure.message);
+    progress.problem(failure.message);
+    progress.problem(results->what_is_left());
+    if (failure.code == Exit::out_of_memory) {
+      // What HDF5 could not allocate it can't close either: it would end in a segmentation fault.
+      std::fflush(nullptr);
+      std::_Exit(static_cast<int>(failure.code));
+    }
+    return failure.code;
+  }
 }
 
 }  // namespace peristat

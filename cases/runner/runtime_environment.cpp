@@ -1,11 +1,17 @@
 #include "cases/runner/runtime_environment.hpp"
 
 #include <algorithm>
+#include <cerrno>
 #include <cstdlib>
+#include <cstring>
 #include <string>
 
+#include <fcntl.h>
 #include <sched.h>
 #include <unistd.h>
+
+#include "src/input_error.hpp"
+#include "src/machine_error.hpp"
 
 namespace peristat {
 
@@ -26,8 +32,28 @@ int processors() {
 
 }  // namespace
 
+void open_standard_streams() {
+  for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
+    if (fcntl(stream, F_GETFD) >= 0) continue;
+    // The lowest free descriptor is this one, as those below it are open.
+    if (open("/dev/null", O_RDWR) != stream) {
+      throw MachineError(
+          std::string("a standard stream is closed, and /dev/null can't be opened: ") +
+          std::strerror(errno));
+    }
+  }
+}
+
+int most_threads() { return std::max(16, 4 * processors()); }
+
 int choose_threads(int asked_for) {
-  int threads = asked_for > 0 ? asked_for : positive_variable("OMP_NUM_THREADS");
+  if (asked_for > most_threads()) {
+    throw InputError("--threads", std::to_string(asked_for),
+                     "at most " + std::to_string(most_threads()) + " on this machine, which has " +
+                         std::to_string(processors()) + " processors");
+  }
+  int threads = asked_for;
+  if (threads == 0) threads = std::min(positive_variable("OMP_NUM_THREADS"), processors());
   if (threads == 0) threads = processors();
   const int limit = positive_variable("OMP_THREAD_LIMIT");
   return limit > 0 ? std::min(threads, limit) : threads;

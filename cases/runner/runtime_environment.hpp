@@ -2,10 +2,20 @@
 
 namespace peristat {
 
+/// Opens /dev/null in place of each standard stream that the program was started without:
+/// otherwise the first results file would get its descriptor, and what is told.
+/// @throws MachineError if there is no /dev/null
+void open_standard_streams();
+
 /// Threads to use: those asked for on the command line (0 if none were), else OMP_NUM_THREADS, else
 /// the processors that this process may run on; never more than OMP_THREAD_LIMIT, beyond which
-/// OpenBLAS would wait for ever for threads that it does not get.
+/// OpenBLAS would wait for ever for threads that it does not get, and from OMP_NUM_THREADS never
+/// more than there are processors.
+/// @throws InputError (key "--threads") if more are asked for than most_threads
 [[nodiscard]] int choose_threads(int asked_for);
+
+/// What --threads may ask for: 4 per processor, and 16 on any machine. More only take memory.
+[[nodiscard]] int most_threads();
 
 /// Restarts the program once with the environment that its libraries read only while they are
 /// loaded:

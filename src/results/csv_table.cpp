@@ -25,8 +25,10 @@ std::string cell_text(const Cell& cell) {
 }
 
 std::string contents(const std::filesystem::path& file) {
+  std::ifstream rows(file, std::ios::binary);
+  if (!rows) throw OutputError(file.string() + ": can't be read: " + std::strerror(errno), errno);
   std::ostringstream text;
-  text << std::ifstream(file, std::ios::binary).rdbuf();
+  text << rows.rdbuf();
   return text.str();
 }
 
@@ -55,9 +57,9 @@ CsvTable::~CsvTable() {
 
 void CsvTable::open() {
   if (descriptor_ >= 0) ::close(descriptor_);
-  descriptor_ = ::open(file_.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC);
+  descriptor_ = ::open(file_.c_str(), O_WRONLY | O_APPEND | O_NOFOLLOW | O_CLOEXEC);
   if (descriptor_ < 0) {
-    throw OutputError(file_.string() + ": can't be opened: " + std::strerror(errno));
+    throw OutputError(file_.string() + ": can't be opened: " + std::strerror(errno), errno);
   }
 }
 
@@ -78,7 +80,7 @@ void CsvTable::append(const Row& row) {
       const int error = written < 0 ? errno : ENOSPC;
       // A failure to cut the torn row off has nothing to add to the error that is reported.
       [[maybe_unused]] const int ignored = ::ftruncate(descriptor_, static_cast<off_t>(size_));
-      throw OutputError(file_.string() + ": can't be written: " + std::strerror(error));
+      throw OutputError(file_.string() + ": can't be written: " + std::strerror(error), error);
     }
   }
   size_ += line.size();

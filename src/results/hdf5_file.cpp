@@ -1,6 +1,7 @@
 #include "src/results/hdf5_file.hpp"
 
 #include <algorithm>
+#include <new>
 #include <stdexcept>
 #include <utility>
 
@@ -13,7 +14,8 @@ namespace {
 
 static_assert(sizeof(hid_t) == sizeof(std::int64_t));
 
-/// Throws the innermost message of the library's error stack if the result of a call is negative.
+/// Throws the innermost message of the library's error stack if the result of a call is negative;
+/// std::bad_alloc if that is what it is about.
 template <class Result>
 Result checked(Result result, const std::string& action) {
   if (result >= 0) return result;
@@ -25,6 +27,7 @@ Result checked(Result result, const std::string& action) {
     return 0;
   };
   H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, first, &message);
+  if (message.find("memory allocation failed") != std::string::npos) throw std::bad_alloc();
   throw std::runtime_error("HDF5 can't " + action + ": " + message);
 }
 
@@ -244,6 +247,11 @@ void Hdf5File::set_attribute(const std::string& path, const std::string& name,
   std::vector<const char*> pointers;
   for (const std::string& text : texts) pointers.push_back(text.c_str());
   write_attribute(object, name, text_type(), dataspace({pointers.size()}), pointers.data());
+}
+
+bool Hdf5File::has_attribute(const std::string& path, const std::string& name) const {
+  return checked(H5Aexists_by_name(id_, path.c_str(), name.c_str(), H5P_DEFAULT),
+                 "look for attribute " + name) > 0;
 }
 
 void Hdf5File::make_table(const std::string& group, const std::vector<Column>& columns) {

@@ -63,6 +63,8 @@ class Hdf5File {
   void set_attribute(const std::string& path, const std::string& name,
                      const std::vector<std::string>& texts);
 
+  [[nodiscard]] bool has_attribute(const std::string& path, const std::string& name) const;
+
   /// A group with one growing dataset per column, without rows; a '/' in a column's name becomes
   /// '|'.
   void make_table(const std::string& group, const std::vector<Column>& columns);

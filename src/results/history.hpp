@@ -67,6 +67,13 @@ struct DecisionRecord {
   std::string reason;
 };
 
+/// Histories of bonds: the largest stretch that has damaged a bond, -1 for a bond that never fails.
+/// A bond that is not named has the history that was told last, 0 if none was.
+struct BondHistories {
+  std::vector<Index> first_point, second_point;
+  std::vector<double> largest_stretch;
+};
+
 /// State that an accepted step writes; arrays are views and count x dimension (row major) or count.
 struct StepFields {
   const std::vector<double>* displacement = nullptr;    ///< [m]
@@ -75,6 +82,8 @@ struct StepFields {
   const std::vector<double>* energy_density = nullptr;  ///< per point [J/m3]
   const std::vector<double>* stretch = nullptr;   ///< per point, largest of its unbroken bonds
   const std::vector<double>* fragment = nullptr;  ///< per point, number of its floating piece or 0
+  /// Those that have changed since the last step that was written; null without damage.
+  const BondHistories* histories = nullptr;
 };
 
 /// A bond that has broken (a row of broken_bonds.csv).

@@ -2,19 +2,32 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <stdexcept>
+#include <string>
 #include <string_view>
+
+#include "src/machine_error.hpp"
 
 namespace peristat {
 
 /// A file that can't be written (folder gone, disk full, ...); names the file and the system's
 /// reason.
-class OutputError : public std::runtime_error {
+class OutputError : public MachineError {
  public:
-  using std::runtime_error::runtime_error;
+  /// @param cause the system's error number, 0 where there is none
+  explicit OutputError(const std::string& message, int cause = 0)
+      : MachineError(message), cause_(cause) {}
+
+  [[nodiscard]] int cause() const { return cause_; }
+
+ private:
+  int cause_;
 };
 
-/// Creates the file, or replaces its contents.
+/// Whether an error of the system is about the machine's means (room, descriptors, limits of the
+/// shell, a device) and not about the path that was asked for.
+[[nodiscard]] bool is_about_means(int error);
+
+/// Makes a new file in place of what carries the name: a link is replaced, never followed.
 /// @throws OutputError; the file is then removed
 void write_file(const std::filesystem::path& file, std::string_view contents);
 
@@ -23,6 +36,11 @@ void write_file(const std::filesystem::path& file, std::string_view contents);
 /// appended.
 /// @throws OutputError; the file then keeps its old contents
 void publish_file(const std::filesystem::path& file, std::string_view contents);
+
+/// The same, into the room that `reserve_file` has set aside for the path with ".tmp" appended, so
+/// that it works on a full disk.
+/// @throws OutputError
+void publish_reserved_file(const std::filesystem::path& file, std::string_view contents);
 
 /// Sets room on the disk aside, so that later writes up to this size can't find it full; the file
 /// becomes this long.

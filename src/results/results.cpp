@@ -25,10 +25,10 @@ namespace peristat {
 namespace {
 
 constexpr std::size_t master_growth = 1 << 18;  // bytes
-// Generous bounds of what HDF5 needs beside the values of a file and for the views of a step
+// Generous bounds of what HDF5 needs beside the values of a file and for the groups of a step
 // [byte].
 constexpr std::uint64_t room_for_structure = 1 << 16;
-constexpr std::uint64_t room_for_views = 1 << 13;
+constexpr std::uint64_t room_for_step = 1 << 14;
 
 using Clock = std::chrono::steady_clock;
 
@@ -45,6 +45,15 @@ struct Field {
   bool is_vector;
   const std::vector<double>* values;
 };
+
+/// Room for summary.json [byte]: its fixed members, and what it tells of a support or a probe.
+std::uint64_t room_for_summary(const std::vector<std::string>& sets,
+                               const std::vector<ProbeColumns>& probes) {
+  std::uint64_t room = 4096;
+  for (const std::string& set : sets) room += 128 + 6 * set.size();
+  for (const ProbeColumns& probe : probes) room += 128 + 6 * probe.name.size();
+  return room;
+}
 
 struct VectorField {
   std::string name, unit;
@@ -93,13 +102,19 @@ std::vector<Field> present_fields(const StepFields& fields, Index count, int dim
 template <class Write>
 void publish_hdf5(const std::filesystem::path& path, std::uint64_t bytes, Write write) {
   const std::filesystem::path unfinished = temporary(path);
+  const auto discard = [&] {
+    std::error_code ignored;
+    std::filesystem::remove(unfinished, ignored);
+  };
   try {
     auto file = Hdf5File::create(unfinished, bytes + room_for_structure);
     write(file);
     file.close();
+  } catch (const OutputError&) {
+    discard();
+    throw;
   } catch (const std::runtime_error& error) {
-    std::error_code ignored;
-    std::filesystem::remove(unfinished, ignored);
+    discard();
     throw OutputError(path.string() + ": can't be written: " + error.what());
   }
   rename_file(unfinished, path);
@@ -114,6 +129,23 @@ std::vector<std::uint8_t> membership(const Points& points) {
     ++column;
   }
   return matrix;
+}
+
+RunIdentity identity(const CaseText& text) {
+  const auto version = text.versions.find("peristat");
+  return {version == text.versions.end() ? "" : version->second, text.title, text.file, {}};
+}
+
+/// The histories of bonds that have changed, as the group `path`.
+void write_histories(Hdf5File& file, const std::string& path, const BondHistories& changed) {
+  const Hdf5File::Shape shape{changed.largest_stretch.size()};
+  file.make_group(path);
+  file.write(path + "/first_point", changed.first_point, shape,
+             {"1", "lower point of each bond whose history has changed since the step before"});
+  file.write(path + "/second_point", changed.second_point, shape,
+             {"1", "upper point of each bond whose history has changed since the step before"});
+  file.write(path + "/largest_stretch", changed.largest_stretch, shape,
+             {"1", "largest stretch that has damaged the bond; -1: the bond never fails"});
 }
 
 void write_points(Hdf5File& file, const Points& points, const std::vector<PointCounts>& counts) {
@@ -166,15 +198,17 @@ std::int64_t peak_memory_bytes() {
 struct Results::Files {
   Files(const std::filesystem::path& directory, const Points& points, const CaseText& text,
         const std::vector<std::string>& sets, const std::vector<ProbeColumns>& probe_columns,
-        const std::vector<PointCounts>& counts);
+        const std::vector<PointCounts>& counts, bool overwrite);
 
   void add(const StepRecord& record, const std::optional<StepFields>& step_fields);
   void add_fields(const StepRecord& record, const StepFields& step_fields);
-  void write_step(const StepRecord& record, const std::vector<Field>& fields);
+  void write_step(const StepRecord& record, const std::vector<Field>& fields,
+                  const BondHistories* histories);
   void write_views(Hdf5File& file, const std::string& group, const std::string& step,
                    const std::vector<VectorField>& vectors) const;
   void append_pending();
   void publish_xdmf();
+  void publish_summary(const Summary& summary) const;
   void gather_parts();
 
   /// Whether vectors need views of three components (see XdmfSeries).
@@ -185,7 +219,8 @@ struct Results::Files {
   std::vector<std::string> support_sets;
   std::vector<ProbeColumns> probes;
   std::vector<Column> history_header;  // before the folder: a bad probe leaves it alone
-  ResultsFolder folder;
+  ClaimedFolder claimed;
+  const ResultsFolder& folder;
   CsvTable history, iterations, decisions, broken_bonds;
   Hdf5File master;  ///< results.h5 with links to the parts; lives in memory
   XdmfSeries xdmf;
@@ -203,19 +238,22 @@ struct Results::Files {
 Results::Files::Files(const std::filesystem::path& directory, const Points& points,
                       const CaseText& text, const std::vector<std::string>& sets,
                       const std::vector<ProbeColumns>& probe_columns,
-                      const std::vector<PointCounts>& counts)
+                      const std::vector<PointCounts>& counts, bool overwrite)
     : count(points.count()),
       dimension(points.dimension),
       support_sets(sets),
       probes(probe_columns),
       history_header(history_columns(sets, probe_columns)),
-      folder(prepare_results_folder(directory)),
+      claimed(claim_results_folder(directory, identity(text), overwrite)),
+      folder(claimed.paths),
       history(folder.history(), history_header),
       iterations(folder.iterations(), iteration_columns()),
       decisions(folder.decisions(), decision_columns()),
       broken_bonds(folder.broken_bonds(), broken_bond_columns()),
       master(Hdf5File::in_memory(folder.results().string() + " (in memory)", master_growth)),
       xdmf(points.count()) {
+  write_file(temporary(folder.summary()), "");
+  reserve_file(temporary(folder.summary()), room_for_summary(sets, probe_columns));
   master.set_attribute("/", "title", text.title);
   auto versions = text.versions;
   versions.emplace("hdf5", Hdf5File::library_version());
@@ -262,7 +300,8 @@ void Results::Files::write_views(Hdf5File& file, const std::string& group, const
   }
 }
 
-void Results::Files::write_step(const StepRecord& record, const std::vector<Field>& fields) {
+void Results::Files::write_step(const StepRecord& record, const std::vector<Field>& fields,
+                                const BondHistories* histories) {
   WrittenStep step{step_name(record.step), {}};
   const std::string& name = step.name;
   const auto points = static_cast<std::uint64_t>(count);
@@ -276,6 +315,10 @@ void Results::Files::write_step(const StepRecord& record, const std::vector<Fiel
     if (field.is_vector) step.vectors.push_back({field.name, field.label.unit});
   }
 
+  if (histories) {
+    bytes += histories->largest_stretch.size() * (sizeof(double) + 2 * sizeof(Index));
+  }
+
   publish_hdf5(folder.parts() / (name + ".h5"), bytes, [&](Hdf5File& file) {
     file.make_group("/step");
     file.set_attribute("/step", "step", std::int64_t{record.step});
@@ -285,6 +328,7 @@ void Results::Files::write_step(const StepRecord& record, const std::vector<Fiel
       file.write("/step/" + field.name, *field.values, field.is_vector ? vectors : scalars,
                  field.label);
     }
+    if (histories) write_histories(file, "/step/history", *histories);
     if (has_views()) write_views(file, "/xdmf", "/step", step.vectors);
   });
 
@@ -304,12 +348,12 @@ void Results::Files::add(const StepRecord& record, const std::optional<StepField
   }
   last_step = record.step;
 
-  if (!fields.empty()) write_step(record, fields);
+  if (!fields.empty()) write_step(record, fields, step_fields->histories);
   append_pending();
   master.append("/history", history_header, {row});
   publish_file(folder.results(), master.image());
+  totals.add(record);  // accepted: results.h5 has it, whatever becomes of the tables
   history.append(row);
-  totals.add(record);
   convergence.accept(record.step);
   // Its length grows with the steps, so that a run of quick steps would mostly write this file.
   if (!fields.empty()) xdmf_is_behind = true;
@@ -322,7 +366,7 @@ void Results::Files::add_fields(const StepRecord& record, const StepFields& step
                            " after step " + std::to_string(last_step));
   }
   if (!written_steps.empty() && written_steps.back().name == step_name(record.step)) return;
-  write_step(record, present_fields(step_fields, count, dimension));
+  write_step(record, present_fields(step_fields, count, dimension), step_fields.histories);
   publish_file(folder.results(), master.image());
   xdmf_is_behind = true;
 }
@@ -334,6 +378,10 @@ void Results::Files::publish_xdmf() {
   xdmf_time = Clock::now();
 }
 
+void Results::Files::publish_summary(const Summary& summary) const {
+  publish_reserved_file(folder.summary(), summary_json(summary, totals, peak_memory_bytes()));
+}
+
 /// Replaces the links of results.h5 by what they link to and removes the parts.
 void Results::Files::gather_parts() {
   const std::filesystem::path gathered = temporary(folder.results());
@@ -342,7 +390,7 @@ void Results::Files::gather_parts() {
     std::uint64_t room = image.size() + std::filesystem::file_size(folder.parts() / "points.h5") +
                          room_for_structure;
     for (const WrittenStep& step : written_steps) {
-      room += std::filesystem::file_size(folder.parts() / (step.name + ".h5")) + room_for_views;
+      room += std::filesystem::file_size(folder.parts() / (step.name + ".h5")) + room_for_step;
     }
     auto file = Hdf5File::create(gathered, room, image);
     const auto gather = [&](const std::string& part, const std::string& source,
@@ -373,14 +421,13 @@ void Results::Files::gather_parts() {
 
 Results::Results(const std::filesystem::path& directory, const Points& points, const CaseText& text,
                  const std::vector<std::string>& support_sets,
-                 const std::vector<ProbeColumns>& probes, const std::vector<PointCounts>& counts) {
+                 const std::vector<ProbeColumns>& probes, const std::vector<PointCounts>& counts,
+                 bool overwrite) {
   double seconds = 0.0;
-  try {
+  {
     const Stopwatch stopwatch(seconds);
-    files_ = std::make_unique<Files>(directory, points, text, support_sets, probes, counts);
-  } catch (const OutputError& error) {
-    throw InputError("output.directory", directory.string(),
-                     std::string("the folder can't be written: ") + error.what());
+    files_ =
+        std::make_unique<Files>(directory, points, text, support_sets, probes, counts, overwrite);
   }
   files_->seconds = seconds;
 }
@@ -459,12 +506,36 @@ void Results::close(Summary summary) {
     publish_file(files_->folder.convergence(), files_->convergence.csv());
     files_->publish_xdmf();
     files_->gather_parts();
-  } catch (const std::runtime_error&) {
+  } catch (const std::runtime_error& error) {
     failure = std::current_exception();
+    summary.status = "failed";
+    summary.reason = error.what();
   }
-  publish_file(files_->folder.summary(),
-               summary_json(summary, files_->totals, peak_memory_bytes()));
+  files_->publish_summary(summary);
   if (failure) std::rethrow_exception(failure);
+}
+
+void Results::fail(Summary summary, const std::string& reason) noexcept {
+  try {
+    files_->closed = true;
+    summary.status = "failed";
+    summary.reason = reason;
+    files_->publish_summary(summary);
+  } catch (const std::exception&) {
+    // The folder is gone or can't be written, which is what the reason says.
+  }
+}
+
+std::string Results::what_is_left() const {
+  const ResultsFolder& folder = files_->folder;
+  std::error_code error;
+  if (!std::filesystem::exists(folder.results(), error)) {
+    return folder.directory.string() + " is gone: nothing of this run is left there";
+  }
+  const int steps = files_->totals.steps;
+  return (steps == 1 ? "1 accepted step is in "
+                     : std::to_string(steps) + " accepted steps are in ") +
+         folder.directory.string();
 }
 
 double Results::seconds_spent() const { return files_->seconds; }

@@ -15,7 +15,7 @@ namespace peristat {
 
 /// Everything of summary.json that the step records do not hold.
 struct Summary {
-  std::string status;  ///< "completed", "not_converged", "interrupted"
+  std::string status;  ///< "completed", "not_converged", "inconsistent", "interrupted", "failed"
   std::string reason;  ///< sentence for a person when the status is not "completed"
   Index points = 0;
   std::int64_t free_dofs = 0, bonds = 0, triangles = 0, tetrahedra = 0;
@@ -32,6 +32,7 @@ struct CaseText {
   std::string as_read, as_resolved;
   std::string title{};
   std::map<std::string, std::string> versions{};  ///< "peristat", "hdf5", ... -> "1.0.0"
+  std::filesystem::path file{};  ///< absolute; a later run of the same file may replace this one
 };
 
 /// Numbers of every point that do not change, e.g. counts of neighbours.
@@ -50,7 +51,8 @@ struct ProbeColumns {
 };
 
 /// Writer of a results folder (docs/results.md): results.h5, results.xdmf, history.csv,
-/// iterations.csv, decisions.csv, broken_bonds.csv, summary.json, dossier.txt.
+/// iterations.csv, decisions.csv, broken_bonds.csv, summary.json, dossier.txt, and peristat.json,
+/// which it holds locked: a folder has one writer.
 ///
 /// A kill at any moment leaves every accepted step readable: each step's fields go to a file of
 /// their own, `parts/NNNNNN.h5`, and results.h5, which links to them, is published by renaming a
@@ -63,13 +65,16 @@ struct ProbeColumns {
 /// what was published before stays readable.
 class Results {
  public:
-  /// Creates the folder and its files; a results folder of an earlier run is replaced, other files
-  /// are left alone.
-  /// @throws InputError (key "output.directory") if the folder can't be written, or holds files but
-  ///         no earlier results; (key "probe") if a probe's name is the name of another column
+  /// Creates the folder and its files; an earlier run of the same case file is replaced, other
+  /// files are left alone.
+  /// @param overwrite also an earlier run of another case is replaced
+  /// @throws InputError (key "output.directory") if the folder can't be written or must be left
+  ///         alone, see claim_results_folder; (key "probe") if a probe's name is the name of
+  ///         another column
+  /// @throws OutputError if the disk is full, or the like
   Results(const std::filesystem::path& directory, const Points& points, const CaseText& text,
           const std::vector<std::string>& support_sets, const std::vector<ProbeColumns>& probes,
-          const std::vector<PointCounts>& counts = {});
+          const std::vector<PointCounts>& counts = {}, bool overwrite = false);
   ~Results();
   Results(const Results&) = delete;
   Results& operator=(const Results&) = delete;
@@ -94,8 +99,17 @@ class Results {
 
   /// Writes summary.json (counts and energies are taken from the last step record, sums of
   /// iterations from all) and gathers the parts. Nothing can be added afterwards. If the parts
-  /// can't be gathered, summary.json is still written and everything stays readable where it is.
+  /// can't be gathered, summary.json tells it (status "failed") and everything stays readable where
+  /// it is.
+  /// @throws OutputError
   void close(Summary summary);
+
+  /// Ends a run that failed: writes summary.json, if it can be, with status "failed" and the
+  /// reason, into room that was set aside at the start. What was published stays where it is.
+  void fail(Summary summary, const std::string& reason) noexcept;
+
+  /// What a person finds of the run, in a sentence.
+  [[nodiscard]] std::string what_is_left() const;
 
   [[nodiscard]] double seconds_spent() const;  ///< wall time inside this class [s]
 

@@ -94,6 +94,44 @@ class Sweep(unittest.TestCase):
     def summaries(self):
         return sorted((path, path.stat().st_mtime_ns) for path in self.out.glob("*/summary.json"))
 
+    # ---- what belongs to others ----
+
+    def test_files_of_others_are_not_replaced(self):
+        for name in ["sweep.csv", "sweep.png"]:
+            shutil.rmtree(self.out, ignore_errors=True)
+            self.out.mkdir()
+            (self.out / name).write_text("a,b\n1,2\n")
+            run = self.sweep("--vary", "loading.steps=1")
+            self.assert_ends(run, 2)
+            self.assertIn(name, run.stderr)
+            self.assertEqual([path.name for path in self.out.iterdir()], [name])
+            self.assertEqual((self.out / name).read_text(), "a,b\n1,2\n")
+
+    def test_results_of_another_case_are_replaced_on_demand_only(self):
+        self.write("other.toml", STRIP.replace("200e9", "100e9"))
+        self.assert_ends(self.sweep("--vary", "loading.steps=1"), 0, "done")
+        before = self.summaries()
+        refused = self.sweep("--vary", "loading.steps=1", case="other.toml")
+        self.assert_ends(refused, 2, "exit code 2: refused")
+        self.assertIn("another case", refused.stderr)
+        self.assertEqual(self.summaries(), before)
+        self.assert_ends(self.sweep("--vary", "loading.steps=1", "--overwrite", case="other.toml"), 0, "done")
+
+    def test_a_fault_of_the_machine_ends_the_sweep(self):
+        command = self.command("strip.toml", "--vary", "loading.steps=1,2", "--output", "out")
+        run = subprocess.run(["bash", "-c", 'ulimit -f 8; exec "$@"', "bash", *map(str, command)], cwd=self.folder,
+                             text=True, stdin=subprocess.DEVNULL, capture_output=True)  # fmt: skip
+        self.assert_ends(run, 5, "exit code 5: the machine failed")
+        self.assertEqual([row["exit_code"] for row in self.rows()], ["5"])
+
+    def test_who_stops_reading_does_not_stop_the_sweep(self):
+        script = '"$@" | head -1; exit "${PIPESTATUS[0]}"'
+        command = self.command("strip.toml", "--vary", "loading.steps=1,2,3", "--output", "out")
+        run = subprocess.run(["bash", "-c", script, "bash", *map(str, command)], cwd=self.folder, text=True,
+                             stdin=subprocess.DEVNULL, capture_output=True)  # fmt: skip
+        self.assertEqual((run.returncode, run.stderr.count("in silence")), (0, 1), run.stderr)
+        self.assertEqual([row["status"] for row in self.rows()], ["completed"] * 3)
+
     # ---- table and picture ------------------------------------------------------------------------
 
     def test_every_combination_is_a_row(self):

@@ -12,7 +12,7 @@ import unittest
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 
 # Prints its arguments; leaves the results folder's path; `run wait` waits for interrupts and counts
-# those of the next half second; `run end CODE` ends with that code.
+# those of the next half second; `run end CODE` ends with that code; `run talk` goes on talking.
 PROGRAM = r"""#!/usr/bin/env bash
 printf '[%s]' "$@"; echo
 [[ ${PERISTAT_NOTE-} ]] && echo "$PWD/some results" >"$PERISTAT_NOTE"
@@ -24,6 +24,11 @@ if [[ ${2-} == wait ]]; then
   for ((i = 0; i < 5; i++)); do sleep 0.1; done
   echo "interrupts=$interrupts"
   exit 130
+fi
+if [[ ${2-} == talk ]]; then
+  trap '' PIPE
+  for ((i = 0; i < 20; i++)); do echo "$i" 2>/dev/null; sleep 0.02; done
+  touch talked
 fi
 [[ ${2-} == end ]] && exit "$3"
 exit 0
@@ -56,10 +61,11 @@ class Launcher(unittest.TestCase):
         self.launcher = root / "peristat"
         self.root = root
 
-    def launch(self, *arguments, launcher=None):
+    def launch(self, *arguments, launcher=None, **environment):
         return subprocess.run(
             [launcher or self.launcher, *arguments],
             cwd=self.folder,
+            env=os.environ | environment,
             stdin=subprocess.DEVNULL,
             capture_output=True,
             text=True,
@@ -85,10 +91,48 @@ class Launcher(unittest.TestCase):
         self.assertNotIn("pictures", result.stdout)
 
     def test_the_exit_code_is_the_programs(self):
-        for code, pictures in [(0, True), (1, False), (2, False), (3, True), (4, False)]:
+        (self.folder / "some results").mkdir()
+        (self.folder / "some results/results.h5").touch()
+        for code, pictures in [(0, True), (1, False), (2, False), (3, True), (4, False), (5, True)]:
             result = self.launch("run", "end", str(code))
             self.assertEqual(result.returncode, code)
             self.assertEqual("pictures" in result.stdout, pictures, code)
+
+    def test_a_folder_that_is_gone_has_no_pictures(self):
+        result = self.launch("run", "end", "5")
+        self.assertEqual((result.returncode, result.stderr), (5, ""))
+        self.assertNotIn("pictures", result.stdout)
+
+    def test_no_folder_for_temporary_files_is_needed(self):
+        result = self.launch("run", "case.toml", TMPDIR="/nowhere")
+        self.assertEqual((result.returncode, result.stderr), (0, ""))
+        self.assertIn(f"pictures of {self.folder}/some results", result.stdout)
+
+    def test_closed_streams_are_opened_before_anything_else(self):
+        (self.root / "build/release/peristat").write_text(
+            '#!/usr/bin/env bash\nfor fd in 0 1 2; do readlink /proc/$$/fd/$fd; done >"$2"\n'
+        )
+        script = f"exec '{self.launcher}' check streams <&- >&- 2>&-"
+        self.assertEqual(subprocess.run(["sh", "-c", script], cwd=self.folder).returncode, 0)
+        streams = (self.folder / "streams").read_text().splitlines()
+        self.assertEqual((streams[0], streams[2]), ("/dev/null", "/dev/null"))
+
+    def test_who_stops_reading_stops_neither_the_run_nor_its_pictures(self):
+        script = f"'{self.launcher}' run talk | head -1; exit \"${{PIPESTATUS[0]}}\""
+        (self.root / "cases/runner/plots/plot.py").write_text(PLOT.replace("sys.exit", 'open("drawn", "w"); sys.exit'))
+        result = subprocess.run(["bash", "-c", script], cwd=self.folder, capture_output=True, text=True, timeout=60)
+        self.assertEqual((result.returncode, result.stderr), (0, ""))
+        self.assertTrue((self.folder / "talked").exists())
+        self.assertTrue((self.folder / "drawn").exists())
+
+    def test_a_program_that_the_system_does_not_start(self):
+        (self.root / "build/release/peristat").write_text("#!/nowhere/interpreter\n")
+        for command in ["run", "check"]:
+            result = self.launch(command, "case.toml")
+            self.assertEqual(result.returncode, 5)
+            self.assertIn("limits of the shell", result.stderr)
+        limited = ["bash", "-c", f"ulimit -v 4000000; '{self.launcher}' run case.toml"]
+        self.assertEqual(subprocess.run(limited, cwd=self.folder, capture_output=True).returncode, 4)
 
     def test_a_failing_plot_changes_no_exit_code(self):
         (self.root / "cases/runner/plots/plot.py").write_text("raise SystemExit(1)")

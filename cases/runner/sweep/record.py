@@ -54,6 +54,7 @@ def _write(folder: Path, settings: list[str]) -> None:
         "files": {file: _checksum(Path(file).read_bytes()) for file in files},
         "summary_sha256": _checksum((folder / "summary.json").read_bytes()),
     }
+    (folder / "sweep.json").unlink(missing_ok=True)  # a link in its place is not followed
     (folder / "sweep.json").write_text(json.dumps(record, indent=2) + "\n")
 
 

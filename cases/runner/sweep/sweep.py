@@ -4,6 +4,7 @@ The program to run is named by the environment variable PERISTAT_PROGRAM, which 
 """
 
 import argparse
+import errno
 import json
 import os
 import sys
@@ -14,14 +15,16 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "plots"))
 
 from program import Ending, Program
 from record import is_done, record_done
-from table import figures, write_table
+from table import figures, is_own_table, write_table
 from variations import WrongInput, combinations, folder_name, read_variations
 
-DONE, BUG, WRONG_INPUT, NOT_CONVERGED, OUT_OF_MEMORY, INTERRUPTED = 0, 1, 2, 3, 4, 130
+DONE, BUG, WRONG_INPUT, NOT_CONVERGED, OUT_OF_MEMORY, MACHINE_FAILED, INTERRUPTED = 0, 1, 2, 3, 4, 5, 130
 STATUS = {DONE: "completed", NOT_CONVERGED: "not_converged", OUT_OF_MEMORY: "out_of_memory",
           INTERRUPTED: "interrupted"}  # fmt: skip
 WORDS = {NOT_CONVERGED: "did not converge", OUT_OF_MEMORY: "out of memory", INTERRUPTED: "interrupted",
-         WRONG_INPUT: "refused"}  # fmt: skip
+         WRONG_INPUT: "refused", MACHINE_FAILED: "the machine failed"}  # fmt: skip
+# Of what can't be written: the disk is full or failing, or a limit of the shell is met.
+FAULTS = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EMFILE, errno.ENFILE, errno.EIO, errno.ENOMEM}
 
 
 @dataclass
@@ -41,6 +44,7 @@ class Sweep:
     combinations: list[Combination]
     directory: Path
     threads: int | None
+    overwrite: bool  # also runs of another case in the folders
 
 
 # ----------------------------------------------------------------------------------------- running
@@ -55,14 +59,14 @@ def run_all(sweep: Sweep, program: Program) -> int:
     for number, combination in enumerate(sweep.combinations):
         if program.interrupted:
             return INTERRUPTED
-        print(f"{number + 1}/{len(sweep.combinations)} {_label(sweep, combination)}: ", end="", flush=True)
+        say(f"{number + 1}/{len(sweep.combinations)} {_label(sweep, combination)}: ", end="")
         if number in skipped:
-            print("skipped (done before)", flush=True)
+            say("skipped (done before)")
             continue
         before = _stamp(combination.folder)
         ending = program.run(_arguments(sweep, combination))
         is_new = _stamp(combination.folder) != before  # else the folder's results are of an earlier run
-        print(_told(ending, combination.folder if is_new else None), flush=True)
+        say(_told(ending, combination.folder if is_new else None))
         if ending.code == WRONG_INPUT:
             print(ending.message, file=sys.stderr)
             return WRONG_INPUT
@@ -70,11 +74,11 @@ def run_all(sweep: Sweep, program: Program) -> int:
             print("  sweep.json could not be written: this combination will be run again", file=sys.stderr)
         rows[number] = _row(sweep, combination, ending.code, is_new)
         _save(sweep, rows)
-        if ending.code == INTERRUPTED:
-            return INTERRUPTED
+        if ending.code in (INTERRUPTED, MACHINE_FAILED):  # it would fail the next ones, too
+            return ending.code
         codes.add(ending.code)
     _save(sweep, rows)
-    print(f"sweep: {sweep.directory / 'sweep.csv'}", flush=True)
+    say(f"sweep: {sweep.directory / 'sweep.csv'}")
     _draw(sweep, [rows[number]["status"] for number in range(len(rows))])
     return _worst(codes)
 
@@ -82,7 +86,17 @@ def run_all(sweep: Sweep, program: Program) -> int:
 def _arguments(sweep: Sweep, combination: Combination) -> list[str]:
     settings = [word for setting in combination.settings for word in ("--set", setting)]
     threads = [] if sweep.threads is None else ["--threads", str(sweep.threads)]
-    return ["run", str(sweep.case), "--quiet", *settings, "--output", str(combination.folder), *threads]
+    overwrite = ["--overwrite"] if sweep.overwrite else []
+    return ["run", str(sweep.case), "--quiet", *settings, "--output", str(combination.folder), *threads, *overwrite]
+
+
+def say(text: str, end: str = "\n") -> None:
+    """Tells the person; where nobody reads any more, the sweep goes on in silence."""
+    try:
+        print(text, end=end, flush=True)
+    except OSError as error:
+        sys.stdout = open(os.devnull, "w")
+        print(f"sweep: standard output can't be written ({error.strerror}): going on in silence", file=sys.stderr)
 
 
 def _row(sweep: Sweep, combination: Combination, code: int, has_results: bool) -> dict:
@@ -145,10 +159,10 @@ def _draw(sweep: Sweep, statuses: list[str]) -> None:
         values = [combination.values for combination in sweep.combinations]
         figure = draw_sweep(sweep.keys, values, folders, statuses)
         if figure is None:
-            print("sweep: no sweep.png: no combination has an accepted step")
+            say("sweep: no sweep.png: no combination has an accepted step")
             return
         figure.savefig(path, pil_kwargs={"compress_level": 4})
-        print(f"sweep: {path}")
+        say(f"sweep: {path}")
     except Exception as error:
         print(f"sweep: {path} could not be drawn ({error}); the table is complete", file=sys.stderr)
 
@@ -162,7 +176,7 @@ def _parser() -> argparse.ArgumentParser:
         description="Runs a case for every combination of the given values, one after the other, skips "
         "what is done, and makes one table (DIR/sweep.csv) and one picture (DIR/sweep.png).",
         epilog="Exit codes: 0 all completed, 2 wrong input, 3 a combination did not converge, 4 one was "
-        "out of memory, 130 interrupted, 1 a bug.",
+        "out of memory, 5 the machine failed (disk full, a limit of the shell), 130 interrupted, 1 a bug.",
     )  # fmt: skip
     parser.add_argument("case", metavar="CASE", help="case file (docs/case-file.md)")
     parser.add_argument("--vary", metavar="KEY=V1,V2,...", action="append", default=[],
@@ -172,6 +186,7 @@ def _parser() -> argparse.ArgumentParser:
                         help="override a key of the case file in all runs; may be repeated")  # fmt: skip
     parser.add_argument("--output", metavar="DIR", type=Path,
                         help="folder of the sweep (default: results/FOLDER_STEM_sweep)")  # fmt: skip
+    parser.add_argument("--overwrite", action="store_true", help="replace results of another case in DIR")
     parser.add_argument("--threads", metavar="N", type=int, help="number of threads (default: all processors)")
     return parser
 
@@ -192,13 +207,18 @@ def read_sweep(arguments: argparse.Namespace) -> Sweep:
     directory = arguments.output or _default_directory(case)
     if directory.exists() and not directory.is_dir():
         raise WrongInput(f"--output {directory}: is no folder")
+    table, picture = directory / "sweep.csv", directory / "sweep.png"
+    foreign = table if table.exists() and not is_own_table(table) else None
+    foreign = picture if picture.exists() and not table.exists() else foreign
+    if foreign:
+        raise WrongInput(f"{foreign} is of no sweep and would be replaced: name another folder (--output)")
     if set('"\\') & set(str(directory)):
         raise WrongInput(f"--output {directory}: must have no quotes and no backslashes")
     found = []
     for values in combinations(variations):
         varied = [f"{key}={value}" for key, value in zip(variations, values)]
         found.append(Combination(values, [*arguments.settings, *varied], directory / folder_name(varied)))
-    return Sweep(case, text, list(variations), found, directory, arguments.threads)
+    return Sweep(case, text, list(variations), found, directory, arguments.threads, arguments.overwrite)
 
 
 def main(words: list[str]) -> int:
@@ -214,6 +234,7 @@ def main(words: list[str]) -> int:
         print(f"peristat sweep: {error}", file=sys.stderr)
     except OSError as error:
         print(f"peristat sweep: {error}", file=sys.stderr)
+        return MACHINE_FAILED if error.errno in FAULTS else WRONG_INPUT
     return WRONG_INPUT
 
 

@@ -69,8 +69,18 @@ def write_table(path: Path, keys: list[str], rows: list[dict]) -> None:
     order = ("peak_reaction", "final_reaction", "probe")
     between.sort(key=lambda column: order.index(column.partition(":")[0]))
     unfinished = path.with_name(path.name + ".tmp")
+    unfinished.unlink(missing_ok=True)  # a link in its place is not followed
     with open(unfinished, "w", newline="", encoding="utf-8", errors="surrogateescape") as file:
         table = csv.DictWriter(file, [*fixed, *between, *COSTS], restval="", lineterminator="\n")
         table.writeheader()
         table.writerows(rows)
     os.replace(unfinished, path)
+
+
+def is_own_table(path: Path) -> bool:
+    """Whether a file is a table of a sweep, by its header."""
+    try:
+        with open(path, newline="", encoding="utf-8", errors="replace") as file:
+            return {"status", "exit_code"} <= set(next(csv.reader(file), []))
+    except OSError:
+        return False

@@ -17,6 +17,7 @@
 #include <unistd.h>
 
 #include "src/input_error.hpp"
+#include "src/machine_error.hpp"
 
 namespace peristat {
 namespace {
@@ -327,8 +328,8 @@ TEST_F(ResultsTest, ClosedFileHoldsEverythingByItself) {
       names.insert(entry.path().filename().string());
     }
     EXPECT_EQ(names, (std::set<std::string>{"broken_bonds.csv", "convergence.csv", "decisions.csv",
-                                            "history.csv", "iterations.csv", "results.h5",
-                                            "results.xdmf", "summary.json"}));
+                                            "history.csv", "iterations.csv", "peristat.json",
+                                            "results.h5", "results.xdmf", "summary.json"}));
     const fs::path alone = base / "alone.h5";
     fs::rename(directory / "results.h5", alone);
     expect_contents(Reader(alone), dimension);
@@ -556,7 +557,9 @@ TEST_F(ResultsTest, AnEarlierRunIsReplacedAndOtherFilesAreKept) {
     add_step(results, 2);
   }
   fs::create_directory(directory / "plots");
+  std::ofstream(directory / "plots" / ".pictures") << "old.png\n";
   std::ofstream(directory / "plots" / "old.png") << "old";
+  std::ofstream(directory / "plots" / "mine.png") << "mine";
   std::ofstream(directory / "plots" / "notes.txt") << "mine";
   std::ofstream(directory / "parts" / "notes.txt") << "mine";
   std::ofstream(directory / "notes.txt") << "mine";
@@ -566,7 +569,7 @@ TEST_F(ResultsTest, AnEarlierRunIsReplacedAndOtherFilesAreKept) {
   EXPECT_FALSE(fs::exists(directory / "summary.json"));
   EXPECT_FALSE(fs::exists(directory / "results.xdmf"));
   EXPECT_FALSE(fs::exists(directory / "parts" / "000001.h5"));
-  for (const char* kept : {"notes.txt", "plots/notes.txt", "parts/notes.txt"}) {
+  for (const char* kept : {"notes.txt", "plots/notes.txt", "plots/mine.png", "parts/notes.txt"}) {
     EXPECT_EQ(read_text(directory / kept), "mine") << kept;
   }
   add_step(results, 1);
@@ -593,6 +596,63 @@ TEST_F(ResultsTest, AFolderThatCannotBeUsedIsRefusedByName) {
   }
   EXPECT_EQ(read_text(base / "file"), "mine");
   EXPECT_EQ(lines(base / "home" / "letter.txt"), std::vector<std::string>{"mine"});
+}
+
+TEST_F(ResultsTest, AnEarlierRunOfAnotherCaseIsReplacedOnDemandOnly) {
+  CaseText first = case_text, second = case_text;
+  first.file = "/cases/first \"quoted\".toml";
+  second.file = "/cases/second.toml";
+  const auto open = [&](const CaseText& text, bool overwrite) {
+    return Results(directory, example_points(2), text, support_sets, probes, {}, overwrite);
+  };
+  {
+    Results results = open(first, false);
+    add_step(results, 1);
+  }
+  EXPECT_THROW(open(second, false), InputError);
+  EXPECT_EQ(Reader(directory / "results.h5").numbers("/history/step"), std::vector<double>{1});
+  { Results results = open(first, false); }
+  { Results results = open(second, true); }
+  EXPECT_THROW(open(first, false), InputError);
+}
+
+TEST_F(ResultsTest, AFolderHasOneWriter) {
+  {
+    Results results = open_results(directory);
+    add_step(results, 1);
+    try {
+      open_results(directory);
+      ADD_FAILURE() << "a second writer was accepted";
+    } catch (const InputError& error) {
+      EXPECT_NE(error.allowed().find(std::to_string(::getpid())), std::string::npos);
+    }
+    add_step(results, 2);
+    results.close({});
+  }
+  expect_contents(Reader(directory / "results.h5"), 2);
+  Results results = open_results(directory);
+}
+
+TEST_F(ResultsTest, HistoriesOfBondsAreWrittenWithTheStep) {
+  Results results = open_results(directory);
+  const ExampleFields fields(1, 2);
+  StepFields views = fields.views();
+  const BondHistories changed{{0, 3}, {2, 5}, {0.02, -1.0}}, none;
+  views.histories = &changed;
+  results.add(example_step(1), views);
+  views.histories = &none;
+  results.add(example_step(2), views);
+  const auto expect_histories = [&] {
+    const Reader file(directory / "results.h5");
+    EXPECT_EQ(file.numbers("/steps/000001/history/first_point"), (std::vector<double>{0, 3}));
+    EXPECT_EQ(file.numbers("/steps/000001/history/second_point"), (std::vector<double>{2, 5}));
+    EXPECT_EQ(file.numbers("/steps/000001/history/largest_stretch"),
+              (std::vector<double>{0.02, -1.0}));
+    EXPECT_EQ(file.shape("/steps/000002/history/largest_stretch"), std::vector<hsize_t>{0});
+  };
+  expect_histories();
+  results.close({});
+  expect_histories();
 }
 
 TEST_F(ResultsTest, AnEmptyFolderIsAccepted) {
@@ -636,6 +696,13 @@ TEST_F(ResultsTest, AFailedWriteIsReportedAndKeepsWhatWasPublished) {
     expect_contents(Reader(directory / "results.h5"), 2);
   }
   EXPECT_EQ(lines(directory / "history.csv").size(), 3u);
+  {
+    // Room for the summary was set aside; the limit is about what lies beyond it.
+    const FileSizeLimit limit(8192);
+    results.fail({}, "the disk is full");
+  }
+  EXPECT_NE(read_text(directory / "summary.json").find("the disk is full"), std::string::npos);
+  EXPECT_NE(results.what_is_left().find("2 accepted steps"), std::string::npos);
 }
 
 TEST_F(ResultsTest, AFailedGatheringIsReportedAndKeepsTheParts) {
@@ -645,10 +712,12 @@ TEST_F(ResultsTest, AFailedGatheringIsReportedAndKeepsTheParts) {
   // results.h5 still fits with its links, not with the contents of the parts.
   {
     const FileSizeLimit limit(fs::file_size(directory / "results.h5") + 2000);
-    EXPECT_THROW(results.close({}), std::runtime_error);
+    EXPECT_THROW(results.close({}), MachineError);
   }
   expect_contents(Reader(directory / "results.h5"), 2);
-  EXPECT_TRUE(fs::exists(directory / "summary.json"));
+  const std::string summary = read_text(directory / "summary.json");
+  EXPECT_NE(summary.find("\"status\": \"failed\""), std::string::npos);
+  EXPECT_NE(summary.find("parts/"), std::string::npos);
   EXPECT_FALSE(fs::exists(directory / "results.h5.tmp"));
 }
 
@@ -656,7 +725,8 @@ TEST_F(ResultsTest, AFolderThatDisappearsIsReported) {
   Results results = open_results(directory);
   add_step(results, 1);
   fs::remove_all(directory);
-  EXPECT_THROW(results.add(example_step(2), ExampleFields(2, 2).views()), std::runtime_error);
+  EXPECT_THROW(results.add(example_step(2), ExampleFields(2, 2).views()), MachineError);
+  EXPECT_NE(results.what_is_left().find("is gone"), std::string::npos);
 }
 
 /// An accepted step of a run, told by the child that is going to be killed.

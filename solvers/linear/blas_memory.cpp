@@ -1,0 +1,102 @@
+#include "solvers/linear/blas_memory.hpp"
+
+#include <algorithm>
+#include <cstdint>
+#include <cstdlib>
+#include <cstring>
+#include <new>
+#include <string>
+#include <system_error>
+#include <thread>
+#include <vector>
+
+#include <cblas.h>
+#include <sched.h>
+#include <unistd.h>
+
+#include "src/address_space.hpp"
+#include "src/machine_error.hpp"
+
+namespace peristat {
+namespace {
+
+// Of OpenBLAS on x86-64: 32 MB << 2; measured as the growth of the address space per thread.
+constexpr std::size_t buffer_bytes = std::size_t(128) << 20;
+// What else is allocated while libraries are loaded.
+constexpr std::size_t loading_bytes = std::size_t(16) << 20;
+constexpr int most_buffers = 128;  // OpenBLAS of Debian takes no more threads
+
+/// Value of a variable among "NAME=value", or 0.
+int positive_variable(char** environment, const char* name) {
+  const std::size_t length = std::strlen(name);
+  for (char** entry = environment; *entry; ++entry) {
+    if (std::strncmp(*entry, name, length) == 0 && (*entry)[length] == '=') {
+      return std::max(0, std::atoi(*entry + length + 1));
+    }
+  }
+  return 0;
+}
+
+int processors() {
+  cpu_set_t allowed;
+  CPU_ZERO(&allowed);
+  return sched_getaffinity(0, sizeof allowed, &allowed) == 0 ? std::max(1, CPU_COUNT(&allowed)) : 1;
+}
+
+#if !defined(__SANITIZE_ADDRESS__)
+/// Runs before the initialisers of all libraries, so it may only use what needs none.
+void require_room_to_load(int, char**, char** environment) {
+  int buffers = std::min(processors(), most_buffers);
+  for (const char* name : {"OPENBLAS_NUM_THREADS", "GOTO_NUM_THREADS", "OMP_NUM_THREADS"}) {
+    if (const int threads = positive_variable(environment, name)) {
+      buffers = std::min(buffers, threads);
+      break;
+    }
+  }
+  if (has_address_space(std::size_t(buffers) * buffer_bytes + loading_bytes)) return;
+  constexpr char message[] =
+      "peristat: too little address space to start: the shell allows less than the libraries and "
+      "their 134 MB per thread take. See \"ulimit -v\"; fewer threads (OMP_NUM_THREADS=1) take "
+      "less\n";
+  [[maybe_unused]] const ssize_t ignored = write(STDERR_FILENO, message, sizeof message - 1);
+  _exit(4);
+}
+
+[[gnu::section(".preinit_array"),
+  gnu::used]] void (*before_libraries)(int, char**, char**) = require_room_to_load;
+#endif
+
+/// As many threads as OpenMP will start, at once, and ended again.
+void try_threads(int count) {
+  std::vector<std::jthread> team;
+  for (int thread = 0; thread < count; ++thread) {
+    team.emplace_back([](const std::stop_token& stop) {
+      while (!stop.stop_requested()) std::this_thread::yield();
+    });
+  }
+}
+
+}  // namespace
+
+void claim_blas_memory(int threads) {
+  const int buffers = std::min(threads, most_buffers) + 1;
+  const int taken = std::min({threads, processors(), most_buffers});
+  if (!has_address_space(std::size_t(buffers - taken) * buffer_bytes)) throw std::bad_alloc();
+  openblas_set_num_threads(threads);
+  // The caller's own buffer is taken by its first product that is not a tiny one.
+  constexpr int size = 64;
+  std::vector<double> a(std::size_t(size) * size, 1.0), c(a.size());
+  cblas_dgemm(CblasColMajor, CblasNoTrans, CblasNoTrans, size, size, size, 1.0, a.data(), size,
+              a.data(), size, 0.0, c.data(), size);
+  try {
+    try_threads(threads - 1);
+  } catch (const std::system_error& error) {
+    if (!has_address_space(std::size_t(threads) * loading_bytes)) throw std::bad_alloc();
+    throw MachineError(std::string("the system gives no ") + std::to_string(threads) +
+                       " threads: " + error.what());
+  }
+#pragma omp parallel num_threads(threads)
+  {}
+}
+
+}  // namespace peristat

@@ -1,0 +1,202 @@
+"""The histories of bonds in the results: with them a reader rebuilds every state from outside."""
+
+import csv
+import math
+import os
+import pathlib
+import subprocess
+import tempfile
+import tomllib
+import unittest
+
+import h5py
+import numpy
+
+PROGRAM = os.environ["PERISTAT_PROGRAM"]
+NEVER_FAILS = -1.0
+
+# 20 x 10 points, half cut at x = 10 mm; a row along the upper edge never fails.
+STRIP = """\
+dimension = 2
+[lattice]
+spacing = 1e-3
+thickness = 1e-3
+[[lattice.shape]]
+add = "box"
+min = [0.0, 0.0]
+max = [0.02, 0.01]
+[[lattice.layer]]
+name = "left"
+side = "x-"
+[[lattice.layer]]
+name = "right"
+side = "x+"
+[[set]]
+name = "strong"
+where = "y > 9e-3"
+[[crack]]
+from = [0.01, -1e-3]
+to = [0.01, 0.0043]
+[material]
+micromodulus = 1e22
+[material.damage]
+law = "tanh"
+onset = 0.015
+critical = 0.020
+no_fail = ["strong"]
+[[support]]
+set = "left"
+displacement = [0, 0]
+[[support]]
+set = "right"
+displacement = ["5e-4*load", "0"]
+[solver]
+mode = "adaptive"
+[relaxation]
+steps = 20
+"""
+
+
+class Run:
+    """What a run has left, and the histories as its reader rebuilds them."""
+
+    def __init__(self, folder):
+        with h5py.File(folder / "results.h5") as file:
+            case = tomllib.loads(file["case/as_resolved"][()].decode())
+            self.law, self.micromodulus = case["material"]["damage"], case["material"]["micromodulus"]
+            self.places, self.volume = file["points/reference"][...], file["points/volume"][...]
+            sets = list(file["points/set_ids"].attrs["sets"])
+            in_set = lambda name: file["points/set_ids"][:, sets.index(name)] == 1
+            self.strong, self.held = in_set("strong"), in_set("left") | in_set("right")
+            self.steps = [{name: item[...] for name, item in group.items() if name != "history"}
+                          | {"number": group.attrs["step"]} for group in file["steps"].values()]  # fmt: skip
+            self.changes = [{name: item[...] for name, item in group["history"].items()}
+                            for group in file["steps"].values()]  # fmt: skip
+        with open(folder / "broken_bonds.csv", newline="") as table:
+            self.broken = [(int(row["step"]), int(row["first_point"]), int(row["second_point"]))
+                           for row in csv.DictReader(table)]  # fmt: skip
+
+    def histories(self):
+        """After each step with fields: bond -> largest stretch, of the bonds that are not as new."""
+        known = {}
+        for changed in self.changes:
+            bonds = zip(changed["first_point"].tolist(), changed["second_point"].tolist())
+            known |= dict(zip(bonds, changed["largest_stretch"].tolist()))
+            yield dict(known)
+
+    def bonds(self):
+        """Bonds within the horizon that do not touch the crack, as the lattice leaves them."""
+        reach = 3.015e-3
+        for i, at in enumerate(self.places):
+            for j in range(i + 1, len(self.places)):
+                there = self.places[j]
+                if math.dist(at, there) > reach:
+                    continue
+                if (at[0] - 0.01) * (there[0] - 0.01) < 0.0:
+                    share = (0.01 - at[0]) / (there[0] - at[0])
+                    if at[1] + share * (there[1] - at[1]) <= 0.0043:
+                        continue
+                yield i, j
+
+    def integrity(self, largest):
+        """Eq. 12 of [ADAPT]."""
+        onset, critical, rate = self.law["onset"], self.law["critical"], self.law["rate"]
+        if largest <= onset:
+            return 1.0
+        if largest >= critical:
+            return 0.0
+        return 0.5 * (1.0 - math.tanh(rate * (onset + critical - 2.0 * largest) / (onset - critical)))
+
+
+class Histories(unittest.TestCase):
+    RUNS = {
+        "adaptive": [],
+        "transient": ["solver.mode=relaxation", "relaxation.breaking=transient"],
+        "adaptive and transient": ["relaxation.breaking=transient"],
+        "every third": ["relaxation.breaking=transient", "output.every=3"],
+        "newton": ["solver.mode=newton", "loading.steps=40", "loading.smallest_step=0.005",
+                   'material.damage.law="tanh_continuous"'],
+    }  # fmt: skip
+
+    @classmethod
+    def setUpClass(cls):
+        folder = tempfile.TemporaryDirectory(prefix="peristat_histories_")
+        cls.addClassCleanup(folder.cleanup)
+        base = pathlib.Path(folder.name)
+        (base / "strip.toml").write_text(STRIP)
+        cls.runs = {}
+        for name, settings in cls.RUNS.items():
+            words = [word for setting in settings for word in ("--set", setting)]
+            ended = subprocess.run([PROGRAM, "run", "strip.toml", "--quiet", "--threads", "2", "--output", name, *words],
+                                   cwd=base, text=True, timeout=300, stdin=subprocess.DEVNULL,
+                                   capture_output=True)  # fmt: skip
+            assert ended.returncode == 0, (name, ended)
+            cls.runs[name] = Run(base / name)
+
+    def test_replayed_they_give_the_broken_bonds_of_every_step(self):
+        for name, run in self.runs.items():
+            with self.subTest(name):
+                self.assertGreater(len(run.steps), 3)
+                for step, known in zip(run.steps, run.histories()):
+                    broken = {bond for bond, largest in known.items() if largest >= run.law["critical"]}
+                    told = {(first, second) for number, first, second in run.broken if number <= step["number"]}
+                    self.assertEqual(broken, told)
+                self.assertGreater(len(broken), 20)
+
+    def test_they_are_told_when_they_change_and_never_heal(self):
+        for name, run in self.runs.items():
+            with self.subTest(name):
+                known = {}
+                for changed in run.changes:
+                    bonds = list(zip(changed["first_point"].tolist(), changed["second_point"].tolist()))
+                    self.assertEqual(bonds, sorted(set(bonds)))
+                    for bond, largest in zip(bonds, changed["largest_stretch"].tolist()):
+                        if largest != NEVER_FAILS:
+                            self.assertGreater(largest, known.get(bond, run.law["onset"]))
+                            self.assertLess(known.get(bond, 0.0), run.law["critical"])
+                        known[bond] = largest
+        # Relaxation begins at load 0, long before damage: steps without a change are told, too.
+        self.assertEqual(len(self.runs["transient"].changes[1]["largest_stretch"]), 0)
+
+    def test_bonds_that_never_fail_are_told_once_and_cut_ones_never(self):
+        for name, run in self.runs.items():
+            with self.subTest(name):
+                bonds = set(run.bonds())
+                never = {bond for bond in bonds if run.strong[list(bond)].any()}
+                first, last = list(run.histories())[0], list(run.histories())[-1]
+                for known in (first, last):
+                    self.assertEqual({bond for bond, largest in known.items() if largest == NEVER_FAILS}, never)
+                self.assertLessEqual(set(last), bonds)
+
+    def test_with_them_every_accepted_state_is_rebuilt(self):
+        for name in ("transient", "adaptive and transient", "every third", "adaptive"):
+            run = self.runs[name]
+            bonds = numpy.array(list(run.bonds()))
+            i, j = bonds.T
+            length = numpy.linalg.norm(run.places[j] - run.places[i], axis=1)
+            for step, known in list(zip(run.steps, run.histories()))[-3:]:
+                with self.subTest(f"{name}, step {step['number']}"):
+                    left = numpy.array([run.integrity(known.get(bond, 0.0)) for bond in map(tuple, bonds.tolist())])
+                    whole, lost = numpy.zeros(len(run.places)), numpy.zeros(len(run.places))
+                    for end in (i, j):
+                        numpy.add.at(whole, end, 1.0)
+                        numpy.add.at(lost, end, 1.0 - left)
+                    # sums of thirty numbers of order one, in another order
+                    numpy.testing.assert_allclose(step["damage"], lost / whole, atol=1e-13)
+
+                    arm = run.places[j] - run.places[i] + step["displacement"][j] - step["displacement"][i]
+                    present = numpy.linalg.norm(arm, axis=1)
+                    size = run.micromodulus * left * (present / length - 1.0) * run.volume[i] * run.volume[j]
+                    force = numpy.zeros_like(run.places)
+                    for end, sign in ((i, 1.0), (j, -1.0)):
+                        numpy.add.at(force, end, sign * (size / present)[:, None] * arm)
+                    # stretches of 1e-2 as differences of two lengths: 1e-16 / 1e-2 of the largest force
+                    numpy.testing.assert_allclose(force, step["force"], atol=1e-13 * abs(size).max() * 30)
+                    # equilibrium to the default tolerance of 1e-10
+                    free = ~run.held
+                    scale = numpy.linalg.norm(step["force"][run.held])
+                    self.assertLess(numpy.linalg.norm(force[free]), 1e-9 * scale)
+
+
+if __name__ == "__main__":
+    unittest.main()
