@@ -98,9 +98,11 @@ class Mechanics:
             value[loading] = base + self.law.moment(stretch[loading])
         return value
 
-    def _bond_tension(self, stretch, history):
-        """phi' / C1."""
+    def _bond_tension(self, stretch, history, held=False):
+        """phi' / C1; with held damage every bond follows its secant."""
         value = self.integrity(history) * stretch
+        if held:
+            return value
         loading = self._is_loading(stretch, history)
         if loading.any():
             value[loading] = self.law.integrity(stretch[loading]) * stretch[loading]
@@ -136,7 +138,7 @@ class Mechanics:
         history = self.no_history() if history is None else history
         return sum(part.sum() for part in self.energies(u, history).values())
 
-    def gradient(self, u, history=None, absolute=False):
+    def gradient(self, u, history=None, absolute=False, held=False):
         """Derivative of the energy [N], count x dimension; or sums of magnitudes, for round-off."""
         history = self.no_history() if history is None else history
         total = numpy.zeros(self.body.reference.shape, numpy.asarray(u).dtype)
@@ -144,7 +146,10 @@ class Mechanics:
             tuples = self.body.tuples[order]
             change = arms_of(tuples, u)
             relative = relative_change(reference, change)
-            slope = self._bond_tension(relative, history) if order == 1 else self._kept(order, history) * relative
+            if order == 1:
+                slope = self._bond_tension(relative, history, held)
+            else:
+                slope = self._kept(order, history) * relative
             sign = numpy.sign(self.body.measure[order])
             slope = slope * self.body.constants[order] * self.body.weight[order] * sign
             pulls = measure_gradients([r + c for r, c in zip(reference, change)])
