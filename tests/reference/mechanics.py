@@ -10,6 +10,14 @@ from tests.reference.laws import Elastic, Law
 STEP = 1e-30  # of complex steps: its square vanishes beside 1, so that there is no truncation
 
 
+def add_at(total, index, values):
+    """total[index] += values, also where an index repeats; many times faster than numpy.add.at."""
+    for axis in range(total.shape[1]):
+        total[:, axis] += numpy.bincount(index, values[:, axis].real, minlength=len(total))
+        if total.dtype == complex:
+            total[:, axis] += 1j * numpy.bincount(index, values[:, axis].imag, minlength=len(total))
+
+
 def dot(a, b):
     return (a * b).sum(axis=-1)
 
@@ -157,8 +165,8 @@ class Mechanics:
                 force = slope[:, None] * pull
                 if absolute:
                     force = -numpy.abs(force)
-                numpy.add.at(total, tuples[:, k], force)
-                numpy.add.at(total, tuples[:, 0], -force)
+                add_at(total, tuples[:, k], force)
+                add_at(total, tuples[:, 0], -force)
         return numpy.abs(total) if absolute else total
 
     def tangent(self, u, history=None):
