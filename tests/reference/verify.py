@@ -99,7 +99,7 @@ class Verification:
         row, prescribed = self.rows[step.number], self.conditions.prescribed
         gradient = mechanics.gradient(step.displacement, history)
         magnitude = mechanics.gradient(step.displacement, history, absolute=True)
-        largest = max(magnitude.max(), 1e-300)
+        largest = magnitude.max() + 1e-4 * self.whole_force(mechanics, step)
         self.compare(step, "force", step.force, -gradient, largest)
         target = self.conditions.displacement(step.load)
         reach = max(numpy.abs(target).max(), 1e-300)
@@ -112,6 +112,13 @@ class Verification:
         if mechanics is self.mechanics:
             self.judge_damage(mechanics, step, row, history)
         self.judge_work(mechanics, step, row, old, gradient, external)
+
+    def whole_force(self, mechanics, step):
+        """What a whole bond would bear at the largest displacement [N]: rounding of displacements
+        shows up as a few units of round-off of it, also where all bonds are broken or slack."""
+        body = mechanics.body
+        reach = min(numpy.abs(step.displacement).max() / body.lengths.min(), 1.0)
+        return body.constants[1] * body.weight[1].max() * reach
 
     def unheld(self, step, old):
         """Points that may be pinned or have left the equations in this step."""
@@ -136,7 +143,7 @@ class Verification:
         for held in (False, True) if self.case["solver"]["mode"] == "adaptive" else (False,):
             norms.append(numpy.linalg.norm((mechanics.gradient(jumped, past, held=held) - external)[~prescribed]))
         scale = max(norms)
-        floor = 8 * UNIT_ROUND_OFF * numpy.linalg.norm(magnitude)
+        floor = 8 * UNIT_ROUND_OFF * (numpy.linalg.norm(magnitude) + self.whole_force(mechanics, step))
         residual = numpy.linalg.norm(out_of_balance[free])
         # A tenth more: the program's scale has the same three norms in its own rounding and its own
         # idea of the jump that a cut or relaxed step begins with.
@@ -166,7 +173,8 @@ class Verification:
     def judge_energies(self, mechanics, step, row, old, history):
         energies = mechanics.energies(step.displacement, history)
         stored = sum(part.sum() for part in energies.values())
-        scale = max(abs(stored), abs(row["external_work"]), abs(row["dissipated_energy"]), 1e-300)
+        scale = max(abs(stored), abs(row["external_work"]), abs(row["dissipated_energy"]))
+        scale += 1e-5 * self.whole_force(mechanics, step) * numpy.abs(step.displacement).max()
         self.compare(step, "stored energy", row["stored_energy"], stored, scale)
         dissipated = mechanics.dissipated(history)
         brittle_cpd = mechanics.body.is_cpd and mechanics.law.onset < numpy.inf
@@ -210,7 +218,8 @@ class Verification:
         before = mechanics.gradient(old.displacement, old.history if mechanics is self.mechanics else mechanics.no_history())
         pull = numpy.where(prescribed, before + gradient, self.conditions.force(old.load) + external) / 2
         work = float((pull * (step.displacement - old.displacement)).sum())
-        scale = max(abs(row["external_work"]), numpy.abs(pull * (step.displacement - old.displacement)).sum(), 1e-300)
+        scale = max(abs(row["external_work"]), numpy.abs(pull * (step.displacement - old.displacement)).sum())
+        scale += 1e-5 * self.whole_force(mechanics, step) * numpy.abs(step.displacement).max()
         self.compare(step, "work", row["external_work"] - old.external_work, work, scale)
 
     def judge_summary(self, old):
