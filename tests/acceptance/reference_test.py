@@ -105,6 +105,21 @@ class Clouds(unittest.TestCase):
                 compared += 1
         self.assertEqual(compared, 16)
 
+    def test_cpd_of_few_and_nearly_flat_points(self):
+        """Where flatness factors lie between 0 and 1, and where those of a point sum up to less than 1."""
+        between = below = 0
+        for dimension, count in itertools.product((2, 3), (7, 8, 9, 10)):
+            with self.subTest(dimension=dimension, count=count):
+                material = {"model": "cpd", "c1": 2.0, "c2": 0.7, **({"c3": 0.4} if dimension == 3 else {})}
+                path = random_cloud(self.random, self.folder, dimension, count=count, horizon=1.5,
+                                    material=material)  # fmt: skip
+                mechanics, _ = self.compare(path, 0.05, 3.0)
+                for factor in mechanics.body.flatness.values():
+                    between += int(((factor > 0.01) & (factor < 0.99)).sum())
+                below += sum(int(((n > 0) & (n < 1)).sum()) for n in mechanics.body.factor_sums.values())
+        self.assertGreater(between, 10)
+        self.assertGreater(below, 5)
+
 
 if __name__ == "__main__":
     unittest.main()

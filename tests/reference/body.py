@@ -6,7 +6,6 @@ import math
 import numpy
 
 HORIZON_TOLERANCE = 1e-8
-FLATNESS = 1e-6
 
 
 def pairs_within(reference, radius):
@@ -97,6 +96,7 @@ class Body:
         self.cross_section = case.cross_section
         self.is_cpd = case["material"]["model"] == "cpd"
         self.tuples, self.weight = {}, {}
+        self.flatness, self.factor_sums = {}, {}  # cpd: g of interactions, and their sums at points
         if self.is_cpd:
             self._make_cpd()
         else:
@@ -190,26 +190,35 @@ class Body:
             if order > self.dimension:
                 continue
             tuples = cliques(pairs, len(self.volume), order + 1)
-            tuples = tuples[self._flat_free(tuples, self.reference)]
+            factor = self._flatness(tuples, self.reference, self.volume / self.cross_section)
+            tuples, factor = tuples[factor > 0], factor[factor > 0]
             if bulk_weights:
                 count = self._bulk_count(ball, order)
                 effective = numpy.full(len(self.volume), volume**order / count if count else 0.0)
             else:
-                ordered = math.factorial(order) * numpy.bincount(tuples.ravel(), minlength=len(self.volume))
+                number = sum(self._sum_over(tuples[:, k], factor) for k in range(order + 1))
+                self.factor_sums[order] = number
+                # A point's last interaction must not keep its weight by being the only one.
+                number = numpy.where((number > 0) & (number < 1), (1 + number**2) / 2, number)
+                ordered = math.factorial(order) * number
                 effective = numpy.divide(own_volume**order, ordered, out=numpy.zeros(len(ordered)), where=ordered > 0)
-            self.tuples[order] = tuples
-            self.weight[order] = constant * (self.volume * effective)[tuples].mean(axis=1)
+            self.tuples[order], self.flatness[order] = tuples, factor
+            self.weight[order] = constant * factor * (self.volume * effective)[tuples].mean(axis=1)
 
-    def _flat_free(self, tuples, places):
+    def _flatness(self, tuples, places, cells):
+        """g(|M| / M0): 0 for what is flat, 1 from three quarters of a cell on."""
         order = tuples.shape[1] - 1
-        return numpy.abs(measure(arms_of(tuples, places))) > FLATNESS * self.horizon**order
+        cell = (cells ** (order / self.dimension))[tuples].mean(axis=1)
+        share = numpy.clip(2 * numpy.abs(measure(arms_of(tuples, places))) / cell - 0.5, 0, 1)
+        return share**2 * (3 - 2 * share)
 
     def _bulk_count(self, ball, order):
         """Ordered pairs or triplets of a bulk point's neighbours."""
         places = numpy.concatenate([numpy.zeros((1, self.dimension)), ball])
         tuples = cliques(pairs_within(places, self.horizon), len(places), order + 1)
         tuples = tuples[tuples[:, 0] == 0]
-        return math.factorial(order) * int(self._flat_free(tuples, places).sum())
+        cells = numpy.full(len(places), self.spacing**self.dimension)
+        return math.factorial(order) * self._flatness(tuples, places, cells).sum()
 
     # ---- cracks that are there from the start ---------------------------------------------------
 
