@@ -187,7 +187,7 @@ class Body:
         self.tuples[1] = pairs
         self.weight[1] = (self.volume * effective)[pairs].mean(axis=1)
         for order, constant in ((2, 2), (3, 6)):
-            if order > self.dimension:
+            if order > self.dimension or self.constants[order] == 0:
                 continue
             tuples = cliques(pairs, len(self.volume), order + 1)
             factor = self._flatness(tuples, self.reference, self.volume / self.cross_section)
@@ -272,8 +272,8 @@ def segments_meet_polygon(vertices, start, end):
         normal += numpy.cross(a - vertices[0], b - vertices[0])
     normal /= numpy.linalg.norm(normal)
     below, above = (start - vertices[0]) @ normal, (end - vertices[0]) @ normal
-    with numpy.errstate(divide="ignore", invalid="ignore"):
-        at = start + (below / (below - above))[:, None] * (end - start)
+    with numpy.errstate(divide="ignore", invalid="ignore"):  # bonds in parallel to the plane
+        at = start + numpy.nan_to_num(below / (below - above))[:, None] * (end - start)
     keep = [axis for axis in range(3) if axis != numpy.abs(normal).argmax()]
     x, y = at[:, keep].T
     inside = numpy.zeros(len(start), bool)

@@ -27,19 +27,25 @@ class Ended:
         return json.loads(self.output)
 
 
-def limit_address_space():
-    resource.setrlimit(resource.RLIMIT_AS, (ADDRESS_SPACE, ADDRESS_SPACE))
+def execute(command, folder=None, seconds=120, limited=True, cpu_seconds=None):
+    """Runs a command in a process group of its own, which is killed when time is up.
 
+    seconds is wall time, for what hangs; cpu_seconds processor time, which other load leaves alone.
+    """
+    def set_limits():
+        if limited:
+            resource.setrlimit(resource.RLIMIT_AS, (ADDRESS_SPACE, ADDRESS_SPACE))
+        if cpu_seconds:
+            resource.setrlimit(resource.RLIMIT_CPU, (cpu_seconds, cpu_seconds + 5))
 
-def execute(command, folder=None, seconds=120, limited=True):
-    """Runs a command in a process group of its own, which is killed when time is up."""
     command = [str(word) for word in command]
     process = subprocess.Popen(command, cwd=folder, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
-                               stderr=subprocess.PIPE, start_new_session=True,
-                               preexec_fn=limit_address_space if limited else None)  # fmt: skip
+                               stderr=subprocess.PIPE, start_new_session=True, preexec_fn=set_limits)  # fmt: skip
     try:
         output, errors = process.communicate(timeout=seconds)
         code = process.returncode
+        if code == -signal.SIGXCPU:
+            code = None
     except subprocess.TimeoutExpired:
         os.killpg(process.pid, signal.SIGKILL)
         output, errors = process.communicate()
@@ -47,10 +53,5 @@ def execute(command, folder=None, seconds=120, limited=True):
     return Ended(command, code, output.decode(errors="replace"), errors.decode(errors="replace"))
 
 
-def peristat(*arguments, folder=None, seconds=120, limited=True):
-    return execute([PROGRAM, *arguments], folder, seconds, limited)
-
-
-def settings(**values):
-    """Arguments for --set from keys with `__` for the dot."""
-    return [word for key, value in values.items() for word in ("--set", f"{key.replace('__', '.')}={value}")]
+def peristat(*arguments, **limits):
+    return execute([PROGRAM, *arguments], **limits)

@@ -138,7 +138,8 @@ class Verification:
         past = old.history if mechanics is self.mechanics else history
         external = self.conditions.force(step.load)
         reactions = mechanics.gradient(old.displacement, past) - self.conditions.force(old.load)
-        norms = [numpy.linalg.norm(external), numpy.linalg.norm(reactions[prescribed])]
+        # Reactions of both states: Newton's method that finishes a relaxed step starts from the latter.
+        norms = [numpy.linalg.norm(part) for part in (external, reactions[prescribed], out_of_balance[prescribed])]
         # Implicit steps of mode adaptive hold the damage, also in the jump that they begin with.
         for held in (False, True) if self.case["solver"]["mode"] == "adaptive" else (False,):
             norms.append(numpy.linalg.norm((mechanics.gradient(jumped, past, held=held) - external)[~prescribed]))
