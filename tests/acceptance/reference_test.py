@@ -13,6 +13,7 @@ from tests.reference.case import Case, evaluate, read_points
 from tests.reference.clouds import LAWS, random_cloud, random_deformation
 from tests.reference.mechanics import STEP, Mechanics
 from tests.reference.program import peristat
+from tests.reference.verify import Verification
 
 # Both sides sum some 10^2 to 10^4 terms of stretches near 1e-2 in double precision: a term has lost
 # two digits of 16, and terms that cancel in a sum one or two more.
@@ -119,6 +120,32 @@ class Clouds(unittest.TestCase):
                 below += sum(int(((n > 0) & (n < 1)).sum()) for n in mechanics.body.factor_sums.values())
         self.assertGreater(between, 10)
         self.assertGreater(below, 5)
+
+    def test_accepted_states_of_runs_are_what_they_claim(self):
+        judged = 0
+        kinds = [("bond", dimension) for dimension in (1, 2, 3)] + [("cpd", 2), ("cpd", 3)]
+        for (model, dimension), law in itertools.product(kinds, LAWS):
+            with self.subTest(model=model, dimension=dimension, law=law):
+                material = {"micromodulus": 50.0} if model == "bond" else {"model": "cpd", "c1": 50.0, "c2": 9.0}
+                quadrature = {"volume_correction": "linear", "surface_correction": "energy"} if model == "bond" else {}
+                if LAWS[law]:
+                    material["damage"] = {**LAWS[law], "no_fail": ["left", "right"]}
+                still = [0] * dimension
+                pulled = ["0.25*load", *still[1:]]
+                path = random_cloud(self.random, self.folder, dimension, count=(10, 28, 36)[dimension - 1], horizon=2.2,
+                                    material=material, quadrature=quadrature,
+                                    support=[{"set": "left", "displacement": still}, {"set": "right", "displacement": pulled}],
+                                    load=[{"set": "middle", "total_force": ["0.3*load", *still[1:]]}],
+                                    loading={"steps": 4}, relaxation={"steps": 8},
+                                    solver={"mode": "adaptive" if LAWS[law] else "newton"})  # fmt: skip
+                output = self.folder / f"{model}_{dimension}_{law}"
+                run = peristat("run", path, "--quiet", "--output", output)
+                self.assertIn(run.code, (0, 3), run.said)
+                verification = Verification(output, path.read_text(), self.folder)
+                if verification.histories_are_known:
+                    self.assertEqual(verification.run(), [])
+                    judged += len(verification.results.steps)
+        self.assertGreater(judged, 60)
 
 
 if __name__ == "__main__":

@@ -192,10 +192,10 @@ class Generator:
         if solver["linear"] == "pcg":
             solver["preconditioner"] = self.choice(*PRECONDITIONERS)
         steps = int(self.random.integers(1, 31))
-        relaxation = {"steps": int(self.random.integers(1, 31)), "max_iterations": 5000,
+        relaxation = {"steps": int(self.random.integers(1, 31)), "max_iterations": 4000,
                       "ramp": int(self.power(0.5, 2.3)), "breaking": self.choice("at_equilibrium", "transient"),
                       "damping": self.choice("adaptive", "kinetic"), "mass_factor": self.choice(1.0, 2.0, 5.0)}  # fmt: skip
-        loading = {"steps": steps, "smallest_step": 1e-3 if steps < 30 else 1e-2, "adaptive": self.chance(0.8)}
+        loading = {"steps": steps, "smallest_step": 0.02, "adaptive": self.chance(0.8)}
         return {"solver": solver, "relaxation": relaxation, "loading": loading}
 
 
