@@ -196,7 +196,7 @@ class Verification:
 
     def judge_damage(self, mechanics, step, row, history):
         stretch, broken = mechanics.stretch(step.displacement), mechanics.is_broken(history)
-        over = mechanics.fails & (stretch > numpy.maximum(history, mechanics.law.onset) * (1 + 1e-12))
+        over = mechanics.fails & ~broken & (stretch > numpy.maximum(history, mechanics.law.onset) * (1 + 1e-12))
         if over.any():
             self.complain(step, f"{over.sum()} bonds are stretched beyond their history and the onset, "
                                 f"up to {stretch[over].max():.6g}")  # fmt: skip
