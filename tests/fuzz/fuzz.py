@@ -83,7 +83,9 @@ class Input:
             raise Finding(f"says {len(run.said)} characters", run)
 
     def assert_numbers(self, run):
-        """No nan or inf where nobody has typed it."""
+        """No nan or inf where nobody has typed it; a refusal may tell the value that it refuses."""
+        if run.code == 2:
+            return
         found = NOT_A_NUMBER.search(run.said)
         typed = " ".join([*run.command, *(t.read_text(errors="replace") for t in self.folder.glob("*.*")
                                           if t.suffix in (".toml", ".csv"))])  # fmt: skip
