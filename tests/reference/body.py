@@ -163,7 +163,116 @@ class Body:
         for axis in range(self.dimension):
             energy = weight * self.constants[1] / 2 * length * direction[:, axis] ** 4
             density = (self._sum_over(i, energy / 2) + self._sum_over(j, energy / 2)) / self.volume
-            crosses = below * above < 0
+            with numpy.errstate(divide="ignore"):
+                factor = classical / density
+            inverse_square = inverse_square + (direction[:, axis] * 2 / (factor[i] + factor[j])) ** 2
+        return 1 / numpy.sqrt(inverse_square)
+
+    def _sum_over(self, index, value):
+        return numpy.bincount(index, value, minlength=len(self.volume))
+
+    # ---- continuum-kinematics-inspired ----------------------------------------------------------
+
+    def _make_cpd(self):
+        material = self.case["material"]
+        self.constants = {n: float(material.get(f"c{n}", 0.0)) for n in (1, 2, 3)}
+        assert "c1" in material, "the reference does not calibrate"
+        bulk_weights = self.case["quadrature"]["weights"] == "bulk"
+        ball = lattice_ball(self.dimension, self.horizon / self.spacing) * self.spacing
+        volume = ball_volume(self.dimension, self.horizon, self.cross_section)
+        pairs = pairs_within(self.reference, self.horizon)
+        neighbours = numpy.bincount(pairs.ravel(), minlength=len(self.volume))
+        own_volume = volume * neighbours / len(ball)
+        effective = numpy.full(len(self.volume), volume / len(ball))
+        self.tuples[1] = pairs
+        self.weight[1] = (self.volume * effective)[pairs].mean(axis=1)
+        for order, constant in ((2, 2), (3, 6)):
+            if order > self.dimension or self.constants[order] == 0:
+                continue
+            tuples = cliques(pairs, len(self.volume), order + 1)
+            factor = self._flatness(tuples, self.reference, self.volume / self.cross_section)
+            tuples, factor = tuples[factor > 0], factor[factor > 0]
+            if bulk_weights:
+                count = self._bulk_count(ball, order)
+                effective = numpy.full(len(self.volume), volume**order / count if count else 0.0)
+            else:
+                number = sum(self._sum_over(tuples[:, k], factor) for k in range(order + 1))
+                self.factor_sums[order] = number
+                # A point's last interaction must not keep its weight by being the only one.
+                number = numpy.where((number > 0) & (number < 1), (1 + number**2) / 2, number)
+                ordered = math.factorial(order) * number
+                effective = numpy.divide(own_volume**order, ordered, out=numpy.zeros(len(ordered)), where=ordered > 0)
+            self.tuples[order], self.flatness[order] = tuples, factor
+            self.weight[order] = constant * factor * (self.volume * effective)[tuples].mean(axis=1)
+
+    def _flatness(self, tuples, places, cells):
+        """g(|M| / M0): 0 for what is flat, 1 from three quarters of a cell on."""
+        order = tuples.shape[1] - 1
+        cell = (cells ** (order / self.dimension))[tuples].mean(axis=1)
+        share = numpy.clip(2 * numpy.abs(measure(arms_of(tuples, places))) / cell - 0.5, 0, 1)
+        return share**2 * (3 - 2 * share)
+
+    def _bulk_count(self, ball, order):
+        """Ordered pairs or triplets of a bulk point's neighbours."""
+        places = numpy.concatenate([numpy.zeros((1, self.dimension)), ball])
+        tuples = cliques(pairs_within(places, self.horizon), len(places), order + 1)
+        tuples = tuples[tuples[:, 0] == 0]
+        cells = numpy.full(len(places), self.spacing**self.dimension)
+        return math.factorial(order) * self._flatness(tuples, places, cells).sum()
+
+    # ---- cracks that are there from the start ---------------------------------------------------
+
+    def _cut(self):
+        self.cut_weight = numpy.zeros(len(self.volume))
+        self.cut_bonds = 0
+        if not self.case.get("crack"):
+            return
+        cut = numpy.zeros(len(self.bonds), bool)
+        for crack in self.case.get("crack"):
+            cut |= bonds_that_meet(crack, self.reference[self.bonds[:, 0]], self.reference[self.bonds[:, 1]])
+        for end in (0, 1):
+            self.cut_weight += self._sum_over(self.bonds[cut, end], self.weight[1][cut])
+        self.cut_bonds = int(cut.sum())
+        lost = self.bonds[cut]
+        lost = set((lost[:, 0] * len(self.volume) + lost[:, 1]).tolist())
+        for order, tuples in self.tuples.items():
+            keep = numpy.ones(len(tuples), bool)
+            for a, b in itertools.combinations(range(order + 1), 2):
+                code = tuples[:, a] * len(self.volume) + tuples[:, b]
+                keep &= ~numpy.isin(code, list(lost))
+            self.tuples[order], self.weight[order] = tuples[keep], self.weight[order][keep]
+
+
+def bonds_that_meet(crack, start, end):
+    """Which bonds a segment (2D) or a plane polygon (3D) cuts or touches."""
+    if "from" in crack:
+        return segments_meet(numpy.array(crack["from"], float), numpy.array(crack["to"], float), start, end)
+    return segments_meet_polygon(numpy.array(crack["vertices"], float), start, end)
+
+
+def turn(a, b, c):
+    return (b[..., 0] - a[..., 0]) * (c[..., 1] - a[..., 1]) - (b[..., 1] - a[..., 1]) * (c[..., 0] - a[..., 0])
+
+
+def segments_meet(p, q, start, end):
+    crossing = (turn(p, q, start) * turn(p, q, end) < 0) & (turn(start, end, p) * turn(start, end, q) < 0)
+    length = numpy.sqrt(((end - start) ** 2).sum(axis=1))
+    near = numpy.zeros(len(start), bool)
+    for point, a, b in ((start, p, q), (end, p, q), (p, start, end), (q, start, end)):
+        along = numpy.clip(((point - a) * (b - a)).sum(axis=-1) / ((b - a) ** 2).sum(axis=-1), 0, 1)
+        gap = point - (a + along[..., None] * (b - a))
+        near |= numpy.sqrt((gap**2).sum(axis=-1)) <= 1e-9 * length
+    return crossing | near
+
+
+def segments_meet_polygon(vertices, start, end):
+    """Cuts through the inside of the polygon; bonds that merely touch it are not looked for."""
+    normal = numpy.zeros(3)
+    for a, b in zip(vertices, numpy.roll(vertices, -1, axis=0)):
+        normal += numpy.cross(a - vertices[0], b - vertices[0])
+    normal /= numpy.linalg.norm(normal)
+    below, above = (start - vertices[0]) @ normal, (end - vertices[0]) @ normal
+    crosses = below * above < 0
     share = numpy.divide(below, below - above, out=numpy.zeros(len(start)), where=crosses)
     at = start + share[:, None] * (end - start)
     keep = [axis for axis in range(3) if axis != numpy.abs(normal).argmax()]
