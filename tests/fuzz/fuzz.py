@@ -1,9 +1,9 @@
 #!/usr/bin/env -S /usr/bin/python3 -BEs
 """Fuzzer: spoilt case files, overrides, point files and results folders through every command.
 
-    python3 tests/fuzz/fuzz.py --minutes 60 --seed 3     an hour with another seed
-    python3 tests/fuzz/fuzz.py --only 1234 --seed 3      one input again
-    PERISTAT_PROGRAM=build/sanitize/peristat python3 tests/fuzz/fuzz.py     under the sanitizers
+    /usr/bin/python3 -B tests/fuzz/fuzz.py --minutes 60 --seed 3     an hour with another seed
+    /usr/bin/python3 -B tests/fuzz/fuzz.py --only 1234 --seed 3      one input again
+    PERISTAT_PROGRAM=build/sanitize/peristat /usr/bin/python3 -B tests/fuzz/fuzz.py     under the sanitizers
 
 The seed and the number of an input make it what it is, whatever ran before. A finding is: an exit
 code other than 0, 2, 3, 4, 5, a signal, no end within the limits, a traceback, nan or inf in output

@@ -1,9 +1,9 @@
 #!/usr/bin/env -S /usr/bin/python3 -BEs
 """Torture: random but valid cases, every accepted step of which the reference has to confirm.
 
-    python3 tests/torture/torture.py                    all 300 cases, some 20 minutes on one core
-    python3 tests/torture/torture.py --only 17          one of them again
-    python3 tests/torture/torture.py --seed 2 --cases 50
+    /usr/bin/python3 -B tests/torture/torture.py                    all 300 cases, some 20 minutes on one core
+    /usr/bin/python3 -B tests/torture/torture.py --only 17          one of them again
+    /usr/bin/python3 -B tests/torture/torture.py --seed 2 --cases 50
 
 A case must end with 0 (done), 3 (did not converge), 4 (memory), or 2 if its body is unstable at rest
 or not held, within a minute of processor time. Cases that fail are kept below --keep.
