@@ -1,0 +1,24 @@
+"""A short run of the fuzzer (tests/fuzz/fuzz.py), always the same inputs; more by hand."""
+
+import tempfile
+import time
+import unittest
+
+from tests.fuzz.fuzz import fuzz
+
+INPUTS = 250  # about a minute of processor time
+
+
+class Fuzz(unittest.TestCase):
+    def test_no_input_gets_more_than_an_answer(self):
+        said = []
+        with tempfile.TemporaryDirectory(prefix="peristat_fuzz_") as keep:
+            tried, findings = fuzz(1, range(INPUTS), keep, time.monotonic() + 600, said.append)
+        self.assertEqual(findings, {}, "\n".join(said))
+        self.assertGreaterEqual(sum(tried.values()), INPUTS / 2, "the machine is too slow to try much")
+        for kind in ("case", "set", "points", "calibrate", "plot"):
+            self.assertGreater(tried[kind], 0, kind)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,284 @@
+"""Points, their interactions and the weights of these (docs/theory.md)."""
+
+import itertools
+import math
+
+import numpy
+
+HORIZON_TOLERANCE = 1e-8
+
+
+def pairs_within(reference, radius):
+    """All pairs i < j no further apart than the radius."""
+    count, pairs = len(reference), []
+    for first in range(0, count, 256):
+        rows = reference[first : first + 256]
+        squared = sum((rows[:, None, c] - reference[None, :, c]) ** 2 for c in range(reference.shape[1]))
+        i, j = numpy.nonzero(squared <= (radius * (1 + HORIZON_TOLERANCE)) ** 2)
+        keep = i + first < j
+        pairs.append(numpy.stack([i[keep] + first, j[keep]], axis=1))
+    return numpy.concatenate(pairs)
+
+
+def measure(arms):
+    """Length, area or volume of interactions from their arms (a list of vectors), with sign."""
+    dimension = arms[0].shape[-1]
+    if len(arms) == 1:
+        return numpy.sqrt((arms[0] ** 2).sum(axis=-1))
+    if len(arms) == 2 and dimension == 2:
+        return arms[0][..., 0] * arms[1][..., 1] - arms[0][..., 1] * arms[1][..., 0]
+    if len(arms) == 2:
+        return numpy.sqrt((numpy.cross(*arms) ** 2).sum(axis=-1))
+    return (arms[0] * numpy.cross(arms[1], arms[2])).sum(axis=-1)
+
+
+def arms_of(tuples, places):
+    """Vectors from the first point of every tuple to the others."""
+    return [places[tuples[:, k]] - places[tuples[:, 0]] for k in range(1, tuples.shape[1])]
+
+
+def cliques(bonds, count, size):
+    """All tuples of `size` points that are bonded with one another, ascending."""
+    linked = [set() for _ in range(count)]
+    for i, j in bonds.tolist():
+        linked[i].add(j)
+    found = []
+    for i in range(count):
+        for others in itertools.combinations(sorted(linked[i]), size - 1):
+            if all(b in linked[a] for a, b in itertools.combinations(others, 2)):
+                found.append((i, *others))
+    return numpy.array(found, int).reshape(-1, size)
+
+
+def lattice_ball(dimension, ratio):
+    """Neighbours of a lattice's bulk point, in spacings."""
+    reach = int(ratio * (1 + HORIZON_TOLERANCE))
+    grid = numpy.array(list(itertools.product(range(-reach, reach + 1), repeat=dimension)), float)
+    distance = numpy.sqrt((grid**2).sum(axis=1))
+    return grid[(distance > 0) & (distance <= ratio * (1 + HORIZON_TOLERANCE))]
+
+
+def ball_volume(dimension, horizon, cross_section):
+    return {1: 2 * horizon, 2: math.pi * horizon**2, 3: 4 / 3 * math.pi * horizon**3}[dimension] * cross_section
+
+
+def micromodulus_factor(dimension, plane, horizon, cross_section):
+    """c / E."""
+    if dimension == 1:
+        return 2 / (cross_section * horizon**2)
+    if dimension == 2 and plane == "stress":
+        return 9 / (math.pi * horizon**3 * cross_section)
+    if dimension == 2:
+        return 48 / (5 * math.pi * horizon**3 * cross_section)
+    return 12 / (math.pi * horizon**4)
+
+
+def confined_modulus_factor(dimension, plane):
+    """c11 / E: stress over strain along an axis with the other strains held at zero."""
+    if dimension == 1:
+        return 1.0
+    if dimension == 2 and plane == "stress":
+        return 1 / (1 - (1 / 3) ** 2)
+    return 0.75 / (1.25 * 0.5)  # Poisson's ratio 1/4
+
+
+class Body:
+    """Everything that is constant: interactions as arrays of point numbers, with their weights.
+
+    bonds, triangles, tetrahedra: (points, weight, reference measure), the measures with sign.
+    """
+
+    def __init__(self, case, reference, volume, horizon_ratio=None):
+        self.case, self.dimension = case, case.dimension
+        self.reference, self.volume = numpy.asarray(reference, float), numpy.asarray(volume, float)
+        self.horizon = case.horizon(horizon_ratio)
+        self.spacing = case.spacing(volume)
+        self.cross_section = case.cross_section
+        self.is_cpd = case["material"]["model"] == "cpd"
+        self.tuples, self.weight = {}, {}
+        self.flatness, self.factor_sums = {}, {}  # cpd: g of interactions, and their sums at points
+        if self.is_cpd:
+            self._make_cpd()
+        else:
+            self._make_bonds()
+        self._cut()
+        self.measure = {k: measure(arms_of(t, self.reference)) for k, t in self.tuples.items()}
+
+    @property
+    def bonds(self):
+        return self.tuples[1]
+
+    @property
+    def lengths(self):
+        return self.measure[1]
+
+    # ---- bonds alone -----------------------------------------------------------------------------
+
+    def _make_bonds(self):
+        material, quadrature = self.case["material"], self.case["quadrature"]
+        factor = micromodulus_factor(self.dimension, material["plane"], self.horizon, self.cross_section)
+        if "micromodulus" in material:
+            self.constants = {1: float(material["micromodulus"])}
+        else:
+            self.constants = {1: material["youngs_modulus"] * factor}
+        self.youngs_modulus = self.constants[1] / factor
+        size = (self.volume / self.cross_section) ** (1 / self.dimension)
+        linear = quadrature["volume_correction"] == "linear"
+        pairs = pairs_within(self.reference, self.horizon + (size.max() / 2 if linear else 0))
+        i, j = pairs.T
+        arm = self.reference[j] - self.reference[i]
+        length = numpy.sqrt((arm**2).sum(axis=1))
+
+        def share(of):
+            return numpy.clip((self.horizon + of / 2 - length) / of, 0, 1) if linear else numpy.ones(len(pairs))
+
+        mean_share = (share(size[j]) + share(size[i])) / 2
+        weight = self.volume[i] * self.volume[j] * mean_share
+        keep = weight > 0
+        pairs, arm, length, weight, mean_share = (a[keep] for a in (pairs, arm, length, weight, mean_share))
+        surface = quadrature["surface_correction"]
+        if surface == "volume":
+            weight = weight * self._volume_correction(pairs, mean_share)
+        elif surface == "energy":
+            weight = weight * self._energy_correction(pairs, arm / length[:, None], length, weight)
+        self.tuples[1], self.weight[1] = pairs, weight
+
+    def _volume_correction(self, pairs, share):
+        i, j = pairs.T
+        own = self._sum_over(i, share * self.volume[j]) + self._sum_over(j, share * self.volume[i])
+        return 2 * self._bulk_volume() / (own[i] + own[j])
+
+    def _bulk_volume(self):
+        """V_H of a point inside the lattice; for a cloud a lattice of its mean spacing."""
+        linear = self.case["quadrature"]["volume_correction"] == "linear"
+        ratio = self.horizon / self.spacing
+        distance = numpy.sqrt((lattice_ball(self.dimension, ratio + (0.5 if linear else 0)) ** 2).sum(axis=1))
+        shares = numpy.clip(ratio + 0.5 - distance, 0, 1) if linear else numpy.ones(len(distance))
+        return shares.sum() * self.spacing**self.dimension * self.cross_section
+
+    def _energy_correction(self, pairs, direction, length, weight):
+        i, j = pairs.T
+        classical = self.youngs_modulus * confined_modulus_factor(self.dimension, self.case["material"]["plane"]) / 2
+        inverse_square = 0.0
+        for axis in range(self.dimension):
+            energy = weight * self.constants[1] / 2 * length * direction[:, axis] ** 4
+            density = (self._sum_over(i, energy / 2) + self._sum_over(j, energy / 2)) / self.volume
+            with numpy.errstate(divide="ignore"):
+                factor = classical / density
+            inverse_square = inverse_square + (direction[:, axis] * 2 / (factor[i] + factor[j])) ** 2
+        return 1 / numpy.sqrt(inverse_square)
+
+    def _sum_over(self, index, value):
+        return numpy.bincount(index, value, minlength=len(self.volume))
+
+    # ---- continuum-kinematics-inspired ----------------------------------------------------------
+
+    def _make_cpd(self):
+        material = self.case["material"]
+        self.constants = {n: float(material.get(f"c{n}", 0.0)) for n in (1, 2, 3)}
+        assert "c1" in material, "the reference does not calibrate"
+        bulk_weights = self.case["quadrature"]["weights"] == "bulk"
+        ball = lattice_ball(self.dimension, self.horizon / self.spacing) * self.spacing
+        volume = ball_volume(self.dimension, self.horizon, self.cross_section)
+        pairs = pairs_within(self.reference, self.horizon)
+        neighbours = numpy.bincount(pairs.ravel(), minlength=len(self.volume))
+        own_volume = volume * neighbours / len(ball)
+        effective = numpy.full(len(self.volume), volume / len(ball))
+        self.tuples[1] = pairs
+        self.weight[1] = (self.volume * effective)[pairs].mean(axis=1)
+        for order, constant in ((2, 2), (3, 6)):
+            if order > self.dimension or self.constants[order] == 0:
+                continue
+            tuples = cliques(pairs, len(self.volume), order + 1)
+            factor = self._flatness(tuples, self.reference, self.volume / self.cross_section)
+            tuples, factor = tuples[factor > 0], factor[factor > 0]
+            if bulk_weights:
+                count = self._bulk_count(ball, order)
+                effective = numpy.full(len(self.volume), volume**order / count if count else 0.0)
+            else:
+                number = sum(self._sum_over(tuples[:, k], factor) for k in range(order + 1))
+                self.factor_sums[order] = number
+                # A point's last interaction must not keep its weight by being the only one.
+                number = numpy.where((number > 0) & (number < 1), (1 + number**2) / 2, number)
+                ordered = math.factorial(order) * number
+                effective = numpy.divide(own_volume**order, ordered, out=numpy.zeros(len(ordered)), where=ordered > 0)
+            self.tuples[order], self.flatness[order] = tuples, factor
+            self.weight[order] = constant * factor * (self.volume * effective)[tuples].mean(axis=1)
+
+    def _flatness(self, tuples, places, cells):
+        """g(|M| / M0): 0 for what is flat, 1 from three quarters of a cell on."""
+        order = tuples.shape[1] - 1
+        cell = (cells ** (order / self.dimension))[tuples].mean(axis=1)
+        share = numpy.clip(2 * numpy.abs(measure(arms_of(tuples, places))) / cell - 0.5, 0, 1)
+        return share**2 * (3 - 2 * share)
+
+    def _bulk_count(self, ball, order):
+        """Ordered pairs or triplets of a bulk point's neighbours."""
+        places = numpy.concatenate([numpy.zeros((1, self.dimension)), ball])
+        tuples = cliques(pairs_within(places, self.horizon), len(places), order + 1)
+        tuples = tuples[tuples[:, 0] == 0]
+        cells = numpy.full(len(places), self.spacing**self.dimension)
+        return math.factorial(order) * self._flatness(tuples, places, cells).sum()
+
+    # ---- cracks that are there from the start ---------------------------------------------------
+
+    def _cut(self):
+        self.cut_weight = numpy.zeros(len(self.volume))
+        self.cut_bonds = 0
+        if not self.case.get("crack"):
+            return
+        cut = numpy.zeros(len(self.bonds), bool)
+        for crack in self.case.get("crack"):
+            cut |= bonds_that_meet(crack, self.reference[self.bonds[:, 0]], self.reference[self.bonds[:, 1]])
+        for end in (0, 1):
+            self.cut_weight += self._sum_over(self.bonds[cut, end], self.weight[1][cut])
+        self.cut_bonds = int(cut.sum())
+        lost = self.bonds[cut]
+        lost = set((lost[:, 0] * len(self.volume) + lost[:, 1]).tolist())
+        for order, tuples in self.tuples.items():
+            keep = numpy.ones(len(tuples), bool)
+            for a, b in itertools.combinations(range(order + 1), 2):
+                code = tuples[:, a] * len(self.volume) + tuples[:, b]
+                keep &= ~numpy.isin(code, list(lost))
+            self.tuples[order], self.weight[order] = tuples[keep], self.weight[order][keep]
+
+
+def bonds_that_meet(crack, start, end):
+    """Which bonds a segment (2D) or a plane polygon (3D) cuts or touches."""
+    if "from" in crack:
+        return segments_meet(numpy.array(crack["from"], float), numpy.array(crack["to"], float), start, end)
+    return segments_meet_polygon(numpy.array(crack["vertices"], float), start, end)
+
+
+def turn(a, b, c):
+    return (b[..., 0] - a[..., 0]) * (c[..., 1] - a[..., 1]) - (b[..., 1] - a[..., 1]) * (c[..., 0] - a[..., 0])
+
+
+def segments_meet(p, q, start, end):
+    crossing = (turn(p, q, start) * turn(p, q, end) < 0) & (turn(start, end, p) * turn(start, end, q) < 0)
+    length = numpy.sqrt(((end - start) ** 2).sum(axis=1))
+    near = numpy.zeros(len(start), bool)
+    for point, a, b in ((start, p, q), (end, p, q), (p, start, end), (q, start, end)):
+        along = numpy.clip(((point - a) * (b - a)).sum(axis=-1) / ((b - a) ** 2).sum(axis=-1), 0, 1)
+        gap = point - (a + along[..., None] * (b - a))
+        near |= numpy.sqrt((gap**2).sum(axis=-1)) <= 1e-9 * length
+    return crossing | near
+
+
+def segments_meet_polygon(vertices, start, end):
+    """Cuts through the inside of the polygon; bonds that merely touch it are not looked for."""
+    normal = numpy.zeros(3)
+    for a, b in zip(vertices, numpy.roll(vertices, -1, axis=0)):
+        normal += numpy.cross(a - vertices[0], b - vertices[0])
+    normal /= numpy.linalg.norm(normal)
+    below, above = (start - vertices[0]) @ normal, (end - vertices[0]) @ normal
+    crosses = below * above < 0
+    share = numpy.divide(below, below - above, out=numpy.zeros(len(start)), where=crosses)
+    at = start + share[:, None] * (end - start)
+    keep = [axis for axis in range(3) if axis != numpy.abs(normal).argmax()]
+    x, y = at[:, keep].T
+    inside = numpy.zeros(len(start), bool)
+    for a, b in zip(vertices[:, keep], numpy.roll(vertices[:, keep], -1, axis=0)):
+        if a[1] != b[1]:
+            inside ^= ((a[1] > y) != (b[1] > y)) & (x < a[0] + (y - a[1]) * (b[0] - a[0]) / (b[1] - a[1]))
+    return crosses & inside

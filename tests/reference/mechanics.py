@@ -1,0 +1,200 @@
+"""Energy, forces and tangent of a body (docs/theory.md, Measure and potential, Damage)."""
+
+import itertools
+
+import numpy
+
+from tests.reference.body import arms_of, measure
+from tests.reference.laws import Elastic, Law
+
+STEP = 1e-30  # of complex steps: its square vanishes beside 1, so that there is no truncation
+
+
+def add_at(total, index, values):
+    """total[index] += values, also where an index repeats; many times faster than numpy.add.at."""
+    for axis in range(total.shape[1]):
+        total[:, axis] += numpy.bincount(index, values[:, axis].real, minlength=len(total))
+        if total.dtype == complex:
+            total[:, axis] += 1j * numpy.bincount(index, values[:, axis].imag, minlength=len(total))
+
+
+def dot(a, b):
+    return (a * b).sum(axis=-1)
+
+
+def relative_change(reference, change):
+    """m/M - 1 of interactions from reference arms and their changes, without cancellation."""
+    current = [r + c for r, c in zip(reference, change)]
+    if len(reference) == 1:
+        length = measure(reference)
+        return dot(change[0], 2 * reference[0] + change[0]) / (length * (length + measure(current)))
+    if len(reference) == 2:
+        if reference[0].shape[-1] == 2:
+            return (measure([change[0], current[1]]) + measure([reference[0], change[1]])) / measure(reference)
+        vectors = numpy.cross(change[0], current[1]) + numpy.cross(reference[0], change[1])
+        old, new = numpy.cross(*reference), numpy.cross(*current)
+        area = dot(old, old)
+        return dot(vectors, old + new) / (area * (1 + numpy.sqrt(dot(new, new) / area)))
+    difference = (dot(change[0], numpy.cross(current[1], current[2]))
+                  + dot(reference[0], numpy.cross(change[1], current[2]))
+                  + dot(reference[0], numpy.cross(reference[1], change[2])))  # fmt: skip
+    return difference / measure(reference)
+
+
+def measure_gradients(current):
+    """Derivatives of the measure with respect to the arms."""
+    if len(current) == 1:
+        return [current[0] / measure(current)[:, None]]
+    if len(current) == 2:
+        b, c = current
+        if b.shape[-1] == 2:
+            return [numpy.stack([c[:, 1], -c[:, 0]], 1), numpy.stack([-b[:, 1], b[:, 0]], 1)]
+        normal = numpy.cross(b, c) / measure(current)[:, None]
+        return [numpy.cross(c, normal), numpy.cross(normal, b)]
+    b, c, d = current
+    return [numpy.cross(c, d), numpy.cross(d, b), numpy.cross(b, c)]
+
+
+class Mechanics:
+    """A body with its law of damage; displacements u are count x dimension."""
+
+    def __init__(self, body, elastic=False):
+        self.body, self.case = body, body.case
+        damage = None if elastic else self.case.damage
+        self.law = Law(damage) if damage else Elastic()
+        self.fails = numpy.ones(len(body.bonds), bool)
+        self.reference_arms = {k: arms_of(t, body.reference) for k, t in body.tuples.items()}
+
+    def spare(self, sets):
+        """Bonds of the points of no-fail sets stay elastic."""
+        for name in (self.case.damage or {}).get("no_fail", []):
+            self.fails &= ~sets[name][self.body.bonds].any(axis=1)
+
+    def no_history(self):
+        return numpy.zeros(len(self.body.bonds))
+
+    # ---- bonds and their histories ---------------------------------------------------------------
+
+    def stretch(self, u):
+        return relative_change(self.reference_arms[1], arms_of(self.body.bonds, u))
+
+    def grown(self, history, u):
+        """The histories after this state has been accepted."""
+        stretch = self.stretch(u)
+        return numpy.where(self.fails & (stretch > self.law.onset), numpy.maximum(history, stretch), history)
+
+    def integrity(self, history):
+        """T of the histories; 1 before any damage."""
+        value = numpy.ones(len(history))
+        worn = history > 0
+        value[worn] = self.law.integrity(history[worn])
+        return value
+
+    def is_broken(self, history):
+        return history >= self.law.critical
+
+    def _is_loading(self, stretch, history):
+        return self.fails & (numpy.real(stretch) > numpy.maximum(history, self.law.onset))
+
+    def _bond_potential(self, stretch, history):
+        """phi / C1: what a bond takes up."""
+        value = self.integrity(history) * stretch**2 / 2
+        loading = self._is_loading(stretch, history)
+        if loading.any():
+            past = history[loading]
+            base = self.integrity(past) * past**2 / 2 - self.law.moment(past)
+            value[loading] = base + self.law.moment(stretch[loading])
+        return value
+
+    def _bond_tension(self, stretch, history, held=False):
+        """phi' / C1; with held damage every bond follows its secant."""
+        value = self.integrity(history) * stretch
+        if held:
+            return value
+        loading = self._is_loading(stretch, history)
+        if loading.any():
+            value[loading] = self.law.integrity(stretch[loading]) * stretch[loading]
+        return value
+
+    def _kept(self, order, history):
+        """Share of the stiffness that triangles and tetrahedra keep: product over their bonds."""
+        bonds, integrity = self.body.bonds, self.integrity(history)
+        count = len(self.body.volume)
+        table = dict(zip((bonds[:, 0] * count + bonds[:, 1]).tolist(), integrity.tolist()))
+        tuples = self.body.tuples[order]
+        kept = numpy.ones(len(tuples))
+        if (integrity < 1).any():
+            for a, b in itertools.combinations(range(order + 1), 2):
+                kept *= [table[code] for code in (tuples[:, a] * count + tuples[:, b]).tolist()]
+        return kept
+
+    # ---- sums over the body ----------------------------------------------------------------------
+
+    def energies(self, u, history):
+        """What every interaction takes up [J], by order."""
+        energy = {}
+        for order, reference in self.reference_arms.items():
+            change = relative_change(reference, arms_of(self.body.tuples[order], u))
+            scale = self.body.constants[order] * self.body.weight[order] * numpy.abs(self.body.measure[order])
+            if order == 1:
+                energy[order] = scale * self._bond_potential(change, history)
+            else:
+                energy[order] = scale * self._kept(order, history) * change**2 / 2
+        return energy
+
+    def energy(self, u, history=None):
+        history = self.no_history() if history is None else history
+        return sum(part.sum() for part in self.energies(u, history).values())
+
+    def gradient(self, u, history=None, absolute=False, held=False):
+        """Derivative of the energy [N], count x dimension; or sums of magnitudes, for round-off."""
+        history = self.no_history() if history is None else history
+        total = numpy.zeros(self.body.reference.shape, numpy.asarray(u).dtype)
+        for order, reference in self.reference_arms.items():
+            tuples = self.body.tuples[order]
+            change = arms_of(tuples, u)
+            relative = relative_change(reference, change)
+            if order == 1:
+                slope = self._bond_tension(relative, history, held)
+            else:
+                slope = self._kept(order, history) * relative
+            sign = numpy.sign(self.body.measure[order])
+            slope = slope * self.body.constants[order] * self.body.weight[order] * sign
+            pulls = measure_gradients([r + c for r, c in zip(reference, change)])
+            for k, pull in enumerate(pulls, start=1):
+                force = slope[:, None] * pull
+                if absolute:
+                    force = -numpy.abs(force)
+                add_at(total, tuples[:, k], force)
+                add_at(total, tuples[:, 0], -force)
+        return numpy.abs(total) if absolute else total
+
+    def tangent(self, u, history=None):
+        """Second derivative [N/m], a square matrix: complex steps of the gradient."""
+        size = u.size
+        matrix = numpy.empty((size, size))
+        for column in range(size):
+            moved = u.astype(complex).ravel()
+            moved[column] += 1j * STEP
+            matrix[:, column] = self.gradient(moved.reshape(u.shape), history).imag.ravel() / STEP
+        return matrix
+
+    # ---- what damage has done --------------------------------------------------------------------
+
+    def dissipated(self, history):
+        """By bonds [J]; what triangles and tetrahedra lose depends on when they lose it."""
+        worn = history > 0
+        past = history[worn]
+        lost = self.law.moment(past) - self.integrity(past) * past**2 / 2
+        return float((self.body.constants[1] * self.body.weight[1][worn] * self.body.lengths[worn] * lost).sum())
+
+    def damage(self, history):
+        """Per point: lost share of the weight of its bonds."""
+        weight, kept = self.body.weight[1], self.body.weight[1] * self.integrity(history)
+        whole, left = numpy.zeros(len(self.body.volume)), numpy.zeros(len(self.body.volume))
+        for end in (0, 1):
+            whole += self.body._sum_over(self.body.bonds[:, end], weight)
+            left += self.body._sum_over(self.body.bonds[:, end], kept)
+        if self.case["output"]["count_cracks"]:
+            whole = whole + self.body.cut_weight
+        return 1 - numpy.divide(left, whole, out=numpy.ones(len(whole)), where=whole > 0)

@@ -1,0 +1,266 @@
+"""Whether the accepted steps of a run are what the results folder says of them.
+
+Every step is judged by the reference alone: from its displacements and the histories of its bonds
+follow forces, energies, reactions and damage, and these must be those that were written.
+"""
+
+import numpy
+
+from tests.reference.body import Body
+from tests.reference.case import Case, Conditions
+from tests.reference.mechanics import Mechanics
+from tests.reference.pieces import unheld_points
+from tests.reference.results import Results
+
+UNIT_ROUND_OFF = 2.0**-53
+# Sums of energies and forces over up to 10^6 interactions in another order: errors grow like the
+# square root of their number, and stretches near 1e-3 have lost three digits before.
+AGREEMENT = 1e-10
+NEVER_FAILS = -1  # history of a bond of a no-fail set, as it is written
+
+
+class Verification:
+    """Complaints about a run, and the largest numbers seen (`worst`)."""
+
+    def __init__(self, folder, case_text, case_folder="."):
+        self.case = case_text if isinstance(case_text, Case) else Case(case_text, case_folder)
+        self.results = Results(folder)
+        self.complaints, self.worst = [], {}
+        self.rows = {int(row["step"]): row for row in self.results.table("history")}
+        reference, volume, sets = self.results.reference, self.results.volume, self.results.sets
+        self.conditions = Conditions(self.case, reference, volume, sets)
+        self.mechanics = Mechanics(Body(self.case, reference, volume))
+        self.mechanics.spare(sets)
+        self.first_real_step = 0
+        self.stand_in = None
+        if "elastic_horizon_ratio" in self.case["solver"]:
+            body = Body(self.case, reference, volume, self.case["solver"]["elastic_horizon_ratio"])
+            self.stand_in = Mechanics(body, elastic=True)
+            handed = [r["step"] for r in self.results.table("decisions") if r["action"] == "hand over to relaxation"]
+            self.first_real_step = int(handed[0]) if handed else 10**9
+        codes = self.mechanics.body.bonds[:, 0] * len(volume) + self.mechanics.body.bonds[:, 1]
+        self.bond_number = {code: k for k, code in enumerate(codes.tolist())}
+
+    def complain(self, step, text):
+        self.complaints.append(f"step {step.number} (load factor {step.load:.6g}): {text}")
+
+    def compare(self, step, name, written, computed, scale, tolerance=AGREEMENT):
+        error = numpy.abs(numpy.asarray(written) - computed).max() / scale if scale > 0 else 0.0
+        self.worst[name] = max(self.worst.get(name, 0.0), float(error))
+        if not error <= tolerance:
+            self.complain(step, f"{name}: {written if numpy.ndim(written) == 0 else 'a field'} is written, "
+                                f"{computed if numpy.ndim(computed) == 0 else 'another'} is right "
+                                f"({error:.3g} of {scale:.4g})")  # fmt: skip
+
+    # ---- histories -------------------------------------------------------------------------------
+
+    @property
+    def histories_are_known(self):
+        """They are written, or follow from the accepted states."""
+        steps = self.results.steps
+        if self.case.damage is None or any(step.history is not None for step in steps):
+            return True
+        relaxed = self.case["solver"]["mode"] != "newton"
+        path_is_written = self.case["output"]["every"] == 1 and not self.mechanics.body.is_cpd
+        return path_is_written and not (relaxed and self.case["relaxation"]["breaking"] == "transient")
+
+    def next_history(self, step, history):
+        if self.case.damage is None or step.number < self.first_real_step:
+            return history
+        if step.history is None:
+            return self.mechanics.grown(history, step.displacement)
+        history = history.copy()
+        ends = numpy.sort(numpy.stack([step.history["first_point"], step.history["second_point"]]), axis=0)
+        count = len(self.results.volume)
+        for first, second, stretch in zip(*ends.tolist(), step.history["largest_stretch"].tolist()):
+            bond = self.bond_number.get(first * count + second)
+            if bond is None:
+                self.complain(step, f"there is a history of {first}-{second}, which is no bond")
+            elif (stretch == NEVER_FAILS) == self.mechanics.fails[bond]:
+                self.complain(step, f"bond {first}-{second} is written to fail or not to, and the other is right")
+            elif stretch != NEVER_FAILS:
+                if stretch < history[bond] or stretch <= self.mechanics.law.onset:
+                    self.complain(step, f"history {stretch} of bond {first}-{second} after {history[bond]}")
+                history[bond] = stretch
+        return history
+
+    # ---- steps -----------------------------------------------------------------------------------
+
+    def run(self):
+        """Judges every written step; returns the complaints."""
+        if not self.histories_are_known:
+            raise ValueError("the histories of the bonds are not known")
+        old = Old(self.results.reference.shape, self.mechanics.no_history())
+        for step in self.results.steps:
+            mechanics = self.mechanics if step.number >= self.first_real_step else self.stand_in
+            history = self.next_history(step, old.history)
+            self.judge(mechanics, step, old, history if mechanics is self.mechanics else mechanics.no_history())
+            old = old.followed_by(step, history, mechanics, self.rows[step.number])
+        self.judge_summary(old)
+        return self.complaints
+
+    def judge(self, mechanics, step, old, history):
+        row, prescribed = self.rows[step.number], self.conditions.prescribed
+        gradient = mechanics.gradient(step.displacement, history)
+        magnitude = mechanics.gradient(step.displacement, history, absolute=True)
+        largest = magnitude.max() + 1e-4 * self.whole_force(mechanics, step)
+        self.compare(step, "force", step.force, -gradient, largest)
+        target = self.conditions.displacement(step.load)
+        reach = max(numpy.abs(target).max(), 1e-300)
+        self.compare(step, "prescribed displacement", step.displacement[prescribed], target[prescribed], reach, 1e-12)
+        external = self.conditions.force(step.load)
+        unheld = self.unheld(step, old)
+        self.judge_residual(mechanics, step, old, history, gradient - external, magnitude, unheld)
+        self.judge_reactions(step, row, gradient - external, largest, unheld, external)
+        self.judge_energies(mechanics, step, row, old, history)
+        if mechanics is self.mechanics:
+            self.judge_damage(mechanics, step, row, history)
+        self.judge_work(mechanics, step, row, old, gradient, external)
+
+    def whole_force(self, mechanics, step):
+        """What a whole bond would bear at the largest displacement [N]: rounding of displacements
+        shows up as a few units of round-off of it, also where all bonds are broken or slack."""
+        body = mechanics.body
+        reach = min(numpy.abs(step.displacement).max() / body.lengths.min(), 1.0)
+        return body.constants[1] * body.weight[1].max() * reach
+
+    def unheld(self, step, old):
+        """Points that may be pinned or have left the equations in this step."""
+        broken = self.mechanics.is_broken(old.history)
+        if not broken.any() or step.number < self.first_real_step:
+            return numpy.zeros(len(self.results.volume), bool)
+        places = self.results.reference + old.displacement
+        return unheld_points(places, self.mechanics.body.bonds[~broken], self.conditions.prescribed)
+
+    def judge_residual(self, mechanics, step, old, history, out_of_balance, magnitude, unheld):
+        free = ~self.conditions.prescribed & ~unheld[:, None]
+        if not free.any():
+            return
+        jumped = old.displacement.copy()
+        prescribed = self.conditions.prescribed
+        jumped[prescribed] = self.conditions.displacement(step.load)[prescribed]
+        past = old.history if mechanics is self.mechanics else history
+        external = self.conditions.force(step.load)
+        reactions = mechanics.gradient(old.displacement, past) - self.conditions.force(old.load)
+        # Reactions of both states: Newton's method that finishes a relaxed step starts from the latter.
+        norms = [numpy.linalg.norm(part) for part in (external, reactions[prescribed], out_of_balance[prescribed])]
+        # Implicit steps of mode adaptive and relaxed steps hold the damage in the jump they begin with.
+        for held in (False,) if self.case["solver"]["mode"] == "newton" else (False, True):
+            norms.append(numpy.linalg.norm((mechanics.gradient(jumped, past, held=held) - external)[~prescribed]))
+        scale = max(norms)
+        floor = 8 * UNIT_ROUND_OFF * (numpy.linalg.norm(magnitude) + self.whole_force(mechanics, step))
+        residual = numpy.linalg.norm(out_of_balance[free])
+        # A tenth more: the program's scale has the same three norms in its own rounding and its own
+        # idea of the jump that a cut or relaxed step begins with.
+        allowed = 1.1 * self.case["solver"]["relative_tolerance"] * scale + floor
+        self.worst["residual / allowed"] = max(self.worst.get("residual / allowed", 0.0), residual / allowed)
+        if not residual <= allowed:
+            self.complain(step, f"not in equilibrium: residual {residual:.4g} N, {allowed:.4g} N is allowed "
+                                f"(relative {residual / scale if scale else numpy.inf:.3g})")  # fmt: skip
+
+    def judge_reactions(self, step, row, reaction, largest, unheld, external):
+        total = numpy.zeros(reaction.shape[1])
+        for name in dict.fromkeys(support["set"] for support in self.case.get("support")):
+            held = numpy.zeros(reaction.shape, bool)
+            for support in self.case.get("support"):
+                if support["set"] == name:
+                    held |= self.conditions.held_by(support)
+            for axis in range(reaction.shape[1]):
+                computed = reaction[held[:, axis], axis].sum()
+                scale = largest * max(1, held[:, axis].sum())
+                self.compare(step, "reaction", row[f"reaction_{'xyz'[axis]}:{name}"], computed, scale)
+        total = reaction[self.conditions.prescribed | unheld[:, None]].sum() + external.sum()
+        rest = reaction[~(self.conditions.prescribed | unheld[:, None])]
+        allowed = numpy.abs(rest).sum() + AGREEMENT * largest * len(reaction)
+        if not abs(total) <= allowed:
+            self.complain(step, f"reactions and loads differ by {total:.4g} N")
+
+    def judge_energies(self, mechanics, step, row, old, history):
+        energies = mechanics.energies(step.displacement, history)
+        stored = sum(part.sum() for part in energies.values())
+        scale = max(abs(stored), abs(row["external_work"]), abs(row["dissipated_energy"]))
+        scale += 1e-5 * self.whole_force(mechanics, step) * numpy.abs(step.displacement).max()
+        self.compare(step, "stored energy", row["stored_energy"], stored, scale)
+        dissipated = mechanics.dissipated(history)
+        brittle_cpd = mechanics.body.is_cpd and mechanics.law.onset < numpy.inf
+        if not brittle_cpd:
+            self.compare(step, "dissipated energy", row["dissipated_energy"], dissipated, scale)
+        elif row["dissipated_energy"] < dissipated - AGREEMENT * scale and min(mechanics.body.constants.values()) >= 0:
+            self.complain(step, f"dissipated {row['dissipated_energy']:.6g} J, its bonds alone {dissipated:.6g} J")
+        if row["dissipated_energy"] < old.dissipated - AGREEMENT * scale:
+            self.complain(step, f"dissipated energy falls from {old.dissipated:.6g} to {row['dissipated_energy']:.6g} J")
+        density = numpy.zeros(len(self.results.volume))
+        for order, part in energies.items():
+            for k in range(order + 1):
+                density += numpy.bincount(mechanics.body.tuples[order][:, k], part / (order + 1), minlength=len(density))
+        if mechanics is self.mechanics:
+            self.compare(step, "energy density", step.energy_density * self.results.volume, density, scale)
+        rest = row["external_work"] - row["stored_energy"] - row["dissipated_energy"] - row["drained_energy"]
+        self.compare(step, "ledger", row["balance_error"], rest, scale, 1e-12)
+
+    def judge_damage(self, mechanics, step, row, history):
+        stretch, broken = mechanics.stretch(step.displacement), mechanics.is_broken(history)
+        over = mechanics.fails & ~broken & (stretch > numpy.maximum(history, mechanics.law.onset) * (1 + 1e-12))
+        if over.any():
+            self.complain(step, f"{over.sum()} bonds are stretched beyond their history and the onset, "
+                                f"up to {stretch[over].max():.6g}")  # fmt: skip
+        if int(row["broken_bonds"]) != broken.sum():
+            self.complain(step, f"{row['broken_bonds']:.0f} broken bonds are written, {broken.sum()} are right")
+        damage = mechanics.damage(history)
+        self.compare(step, "damage", step.damage, damage, 1.0)
+        self.compare(step, "max_damage", row["max_damage"], damage.max(), 1.0)
+        whole = stretch[~broken]
+        largest = whole.max() if len(whole) else 0.0
+        self.compare(step, "max_stretch", row["max_stretch"], largest, max(abs(stretch).max(), 1e-300))
+
+    def judge_work(self, mechanics, step, row, old, gradient, external):
+        """Work of an implicit step by the trapezoidal rule; relaxed steps sum their iterations."""
+        if step.mode != "newton" or old.mechanics not in (None, mechanics) or old.number + 1 != step.number:
+            return
+        if row["relaxation_iterations"] > 0:
+            return
+        prescribed = self.conditions.prescribed
+        before = mechanics.gradient(old.displacement, old.history if mechanics is self.mechanics else mechanics.no_history())
+        pull = numpy.where(prescribed, before + gradient, self.conditions.force(old.load) + external) / 2
+        work = float((pull * (step.displacement - old.displacement)).sum())
+        scale = max(abs(row["external_work"]), numpy.abs(pull * (step.displacement - old.displacement)).sum())
+        scale += 1e-5 * self.whole_force(mechanics, step) * numpy.abs(step.displacement).max()
+        self.compare(step, "work", row["external_work"] - old.external_work, work, scale)
+
+    def judge_summary(self, old):
+        summary, rows = self.results.summary, self.rows
+        if summary is None:
+            self.complaints.append("there is no summary")
+            return
+        if summary["steps"] != len(rows):
+            self.complaints.append(f"the summary counts {summary['steps']} steps, the history {len(rows)}")
+        if summary["status"] == "completed" and (not rows or abs(rows[max(rows)]["load_factor"] - 1) > 1e-12):
+            self.complaints.append("completed, but not at load factor 1")
+        if summary["bonds"] != len(self.mechanics.body.bonds):
+            self.complaints.append(f"{summary['bonds']} bonds are written, {len(self.mechanics.body.bonds)} are right")
+        for name, order in (("triangles", 2), ("tetrahedra", 3)):
+            tuples = self.mechanics.body.tuples.get(order, ())
+            if summary[name] != len(tuples):
+                self.complaints.append(f"{summary[name]} {name} are written, {len(tuples)} are right")
+
+
+class Old:
+    """The last accepted state."""
+
+    def __init__(self, shape, history):
+        self.number, self.load, self.mechanics = 0, 0.0, None
+        self.displacement, self.history = numpy.zeros(shape), history
+        self.dissipated = self.external_work = 0.0
+
+    def followed_by(self, step, history, mechanics, row):
+        new = Old.__new__(Old)
+        new.number, new.load, new.mechanics = step.number, step.load, mechanics
+        new.displacement, new.history = step.displacement, history
+        new.dissipated, new.external_work = row["dissipated_energy"], row["external_work"]
+        return new
+
+
+def verify(folder, case_text, case_folder="."):
+    """Complaints about a run, and the largest errors seen."""
+    verification = Verification(folder, case_text, case_folder)
+    return verification.run(), verification.worst

@@ -1,0 +1,61 @@
+"""Every accepted state of the published fracture problems, judged by tests/reference.
+
+Twice each: with damage in accepted states alone, so that the histories of the bonds follow from the
+states themselves, and as shipped, where transient breaking makes histories that the results tell.
+"""
+
+import pathlib
+import tempfile
+import unittest
+
+from tests.reference.case import Case
+from tests.reference.program import ROOT, peristat
+from tests.reference.verify import Verification
+
+# Bonds that break at least: a run that breaks nothing would prove nothing.
+CASES = {
+    "plate_with_hole/square": 500,
+    "plate_with_hole/rectangle": 500,
+    "three_point_bending/notched": 400,
+    "four_holes/tension": 8000,
+}
+
+
+class FractureStates(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory(prefix="peristat_states_")
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+
+    def verified(self, name, **relaxation):
+        path = ROOT / "cases" / f"{name}.toml"
+        case = Case(path.read_text(), path.parent)
+        case["relaxation"].update(relaxation)
+        changes = [word for key, value in relaxation.items() for word in ("--set", f"relaxation.{key}={value}")]
+        run = peristat("run", path, "--quiet", "--output", self.folder / "out", *changes, seconds=600, limited=False)
+        self.assertEqual(run.code, 0, run.said)
+        verification = Verification(self.folder / "out", case)
+        self.assertTrue(verification.histories_are_known, "the results tell no histories of the bonds")
+        self.assertEqual(verification.run(), [])
+        self.assertGreater(len(verification.results.steps), 9)
+        self.assertGreater(verification.results.summary["broken_bonds"], CASES[name])
+
+
+def add_tests(name):
+    title = name.replace("/", "_")
+
+    def at_equilibrium(self):
+        self.verified(name, breaking="at_equilibrium")
+
+    def as_shipped(self):
+        self.verified(name)
+
+    setattr(FractureStates, f"test_{title}_with_damage_in_accepted_states", at_equilibrium)
+    setattr(FractureStates, f"test_{title}_as_shipped", as_shipped)
+
+
+for case_name in CASES:
+    add_tests(case_name)
+
+if __name__ == "__main__":
+    unittest.main()
