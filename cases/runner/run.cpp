@@ -15,6 +15,7 @@
 #include "cases/runner/dossier.hpp"
 #include "cases/runner/probe.hpp"
 #include "cases/runner/progress.hpp"
+#include "cases/runner/rest_stability.hpp"
 #include "cases/runner/solver_options.hpp"
 #include "solvers/linear/cholesky.hpp"
 #include "solvers/load_stepping.hpp"
@@ -244,6 +245,7 @@ Exit run(const Case& from, const RunOptions& options) {
   const std::unique_ptr<const Body> made = make_body(from, options.threads);
   const Body& body = *made;
   refuse_free_motions(from, body);
+  refuse_unstable_rest(from, body, options.threads);
   std::optional<Results> results;
   std::vector<DecisionRecord> decisions;
   const auto decide = [&](const DecisionRecord& record) {

@@ -688,10 +688,12 @@ double energy_of_triangles(const BoxBody& body, const tests::BoxSetting& box,
       ++neighbours;
       for (std::size_t k = 0; k < n; ++k) {
         if (integrity[i * n + k] < 0.0 || integrity[j * n + k] < 0.0) continue;
-        ++pairs;
         const double reference = area(i, j, k, false);
+        const double factor = flatness_factor(std::abs(reference) / (box.spacing * box.spacing));
+        if (factor == 0.0) continue;
+        pairs += factor;
         const double change = area(i, j, k, true) / reference - 1.0;
-        psi += integrity[i * n + j] * integrity[i * n + k] * integrity[j * n + k] * 0.5 *
+        psi += integrity[i * n + j] * integrity[i * n + k] * integrity[j * n + k] * 0.5 * factor *
                std::abs(reference) * change * change;
       }
     }
