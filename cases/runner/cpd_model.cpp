@@ -14,6 +14,15 @@ InteractionTerm<Measure> make_term(const Case& from, const Points& points, const
                                    const Bonds& left, const BulkNeighbourhood& bulk,
                                    double cross_section, double constant, int threads) {
   Interactions<Measure> interactions(points, bonds, cross_section, threads);
+  if (interactions.count() == 0) {
+    constexpr bool is_triangle = Measure::arms == 2;
+    throw InputError(is_triangle ? "material.c2" : "material.c3", number_text(constant),
+                     std::string("the body has no ") + (is_triangle ? "triangles" : "tetrahedra") +
+                         ": no points within the horizon of each other span a quarter of the " +
+                         (is_triangle ? "area" : "volume") +
+                         " of a point's cell. The horizon is too short, or volumes of points are "
+                         "too large");
+  }
   const auto shares = weight_shares<Measure>(
       points, effective_volumes(interactions, neighbour_counts(bonds), bulk, from.weights));
   if (left.count() < bonds.count()) {

@@ -108,20 +108,27 @@ CpdConstants CpdStiffness::constants(const LameModuli& moduli, double c2) const 
   CpdConstants result;
   // What the others leave of lambda, zero where that is their round-off: Poisson's ratio of central
   // forces, 1/3 or 1/4, must not make a constant negative by its last digits.
-  const auto rest = [&](double others, double largest) {
+  const auto of_rest = [&](double others, double largest, double per_constant) {
     constexpr double round_off = 1e-10;
     const double left = moduli.lambda - others;
-    return std::abs(left) <= round_off * largest ? 0.0 : left;
+    if (std::abs(left) <= round_off * largest) return 0.0;
+    if (per_constant == 0.0) {
+      throw InputError("poisson_ratio", number_text(poisson_ratio_of(moduli, dimension)),
+                       "can't be reached: with this horizon no neighbours of a point are "
+                       "neighbours of each other, and bonds alone have " +
+                           number_text(poisson_ratio_of({one.lambda, one.mu}, dimension)));
+    }
+    return left / per_constant;
   };
   if (dimension == 2) {
     result.c1 = moduli.mu / one.mu;  // triangles resist no shear in 2D
-    result.c2 = rest(one.lambda * result.c1, moduli.mu) / two.lambda;
+    result.c2 = of_rest(one.lambda * result.c1, moduli.mu, two.lambda);
   } else {
     result.c2 = c2;
     result.c1 = (moduli.mu - two.mu * c2) / one.mu;
     const double of_bonds = one.lambda * result.c1, of_triangles = two.lambda * c2;
-    result.c3 =
-        rest(of_bonds + of_triangles, std::max(moduli.mu, std::abs(of_triangles))) / three.lambda;
+    const double largest = std::max(moduli.mu, std::abs(of_triangles));
+    result.c3 = of_rest(of_bonds + of_triangles, largest, three.lambda);
   }
   if (!(result.c1 > 0.0)) {
     throw InputError("c2", number_text(c2),
