@@ -1,8 +1,9 @@
 """Reaction of perturbed lattices over that of the regular one, in continuum-kinematics-inspired peridynamics.
 
 Pulls the square and the cube of cases/cpd by 1e-3 of their length, with every point of the body shifted at
-random by up to the perturbation (in spacings), and prints a Markdown table: a row per perturbation, a column
-per Poisson's ratio. A column starts with the reaction of the regular lattice [N], and "unstable" stands for
+random by up to the perturbation (in spacings), and prints Markdown tables: a row per perturbation, a column
+per Poisson's ratio; once with the cases' horizons, which are just beyond a shell of neighbours, and once with
+horizons in the middle between two shells. A column starts with the reaction of the regular lattice [N], and "unstable" stands for
 a body that is refused because it is unstable at rest.
 
     /usr/bin/python3 -BEs benchmarks/perturbed_cpd.py [PROGRAM]
@@ -20,8 +21,12 @@ PERTURBATIONS = [0.0, 1e-9, 1e-7, 1e-6, 1e-5, 1e-4, 1e-3, 3e-3, 1e-2, 0.02, 0.03
 CASES = [
     ("square", ["lattice.spacing=0.05", 'support[1].displacement=["1e-3*load","0"]'],
      [0.1, 0.2, 0.3, 1.0 / 3.0, 0.4, 0.45]),
+    ("square", ["lattice.spacing=0.05", 'support[1].displacement=["1e-3*load","0"]', "lattice.horizon_ratio=3.08"],
+     [0.1, 1.0 / 3.0, 0.45]),
     ("cube", ["lattice.spacing=0.125", 'support[1].displacement=["1e-3*load","0","0"]'],
      [0.1, 0.2, 0.25, 0.3, 0.4, 0.45]),
+    ("cube", ["lattice.spacing=0.125", 'support[1].displacement=["1e-3*load","0","0"]', "lattice.horizon_ratio=2.118"],
+     [0.1, 0.25, 0.45]),
 ]  # fmt: skip
 
 
@@ -45,7 +50,8 @@ def main():
     program = pathlib.Path(sys.argv[1]).resolve() if len(sys.argv) == 2 else ROOT / "build/release/peristat"
     with tempfile.TemporaryDirectory() as name:
         for case, settings, ratios in CASES:
-            print(f"\n| {case}: perturbation | " + " | ".join(f"ν = {ratio:.4g}" for ratio in ratios) + " |")
+            horizon = settings[2] if len(settings) > 2 else "the case's horizon"
+            print(f"\n| {case}, {horizon}: perturbation | " + " | ".join(f"ν = {ratio:.4g}" for ratio in ratios) + " |")
             print("|---" * (len(ratios) + 1) + "|")
             regular = {}
             for perturbation in PERTURBATIONS:

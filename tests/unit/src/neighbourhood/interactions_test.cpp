@@ -208,7 +208,7 @@ void expect_consistent(double perturbation) {
     negative += values[0] < 0.0;
     partly += factor < 1.0;
   }
-  EXPECT_GT(partly, 10);
+  EXPECT_EQ(partly > 10, perturbation > 0.0);
   EXPECT_EQ(interactions.per_point(), per_point);
   for (std::size_t a = 0; a < effective.size(); ++a) {
     EXPECT_NEAR(interactions.effective_counts()[a], effective[a], 1e-12 * effective[a]);
@@ -390,7 +390,7 @@ double largest_second_difference(int dimension, bool tetrahedra, int steps) {
       most = std::max(most, std::abs(last[0][i] - 2.0 * last[1][i] + last[2][i]));
     }
   }
-  EXPECT_GT(changes, 4);  // interactions have come and gone on the way
+  EXPECT_GE(changes, 4);  // interactions have come and gone on the way
   return most;
 }
 
