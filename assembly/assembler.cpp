@@ -37,10 +37,23 @@ void with_dimension(int dimension, const Body& body) {
   if (dimension == 3) body(std::integral_constant<int, 3>{});
 }
 
+bool has_damage(const Model& model) {
+  return std::visit([]<class P>(const P&) { return PotentialWithHistory<P>; }, model.potential);
+}
+
+template <class Term>
+bool is_negative(const std::optional<Term>& term) {
+  return term && std::visit([](const auto& law) { return law.modulus < 0.0; }, term->potential);
+}
+
 }  // namespace
 
 Assembler::Assembler(const Points& points, const Model& model, int threads)
-    : workspace_(std::make_unique<Workspace>(points, model, threads)) {}
+    : workspace_(std::make_unique<Workspace>(points, model, threads)) {
+  if (has_damage(model) && (is_negative(model.triangles) || is_negative(model.tetrahedra))) {
+    throw std::logic_error("what is lost with a bond must not hold negative energy");
+  }
+}
 Assembler::~Assembler() = default;
 
 int Assembler::threads() const { return workspace_->threads(); }
@@ -76,7 +89,10 @@ Stored Assembler::pass(std::span<const double> displacement, std::span<double> g
       workspace_->find_integrity();
     }
     const Stored higher = Kernels::gradient(*workspace_, displacement, gradient);
-    if (stored.growth.degrading > 0) stored.released -= higher.energy;
+    // No integrity rises in a commit, but for the last digit of an exponential.
+    if (stored.growth.degrading > 0) {
+      stored.released = std::max(stored.released - higher.energy, 0.0);
+    }
     stored.energy += higher.energy;
     stored.degenerate |= higher.degenerate;
   });

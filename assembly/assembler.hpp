@@ -21,6 +21,8 @@ struct Workspace;
 class Assembler {
  public:
   /// Points and model must outlive the assembler.
+  /// @throws std::logic_error for bonds with damage beside triangles or tetrahedra of a negative
+  ///         constant: their loss would have to be paid with energy that nobody has put in
   Assembler(const Points& points, const Model& model, int threads);
   ~Assembler();
 

@@ -136,7 +136,7 @@ struct BoxBody {
   void add(std::optional<InteractionTerm<Measure>>& to, double stiffness, const BoxSetting& box,
            int threads) {
     if (stiffness == 0.0) return;
-    Interactions<Measure> interactions(points, model.bonds, setting.horizon, threads);
+    Interactions<Measure> interactions(points, model.bonds, setting.cross_section, threads);
     const BulkNeighbourhood bulk =
         bulk_neighbourhood(box.dimension, box.spacing, setting.horizon, box.cross_section);
     interactions.set_shares(weight_shares<Measure>(

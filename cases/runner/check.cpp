@@ -6,6 +6,7 @@
 
 #include "cases/runner/body.hpp"
 #include "cases/runner/cpd_model.hpp"
+#include "cases/runner/rest_stability.hpp"
 #include "cases/runner/solver_options.hpp"
 #include "solvers/linear/make_linear_solver.hpp"
 
@@ -118,6 +119,7 @@ Exit check(const Case& from, int threads) {
   fmt::print("time        {} for {} load steps, if none has to be cut\n",
              seconds_text(chosen.seconds * from.loading.steps / threads), from.loading.steps);
   refuse_unheld_bodies(from, body);
+  refuse_unstable_rest(from, body, threads);
   return Exit::done;
 }
 

@@ -2,6 +2,7 @@
 
 #include "cases/runner/bond_potential.hpp"
 #include "src/input_error.hpp"
+#include "src/number_text.hpp"
 
 namespace peristat {
 namespace {
@@ -10,31 +11,69 @@ namespace {
 /// @param left those that pre-cracks have not cut; an interaction with a cut bond is lost
 template <class Measure>
 InteractionTerm<Measure> make_term(const Case& from, const Points& points, const Bonds& bonds,
-                                   const Bonds& left, const BulkNeighbourhood& bulk, double horizon,
-                                   double constant, int threads) {
-  Interactions<Measure> interactions(points, bonds, horizon, threads);
+                                   const Bonds& left, const BulkNeighbourhood& bulk,
+                                   double cross_section, double constant, int threads) {
+  Interactions<Measure> interactions(points, bonds, cross_section, threads);
+  if (interactions.count() == 0) {
+    constexpr bool is_triangle = Measure::arms == 2;
+    throw InputError(is_triangle ? "material.c2" : "material.c3", number_text(constant),
+                     std::string("the body has no ") + (is_triangle ? "triangles" : "tetrahedra") +
+                         ": no points within the horizon of each other span a quarter of the " +
+                         (is_triangle ? "area" : "volume") +
+                         " of a point's cell. The horizon is too short, or volumes of points are "
+                         "too large");
+  }
   const auto shares = weight_shares<Measure>(
       points, effective_volumes(interactions, neighbour_counts(bonds), bulk, from.weights));
   if (left.count() < bonds.count()) {
-    interactions = Interactions<Measure>(points, left, horizon, threads);
+    interactions = Interactions<Measure>(points, left, cross_section, threads);
   }
   interactions.set_shares(shares);
   return {std::move(interactions), Harmonic{constant}};
 }
 
+CpdStiffness stiffness_of(const Case& from, const Points& points, const BondSetting& setting) {
+  return from.material.calibration == Calibration::lattice
+             ? lattice_stiffness(from.dimension, points.spacing, setting.horizon,
+                                 setting.cross_section)
+             : continuum_stiffness(from.dimension, setting.horizon, setting.cross_section);
+}
+
+void refuse_damage_of_negative_constants(const Case& from, const Points& points,
+                                         const BondSetting& setting,
+                                         const CpdConstants& constants) {
+  const std::string negative = negative_constant(constants);
+  if (negative.empty() || from.material.damage.law == DamageLaw::none) return;
+  const double value = negative == "c2" ? constants.c2 : constants.c3;
+  std::string advice = "give " + negative + " = 0 or more";
+  if (from.material.poisson_ratio) {
+    const CpdStiffness stiffness = stiffness_of(from, points, setting);
+    const double least = poisson_ratio_of(stiffness.moduli({1.0, 0.0, 0.0}), from.dimension);
+    advice = "it is for a poisson_ratio below " + number_text(least) +
+             (from.dimension == 3 ? " (with c2 = 0; a positive c2 needs a larger one)" : "") +
+             ". Give a larger poisson_ratio, or model = \"bond\"";
+  }
+  throw InputError("material.damage.law", "",
+                   "damage needs constants of at least 0, but " + negative + " is " +
+                       number_text(value) +
+                       ": interactions of negative energy that are lost with a "
+                       "broken bond would set energy free from nothing; " +
+                       advice);
+}
+
 }  // namespace
+
+std::string negative_constant(const CpdConstants& constants) {
+  return constants.c2 < 0.0 ? "c2" : constants.c3 < 0.0 ? "c3" : "";
+}
 
 CpdConstants cpd_constants_of(const Case& from, const Points& points, const BondSetting& setting) {
   const MaterialSpecification& material = from.material;
   if (material.c1) return {*material.c1, material.c2, material.c3};
-  const int dimension = from.dimension;
-  const CpdStiffness stiffness =
-      material.calibration == Calibration::lattice
-          ? lattice_stiffness(dimension, points.spacing, setting.horizon, setting.cross_section)
-          : continuum_stiffness(dimension, setting.horizon, setting.cross_section);
   try {
-    return stiffness.constants(
-        lame_moduli(*material.youngs_modulus, *material.poisson_ratio, dimension), material.c2);
+    return stiffness_of(from, points, setting)
+        .constants(lame_moduli(*material.youngs_modulus, *material.poisson_ratio, from.dimension),
+                   material.c2);
   } catch (const InputError& error) {
     throw InputError("material." + error.key(), error.value(), error.allowed());
   }
@@ -43,18 +82,19 @@ CpdConstants cpd_constants_of(const Case& from, const Points& points, const Bond
 Model make_cpd_model(const Case& from, const Points& points, const BondSetting& setting,
                      Bonds bonds, std::vector<double>& cut_weight, int threads) {
   const CpdConstants constants = cpd_constants_of(from, points, setting);
+  refuse_damage_of_negative_constants(from, points, setting, constants);
   const BulkNeighbourhood bulk =
       bulk_neighbourhood(from.dimension, points.spacing, setting.horizon, setting.cross_section);
   set_one_neighbour_weights(bonds, points, bulk);
   Model model{bonds, bond_potential(from.material.damage, constants.c1)};
   cut_weight = cut_bonds(model.bonds, points, from.cracks);
   if (constants.c2 != 0.0) {
-    model.triangles = make_term<Area>(from, points, bonds, model.bonds, bulk, setting.horizon,
+    model.triangles = make_term<Area>(from, points, bonds, model.bonds, bulk, setting.cross_section,
                                       constants.c2, threads);
   }
   if (constants.c3 != 0.0) {
-    model.tetrahedra = make_term<Volume>(from, points, bonds, model.bonds, bulk, setting.horizon,
-                                         constants.c3, threads);
+    model.tetrahedra = make_term<Volume>(from, points, bonds, model.bonds, bulk,
+                                         setting.cross_section, constants.c3, threads);
   }
   return model;
 }

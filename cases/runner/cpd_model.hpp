@@ -1,5 +1,8 @@
 #pragma once
 
+#include <string>
+#include <vector>
+
 #include "assembly/model.hpp"
 #include "cases/runner/case.hpp"
 #include "src/materials/cpd_constants.hpp"
@@ -13,7 +16,13 @@ namespace peristat {
 [[nodiscard]] CpdConstants cpd_constants_of(const Case& from, const Points& points,
                                             const BondSetting& setting);
 
+/// Key of a constant below zero, "c2" or "c3", whose interactions store negative energy; empty if
+/// there is none.
+[[nodiscard]] std::string negative_constant(const CpdConstants& constants);
+
 /// Model of a case of model "cpd".
+/// @throws InputError for damage together with a negative constant: the triangles and tetrahedra
+///         that a broken bond takes along would release energy that nobody has put in
 /// @param bonds whose weights are to be set
 /// @param cut_weight gets the weight of the bonds that pre-cracks have cut, per point
 [[nodiscard]] Model make_cpd_model(const Case& from, const Points& points,

@@ -17,6 +17,7 @@
 #include "cases/runner/interruption.hpp"
 #include "cases/runner/probe.hpp"
 #include "cases/runner/progress.hpp"
+#include "cases/runner/rest_stability.hpp"
 #include "cases/runner/solver_options.hpp"
 #include "solvers/linear/cholesky.hpp"
 #include "solvers/load_stepping.hpp"
@@ -278,6 +279,7 @@ Exit run_case(const Case& from, const RunOptions& options, Progress& progress, S
   const std::unique_ptr<const Body> made = make_body(from, options.threads);
   const Body& body = *made;
   refuse_unheld_bodies(from, body);
+  refuse_unstable_rest(from, body, options.threads);
   std::vector<DecisionRecord> decisions;
   const auto decide = [&](const DecisionRecord& record) {
     decisions.push_back(record);

@@ -1,5 +1,6 @@
 #include "src/materials/cpd_constants.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -105,13 +106,29 @@ CpdConstants CpdStiffness::constants(const LameModuli& moduli, double c2) const 
   const LameModuli one = of_c1.isotropic(dimension), two = of_c2.isotropic(dimension),
                    three = of_c3.isotropic(dimension);
   CpdConstants result;
+  // What the others leave of lambda, zero where that is their round-off: Poisson's ratio of central
+  // forces, 1/3 or 1/4, must not make a constant negative by its last digits.
+  const auto of_rest = [&](double others, double largest, double per_constant) {
+    constexpr double round_off = 1e-10;
+    const double left = moduli.lambda - others;
+    if (std::abs(left) <= round_off * largest) return 0.0;
+    if (per_constant == 0.0) {
+      throw InputError("poisson_ratio", number_text(poisson_ratio_of(moduli, dimension)),
+                       "can't be reached: with this horizon no neighbours of a point are "
+                       "neighbours of each other, and bonds alone have " +
+                           number_text(poisson_ratio_of({one.lambda, one.mu}, dimension)));
+    }
+    return left / per_constant;
+  };
   if (dimension == 2) {
     result.c1 = moduli.mu / one.mu;  // triangles resist no shear in 2D
-    result.c2 = (moduli.lambda - one.lambda * result.c1) / two.lambda;
+    result.c2 = of_rest(one.lambda * result.c1, moduli.mu, two.lambda);
   } else {
     result.c2 = c2;
     result.c1 = (moduli.mu - two.mu * c2) / one.mu;
-    result.c3 = (moduli.lambda - one.lambda * result.c1 - two.lambda * c2) / three.lambda;
+    const double of_bonds = one.lambda * result.c1, of_triangles = two.lambda * c2;
+    const double largest = std::max(moduli.mu, std::abs(of_triangles));
+    result.c3 = of_rest(of_bonds + of_triangles, largest, three.lambda);
   }
   if (!(result.c1 > 0.0)) {
     throw InputError("c2", number_text(c2),

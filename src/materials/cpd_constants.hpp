@@ -55,8 +55,9 @@ struct CpdStiffness {
   }
 
   /// Constants of given moduli. In 2D they determine C1 and C2; in 3D C2 is free.
-  /// @throws InputError (key "c2") if C1 would not be positive: one-neighbour interactions are what
-  ///         makes a body stable ([CPD] sec. 4.4)
+  /// @throws InputError (key "poisson_ratio") if the horizon is too short for the interactions that
+  ///         it needs, and (key "c2") if C1 would not be positive: one-neighbour interactions are
+  ///         what makes a body stable ([CPD] sec. 4.4)
   [[nodiscard]] CpdConstants constants(const LameModuli& moduli, double c2) const;
 };
 

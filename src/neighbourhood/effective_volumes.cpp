@@ -9,6 +9,11 @@ namespace {
 template <class Measure>
 constexpr double orders = Measure::arms == 2 ? 2.0 : 6.0;
 
+/// The count n that effective volumes are divided by: from n = 1 on it is n itself, so that they
+/// sum up to the neighbourhood's. Below, where the last interactions of a point are nearly flat, (1
+/// + n^2)/2: their weights vanish with them instead of sharing what is left.
+double divisor(double count) { return count >= 1.0 ? count : 0.5 * (1.0 + count * count); }
+
 }  // namespace
 
 std::vector<std::int32_t> neighbour_counts(const Bonds& bonds) {
@@ -37,15 +42,15 @@ template <class Measure>
 std::vector<double> effective_volumes(const Interactions<Measure>& interactions,
                                       const std::vector<std::int32_t>& neighbours,
                                       const BulkNeighbourhood& bulk, InteractionWeights weights) {
-  const std::vector<std::int32_t>& count = interactions.per_point();
+  const std::vector<double>& count = interactions.effective_counts();
   const double in_bulk = double(Measure::arms == 2 ? bulk.pairs : bulk.triplets);
   std::vector<double> volume(count.size(), 0.0);
   for (std::size_t a = 0; a < volume.size(); ++a) {
     if (weights == InteractionWeights::bulk) {
       volume[a] = std::pow(bulk.volume, Measure::arms) / in_bulk;
-    } else if (count[a] > 0) {
+    } else {
       const double neighbourhood = effective_neighbour_volume(bulk) * neighbours[a];
-      volume[a] = std::pow(neighbourhood, Measure::arms) / (orders<Measure> * count[a]);
+      volume[a] = std::pow(neighbourhood, Measure::arms) / (orders<Measure> * divisor(count[a]));
     }
   }
   return volume;

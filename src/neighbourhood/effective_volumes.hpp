@@ -28,7 +28,8 @@ void set_one_neighbour_weights(Bonds& bonds, const Points& points, const BulkNei
 
 /// Effective volumes V2 = V_H^2 / #N2 [m6] of a pair and V3 = V_H^3 / #N3 [m9] of a triplet of
 /// every point (eqs. 32 and 34 of [CPD]), with ordered counts: 2 for every triangle of the point, 6
-/// for every tetrahedron. Points without any get 0.
+/// for every tetrahedron, each times its flatness factor. Points with a sum of factors below 1 get
+/// less than these, continuously.
 template <class Measure>
 [[nodiscard]] std::vector<double> effective_volumes(const Interactions<Measure>& interactions,
                                                     const std::vector<std::int32_t>& neighbours,

@@ -21,14 +21,31 @@ Share share_of_thread(const Bonds& bonds, int thread, int threads) {
   return {bound(thread), bound(thread + 1)};
 }
 
+/// Interactions of a point, and the sum of their flatness factors.
+struct PointCount {
+  std::int32_t interactions = 0;
+  double effective = 0.0;
+  void operator+=(const PointCount& other) {
+    interactions += other.interactions;
+    effective += other.effective;
+  }
+};
+using Counts = std::vector<PointCount>;
+
 }  // namespace
 
 template <class Measure>
-Interactions<Measure>::Interactions(const Points& points, const Bonds& bonds, double horizon,
+Interactions<Measure>::Interactions(const Points& points, const Bonds& bonds, double cross_section,
                                     int threads)
-    : least_measure_(flatness_tolerance * std::pow(horizon, Measure::arms)),
-      per_point_(std::size_t(points.count()), 0),
-      shares_(std::size_t(points.count()), 0.0) {
+    : per_point_(std::size_t(points.count()), 0),
+      effective_counts_(std::size_t(points.count()), 0.0),
+      shares_(std::size_t(points.count()), 1.0 / (Measure::arms + 1)),
+      cell_shares_(std::size_t(points.count())) {
+  for (std::size_t a = 0; a < cell_shares_.size(); ++a) {
+    cell_shares_[a] =
+        cell_measure(points.volume[a], cross_section, Measure::arms, points.dimension) /
+        (Measure::arms + 1);
+  }
   if constexpr (Measure::arms == 2) {
     if (points.dimension == 2) count_in<2>(points, bonds, threads);
   }
@@ -39,34 +56,44 @@ template <class Measure>
 template <int D>
 void Interactions<Measure>::count_in(const Points& points, const Bonds& bonds, int threads) {
   Offset count = 0, blocks = 0, groups = 0;
+  std::vector<Counts> counts(static_cast<std::size_t>(threads));
 #pragma omp parallel num_threads(threads) reduction(+ : count, blocks, groups)
   {
-    const Share share = share_of_thread(bonds, omp_get_thread_num(), omp_get_num_threads());
-    LocalNeighbourhood<D> local(points, bonds);
-    InteractionScratch scratch(UpperNeighbourhood::largest(bonds));
-    std::vector<std::int32_t> found(per_point_.size(), 0);
-    for (Index i = share.first; i < share.last; ++i) {
-      local.move_to(i);
-      local.upper.find_pairs();
-      const std::span<const Index> partner = local.upper.points();
-      find_groups<D>(local, scratch, [&](const Group& group) {
-        std::int32_t in_group = 0;
-        for (const InteractionBlock& block : group.blocks) {
-          for (int l = 0; l < lane_count; ++l) {
-            if ((block.active >> l & 1U) == 0) continue;
-            ++found[partner[block.first + l]];
-            ++in_group;
+    // With fewer threads than asked for, some do the work of several.
+    for (int t = omp_get_thread_num(); t < threads; t += omp_get_num_threads()) {
+      const Share share = share_of_thread(bonds, t, threads);
+      LocalNeighbourhood<D> local(points, bonds);
+      InteractionScratch scratch(UpperNeighbourhood::largest(bonds));
+      Counts& found = counts[std::size_t(t)];
+      found.assign(per_point_.size(), {});
+      for (Index i = share.first; i < share.last; ++i) {
+        local.move_to(i);
+        local.upper.find_pairs();
+        const std::span<const Index> partner = local.upper.points();
+        find_groups<D>(local, scratch, [&](const Group& group) {
+          PointCount in_group;
+          for (const InteractionBlock& block : group.blocks) {
+            for (int l = 0; l < lane_count; ++l) {
+              if ((block.active >> l & 1U) == 0) continue;
+              const PointCount one{1, std::abs(block.weight[l])};
+              found[partner[block.first + l]] += one;
+              in_group += one;
+            }
           }
-        }
-        for (std::int32_t a : group.partners) found[partner[a]] += in_group;
-        found[i] += in_group;
-        count += in_group;
-        blocks += Offset(group.blocks.size());
-        ++groups;
-      });
+          for (std::int32_t a : group.partners) found[partner[a]] += in_group;
+          found[i] += in_group;
+          count += in_group.interactions;
+          blocks += Offset(group.blocks.size());
+          ++groups;
+        });
+      }
     }
-#pragma omp critical
-    for (std::size_t i = 0; i < found.size(); ++i) per_point_[i] += found[i];
+  }
+  for (const Counts& found : counts) {  // in order: the sums do not depend on who was first
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      per_point_[i] += found[i].interactions;
+      effective_counts_[i] += found[i].effective;
+    }
   }
   count_ = count;
   blocks_ = blocks;

@@ -10,7 +10,7 @@
 #include "src/lanes.hpp"
 #include "src/measures/area.hpp"
 #include "src/measures/volume.hpp"
-#include "src/neighbourhood/horizon.hpp"
+#include "src/neighbourhood/flatness.hpp"
 #include "src/neighbourhood/local_neighbourhood.hpp"
 
 namespace peristat {
@@ -18,9 +18,10 @@ namespace peristat {
 /// Four neighbouring partners of a point that may each complete an interaction.
 struct InteractionBlock {
   double inverse_reference[lane_count];  ///< 1/M, signed as the measure is; 1 in empty lanes
-  double weight[lane_count];  ///< w [m9 or m12], negative where M is, so that w M > 0; 0 if empty
-  std::int32_t first;         ///< local number of the first
-  std::uint32_t active;       ///< bit l: lane l holds an interaction
+  /// w times the flatness factor [m9 or m12], negative where M is, so that w M > 0; 0 if empty
+  double weight[lane_count];
+  std::int32_t first;    ///< local number of the first
+  std::uint32_t active;  ///< bit l: lane l holds an interaction
 };
 
 /// Interactions of a point that share all of their points but the last.
@@ -33,15 +34,15 @@ struct InteractionGroup {
 /// Room for the interactions that are found of one point.
 struct InteractionScratch {
   explicit InteractionScratch(int most_partners)
-      : shares(most_partners), blocks(std::size_t(block_count(most_partners))) {}
-  LocalVectors<1> shares;
+      : of_partners(most_partners), blocks(std::size_t(block_count(most_partners))) {}
+  LocalVectors<2> of_partners;  ///< shares of weight and cell measure
   std::vector<InteractionBlock> blocks;
 };
 
 /// Unique triangles (Measure = Area) or tetrahedra (Volume) of a body: points with all mutual
-/// distances within the horizon ([CPD] sec. 3.1 after eqs. 32 and 34) that are not collinear
-/// (coplanar) up to flatness_tolerance. Each is visited once, at its lowest point, with its other
-/// points in ascending order.
+/// distances within the horizon ([CPD] sec. 3.1 after eqs. 32 and 34), as far as they are not flat:
+/// each is weighted by its flatness_factor. Each is visited once, at its lowest point, with its
+/// other points in ascending order.
 ///
 /// They are found anew at every visit from the bond graph, or, once stored, read back: 72 bytes for
 /// a block of up to four.
@@ -52,14 +53,20 @@ class Interactions {
   using Group = InteractionGroup<fixed>;
 
   /// Counts them.
-  Interactions(const Points& points, const Bonds& bonds, double horizon, int threads);
+  /// @param cross_section thickness in 2D [m], 1 in 3D
+  Interactions(const Points& points, const Bonds& bonds, double cross_section, int threads);
 
   [[nodiscard]] Offset count() const { return count_; }
 
   /// Interactions that each point takes part in.
   [[nodiscard]] const std::vector<std::int32_t>& per_point() const { return per_point_; }
 
-  /// An interaction's weight is the sum of its points' shares [m9 or m12].
+  /// Sum of the flatness factors of each point's interactions: their number on a lattice, and a
+  /// continuous function of the points' positions everywhere.
+  [[nodiscard]] const std::vector<double>& effective_counts() const { return effective_counts_; }
+
+  /// An interaction's weight is the sum of its points' shares [m9 or m12] times its flatness
+  /// factor. Until they are set it is the factor alone.
   void set_shares(std::vector<double> shares) { shares_ = std::move(shares); }
 
   /// Memory that storing them takes [bytes].
@@ -94,14 +101,15 @@ class Interactions {
   void find_groups(const LocalNeighbourhood<D>& local, InteractionScratch& scratch,
                    const Visit& visit) const;
   template <int D>
-  bool make_block(const Arms<Measure::arms, D, Lanes>& arms, const Lanes& share,
-                  std::uint32_t candidates, InteractionBlock& block) const;
+  static bool make_block(const Arms<Measure::arms, D, Lanes>& arms, const Vector<2, Lanes>& shares,
+                         std::uint32_t candidates, InteractionBlock& block);
 
-  double least_measure_;  // a smaller one is flat
   Offset count_ = 0;
   Offset blocks_ = 0, groups_ = 0;
   std::vector<std::int32_t> per_point_;
+  std::vector<double> effective_counts_;
   std::vector<double> shares_;
+  std::vector<double> cell_shares_;  // an interaction's cell measure M0 is their sum [m2 or m3]
   std::vector<Chunk> chunks_;
 };
 
@@ -123,22 +131,26 @@ inline constexpr auto lanes_of_bits = [] {
 
 /// Fills a block from those of its four partners that are candidates (bits).
 /// @param arms from the point; the last arm is that of the four
-/// @param share sum of the points' shares
+/// @param shares sums of the points' shares of weight and of cell measure
 /// @return whether it holds any interaction
 template <class Measure>
 template <int D>
 bool Interactions<Measure>::make_block(const Arms<Measure::arms, D, Lanes>& arms,
-                                       const Lanes& share, std::uint32_t candidates,
-                                       InteractionBlock& block) const {
+                                       const Vector<2, Lanes>& shares, std::uint32_t candidates,
+                                       InteractionBlock& block) {
   using std::experimental::element_aligned;
   using std::experimental::where;
   const Lanes reference = Measure::template value<D>(arms);
   const Lanes candidate(interactions_detail::lanes_of_bits[candidates].data(), element_aligned);
-  const auto active = candidate * std::experimental::abs(reference) > Lanes(least_measure_);
+  const Lanes size = std::experimental::abs(reference), &cell = shares[1];
+  const auto active = candidate * size > flat_measure * cell;
   if (std::experimental::none_of(active)) return false;
   Lanes inverse = 1.0 / reference;
   where(!active, inverse) = 1.0;
-  Lanes weight = share;
+  Lanes weight = shares[0];
+  if (std::experimental::any_of(active && size < full_measure * cell)) {
+    weight *= flatness_factor(Lanes(size / cell));
+  }
   where(reference < 0.0, weight) = -weight;
   where(!active, weight) = 0.0;
   inverse.copy_to(block.inverse_reference, element_aligned);
@@ -157,12 +169,13 @@ template <int D, class Visit>
 void Interactions<Measure>::find_groups(const LocalNeighbourhood<D>& local,
                                         InteractionScratch& scratch, const Visit& visit) const {
   const UpperNeighbourhood& upper = local.upper;
-  const auto share_of = [&](int a) { return shares_[upper.points()[a]]; };
-  scratch.shares.assign(upper.count(), [&](int a, int) { return share_of(a); });
-  const double own_share = shares_[upper.own()];
+  scratch.of_partners.assign(upper.count(), [&](int a, int c) {
+    return (c == 0 ? shares_ : cell_shares_)[upper.points()[a]];
+  });
+  const Vector<2, Lanes> own{shares_[upper.own()], cell_shares_[upper.own()]};
   Group group;
   Arms<Measure::arms, D, Lanes> arms;
-  double share = 0.0;
+  Vector<2, Lanes> of_fixed;  // sums of shares of the points but the last
 
   // Blocks among the bits of partners that are bonded to all fixed ones.
   const auto complete = [&](const auto& word_of) {
@@ -176,7 +189,7 @@ void Interactions<Measure>::find_groups(const LocalNeighbourhood<D>& local,
         InteractionBlock& block = scratch.blocks[count];
         block.first = w * 64 + nibble;
         arms[fixed] = local.reference.block(block.first);
-        const Lanes shares = share + scratch.shares.block(block.first)[0];
+        const Vector<2, Lanes> shares = plus<2>(of_fixed, scratch.of_partners.block(block.first));
         if (make_block<D>(arms, shares, candidates, block)) ++count;
       }
     }
@@ -187,7 +200,7 @@ void Interactions<Measure>::find_groups(const LocalNeighbourhood<D>& local,
     for (int a = 0; a < upper.count(); ++a) {
       group.partners = {a};
       arms[0] = local.reference.one(a);
-      share = own_share + share_of(a);
+      of_fixed = plus<2>(own, scratch.of_partners.one(a));
       complete([bits = upper.mutual(a)](int w) { return bits[w]; });
     }
   } else {
@@ -195,7 +208,8 @@ void Interactions<Measure>::find_groups(const LocalNeighbourhood<D>& local,
       group.partners = {pair.a, pair.b};
       arms[0] = local.reference.one(pair.a);
       arms[1] = local.reference.one(pair.b);
-      share = own_share + share_of(pair.a) + share_of(pair.b);
+      of_fixed =
+          plus<2>(plus<2>(own, scratch.of_partners.one(pair.a)), scratch.of_partners.one(pair.b));
       const std::uint64_t *a = upper.mutual(pair.a), *b = upper.mutual(pair.b);
       complete([a, b](int w) { return a[w] & b[w]; });
     }

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <vector>
 
+#include "src/neighbourhood/flatness.hpp"
 #include "src/neighbourhood/horizon.hpp"
 #include "src/types.hpp"
 
@@ -12,7 +13,7 @@ namespace peristat {
 class LatticeBall {
  public:
   LatticeBall(int dimension, double spacing, double horizon)
-      : dimension_(dimension), horizon_(horizon) {
+      : dimension_(dimension), spacing_(spacing), horizon_(horizon) {
     const int width = static_cast<int>(std::floor(reach(horizon) / spacing));
     const int width_y = dimension > 1 ? width : 0, width_z = dimension > 2 ? width : 0;
     for (int x = -width; x <= width; ++x) {
@@ -38,7 +39,7 @@ class LatticeBall {
         if (!are_mutual(j, k)) continue;
         const Coordinates normal = cross(arms_[j], arms_[k]);
         const double area = std::sqrt(dot(normal, normal));
-        if (area > flatness_tolerance * horizon_ * horizon_) visit(arms_[j], arms_[k], area);
+        if (area > flat_measure * spacing_ * spacing_) visit(arms_[j], arms_[k], area);
       }
     }
   }
@@ -48,7 +49,7 @@ class LatticeBall {
   template <class Visit>
   void for_each_triplet(const Visit& visit) const {
     if (dimension_ < 3) return;
-    const double least = flatness_tolerance * horizon_ * horizon_ * horizon_;
+    const double least = flat_measure * spacing_ * spacing_ * spacing_;
     std::vector<std::size_t> common;
     for (std::size_t j = 0; j < arms_.size(); ++j) {
       common.clear();
@@ -83,7 +84,7 @@ class LatticeBall {
   }
 
   int dimension_;
-  double horizon_;
+  double spacing_, horizon_;
   std::vector<Coordinates> arms_;
 };
 

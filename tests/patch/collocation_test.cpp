@@ -100,7 +100,7 @@ class Collocation {
         }
       }
       const double value = Measure::template value<3, double>(reference);
-      if (std::abs(value) > 1e-6 * std::pow(body_.setting.horizon, arms)) {
+      if (std::abs(value) > flat_measure * std::pow(body_.points.spacing, arms)) {
         interactions_.push_back({points, value});
       }
       return;

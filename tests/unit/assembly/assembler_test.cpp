@@ -175,7 +175,7 @@ TEST(Assembler, EnergyIsTheDoubleSumOverOrderedPairs) {
 }
 
 // Eq. 14 of [CPD]: per point 1/3 of the sum over ordered pairs and 1/4 of that over ordered
-// triplets.
+// triplets, each times its flatness factor, in the counts too.
 TEST(Assembler, EnergyIsTheSumOverOrderedPairsAndTriplets) {
   for (int dimension : {2, 3}) {
     tests::BoxSetting box = tests::small_box(dimension);
@@ -228,17 +228,23 @@ TEST(Assembler, EnergyIsTheSumOverOrderedPairsAndTriplets) {
         for (std::size_t k = 0; k < n; ++k) {
           if (!near(i, k) || !near(j, k)) continue;
           const double reference = area(arm(i, j, false), arm(i, k, false));
-          const double change = area(arm(i, j, true), arm(i, k, true)) / reference - 1.0;
-          ++pairs;
-          psi2 += 0.5 * std::abs(reference) * change * change;
+          const double factor = flatness_factor(std::abs(reference) / std::pow(box.spacing, 2));
+          if (factor > 0.0) {
+            const double change = area(arm(i, j, true), arm(i, k, true)) / reference - 1.0;
+            pairs += factor;
+            psi2 += 0.5 * factor * std::abs(reference) * change * change;
+          }
           for (std::size_t l = 0; l < n && dimension == 3; ++l) {
             if (!near(i, l) || !near(j, l) || !near(k, l)) continue;
             const double of_reference =
                 volume(arm(i, j, false), arm(i, k, false), arm(i, l, false));
+            const double of_volume =
+                flatness_factor(std::abs(of_reference) / std::pow(box.spacing, 3));
+            if (of_volume == 0.0) continue;
             const double relative =
                 volume(arm(i, j, true), arm(i, k, true), arm(i, l, true)) / of_reference - 1.0;
-            ++triplets;
-            psi3 += 0.5 * std::abs(of_reference) * relative * relative;
+            triplets += of_volume;
+            psi3 += 0.5 * of_volume * std::abs(of_reference) * relative * relative;
           }
         }
       }
@@ -246,6 +252,8 @@ TEST(Assembler, EnergyIsTheSumOverOrderedPairsAndTriplets) {
       const auto modulus = [](const auto& term) {
         return std::get<Harmonic>(term->potential).modulus;
       };
+      ASSERT_FALSE(pairs > 0.0 && pairs < 2.0) << "no full triangle";
+      ASSERT_FALSE(triplets > 0.0 && triplets < 6.0) << "no full tetrahedron";
       if (pairs > 0.0) {
         expected +=
             points.volume[i] * v_h * v_h / pairs / 3.0 * modulus(body.model.triangles) * psi2;

@@ -229,6 +229,38 @@ TEST(CpdConstants, AndModuliAreInversesOfEachOther) {
   }
 }
 
+TEST(CpdConstants, OfTheRatioOfCentralForcesAreZeroWhateverTheLastDigit) {
+  for (int dimension : {2, 3}) {
+    const double thickness = dimension == 2 ? 0.1 : 1.0, ratio = dimension == 2 ? 1.0 / 3.0 : 0.25;
+    for (double spacing : {0.1, 1e-3, 0.37}) {
+      for (double horizon_ratio : {1.5, 2.015, 3.015}) {
+        for (const CpdStiffness& stiffness :
+             {continuum_stiffness(dimension, horizon_ratio * spacing, thickness),
+              lattice_stiffness(dimension, spacing, horizon_ratio * spacing, thickness)}) {
+          const auto last = [&](double nu) {
+            const CpdConstants found = stiffness.constants(lame_moduli(210e9, nu, dimension), 0.0);
+            return dimension == 2 ? found.c2 : found.c3;
+          };
+          for (double nu : {ratio, ratio * (1.0 - 4e-16), ratio * (1.0 + 4e-16)}) {
+            EXPECT_EQ(last(nu), 0.0);
+          }
+          EXPECT_LT(last(ratio - 1e-8), 0.0);
+          EXPECT_GT(last(ratio + 1e-8), 0.0);
+        }
+      }
+    }
+  }
+}
+
+TEST(CpdConstants, ThatNeedInteractionsBeyondTheHorizonAreRefused) {
+  for (int dimension : {2, 3}) {
+    const CpdStiffness stiffness = lattice_stiffness(dimension, 0.1, 0.12, 1.0);
+    EXPECT_THROW((void)stiffness.constants(lame_moduli(1.0, 0.4, dimension), 0.0), InputError);
+    const LameModuli of_bonds = stiffness.moduli({1.0, 0.0, 0.0});
+    EXPECT_NEAR(stiffness.constants(of_bonds, 0.0).c1, 1.0, 1e-13);
+  }
+}
+
 TEST(CpdConstants, OutsideTheStableRangeAreRefused) {
   for (int dimension : {2, 3}) {
     for (double nu : {-1.0, -1.5, dimension == 2 ? 1.0 : 0.5, 2.0, std::nan("")}) {

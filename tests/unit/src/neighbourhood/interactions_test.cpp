@@ -9,6 +9,7 @@
 
 #include <gtest/gtest.h>
 
+#include "assembly/assembler.hpp"
 #include "src/neighbourhood/effective_volumes.hpp"
 #include "tests/bodies.hpp"
 
@@ -89,10 +90,19 @@ struct Body : BoxBody {
   }
 };
 
+/// On a lattice what is not flat has the full weight, to the last bit.
+template <class Found, class Interactions>
+void expect_full_weights(const Found& found, const Interactions& interactions) {
+  for (const auto& entry : found) EXPECT_EQ(std::abs(entry.second[0]), 1.0);
+  for (std::size_t a = 0; a < interactions.per_point().size(); ++a) {
+    EXPECT_EQ(interactions.effective_counts()[a], double(interactions.per_point()[a]));
+  }
+}
+
 TEST(Triangles, AreAllWithMutualDistancesWithinTheHorizonButCollinearOnes) {
   for (int dimension : {2, 3}) {
     const Body body(tests::small_box(dimension));
-    const Triangles triangles(body.points, body.model.bonds, body.setting.horizon, 2);
+    const Triangles triangles(body.points, body.model.bonds, body.setting.cross_section, 2);
     const auto found = dimension == 2 ? all_of<2>(body, triangles) : all_of<3>(body, triangles);
     const Index n = body.points.count();
     std::size_t count = 0, collinear = 0;
@@ -121,12 +131,13 @@ TEST(Triangles, AreAllWithMutualDistancesWithinTheHorizonButCollinearOnes) {
     EXPECT_GT(count, 100u);
     EXPECT_EQ(found.size(), count);
     EXPECT_EQ(triangles.count(), Offset(count));
+    expect_full_weights(found, triangles);
   }
 }
 
 TEST(Tetrahedra, AreAllWithMutualDistancesWithinTheHorizonButCoplanarOnes) {
   const Body body(tests::small_box(3));
-  const Tetrahedra tetrahedra(body.points, body.model.bonds, body.setting.horizon, 2);
+  const Tetrahedra tetrahedra(body.points, body.model.bonds, body.setting.cross_section, 2);
   const auto found = all_of<3>(body, tetrahedra);
   const Index n = body.points.count();
   std::size_t count = 0, coplanar = 0;
@@ -156,6 +167,7 @@ TEST(Tetrahedra, AreAllWithMutualDistancesWithinTheHorizonButCoplanarOnes) {
   EXPECT_GT(count, 100u);
   EXPECT_EQ(found.size(), count);
   EXPECT_EQ(tetrahedra.count(), Offset(count));
+  expect_full_weights(found, tetrahedra);
 }
 
 template <class Measure, int D>
@@ -164,9 +176,11 @@ void expect_consistent(double perturbation) {
   box.perturbation = perturbation;
   box.horizon_ratio = D == 2 ? 9.1 : 2.6;  // 2D: more than 64 partners, two words of bits
   if (D == 2) box.extent = {13, 12, 0};
-  const BoxBody body(box);
+  BoxBody body(box);
   ASSERT_GT(UpperNeighbourhood::largest(body.model.bonds), D == 2 ? 64 : 30);
-  Interactions<Measure> interactions(body.points, body.model.bonds, body.setting.horizon, 1);
+  tests::Random random(3);  // cells of every size, as of a cloud of points
+  for (double& volume : body.points.volume) volume *= 1.0 + 0.3 * random.number();
+  Interactions<Measure> interactions(body.points, body.model.bonds, body.setting.cross_section, 1);
   std::vector<double> shares(body.points.volume.size());
   for (std::size_t a = 0; a < shares.size(); ++a) shares[a] = 1.0 + 0.01 * double(a);
   interactions.set_shares(shares);
@@ -174,18 +188,31 @@ void expect_consistent(double perturbation) {
   ASSERT_GT(found.size(), 1000u);
 
   std::vector<std::int32_t> per_point(shares.size(), 0);
-  int negative = 0;
+  std::vector<double> effective(shares.size(), 0.0);
+  int negative = 0, partly = 0;
   for (const auto& [points, values] : found) {
-    double weight = 0.0;
+    double weight = 0.0, cell = 0.0;
     for (Index point : points) {
       weight += shares[point];
-      ++per_point[point];
+      cell += std::pow(body.points.volume[point] / box.cross_section, double(Measure::arms) / D) /
+              double(points.size());
     }
-    EXPECT_NEAR(std::abs(values[0]) / weight, 1.0, 1e-14);
-    EXPECT_GT(values[0] * values[1], 0.0);  // signs of weight and measure agree
+    const double flatness = 1.0 / std::abs(values[1]) / cell, factor = flatness_factor(flatness);
+    EXPECT_GT(flatness, 0.25);
+    EXPECT_NEAR(std::abs(values[0]) / weight, factor, 1e-13);  // its slope is up to 3
+    EXPECT_GT(values[0] * values[1], 0.0);                     // signs of weight and measure agree
+    for (Index point : points) {
+      ++per_point[point];
+      effective[point] += factor;
+    }
     negative += values[0] < 0.0;
+    partly += factor < 1.0;
   }
+  EXPECT_EQ(partly > 10, perturbation > 0.0);
   EXPECT_EQ(interactions.per_point(), per_point);
+  for (std::size_t a = 0; a < effective.size(); ++a) {
+    EXPECT_NEAR(interactions.effective_counts()[a], effective[a], 1e-12 * effective[a]);
+  }
   if (Measure::template singular_at_zero<D>) {
     EXPECT_EQ(negative, 0);
   } else {
@@ -195,9 +222,12 @@ void expect_consistent(double perturbation) {
   // Stored, and counted with any number of threads, they are the same.
   const double bytes = interactions.stored_bytes();
   for (int threads : {1, 3}) {
-    Interactions<Measure> other(body.points, body.model.bonds, body.setting.horizon, threads);
+    Interactions<Measure> other(body.points, body.model.bonds, body.setting.cross_section, threads);
     EXPECT_EQ(other.count(), interactions.count());
     EXPECT_EQ(other.per_point(), interactions.per_point());
+    for (std::size_t a = 0; a < effective.size(); ++a) {
+      EXPECT_NEAR(other.effective_counts()[a], effective[a], 1e-12 * effective[a]);
+    }
     EXPECT_EQ(other.stored_bytes(), bytes);
     other.set_shares(shares);
     EXPECT_FALSE(other.is_stored());
@@ -217,8 +247,8 @@ TEST(Interactions, OfABodyWithoutNeighboursAreNone) {
   box.extent = {2, 1, 1};
   const BoxBody body(box);
   ASSERT_EQ(body.model.bonds.count(), 1);
-  EXPECT_EQ(Triangles(body.points, body.model.bonds, body.setting.horizon, 2).count(), 0);
-  EXPECT_EQ(Tetrahedra(body.points, body.model.bonds, body.setting.horizon, 2).count(), 0);
+  EXPECT_EQ(Triangles(body.points, body.model.bonds, body.setting.cross_section, 2).count(), 0);
+  EXPECT_EQ(Tetrahedra(body.points, body.model.bonds, body.setting.cross_section, 2).count(), 0);
 }
 
 // Conditions (35) of [CPD]: the quadrature of 1 over the neighbourhood, its square and its cube.
@@ -239,7 +269,8 @@ TEST(EffectiveVolumes, SumUpToThePowersOfTheNeighbourhoodsVolume) {
         const auto add = [&](const auto& found) {
           ASSERT_GT(found.size(), 0u);
           for (const auto& entry : found) {
-            for (Index point : entry.first) sum[point] += orders * effective[point];
+            const double factor = std::abs(entry.second[0]);
+            for (Index point : entry.first) sum[point] += orders * factor * effective[point];
           }
         };
         if (dimension == 2) {
@@ -252,10 +283,10 @@ TEST(EffectiveVolumes, SumUpToThePowersOfTheNeighbourhoodsVolume) {
           EXPECT_NEAR(sum[a] / std::pow(volume, power()), 1.0, 1e-12);
         }
       };
-      check(Triangles(body.points, body.model.bonds, body.setting.horizon, 1),
+      check(Triangles(body.points, body.model.bonds, body.setting.cross_section, 1),
             std::integral_constant<int, 2>{}, 2.0);
       if (dimension == 3) {
-        check(Tetrahedra(body.points, body.model.bonds, body.setting.horizon, 1),
+        check(Tetrahedra(body.points, body.model.bonds, body.setting.cross_section, 1),
               std::integral_constant<int, 3>{}, 6.0);
       }
     }
@@ -269,7 +300,7 @@ TEST(EffectiveVolumes, OfTheBulkAreThoseOfAPointFarFromSurfaces) {
   const BulkNeighbourhood bulk =
       bulk_neighbourhood(3, body.points.spacing, body.setting.horizon, 1.0);
   EXPECT_NEAR(bulk.volume / (4.0 / 3.0 * M_PI * std::pow(body.setting.horizon, 3)), 1.0, 1e-14);
-  const Tetrahedra tetrahedra(body.points, body.model.bonds, body.setting.horizon, 1);
+  const Tetrahedra tetrahedra(body.points, body.model.bonds, body.setting.cross_section, 1);
   const std::vector<std::int32_t> neighbours = neighbour_counts(body.model.bonds);
   const auto mean = effective_volumes(tetrahedra, neighbours, bulk, InteractionWeights::mean);
   const auto constant = effective_volumes(tetrahedra, neighbours, bulk, InteractionWeights::bulk);
@@ -287,6 +318,118 @@ TEST(EffectiveVolumes, OfTheBulkAreThoseOfAPointFarFromSurfaces) {
   }
   EXPECT_GT(inside, 0);
   EXPECT_GT(outside, 0);
+}
+
+// ---- Almost collinear and coplanar points
+
+TEST(FlatnessFactor, RisesOnceDifferentiablyFromNothingToOne) {
+  EXPECT_EQ(flatness_factor(0.0), 0.0);
+  EXPECT_EQ(flatness_factor(0.25), 0.0);
+  EXPECT_EQ(flatness_factor(0.5), 0.5);
+  EXPECT_EQ(flatness_factor(0.75), 1.0);
+  EXPECT_EQ(flatness_factor(1e9), 1.0);
+  double before = 0.0;
+  for (double t = 0.25; t < 0.76; t += 1e-3) {
+    EXPECT_GE(flatness_factor(t), before);
+    before = flatness_factor(t);
+  }
+  constexpr double h = 1e-5;  // the slope at the ends falls with the step
+  EXPECT_LT(flatness_factor(0.25 + h), 20.0 * h * h);
+  EXPECT_LT(1.0 - flatness_factor(0.75 - h), 20.0 * h * h);
+  EXPECT_EQ(cell_measure(0.5 * 0.04, 0.5, 2, 2), 0.04);
+  EXPECT_NEAR(cell_measure(0.008, 1.0, 2, 3), 0.04, 1e-16);
+  EXPECT_NEAR(cell_measure(0.008, 1.0, 3, 3), 0.008, 1e-17);
+}
+
+/// What a body stores, pulls and counts under one displacement of its points.
+std::vector<double> state_of(const BoxBody& body) {
+  Assembler assembler(body.points, body.model, 1);
+  const std::vector<double> displacement = tests::Random(5).vector(body.dofs(), 0.004);
+  std::vector<double> all(body.dofs());
+  const double energy = assembler.gradient(displacement, all).energy;
+  const double scale = tests::norm(all);
+  for (double& entry : all) entry /= scale;
+  all.push_back(energy / (scale * 0.004));
+  const auto add_counts = [&](const auto& term) {
+    if (!term) return;
+    for (const double count : term->interactions.effective_counts()) all.push_back(count / 10.0);
+  };
+  add_counts(body.model.triangles);
+  add_counts(body.model.tetrahedra);
+  return all;
+}
+
+/// A small lattice within one horizon, so that no bond comes or goes, whose middle point moves
+/// through the lines and planes of the others. Largest second differences of everything, as it
+/// moves in steps.
+double largest_second_difference(int dimension, bool tetrahedra, int steps) {
+  tests::BoxSetting box = tests::small_box(dimension);
+  box.spacing = 0.04;
+  box.extent = {3, 3, dimension == 3 ? 2 : 0};
+  const Points lattice = tests::box_points(box);
+  box.spacing = 0.1;  // horizon 0.2 m
+  (tetrahedra ? box.tetrahedra : box.triangles) = 1.0;
+  std::array<std::vector<double>, 3> last;
+  double most = 0.0;
+  int changes = 0;
+  Offset count = -1;
+  for (int k = 0; k <= steps; ++k) {
+    Points points = lattice;
+    const double way = 0.9 * 0.04 * double(k) / steps;
+    double* middle = &points.reference[4 * std::size_t(dimension)];
+    middle[0] += way;
+    middle[1] += 0.43 * way;
+    if (dimension == 3) middle[2] += 0.61 * way;
+    const BoxBody body(points, box);
+    const Offset present = tetrahedra ? body.model.tetrahedra->interactions.count()
+                                      : body.model.triangles->interactions.count();
+    changes += present != count;
+    count = present;
+    last = {last[1], last[2], state_of(body)};
+    for (std::size_t i = 0; i < last[0].size(); ++i) {
+      most = std::max(most, std::abs(last[0][i] - 2.0 * last[1][i] + last[2][i]));
+    }
+  }
+  EXPECT_GE(changes, 4);  // interactions have come and gone on the way
+  return most;
+}
+
+// A jump leaves the second differences as they are when the steps get shorter, and a kink makes
+// them fall with the step. Those of a function with a continuous slope and a bounded curvature fall
+// with its square.
+TEST(FlatInteractions, ComeAndGoWithoutJumpOrKink) {
+  for (const auto& [dimension, tetrahedra] :
+       {std::pair{2, false}, std::pair{3, false}, std::pair{3, true}}) {
+    const int steps = dimension == 2 ? 200 : 60;
+    const double coarse = largest_second_difference(dimension, tetrahedra, steps);
+    const double fine = largest_second_difference(dimension, tetrahedra, 4 * steps);
+    EXPECT_GT(coarse, 0.0);
+    EXPECT_LT(fine, coarse / 11.0) << dimension << "D" << (tetrahedra ? ", tetrahedra" : "");
+  }
+}
+
+// The last triangle of a point takes its weight along as it gets flat: the effective volume of a
+// point without any full one is not shared among what is left.
+TEST(FlatInteractions, OfAPointWithoutOthersVanish) {
+  const std::vector<double> pulled{0.0, 0.0, 0.01, 0.0, 0.0, 0.0};  // areas grow by a tenth
+  double first = 0.0, last = 0.0;
+  for (const double height : {0.26, 0.3, 0.5, 0.7, 0.75, 1.0}) {
+    tests::BoxSetting box = tests::small_box(2);
+    box.triangles = 1.0;
+    Points points;
+    points.dimension = 2;
+    points.spacing = box.spacing;
+    points.volume.assign(3, box.spacing * box.spacing * box.cross_section);
+    points.reference = {0.0, 0.0, 0.1, 0.0, 0.0, height * 0.1};
+    const BoxBody body(points, box);
+    const Model bonds_alone{body.model.bonds, body.model.potential};
+    const double energy = Assembler(body.points, body.model, 1).energy(pulled).energy -
+                          Assembler(body.points, bonds_alone, 1).energy(pulled).energy;
+    EXPECT_GT(energy, last);
+    last = energy;
+    if (first == 0.0) first = energy;
+  }
+  EXPECT_LT(first, 0.005 * last);
 }
 
 }  // namespace
