@@ -16,6 +16,7 @@
 #include "cases/runner/run.hpp"
 #include "cases/runner/runtime_environment.hpp"
 #include "cases/runner/toml_text.hpp"
+#include "cases/runner/unknown_option.hpp"
 #include "src/input_error.hpp"
 
 namespace {
@@ -27,6 +28,7 @@ struct CommandLine {
   std::vector<std::string> settings;
   int threads = 0;
   bool quiet = false;
+  bool no_plots = false;  // taken by the launcher, which draws
   CalibrationQuestion calibration;
 };
 
@@ -94,6 +96,20 @@ Exit execute(const CLI::App& program, const CommandLine& line, int threads) {
   return run(from, {threads, line.quiet, line.log_file});
 }
 
+/// Sentence about what stands on the command line without being expected.
+std::string unexpected_words(const CLI::App& program) {
+  for (const CLI::App* command : program.get_subcommands()) {
+    std::vector<std::string> options;
+    for (const CLI::Option* option : command->get_options()) {
+      for (const std::string& name : option->get_lnames()) options.push_back("--" + name);
+    }
+    const bool takes_set = command->get_option_no_throw("--set") != nullptr;
+    const std::vector<std::string> words = program.remaining(true);
+    return command->get_name() + ": " + describe_unknown(words, options, takes_set);
+  }
+  return describe_unknown(program.remaining(true), {}, false);
+}
+
 int told(const std::exception& error, Exit code) {
   std::fflush(stdout);
   fmt::print(stderr, "peristat: {}\n", error.what());
@@ -110,6 +126,8 @@ int main(int count, char** arguments) {
   CLI::App* run_command = program.add_subcommand("run", "run a case");
   add_case_options(*run_command, line);
   run_command->add_option("--output", line.output, "results folder (default: the case's)");
+  run_command->add_flag("--no-plots", line.no_plots,
+                        "draw no pictures at the end (./peristat draws them)");
   run_command->add_flag("--quiet", line.quiet, "print nothing but problems");
   run_command->add_option("--log", line.log_file,
                           "write all that is said, and every iteration, here");
@@ -125,9 +143,14 @@ int main(int count, char** arguments) {
       line);
   try {
     program.parse(count, arguments);
+  } catch (const CLI::ExtrasError&) {
+    return told(std::runtime_error(unexpected_words(program)), Exit::wrong_input);
   } catch (const CLI::ParseError& error) {
-    const bool helped = program.exit(error) == 0;
-    return static_cast<int>(helped ? Exit::done : Exit::wrong_input);
+    if (error.get_exit_code() != 0) {
+      return told(InputError("", "", std::string(error.what()) + "; --help lists the options"),
+                  Exit::wrong_input);
+    }
+    return program.exit(error);
   }
 
   const int threads = choose_threads(line.threads);

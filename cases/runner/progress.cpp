@@ -1,15 +1,26 @@
 #include "cases/runner/progress.hpp"
 
 #include <cerrno>
-#include <cmath>
 #include <cstring>
 
 #include <fmt/format.h>
+#include <sys/ioctl.h>
 #include <unistd.h>
 
+#include "cases/runner/folded_text.hpp"
 #include "src/input_error.hpp"
 
 namespace peristat {
+namespace {
+
+/// Width of a terminal; 80 if it does not tell.
+std::size_t columns(int descriptor) {
+  winsize size{};
+  const bool told = ioctl(descriptor, TIOCGWINSZ, &size) == 0 && size.ws_col > 20;
+  return told ? size.ws_col : 80;
+}
+
+}  // namespace
 
 Progress::Progress(bool quiet, const std::string& log_file)
     : quiet_(quiet),
@@ -36,7 +47,7 @@ void Progress::erase_live_line() {
 void Progress::say(const std::string& line) {
   erase_live_line();
   if (!quiet_) {
-    fmt::print("{}\n", line);
+    fmt::print("{}\n", live_ ? folded(line, columns(STDOUT_FILENO)) : line);
     std::fflush(stdout);
   }
   if (log_) {
@@ -56,10 +67,7 @@ void Progress::problem(const std::string& line) {
 }
 
 std::string Progress::time_left() const {
-  if (load_factor_ <= 0.0) return "";
-  const double elapsed =
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-  const double left = elapsed * (1.0 - load_factor_) / load_factor_;
+  const double left = time_left_.seconds().value_or(0.0);
   if (left < 1.0) return "";
   if (left < 120.0) return fmt::format("  about {:.0f} s left", left);
   if (left < 7200.0) return fmt::format("  about {:.0f} min left", left / 60.0);
@@ -75,8 +83,10 @@ void Progress::iteration(const IterationRecord& record) {
   }
   if (!live_) return;
   erase_live_line();
-  fmt::print("step {}  load {:.4g}  iteration {}  residual {:.1e}{}", record.step, load_factor_,
-             record.iteration, record.relative_residual, time_left());
+  const std::string line =
+      fmt::format("step {}  load {:.4g}  iteration {}  residual {:.1e}{}", record.step,
+                  load_factor_, record.iteration, record.relative_residual, time_left());
+  fmt::print("{}", cut_to(line, columns(STDOUT_FILENO) - 1));
   std::fflush(stdout);
   live_line_shown_ = true;
 }
@@ -99,6 +109,9 @@ void Progress::decision(const DecisionRecord& record) {
 
 void Progress::accepted(const StepRecord& record, double relative_residual) {
   load_factor_ = record.load_factor;
+  const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start_;
+  const bool relaxed_or_damaged = record.relaxation_iterations > 0 || record.max_damage > 0.0;
+  time_left_.accepted(elapsed.count(), load_factor_, relaxed_or_damaged);
   const std::string relaxed =
       record.relaxation_iterations > 0
           ? fmt::format("  after {} of relaxation", record.relaxation_iterations)
