@@ -77,8 +77,10 @@ def draw_convergence(results):
         low, high = axes.get_ylim()
         if low < ROUND_OFF:
             axes.axhspan(low, ROUND_OFF, color="#f3f4f6", zorder=0)
-            axes.annotate("round-off", (1.0, ROUND_OFF), xycoords=("axes fraction", "data"), xytext=(-6, -6),
-                          textcoords="offset points", ha="right", va="top", fontsize=11, color=FAINT)  # fmt: skip
+            is_left = axes is left
+            axes.annotate("round-off", (1.0 - is_left, ROUND_OFF), xycoords=("axes fraction", "data"),
+                          xytext=(6 if is_left else -6, -4), textcoords="offset points",
+                          ha="left" if is_left else "right", va="top", fontsize=11, color=FAINT)  # fmt: skip
             axes.set_ylim(low, high)
 
     left.set_xlabel("iteration")
@@ -92,7 +94,7 @@ def draw_convergence(results):
     words = ["convergence of the search for equilibrium"]
     words += order_words(results.orders, len(accepted))
     if len(chosen) < len(accepted):
-        words.append(f"{len(chosen)} of {number(len(accepted))} steps")
+        words.append(f"{len(chosen)} of them drawn" if results.orders else f"{len(chosen)} of {number(len(accepted))} increments drawn")
     heading(figure, results, words)
     return figure
 
@@ -133,8 +135,9 @@ def _draw_tolerance(axes, results):
     if isinstance(tolerance, float) and tolerance > 0.0:
         axes.axhline(tolerance, color=FAINT, linewidth=1.2, linestyle=(0, (2, 3)), zorder=2)
         # Below its line: "round-off" may stand right above.
-        axes.annotate(f"tolerance {tolerance:.0e}", (1.0, tolerance), xycoords=("axes fraction", "data"),
-                      xytext=(-4, -4), textcoords="offset points", ha="right", va="top",
+        # At the left: there the residuals are large.
+        axes.annotate(f"tolerance {tolerance:.0e}", (0.0, tolerance), xycoords=("axes fraction", "data"),
+                      xytext=(4, -4), textcoords="offset points", ha="left", va="top",
                       fontsize=11, color=FAINT)  # fmt: skip
 
 

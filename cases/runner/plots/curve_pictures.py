@@ -7,7 +7,7 @@ import numpy as np
 from style import FORCES, GHOST, INK, LENGTHS, LINES, WARNING, heading, new_figure, number, unit_for
 
 SMALL = 1e-6  # share of the largest reaction below which one is zero
-ALIKE = 1e-3  # share by which reactions of two supports may differ and are still drawn as one
+ALIKE = 0.02  # share by which reactions of two supports may differ and are still drawn as one
 MOST_VALUES_READ = 20_000_000  # of displacements, to find how far the supports moved
 AXES = "xyz"
 MARKERS = "osD^vP"
@@ -172,25 +172,25 @@ def find_abscissa(results, curves: list[Reaction]) -> Abscissa | None:
 
 def _turned(found: tuple[str, np.ndarray], of_set: str | None) -> Abscissa:
     """Turned so that it grows: an axis points to the right."""
-    label, values = found
+    words, values = found
     falls = values[np.argmax(np.abs(values))] < 0.0
-    return Abscissa(f"−({label})" if falls else label, -values if falls else values, of_set)
+    return Abscissa(words.format("−" if falls else ""), -values if falls else values, of_set)
 
 
 def _probe_of(results, name, axis: int) -> tuple[str, np.ndarray] | None:
-    """A probe of the displacement of a set that moves in a component: words and values."""
+    """A probe of the displacement of a set that moves in a component: words (with a place for its sign) and values."""
     for probe in results.tables("probe"):
         if probe.get("set") != name or probe.get("field", "displacement") != "displacement":
             continue
         own = str(probe.get("name"))
         values = results.numbers(own if results.dimension == 1 else f"{own}_{AXES[axis]}")
         if values is not None and np.abs(values).max() > 0.0:
-            return f"probe {own}: mean displacement of “{name}” in {AXES[axis]}", values
+            return f"probe {own}: mean displacement of “{name}” in {{}}{AXES[axis]}", values
     return None
 
 
 def _mean_of(results, name: str, axis: int) -> tuple[str, np.ndarray] | None:
-    """Mean displacement of a set at the accepted steps if all have fields: words and values."""
+    """Mean displacement of a set at the accepted steps if all have fields: words (with a place for its sign) and values."""
     steps = [int(step) for step in results.history.get("step", [])]
     if not steps or set(steps) - set(results.step_numbers) or not len(results.sets.get(name, ())):
         return None  # fields of some steps were not written
@@ -198,7 +198,7 @@ def _mean_of(results, name: str, axis: int) -> tuple[str, np.ndarray] | None:
         return None
     members = results.sets[name]
     values = np.array([results.displacement(step)[members, axis].mean() for step in steps])
-    return (f"displacement of “{name}” in {AXES[axis]}", values) if np.abs(values).max() > 0.0 else None
+    return (f"displacement of “{name}” in {{}}{AXES[axis]}", values) if np.abs(values).max() > 0.0 else None
 
 
 def abscissa_of(abscissa: Abscissa, curves: list[Reaction]):

@@ -9,7 +9,7 @@ from matplotlib.colors import LinearSegmentedColormap, Normalize
 from cells import Cells
 from separations import cells_of
 from style import (
-    ENERGY_DENSITIES, GHOST, INK, LENGTHS, LINES, PIECE,
+    ENERGY_DENSITIES, FAINT, GHOST, INK, LENGTHS, LINES, PIECE,
     colour_bar, heading, new_figure, number, piece_legend, piece_words, round_factor, step_words, unit_for,
 )  # fmt: skip
 
@@ -173,10 +173,10 @@ def rims(cells: Cells, corners: np.ndarray, members: np.ndarray) -> np.ndarray:
     return np.concatenate(edges)
 
 
-def crack_lines(cells: Cells, corners: np.ndarray) -> LineCollection:
+def crack_lines(cells: Cells, corners: np.ndarray, colour: str = INK) -> LineCollection:
     """Both faces of every crack: edges between squares that have been parted."""
     edges = [corners[cells.parted(*side)][:, ends] for side, ends in SIDES.items()]
-    return LineCollection(np.concatenate(edges), colors=INK, linewidths=0.9, capstyle="projecting", zorder=3)
+    return LineCollection(np.concatenate(edges), colors=colour, linewidths=0.9, capstyle="projecting", zorder=3)
 
 
 def mark_pieces(figure, axes, step, plate: Plate) -> None:
@@ -227,7 +227,7 @@ def draw_plane_fields(results, step):
         else:
             picture = PolyCollection(still, array=values, cmap=colours, norm=norm)
             axes.add_collection(picture, autolim=False)
-        axes.add_collection(crack_lines(cells, still), autolim=False)
+        axes.add_collection(crack_lines(cells, still, FAINT if colours == "inferno" else INK), autolim=False)
         if floating.any():
             axes.add_collection(LineCollection(rims(cells, still, floating), colors=PIECE, linewidths=1.4, zorder=4),
                                 autolim=False)  # fmt: skip

@@ -96,7 +96,7 @@ def draw_broken_bonds(results, ends: np.ndarray, steps: np.ndarray):
     axes.set_xlabel(f"x [{unit}]")
     axes.set_ylabel(f"y [{unit}]")
     marked = np.unique(np.linspace(0, len(distinct) - 1, min(MOST_TICKS, len(distinct))).round().astype(int))
-    bar = colour_bar(figure, bar_place, lines, "step in which the bond broke: load factor", ticks=marked)
+    bar = colour_bar(figure, bar_place, lines, "step: load factor at which it broke", ticks=marked)
     bar.set_ticks(marked, labels=[_step_label(results, int(distinct[place])) for place in marked])
     first, last = (results.in_history(int(step), "load_factor") for step in (steps[0], steps[-1]))
     words = ["broken bonds in the reference configuration", f"{number(len(steps))} bond{'s' * (len(steps) != 1)}"]

@@ -14,7 +14,7 @@ from pathlib import Path
 from gallery import Gallery, NoPlace
 from results_folder import NotAResultsFolder, ResultsFolder, read_results_folder
 
-DONE, WRONG_INPUT, MACHINE_FAILED = 0, 2, 5
+DONE, WRONG_INPUT, MACHINE_FAILED, INTERRUPTED = 0, 2, 5, 130
 FORMATS = ("png", "pdf", "svg")
 DOTS_PER_INCH = {"png": 100, "pdf": 200, "svg": 200}  # of what a vector picture holds as an image
 MOST_VECTORS = 3000  # shapes of one kind that a vector picture holds as such
@@ -193,11 +193,18 @@ def guarded(words: list[str]) -> int:
     """Runs `main` in a process of its own: the HDF5 library may crash on a damaged file."""
     child = os.fork()
     if child == 0:
-        code = main(words)
-        sys.stdout.flush()
-        sys.stderr.flush()
+        try:
+            code = main(words)
+            sys.stdout.flush()
+        except KeyboardInterrupt:
+            code = INTERRUPTED
+        except OSError:  # nobody reads what is said
+            code = MACHINE_FAILED
         os._exit(code)
-    code = os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])
+    try:
+        code = os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])
+    except KeyboardInterrupt:  # of the terminal: the child has got it, too
+        return INTERRUPTED
     return code if code >= 0 else _told(f"reading {' '.join(words)} ended with signal {-code}: it is damaged", WRONG_INPUT)
 
 

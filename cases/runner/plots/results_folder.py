@@ -76,6 +76,14 @@ class ResultsFolder:
         return [table for table in found if isinstance(table, dict)] if isinstance(found, list) else []
 
     @property
+    def reach(self) -> int:
+        """Of the horizon in whole spacings; 1 if it is not known."""
+        lattice, points = (self.case.get(name) for name in ("lattice", "points"))
+        ratio = _finite(lattice.get("horizon_ratio")) if isinstance(lattice, dict) else None
+        horizon = _finite(points.get("horizon")) if isinstance(points, dict) else None
+        return int(max(ratio or (horizon or 0.0) / self.spacing, 1.0))
+
+    @property
     def cracks(self) -> list[np.ndarray]:
         """Pre-cracks as the case has them: the two ends of a segment, or the vertices of a polygon [m]."""
         cracks = []

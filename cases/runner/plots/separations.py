@@ -4,26 +4,42 @@ import numpy as np
 
 from cells import Cells, at_the_rim, merged
 
-LOOSE_DAMAGE = 0.35  # a cell this damaged lies at a crack and moves with its point alone
+LOOSE_DAMAGE = 0.35  # a cell this damaged lies at a crack; it moves with its point alone if more isn't known
+LOST_DAMAGE = 0.65  # a cell this damaged has lost more than a crack takes from it, and moves with its point alone
 TOUCHING = 1e-9  # share of a length: a crack that only touches a bond cuts it
 
 
-def separate(cells, reference: np.ndarray, cracks, broken: np.ndarray | None = None) -> None:
-    """Parts the cells (cells.Cells) between whose centres a pre-crack passes or whose bond has broken.
+def separate(cells, reference: np.ndarray, cracks, broken: np.ndarray | None = None, reach: int = 2) -> None:
+    """Parts the cells (cells.Cells) between which no bond is left: pre-cracks have cut them, or they broke.
+
+    Of the bonds those count that go straight from cell to cell, over the face between them: from one to the
+    other, and where the horizon reaches two spacings also from one to the cell behind the other. Beside a
+    crack single bonds break; the cells hang together all the same.
 
     reference  count x dimension, centres of the cells [m]
     cracks     ends of a segment (2D), vertices of a plane polygon (3D) [m]
     broken     count x 2, points of the broken bonds; None where cells are no points
+    reach      of the horizon in whole spacings
     """
-    for axis in range(cells.dimension):
-        other = cells.neighbours(axis, 1)
-        first = np.flatnonzero(other >= 0)
+    count = len(reference)
+    pairs = np.sort(broken, axis=1) if broken is not None else np.zeros((0, 2), dtype=np.int64)
+    keys = np.unique(pairs[:, 0] * count + pairs[:, 1])
+
+    def is_gone(one, other):
+        """Whether there is no bond between cells, be it that there is no cell (-1)."""
+        gone = np.isin(np.minimum(one, other) * count + np.maximum(one, other), keys)
         for crack in cracks:
-            crossed = crosses(reference[first], reference[other[first]], crack)
-            cells.part(axis, first[crossed])
-        if broken is not None and len(broken):
-            for one, two in (broken.T, broken.T[::-1]):
-                cells.part(axis, one[other[one] == two])
+            gone |= crosses(reference[one], reference[other], crack)
+        return gone | (one < 0) | (other < 0)
+
+    for axis in range(cells.dimension):
+        before, after = cells.neighbours(axis, -1), cells.neighbours(axis, 1)
+        cell = np.flatnonzero(after >= 0)
+        cell = cell[is_gone(cell, after[cell])]
+        if reach > 1 and broken is not None:
+            cell = cell[is_gone(cell, after[after[cell]])]
+            cell = cell[is_gone(before[cell], after[cell])]
+        cells.part(axis, cell)
 
 
 def crosses(start: np.ndarray, end: np.ndarray, crack: np.ndarray) -> np.ndarray:
@@ -92,10 +108,8 @@ def cells_of(results, step, limit: int, size: float, *fields: np.ndarray):
     cells = Cells(reference / size, spacing / size)
     is_whole = len(reference) == len(results.reference) and results.tells_broken_bonds
     ends, steps = results.broken_bonds() if is_whole else (None, None)
-    separate(cells, reference, results.cracks, ends[steps <= step.number] if is_whole else None)
-    loose = np.zeros(len(reference), dtype=bool)
-    if not is_whole:
-        loose = damage > LOOSE_DAMAGE
-        if floating.any():
-            loose |= at_the_rim(cells, floating)
+    separate(cells, reference, results.cracks, ends[steps <= step.number] if is_whole else None, results.reach)
+    loose = damage > (LOST_DAMAGE if is_whole else LOOSE_DAMAGE)
+    if floating.any() and not is_whole:
+        loose |= at_the_rim(cells, floating)
     return cells, reference / size, displacement / size, floating, loose, *fields
