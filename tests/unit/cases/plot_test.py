@@ -440,7 +440,7 @@ class Pictures(unittest.TestCase):
         cut = plate.cells.parted(0, 1)
         self.assertEqual(cut.sum(), 3)
         np.testing.assert_allclose(results.reference[cut, 0], 4.5 * SPACING)
-        at_cut = (y < 2.0) & ((np.abs(x - 4.5) < 0.1) | (np.abs(x - 5.5) < 0.1))
+        at_cut = (y < 1.0) & ((np.abs(x - 4.5) < 0.1) | (np.abs(x - 5.5) < 0.1))
         widths = np.ptp(plate.moved[at_cut][:, :, 0], axis=1)
         np.testing.assert_allclose(widths, SPACING, rtol=1e-12)  # they have moved rigidly
 
