@@ -100,7 +100,7 @@ class Messages(unittest.TestCase):
         self.assert_refused(self.peristat("check", self.write(PLATE), "--threads", long), "characters)")
 
     def test_control_characters_end_no_message(self):
-        run = self.peristat("check", self.write(PLATE.replace('law = "critical_stretch"', 'law = "a\\u0000b\\u001b"')))
+        run = self.peristat("check", self.write(PLATE.replace('law = "critical_stretch"', r'law = "a\u0000b\u001b"')))
         self.assert_refused(run, "allowed: ")
         self.assertNotIn("\0", run.stderr)
         self.assertNotIn("\x1b", run.stderr)
