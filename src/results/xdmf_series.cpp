@@ -57,9 +57,8 @@ void XdmfSeries::add(int step, double load_factor, const std::string& mode,
       "<Attribute Name=\"load_factor\" AttributeType=\"Scalar\" Center=\"Grid\"><DataItem "
       "Format=\"XML\" NumberType=\"Float\" Precision=\"8\" Dimensions=\"1\">" +
       number_text(load_factor) + "</DataItem></Attribute>\n";
-  for (const std::vector<Field>* some : {&fields, &constant_}) {
-    for (const Field& field : *some) grids_ += attribute(field);
-  }
+  for (const Field& field : fields) grids_ += attribute(field);
+  for (const Field& field : constant_) grids_ += attribute(field);
   grids_ += "</Grid>\n";
 }
 

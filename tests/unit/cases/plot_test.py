@@ -739,7 +739,7 @@ class DamagedFolders(unittest.TestCase):
 
     def plot(self, expected_code: int | None = 2) -> str:
         command = [sys.executable, "-BEs", str(PLOTS / "plot.py"), str(self.folder)]
-        done = subprocess.run(command, capture_output=True, text=True, timeout=60)  # some seconds, on a busy machine
+        done = subprocess.run(command, capture_output=True, text=True, timeout=300)  # two seconds; an end by all means
         said = done.stdout + done.stderr
         self.assertNotIn("Traceback", said)
         if expected_code is None:
