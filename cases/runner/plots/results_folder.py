@@ -132,9 +132,8 @@ class ResultsFolder:
         return np.nan_to_num(array, posinf=0.0, neginf=0.0)
 
     def has_damage(self, number: int) -> bool:
-        told = self.in_history(number, "max_damage")
-        if told is not None:
-            return told > 0.0
+        if (self.in_history(number, "max_damage") or 0.0) > 0.0:
+            return True
         with _reading(self.path) as file:
             name = f"steps/{number:06d}/damage"
             return name in file and bool(np.nanmax(file.numbers(name), initial=0.0) > 0.0)
