@@ -4,12 +4,15 @@
 #include <string>
 #include <utility>
 
+#include "src/readable_text.hpp"
+
 namespace peristat {
 
 /// Wrong input, told to the person who wrote it (exit code 2).
 ///
 /// Code below the runner names the key of the case file that it was made from, the value found and
-/// what is allowed; the runner, which knows the file, puts file, line and column in front.
+/// what is allowed; the runner, which knows the file, puts file, line and column in front. What
+/// somebody wrote is quoted shortened and without control characters (readable_text.hpp).
 class InputError : public std::runtime_error {
  public:
   /// @param key   dotted key of the case file ("lattice.spacing"), or empty
@@ -17,7 +20,8 @@ class InputError : public std::runtime_error {
   /// @param allowed a sentence that says what is wrong and what is allowed
   /// @param place where it stands ("case.toml:12:3"), put in front of the message, or empty
   InputError(std::string key, std::string value, std::string allowed, std::string place = {})
-      : std::runtime_error((place.empty() ? "" : place + ": ") + join(key, value, allowed)),
+      : std::runtime_error((place.empty() ? "" : readable(place, most_of_place) + ": ") +
+                           join(key, value, allowed)),
         key_(std::move(key)),
         value_(std::move(value)),
         allowed_(std::move(allowed)),
@@ -32,12 +36,15 @@ class InputError : public std::runtime_error {
   /// "key = value: allowed", without the parts that are empty.
   [[nodiscard]] static std::string join(const std::string& key, const std::string& value,
                                         const std::string& allowed) {
-    std::string text = key;
-    if (!value.empty()) text += (text.empty() ? "" : " = ") + value;
-    return text.empty() ? allowed : text + ": " + allowed;
+    std::string text = readable(key, most_of_value);
+    if (!value.empty()) text += (text.empty() ? "" : " = ") + readable(value, most_of_value);
+    return (text.empty() ? text : text + ": ") + readable(allowed, most_of_sentence);
   }
 
  private:
+  /// Characters of a message's parts. The sentence may quote a value and list all known keys.
+  static constexpr std::size_t most_of_value = 80, most_of_place = 300, most_of_sentence = 2000;
+
   std::string key_, value_, allowed_, place_;
 };
 

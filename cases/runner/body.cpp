@@ -139,6 +139,7 @@ Points make_points_of(const Case& from) {
   return located_errors(from, [&] {
     Points points;
     if (const Lattice* lattice = lattice_of(from)) {
+      check_lattice(*lattice);  // first: what can't be used has no size
       require_memory_for_lattice(from, *lattice);
       points = make_points(*lattice);
     } else {
@@ -207,17 +208,18 @@ std::unique_ptr<const Body> make_body(const Case& from, int threads) {
       const Stopwatch watch(body.seconds_neighbourhood);
       Bonds bonds = make_bonds(body.points, {from.volume_correction, from.surface_correction},
                                body.setting, threads);
-      const Offset whole = bonds.count();
+      CutBonds cut;
       if (from.material.model == MaterialModel::cpd) {
-        body.model = make_cpd_model(from, body.points, body.setting, std::move(bonds),
-                                    body.cut_weight, threads);
+        body.model =
+            make_cpd_model(from, body.points, body.setting, std::move(bonds), cut, threads);
       } else {
         // Corrections near surfaces are those of the whole body: a crack is no surface.
-        body.cut_weight = cut_bonds(bonds, body.points, from.cracks);
+        cut = cut_bonds(bonds, body.points, from.cracks);
         body.model = Model{std::move(bonds), bond_potential(from.material.damage,
                                                             micromodulus_of(from, body.setting))};
       }
-      body.cut_bonds = whole - body.model.bonds.count();
+      body.cut_weight = std::move(cut.weight);
+      body.cut_bonds = std::move(cut.ends);
       body.model.never_fails = never_failing_bonds(from, body.points, body.model.bonds);
     }
     body.conditions = std::make_unique<Conditions>(body.points, from.supports, from.loads);

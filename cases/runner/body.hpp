@@ -32,8 +32,8 @@ struct Body {
   Model model;
   std::unique_ptr<Conditions> conditions;  // refers to points
   InteractionStorage interaction_storage;
-  std::vector<double> cut_weight;  ///< per point, of the bonds that pre-cracks have cut [m6]
-  Offset cut_bonds = 0;
+  std::vector<double> cut_weight;   ///< per point, of the bonds that pre-cracks have cut [m6]
+  std::vector<BondEnds> cut_bonds;  ///< by pre-cracks
   double seconds_neighbourhood = 0.0;
 
   [[nodiscard]] double horizon_ratio() const { return setting.horizon / points.spacing; }

@@ -1,6 +1,8 @@
 #include "cases/runner/calibrate.hpp"
 
 #include <cmath>
+#include <string>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -101,16 +103,45 @@ CpdConstants constants_of(const CalibrationQuestion& question, const CpdStiffnes
   return stiffness.constants(moduli, c2);
 }
 
+/// "key": value, refused if there is no such number.
+std::string pair(const char* key, double value) {
+  if (std::isfinite(value)) return fmt::format("\"{}\": {:.12g}", key, value);
+  throw InputError("", "",
+                   std::string("what is asked for has no finite ") + key +
+                       ": give a lattice and a material whose constants and moduli can be told in "
+                       "double precision");
+}
+
 std::string section(const CpdConstants& constants, const CpdStiffness& stiffness) {
   const CubicElasticity elasticity = stiffness.elasticity(constants);
-  const LameModuli moduli = elasticity.isotropic(stiffness.dimension);
-  return fmt::format(
-      "{{\"c1\": {:.12g}, \"c2\": {:.12g}, \"c3\": {:.12g}, \"lambda\": {:.12g}, \"mu\": {:.12g}, "
-      "\"youngs_modulus\": {:.12g}, \"poisson_ratio\": {:.12g}, \"anisotropy\": {:.12g}, "
-      "\"axis_poisson_ratio\": {:.12g}}}",
-      constants.c1, constants.c2, constants.c3, moduli.lambda, moduli.mu,
-      youngs_modulus_of(moduli, stiffness.dimension), poisson_ratio_of(moduli, stiffness.dimension),
-      elasticity.anisotropy(), elasticity.axis_poisson_ratio(stiffness.dimension));
+  const int dimension = stiffness.dimension;
+  const LameModuli moduli = elasticity.isotropic(dimension);
+  const std::vector<std::string> pairs{
+      pair("c1", constants.c1),
+      pair("c2", constants.c2),
+      pair("c3", constants.c3),
+      pair("lambda", moduli.lambda),
+      pair("mu", moduli.mu),
+      pair("youngs_modulus", youngs_modulus_of(moduli, dimension)),
+      pair("poisson_ratio", poisson_ratio_of(moduli, dimension)),
+      pair("anisotropy", elasticity.anisotropy()),
+      pair("axis_poisson_ratio", elasticity.axis_poisson_ratio(dimension))};
+  return fmt::format("{{{}}}", fmt::join(pairs, ", "));
+}
+
+/// Refuses a lattice on which what a unit of a constant contributes is lost to underflow (with the
+/// ninth power of a length in 3D) or overflows: its ratios would be arbitrary.
+void require_representable(const CalibrationQuestion& question, const CpdStiffness& stiffness) {
+  for (const CubicElasticity* part : {&stiffness.of_c1, &stiffness.of_c2, &stiffness.of_c3}) {
+    const double lambda = part->isotropic(stiffness.dimension).lambda;
+    if (lambda == 0.0 && part == &stiffness.of_c3 && stiffness.dimension == 2) continue;
+    if (std::isnormal(lambda)) continue;
+    throw InputError(
+        "--spacing", number_text(question.spacing),
+        "with horizon_ratio = " + number_text(question.horizon_ratio) +
+            " and thickness = " + number_text(question.thickness) +
+            " the stiffness of a point can't be told in double precision; give lengths in m");
+  }
 }
 
 }  // namespace
@@ -122,6 +153,9 @@ Exit calibrate(const CalibrationQuestion& question) {
   const CpdStiffness lattice =
       lattice_stiffness(dimension, question.spacing, horizon, question.thickness);
   const CpdStiffness continuum = continuum_stiffness(dimension, horizon, question.thickness);
+  for (const CpdStiffness* stiffness : {&lattice, &continuum}) {
+    require_representable(question, *stiffness);
+  }
   CpdConstants on_lattice, in_continuum;
   try {
     on_lattice = constants_of(question, lattice);

@@ -468,10 +468,6 @@ ProbeSpecification read_probe(const TomlTable& table, const Context& context,
     table.refuse("field", "there is no Poisson's ratio in dimension 1");
   if (!is_ratio && !is_length && table.has("axis"))
     table.refuse("axis", "is for fields \"poisson_ratio\" and \"crack_length\"");
-  if (is_length)
-    probe.threshold = table.number("threshold", Range::between(1e-6, 1.0), probe.threshold);
-  else if (table.has("threshold"))
-    table.refuse("threshold", "is for field \"crack_length\"");
   if (probe.field == "opening")
     probe.other = known_set(table, context, "other");
   else if (table.has("other"))

@@ -104,9 +104,8 @@ struct ProbeSpecification {
   std::string name, set;
   /// displacement, force, damage, stretch, energy_density, poisson_ratio, opening, or crack_length
   std::string field = "displacement";
-  int axis = 0;             ///< poisson_ratio: direction that is pulled; crack_length: of the crack
-  std::string other;        ///< opening: set whose mean displacement is taken off
-  double threshold = 0.35;  ///< crack_length: damage from which a point belongs to the crack
+  int axis = 0;       ///< poisson_ratio: direction that is pulled; crack_length: of the crack
+  std::string other;  ///< opening: set whose mean displacement is taken off
 };
 
 /// A case as read and checked once; constant from then on.

@@ -43,7 +43,7 @@ const std::map<std::string, std::vector<std::string>>& case_keys() {
          {"steps", "load", "iterations", "ramp", "breaking", "damping", "mass_factor",
           "max_iterations", "quiet_iterations", "displacement_tolerance"}},
         {"output", {"directory", "every", "count_cracks"}},
-        {"probe", {"name", "set", "other", "field", "axis", "threshold"}}};
+        {"probe", {"name", "set", "other", "field", "axis"}}};
     for (const auto& [kind, own] : shape_keys()) tables["set.shape." + kind] = own;
     return tables;
   }();

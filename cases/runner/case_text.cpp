@@ -264,7 +264,6 @@ std::string resolved_text(const Case& from) {
     out.string("field", probe.field);
     if (probe.field == "poisson_ratio" || probe.field == "crack_length")
       out.string("axis", std::string(1, "xyz"[probe.axis]));
-    if (probe.field == "crack_length") out.number("threshold", probe.threshold);
     if (probe.field == "opening") out.string("other", probe.other);
   }
   return out.text();

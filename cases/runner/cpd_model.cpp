@@ -80,14 +80,14 @@ CpdConstants cpd_constants_of(const Case& from, const Points& points, const Bond
 }
 
 Model make_cpd_model(const Case& from, const Points& points, const BondSetting& setting,
-                     Bonds bonds, std::vector<double>& cut_weight, int threads) {
+                     Bonds bonds, CutBonds& cut, int threads) {
   const CpdConstants constants = cpd_constants_of(from, points, setting);
   refuse_damage_of_negative_constants(from, points, setting, constants);
   const BulkNeighbourhood bulk =
       bulk_neighbourhood(from.dimension, points.spacing, setting.horizon, setting.cross_section);
   set_one_neighbour_weights(bonds, points, bulk);
   Model model{bonds, bond_potential(from.material.damage, constants.c1)};
-  cut_weight = cut_bonds(model.bonds, points, from.cracks);
+  cut = cut_bonds(model.bonds, points, from.cracks);
   if (constants.c2 != 0.0) {
     model.triangles = make_term<Area>(from, points, bonds, model.bonds, bulk, setting.cross_section,
                                       constants.c2, threads);

@@ -7,6 +7,7 @@
 #include "cases/runner/case.hpp"
 #include "src/materials/cpd_constants.hpp"
 #include "src/neighbourhood/bulk_neighbourhood.hpp"
+#include "src/neighbourhood/crack.hpp"
 
 namespace peristat {
 
@@ -24,9 +25,9 @@ namespace peristat {
 /// @throws InputError for damage together with a negative constant: the triangles and tetrahedra
 ///         that a broken bond takes along would release energy that nobody has put in
 /// @param bonds whose weights are to be set
-/// @param cut_weight gets the weight of the bonds that pre-cracks have cut, per point
+/// @param cut gets the bonds that pre-cracks have cut
 [[nodiscard]] Model make_cpd_model(const Case& from, const Points& points,
-                                   const BondSetting& setting, Bonds bonds,
-                                   std::vector<double>& cut_weight, int threads);
+                                   const BondSetting& setting, Bonds bonds, CutBonds& cut,
+                                   int threads);
 
 }  // namespace peristat

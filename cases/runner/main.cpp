@@ -17,6 +17,7 @@
 #include "cases/runner/run.hpp"
 #include "cases/runner/runtime_environment.hpp"
 #include "cases/runner/toml_text.hpp"
+#include "cases/runner/unknown_option.hpp"
 #include "solvers/linear/blas_memory.hpp"
 #include "src/input_error.hpp"
 #include "src/machine_error.hpp"
@@ -31,6 +32,7 @@ struct CommandLine {
   std::vector<std::string> settings;
   int threads = 0;
   bool quiet = false, overwrite = false;
+  bool no_plots = false;  // taken by the launcher, which draws
   CalibrationQuestion calibration;
 };
 
@@ -98,6 +100,20 @@ Exit execute(const CLI::App& program, const CommandLine& line, int threads) {
   return run(from, {threads, line.quiet, line.log_file, line.overwrite});
 }
 
+/// Sentence about what stands on the command line without being expected.
+std::string unexpected_words(const CLI::App& program) {
+  for (const CLI::App* command : program.get_subcommands()) {
+    std::vector<std::string> options;
+    for (const CLI::Option* option : command->get_options()) {
+      for (const std::string& name : option->get_lnames()) options.push_back("--" + name);
+    }
+    const bool takes_set = command->get_option_no_throw("--set") != nullptr;
+    const std::vector<std::string> words = program.remaining(true);
+    return command->get_name() + ": " + describe_unknown(words, options, takes_set);
+  }
+  return describe_unknown(program.remaining(true), {}, false);
+}
+
 /// Makes sure that what was printed has arrived: it is all that these commands give.
 void require_told() {
   errno = 0;
@@ -127,6 +143,8 @@ int main(int count, char** arguments) try {
   run_command->add_option("--output", line.output, "results folder (default: the case's)");
   run_command->add_flag("--overwrite", line.overwrite,
                         "replace the results of another case, or of version 1, in the folder");
+  run_command->add_flag("--no-plots", line.no_plots,
+                        "draw no pictures at the end (./peristat draws them)");
   run_command->add_flag("--quiet", line.quiet, "print nothing but problems");
   run_command->add_option("--log", line.log_file,
                           "write all that is said, and every iteration, here");
@@ -142,10 +160,15 @@ int main(int count, char** arguments) try {
       line);
   try {
     program.parse(count, arguments);
+  } catch (const CLI::ExtrasError&) {
+    throw InputError("", "", unexpected_words(program));
   } catch (const CLI::ParseError& error) {
-    const bool helped = program.exit(error) == 0;
-    if (helped) require_told();
-    return static_cast<int>(helped ? Exit::done : Exit::wrong_input);
+    if (error.get_exit_code() != 0) {
+      throw InputError("", "", std::string(error.what()) + "; --help lists the options");
+    }
+    program.exit(error);
+    require_told();
+    return static_cast<int>(Exit::done);
   }
 
   const int threads = choose_threads(line.threads);

@@ -1,6 +1,7 @@
 #include "cases/runner/probe.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include <Eigen/QR>
@@ -57,15 +58,21 @@ std::vector<double> mean_of(const std::vector<double>& values, const std::vector
   return mean;
 }
 
-/// Extent along the axis of the points of a set that the crack has passed, one spacing included.
+/// Extent along the axis of the middles of the separated bonds that run across it and have an end
+/// in the set; each stands for a strip of one spacing. Only bonds across the axis, because where
+/// along an inclined one the crack passes is not known.
 double crack_length(const ProbeSpecification& probe, const Points& points,
-                    const std::vector<double>& damage) {
+                    std::span<const BondEnds> separated) {
+  const std::vector<Index>& members = points.sets.at(probe.set);
+  const auto is_member = [&](Index point) {
+    return std::binary_search(members.begin(), members.end(), point);
+  };
   double least = std::numeric_limits<double>::infinity(), most = -least;
-  for (const Index point : points.sets.at(probe.set)) {
-    if (damage[point] < probe.threshold) continue;
-    const double at = points.position(point)[probe.axis];
-    least = std::min(least, at);
-    most = std::max(most, at);
+  for (const auto& [i, j] : separated) {
+    const double a = points.position(i)[probe.axis], b = points.position(j)[probe.axis];
+    if (std::abs(b - a) > 0.5 * points.spacing || !(is_member(i) || is_member(j))) continue;
+    least = std::min(least, 0.5 * (a + b));
+    most = std::max(most, 0.5 * (a + b));
   }
   return most < least ? 0.0 : most - least + points.spacing;
 }
@@ -81,11 +88,11 @@ ProbeColumns columns_of(const ProbeSpecification& probe, int dimension) {
 }
 
 std::vector<double> probe_values(const ProbeSpecification& probe, const Points& points,
-                                 const StepFields& fields) {
+                                 const StepFields& fields, std::span<const BondEnds> separated) {
   if (probe.field == "poisson_ratio") {
     return {fitted_poisson_ratio(probe, points, *fields.displacement)};
   }
-  if (probe.field == "crack_length") return {crack_length(probe, points, *fields.damage)};
+  if (probe.field == "crack_length") return {crack_length(probe, points, separated)};
   const std::vector<Index>& members = points.sets.at(probe.set);
   if (probe.field == "opening") {
     std::vector<double> opening = mean_of(*fields.displacement, members, points.dimension);

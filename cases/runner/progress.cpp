@@ -1,13 +1,14 @@
 #include "cases/runner/progress.hpp"
 
 #include <cerrno>
-#include <cmath>
 #include <cstring>
 #include <utility>
 
 #include <fmt/format.h>
+#include <sys/ioctl.h>
 #include <unistd.h>
 
+#include "cases/runner/folded_text.hpp"
 #include "src/input_error.hpp"
 #include "src/results/output_file.hpp"
 
@@ -24,6 +25,13 @@ int write_now(std::FILE* file, const std::string& text) {
 
 /// Standard error is the last place to tell anything: what it does not take is lost.
 void tell_standard_error(const std::string& line) { write_now(stderr, "peristat: " + line + "\n"); }
+
+/// Width of a terminal; 80 if it does not tell.
+std::size_t columns(int descriptor) {
+  winsize size{};
+  const bool told = ioctl(descriptor, TIOCGWINSZ, &size) == 0 && size.ws_col > 20;
+  return told ? size.ws_col : 80;
+}
 
 }  // namespace
 
@@ -73,7 +81,7 @@ void Progress::erase_live_line() {
 
 void Progress::say(const std::string& line) {
   erase_live_line();
-  tell_person(line + "\n");
+  tell_person((live_ ? folded(line, columns(STDOUT_FILENO)) : line) + "\n");
   tell_log(line);
 }
 
@@ -84,10 +92,7 @@ void Progress::problem(const std::string& line) {
 }
 
 std::string Progress::time_left() const {
-  if (load_factor_ <= 0.0) return "";
-  const double elapsed =
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-  const double left = elapsed * (1.0 - load_factor_) / load_factor_;
+  const double left = time_left_.seconds().value_or(0.0);
   if (left < 1.0) return "";
   if (left < 120.0) return fmt::format("  about {:.0f} s left", left);
   if (left < 7200.0) return fmt::format("  about {:.0f} min left", left / 60.0);
@@ -102,8 +107,10 @@ void Progress::iteration(const IterationRecord& record) {
   }
   if (!live_) return;
   erase_live_line();
-  tell_person(fmt::format("step {}  load {:.4g}  iteration {}  residual {:.1e}{}", record.step,
-                          load_factor_, record.iteration, record.relative_residual, time_left()));
+  const std::string line =
+      fmt::format("step {}  load {:.4g}  iteration {}  residual {:.1e}{}", record.step,
+                  load_factor_, record.iteration, record.relative_residual, time_left());
+  tell_person(cut_to(line, columns(STDOUT_FILENO) - 1));
   live_line_shown_ = true;
 }
 
@@ -125,6 +132,9 @@ void Progress::decision(const DecisionRecord& record) {
 
 void Progress::accepted(const StepRecord& record, double relative_residual) {
   load_factor_ = record.load_factor;
+  const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start_;
+  const bool relaxed_or_damaged = record.relaxation_iterations > 0 || record.max_damage > 0.0;
+  time_left_.accepted(elapsed.count(), load_factor_, relaxed_or_damaged);
   const std::string relaxed =
       record.relaxation_iterations > 0
           ? fmt::format("  after {} of relaxation", record.relaxation_iterations)

@@ -4,14 +4,16 @@
 #include <cstdio>
 #include <string>
 
+#include "cases/runner/time_left.hpp"
 #include "src/results/history.hpp"
 
 namespace peristat {
 
 /// What a run tells while it goes: one line per accepted step and decision; on a terminal a line
-/// that follows the iterations too, with the time that is left. Everything also goes to the log
-/// file. Where standard output or the log can't be written any more (nobody reads the pipe, the
-/// disk is full), that is told once on standard error, and the run goes on.
+/// that follows the iterations too, with the time that is left; lines are folded to its width.
+/// Everything also goes to the log file. Where standard output or the log can't be written any more
+/// (nobody reads the pipe, the disk is full), that is told once on standard error, and the run goes
+/// on.
 class Progress {
  public:
   /// @param quiet nothing on the terminal, except what `problem` tells
@@ -38,6 +40,7 @@ class Progress {
   bool quiet_, live_;
   bool live_line_shown_ = false;
   double load_factor_ = 0.0;  // accepted
+  TimeLeft time_left_;
   std::chrono::steady_clock::time_point start_;
   std::FILE* log_ = nullptr;
 };

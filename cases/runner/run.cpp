@@ -91,7 +91,8 @@ class Recorder {
         assembler_(assembler),
         results_(results),
         progress_(progress),
-        body_(body) {}
+        body_(body),
+        separated_(body.cut_bonds) {}
 
   void iteration(const IterationRecord& record) {
     relative_residual_ = record.relative_residual;
@@ -121,7 +122,7 @@ class Recorder {
     for (std::size_t i = 0; i < points; ++i) made.energy_density[i] /= points_.volume[i];
     const StepFields fields = made.view();
     for (const ProbeSpecification& probe : case_.probes) {
-      record.probes[probe.name] = probe_values(probe, points_, fields);
+      record.probes[probe.name] = probe_values(probe, points_, fields, separated_);
     }
     const bool write_fields = record.step % case_.output.every == 0;
     results_.add(record, write_fields ? std::optional(fields) : std::nullopt);
@@ -165,6 +166,7 @@ class Recorder {
       for (Offset bond = bonds.offset[i]; bond < bonds.offset[i + 1]; ++bond) {
         if (!broken[bond] || broken_[bond]) continue;
         records.push_back({record.step, record.load_factor, i, bonds.partner[bond]});
+        separated_.push_back({i, bonds.partner[bond]});
       }
     }
     broken_ = std::move(broken);
@@ -180,6 +182,7 @@ class Recorder {
   std::optional<Fields> unwritten_;  // of the last step, if it only entered the history
   std::vector<char> broken_;         // per bond, in the last accepted state
   DamageHistories told_histories_;   // in the last state that was written with fields
+  std::vector<BondEnds> separated_;  // by pre-cracks, and broken until the last accepted state
   double relative_residual_ = 0.0;
   std::optional<StepRecord> last_;
 };
@@ -230,6 +233,8 @@ LoadSteppingResult follow_with_stand_in(const Case& from, const Body& body,
 }
 
 std::string failure_reason(const LoadSteppingResult& result) {
+  if (result.outcome == Outcome::interrupted)
+    return fmt::format("interrupted after load factor {:.6g}", result.state.load_factor);
   std::string reason = explanation(result.outcome);
   const auto& inertia = result.last_attempt.inertia;
   if (inertia && (inertia->negative > 0 || inertia->zero > 0)) {

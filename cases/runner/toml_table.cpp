@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "cases/runner/case_keys.hpp"
+#include "cases/runner/unit_remark.hpp"
 #include "src/input_error.hpp"
 #include "src/nearest_name.hpp"
 #include "src/number_text.hpp"
@@ -151,7 +152,7 @@ double TomlTable::checked_number(const TomlValue& value, const std::string& path
                                  const Range& range) const {
   const bool is_integer = value.kind == TomlValue::Kind::integer;
   if (!is_integer && value.kind != TomlValue::Kind::real)
-    refuse(value, path, range.words + ", not " + kind_name(value));
+    refuse(value, path, range.words + ", not " + kind_name(value) + remark_on_unit(value.string));
   const double number = is_integer ? static_cast<double>(value.integer) : value.real;
   if (number >= range.low && number <= range.high) return number;
   const bool beyond_limits =

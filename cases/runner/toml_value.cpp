@@ -10,13 +10,18 @@
 #define TOML_MAX_NESTED_VALUES 16
 #include <toml++/toml.h>
 
+#include "cases/runner/unit_remark.hpp"
 #include "src/input_error.hpp"
+#include "src/readable_text.hpp"
 
 namespace peristat {
 namespace {
 
 /// Parts of a dotted key; a case needs 3. toml++ has no limit and overflows the stack.
 constexpr std::size_t deepest_key = 16;
+
+/// Characters of an override that are quoted as a place.
+constexpr std::size_t most_of_override = 200;
 
 [[noreturn]] void refuse_deep_key(const CaseLocation& location, const std::string& file) {
   throw InputError("", "",
@@ -53,6 +58,7 @@ void check_depth_of_keys(std::string_view text, const std::string& file) {
 }
 
 /// The part of a one-line region of the text; columns count code points from 1, as toml++ does.
+/// Where the code points of a line begin is found once, at the first question about it.
 class Lines {
  public:
   explicit Lines(std::string_view text) {
@@ -61,23 +67,41 @@ class Lines {
       lines_.push_back(text.substr(begin, end - begin));
       begin = end + 1;
     }
+    code_points_.resize(lines_.size());
+  }
+
+  /// What stands behind the first '=' of a line.
+  std::string value_in(toml::source_index line) const {
+    if (line == 0 || line > lines_.size()) return {};
+    const std::size_t equals = lines_[line - 1].find('=');
+    return equals == std::string_view::npos ? "" : std::string(lines_[line - 1].substr(equals + 1));
   }
 
   std::string region(const toml::source_region& region) const {
     const auto line = region.begin.line;
     if (line == 0 || line != region.end.line || line > lines_.size()) return {};
-    std::string part;
-    toml::source_index column = 0;
-    for (const char c : lines_[line - 1]) {
-      const bool continues_code_point = (static_cast<unsigned char>(c) & 0xC0) == 0x80;
-      if (!continues_code_point) ++column;
-      if (column >= region.begin.column && column < region.end.column) part += c;
-    }
-    return part;
+    const std::string_view text = lines_[line - 1];
+    std::vector<std::uint32_t>& begins = code_points_[line - 1];
+    if (begins.empty()) begins = beginnings(text);
+    const auto byte = [&](toml::source_index column) {
+      return column > begins.size() ? text.size() : std::size_t(begins[std::max(column, 1u) - 1]);
+    };
+    const std::size_t begin = byte(region.begin.column), end = byte(region.end.column);
+    return std::string(text.substr(begin, end > begin ? end - begin : 0));
   }
 
  private:
+  static std::vector<std::uint32_t> beginnings(std::string_view line) {
+    std::vector<std::uint32_t> begins;
+    for (std::size_t i = 0; i < line.size(); ++i) {
+      const bool continues_code_point = (static_cast<unsigned char>(line[i]) & 0xC0) == 0x80;
+      if (!continues_code_point) begins.push_back(static_cast<std::uint32_t>(i));
+    }
+    return begins;
+  }
+
   std::vector<std::string_view> lines_;
+  mutable std::vector<std::vector<std::uint32_t>> code_points_;  // first bytes, per line
 };
 
 CaseLocation at(const toml::source_region& region) {
@@ -203,13 +227,17 @@ TomlValue parse_toml(const std::string& text, const std::string& file) {
     const toml::table document = toml::parse(std::string_view(text));
     return convert(document, {1, 1, {}}, Lines(text));
   } catch (const toml::parse_error& error) {
-    throw InputError("", "", "not valid TOML: " + std::string(error.description()),
+    const Lines lines(text);
+    throw InputError("", "",
+                     "not valid TOML: " + std::string(error.description()) +
+                         remark_on_unit(lines.value_in(error.source().begin.line)),
                      at(error.source()).text(file));
   }
 }
 
 void apply_override(TomlValue& document, const std::string& key, const std::string& value) {
-  const std::string text = key + "=" + value;
+  // Every value in it keeps a copy as its place.
+  const std::string text = readable(key + "=" + value, most_of_override);
   const auto refuse = [&](const std::string& why) {
     throw InputError(key, value, why, "--set " + text);
   };

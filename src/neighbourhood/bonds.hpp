@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <utility>
 #include <vector>
@@ -8,6 +9,9 @@
 #include "src/types.hpp"
 
 namespace peristat {
+
+/// Points of a bond, the lower one first.
+using BondEnds = std::array<Index, 2>;
 
 /// Unique bonds i-j with i < j, grouped by their lower point: the partners of i are
 /// partner[offset[i]] .. partner[offset[i+1]-1], ascending. The same graph is the sparsity pattern

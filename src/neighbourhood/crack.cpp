@@ -214,13 +214,12 @@ bool cuts(const Crack& crack, const Coordinates& a, const Coordinates& b) {
   return std::visit([&](const auto& kind) { return meets(kind, a, b, slack); }, crack);
 }
 
-std::vector<double> cut_bonds(Bonds& bonds, const Points& points,
-                              const std::vector<Crack>& cracks) {
+CutBonds cut_bonds(Bonds& bonds, const Points& points, const std::vector<Crack>& cracks) {
   std::vector<Box> boxes;
   for (const Crack& crack : cracks) {
     boxes.push_back(std::visit([](const auto& kind) { return box_around(kind); }, crack));
   }
-  std::vector<double> removed(points.volume.size(), 0.0);
+  CutBonds removed{std::vector<double>(points.volume.size(), 0.0), {}};
   bonds.remove_if([&](Index i, Offset bond) {
     const Index j = bonds.partner[bond];
     const Coordinates a = points.position(i), b = points.position(j);
@@ -228,8 +227,9 @@ std::vector<double> cut_bonds(Bonds& bonds, const Points& points,
     const double slack = 2.0 * touching_tolerance * bonds.length(bond);  // more than cuts allows
     for (std::size_t k = 0; k < cracks.size(); ++k) {
       if (!overlap(box, boxes[k], slack) || !cuts(cracks[k], a, b)) continue;
-      removed[i] += bonds.weight(bond);
-      removed[j] += bonds.weight(bond);
+      removed.weight[i] += bonds.weight(bond);
+      removed.weight[j] += bonds.weight(bond);
+      removed.ends.push_back({i, j});
       return true;
     }
     return false;

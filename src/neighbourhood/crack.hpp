@@ -47,9 +47,14 @@ void check_crack(const Crack& crack, int dimension, const std::string& table);
 /// check_crack.
 [[nodiscard]] bool cuts(const Crack& crack, const Coordinates& a, const Coordinates& b);
 
+/// Bonds that cracks have cut.
+struct CutBonds {
+  std::vector<double> weight;  ///< per point, sum over its cut bonds [m6]
+  std::vector<BondEnds> ends;  ///< of each
+};
+
 /// Removes the bonds that any of the cracks cuts; the others keep their order, length and weight.
-/// @return per point the sum of the weights of its removed bonds [m6]
-[[nodiscard]] std::vector<double> cut_bonds(Bonds& bonds, const Points& points,
-                                            const std::vector<Crack>& cracks);
+[[nodiscard]] CutBonds cut_bonds(Bonds& bonds, const Points& points,
+                                 const std::vector<Crack>& cracks);
 
 }  // namespace peristat

@@ -111,38 +111,13 @@ void check_layer(const Lattice& lattice, std::size_t number) {
   }
 }
 
-void check(const Lattice& lattice) {
-  const auto refuse = [](const char* key, double value, const std::string& allowed) {
-    throw InputError(key, number_text(value), allowed);
-  };
-  const auto is_positive = [](double value) { return std::isfinite(value) && value > 0; };
-  if (lattice.dimension < 1 || lattice.dimension > 3) {
-    refuse("dimension", lattice.dimension, "must be 1, 2 or 3");
-  }
-  if (!is_positive(lattice.spacing)) {
-    refuse("lattice.spacing", lattice.spacing, "must be positive and finite");
-  }
-  if (!is_positive(lattice.cross_section)) {
-    refuse(lattice.dimension == 1 ? "lattice.area" : "lattice.thickness", lattice.cross_section,
-           "must be positive and finite");
-  }
-  if (!is_positive(std::pow(lattice.spacing, lattice.dimension) * lattice.cross_section)) {
-    refuse("lattice.spacing", lattice.spacing, "the volume of a point is zero or infinite");
-  }
-  if (!(lattice.perturbation >= 0.0 && lattice.perturbation < 0.5)) {
-    refuse("lattice.perturbation", lattice.perturbation, "must be at least 0 and below 0.5");
-  }
-  if (lattice.shapes.empty()) {
-    throw InputError("lattice.shape", "", "a lattice needs at least one added shape");
-  }
-  for (std::size_t k = 0; k < lattice.shapes.size(); ++k) check_shape_step(lattice, k);
-  for (std::size_t k = 0; k < lattice.layers.size(); ++k) check_layer(lattice, k);
+/// Refuses more points than can be numbered.
+void require_numbers(const Lattice& lattice) {
   const double points = largest_number_of_points(lattice, make_grid(lattice));
-  if (!(points < most_points)) {
-    refuse("lattice.spacing", lattice.spacing,
-           "up to " + number_text(points) + " points, but there must be fewer than " +
-               number_text(most_points));
-  }
+  if (points < most_points) return;
+  throw InputError("lattice.spacing", number_text(lattice.spacing),
+                   "up to " + number_text(points) + " points, but there must be fewer than " +
+                       number_text(most_points));
 }
 
 /// Position of a lattice place [m]; the origin is met exactly, so that sets may be split there.
@@ -228,13 +203,42 @@ void perturb(const Lattice& lattice, const std::vector<bool>& is_body, Points& p
 
 }  // namespace
 
+void check_lattice(const Lattice& lattice) {
+  const auto refuse = [](const char* key, double value, const std::string& allowed) {
+    throw InputError(key, number_text(value), allowed);
+  };
+  const auto is_positive = [](double value) { return std::isfinite(value) && value > 0; };
+  if (lattice.dimension < 1 || lattice.dimension > 3) {
+    refuse("dimension", lattice.dimension, "must be 1, 2 or 3");
+  }
+  if (!is_positive(lattice.spacing)) {
+    refuse("lattice.spacing", lattice.spacing, "must be positive and finite");
+  }
+  if (!is_positive(lattice.cross_section)) {
+    refuse(lattice.dimension == 1 ? "lattice.area" : "lattice.thickness", lattice.cross_section,
+           "must be positive and finite");
+  }
+  if (!is_positive(std::pow(lattice.spacing, lattice.dimension) * lattice.cross_section)) {
+    refuse("lattice.spacing", lattice.spacing, "the volume of a point is zero or infinite");
+  }
+  if (!(lattice.perturbation >= 0.0 && lattice.perturbation < 0.5)) {
+    refuse("lattice.perturbation", lattice.perturbation, "must be at least 0 and below 0.5");
+  }
+  if (lattice.shapes.empty()) {
+    throw InputError("lattice.shape", "", "a lattice needs at least one added shape");
+  }
+  for (std::size_t k = 0; k < lattice.shapes.size(); ++k) check_shape_step(lattice, k);
+  for (std::size_t k = 0; k < lattice.layers.size(); ++k) check_layer(lattice, k);
+}
+
 double estimate_points(const Lattice& lattice) {
   if (lattice.dimension < 1 || lattice.dimension > 3) return infinity;
   return largest_number_of_points(lattice, make_grid(lattice));
 }
 
 Points make_points(const Lattice& lattice) {
-  check(lattice);
+  check_lattice(lattice);
+  require_numbers(lattice);
   const Grid grid = make_grid(lattice);
   const std::vector<Cell> body = body_cells(lattice, grid);
   if (body.empty()) {

@@ -47,6 +47,10 @@ struct Lattice {
   std::uint64_t seed = 1;
 };
 
+/// Refuses shapes, layers and values that can't be used, whatever the number of points is.
+/// @throws InputError
+void check_lattice(const Lattice& lattice);
+
 /// Upper bound of the number of points, without making them: the lattice places in the box around
 /// all added shapes, and the layers; infinite if that box or the spacing can't be used.
 [[nodiscard]] double estimate_points(const Lattice& lattice);

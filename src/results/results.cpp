@@ -120,6 +120,22 @@ void publish_hdf5(const std::filesystem::path& path, std::uint64_t bytes, Write 
   rename_file(unfinished, path);
 }
 
+/// Path of a set's flags, one per point.
+std::string flags_of(const std::string& set) {
+  std::string name = set;
+  std::replace(name.begin(), name.end(), '/', '|');
+  return "/points/sets/" + name;
+}
+
+/// What results.xdmf shows of every point beside the fields of the steps.
+std::vector<XdmfSeries::Field> constant_fields(const Points& points) {
+  std::vector<XdmfSeries::Field> fields{{"volume", "/points/volume"}};
+  for (const auto& [name, members] : points.sets) {
+    fields.push_back({"set_" + name, flags_of(name), false, true});
+  }
+  return fields;
+}
+
 /// The point sets as a matrix: 1 where the point of the row is in the set of the column.
 std::vector<std::uint8_t> membership(const Points& points) {
   std::vector<std::uint8_t> matrix(std::size_t(points.count()) * points.sets.size());
@@ -164,6 +180,13 @@ void write_points(Hdf5File& file, const Points& points, const std::vector<PointC
   std::vector<std::string> names;
   for (const auto& [name, members] : points.sets) names.push_back(name);
   file.set_attribute("/points/set_ids", "sets", names);
+
+  file.make_group("/points/sets");
+  for (const auto& [name, members] : points.sets) {
+    std::vector<std::uint8_t> flags(points.volume.size());
+    for (const Index point : members) flags[point] = 1;
+    file.write(flags_of(name), flags, {count}, {"1", "1 where the point is in set " + name});
+  }
 
   for (const PointCounts& of_points : counts) {
     file.write("/points/" + of_points.name, of_points.values, {count},
@@ -251,7 +274,7 @@ Results::Files::Files(const std::filesystem::path& directory, const Points& poin
       decisions(folder.decisions(), decision_columns()),
       broken_bonds(folder.broken_bonds(), broken_bond_columns()),
       master(Hdf5File::in_memory(folder.results().string() + " (in memory)", master_growth)),
-      xdmf(points.count()) {
+      xdmf(points.count(), constant_fields(points)) {
   write_file(temporary(folder.summary()), "");
   reserve_file(temporary(folder.summary()), room_for_summary(sets, probe_columns));
   master.set_attribute("/", "title", text.title);
@@ -273,7 +296,7 @@ Results::Files::Files(const std::filesystem::path& directory, const Points& poin
 
   const std::uint64_t bytes_per_point = counts.size() * sizeof(std::int32_t) +
                                         (std::uint64_t(dimension) + 4) * sizeof(double) +
-                                        sizeof(std::int32_t) + points.sets.size();
+                                        sizeof(std::int32_t) + 2 * points.sets.size();
   publish_hdf5(folder.parts() / "points.h5", std::uint64_t(count) * bytes_per_point,
                [&](Hdf5File& file) { write_points(file, points, counts); });
   master.link("/points", "parts/points.h5", "/points");

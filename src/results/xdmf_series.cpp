@@ -13,7 +13,34 @@ std::string data_item(const std::string& type, const std::string& dimensions,
 
 constexpr const char* double_type = "NumberType=\"Float\" Precision=\"8\"";
 
+constexpr const char* flag_type = "NumberType=\"UChar\" Precision=\"1\"";
+
+/// A text as XML wants it.
+std::string escaped(const std::string& text) {
+  std::string result;
+  for (const char c : text) {
+    if (c == '&') {
+      result += "&amp;";
+    } else if (c == '<') {
+      result += "&lt;";
+    } else if (c == '"') {
+      result += "&quot;";
+    } else {
+      result += c;
+    }
+  }
+  return result;
+}
+
 }  // namespace
+
+std::string XdmfSeries::attribute(const Field& field) const {
+  return "<Attribute Name=\"" + escaped(field.name) + "\" AttributeType=\"" +
+         (field.is_vector ? "Vector" : "Scalar") + "\" Center=\"Node\">" +
+         data_item(field.is_flag ? flag_type : double_type,
+                   field.is_vector ? points_ + " 3" : points_, escaped(field.dataset)) +
+         "</Attribute>\n";
+}
 
 void XdmfSeries::add(int step, double load_factor, const std::string& mode,
                      const std::vector<Field>& fields) {
@@ -26,12 +53,12 @@ void XdmfSeries::add(int step, double load_factor, const std::string& mode,
             data_item("NumberType=\"Int\" Precision=\"4\"", points_, "/points/number") +
             "</Topology>\n<Geometry GeometryType=\"XYZ\">" +
             data_item(double_type, points_ + " 3", "/points/geometry") + "</Geometry>\n";
-  for (const Field& field : fields) {
-    grids_ += "<Attribute Name=\"" + field.name + "\" AttributeType=\"" +
-              (field.is_vector ? "Vector" : "Scalar") + "\" Center=\"Node\">" +
-              data_item(double_type, field.is_vector ? points_ + " 3" : points_, field.dataset) +
-              "</Attribute>\n";
-  }
+  grids_ +=
+      "<Attribute Name=\"load_factor\" AttributeType=\"Scalar\" Center=\"Grid\"><DataItem "
+      "Format=\"XML\" NumberType=\"Float\" Precision=\"8\" Dimensions=\"1\">" +
+      number_text(load_factor) + "</DataItem></Attribute>\n";
+  for (const Field& field : fields) grids_ += attribute(field);
+  for (const Field& field : constant_) grids_ += attribute(field);
   grids_ += "</Grid>\n";
 }
 

@@ -28,8 +28,8 @@ struct Setting {
   double triangles = 0.0, tetrahedra = 0.0;  ///< stiffness, see BoxSetting
 };
 
-std::string label(const ::testing::TestParamInfo<Setting>& info) {
-  const auto& [dimension, quadrature, perturbation, triangles, tetrahedra] = info.param;
+std::string words(const Setting& setting) {
+  const auto& [dimension, quadrature, perturbation, triangles, tetrahedra] = setting;
   std::string text = std::to_string(dimension) + "D";
   if (quadrature.volume == VolumeCorrection::linear) text += "Linear";
   if (quadrature.surface == SurfaceCorrection::volume) text += "VolumeMethod";
@@ -38,6 +38,10 @@ std::string label(const ::testing::TestParamInfo<Setting>& info) {
   if (tetrahedra > 0.0) text += "Tetrahedra";
   return text + (perturbation > 0.0 ? "Perturbed" : "");
 }
+
+std::string label(const ::testing::TestParamInfo<Setting>& info) { return words(info.param); }
+
+void PrintTo(const Setting& setting, std::ostream* out) { *out << words(setting); }
 
 std::vector<Setting> all_settings() {
   std::vector<Setting> settings;

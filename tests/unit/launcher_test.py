@@ -147,6 +147,14 @@ class Launcher(unittest.TestCase):
         self.assertEqual(result.stdout, f"sweep ['a case.toml', '--vary', 'x=1,2'] {program}\n")
         self.assertIn("sweep ['--help']", self.launch("help", "sweep").stdout)
 
+    def test_help_of_a_command_is_the_commands(self):
+        self.assertIn("[run][--help]", self.launch("help", "run").stdout)
+        self.assertIn("pictures of --help", self.launch("help", "plot").stdout)
+        self.assertIn("peristat bench", self.launch("help", "bench").stdout)
+        result = self.launch("help", "chekc")
+        self.assertEqual(result.returncode, 2)
+        self.assertIn('did you mean "check"?', result.stderr)
+
     def test_an_interrupt_reaches_the_program_once(self):
         to_launcher = lambda process: process.send_signal(signal.SIGINT)
         to_group = lambda process: os.killpg(process.pid, signal.SIGINT)

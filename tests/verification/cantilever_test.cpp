@@ -29,6 +29,8 @@ constexpr Cantilever cantilevers[] = {
     {"cantilever/beam.toml", 5000.0, tip(5000.0, 1.0, 200e9, 0.1, 0.1), 0.40, 0.05},
 };
 
+void PrintTo(const Cantilever& cantilever, std::ostream* out) { *out << cantilever.file; }
+
 class Cantilevers : public testing::TestWithParam<Cantilever> {};
 
 TEST_P(Cantilevers, TipIsThatOfEulerAndBernoulli) {

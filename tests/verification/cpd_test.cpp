@@ -37,6 +37,8 @@ struct InteractionTypes {
   double least_first, most_first;  ///< bounds of the first ratio at increment 1
 };
 
+void PrintTo(const InteractionTypes& types, std::ostream* out) { *out << types.name; }
+
 class Table3 : public ::testing::TestWithParam<InteractionTypes> {};
 
 // Table 3 of [CPD]: 1, 8.97e-2, 1.14e-3, 2.41e-7 in increment 1 (one neighbour), 8.23e-2 (one and
@@ -138,6 +140,10 @@ struct PoissonCase {
   double tolerance = 0.02;
 };
 
+void PrintTo(const PoissonCase& wanted, std::ostream* out) {
+  *out << wanted.file << " with Poisson's ratio " << wanted.poisson_ratio;
+}
+
 /// Overrides that give a case the constants of a Poisson's ratio on its own lattice.
 Overrides constants_for(const PoissonCase& wanted) {
   const Case from = read_case(std::string(PERISTAT_SOURCE_DIR "/cases/") + wanted.file);
@@ -193,7 +199,11 @@ INSTANTIATE_TEST_SUITE_P(AuxeticToNearlyIncompressible, Poisson,
                                            PoissonCase{"cpd/poisson_3d.toml", 0.4},
                                            PoissonCase{"cpd/poisson_3d.toml", 0.48}),
                          [](const auto& number) {
-                           return "Number" + std::to_string(number.index);
+                           const double ratio = number.param.poisson_ratio;
+                           const auto digits = std::lround(100.0 * std::abs(ratio));
+                           return (number.param.file == "cpd/poisson_2d.toml" ? "Plane" : "Space") +
+                                  std::string(ratio < 0.0 ? "Minus" : "") + std::to_string(digits) +
+                                  "Percent";
                          });
 
 }  // namespace

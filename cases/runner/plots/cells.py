@@ -6,7 +6,8 @@ import numpy as np
 
 
 class Cells:
-    """One cell per point, sharing corners with its neighbours so that a picture has no gaps.
+    """One cell per point, sharing corners with its neighbours so that a picture has no gaps, unless they
+    have been parted (separations.py).
 
     A lattice, also a perturbed one, is recognised by the cells of one spacing: every point must have
     its own. Points that are no lattice get a square or cube each, without neighbours.
@@ -37,6 +38,7 @@ class Cells:
     def _number(self, index: np.ndarray) -> None:
         """Numbers the cells of a dense grid; -1 is empty."""
         self.index = index
+        self._parted = np.zeros((self.dimension, len(index)), dtype=bool)  # from the next one along the axis
         self._strides = np.array([int(np.prod(self._shape[axis + 1 :])) for axis in range(self.dimension)])
         self._flat = (index + 1) @ self._strides
         self._grid = np.full(int(np.prod(self._shape)), -1, dtype=np.int64)
@@ -45,6 +47,20 @@ class Cells:
     def neighbours(self, axis: int, sign: int) -> np.ndarray:
         """Number of every cell's neighbour in a direction, -1 where there is none."""
         return self._grid[self._flat + sign * self._strides[axis]]
+
+    def part(self, axis: int, cells: np.ndarray) -> None:
+        """Parts cells from their next neighbours along an axis."""
+        self._parted[axis, cells] = True
+
+    def joined(self, axis: int, sign: int) -> np.ndarray:
+        """Number of every cell's neighbour in a direction that it hangs together with, -1 where there is none."""
+        other = self.neighbours(axis, sign)
+        lower = np.arange(len(other)) if sign > 0 else other  # -1 asks for the last one's, and stays -1
+        return np.where(self._parted[axis, lower], -1, other)
+
+    def parted(self, axis: int, sign: int) -> np.ndarray:
+        """Whether every cell has a neighbour in a direction that it has been parted from."""
+        return (self.neighbours(axis, sign) >= 0) & (self.joined(axis, sign) < 0)
 
     def image(self, values: np.ndarray) -> np.ndarray:
         """Values of a plane lattice as an image, rows along y from below; NaN where there is no point."""
@@ -55,25 +71,40 @@ class Cells:
     def corners(self, reference: np.ndarray, displacement: np.ndarray, loose: np.ndarray) -> np.ndarray:
         """Displaced corners, count x 2^dimension x dimension; corner bits are those of `signs()`.
 
-        Displacements are continued linearly from the points to the corners and averaged there.
-        Loose cells (those of broken material) move with their point alone, so that cracks open.
+        Displacements are continued linearly from the points to the corners and averaged there, among the
+        cells that hang together. Loose cells (those of broken material) move with their point alone.
         """
         gradient = self._gradient(displacement, loose)
         half = 0.5 * self.spacing
         signs = corner_signs(self.dimension)
         moved = displacement[:, None, :] + half * np.einsum("ka,nac->nkc", signs, gradient)
-        node = self._flat[:, None] + ((signs.astype(int) - 1) // 2) @ self._strides
-        firm = ~loose
-        keys = node[firm].ravel()
-        number_of_cells = np.maximum(np.bincount(keys, minlength=len(self._grid)), 1)
+        knot = self._knots(loose)
+        number_of_cells = np.maximum(np.bincount(knot.ravel(), minlength=knot.size), 1)
         for component in range(self.dimension):
-            sums = np.bincount(keys, moved[firm, :, component].ravel(), minlength=len(self._grid))
-            moved[firm, :, component] = (sums / number_of_cells)[node[firm]]
+            sums = np.bincount(knot.ravel(), moved[:, :, component].ravel(), minlength=knot.size)
+            moved[:, :, component] = (sums / number_of_cells)[knot]
         centres = reference
         if self.is_lattice:  # of a perturbed lattice: the unperturbed places
             centres = self.index * self.spacing
             centres = centres + (reference - centres).mean(axis=0)
         return centres[:, None, :] + half * signs + moved
+
+    def _knots(self, loose: np.ndarray) -> np.ndarray:
+        """A number of every corner that it shares with the corners of other cells it is joined to."""
+        corners = 2**self.dimension
+        knot = np.arange(len(loose) * corners).reshape(-1, corners)
+        for _ in range(corners):  # at most so many cells meet in a corner
+            before = knot.copy()
+            for axis in range(self.dimension):
+                other = self.joined(axis, 1)
+                lower = np.flatnonzero((other >= 0) & ~loose & ~loose[other])
+                bit = corners >> (axis + 1)
+                high = np.flatnonzero(np.arange(corners) & bit)
+                least = np.minimum(knot[lower[:, None], high], knot[other[lower][:, None], high - bit])
+                knot[lower[:, None], high] = knot[other[lower][:, None], high - bit] = least
+            if (knot == before).all():
+                break
+        return knot
 
     def _gradient(self, displacement: np.ndarray, loose: np.ndarray) -> np.ndarray:
         """Displacement gradient by differences to the neighbours: count x axis x component."""
@@ -81,7 +112,7 @@ class Cells:
         for axis in range(self.dimension):
             number = np.zeros(len(displacement))
             for sign in (-1, 1):
-                other = self.neighbours(axis, sign)
+                other = self.joined(axis, sign)
                 usable = (other >= 0) & ~loose & ~loose[other]
                 difference = sign * (displacement[other] - displacement) / self.spacing
                 gradient[:, axis] += np.where(usable[:, None], difference, 0.0)

@@ -1,7 +1,6 @@
 """An animation of the damage on the deformed plate, beside it the load-displacement curve as it grows."""
 
 import io
-from pathlib import Path
 
 import numpy as np
 from matplotlib.animation import PillowWriter
@@ -12,10 +11,10 @@ from matplotlib.path import Path as Outline
 from PIL import Image
 
 from curve_pictures import abscissa_of, find_abscissa, has_reactions, reactions
-from field_pictures import DAMAGE_COLOURS, deformed_plate, exaggeration, exaggeration_words, rims
+from field_pictures import DAMAGE_COLOURS, crack_lines, deformed_plate, exaggeration, exaggeration_words, rims
 from fracture_pictures import OPENING
 from style import (
-    FORCES, GHOST, LINES, PIECE,
+    FORCES, GHOST, INK, LINES, PIECE,
     bond_words, colour_bar, heading, new_figure, piece_words, step_words, unit_for,
 )  # fmt: skip
 
@@ -29,16 +28,17 @@ SECONDS = 7.0
 SECONDS_AT_THE_END = 2.0
 
 
-def write_crack_animation(results, path: Path) -> None:
-    """Writes the steps that have fields as a GIF of less than a megabyte."""
+def crack_animation(results) -> bytes:
+    """The steps that have fields as a GIF of less than a megabyte."""
     numbers = animated_steps(results)
     last = results.step(numbers[-1])
     stage = _Stage(results, last)
     writer = _SmallGif(fps=max(len(numbers) / SECONDS, 3.0))
-    with writer.saving(stage.figure, path, stage.figure.dpi):
+    with writer.saving(stage.figure, "crack.gif", stage.figure.dpi):
         for step_number in numbers:
             stage.show(last if step_number == last.number else results.step(step_number))
             writer.grab_frame()
+    return writer.content
 
 
 def animated_steps(results) -> list[int]:
@@ -95,7 +95,7 @@ class _SmallGif(PillowWriter):
             if file.tell() <= MOST_BYTES or len(frames) <= 2:
                 break
             frames, duration = frames[::-1][::2][::-1], 2.0 * duration  # the last one stays
-        Path(self.outfile).write_bytes(file.getvalue())
+        self.content = file.getvalue()
 
 
 class _Stage:
@@ -127,10 +127,11 @@ class _Stage:
 
         self.cells = PathCollection([], facecolors=DAMAGE_COLOURS(LEVELS), linewidths=0.0, antialiased=False,
                                     animated=True)  # fmt: skip
+        self.cracks = LineCollection([], colors=INK, linewidths=0.8, animated=True, zorder=3)
         self.pieces = LineCollection([], colors=PIECE, linewidths=1.4, animated=True, zorder=4)
-        for collection in (self.cells, self.pieces):
+        for collection in (self.cells, self.cracks, self.pieces):
             self.axes.add_collection(collection, autolim=False)
-        self.artists = [self.cells, self.pieces]
+        self.artists = [self.cells, self.cracks, self.pieces]
         if has_curve:
             x = (left + width + 1.25) / total_width
             self._set_the_curve([x, 1.05 / total_height, 3.4 / total_width, max(height, 2.6) / total_height])
@@ -149,20 +150,18 @@ class _Stage:
     def _set_the_curve(self, place) -> None:
         """The whole curve faintly, and artists for the part that has been gone through."""
         axes = self.figure.add_axes(place)
-        load = np.array(self.results.history["load_factor"])
-        curves = reactions(self.results.history, len(load))
+        load = self.results.numbers("load_factor")
+        curves = reactions(self.results)
         abscissa = find_abscissa(self.results, curves)
         label, places, shown = "load factor", load, curves
         if abscissa:
             label, places, shown, _ = abscissa_of(abscissa, curves)
-        name, axis, values = max(shown, key=lambda curve: (np.abs(curve[2]).max(), curve[2].max()))
-        unit, size = unit_for(np.abs(values).max(), FORCES, 1.0)
-        self.x, self.y = np.concatenate([[0.0], places]), np.concatenate([[0.0], values / size])
+        curve = max(shown, key=lambda curve: curve.values.max())
+        unit, size = unit_for(np.abs(curve.values).max(), FORCES, 1.0)
+        self.x, self.y = np.concatenate([[0.0], places]), np.concatenate([[0.0], curve.values / size])
         axes.plot(self.x, self.y, color=GHOST, linewidth=1.4, zorder=2)
-        axes.set_xlabel(label.replace("displacement of set", "displacement of"), fontsize=12)
-        axes.set_ylabel(f"reaction of “{name}” in {'xyz'[axis]} [{unit}]", fontsize=12)
-        if abs(places.min()) > places.max():
-            axes.invert_xaxis()
+        axes.set_xlabel(label.replace("mean displacement of", "").replace("displacement of", ""), fontsize=12)
+        axes.set_ylabel(f"reaction of “{curve.name}” in {'−' * (curve.sign < 0)}{'xyz'[curve.axis]} [{unit}]", fontsize=12)
         (self.line,) = axes.plot([], [], color=LINES[0], linewidth=2.2, animated=True, zorder=3)
         (self.point,) = axes.plot([], [], "o", color=LINES[1], markersize=8, markeredgecolor="white",
                                   markeredgewidth=1.0, animated=True, zorder=4)  # fmt: skip
@@ -172,8 +171,9 @@ class _Stage:
         """Draws a step on the scenery."""
         plate = self._plate(step)
         self.cells.set_paths(_by_colour(plate.moved, plate.values))
+        self.cracks.set_segments(crack_lines(plate.cells, plate.moved).get_segments())
         self.pieces.set_segments(rims(plate.cells, plate.moved, plate.floating))
-        if len(self.artists) > 2:
+        if len(self.artists) > 3:
             steps = self.results.history.get("step", [])
             reached = 1 + np.searchsorted(steps, step.number, side="right")
             self.line.set_data(self.x[:reached], self.y[:reached])

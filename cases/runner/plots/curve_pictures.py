@@ -1,15 +1,13 @@
-"""Pictures of a run's history: reactions against load and displacement, convergence of iterations."""
+"""Picture of the reactions of a run against load factor and displacement."""
+
+from dataclasses import dataclass
 
 import numpy as np
-from matplotlib import colormaps
-from matplotlib.ticker import MaxNLocator
 
-from style import FAINT, FORCES, GHOST, INK, LENGTHS, LINES, WARNING, heading, new_figure, number, unit_for
+from style import FORCES, GHOST, INK, LENGTHS, LINES, WARNING, heading, new_figure, number, unit_for
 
-# Relative residuals below are round-off and show no order: in slender bodies the forces of single
-# bonds are orders of magnitude larger than the residual's scale, and so is their round-off.
-ROUND_OFF = 1e-11
-MOST_STEPS = 8  # curves in the picture of convergence
+SMALL = 1e-6  # share of the largest reaction below which one is zero
+ALIKE = 0.02  # share by which reactions of two supports may differ and are still drawn as one
 MOST_VALUES_READ = 20_000_000  # of displacements, to find how far the supports moved
 AXES = "xyz"
 MARKERS = "osD^vP"
@@ -17,11 +15,30 @@ HAND_OVERS = (  # actions of decisions.csv, words, colour and dashes
     ("hand over to relaxation", "hand-over to relaxation", "#b58a1b", (0, (5, 2))),
     ("hand back to newton", "hand-back to Newton's method", "#7a5aa6", (0, (1, 2))),
 )
-HISTORY_COLUMNS = {
-    "step", "load_factor", "mode", "newton_iterations", "relaxation_iterations", "stored_energy",
-    "dissipated_energy", "drained_energy", "external_work", "balance_error", "broken_bonds",
-    "max_damage", "max_stretch",
-}  # fmt: skip
+
+
+@dataclass
+class Reaction:
+    """A component of a support set's reaction, turned so that its largest value is positive."""
+
+    name: str  # of the set
+    axis: int
+    sign: float  # by which it was turned
+    values: np.ndarray  # at the accepted steps [N]
+    others: list[str]  # words for the supports that have the same or the opposite reaction
+
+    @property
+    def label(self) -> str:
+        return ", ".join([f"{self.name} in {'−' * (self.sign < 0)}{AXES[self.axis]}", *self.others])
+
+
+@dataclass
+class Abscissa:
+    """A displacement that the reactions are drawn over."""
+
+    label: str  # without unit
+    values: np.ndarray  # at the accepted steps [m]
+    of_set: str | None  # the support that it is the motion of: only its reaction belongs to it
 
 
 # ------------------------------------------------------------------------------ load and displacement
@@ -30,76 +47,184 @@ HISTORY_COLUMNS = {
 def draw_load_displacement(results):
     """Reactions of the support sets over the load factor, and over a displacement if one is known.
 
-    Once there is damage, also how the steps were found, the peak, and the hand-overs between the solvers.
+    Of supports with the same or opposite reactions one is drawn. Once there is damage, also how the steps
+    were found, the peak, and the hand-overs between the solvers.
     """
-    load = np.array(results.history["load_factor"])
-    curves = reactions(results.history, len(load))
-    unit, size = unit_for(max(np.abs(values).max() for _, _, values in curves), FORCES, 1.0)
+    load = results.numbers("load_factor")
+    curves = reactions(results)
+    unit, size = unit_for(max(np.abs(curve.values).max() for curve in curves), FORCES, 1.0)
     abscissa = find_abscissa(results, curves)
 
-    foot = 0.65 if results.is_fractured else 0.0  # inches for the legend
+    foot = 0.75  # inches for the legend
     height = 7.2 + foot
     bottom, panel_height = (0.115 * 7.2 + foot) / height, 0.71 * 7.2 / height
     figure = new_figure(16.0, height)
     panels = [figure.add_axes([0.075, bottom, 0.40 if abscissa else 0.80, panel_height])]
-    _draw_reactions(panels[0], curves, lambda name: load, size)
+    _draw_reactions(panels[0], curves, load, size, curves)
     panels[0].set_xlabel("load factor")
-    panels[0].set_ylabel(f"reaction [{unit}]")
     if results.is_fractured:
-        draw_fracture(panels[0], results, curves, load, size, "at load factor {}")
+        draw_fracture(panels[0], results, curves, load, size, "at load factor {}", curves)
     if abscissa:
         label, places, shown, words = abscissa_of(abscissa, curves)
         panels.append(figure.add_axes([0.565, bottom, 0.40, panel_height]))
-        _draw_reactions(panels[1], shown, lambda name: places, size, curves)
+        _draw_reactions(panels[1], shown, places, size, curves)
         panels[1].set_xlabel(label)
-        panels[1].set_ylabel(f"reaction [{unit}]")
         if results.is_fractured:
             draw_fracture(panels[1], results, shown, places, size, words, curves)
-        if abs(places.min()) > places.max():
-            panels[1].invert_xaxis()  # the curve starts at the left
     for axes in panels:
+        axes.set_ylabel(f"reaction [{unit}]")
         axes.axhline(0.0, color=GHOST, linewidth=1.2, zorder=1)
         axes.axvline(0.0, color=GHOST, linewidth=1.2, zorder=1)
-        if not results.is_fractured:
-            axes.legend(loc="best" if len(curves) > 1 else "upper left", fontsize=12)
-    if results.is_fractured:
-        handles, labels = panels[0].get_legend_handles_labels()
-        figure.legend(handles, labels, loc="lower center", ncol=min(len(labels), 6), fontsize=12,
-                      bbox_to_anchor=(0.52, 0.0), borderaxespad=0.5)  # fmt: skip
+    handles, labels = panels[0].get_legend_handles_labels()
+    figure.legend(handles, [label.replace("$", r"\$") for label in labels], loc="lower center",
+                  ncol=min(len(labels), 4), fontsize=12, bbox_to_anchor=(0.52, 0.0), borderaxespad=0.5)  # fmt: skip
     steps = len(load)
     heading(figure, results, ["reactions of the supports", f"{number(steps)} accepted step{'s' * (steps != 1)}",
                               f"load factor up to {number(load.max())}"])  # fmt: skip
     return figure
 
 
-def find_abscissa(results, curves):
-    """The displacement to draw over, see `abscissa_of`; None if none is known."""
-    return _probe(results) or _moved_support(results, curves)
+def reactions(results) -> list[Reaction]:
+    """The dominating component of every support set's reaction, without those that are zero.
+
+    Supports whose reactions are alike or opposite are told by the one that is moved.
+    """
+    found = []
+    for name in support_sets(results):
+        components = [results.numbers(f"reaction_{axis}:{name}") for axis in AXES]
+        known = {axis: values for axis, values in enumerate(components) if values is not None}
+        if known:
+            axis = max(known, key=lambda component: np.abs(known[component]).max())
+            values = known[axis]
+            sign = 1.0 if values[np.argmax(np.abs(values))] >= 0.0 else -1.0
+            found.append(Reaction(name, axis, sign, sign * values, []))
+    largest = max((curve.values.max() for curve in found), default=0.0)
+    found = [curve for curve in found if curve.values.max() > SMALL * largest] or found[:1]
+    driven = {name for name, _ in driven_components(results)}
+    kept = []
+    for curve in sorted(found, key=lambda curve: curve.name not in driven):
+        slack = ALIKE * curve.values.max()
+        twin = next((own for own in kept if own.axis == curve.axis
+                     and np.abs(own.values - curve.values).max() <= slack), None)  # fmt: skip
+        if twin is None:
+            kept.append(curve)
+        else:
+            twin.others.append(f"{curve.name} {'the same' if twin.sign == curve.sign else 'opposite'}")
+    return kept
 
 
-def abscissa_of(abscissa, curves):
+def support_sets(results) -> list[str]:
+    """Names of the sets that the history has reactions of."""
+    return [column.partition(":")[2] for column in results.history if column.startswith("reaction_x:")]
+
+
+def has_reactions(results) -> bool:
+    """Whether the history has accepted steps with reactions."""
+    return results.numbers("load_factor") is not None and bool(reactions(results))
+
+
+def driven_components(results) -> list[tuple[str, int]]:
+    """Sets and components whose displacement the case prescribes and lets grow with the load."""
+    return _varying(results, "support", "displacement")
+
+
+def _varying(results, table: str, *keys: str) -> list[tuple[str, int]]:
+    found = []
+    for entry in results.tables(table):
+        for key in keys:
+            components = entry.get(key)
+            for axis, text in enumerate(components[:3] if isinstance(components, list) else []):
+                if isinstance(text, str) and "load" in text:
+                    found.append((str(entry.get("set", "")), axis))
+    return found
+
+
+# ------------------------------------------------------------------------------- what to draw over
+
+
+def find_abscissa(results, curves: list[Reaction]) -> Abscissa | None:
+    """The displacement to draw over; None if none is known.
+
+    That of the driven support which has the largest reaction, in the component in which it is driven: from a
+    probe of its displacement, else from the fields. If loads drive the body, a probe of the loaded set in the
+    component of the load, else any probe of a displacement. The case tells what is driven; without that, the
+    support that moves most.
+    """
+    shown = {(curve.name, curve.axis) for curve in curves}
+    driven = driven_components(results)
+    for name, axis in sorted(driven, key=lambda entry: entry not in shown):
+        found = _probe_of(results, name, axis) or _mean_of(results, name, axis)
+        if found is not None:
+            return _turned(found, name if name in {curve.name for curve in curves} else None)
+    for name, axis in _varying(results, "load", "body_force", "total_force"):
+        found = _probe_of(results, name, axis)
+        if found is not None:
+            return _turned(found, None)
+    moved = [] if driven else [_mean_of(results, curve.name, curve.axis) for curve in curves]
+    known = [(found, curve.name) for found, curve in zip(moved, curves) if found is not None]
+    if known:
+        return _turned(*max(known, key=lambda entry: np.abs(entry[0][1]).max()))
+    found = [_probe_of(results, probe.get("set"), axis)
+             for probe in results.tables("probe") for axis in range(results.dimension)]  # fmt: skip
+    found = [entry for entry in found if entry is not None]
+    return _turned(max(found, key=lambda entry: np.abs(entry[1]).max()), None) if found else None
+
+
+def _turned(found: tuple[str, np.ndarray], of_set: str | None) -> Abscissa:
+    """Turned so that it grows: an axis points to the right."""
+    words, values = found
+    falls = values[np.argmax(np.abs(values))] < 0.0
+    return Abscissa(words.format("−" if falls else ""), -values if falls else values, of_set)
+
+
+def _probe_of(results, name, axis: int) -> tuple[str, np.ndarray] | None:
+    """A probe of the displacement of a set that moves in a component: words (with a place for its sign) and values."""
+    for probe in results.tables("probe"):
+        if probe.get("set") != name or probe.get("field", "displacement") != "displacement":
+            continue
+        own = str(probe.get("name"))
+        values = results.numbers(own if results.dimension == 1 else f"{own}_{AXES[axis]}")
+        if values is not None and np.abs(values).max() > 0.0:
+            return f"probe {own}: mean displacement of “{name}” in {{}}{AXES[axis]}", values
+    return None
+
+
+def _mean_of(results, name: str, axis: int) -> tuple[str, np.ndarray] | None:
+    """Mean displacement of a set at the accepted steps if all have fields: words (with a place for its sign) and values."""
+    steps = [int(step) for step in results.history.get("step", [])]
+    if not steps or set(steps) - set(results.step_numbers) or not len(results.sets.get(name, ())):
+        return None  # fields of some steps were not written
+    if len(steps) * results.reference.size > MOST_VALUES_READ or axis >= results.dimension:
+        return None
+    members = results.sets[name]
+    values = np.array([results.displacement(step)[members, axis].mean() for step in steps])
+    return (f"displacement of “{name}” in {{}}{AXES[axis]}", values) if np.abs(values).max() > 0.0 else None
+
+
+def abscissa_of(abscissa: Abscissa, curves: list[Reaction]):
     """Of a displacement to draw over: label, values in its unit, the curves to draw, words for a value."""
-    label, places, only, sign = abscissa
-    shown = [(name, axis, sign * values) for name, axis, values in curves if only in (None, name)]
-    length, size = unit_for(np.abs(places).max(), LENGTHS) if "[m]" in label else ("", 1.0)
-    return label.replace("[m]", f"[{length}]"), places / size, shown, f"at {{}} {length}".rstrip()
+    shown = [curve for curve in curves if abscissa.of_set in (None, curve.name)] or curves
+    length, size = unit_for(np.abs(abscissa.values).max(), LENGTHS)
+    return f"{abscissa.label} [{length}]", abscissa.values / size, shown, f"at {{}} {length}"
 
 
-def draw_fracture(axes, results, curves, places, size, words, all_curves=None):
+# --------------------------------------------------------------------------------------- fracture
+
+
+def draw_fracture(axes, results, curves, places, size, words, all_curves):
     """Open marks of the steps found by relaxation, lines of the hand-overs, and the peak with its value.
 
     places  abscissa of the accepted steps
     words   what is said of the peak's place, "at {} mm"
     """
-    names = [name for name, _, _ in all_curves or curves]
     mark = np.clip(400 / len(places), 3.5, 7)
     for line in axes.get_lines():
         line.set(markersize=mark, markeredgewidth=0.0)
     relaxed = np.array([mode == "relaxation" for mode in results.history.get("mode", [])], dtype=bool)
     if len(relaxed) == len(places) and relaxed.any():
-        for name, _, values in curves:
-            style = names.index(name)
-            axes.plot(places[relaxed], values[relaxed] / size, linestyle="none",
+        for curve in curves:
+            style = all_curves.index(curve)
+            axes.plot(places[relaxed], curve.values[relaxed] / size, linestyle="none",
                       marker=MARKERS[style % len(MARKERS)], markersize=mark, markerfacecolor="white",
                       markeredgecolor=LINES[style % len(LINES)], markeredgewidth=1.2, zorder=4)  # fmt: skip
         for colour, label in ((INK, "Newton's method"), ("white", "relaxation")):
@@ -134,252 +259,30 @@ def on_the_way(results, places, step: float, load: float) -> float:
 
 
 def _mark_peak(axes, curves, places, size, words) -> None:
-    """A ring about the largest reaction, and its value and place above (or below) all curves."""
-    largest = max(np.abs(values).max() for _, _, values in curves)
-    alike = [values / size for _, _, values in curves if np.abs(values).max() > (1.0 - 1e-3) * largest]
-    values = max(alike, key=max)  # of opposite reactions the one that points up
-    peak = int(np.argmax(np.abs(values)))
-    up = values[peak] >= 0.0
+    """A ring about the largest reaction, and its value and place above all curves."""
+    values = max((curve.values for curve in curves), key=np.max) / size
+    peak = int(np.argmax(values))
     axes.plot(places[peak], values[peak], "o", markersize=13, markerfacecolor="none", markeredgecolor=WARNING,
               markeredgewidth=1.8, zorder=5, label="peak")  # fmt: skip
     low, high = axes.get_ylim()
-    axes.set_ylim((low, high + 0.09 * (high - low)) if up else (low - 0.09 * (high - low), high))
+    axes.set_ylim(low, high + 0.09 * (high - low))
     left, right = axes.get_xlim()
     share = (places[peak] - left) / (right - left) if right > left else 0.5
-    share = 1.0 - share if np.abs(places.min()) > places.max() and places.min() < 0.0 else share
-    unit = axes.get_ylabel().split("[")[-1].rstrip("]")
-    text = f"{number(abs(values[peak]))} {unit} {words.format(number(places[peak]))}"
-    axes.annotate(text, (places[peak], values[peak]), xytext=(0, 13 if up else -13), textcoords="offset points",
+    unit = unit_for(size, FORCES, 1.0)[0]
+    text = f"{number(values[peak])} {unit} {words.format(number(places[peak]))}"
+    axes.annotate(text, (places[peak], values[peak]), xytext=(0, 13), textcoords="offset points",
                   ha="left" if share < 0.25 else "right" if share > 0.75 else "center",
-                  va="bottom" if up else "top", fontsize=12, fontweight="bold", color=WARNING, zorder=6,
+                  va="bottom", fontsize=12, fontweight="bold", color=WARNING, zorder=6,
                   bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.85, "pad": 1.5})  # fmt: skip
 
 
-def has_reactions(results) -> bool:
-    """Whether the history has accepted steps with reactions."""
-    load = results.history.get("load_factor", [])
-    return bool(load) and isinstance(load[0], float) and bool(reactions(results.history, len(load)))
-
-
-def reactions(history, count):
-    """Per support set: name, dominating component (0, 1, 2) and its values [N]."""
-    sets = {}
-    for column, values in history.items():
-        if column.startswith("reaction_") and column[9:10] in AXES and column[10:11] == ":":
-            if len(values) == count and all(isinstance(value, float) for value in values):
-                sets.setdefault(column[11:], {})[AXES.index(column[9])] = np.nan_to_num(np.array(values))
-    curves = []
-    for name, components in sets.items():
-        axis = max(components, key=lambda component: np.abs(components[component]).max())
-        curves.append((name, axis, components[axis]))
-    return curves
-
-
-def _draw_reactions(axes, curves, abscissa, size, all_curves=None):
+def _draw_reactions(axes, curves, places, size, all_curves):
     """Lines with a marker per accepted step; every line starts at the unloaded state."""
-    names = [name for name, _, _ in all_curves or curves]
-    for name, axis, values in curves:
-        style = names.index(name)
-        x, y = abscissa(name), values / size
+    for curve in curves:
+        style = all_curves.index(curve)
+        x, y = places, curve.values / size
         if x[0] != 0.0:
             x, y = np.concatenate([[0.0], x]), np.concatenate([[0.0], y])
         axes.plot(x, y, color=LINES[style % len(LINES)], linewidth=1.8, marker=MARKERS[style % len(MARKERS)],
                   markersize=np.clip(260 / len(x), 2.5, 7), markeredgecolor="white", markeredgewidth=0.7,
-                  label=f"{name}, {AXES[axis]} component", zorder=3)  # fmt: skip
-
-
-def _probe(results):
-    """Largest component of the case's first probe: label, values, no restriction of sets, sign."""
-    columns = {
-        name: np.array(values) for name, values in results.history.items()
-        if name not in HISTORY_COLUMNS and not name.startswith("reaction_")
-        and values and isinstance(values[0], float) and np.isfinite(values).all()
-    }  # fmt: skip
-    if not columns:
-        return None
-    fields = {probe.get("name"): probe.get("field", "displacement") for probe in results.case.get("probe", [])}
-
-    def owner(column):
-        """Name of the probe that a column (`tip`, `tip_x`, `x:tip`, `tip:x`) belongs to."""
-        return max((name for name in fields if name and name in column), key=len, default=column)
-
-    first = owner(next(iter(columns)))
-    own = [column for column in columns if owner(column) == first]
-    column = max(own, key=lambda name: np.abs(columns[name]).max())
-    values = columns[column]
-    if not np.abs(values).max() > 0.0:
-        return None
-    kind = fields.get(first, "")
-    units = {"displacement": "[m]", "force": "[N]", "energy_density": "[J/m³]"}
-    pretty = column.replace("_", " ").replace(":", " ")
-    return f"probe {pretty}: mean {kind.replace('_', ' ')} {units.get(kind, '')}".rstrip(": "), values, None, 1.0
-
-
-def _moved_support(results, curves):
-    """Mean displacement of the support that moved most, in the direction of its reaction.
-
-    Label, values at the accepted steps, the set's name, and the sign that makes the curve rise.
-    """
-    steps = [int(step) for step in results.history.get("step", [])]
-    if not steps or set(steps) - set(results.step_numbers):
-        return None  # fields of some steps were not written
-    if len(steps) * results.reference.size > MOST_VALUES_READ:
-        return None
-    axes = {name: axis for name, axis, _ in curves if len(results.sets.get(name, ()))}
-    means = {name: [] for name in axes}
-    for number_of_step in steps:
-        displacement = results.displacement(number_of_step)
-        for name, axis in axes.items():
-            means[name].append(displacement[results.sets[name], axis].mean())
-    if not means:
-        return None
-    name = max(means, key=lambda key: abs(means[key][-1]))
-    values = np.array(means[name])
-    if not np.abs(values).max() > 0.0:
-        return None
-    sign = -1.0 if values[-1] < 0.0 else 1.0
-    return f"displacement of set “{name}” in {AXES[axes[name]]} [m]", sign * values, name, sign
-
-
-# ---------------------------------------------------------------------------------------- convergence
-
-
-def has_iterations(results) -> bool:
-    return any(len(residuals) > 1 for _, _, residuals in _searches(results))
-
-
-def _searches(results):
-    """The searches for equilibrium: step, whether it was accepted, relative residuals by iteration.
-
-    A step that was cut appears several times; its last search is the one that counts.
-    """
-    table = results.iterations
-    columns = [table.get(name, []) for name in ("step", "iteration", "relative_residual")]
-    searches = []
-    for step, iteration, residual in zip(*columns):
-        if not all(isinstance(value, float) for value in (step, iteration, residual)):
-            continue
-        if not searches or searches[-1][0] != step or iteration <= searches[-1][1]:
-            searches.append([int(step), iteration, []])
-        searches[-1][1] = iteration
-        searches[-1][2].append(residual if np.isfinite(residual) else np.nan)
-    last = {step: number for number, (step, _, _) in enumerate(searches)}
-    accepted = {int(step) for step in results.history.get("step", [])}
-    return [(step, last[step] == number and step in accepted, np.array(residuals))
-            for number, (step, _, residuals) in enumerate(searches)]  # fmt: skip
-
-
-def observed_order(residuals: np.ndarray) -> float | None:
-    """Order p of r_new ~ r_old^p, from the last three residuals above round-off; None if unclear.
-
-    p = log(r_{k+1} / r_k) / log(r_k / r_{k-1}); the residuals must fall, and by at least half.
-    """
-    usable = residuals[: np.argmax(~(residuals > ROUND_OFF))] if not (residuals > ROUND_OFF).all() else residuals
-    for end in range(len(usable), 2, -1):
-        before, now, after = usable[end - 3 : end]
-        if after < now < 0.5 * before:
-            return float(np.log(after / now) / np.log(now / before))
-    return None
-
-
-def draw_convergence(results):
-    """Relative residuals against iterations, and each against the one before, whose slope is the order."""
-    searches = [search for search in _searches(results) if len(search[2]) > 1]
-    accepted = [search for search in searches if search[1]]
-    failed = [search for search in searches if not search[1]]
-    chosen = accepted or failed
-    if len(chosen) > MOST_STEPS:
-        chosen = [chosen[i] for i in np.unique(np.linspace(0, len(chosen) - 1, MOST_STEPS).round().astype(int))]
-    failed = [] if not accepted else failed[-2:]
-    loads = dict(zip(map(int, results.history.get("step", [])), results.history.get("load_factor", [])))
-    shades = colormaps["viridis"](np.linspace(0.05, 0.82, max(len(chosen), 2)))
-
-    figure = new_figure(16.0, 7.4)
-    left = figure.add_axes([0.07, 0.115, 0.50, 0.71])
-    right = figure.add_axes([0.655, 0.115, 0.325, 0.71])
-    for axes in (left, right):
-        axes.set_yscale("log")
-    right.set_xscale("log")
-
-    positive = np.concatenate([residuals[residuals > 0.0] for _, _, residuals in chosen + failed] or [[1.0]])
-    floor = 0.1 * min(positive.min(initial=1.0), 1e-15)
-    orders = []
-    for colour, (step, _, residuals) in zip(shades, chosen):
-        order = observed_order(residuals[1:])  # iteration 0 is the jump of the load, not Newton's
-        orders += [] if order is None else [order]
-        where = f"load {number(loads[step])}" if step in loads else f"step {step}"
-        text = "" if order is None else f",  p = {order:.2f}"
-        _draw_search(left, right, residuals, floor, color=colour, label=where + text)
-    for place, (step, _, residuals) in enumerate(failed):
-        label = "search that failed" if place == 0 else None
-        _draw_search(left, right, residuals, floor, color=WARNING, linestyle="--", label=label)
-    zeros = [np.argmax(residuals == 0.0) for _, _, residuals in chosen if (residuals == 0.0).any()]
-    if zeros:
-        left.annotate("exactly zero", (min(zeros), floor), xytext=(-10, 0), textcoords="offset points",
-                      fontsize=11, ha="right", va="center", color=FAINT)  # fmt: skip
-    _draw_tolerance(left, results)
-    _draw_slopes(right, chosen, floor)
-    for axes in (left, right):
-        low, high = axes.get_ylim()
-        if low < ROUND_OFF:
-            axes.axhspan(low, ROUND_OFF, color="#f3f4f6", zorder=0)
-            axes.annotate("round-off", (1.0, ROUND_OFF), xycoords=("axes fraction", "data"), xytext=(-6, -6),
-                          textcoords="offset points", ha="right", va="top", fontsize=11, color=FAINT)  # fmt: skip
-            axes.set_ylim(low, high)
-
-    left.set_xlabel("iteration")
-    left.set_ylabel("relative residual")
-    left.xaxis.set_major_locator(MaxNLocator(integer=True, nbins=12))
-    left.legend(loc="lower left", fontsize=11.5, title="p: observed order" if orders else None,
-                title_fontsize=11.5, alignment="left")  # fmt: skip
-    right.set_xlabel("relative residual of one iteration")
-    right.set_ylabel("… of the next iteration")
-    words = ["convergence of the search for equilibrium"]
-    if orders:
-        words.append(f"observed order {np.median(orders):.2f} (median)")
-    if len(chosen) < len(accepted):
-        words.append(f"{len(chosen)} of {number(len(accepted))} steps")
-    heading(figure, results, words)
-    return figure
-
-
-def _draw_search(left, right, residuals, floor, **looks):
-    """One search in both panels; a residual of exactly zero is an open mark at the floor."""
-    shown = np.where(residuals == 0.0, floor, residuals)
-    many = len(residuals) > 60
-    marks = {} if many else {"marker": "o", "markersize": 6, "markeredgecolor": "white", "markeredgewidth": 0.7}
-    left.plot(shown, linewidth=1.2 if many else 1.7, zorder=3, **marks, **looks)
-    right.plot(shown[:-1], shown[1:], linewidth=1.2, zorder=3, **marks, **{**looks, "label": None})
-    zeros = np.flatnonzero(residuals == 0.0)
-    if len(zeros):
-        left.plot(zeros, shown[zeros], "o", markersize=8, markerfacecolor="white",
-                  markeredgecolor=looks["color"], zorder=4)  # fmt: skip
-
-
-def _draw_tolerance(axes, results):
-    tolerance = results.case.get("solver", {}).get("relative_tolerance")
-    if isinstance(tolerance, float) and tolerance > 0.0:
-        axes.axhline(tolerance, color=FAINT, linewidth=1.2, linestyle=(0, (2, 3)), zorder=2)
-        # Below its line: "round-off" may stand right above.
-        axes.annotate(f"tolerance {tolerance:.0e}", (1.0, tolerance), xycoords=("axes fraction", "data"),
-                      xytext=(-4, -4), textcoords="offset points", ha="right", va="top",
-                      fontsize=11, color=FAINT)  # fmt: skip
-
-
-def _draw_slopes(axes, chosen, floor):
-    """Guides of slope 1 (linear) and 2 (quadratic) through the start of the last search."""
-    pairs = [(a, b) for _, _, residuals in chosen for a, b in zip(residuals, residuals[1:])
-             if a > ROUND_OFF and b > 0.0]  # fmt: skip
-    if not pairs:
-        return
-    start, reached = max(pairs)
-    low, high = min(a for a, _ in pairs) / 3.0, start * 3.0
-    bottom = max(min(b for _, b in pairs) / 30.0, 0.3 * floor)
-    x = np.geomspace(low, high, 50)
-    for slope, name in ((2.0, "slope 2: quadratic"), (1.0, "slope 1: linear")):
-        y = reached * (x / start) ** slope
-        seen = (y >= bottom) & (y <= 30 * max(b for _, b in pairs))
-        axes.plot(x[seen], y[seen], color=FAINT, linewidth=1.2, linestyle="--" if slope > 1 else ":", zorder=2,
-                  label=name)  # fmt: skip
-    axes.legend(loc="upper left", fontsize=11.5)
-    axes.set_xlim(low, high)
+                  label=curve.label, zorder=3)  # fmt: skip

@@ -24,6 +24,12 @@ def has_lost_energy(results) -> bool:
     return len(lengths) == 1 and lengths != {0} and any(column.any() for column in columns[3:])
 
 
+def _marks(count: int, edge: str = INK) -> dict:
+    """Marks of the accepted steps: only there the energies are known."""
+    return {"marker": "o", "markersize": float(np.clip(260 / count, 2.0, 6.0)), "markerfacecolor": INK,
+            "markeredgecolor": edge, "markeredgewidth": 0.5}  # fmt: skip
+
+
 def draw_energies(results):
     """Stored, dissipated and drained energy on top of each other, and the external work that they add up to.
 
@@ -38,15 +44,21 @@ def draw_energies(results):
     place, work = np.concatenate([start, place]), np.concatenate([start, work]) / size
     parts = [np.concatenate([start, values]) / size for values in parts]
 
-    figure = new_figure(12.0, 7.2)
-    axes = figure.add_axes([0.085, 0.115, 0.885, 0.71])
+    figure = new_figure(15.0, 7.2)
+    axes = figure.add_axes([0.07, 0.115, 0.67, 0.71])
     shown = [(values, *looks) for values, (_, *looks) in zip(parts, PARTS) if values.any()]
     below = np.zeros_like(work)
     for values, words, colour in shown:
         axes.fill_between(place, below, below + values, color=colour, linewidth=0.0, label=words, zorder=2)
         below = below + values
-        axes.plot(place, below, color="white", linewidth=1.0, zorder=3)
-    axes.plot(place, work, color=INK, linewidth=2.0, zorder=4, label="external work")
+        axes.plot(place, below, color="white", linewidth=1.0, zorder=3, **_marks(len(place), "white"))
+    axes.plot(place, work, color=INK, linewidth=1.4, zorder=4, label="external work", **_marks(len(place)))
+    numerical = _column(results, "numerical_work")
+    if len(numerical) == len(load) and np.abs(numerical).max() > 1e-3 * np.abs(work).max() * size:
+        both = work + np.concatenate([start, numerical]) / size
+        axes.plot(place, both, color=INK, linewidth=1.2, linestyle=(0, (4, 2)), zorder=4,
+                  label="with the numerical work of relaxation")  # fmt: skip
+        below = np.maximum(below, both)
     axes.set_xlabel("load factor" if grows else "step")
     if not grows:
         axes.xaxis.set_major_locator(MaxNLocator(integer=True))
@@ -54,8 +66,9 @@ def draw_energies(results):
     axes.set_xlim(place.min(), place.max() if place.max() > place.min() else place.min() + 1.0)
     axes.set_ylim(min(0.0, work.min()), 1.06 * max(work.max(), below.max()))
     handles, labels = axes.get_legend_handles_labels()
-    axes.legend(handles[::-1], labels[::-1], loc="upper left", fontsize=12.5)  # as they lie on each other
-    words = ["where the external work went"]
+    # As they lie on each other, beside what is drawn.
+    axes.legend(handles[::-1], labels[::-1], loc="upper left", bbox_to_anchor=(1.01, 1.0), fontsize=12)
+    words = ["where the external work went", "known at the marked steps"]
     error = _column(results, "balance_error")
     if len(error) and np.abs(work).max() > 0.0:
         share = np.abs(error).max() / (np.abs(work).max() * size)

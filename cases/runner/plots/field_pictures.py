@@ -6,15 +6,17 @@ import numpy as np
 from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.colors import LinearSegmentedColormap, Normalize
 
-from cells import Cells, at_the_rim, merged
+from cells import Cells
+from separations import cells_of
 from style import (
-    ENERGY_DENSITIES, GHOST, INK, LENGTHS, LINES,
-    colour_bar, heading, new_figure, number, round_factor, step_words, unit_for,
+    ENERGY_DENSITIES, FAINT, GHOST, INK, LENGTHS, LINES, PIECE,
+    colour_bar, heading, new_figure, number, piece_legend, piece_words, round_factor, step_words, unit_for,
 )  # fmt: skip
 
 MOST_CELLS = 60_000  # drawn in one panel; more points are averaged over blocks
-LOOSE_DAMAGE = 0.35  # a cell this damaged lies at a crack and moves with its point alone
+CLIPPED_SHARE = 99.5  # percentile of the energy density at which its colours may end
 FLIGHT = 0.25  # share of the body's size that floating pieces may lie outside it in a picture
+ROUND = [0, 2, 3, 1]  # corners of a square in the order of going round
 SIDES = {(0, -1): [0, 3], (0, 1): [1, 2], (1, -1): [0, 1], (1, 1): [3, 2]}  # of a square, and their ends
 SEAM = 0.75  # width of a cell's own edge [point]: covers the hairline between neighbours
 DAMAGE_COLOURS = LinearSegmentedColormap.from_list(  # lightness falls steadily
@@ -42,11 +44,24 @@ def limits(values: np.ndarray) -> tuple[float, float]:
     return (low, high) if high > low else (0.0, 1.0)
 
 
-def displacement_magnitude(displacement: np.ndarray):
-    """Magnitudes in a readable unit, their range from zero, and the colour bar's label."""
-    magnitude = np.linalg.norm(displacement, axis=1)
-    unit, size = unit_for(magnitude.max(), LENGTHS)
-    return magnitude / size, (0.0, magnitude.max() / size or 1.0), f"displacement magnitude [{unit}]"
+def held_values(values: np.ndarray, floating: np.ndarray) -> np.ndarray:
+    """Values of the held body alone, which set the scale; of everything if all of it floats."""
+    return values if floating.all() else values[~floating]
+
+
+def displacement_magnitude(step):
+    """Magnitudes in a readable unit, their range from zero in the held body, and the colour bar's label."""
+    magnitude = np.linalg.norm(step.displacement, axis=1)
+    largest = held_values(magnitude, step.floating).max()
+    unit, size = unit_for(largest, LENGTHS)
+    return magnitude / size, (0.0, largest / size or 1.0), f"displacement magnitude [{unit}]"
+
+
+def beyond(values: np.ndarray, low: float, high: float) -> str:
+    """At which ends of a colour bar values lie outside its range; round-off does not count."""
+    slack = 1e-9 * (high - low)
+    ends = (bool(values.min() < low - slack), bool(values.max() > high + slack))
+    return {(False, False): "neither", (True, False): "min", (False, True): "max", (True, True): "both"}[ends]
 
 
 # ---------------------------------------------------------------------------------------------- 2D
@@ -59,7 +74,6 @@ class Plate:
     cells: Cells
     still: np.ndarray  # corners in the reference configuration: count x 4 x 2
     moved: np.ndarray  # corners after the deformation
-    damage: np.ndarray
     floating: np.ndarray  # whether the square belongs to a piece that has come off
     values: np.ndarray  # what colours the squares
 
@@ -78,26 +92,19 @@ class Plate:
 def deformed_plate(results, step, factor: float, values: np.ndarray, size: float = 1.0,
                    limit: int = MOST_CELLS) -> Plate:  # fmt: skip
     """Squares with displacements times a factor; lengths are in units of `size` metres."""
-    spacing, reference, displacement, damage, floating, values = merged(
-        results.reference, results.spacing, limit,
-        step.displacement, step.damage, step.floating.astype(float), values,
-    )  # fmt: skip
-    floating = floating > 0.5
-    cells = Cells(reference / size, spacing / size)
-    loose = damage > LOOSE_DAMAGE
-    if floating.any():
-        loose = loose | at_the_rim(cells, floating)
-    order = [0, 2, 3, 1]  # of going round
-    still = cells.corners(reference / size, np.zeros_like(reference), loose)[:, order]
-    moved = cells.corners(reference / size, factor * displacement / size, loose)[:, order]
-    return Plate(cells, still, moved, damage, floating, values)
+    cells, reference, displacement, floating, loose, values = cells_of(results, step, limit, size, values)
+    still = cells.corners(reference, np.zeros_like(reference), loose)[:, ROUND]
+    moved = cells.corners(reference, factor * displacement, loose)[:, ROUND]
+    return Plate(cells, still, moved, floating, values)
 
 
 def draw_deformed_plane(results, step):
     """Deformed plate coloured by the magnitude of the displacement."""
-    values, value_range, label = displacement_magnitude(step.displacement)
+    values, value_range, label = displacement_magnitude(step)
     factor = exaggeration(results.reference, step)
-    return draw_plane(results, step, factor, values, value_range, label, "viridis")[0]
+    figure, axes, plate = draw_plane(results, step, factor, values, value_range, label, "viridis")
+    mark_pieces(figure, axes, step, plate)
+    return figure
 
 
 def draw_plane(results, step, factor, values, value_range, label, colours, words=()):
@@ -113,9 +120,10 @@ def draw_plane(results, step, factor, values, value_range, label, colours, words
         edgecolors="face", linewidths=SEAM, zorder=2,
     )  # fmt: skip
     axes.add_collection(collection, autolim=False)
+    axes.add_collection(crack_lines(plate.cells, plate.moved), autolim=False)
     axes.set_xlabel(f"x [{unit}]")
     axes.set_ylabel(f"y [{unit}]")
-    colour_bar(figure, bar_place, collection, label)
+    colour_bar(figure, bar_place, collection, label, extend=beyond(plate.values, *value_range))
     heading(figure, results, [exaggeration_words(factor), *step_words(step), *words,
                               f"{number(len(results.volume))} points"])  # fmt: skip
     return figure, axes, plate
@@ -165,17 +173,39 @@ def rims(cells: Cells, corners: np.ndarray, members: np.ndarray) -> np.ndarray:
     return np.concatenate(edges)
 
 
+def crack_lines(cells: Cells, corners: np.ndarray, colour: str = INK) -> LineCollection:
+    """Both faces of every crack: edges between squares that have been parted."""
+    edges = [corners[cells.parted(*side)][:, ends] for side, ends in SIDES.items()]
+    return LineCollection(np.concatenate(edges), colors=colour, linewidths=0.9, capstyle="projecting", zorder=3)
+
+
+def mark_pieces(figure, axes, step, plate: Plate) -> None:
+    """Hatches and outlines pieces that have come off, and says how many they are."""
+    if not plate.floating.any():
+        return
+    axes.add_collection(
+        PolyCollection(plate.moved[plate.floating], facecolors="none", edgecolors=PIECE, hatch="////",
+                       linewidths=0.0, zorder=4), autolim=False,
+    )  # fmt: skip
+    axes.add_collection(
+        LineCollection(rims(plate.cells, plate.moved, plate.floating), colors=PIECE, linewidths=1.6,
+                       capstyle="projecting", zorder=5), autolim=False,
+    )  # fmt: skip
+    low, high = np.array([axes.get_xlim(), axes.get_ylim()]).T
+    outside = ((plate.moved < low) | (plate.moved > high)).any()
+    piece_legend(figure, piece_words(step) + ", in part outside the picture" * bool(outside))
+
+
 def draw_plane_fields(results, step):
     """Displacement components and energy density on the reference configuration."""
-    spacing, reference, displacement, energy = merged(
-        results.reference, results.spacing, MOST_CELLS, step.displacement, step.energy_density
+    unit, size = unit_for(np.ptp(results.reference, axis=0).max(), LENGTHS)
+    cells, reference, displacement, floating, loose, energy = cells_of(
+        results, step, MOST_CELLS, size, step.energy_density
     )
-    unit, size = unit_for(np.ptp(reference, axis=0).max(), LENGTHS)
-    cells = Cells(reference / size, spacing / size)
-    nobody = np.zeros(len(reference), dtype=bool)
-    still = cells.corners(reference / size, np.zeros_like(reference), nobody)[:, [0, 2, 3, 1]]
-    length, length_size = unit_for(np.abs(displacement).max(), LENGTHS)
-    density, density_size = unit_for(np.percentile(energy, 99.5), ENERGY_DENSITIES)
+    displacement = displacement * size
+    still = cells.corners(reference, np.zeros_like(reference), loose)[:, ROUND]
+    length, length_size = unit_for(np.abs(held_values(displacement, floating)).max(), LENGTHS)
+    density, density_size = unit_for(np.percentile(held_values(energy, floating), CLIPPED_SHARE), ENERGY_DENSITIES)
     panels = [
         (displacement[:, 0] / length_size, f"$u_x$ [{length}]", "displacement in x", None),
         (displacement[:, 1] / length_size, f"$u_y$ [{length}]", "displacement in y", None),
@@ -188,37 +218,45 @@ def draw_plane_fields(results, step):
     figure, places = _small_multiples(len(panels), columns, aspect)
     for (values, label, title, colours), (place, bar_place) in zip(panels, places):
         axes = figure.add_axes(place)
-        norm, colours, extend = _norm(values, colours)
+        held = held_values(values, floating)
+        norm, colours = _norm(held, colours)
+        extend = beyond(values, norm.vmin, norm.vmax)
         if cells.is_lattice:
             picture = axes.imshow(cells.image(values), extent=(low[0], high[0], low[1], high[1]), origin="lower",
                                   interpolation="nearest", cmap=colours, norm=norm)  # fmt: skip
         else:
             picture = PolyCollection(still, array=values, cmap=colours, norm=norm)
             axes.add_collection(picture, autolim=False)
+        axes.add_collection(crack_lines(cells, still, FAINT if colours == "inferno" else INK), autolim=False)
+        if floating.any():
+            axes.add_collection(LineCollection(rims(cells, still, floating), colors=PIECE, linewidths=1.4, zorder=4),
+                                autolim=False)  # fmt: skip
         axes.set_xlim(low[0], high[0])
         axes.set_ylim(low[1], high[1])
         axes.set_aspect("equal")
         axes.grid(False)
-        axes.set_title(title, loc="left", fontsize=14, color=INK)
+        note = f" (up to {number(float(held.max()))}, colours end at {number(norm.vmax)})" if held.max() > norm.vmax else ""
+        axes.set_title(title + note, loc="left", fontsize=14 if not note else 12, color=INK)
         axes.set_ylabel(f"y [{unit}]", labelpad=2)
         if columns > 1 or colours == "inferno":  # the last panel of a column
             axes.set_xlabel(f"x [{unit}]", labelpad=2)
         colour_bar(figure, bar_place, picture, label, extend=extend)
+    if floating.any():
+        piece_legend(figure, piece_words(step) + ", loose: outside the scale of colours", hatch=None)
     heading(figure, results, ["fields on the reference configuration", *step_words(step)])
     return figure
 
 
 def _norm(values: np.ndarray, colours: str | None):
-    """Range of colours: diverging about zero if the sign changes; peaks of a few points cut off."""
+    """Range and map of colours: diverging about zero if the sign changes; peaks of a few points cut off."""
     low, high = limits(values)
     if colours is None:
         largest = max(abs(low), abs(high))
         if min(abs(low), abs(high)) > 0.02 * largest and low < 0.0 < high:
-            return Normalize(-largest, largest), "RdBu_r", "neither"
-        return Normalize(low, high), "viridis", "neither"
-    peak = float(np.percentile(values, 99.5))
-    cut = 0.0 < peak < 0.7 * high
-    return Normalize(min(low, 0.0), peak if cut else high), colours, "max" if cut else "neither"
+            return Normalize(-largest, largest), "RdBu_r"
+        return Normalize(low, high), "viridis"
+    peak = float(np.percentile(values, CLIPPED_SHARE))
+    return Normalize(min(low, 0.0), peak if 0.0 < peak < 0.7 * high else high), colours
 
 
 def _small_multiples(count: int, columns: int, aspect: float):
@@ -251,7 +289,7 @@ def draw_deformed_bar(results, step):
     factor = exaggeration(results.reference, step)
     order = np.argsort(results.reference[:, 0])
     x, u = results.reference[order, 0], step.displacement[order, 0]
-    damage = step.damage[order]
+    cells, *_, loose = cells_of(results, step, len(x), 1.0)
     unit, size = unit_for(np.ptp(x), LENGTHS)
     length, length_size = unit_for(np.abs(u).max(), LENGTHS)
     half = 0.5 * results.spacing
@@ -267,7 +305,8 @@ def draw_deformed_bar(results, step):
     curve.tick_params(labelbottom=False)
 
     bars = figure.add_axes([0.075, 0.11, 0.895, 0.26], sharex=curve)
-    left, right = _bar_edges(x, u, factor, half, damage)
+    free = [(cells.parted(0, sign) | loose)[order] for sign in (-1, 1)]
+    left, right = _bar_edges(x, u, factor, half, *free)
     magnitude = np.abs(u) / length_size
     norm = Normalize(0.0, magnitude.max() or 1.0)
     _draw_bar(bars, x - half, x + half, 1.0, size, facecolors="#e9ecef", edgecolors="#c3cad1")
@@ -285,14 +324,13 @@ def draw_deformed_bar(results, step):
     return figure
 
 
-def _bar_edges(x, u, factor, half, damage):
-    """Ends of every point's piece of the deformed bar; pieces meet unless the material is broken."""
+def _bar_edges(x, u, factor, half, free_left, free_right):
+    """Ends of every point's piece of the deformed bar; pieces meet unless they have been parted."""
     places = x + factor * u
     middle = 0.5 * (places[1:] + places[:-1])
     left = np.concatenate([places[:1] - half, middle])
     right = np.concatenate([middle, places[-1:] + half])
-    loose = damage > LOOSE_DAMAGE
-    return np.where(loose, places - half, left), np.where(loose, places + half, right)
+    return np.where(free_left, places - half, left), np.where(free_right, places + half, right)
 
 
 def _draw_bar(axes, left, right, height, size, **looks):

@@ -4,19 +4,17 @@ import numpy as np
 from matplotlib.cm import ScalarMappable
 from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.colors import LinearSegmentedColormap, Normalize
-from matplotlib.ticker import MaxNLocator
 
 from cells import merged
 from field_pictures import (
-    DAMAGE_COLOURS, MOST_CELLS, SEAM, Plate,
-    deformed_plate, draw_plane, exaggeration, exaggeration_words, framed, rims,
+    DAMAGE_COLOURS, MOST_CELLS, SEAM,
+    crack_lines, deformed_plate, draw_plane, exaggeration, exaggeration_words, framed, mark_pieces, rims,
 )  # fmt: skip
-from style import (
-    LENGTHS, PIECE, bond_words, colour_bar, heading, new_figure, number, piece_legend, piece_words, unit_for,
-)  # fmt: skip
+from style import GHOST, INK, LENGTHS, bond_words, colour_bar, heading, new_figure, number, unit_for
 
 OPENING = 0.05  # largest displacement over the body's size: a crack is seen to open, the body keeps its shape
 MOST_BONDS = 150_000  # more broken bonds are thinned out
+MOST_TICKS = 8
 POINT_COLOUR = "#d8dde2"
 STEP_COLOURS = LinearSegmentedColormap.from_list(  # as dark at the end as to be seen on the points
     "steps", ["#20104f", "#6a1b83", "#b5305f", "#e0602c", "#eda31b"]
@@ -28,23 +26,8 @@ def draw_damaged_plane(results, step):
     factor = exaggeration(results.reference, step, OPENING)
     figure, axes, plate = draw_plane(results, step, factor, step.damage, (0.0, 1.0), "damage", DAMAGE_COLOURS,
                                      bond_words(results, step))  # fmt: skip
-    if plate.floating.any():
-        for collection in piece_marks(plate):
-            axes.add_collection(collection, autolim=False)
-        low, high = np.array([axes.get_xlim(), axes.get_ylim()]).T
-        outside = ((plate.moved < low) | (plate.moved > high)).any()
-        piece_legend(figure, piece_words(step) + ", in part outside the picture" * bool(outside))
+    mark_pieces(figure, axes, step, plate)
     return figure
-
-
-def piece_marks(plate: Plate) -> list:
-    """A hatch over the squares of floating pieces, and their outline."""
-    return [
-        PolyCollection(plate.moved[plate.floating], facecolors="none", edgecolors=PIECE, hatch="////",
-                       linewidths=0.0, zorder=4),
-        LineCollection(rims(plate.cells, plate.moved, plate.floating), colors=PIECE, linewidths=1.6,
-                       capstyle="projecting", zorder=5),
-    ]  # fmt: skip
 
 
 def draw_damage_sequence(results, steps):
@@ -67,16 +50,20 @@ def draw_damage_sequence(results, steps):
         axes = figure.add_axes([x / width, y / height, 0.96 * panel_width / width, panel_height / height])
         axes.add_collection(
             PolyCollection(plate.moved, array=plate.values, cmap=DAMAGE_COLOURS, norm=Normalize(0, 1),
-                           edgecolors="face", linewidths=SEAM), autolim=False,
+                           edgecolors="face", linewidths=SEAM, zorder=2), autolim=False,
         )  # fmt: skip
+        everybody = np.ones(len(plate.still), dtype=bool)
+        outline = rims(plate.cells, plate.still, everybody) if plate.cells.is_lattice else []
+        axes.add_collection(LineCollection(outline, colors=GHOST, linewidths=1.0, zorder=1), autolim=False)
+        axes.add_collection(crack_lines(plate.cells, plate.moved), autolim=False)
         axes.set_xlim(low[0], high[0])
         axes.set_ylim(low[1], high[1])
         axes.set_aspect("equal")
         axes.axis("off")
-        axes.set_title(f"load factor {number(step.load_factor)}", fontsize=13, loc="left")
+        axes.set_title(f"load factor {number(step.load_factor)}, step {step.number}", fontsize=13, loc="left")
     mappable = ScalarMappable(Normalize(0, 1), DAMAGE_COLOURS)
     colour_bar(figure, [15.0 / width, 0.3 / height, 0.2 / width, (height - 1.9) / height], mappable, "damage")
-    heading(figure, results, ["damage as the load grows", exaggeration_words(factor)])
+    heading(figure, results, ["damage as it grows", exaggeration_words(factor), "outline: undeformed body"])
     return figure
 
 
@@ -94,15 +81,23 @@ def draw_broken_bonds(results, ends: np.ndarray, steps: np.ndarray):
     dot = np.clip(0.45 * inches * spacing * 72.0, 0.6, 9.0)
     axes.scatter(*points.T / size, s=dot**2, color=POINT_COLOUR, linewidths=0, zorder=1)
 
+    if results.cracks:
+        axes.add_collection(LineCollection([crack / size for crack in results.cracks], colors=INK, linewidths=2.0,
+                                           zorder=3, label="pre-crack"), autolim=False)  # fmt: skip
+        axes.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), fontsize=12, borderaxespad=0.1)
     every = -(-len(steps) // MOST_BONDS)
     width = np.clip(0.10 * inches * results.spacing * 72.0, 0.35, 1.6)
-    norm = Normalize(steps.min() - 0.5, steps.max() + 0.5)
-    lines = LineCollection(results.reference[ends[::every]] / size, array=steps[::every].astype(float), norm=norm,
-                           cmap=STEP_COLOURS, linewidths=width, capstyle="round", zorder=2)  # fmt: skip
+    # A colour per step in which bonds broke: steps in between would only take colours away.
+    distinct, rank = np.unique(steps, return_inverse=True)
+    lines = LineCollection(results.reference[ends[::every]] / size, array=rank[::every].astype(float),
+                           norm=Normalize(-0.5, len(distinct) - 0.5), cmap=STEP_COLOURS, linewidths=width,
+                           capstyle="round", zorder=2)  # fmt: skip
     axes.add_collection(lines, autolim=False)
     axes.set_xlabel(f"x [{unit}]")
     axes.set_ylabel(f"y [{unit}]")
-    colour_bar(figure, bar_place, lines, "step in which the bond broke", ticks=MaxNLocator(integer=True, nbins=8))
+    marked = np.unique(np.linspace(0, len(distinct) - 1, min(MOST_TICKS, len(distinct))).round().astype(int))
+    bar = colour_bar(figure, bar_place, lines, "step: load factor at which it broke", ticks=marked)
+    bar.set_ticks(marked, labels=[_step_label(results, int(distinct[place])) for place in marked])
     first, last = (results.in_history(int(step), "load_factor") for step in (steps[0], steps[-1]))
     words = ["broken bonds in the reference configuration", f"{number(len(steps))} bond{'s' * (len(steps) != 1)}"]
     if first is not None and last is not None:
@@ -112,3 +107,8 @@ def draw_broken_bonds(results, ends: np.ndarray, steps: np.ndarray):
         words.append(f"one line in {every} drawn")
     heading(figure, results, words)
     return figure
+
+
+def _step_label(results, step: int) -> str:
+    load = results.in_history(step, "load_factor")
+    return f"{step}" if load is None else f"{step}: {number(load, 3)}"

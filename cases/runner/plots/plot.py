@@ -1,18 +1,23 @@
-"""Draws the pictures of a results folder: python3 plot.py DIRECTORY -> DIRECTORY/plots/*.png, crack.gif
+"""Draws the pictures of a results folder: ./peristat plot DIR -> DIR/plots/*.png, crack.gif
 
-Exit code 0 when everything that can be drawn is drawn (what is missing is said), 2 when DIRECTORY is no
-results folder or its plots folder can't be written. Needs numpy, h5py and matplotlib; no display.
+Exit code 0 when everything that can be drawn is drawn (what is missing is said), 2 when DIR is no
+results folder, is damaged, or its plots are a link, 5 when they can't be written. Needs numpy, h5py and
+matplotlib; no display.
 """
 
+import argparse
+import io
+import os
 import sys
 from pathlib import Path
 
+from gallery import Gallery, NoPlace
 from results_folder import NotAResultsFolder, ResultsFolder, read_results_folder
 
-PICTURES = [
-    "deformed.png", "lateral.png", "middle_plane.png", "fields.png", "damage.png", "broken_bonds.png",
-    "sequence.png", "load_displacement.png", "energies.png", "convergence.png", "crack.gif",
-]  # fmt: skip
+DONE, WRONG_INPUT, MACHINE_FAILED, INTERRUPTED = 0, 2, 5, 130
+FORMATS = ("png", "pdf", "svg")
+DOTS_PER_INCH = {"png": 100, "pdf": 200, "svg": 200}  # of what a vector picture holds as an image
+MOST_VECTORS = 3000  # shapes of one kind that a vector picture holds as such
 MOST_FRAMES = 6
 
 
@@ -20,20 +25,22 @@ def draw_all(results: ResultsFolder):
     """Name and figure of every picture that the results allow, one after the other."""
     if results.step_numbers:
         yield from _draw_fields(results)
-    from curve_pictures import draw_convergence, draw_load_displacement, has_iterations, has_reactions
+    from curve_pictures import draw_load_displacement, has_reactions
 
     if has_reactions(results):
         yield "load_displacement", draw_load_displacement(results)
     elif results.history:
-        results.missing.append("no load_displacement.png: the history has no accepted step with reactions")
+        results.missing.append("no load_displacement: the history has no accepted step with reactions")
     from energy_picture import draw_energies, has_lost_energy
 
     if has_lost_energy(results):
         yield "energies", draw_energies(results)
+    from convergence_picture import draw_convergence, has_iterations
+
     if has_iterations(results):
         yield "convergence", draw_convergence(results)
     elif results.iterations:
-        results.missing.append("no convergence.png: no search for equilibrium has two residuals")
+        results.missing.append("no convergence: no search for equilibrium has two residuals")
 
 
 def _draw_fields(results: ResultsFolder):
@@ -50,6 +57,7 @@ def _draw_fields(results: ResultsFolder):
         import solid_pictures
 
         yield "deformed", solid_pictures.draw_deformed_solid(results, step)
+        yield "cut", solid_pictures.draw_cut_solid(results, step)
         import section_pictures
 
         if section_pictures.moves_visibly(results, step):
@@ -72,60 +80,133 @@ def _draw_fracture(results: ResultsFolder, step):
     if len(ends):
         yield "broken_bonds", fracture_pictures.draw_broken_bonds(results, ends, steps)
     if damaged and len(results.step_numbers) > 1:
-        frames = [results.step(number) for number in _frames(results)]
+        frames = [results.step(number) for number in chosen_frames(results)]
         yield "sequence", fracture_pictures.draw_damage_sequence(results, frames)
 
 
-def animate(results: ResultsFolder, plots: Path) -> list[str]:
-    """Writes the animation of a plate's damage where there is one; gives its name."""
+def chosen_frames(results: ResultsFolder) -> list[int]:
+    """Up to six steps between which damage grows alike: no frame is spent on steps in which nothing breaks.
+
+    The first and the last of the steps with damage are among them, and the one before the largest burst.
+    """
+    numbers = [number for number in results.step_numbers if results.has_damage(number)]
+    grown = [_damage_done(results, number) for number in numbers]
+    if len(numbers) < 2 or None in grown or grown[-1] <= grown[0]:
+        count = min(MOST_FRAMES, len(numbers))
+        return [numbers[round(i * (len(numbers) - 1) / max(count - 1, 1))] for i in range(count)]
+    burst = max(range(1, len(grown)), key=lambda place: grown[place] - grown[place - 1])
+    chosen = {0, burst - 1, len(grown) - 1}
+    for part in range(1, MOST_FRAMES):
+        wanted = grown[0] + (grown[-1] - grown[0]) * part / (MOST_FRAMES - 1)
+        reached = next(place for place, value in enumerate(grown) if value >= wanted or place == len(grown) - 1)
+        if len(chosen) < MOST_FRAMES:
+            chosen.add(reached)
+    return [numbers[place] for place in sorted(chosen)]
+
+
+def _damage_done(results: ResultsFolder, number: int) -> float | None:
+    """What grows with damage, at a step: broken bonds, or dissipated energy where none has broken."""
+    bonds, energy = (results.in_history(number, name) for name in ("broken_bonds", "dissipated_energy"))
+    return bonds if any(value for value in results.history.get("broken_bonds", []) if value) else energy
+
+
+def animate(results: ResultsFolder) -> bytes | None:
+    """The animation of a plate's damage where there is one."""
     numbers = results.step_numbers
     if results.dimension != 2 or len(numbers) < 2 or not results.has_damage(numbers[-1]):
-        return []
+        return None
     try:
-        from crack_animation import write_crack_animation
+        from crack_animation import crack_animation
     except ImportError as error:
         results.missing.append(f"no crack.gif: it needs Python's PIL (Debian: python3-pil): {error}")
-        return []
-    write_crack_animation(results, plots / "crack.gif")
-    return ["crack.gif"]
+        return None
+    return crack_animation(results)
 
 
-def _frames(results: ResultsFolder) -> list[int]:
-    """Up to six steps, evenly spread from the first with damage to the last."""
-    numbers = results.step_numbers
-    first = next((i for i, number in enumerate(numbers) if results.has_damage(number)), 0)
-    chosen = numbers[max(first - 1, 0) :]
-    count = min(MOST_FRAMES, len(chosen))
-    return [chosen[round(i * (len(chosen) - 1) / max(count - 1, 1))] for i in range(count)]
+def encoded(figure, ending: str) -> bytes:
+    """A figure as a file; in a vector picture large heaps of shapes are images, texts and lines are not."""
+    if ending != "png":
+        for axes in figure.axes:
+            for heap in axes.collections:
+                heap.set_rasterized(len(heap.get_paths()) > MOST_VECTORS)
+    file = io.BytesIO()
+    options = {"pil_kwargs": {"compress_level": 4}} if ending == "png" else {}
+    figure.savefig(file, format=ending, dpi=DOTS_PER_INCH[ending], **options)
+    return file.getvalue()
 
 
-def main(arguments: list[str]) -> int:
-    if len(arguments) != 1 or arguments[0].startswith("-"):
-        print("usage: plot.py DIRECTORY", file=sys.stderr)
-        return 0 if arguments in (["-h"], ["--help"]) else 2
-    directory = Path(arguments[0])
-    try:
-        results = read_results_folder(directory)
-        plots = directory / "plots"
-        plots.mkdir(exist_ok=True)
-        for name in PICTURES:
-            (plots / name).unlink(missing_ok=True)
-        drawn = []
-        for name, figure in draw_all(results):
-            figure.savefig(plots / f"{name}.png", pil_kwargs={"compress_level": 4})
-            drawn.append(f"{name}.png")
-        drawn += animate(results, plots)
-    except NotAResultsFolder as error:
-        print(f"plot: {error}", file=sys.stderr)
-        return 2
-    except OSError as error:
-        print(f"plot: {directory}: {error}", file=sys.stderr)
-        return 2
+def draw(directory: Path, ending: str) -> None:
+    """Draws everything and says what was drawn."""
+    results = read_results_folder(directory)
+    gallery = Gallery(directory)
+    gallery.remove_earlier((f".{ending}", ".gif"))
+    drawn = []
+    for name, figure in draw_all(results):
+        drawn.append(f"{name}.{ending}")
+        gallery.add(drawn[-1], encoded(figure, ending))
+    animation = animate(results)
+    if animation:
+        drawn.append("crack.gif")
+        gallery.add(drawn[-1], animation)
     for sentence in results.missing:
         print(f"plot: {sentence}")
-    print(f"plot: {plots}: {', '.join(drawn) if drawn else 'nothing could be drawn'}")
-    return 0
+    print(f"plot: {gallery.path}: {', '.join(drawn) if drawn else 'nothing could be drawn'}")
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(
+        prog="peristat plot", allow_abbrev=False,
+        description="Draws the pictures of a results folder into DIR/plots (docs/results.md, Pictures); "
+        "pictures of the same format that were drawn before are replaced.",
+        epilog="Exit codes: 0 drawn (what is missing is said), 2 no results folder, or a damaged one, "
+        "5 the pictures can't be written.",
+    )  # fmt: skip
+    parser.add_argument("directory", metavar="DIR", type=Path, help="results folder of a run")
+    parser.add_argument("--format", choices=FORMATS, default="png",
+                        help="of the pictures (default: png; pdf and svg are vector graphics)")  # fmt: skip
+    return parser
+
+
+def main(words: list[str]) -> int:
+    try:
+        arguments = _parser().parse_args(words)
+    except SystemExit as ending:
+        return DONE if ending.code in (0, None) else WRONG_INPUT
+    try:
+        draw(arguments.directory, arguments.format)
+    except (NotAResultsFolder, NoPlace) as error:
+        return _told(str(error), WRONG_INPUT)
+    except OSError as error:
+        return _told(f"{arguments.directory}: {error}", MACHINE_FAILED)
+    except Exception as error:  # what nobody has thought of in a folder that somebody has changed
+        return _told(f"{arguments.directory}: can't be drawn ({type(error).__name__}: {error})", WRONG_INPUT)
+    return DONE
+
+
+def _told(sentence: str, code: int) -> int:
+    line = "".join(c if c.isprintable() else " " for c in sentence)
+    print(f"plot: {line if len(line) < 1000 else line[:1000] + '…'}", file=sys.stderr)
+    return code
+
+
+def guarded(words: list[str]) -> int:
+    """Runs `main` in a process of its own: the HDF5 library may crash on a damaged file."""
+    child = os.fork()
+    if child == 0:
+        try:
+            code = main(words)
+            sys.stdout.flush()
+        except KeyboardInterrupt:
+            code = INTERRUPTED
+        except OSError:  # nobody reads what is said
+            code = MACHINE_FAILED
+        os._exit(code)
+    try:
+        code = os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])
+    except KeyboardInterrupt:  # of the terminal: the child has got it, too
+        return INTERRUPTED
+    return code if code >= 0 else _told(f"reading {' '.join(words)} ended with signal {-code}: it is damaged", WRONG_INPUT)
 
 
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+    sys.exit(guarded(sys.argv[1:]))

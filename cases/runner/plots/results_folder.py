@@ -1,25 +1,27 @@
 """Reads a results folder (docs/results.md) for the pictures.
 
 A run that was killed, did not converge or is still going leaves an incomplete folder; everything here
-gives what is there and says what is missing.
+gives what is there and says what is missing. What is damaged is named (NotAResultsFolder).
 """
 
 import csv
 import json
-import os
 import tomllib
 from dataclasses import dataclass, field
 from pathlib import Path
 
-# A results file on a read-only or shared file system, or of a run still going, can be read unlocked.
-os.environ.setdefault("HDF5_USE_FILE_LOCKING", "FALSE")
-
-import h5py
 import numpy as np
+
+from hdf5_reader import Damaged, Hdf5Reader, as_text, require_plain_file
+
+MOST_TABLE = 1 << 30  # bytes of a CSV file
+MOST_SUMMARY = 64 << 20  # bytes of summary.json
+LONGEST_TITLE = 200  # characters
+MOST_SPACINGS = 1e7  # across a body
 
 
 class NotAResultsFolder(Exception):
-    """The folder does not exist, or holds no results.h5 that can be read."""
+    """The folder does not exist, or holds no results that can be read."""
 
 
 @dataclass
@@ -54,9 +56,11 @@ class ResultsFolder:
     history: dict[str, list]  # columns of history.csv
     iterations: dict[str, list]  # columns of iterations.csv
     decisions: dict[str, list]  # columns of decisions.csv, empty if there is none
+    orders: dict[int, float]  # observed orders of convergence by step, as convergence.csv tells them
     summary: dict
     case: dict  # the resolved case
     missing: list[str] = field(default_factory=list)  # sentences for a person
+    _bonds: tuple | None = None  # broken ones, once they have been read
 
     @property
     def dimension(self) -> int:
@@ -64,20 +68,48 @@ class ResultsFolder:
 
     @property
     def status(self) -> str:
-        return self.summary.get("status", "interrupted")
+        return as_text(self.summary.get("status", "interrupted"))[:20]
+
+    def tables(self, name: str) -> list[dict]:
+        """The tables of an array of tables of the case ("support"); none if it has no such array."""
+        found = self.case.get(name, [])
+        return [table for table in found if isinstance(table, dict)] if isinstance(found, list) else []
+
+    @property
+    def reach(self) -> int:
+        """Of the horizon in whole spacings; 1 if it is not known."""
+        lattice, points = (self.case.get(name) for name in ("lattice", "points"))
+        ratio = _finite(lattice.get("horizon_ratio")) if isinstance(lattice, dict) else None
+        horizon = _finite(points.get("horizon")) if isinstance(points, dict) else None
+        return int(max(ratio or (horizon or 0.0) / self.spacing, 1.0))
+
+    @property
+    def cracks(self) -> list[np.ndarray]:
+        """Pre-cracks as the case has them: the two ends of a segment, or the vertices of a polygon [m]."""
+        cracks = []
+        for table in self.tables("crack"):
+            places = table.get("vertices") or [table.get("from"), table.get("to")]
+            try:
+                crack = np.array(places, dtype=float)
+            except (TypeError, ValueError):
+                continue
+            if crack.ndim == 2 and crack.shape[1] == self.dimension and len(crack) > 1 and np.isfinite(crack).all():
+                cracks.append(crack)
+        return cracks
 
     def step(self, number: int) -> Step:
         """Fields of a step; values that are not finite are replaced by zero and reported."""
-        with h5py.File(self.path / "results.h5", "r") as file:
-            group = file[f"steps/{number:06d}"]
+        with _reading(self.path) as file:
+            group = f"steps/{number:06d}"
             count = len(self.volume)
 
             def values(name, shape, expected=True):
-                if name not in group:
+                try:
+                    array = file.numbers(f"{group}/{name}", shape)
+                except KeyError:
                     if expected:
                         self._report(f"step {number} has no {name}")
                     return np.zeros(shape)
-                array = np.asarray(group[name][...], dtype=float).reshape(shape)
                 if not np.isfinite(array).all():
                     self._report(f"{name} of step {number} has values that are not finite (drawn as 0)")
                     array = np.where(np.isfinite(array), array, 0.0)
@@ -85,30 +117,40 @@ class ResultsFolder:
 
             return Step(
                 number,
-                float(group.attrs.get("load_factor", 0.0)),
-                _text(group.attrs.get("mode", "")),
+                _finite(file.attribute(group, "load_factor")) or 0.0,
+                as_text(file.attribute(group, "mode", "")),
                 values("displacement", self.reference.shape),
-                values("damage", count),
-                values("energy_density", count),
-                values("fragment", count, expected=False),
+                values("damage", (count,)),
+                values("energy_density", (count,)),
+                values("fragment", (count,), expected=False),
             )
 
     def displacement(self, number: int) -> np.ndarray:
         """Displacement of a step alone, count x dimension [m]."""
-        with h5py.File(self.path / "results.h5", "r") as file:
-            array = np.asarray(file[f"steps/{number:06d}/displacement"][...], dtype=float)
-        return np.nan_to_num(array.reshape(self.reference.shape), posinf=0.0, neginf=0.0)
+        with _reading(self.path) as file:
+            array = file.numbers(f"steps/{number:06d}/displacement", self.reference.shape)
+        return np.nan_to_num(array, posinf=0.0, neginf=0.0)
 
     def has_damage(self, number: int) -> bool:
-        with h5py.File(self.path / "results.h5", "r") as file:
+        if (self.in_history(number, "max_damage") or 0.0) > 0.0:
+            return True
+        with _reading(self.path) as file:
             name = f"steps/{number:06d}/damage"
-            return name in file and bool(np.nanmax(file[name][...], initial=0.0) > 0.0)
+            return name in file and bool(np.nanmax(file.numbers(name), initial=0.0) > 0.0)
 
     @property
     def is_fractured(self) -> bool:
         """Whether the history knows of damage."""
         return any(isinstance(value, float) and value > 0.0
                    for column in ("max_damage", "broken_bonds") for value in self.history.get(column, []))  # fmt: skip
+
+    def numbers(self, column: str) -> np.ndarray | None:
+        """A column of the history if all of its entries are finite numbers."""
+        values = self.history.get(column, [])
+        if not values or not all(isinstance(value, float) for value in values):
+            return None
+        array = np.array(values)
+        return array if np.isfinite(array).all() else None
 
     def in_history(self, step: int, column: str) -> float | None:
         """A number of an accepted step's row in the history."""
@@ -117,96 +159,138 @@ class ResultsFolder:
 
     def broken_bonds(self) -> tuple[np.ndarray, np.ndarray]:
         """Bonds that broke, in the order of breaking: their two points (count x 2) and the step (count)."""
+        if self._bonds is None:
+            self._bonds = self._read_broken_bonds()
+        return self._bonds
+
+    @property
+    def tells_broken_bonds(self) -> bool:
+        """Whether the folder lists broken bonds, be it none; older folders do not."""
+        if (self.path / "broken_bonds.csv").is_file():
+            return True
+        with _reading(self.path) as file:
+            return "broken_bonds/first_point" in file
+
+    def _read_broken_bonds(self) -> tuple[np.ndarray, np.ndarray]:
         names = ("step", "first_point", "second_point")
         table = {}
-        with h5py.File(self.path / "results.h5", "r") as file:
-            group = file.get("broken_bonds", {})
-            if all(name in group for name in names):
-                table = {name: group[name][...] for name in names}
+        with _reading(self.path) as file:
+            if all(f"broken_bonds/{name}" in file for name in names):
+                table = {name: file.numbers(f"broken_bonds/{name}", kind=np.int64) for name in names}
         if not table and (self.path / "broken_bonds.csv").is_file():
             table = _table(self.path / "broken_bonds.csv", self.missing)
         try:
-            step, first, second = (np.asarray(table.get(name, []), dtype=np.int64) for name in names)
+            step, first, second = (np.asarray(table.get(name, []), dtype=np.int64).ravel() for name in names)
             ends = np.stack([first, second], axis=1)
-        except ValueError as error:
+            known = ((ends >= 0) & (ends < len(self.volume))).all(axis=1)
+            step, ends = step[: len(known)][known], ends[known]
+        except (ValueError, IndexError, OverflowError) as error:
             self._report(f"the broken bonds can't be read ({error})")
             return np.zeros((0, 2), dtype=np.int64), np.zeros(0, dtype=np.int64)
-        known = ((ends >= 0) & (ends < len(self.volume))).all(axis=1)
         if not known.all():
             self._report("broken bonds of points that do not exist are left out")
-        order = np.argsort(step[known], kind="stable")
-        return ends[known][order], step[known][order]
+        order = np.argsort(step, kind="stable")
+        return ends[order], step[order]
 
     def _report(self, sentence: str) -> None:
         if sentence not in self.missing:
             self.missing.append(sentence)
 
 
+class _reading(Hdf5Reader):
+    """An open results file whose damage is told as that of the folder."""
+
+    def __init__(self, path: Path):
+        try:
+            super().__init__(path)
+        except Damaged as error:
+            raise NotAResultsFolder(str(error)) from error
+        self._path = path
+
+    def __exit__(self, kind, error, trace):
+        super().__exit__(kind, error, trace)
+        if isinstance(error, (Damaged, OSError, KeyError, ValueError, TypeError, RuntimeError)):
+            what = f"{error.args[0]} is missing" if isinstance(error, KeyError) and error.args else error
+            raise NotAResultsFolder(f"{self._path}/results.h5: {what}") from error
+
+
 def read_results_folder(path: Path) -> ResultsFolder:
     """Opens a results folder.
 
-    Raises NotAResultsFolder if there is nothing to draw from.
+    Raises NotAResultsFolder if there is nothing to draw from, or if it is damaged.
     """
     if not path.is_dir():
         raise NotAResultsFolder(f"{path}: no such folder")
-    if not (path / "results.h5").is_file():
+    if not (path / "results.h5").exists():
         raise NotAResultsFolder(f"{path}: no results folder (it has no results.h5)")
-    missing = []
-    try:
-        with h5py.File(path / "results.h5", "r") as file:
-            reference = np.asarray(file["points/reference"][...], dtype=float)
-            volume = np.asarray(file["points/volume"][...], dtype=float)
-            reference = reference.reshape(len(volume), -1)
-            if not (len(volume) and reference.shape[1] in (1, 2, 3) and np.isfinite(reference).all()):
-                raise NotAResultsFolder(f"{path}/results.h5: its points can't be read")
-            sets = _sets(file)
-            case = _case(file, missing)
-            title = _text(file.attrs.get("title", "")) or case.get("title", "") or path.resolve().name
-            spacing = float(file["points"].attrs.get("spacing", 0.0))
-            step_numbers = _readable_steps(file, missing)
-    except (OSError, KeyError, ValueError) as error:
-        raise NotAResultsFolder(f"{path}/results.h5: can't be read ({error})") from error
-
-    spacing = spacing or _number(case.get("lattice", {}).get("spacing")) or _mean_spacing(reference)
-    summary = {}
-    try:
-        summary = dict(json.loads((path / "summary.json").read_text()))
-    except (OSError, ValueError, TypeError):
-        missing.append("there is no readable summary.json: the run was interrupted or is still going")
+    missing: list[str] = []
+    with _reading(path) as file:
+        volume = file.numbers("points/volume")
+        reference = file.numbers("points/reference")
+        if not (volume.ndim == 1 and reference.ndim == 2 and len(volume) == len(reference) > 0
+                and reference.shape[1] in (1, 2, 3)):  # fmt: skip
+            raise Damaged(f"/points has {reference.shape} coordinates and {volume.shape} volumes")
+        size = np.ptp(reference, axis=0).max()
+        if not (np.isfinite(reference).all() and np.isfinite(size)):
+            raise Damaged("/points/reference has values that are not finite")
+        sets = _sets(file, len(volume), missing)
+        case = _case(file, missing)
+        title = as_text(file.attribute("", "title", ""))
+        spacing = _finite(file.attribute("points", "spacing"))
+        step_numbers = _readable_steps(file, missing)
+    title = title or as_text(case.get("title", "")) or path.resolve().name
+    title = "".join(c if c.isprintable() else " " for c in title)[:LONGEST_TITLE]
+    lattice = case.get("lattice", {})
+    for told in (spacing, _finite(lattice.get("spacing") if isinstance(lattice, dict) else None)):
+        if told and told > 0.0 and size / told < MOST_SPACINGS:
+            spacing = told
+            break
+    else:
+        spacing = _mean_spacing(reference)
     return ResultsFolder(
         path, title, reference, volume, spacing, sets, step_numbers,
-        _table(path / "history.csv", missing), _table(path / "iterations.csv", missing),
-        _table(path / "decisions.csv", []), summary, case, missing,
+        _history(path / "history.csv", missing), _table(path / "iterations.csv", missing),
+        _table(path / "decisions.csv", []), _orders(path / "convergence.csv"), _summary(path, missing), case, missing,
     )  # fmt: skip
 
 
-def _text(value) -> str:
-    return value.decode(errors="replace") if isinstance(value, bytes) else str(value)
+def _finite(value) -> float | None:
+    """A finite number, or nothing."""
+    try:
+        number = float(value)
+    except (TypeError, ValueError):
+        return None
+    return number if np.isfinite(number) else None
 
 
-def _number(value) -> float:
-    return float(value) if isinstance(value, (int, float)) and value > 0 else 0.0
+def _summary(path: Path, missing) -> dict:
+    try:
+        if require_plain_file(path / "summary.json") > MOST_SUMMARY:
+            raise ValueError("too large")
+        return dict(json.loads((path / "summary.json").read_text()))
+    except (Damaged, OSError, ValueError, TypeError, RecursionError):
+        missing.append("there is no readable summary.json: the run was interrupted or is still going")
+        return {}
 
 
-def _sets(file) -> dict[str, np.ndarray]:
+def _sets(file, count: int, missing) -> dict[str, np.ndarray]:
     """Point numbers by set name, from the membership matrix (count x sets)."""
-    if "points/set_ids" not in file:
+    names = [as_text(name) for name in np.atleast_1d(file.attribute("points/set_ids", "sets", []))]
+    if not names:
         return {}
-    membership = file["points/set_ids"]
-    names = membership.attrs.get("sets", [])
-    names = [_text(name) for name in np.atleast_1d(names)]
-    if not names or not membership.size:
+    try:
+        matrix = file.numbers("points/set_ids", (count, len(names)), kind=np.uint8)
+    except (Damaged, KeyError) as error:
+        missing.append(f"the sets can't be read ({error})")
         return {}
-    matrix = np.asarray(membership[...]).reshape(-1, len(names))
     return {name: np.flatnonzero(matrix[:, column]) for column, name in enumerate(names)}
 
 
 def _case(file, missing) -> dict:
     """The resolved case, or an empty one if it can't be read."""
     try:
-        text = file["case/as_resolved"]
-        return tomllib.loads(_text(np.asarray(text[()]).item()))
-    except (KeyError, ValueError, tomllib.TOMLDecodeError):
+        return tomllib.loads(file.text("case/as_resolved"))
+    except (Damaged, KeyError, OSError, ValueError, TypeError, RecursionError):
         missing.append("the resolved case can't be read from results.h5")
         return {}
 
@@ -214,11 +298,12 @@ def _case(file, missing) -> dict:
 def _readable_steps(file, missing) -> list[int]:
     """Steps whose displacement can be opened (each may be a link to a file that is gone)."""
     readable = []
-    for name in sorted(file["steps"]) if "steps" in file else []:
+    for name in file.names("steps"):
         try:
-            file[f"steps/{name}/displacement"].shape
+            if f"steps/{name}/displacement" not in file or not (name.isdecimal() and len(name) >= 6):
+                raise Damaged("no displacement")
             readable.append(int(name))
-        except (KeyError, OSError, ValueError):
+        except (Damaged, OSError, ValueError):
             missing.append(f"the fields of step {name} can't be read")
     if not readable:
         missing.append("there are no fields: no step was accepted")
@@ -238,14 +323,50 @@ def _mean_spacing(reference: np.ndarray) -> float:
     return spacing if 0.0 < spacing < np.inf else 1.0
 
 
+def _history(path: Path, missing) -> dict[str, list]:
+    """The history; empty, with a word about it, if its steps or load factors can't be read."""
+    table = _table(path, missing)
+    for column in ("step", "load_factor"):
+        values = table.get(column, [])
+        if table and not (all(isinstance(value, float) for value in values) and np.isfinite(values).all()):
+            missing.append(f"{path.name} has no column {column} with finite numbers")
+            return {}
+        if table and column not in table:
+            missing.append(f"{path.name} has no column {column}")
+            return {}
+    return table
+
+
+def _orders(path: Path) -> dict[int, float]:
+    """Observed orders by step: the last row of convergence.csv, without its empty cells."""
+    rows = _rows(path, [])
+    if not rows or rows[-1][0] != "observed_order":
+        return {}
+    orders = {}
+    for name, cell in zip(rows[0][1:], rows[-1][1:]):
+        order = _finite(cell)
+        if order is not None and name.startswith("step_") and name[5:].isdecimal():
+            orders[int(name[5:])] = order
+    return orders
+
+
+def _rows(path: Path, missing) -> list[list[str]]:
+    """Rows of a CSV file that are not empty; none, with a word about it, if it can't be read."""
+    try:
+        if require_plain_file(path) > MOST_TABLE:
+            raise ValueError("it is larger than a gigabyte")
+        with open(path, newline="", encoding="utf-8", errors="replace") as file:
+            return [row for row in csv.reader(file) if row]
+    except (Damaged, OSError):
+        missing.append(f"there is no {path.name}" if not path.exists() else f"{path.name} can't be read")
+    except (csv.Error, ValueError) as error:
+        missing.append(f"{path.name} can't be read ({error})")
+    return []
+
+
 def _table(path: Path, missing) -> dict[str, list]:
     """Columns of a CSV file; numbers where every entry is one. Half-written rows are left out."""
-    try:
-        with open(path, newline="") as file:
-            rows = [row for row in csv.reader(file) if row]
-    except OSError:
-        missing.append(f"there is no {path.name}")
-        return {}
+    rows = _rows(path, missing)
     if not rows:
         return {}
     names, rows = rows[0], [row for row in rows[1:] if len(row) == len(rows[0])]

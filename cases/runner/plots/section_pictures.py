@@ -53,23 +53,26 @@ def draw_middle_plane(results, step):
     values = step.displacement[plane, up]
     unit, size = unit_for(np.abs(values).max(), LENGTHS)
 
+    place_unit, place_size = unit_for(np.ptp(np.concatenate([reference, moved]), axis=0).max(), LENGTHS)
+    reference, moved, spacing = reference / place_size, moved / place_size, results.spacing / place_size
     both = np.concatenate([reference, moved])
-    low, high = both.min(axis=0) - results.spacing, both.max(axis=0) + results.spacing
+    low, high = both.min(axis=0) - spacing, both.max(axis=0) + spacing
     scale = min(13.2 / (high - low)[0], 8.0 / (high - low)[1])
     width, height = scale * (high - low)
     figure = new_figure(width + 2.6, height + 2.0)
     axes = figure.add_axes([0.8 / (width + 2.6), 0.7 / (height + 2.0), width / (width + 2.6), height / (height + 2.0)])
-    dot = min(0.55 * scale * results.spacing * 72.0, 12.0) ** 2
+    dot = min(0.55 * scale * spacing * 72.0, 12.0) ** 2
     axes.scatter(*reference.T, s=0.5 * dot, color=GHOST, linewidths=0, zorder=2)
     norm = Normalize(*_range(values / size))
     axes.scatter(*moved.T, s=dot, c=values / size, cmap=COLOURS, norm=norm, edgecolors="#5b656e",
                  linewidths=0.3, zorder=3)  # fmt: skip
     axes.set_xlim(low[0], high[0])
     axes.set_ylim(low[1], high[1])
-    axes.set_xlabel(f"{AXES[along]} [m]")
-    axes.set_ylabel(f"{AXES[up]} [m]")
+    axes.set_xlabel(f"{AXES[along]} [{place_unit}]")
+    axes.set_ylabel(f"{AXES[up]} [{place_unit}]")
     bar = [(width + 1.2) / (width + 2.6), 0.9 / (height + 2.0), 0.22 / (width + 2.6), (height - 0.4) / (height + 2.0)]
     colour_bar(figure, bar, ScalarMappable(norm, COLOURS), f"displacement {AXES[up]} [{unit}]")
-    heading(figure, results, [f"points of the middle plane, {AXES[across]} = {number(float(depth[plane].mean()))} m",
+    where = number(float(depth[plane].mean()) / place_size)
+    heading(figure, results, [f"points of the middle plane, {AXES[across]} = {where} {place_unit}",
                               *step_words(step), f"{number(int(plane.sum()))} points"])  # fmt: skip
     return figure

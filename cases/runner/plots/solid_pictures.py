@@ -10,12 +10,13 @@ from matplotlib.cm import ScalarMappable
 from matplotlib.collections import PolyCollection
 from matplotlib.colors import Normalize, to_rgba
 
-from cells import Cells, at_the_rim, corner_signs, merged
+from cells import Cells, corner_signs
 from field_pictures import (
-    DAMAGE_COLOURS, LOOSE_DAMAGE, displacement_magnitude, exaggeration, exaggeration_words,
+    CLIPPED_SHARE, DAMAGE_COLOURS, beyond, displacement_magnitude, exaggeration, exaggeration_words, held_values,
 )  # fmt: skip
+from separations import cells_of
 from style import (
-    DOTS_PER_INCH, GHOST, INK, LENGTHS, PIECE,
+    DOTS_PER_INCH, ENERGY_DENSITIES, GHOST, INK, LENGTHS, PIECE,
     bond_words, colour_bar, heading, new_figure, number, piece_legend, piece_words, step_words, unit_for,
 )  # fmt: skip
 
@@ -46,6 +47,7 @@ class Camera:
         c = np.cross(a, b)  # out of the picture
         slender = extent[across] > 3.0 * np.sort(extent)[1]
         azimuth, elevation = np.radians((24.0, 20.0) if slender else (33.0, 25.0))
+        self.across = 3 - across - int(np.argmax(b))  # the axis that points most at the viewer
         self.right = np.cos(azimuth) * a - np.sin(azimuth) * c
         self.towards = np.cos(elevation) * (np.sin(azimuth) * a + np.cos(azimuth) * c) + np.sin(elevation) * b
         self.up = np.cross(self.towards, self.right)
@@ -63,31 +65,44 @@ class Camera:
 
 def draw_deformed_solid(results, step):
     """Deformed body coloured by the magnitude of the displacement."""
-    values, value_range, label = displacement_magnitude(step.displacement)
-    return draw_solid(results, step, values, value_range, label, "viridis")
+    values, value_range, label = displacement_magnitude(step)
+    return draw_solid(results, step, values, value_range, label, "viridis", mark_pieces=True)
+
+
+def draw_cut_solid(results, step):
+    """The half of the deformed body behind its middle plane, coloured by energy density: what is inside is seen."""
+    held = held_values(step.energy_density, step.floating)
+    low, high, peak = min(float(held.min()), 0.0), float(held.max()), float(np.percentile(held, CLIPPED_SHARE))
+    end = peak if 0.0 < peak < 0.7 * high else high
+    unit, size = unit_for(end, ENERGY_DENSITIES)
+    words = [f"up to {number(high / size)} {unit}"] if end < high else []
+    return draw_solid(results, step, step.energy_density / size, (low / size, end / size or 1.0),
+                      f"energy density [{unit}]", "inferno", is_cut=True, words=words)  # fmt: skip
 
 
 def draw_damaged_solid(results, step):
     """Deformed body coloured by damage, edges of floating pieces marked."""
-    figure = draw_solid(results, step, step.damage, (0.0, 1.0), "damage", DAMAGE_COLOURS, mark_pieces=True)
-    if step.floating.any():
-        piece_legend(figure, piece_words(step), side="right", hatch=None)
-    return figure
+    return draw_solid(results, step, step.damage, (0.0, 1.0), "damage", DAMAGE_COLOURS, mark_pieces=True,
+                      words=bond_words(results, step))  # fmt: skip
 
 
-def draw_solid(results, step, values, value_range, label, colours, mark_pieces=False):
-    """Deformed body coloured by a value per point; damage and pieces in the heading and the picture if wanted."""
+def draw_solid(results, step, values, value_range, label, colours, mark_pieces=False, is_cut=False, words=()):
+    """Deformed body coloured by a value per point, with more words in the heading.
+
+    Pieces are marked if wanted; of a body that is cut the half towards the viewer is left out.
+    """
     factor = exaggeration(results.reference, step)
-    spacing, reference, displacement, damage, floating, values = merged(
-        results.reference, results.spacing, MOST_CELLS,
-        step.displacement, step.damage, step.floating.astype(float), values,
-    )  # fmt: skip
+    cells, reference, displacement, floating, loose, values = cells_of(results, step, MOST_CELLS, 1.0, values)
+    spacing = cells.spacing
     camera = Camera(reference, displacement)
-    cells = Cells(reference, spacing)
-    floating = floating > 0.5
-    loose = (damage > LOOSE_DAMAGE) | at_the_rim(cells, floating)
     corners = cells.corners(reference, factor * displacement, loose)
-    faces, owners = _visible_faces(cells, corners, loose, camera)
+    shown = np.ones(len(reference), dtype=bool)
+    if is_cut:
+        middle = 0.5 * (reference[:, camera.across].min() + reference[:, camera.across].max())
+        side = np.sign(camera.towards[camera.across])
+        shown = side * (reference[:, camera.across] - middle) <= 0.25 * spacing
+        words = [f"cut at {AXES[camera.across]} = {length_words(middle)}", *words]
+    faces, owners = _visible_faces(cells, corners, loose, camera, shown)
     box = _bounding_box(reference, spacing)
 
     picture = camera.project(faces)
@@ -101,27 +116,33 @@ def draw_solid(results, step, values, value_range, label, colours, mark_pieces=F
     edge = spacing * scale * DOTS_PER_INCH
     edges, width = (face_colours, 0.4) if edge < 7.0 else (_darker(face_colours, 0.84), min(0.07 * edge, 1.0))
     if mark_pieces and floating.any():
+        piece_legend(figure, piece_words(step), side="right", hatch=None)
         edges, width = np.where(floating[owners, None], to_rgba(PIECE), edges), max(width, 0.8)
     axes.add_collection(
         PolyCollection(picture, facecolors=face_colours, edgecolors=edges, linewidths=width,
                        joinstyle="round", zorder=2), autolim=False,
     )  # fmt: skip
     _draw_directions(figure, camera)
-    colour_bar(figure, bar_place, ScalarMappable(norm, colours), label)
+    colour_bar(figure, bar_place, ScalarMappable(norm, colours), label,
+               extend=beyond(values[shown], norm.vmin, norm.vmax))  # fmt: skip
     unit, size = unit_for(np.ptp(box, axis=0).max(), LENGTHS)
     extent = " × ".join(number(length / size) for length in np.ptp(box, axis=0))
-    heading(figure, results, [exaggeration_words(factor), *step_words(step),
-                              *(bond_words(results, step) if mark_pieces else []),
+    heading(figure, results, [exaggeration_words(factor), *step_words(step), *words,
                               f"{number(len(results.volume))} points", f"{extent} {unit}"])  # fmt: skip
     return figure
 
 
-def _visible_faces(cells: Cells, corners, loose, camera):
-    """Outer faces that look at the viewer, far to near, and the cell each belongs to."""
+def length_words(length: float) -> str:
+    unit, size = unit_for(abs(length), LENGTHS)
+    return f"{number(length / size)} {unit}"
+
+
+def _visible_faces(cells: Cells, corners, loose, camera, shown):
+    """Outer faces of the shown cells that look at the viewer, far to near, and the cell each belongs to."""
     faces, owners = [], []
     for (axis, sign), order in FACES.items():
-        other = cells.neighbours(axis, sign)
-        outer = np.flatnonzero((other < 0) | loose | loose[other])
+        other = cells.joined(axis, sign)
+        outer = np.flatnonzero(shown & ((other < 0) | loose | loose[other] | ~shown[other]))
         quadrilaterals = corners[outer][:, order]
         facing = _normals(quadrilaterals) @ camera.towards > 0.0
         faces.append(quadrilaterals[facing])

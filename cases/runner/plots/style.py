@@ -39,15 +39,23 @@ matplotlib.rcParams.update(
         "ytick.labelcolor": INK,
         "legend.frameon": False,
         "hatch.linewidth": 1.2,
-        "axes.formatter.limits": (-4, 5),
-        "axes.formatter.use_mathtext": True,
+        # Every axis has a unit that suits its values: a factor beside it would be overlooked.
+        "axes.formatter.limits": (-7, 8),
+        "axes.formatter.useoffset": False,
     }
 )
 
-LENGTHS = (("m", 1.0), ("mm", 1e-3), ("µm", 1e-6), ("nm", 1e-9))
-FORCES = (("MN", 1e6), ("kN", 1e3), ("N", 1.0), ("mN", 1e-3), ("µN", 1e-6))
-ENERGY_DENSITIES = (("GJ/m³", 1e9), ("MJ/m³", 1e6), ("kJ/m³", 1e3), ("J/m³", 1.0), ("mJ/m³", 1e-3))
-ENERGIES = (("GJ", 1e9), ("MJ", 1e6), ("kJ", 1e3), ("J", 1.0), ("mJ", 1e-3), ("µJ", 1e-6), ("nJ", 1e-9))
+PREFIXES = (("T", 1e12), ("G", 1e9), ("M", 1e6), ("k", 1e3), ("", 1.0), ("m", 1e-3), ("µ", 1e-6), ("n", 1e-9),
+            ("p", 1e-12), ("f", 1e-15))  # fmt: skip
+
+
+def scaled(unit: str):
+    """The unit with all prefixes and their sizes, the largest first."""
+    return tuple((prefix + unit, size) for prefix, size in PREFIXES)
+
+
+LENGTHS = (("km", 1e3), *scaled("m")[4:])
+FORCES, ENERGIES, ENERGY_DENSITIES = scaled("N"), scaled("J"), scaled("J/m³")
 
 
 def unit_for(largest: float, units, least: float = 0.3) -> tuple[str, float]:
@@ -55,7 +63,7 @@ def unit_for(largest: float, units, least: float = 0.3) -> tuple[str, float]:
     for name, size in units:
         if largest >= least * size:
             return name, size
-    return units[-1] if largest > 0.0 else next(unit for unit in units if unit[1] == 1.0)
+    return units[-1] if largest > 1e-30 else next(unit for unit in units if unit[1] == 1.0)
 
 
 def round_factor(wanted: float) -> float:
@@ -122,7 +130,7 @@ def piece_legend(figure: Figure, words: str, side: str = "left", hatch: str | No
                   bbox_to_anchor=(margin if side == "left" else 1.0 - margin, 0.0))  # fmt: skip
 
 
-def colour_bar(figure: Figure, place, mappable, label: str, **options) -> None:
+def colour_bar(figure: Figure, place, mappable, label: str, **options):
     """A slim colour bar in the rectangle `place` (figure fractions)."""
     axes = figure.add_axes(place)
     bar = figure.colorbar(mappable, cax=axes, **options)
@@ -130,3 +138,4 @@ def colour_bar(figure: Figure, place, mappable, label: str, **options) -> None:
     bar.set_label(label, labelpad=10)
     axes.grid(False)
     axes.tick_params(length=4)
+    return bar

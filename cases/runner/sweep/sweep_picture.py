@@ -1,16 +1,21 @@
-"""The picture of a sweep: load curves of all combinations, and a field along the midline of the body."""
+"""The picture of a sweep: load curves of all combinations, a field along the midline of the body, and what
+came out (peak reaction, probes) over what was varied."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
 from matplotlib import colormaps
+from matplotlib.ticker import MaxNLocator
 from results_folder import NotAResultsFolder, ResultsFolder, read_results_folder
-from style import FORCES, GHOST, LENGTHS, LINES, WARNING, heading, new_figure, number, unit_for
+from style import ENERGY_DENSITIES, FORCES, GHOST, LENGTHS, LINES, WARNING, heading, new_figure, number, unit_for
 
 DASHES = ["-", (0, (5, 2)), (0, (1.2, 1.5)), (0, (7, 2, 1.5, 2))]
 MOST_LABELS = 24  # entries of the legend
 LONGEST_LABEL = 30  # characters
+MOST_QUANTITIES = 4  # panels of what came out
+UNITS = {"m": LENGTHS, "N": FORCES, "J/m³": ENERGY_DENSITIES}  # that are scaled
+FIELD_UNITS = {"displacement": "m", "opening": "m", "crack_length": "m", "force": "N", "energy_density": "J/m³"}
 
 
 @dataclass
@@ -25,6 +30,8 @@ class Curves:
     reactions: dict[str, np.ndarray]  # their norm by support set [N]
     midlines: list["Midline"]  # along each axis
     largest_damage: float  # of all points
+    values: tuple[str, ...] = ()  # of the varied keys
+    outcomes: dict[str, tuple[float, str]] = field(default_factory=dict)  # number and unit by name
 
 
 @dataclass
@@ -43,7 +50,7 @@ class _Heading:
 def draw_sweep(keys: list[str], values: list[tuple[str, ...]], folders: list[Path], statuses: list[str]):
     """Figure of all combinations that have an accepted step; None if there is none."""
     shown = []
-    for looks, label, folder, status in zip(line_looks(values), labels(keys, values), folders, statuses):
+    for own, looks, label, folder, status in zip(values, line_looks(values), labels(keys, values), folders, statuses):
         if status in ("completed", "not_converged"):
             try:
                 results = read_results_folder(folder)
@@ -51,16 +58,27 @@ def draw_sweep(keys: list[str], values: list[tuple[str, ...]], folders: list[Pat
                 continue
             if results.step_numbers and results.history.get("load_factor"):
                 shown.append(_curves(results, label, looks, status == "completed"))
+                shown[-1].values = own
     if not shown:
         return None
 
-    figure = new_figure(16.0, 7.2)
-    left = figure.add_axes([0.065, 0.115, 0.325, 0.71])
-    right = figure.add_axes([0.46, 0.115, 0.325, 0.71])
+    names = _quantities(shown)
+    key = main_key(values)
+    below = 4.9 if names and len(set(combination[key] for combination in values)) > 1 else 0.0  # inches
+    height = 7.2 + below
+    bottom, panel_height = (0.83 + below) / height, 5.1 / height
+    figure = new_figure(16.0, height)
+    left = figure.add_axes([0.065, bottom, 0.325, panel_height])
+    right = figure.add_axes([0.46, bottom, 0.325, panel_height])
     _draw_reactions(left, shown)
     _draw_midlines(right, shown)
     _draw_legend(figure, left, shown)
+    for place, name in enumerate(names if below else []):
+        width = 0.92 / len(names)
+        axes = figure.add_axes([0.065 + place * width, 0.8 / height, min(width - 0.065, 0.5), 3.4 / height])
+        _draw_outcome(axes, shown, keys, key, name)
     count = len(statuses)
+    known = len({name for curves in shown for name in curves.outcomes})
     told = " and ".join(keys)
     words = [f"sweep of {told if len(told) <= 80 else f'{len(keys)} keys'}",
              f"{number(count)} combination{'s' * (count != 1)}"]  # fmt: skip
@@ -68,6 +86,8 @@ def draw_sweep(keys: list[str], values: list[tuple[str, ...]], folders: list[Pat
                            ("failed", "failed")):  # fmt: skip
         if status in statuses:
             words.append(f"{statuses.count(status)} {remark}")
+    if below and known > len(names):
+        words.append(f"{len(names)} of {known} quantities (all are in sweep.csv)")
     heading(figure, _Heading(shown[0].title), words)
     return figure
 
@@ -80,7 +100,23 @@ def _curves(results: ResultsFolder, label: str, looks: dict, completed: bool) ->
     magnitude = np.linalg.norm(step.displacement, axis=1)
     midlines = [Midline(*midline(results, axis, step.damage, magnitude)) for axis in range(results.dimension)]
     return Curves(results.title, label, looks, completed, np.array(results.history["load_factor"]),
-                  _reactions(results.history), midlines, step.damage.max())  # fmt: skip
+                  _reactions(results.history), midlines, step.damage.max(), outcomes=_outcomes(results))  # fmt: skip
+
+
+def _outcomes(results: ResultsFolder) -> dict[str, tuple[float, str]]:
+    """Numbers that a run comes down to, with units: its largest reaction, and its probes at the last step."""
+    peaks = [values.max() for values in _reactions(results.history).values()]
+    outcomes = {"peak reaction": (float(max(peaks)), "N")} if peaks else {}
+    fields = {probe.get("name"): probe.get("field", "displacement") for probe in results.tables("probe")}
+    told = results.summary.get("probes", {})
+    for name, value in told.items() if isinstance(told, dict) else ():
+        unit = FIELD_UNITS.get(fields.get(name), "")
+        components = {name: value} if not isinstance(value, list) else {
+            f"{name} {axis}" if len(value) > 1 else name: component for axis, component in zip("xyz", value)}  # fmt: skip
+        for component, number_told in components.items():
+            if isinstance(number_told, (int, float)) and np.isfinite(number_told):
+                outcomes[component] = (float(number_told), unit)
+    return outcomes
 
 
 def _reactions(history: dict[str, list]) -> dict[str, np.ndarray]:
@@ -143,7 +179,7 @@ def line_looks(values: list[tuple[str, ...]]) -> list[dict]:
     The key that colours is numeric if there is one, and has the most values.
     """
     columns = [list(dict.fromkeys(column)) for column in zip(*values)]
-    key = max(range(len(columns)), key=lambda place: (_is_numeric(columns[place]), len(columns[place])))
+    key = main_key(values)
     others = [combination[:key] + combination[key + 1 :] for combination in values]
     rest = list(dict.fromkeys(others))
     if len(rest) > len(DASHES):
@@ -151,6 +187,13 @@ def line_looks(values: list[tuple[str, ...]]) -> list[dict]:
     colours = _colours(columns[key])
     return [{"color": colours[combination[key]], "linestyle": DASHES[rest.index(other)]}
             for combination, other in zip(values, others)]  # fmt: skip
+
+
+def main_key(values: list[tuple[str, ...]]) -> int:
+    """Place of the key that colours lines and that outcomes are drawn over: numeric if one is, with most values."""
+    columns = [list(dict.fromkeys(column)) for column in zip(*values)]
+    return max(range(len(columns)), key=lambda place: (len(columns[place]) > 1, _is_numeric(columns[place]),
+                                                       len(columns[place])))  # fmt: skip
 
 
 def _is_numeric(texts: list[str]) -> bool:
@@ -218,6 +261,50 @@ def _draw_midlines(axes, shown: list[Curves]) -> None:
     axes.set_ylabel("damage at the last step" if damaged else f"displacement at the last step [{unit}]")
 
 
+def _quantities(shown: list[Curves]) -> list[str]:
+    """Names of the outcomes to draw: those that are no zero, the largest component of a vector first."""
+    names = dict.fromkeys(name for curves in shown for name in curves.outcomes)
+    size = {name: max(abs(curves.outcomes[name][0]) for curves in shown if name in curves.outcomes) for name in names}
+    vectors = {name.rpartition(" ")[0] for name in names if name[-2:] in (" x", " y", " z")}
+    for vector in vectors:
+        own = [name for name in names if name.rpartition(" ")[0] == vector]
+        largest = max(size[name] for name in own)
+        for name in own:
+            if size[name] <= 1e-6 * largest:  # round-off
+                del names[name]
+    return [name for name in names if size[name] > 0.0][:MOST_QUANTITIES]
+
+
+def _draw_outcome(axes, shown: list[Curves], keys: list[str], key: int, name: str) -> None:
+    """An outcome over the values of a key; a line joins the combinations that differ in that key alone."""
+    told = [curves for curves in shown if name in curves.outcomes]
+    unit = told[0].outcomes[name][1]
+    largest = max(abs(curves.outcomes[name][0]) for curves in told)
+    unit, size = unit_for(largest, UNITS[unit]) if unit in UNITS else (unit, 1.0)
+    texts = list(dict.fromkeys(curves.values[key] for curves in told))
+    numeric = _is_numeric(texts)
+    place = {text: float(text) if numeric else float(rank) for rank, text in enumerate(texts)}
+    lines: dict[tuple, list[Curves]] = {}
+    for curves in told:
+        lines.setdefault(curves.values[:key] + curves.values[key + 1 :], []).append(curves)
+    for dashes, own in zip(DASHES * len(lines), lines.values()):
+        own.sort(key=lambda curves: place[curves.values[key]])
+        axes.plot([place[curves.values[key]] for curves in own], [curves.outcomes[name][0] / size for curves in own],
+                  color=GHOST, linestyle=dashes, linewidth=1.4, zorder=2)  # fmt: skip
+    for curves in told:
+        mark = {"marker": "o", "markersize": 8} if curves.completed else {"marker": "x", "markersize": 9}
+        axes.plot(place[curves.values[key]], curves.outcomes[name][0] / size, color=curves.looks["color"],
+                  linestyle="none", zorder=3, markeredgewidth=0.0 if curves.completed else 2.2, **mark)  # fmt: skip
+    if not numeric:
+        axes.set_xticks(list(place.values()), [_cut(text) for text in place])
+    elif min(place.values()) > 0.0 and max(place.values()) >= 20.0 * min(place.values()):
+        axes.set_xscale("log")
+    axes.set_xlabel(keys[key].replace("$", r"\$"))
+    axes.set_ylabel(f"{name}{f' [{unit}]' if unit else ''}".replace("$", r"\$"))
+    if numeric and axes.get_xscale() == "linear":
+        axes.xaxis.set_major_locator(MaxNLocator(5))
+
+
 def _field(line: Midline, damaged: bool) -> np.ndarray:
     return line.damage if damaged else line.displacement
 
@@ -242,5 +329,5 @@ def _draw_legend(figure, axes, shown: list[Curves]) -> None:
     lines = sum(text.count("\n") + 1 for text in texts)
     size = np.clip(11.0 * 24 / max(lines, 1), 6.5, 11.0)
     title = f"{len(chosen)} of {len(shown)} combinations" if len(chosen) < len(shown) else None
-    figure.legend(handles, texts, loc="upper left", bbox_to_anchor=(0.795, 0.84), fontsize=size, title=title,
+    figure.legend(handles, texts, loc="upper left", bbox_to_anchor=(0.795, axes.get_position().y1 + 0.01), fontsize=size, title=title,
                   title_fontsize=size, alignment="left", handlelength=2.4)  # fmt: skip

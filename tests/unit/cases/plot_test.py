@@ -6,6 +6,7 @@ Run with /usr/bin/python3 tests/unit/cases/plot_test.py; it builds its own folde
 import csv
 import io
 import json
+import os
 import subprocess
 import sys
 import tempfile
@@ -25,8 +26,10 @@ sys.path.insert(0, str(PLOTS))
 
 import plot  # noqa: E402
 from cells import Cells, merged  # noqa: E402
-from curve_pictures import hand_overs, observed_order, on_the_way  # noqa: E402
-from field_pictures import deformed_plate  # noqa: E402
+from convergence_picture import order_words  # noqa: E402
+from curve_pictures import find_abscissa, hand_overs, on_the_way, reactions  # noqa: E402
+from field_pictures import beyond, deformed_plate, displacement_magnitude  # noqa: E402
+from separations import crosses, separate  # noqa: E402
 from results_folder import read_results_folder  # noqa: E402
 from style import round_factor  # noqa: E402
 
@@ -38,6 +41,8 @@ HISTORY = (
 ITERATIONS = "step,iteration,residual,relative_residual,energy,step_length,linear_iterations,changed_bonds".split(",")
 
 BROKEN_BONDS = ["step", "load_factor", "first_point", "second_point"]
+PICTURES = {"deformed", "lateral", "middle_plane", "cut", "fields", "damage", "broken_bonds", "sequence",
+            "load_displacement", "energies", "convergence"}  # fmt: skip
 CRACKED = ("deformed", "fields", "damage", "broken_bonds", "sequence", "load_displacement", "energies", "convergence")
 
 
@@ -174,19 +179,21 @@ class Pictures(unittest.TestCase):
         self.addCleanup(temporary.cleanup)
         self.folder = Path(temporary.name) / "results"
 
-    def plot(self, expected_code: int = 0) -> str:
+    def plot(self, expected_code: int = 0, *options: str) -> str:
         """Draws the folder's pictures, where a warning is an error too; gives what is said."""
         said = io.StringIO()
         with warnings.catch_warnings(), redirect_stdout(said), redirect_stderr(said):
             warnings.simplefilter("error")
-            code = plot.main([str(self.folder)])
+            code = plot.main([str(self.folder), *options])
         self.assertEqual(code, expected_code, said.getvalue())
         return said.getvalue()
 
     def assert_pictures(self, *names: str) -> None:
         """Exactly these pictures exist, of a size to look at and with more than a few colours."""
         drawn = sorted(path.stem for path in (self.folder / "plots").glob("*.png"))
-        self.assertTrue({f"{name}.png" for name in drawn} <= set(plot.PICTURES))
+        self.assertLessEqual(set(drawn), PICTURES)
+        listed = (self.folder / "plots" / ".pictures").read_text().split()
+        self.assertEqual(sorted(name for name in listed if name.endswith(".png")), [f"{name}.png" for name in drawn])
         self.assertEqual(drawn, sorted(names))
         for name in names:
             image = matplotlib.image.imread(self.folder / "plots" / f"{name}.png")
@@ -358,19 +365,204 @@ class Pictures(unittest.TestCase):
         self.assertAlmostEqual(on_the_way(results, places, 5, 4.5 / 6), 6.5, delta=1e-12)
         self.assertAlmostEqual(on_the_way(results, places, 7, 7 / 6), 9.0, delta=1e-12)  # was never accepted
 
-    def test_pictures_of_an_earlier_run_do_not_stay(self):
+    # ---- what is written and removed --------------------------------------------------------------
+
+    def test_pictures_drawn_before_go_and_others_stay(self):
+        write_folder(self.folder, lattice(10, 10))
+        plots = self.folder / "plots"
+        plots.mkdir()
+        outside = self.folder.parent / "outside.png"
+        outside.write_text("mine")
+        (plots / "linked.png").symlink_to(outside)
+        for name in ("damage.png", "crack.gif", "mine.png", "old.pdf"):
+            (plots / name).write_text("old")
+        names = ["damage.png", "crack.gif", "linked.png", "old.pdf", "../history.csv", "../outside.png", "/etc/x.png"]
+        (plots / ".pictures").write_text("\n".join(names))
+        self.plot()
+        for name, stays in (("damage.png", False), ("crack.gif", False), ("mine.png", True), ("old.pdf", True),
+                            ("linked.png", True), ("../history.csv", True)):  # fmt: skip
+            self.assertEqual((plots / name).exists(), stays, name)
+        self.assertEqual(outside.read_text(), "mine")
+
+    def test_a_picture_replaces_a_link_and_not_what_it_leads_to(self):
         write_folder(self.folder, lattice(10, 10))
         (self.folder / "plots").mkdir()
-        for name in ("damage.png", "energies.png", "crack.gif"):
-            (self.folder / "plots" / name).write_text("old")
+        victim = self.folder.parent / "victim"
+        victim.write_text("mine")
+        (self.folder / "plots" / "deformed.png").symlink_to(victim)
         self.plot()
-        self.assertFalse((self.folder / "plots" / "crack.gif").exists())
-        self.assert_pictures("deformed", "fields", "load_displacement", "convergence")
+        self.assertEqual(victim.read_text(), "mine")
+        self.assertFalse((self.folder / "plots" / "deformed.png").is_symlink())
+
+    def test_plots_or_its_list_that_are_links_are_refused(self):
+        write_folder(self.folder, lattice(10, 10))
+        elsewhere = self.folder.parent / "elsewhere"
+        elsewhere.mkdir()
+        (self.folder / "plots").symlink_to(elsewhere)
+        self.assertIn("is a link", self.plot(expected_code=2))
+        self.assertEqual(list(elsewhere.iterdir()), [])
+        (self.folder / "plots").unlink()
+        (self.folder / "plots").mkdir()
+        (elsewhere / "list").write_text("deformed.png")
+        (self.folder / "plots" / ".pictures").symlink_to(elsewhere / "list")
+        self.assertIn("is a link", self.plot(expected_code=2))
+        self.assertEqual((elsewhere / "list").read_text(), "deformed.png")
+
+    def test_vector_formats(self):
+        write_cracked_folder(self.folder, (20, 20), steps=6)
+        self.plot()
+        for ending, beginning in (("pdf", b"%PDF"), ("svg", b"<?xml")):
+            self.plot(0, "--format", ending)
+            for name in CRACKED:
+                content = (self.folder / "plots" / f"{name}.{ending}").read_bytes()
+                self.assertTrue(content.startswith(beginning), name)
+            self.assertTrue((self.folder / "plots" / "deformed.png").exists())  # the same run, and still true
+        self.plot(2, "--format", "jpg")
+
+    # ---- cracks -----------------------------------------------------------------------------------
+
+    def test_a_pre_crack_opens_without_damage(self):
+        """Points left and right of a cut move apart: no square is stretched across it, whatever damage says."""
+        write_folder(self.folder, lattice(10, 6), steps=1)
+        with h5py.File(self.folder / "results.h5", "a") as file:
+            x, y = file["points/reference"][...].T / SPACING
+            file["steps/000001/displacement"][...] = 0.0
+            opening = np.where(y < 3.0, 0.5 * SPACING, 0.0)
+            file["steps/000001/displacement"][:, 0] = np.where(x > 5.0, opening, 0.0)
+            del file["case/as_resolved"]
+            file["case/as_resolved"] = (
+                f"[lattice]\nspacing = {SPACING}\nhorizon_ratio = 3.015\n"
+                f"[[crack]]\nfrom = [{5 * SPACING}, -1.0]\nto = [{5 * SPACING}, {3 * SPACING}]\n"
+            )
+        results = read_results_folder(self.folder)
+        step = results.step(1)
+        plate = deformed_plate(results, step, 1.0, step.damage)
+        cut = plate.cells.parted(0, 1)
+        self.assertEqual(cut.sum(), 3)
+        np.testing.assert_allclose(results.reference[cut, 0], 4.5 * SPACING)
+        at_cut = (y < 1.0) & ((np.abs(x - 4.5) < 0.1) | (np.abs(x - 5.5) < 0.1))
+        widths = np.ptp(plate.moved[at_cut][:, :, 0], axis=1)
+        np.testing.assert_allclose(widths, SPACING, rtol=1e-12)  # they have moved rigidly
+
+    def test_broken_bonds_part_cells_and_single_ones_do_not(self):
+        reference = lattice(8, 4)
+        number = {tuple(place): point for point, place in enumerate(np.rint(reference / SPACING - 0.5).astype(int))}
+        across = [(number[i, j], number[k, j]) for j in range(4) for i in (2, 3) for k in (4, 5) if k - i < 3]
+        for broken, parted in ((across, 4), ([pair for pair in across if pair[1] - pair[0] < 5], 0)):
+            cells = Cells(reference, SPACING)
+            separate(cells, reference, [], np.array(broken), reach=3)
+            self.assertEqual(cells.parted(0, 1).sum(), parted)
+            self.assertEqual(cells.parted(1, 1).sum(), 0)
+
+    def test_lines_that_meet_a_crack(self):
+        segment = np.array([[0.0, 0.0], [2.0, 0.0]])
+        lines = np.array([
+            [[1, -1], [1, 1]], [[2, -1], [2, 1]], [[2.001, -1], [2.001, 1]], [[1, 0], [1, 1]], [[1, 0.1], [1, 1]],
+            [[-1, 0], [0, 0]], [[-2, 0], [-1, 0]], [[0, 0.5], [1, 0.5]],
+        ], dtype=float)  # fmt: skip
+        expected = [True, True, False, True, False, True, False, False]
+        self.assertEqual(crosses(lines[:, 0], lines[:, 1], segment).tolist(), expected)
+        polygon = np.array([[0, 0, 1], [2, 0, 1], [2, 2, 1], [1, 0.5, 1], [0, 2, 1]], dtype=float)  # not convex
+        starts = np.array([[0.3, 0.5, 0], [1.0, 1.5, 0], [1.0, 0.2, 0], [0.3, 0.5, 1.2], [3, 0.5, 0]])
+        ends = starts + [0.0, 0.0, 1.5]
+        self.assertEqual(crosses(starts, ends, polygon).tolist(), [True, False, True, False, False])
+
+    def test_frames_are_spent_on_damage(self):
+        write_cracked_folder(self.folder, (30, 20), steps=40)
+        results = read_results_folder(self.folder)
+        frames = plot.chosen_frames(results)
+        self.assertTrue(3 <= len(frames) <= 6)
+        self.assertEqual(frames[-1], 40)
+        for frame in frames:
+            self.assertGreater(results.in_history(frame, "broken_bonds"), 0)
+        grown = [results.in_history(frame, "broken_bonds") for frame in frames]
+        # Six frames of a crack that runs evenly: between two lies at most a third of it.
+        self.assertLess(max(np.diff(grown)), grown[-1] / 3)
+
+    # ---- curves -----------------------------------------------------------------------------------
+
+    def test_opposite_reactions_are_drawn_once_and_zero_ones_not(self):
+        write_folder(self.folder, lattice(10, 10))
+        results = read_results_folder(self.folder)
+        count = len(results.history["step"])
+        results.history |= {f"reaction_{axis}:roller": [1e-9] * count for axis in "xyz"}
+        curves = reactions(results)
+        self.assertEqual([curve.name for curve in curves], ["left"])
+        self.assertEqual(curves[0].others, ["right opposite"])
+        self.assertGreater(curves[0].values[-1], 0.0)
+        results.case["support"] = [{"set": "right", "displacement": ["1e-5*load", "free"]}]
+        self.assertEqual([curve.name for curve in reactions(results)], ["right"])  # the one that is moved
+
+    def test_the_displacement_is_that_of_the_driven_support(self):
+        write_folder(self.folder, lattice(10, 10))
+        results = read_results_folder(self.folder)
+        results.case |= {
+            "support": [{"set": "left", "displacement": [0, 0]},
+                        {"set": "right", "displacement": ["1e-5*load", "free"]}],
+            "probe": [{"name": "waist", "set": "middle"}, {"name": "temperature", "set": "right", "field": "damage"}],
+        }  # fmt: skip
+        steps = len(results.history["step"])
+        results.history |= {"waist_x": [7.0] * steps, "waist_y": [8.0] * steps, "temperature": [9.0] * steps}
+        found = find_abscissa(results, reactions(results))
+        self.assertIn("“right” in x", found.label)
+        self.assertEqual(found.of_set, "right")
+        np.testing.assert_allclose(found.values[-1], 0.01 * 9.5 * SPACING, rtol=1e-12)
+        results.case["probe"].append({"name": "end", "set": "right"})
+        results.history |= {"end_x": [-1.0, -2.0, -3.0], "end_y": [50.0] * steps}
+        found = find_abscissa(results, reactions(results))
+        self.assertEqual(found.label, "probe end: mean displacement of “right” in −x")
+        self.assertEqual(found.values.tolist(), [1.0, 2.0, 3.0])
+
+    def test_dead_loads_are_drawn_over_the_loaded_set(self):
+        write_folder(self.folder, lattice(10, 10))
+        results = read_results_folder(self.folder)
+        steps = len(results.history["step"])
+        results.case |= {
+            "load": [{"set": "tip", "body_force": ["0", "-1e8*load"]}],
+            "probe": [{"name": "other", "set": "left"}, {"name": "tip", "set": "tip"}],
+        }
+        results.history |= {f"{name}_{axis}": [value] * steps for name, value in (("other", 9.0), ("tip", -1.0))
+                            for axis in "xy"}  # fmt: skip
+        self.assertIn("“tip” in −y", find_abscissa(results, reactions(results)).label)
+
+    def test_orders_are_those_of_the_table(self):
+        write_folder(self.folder, lattice(10, 10))
+        self.assertEqual(read_results_folder(self.folder).orders, {})
+        table = self.folder / "convergence.csv"
+        table.write_text("iteration,step_1,step_2,step_3\n0,1,1,1\n1,0.1,0.1,\nobserved_order,1.95,,1.97\n")
+        orders = read_results_folder(self.folder).orders
+        self.assertEqual(orders, {1: 1.95, 3: 1.97})
+        self.assertEqual(order_words(orders, 3), ["order 1.95 to 1.97 in 2 of 3 increments"])
+        self.assertEqual(order_words({}, 3), [])
+        table.write_text("iteration,step_1\n0,1\nobserved_order,\n")
+        self.assertEqual(read_results_folder(self.folder).orders, {})
+        self.plot()
+
+    def test_columns_that_are_new_change_nothing(self):
+        write_cracked_folder(self.folder, (20, 20), steps=6)
+        path = self.folder / "history.csv"
+        rows = list(csv.reader(path.read_text().splitlines()))
+        for row, cells in zip(rows, [["numerical_work", "settled", "words"]] + [["0.5", "1", "a word"]] * 6):
+            row[5:5] = cells
+        with open(path, "w", newline="") as file:
+            csv.writer(file).writerows(rows)
+        self.plot()
+        self.assert_pictures(*CRACKED)
+
+    def test_pieces_do_not_set_the_scale(self):
+        write_cracked_folder(self.folder, (20, 20), steps=6)
+        step = read_results_folder(self.folder).step(6)
+        held = np.linalg.norm(step.displacement[~step.floating], axis=1).max()
+        step.displacement[step.floating] += 1.0
+        values, (low, high), label = displacement_magnitude(step)
+        size = {"[µm]": 1e-6, "[mm]": 1e-3}[label.split()[-1]]
+        self.assertAlmostEqual(high * size, held, delta=1e-12 * held)
+        self.assertEqual(beyond(values, low, high), "max")  # and the colour bar says that there is more
 
     def test_solid(self):
         write_folder(self.folder, lattice(20, 5, 5))
         self.plot()
-        self.assert_pictures("deformed", "load_displacement", "convergence")
+        self.assert_pictures("deformed", "cut", "load_displacement", "convergence")
 
     def test_solid_that_deforms_visibly(self):
         for planes in (4, 5):  # a plane in the middle, or two beside it
@@ -378,20 +570,20 @@ class Pictures(unittest.TestCase):
                 folder, self.folder = self.folder, self.folder.with_name(f"planes{planes}")
                 write_folder(self.folder, lattice(12, 6, planes), strain=1.0)
                 self.plot()
-                self.assert_pictures("deformed", "lateral", "middle_plane", "load_displacement", "convergence")
+                self.assert_pictures("deformed", "cut", "lateral", "middle_plane", "load_displacement", "convergence")
                 self.folder = folder
 
     def test_damaged_solid(self):
         write_folder(self.folder, lattice(12, 6, 6), damaged=True)
         self.plot()
-        self.assert_pictures("deformed", "damage", "load_displacement", "convergence")
+        self.assert_pictures("deformed", "cut", "damage", "load_displacement", "convergence")
 
     def test_damaged_solid_with_a_floating_piece(self):
         write_folder(self.folder, lattice(12, 6, 6), damaged=True)
         with h5py.File(self.folder / "results.h5", "a") as file:
             file["steps/000003/fragment"] = (file["points/reference"][:, 0] > 0.008).astype(float)
         self.plot()
-        self.assert_pictures("deformed", "damage", "load_displacement", "convergence")
+        self.assert_pictures("deformed", "cut", "damage", "load_displacement", "convergence")
 
     def test_points_that_are_no_lattice(self):
         for dimension in (2, 3):
@@ -467,25 +659,167 @@ class Pictures(unittest.TestCase):
     def test_plots_folder_that_cannot_be_made_ends_with_code_2(self):
         write_folder(self.folder, lattice(5))
         (self.folder / "plots").write_text("a file")
-        self.plot(expected_code=2)
+        self.assertIn("not a folder", self.plot(expected_code=2))
+
+
+def link_in_a_circle(file):
+    del file["points"]
+    file["points"] = h5py.SoftLink("/points")
+
+
+def link_to_itself_outside(file):
+    del file["steps"]
+    file["steps"] = h5py.ExternalLink("results.h5", "/steps")
+
+
+def huge(path, dtype="f8"):
+    def change(file):
+        del file[path]
+        file.create_dataset(path, shape=(1_000_000_000,), dtype=dtype, chunks=(1024,))  # of some bytes on disk
+
+    return change
+
+
+def replaced(path, value):
+    def change(file):
+        del file[path]
+        file[path] = value
+
+    return change
+
+
+def values_elsewhere(file):
+    del file["points/volume"]
+    file.create_dataset("points/volume", (10,), "f8", external=[("pipe", 0, 80)])
+
+
+def values_of_another_dataset(file):
+    layout = h5py.VirtualLayout((100,), "f8")
+    layout[:] = h5py.VirtualSource("results.h5", "points/volume", (100,), "f8")  # itself
+    del file["points/volume"]
+    file.create_virtual_dataset("points/volume", layout)
+
+
+LAST = "steps/000003"
+# What is done to results.h5, and what the message must name.
+DAMAGE = {
+    "points that are linked to themselves": (link_in_a_circle, "/points is a link"),
+    "steps that are linked to themselves": (link_to_itself_outside, None),
+    "a billion points": (huge("points/volume"), "/points/volume claims"),
+    "a billion displacements": (huge(f"{LAST}/displacement"), f"/{LAST}/displacement claims"),
+    "a billion broken bonds": (lambda file: [huge_new(file, f"broken_bonds/{name}") for name in BROKEN_BONDS],
+                               "/broken_bonds/step claims"),
+    "values in a pipe": (values_elsewhere, "in other files"),
+    "values of nothing": (values_of_another_dataset, "in other files"),
+    "volumes that are words": (replaced("points/volume", "words"), "/points/volume holds no numbers"),
+    "points without volumes": (lambda file: file.__delitem__("points/volume"), "/points/volume is missing"),
+    "no points at all": (lambda file: file.__delitem__("points"), "/points is missing"),
+    "volumes that are a group": (lambda file: (file.__delitem__("points/volume"), file.create_group("points/volume")),
+                                 "/points/volume is no dataset"),
+    "positions that are not finite": (replaced("points/reference", np.full((100, 2), np.nan)), "not finite"),
+    "fewer positions": (replaced("points/reference", np.zeros((7, 2))), "/points has (7, 2)"),
+    "four dimensions": (replaced("points/reference", np.zeros((100, 4))), "/points has (100, 4)"),
+    "displacements of other points": (replaced(f"{LAST}/displacement", np.zeros((7, 2))), "has the shape (7, 2)"),
+    "damage that is words": (replaced(f"{LAST}/damage", "words"), f"/{LAST}/damage holds no numbers"),
+    "an empty damage": (replaced(f"{LAST}/damage", h5py.Empty("f8")), f"/{LAST}/damage is empty"),
+}  # fmt: skip
+
+
+def huge_new(file, path):
+    file.create_dataset(path, shape=(1_000_000_000,), dtype="i8", chunks=(1024,))
+
+
+class DamagedFolders(unittest.TestCase):
+    """Each is drawn by the program as it is run: it ends by itself, with code 2 and a sentence, or draws."""
+
+    def setUp(self):
+        temporary = tempfile.TemporaryDirectory(prefix="peristat_plot_test_")
+        self.addCleanup(temporary.cleanup)
+        self.folder = Path(temporary.name) / "results"
+
+    def plot(self, expected_code: int | None = 2) -> str:
+        command = [sys.executable, "-BEs", str(PLOTS / "plot.py"), str(self.folder)]
+        done = subprocess.run(command, capture_output=True, text=True, timeout=300)  # two seconds; an end by all means
+        said = done.stdout + done.stderr
+        self.assertNotIn("Traceback", said)
+        if expected_code is None:
+            self.assertIn(done.returncode, (0, 2), said)
+        else:
+            self.assertEqual(done.returncode, expected_code, said)
+        return said
+
+    def write(self):
+        write_folder(self.folder, lattice(10, 10))
+
+    def test_results_that_cannot_be(self):
+        for name, (change, words) in DAMAGE.items():
+            with self.subTest(name):
+                self.folder = self.folder.with_name(name.replace(" ", "_"))
+                self.write()
+                with h5py.File(self.folder / "results.h5", "a") as file:
+                    change(file)
+                said = self.plot(None if words is None else 2)
+                self.assertIn(words or "plot: ", said)
+
+    def test_results_that_are_no_file(self):
+        self.write()
+        results = self.folder / "results.h5"
+        results.unlink()
+        for make in (lambda: os.mkfifo(results), results.mkdir, lambda: results.symlink_to("/dev/zero"),
+                     lambda: results.symlink_to("results.h5")):  # fmt: skip
+            make()
+            self.plot()
+            results.rmdir() if results.is_dir() else results.unlink()
+
+    def test_tables_that_are_no_files(self):
+        for name in ("history.csv", "iterations.csv", "decisions.csv", "convergence.csv", "summary.json"):
+            with self.subTest(name):
+                self.folder = self.folder.with_name(name)
+                self.write()
+                (self.folder / name).unlink(missing_ok=True)
+                os.mkfifo(self.folder / name)
+                self.plot(0)
+
+    def test_truncated_and_overwritten_files(self):
+        self.write()
+        whole = (self.folder / "results.h5").read_bytes()
+        generator = np.random.default_rng(2)
+        for size in (0, 10, 100, 2000, len(whole) // 2, len(whole) - 100):
+            (self.folder / "results.h5").write_bytes(whole[:size])
+            self.plot()
+        for _ in range(12):
+            damaged = np.frombuffer(whole, dtype=np.uint8).copy()
+            damaged[generator.integers(0, len(whole), 40)] = generator.integers(0, 256, 40)
+            (self.folder / "results.h5").write_bytes(damaged.tobytes())
+            self.plot(None)
+
+    def test_tables_with_other_columns(self):
+        for content in ("", "a,b\n1,2\n", "step,load_factor\nx,y\n", "step,load_factor\nnan,inf\n", "\0\0,\n\0",
+                        "step,load_factor,reaction_x:left\n1,1,oops\n", '"' + "x" * 200_000 + '"\n1\n',
+                        "step,load_factor,mode,broken_bonds,max_damage\n1,1,relaxation,x,1\n"):  # fmt: skip
+            with self.subTest(content[:40]):
+                self.folder = self.folder.with_name(f"table{abs(hash(content))}")
+                self.write()
+                for name in ("history.csv", "iterations.csv", "decisions.csv", "convergence.csv", "broken_bonds.csv"):
+                    (self.folder / name).write_text(content)
+                self.plot(0)
+
+    def test_summaries_and_cases_that_cannot_be(self):
+        for summary, case in (("[" * 100_000, "a = " + "[" * 100_000), ('{"status": [1]}', "lattice = 3\nprobe = 1"),
+                              ("[1, 2]", "support = [1]\ncrack = [{from = 1}]\nload = {}")):  # fmt: skip
+            with self.subTest(case[:20]):
+                self.folder = self.folder.with_name(f"case{len(case)}")
+                self.write()
+                (self.folder / "summary.json").write_text(summary)
+                with h5py.File(self.folder / "results.h5", "a") as file:
+                    replaced("case/as_resolved", case)(file)
+                self.plot(0)
 
 
 class Parts(unittest.TestCase):
     def test_round_factor_is_the_largest_round_number_below(self):
         wanted = [0.3, 1.0, 1.9, 2.0, 4.9, 7.0, 10.0, 99.0, 2345.0, np.inf]
         self.assertEqual([round_factor(value) for value in wanted], [1, 1, 1, 2, 2, 5, 10, 50, 2000, 1])
-
-    def test_observed_order_is_that_of_the_sequence(self):
-        for order in (1.0, 1.5, 2.0):
-            residuals = [0.1]
-            while residuals[-1] > 1e-12 and len(residuals) < 30:
-                residuals.append(0.3 * residuals[-1] ** order)
-            self.assertAlmostEqual(observed_order(np.array(residuals)), order, places=6)
-
-    def test_observed_order_ignores_round_off_and_zero(self):
-        self.assertAlmostEqual(observed_order(np.array([1e-1, 1e-2, 1e-4, 1e-8, 3e-12, 0.0])), 2.0, places=12)
-        self.assertIsNone(observed_order(np.array([1.0, 1e-12, 1e-13])))
-        self.assertIsNone(observed_order(np.array([1.0, 1.0, 1.0])))
 
     def test_corners_follow_an_affine_deformation_exactly(self):
         generator = np.random.default_rng(3)

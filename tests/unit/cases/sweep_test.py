@@ -21,7 +21,7 @@ def body(reference, layers=None) -> ResultsFolder:
     layers = layers or {}
     case = {"lattice": {"layer": [{"name": name} for name in layers]}}
     return ResultsFolder(Path(), "", np.asarray(reference, dtype=float), np.ones(len(reference)), 1.0, layers,
-                         [], {}, {}, {}, {}, case)  # fmt: skip
+                         [], {}, {}, {}, {}, {}, case)  # fmt: skip
 
 
 def lattice(*counts: int) -> np.ndarray:

@@ -12,6 +12,12 @@
 #include "tests/bodies.hpp"
 
 namespace peristat {
+
+/// Found by argument: in the namespace of the method.
+void PrintTo(KrylovMethod method, std::ostream* out) {
+  *out << std::vector<std::string>{"ConjugateGradients", "Minres", "Gmres"}[std::size_t(method)];
+}
+
 namespace {
 
 using Eigen::MatrixXd;
@@ -67,8 +73,7 @@ double true_residual(const MatrixXd& matrix, const VectorXd& x) {
 class Krylov : public testing::TestWithParam<KrylovMethod> {};
 
 std::string name_of(const testing::TestParamInfo<KrylovMethod>& tested) {
-  const std::vector<std::string> names{"ConjugateGradients", "Minres", "Gmres"};
-  return names[std::size_t(tested.param)];
+  return testing::PrintToString(tested.param);
 }
 
 INSTANTIATE_TEST_SUITE_P(Methods, Krylov,

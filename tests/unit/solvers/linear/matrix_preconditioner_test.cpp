@@ -16,6 +16,12 @@
 #include "tests/bodies.hpp"
 
 namespace peristat {
+
+/// Found by argument: in the namespace of the kind.
+void PrintTo(MatrixPreconditionerKind kind, std::ostream* out) {
+  *out << std::vector<std::string>{"Riluk", "Chebyshev", "Multigrid"}[std::size_t(kind)];
+}
+
 namespace {
 
 using Kind = MatrixPreconditionerKind;
@@ -123,6 +129,10 @@ const System& system_of(int dimension, Support support) {
   return support == Support::clamped ? cube : rolling_cube;
 }
 
+void PrintTo(Support support, std::ostream* out) {
+  *out << (support == Support::clamped ? "Clamped" : "Roller");
+}
+
 class MatrixPreconditioners : public testing::TestWithParam<std::tuple<Kind, int, Support>> {
  protected:
   [[nodiscard]] static Kind kind() { return std::get<0>(GetParam()); }
@@ -133,9 +143,8 @@ class MatrixPreconditioners : public testing::TestWithParam<std::tuple<Kind, int
 
 std::string name_of(const testing::TestParamInfo<std::tuple<Kind, int, Support>>& tested) {
   const auto [kind, dimension, support] = tested.param;
-  const std::vector<std::string> names{"Riluk", "Chebyshev", "Multigrid"};
-  return names[std::size_t(kind)] + std::to_string(dimension) + "D" +
-         (support == Support::clamped ? "Clamped" : "Roller");
+  return testing::PrintToString(kind) + std::to_string(dimension) + "D" +
+         testing::PrintToString(support);
 }
 
 INSTANTIATE_TEST_SUITE_P(

@@ -91,6 +91,10 @@ struct Setting {
   double horizon_ratio, thickness;
 };
 
+void PrintTo(const Setting& setting, std::ostream* out) {
+  *out << setting.dimension << "D, horizon ratio " << setting.horizon_ratio;
+}
+
 class LatticeStiffness : public ::testing::TestWithParam<Setting> {};
 
 TEST_P(LatticeStiffness, IsTheSecondDifferenceOfTheEnergyDensity) {
@@ -132,7 +136,12 @@ TEST_P(LatticeStiffness, IsTheSecondDifferenceOfTheEnergyDensity) {
 
 INSTANTIATE_TEST_SUITE_P(Lattices, LatticeStiffness,
                          ::testing::Values(Setting{2, 2.015, 1.0}, Setting{2, 3.015, 0.3},
-                                           Setting{3, 1.5, 1.0}, Setting{3, 2.015, 1.0}));
+                                           Setting{3, 1.5, 1.0}, Setting{3, 2.015, 1.0}),
+                         [](const auto& tested) {
+                           const auto [dimension, ratio, thickness] = tested.param;
+                           return std::to_string(dimension) + "DRatio" +
+                                  std::to_string(std::lround(1000.0 * ratio));
+                         });
 
 /// Largest relative deviation of the isotropic parts from the continuum's, per constant.
 std::array<double, 3> deviation(int dimension, double ratio) {

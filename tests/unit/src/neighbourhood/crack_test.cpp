@@ -417,17 +417,19 @@ template <class IsCut>
 Offset expect_cut(const BoxBody& body, const std::vector<Crack>& cracks, const IsCut& is_cut) {
   const Bonds& before = body.model.bonds;
   std::vector<Kept> expected, found;
+  std::vector<BondEnds> expected_ends;
   std::vector<double> expected_removed(body.points.volume.size(), 0.0);
   for_each_bond(before, [&](Index i, Index j, Offset bond) {
     if (is_cut(body.points.position(i), body.points.position(j))) {
       expected_removed[i] += before.weight(bond);
       expected_removed[j] += before.weight(bond);
+      expected_ends.push_back({i, j});
     } else {
       expected.push_back({i, j, before.inverse_length(bond), before.weight(bond)});
     }
   });
   Bonds after = before;
-  const std::vector<double> removed = cut_bonds(after, body.points, cracks);
+  const auto [removed, removed_ends] = cut_bonds(after, body.points, cracks);
   for_each_bond(after, [&](Index i, Index j, Offset bond) {
     found.push_back({i, j, after.inverse_length(bond), after.weight(bond)});
   });
@@ -436,6 +438,7 @@ Offset expect_cut(const BoxBody& body, const std::vector<Crack>& cracks, const I
   EXPECT_EQ(after.kind.size(), after.partner.size());
   EXPECT_EQ(found, expected);
   EXPECT_EQ(removed, expected_removed);
+  EXPECT_EQ(removed_ends, expected_ends);
   const auto weight_of = [](const Bonds& bonds) {
     double sum = 0.0;
     for (const BondKind& kind : tests::kinds(bonds)) sum += kind.weight;

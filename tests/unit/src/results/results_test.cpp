@@ -367,9 +367,26 @@ TEST_F(ResultsTest, XdmfRefersToDatasetsOfItsDimensions) {
         std::istringstream text((*i)[1]);
         std::vector<hsize_t> dimensions;
         for (hsize_t extent; text >> extent;) dimensions.push_back(extent);
-        EXPECT_EQ(file.shape((*i)[2]), dimensions) << (*i)[2];
+        const std::string dataset = std::regex_replace((*i)[2].str(), std::regex("&quot;"), "\"");
+        EXPECT_EQ(file.shape(dataset), dimensions) << dataset;
       }
-      EXPECT_EQ(items, 2 * 6);
+      // number, geometry, four fields, volume and the sets
+      const auto sets = example_points(dimension).sets;
+      EXPECT_EQ(items, 2 * int(6 + 1 + sets.size()));
+      for (const auto& [name, members] : sets) {
+        const std::string dataset = "/points/sets/" + name;
+        const std::string told = std::regex_replace(name, std::regex("\""), "&quot;");
+        EXPECT_NE(xdmf.find("Name=\"set_" + told + "\""), std::string::npos);
+        const std::vector<double> flags = file.numbers(dataset);
+        EXPECT_EQ(std::accumulate(flags.begin(), flags.end(), 0.0), double(members.size()));
+        for (const Index point : members) EXPECT_EQ(flags.at(std::size_t(point)), 1.0);
+      }
+      EXPECT_NE(xdmf.find("<Attribute Name=\"volume\""), std::string::npos);
+      const std::regex load(
+          "\"load_factor\" AttributeType=\"Scalar\" Center=\"Grid\">[^>]+>([^<]+)<");
+      std::smatch first;
+      ASSERT_TRUE(std::regex_search(xdmf, first, load));
+      EXPECT_EQ(std::stod(first[1]), file.number_attribute("/steps/000001", "load_factor"));
       EXPECT_EQ(xdmf.find("peristat"), std::string::npos);
       if (dimension == 3) continue;
       const std::vector<double> stored = ExampleFields(2, dimension).displacement;

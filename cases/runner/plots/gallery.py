@@ -1,0 +1,91 @@
+"""The folder of pictures: what is written there, and what may be removed.
+
+`plots/.pictures` lists the pictures that were drawn, one name a line. Only these are ever removed, by the
+next drawing and by the next run. Nothing is followed that is a link: pictures go into the folder itself.
+"""
+
+import os
+import re
+import stat
+from pathlib import Path
+
+LIST = ".pictures"
+PICTURE_NAME = re.compile(r"[A-Za-z0-9_]+\.(png|pdf|svg|gif)")
+MOST_BYTES = 100_000  # of the list
+
+
+class NoPlace(Exception):
+    """`plots` is something else than a folder."""
+
+
+class Gallery:
+    """The folder `plots` of a results folder, made if there is none.
+
+    Raises NoPlace if the folder or its list is a link or something else, OSError if it can't be written.
+    """
+
+    def __init__(self, results: Path):
+        self.path = results / "plots"
+        try:
+            os.mkdir(self.path)
+        except FileExistsError:
+            pass
+        self._require(self.path, stat.S_ISDIR, "a folder")
+        self._folder = os.open(self.path, os.O_RDONLY | os.O_DIRECTORY | os.O_NOFOLLOW)
+        if os.path.lexists(self.path / LIST):
+            self._require(self.path / LIST, stat.S_ISREG, "a file")
+        self.names = self._listed()
+
+    @staticmethod
+    def _require(path: Path, is_kind, kind: str) -> None:
+        status = os.lstat(path)
+        if stat.S_ISLNK(status.st_mode):
+            raise NoPlace(f"{path} is a link, which is not followed; remove it to have pictures")
+        if not is_kind(status.st_mode):
+            raise NoPlace(f"{path} is not {kind}; remove it to have pictures")
+
+    def _listed(self) -> list[str]:
+        try:
+            file = os.open(LIST, os.O_RDONLY | os.O_NOFOLLOW, dir_fd=self._folder)
+        except FileNotFoundError:
+            return []
+        with os.fdopen(file, "rb") as lines:
+            names = lines.read(MOST_BYTES).decode(errors="replace").splitlines()
+        return list(dict.fromkeys(name for name in names if PICTURE_NAME.fullmatch(name)))
+
+    def remove_earlier(self, endings: tuple[str, ...]) -> None:
+        """Removes the pictures of the list that end like this; not those that have become links."""
+        kept = []
+        for name in self.names:
+            if not name.endswith(endings):
+                kept.append(name)
+                continue
+            try:
+                if stat.S_ISREG(os.stat(name, dir_fd=self._folder, follow_symlinks=False).st_mode):
+                    os.unlink(name, dir_fd=self._folder)
+            except FileNotFoundError:
+                pass
+        self.names = kept
+        self._write(LIST, self._text())
+
+    def add(self, name: str, content: bytes) -> None:
+        """Writes a picture in place of one of that name, and lists it."""
+        if name not in self.names:  # first: what is drawn is always on the list
+            self.names.append(name)
+            self._write(LIST, self._text())
+        self._write(name, content)
+
+    def _text(self) -> bytes:
+        return "".join(name + "\n" for name in self.names).encode()
+
+    def _write(self, name: str, content: bytes) -> None:
+        """A complete new file in one rename, which replaces a link and leaves what it leads to alone."""
+        unfinished = f".{name}.tmp"
+        try:
+            os.unlink(unfinished, dir_fd=self._folder)
+        except FileNotFoundError:
+            pass
+        flags = os.O_WRONLY | os.O_CREAT | os.O_EXCL | os.O_NOFOLLOW
+        with os.fdopen(os.open(unfinished, flags, 0o666, dir_fd=self._folder), "wb") as file:
+            file.write(content)
+        os.replace(unfinished, name, src_dir_fd=self._folder, dst_dir_fd=self._folder)
