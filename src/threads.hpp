@@ -13,8 +13,8 @@ class ThreadError : public MachineError {
  public:
   ThreadError(int granted, int asked_for)
       : MachineError("the system runs " + std::to_string(granted) + " of " +
-                           std::to_string(asked_for) +
-                           " threads; ask for fewer (--threads, OMP_NUM_THREADS)") {}
+                     std::to_string(asked_for) +
+                     " threads; ask for fewer (--threads, OMP_NUM_THREADS)") {}
 };
 
 /// Runs body(thread) on exactly so many threads, each with a share of the work that belongs to its

@@ -143,7 +143,7 @@ class Supports(WrongAnswers):
         case = self.write(text)
         ended = self.run_case(case, "loading.steps=10", "loading.adaptive=false")
         self.assertEqual(ended.code, 3, ended.said)
-        self.assertIn("case.toml:19:17", ended.said)
+        self.assertIn("case.toml:21:17", ended.said)
         self.assertIn("support[1].displacement[0]", ended.said)
         self.assertEqual(ended.summary["status"], "not_converged")
         self.assertEqual(ended.summary["steps"], 2)

@@ -550,15 +550,8 @@ TEST(LoadStepping, CutsStepsInWhichTooManyBondsBreak) {
   // right: they break column by column, at loads that are close where columns of bonds are equal.
   // Nothing is free to jump as they do.
   const std::vector<SupportSpecification> supports{support("all", "0.04*load*x*x", "0")};
-  LoadSteppingOptions options = steps(20);
+  LoadSteppingOptions options = steps(4);
   options.smallest_step = 1e-3;
-  Strip free(Strip::Middle::notched, supports);
-  const Followed unlimited = follow(free, options);
-  ASSERT_EQ(unlimited.result.outcome, Outcome::converged);
-  EXPECT_EQ(count_of(unlimited, "cut"), 0);
-  const std::vector<Index> most = broken_in_steps(unlimited);
-  ASSERT_GT(*std::max_element(most.begin(), most.end()), 40);
-
   for (const int limit : {40, 1}) {
     SCOPED_TRACE(limit);
     Strip strip(Strip::Middle::notched, supports);
@@ -577,7 +570,6 @@ TEST(LoadStepping, CutsStepsInWhichTooManyBondsBreak) {
     EXPECT_GE(cuts, 1);
     if (limit == 40) {
       EXPECT_EQ(followed.result.outcome, Outcome::converged);
-      EXPECT_GT(followed.steps.size(), unlimited.steps.size());
       EXPECT_GT(followed.steps.back().broken_bonds, limit);
     } else {
       // The bonds of a column break at the same load, however small the step.
