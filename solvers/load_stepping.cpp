@@ -643,11 +643,21 @@ class LoadPath {
     pieces_ = find_fragments(assembler.points(), assembler.model().bonds,
                              broken_bonds(assembler.model(), assembler.history()),
                              conditions_.prescribed(), result_.state.displacement);
-    if (options_.fragments == FragmentRemedy::remove) {
-      const int d = assembler.points().dimension;
-      for (std::size_t dof = 0; dof < pieces_.pinned.size(); ++dof) {
-        pieces_.pinned[dof] |= pieces_.piece[dof / std::size_t(d)] > 0;
-      }
+    if (options_.fragments == FragmentRemedy::remove) remove_pieces();
+  }
+
+  /// Takes floating pieces out of the equations. One that a support still moves goes with it: only
+  /// what is missing is pinned there.
+  void remove_pieces() {
+    const auto d = std::size_t(main_.assembler.points().dimension);
+    const std::vector<char>& prescribed = conditions_.prescribed();
+    std::vector<char> removed(std::size_t(pieces_.count) + 1, 1);
+    removed[0] = 0;  // the pieces that are held
+    for (std::size_t dof = 0; dof < prescribed.size(); ++dof) {
+      if (prescribed[dof]) removed[std::size_t(pieces_.piece[dof / d])] = 0;
+    }
+    for (std::size_t dof = 0; dof < prescribed.size(); ++dof) {
+      pieces_.pinned[dof] |= removed[std::size_t(pieces_.piece[dof / d])];
     }
   }
 
