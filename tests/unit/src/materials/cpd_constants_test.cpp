@@ -138,9 +138,8 @@ INSTANTIATE_TEST_SUITE_P(Lattices, LatticeStiffness,
                          ::testing::Values(Setting{2, 2.015, 1.0}, Setting{2, 3.015, 0.3},
                                            Setting{3, 1.5, 1.0}, Setting{3, 2.015, 1.0}),
                          [](const auto& tested) {
-                           const auto [dimension, ratio, thickness] = tested.param;
-                           return std::to_string(dimension) + "DRatio" +
-                                  std::to_string(std::lround(1000.0 * ratio));
+                           return std::to_string(tested.param.dimension) + "DRatio" +
+                                  std::to_string(std::lround(1000.0 * tested.param.horizon_ratio));
                          });
 
 /// Largest relative deviation of the isotropic parts from the continuum's, per constant.
