@@ -95,6 +95,11 @@ void PrintTo(const Setting& setting, std::ostream* out) {
   *out << setting.dimension << "D, horizon ratio " << setting.horizon_ratio;
 }
 
+std::string lattice_name(const ::testing::TestParamInfo<Setting>& tested) {
+  return std::to_string(tested.param.dimension) + "DRatio" +
+         std::to_string(std::lround(1000.0 * tested.param.horizon_ratio));
+}
+
 class LatticeStiffness : public ::testing::TestWithParam<Setting> {};
 
 TEST_P(LatticeStiffness, IsTheSecondDifferenceOfTheEnergyDensity) {
