@@ -55,6 +55,7 @@ def settings_of(mode, problem):
         return relaxed
     if problem.iterations is None:
         return [*relaxed, "loading.steps=1", "relaxation.load=fixed", "relaxation.ramp=1",
+                "relaxation.damping=adaptive",
                 "relaxation.displacement_tolerance=1e-9", "solver.relative_tolerance=1e-14"]  # fmt: skip
     return [*relaxed, "relaxation.load=moving", f"relaxation.iterations={problem.iterations}",
             f"relaxation.steps={TOLD_STATES}"]  # fmt: skip

@@ -69,7 +69,7 @@ class Messages(unittest.TestCase):
 
     def write(self, text, name="case.toml"):
         path = self.folder / name
-        path.write_text(text)
+        path.write_text(text.replace("LIFT", "1e-6"))
         return path
 
     def assert_refused(self, run, *words):

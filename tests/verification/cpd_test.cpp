@@ -162,7 +162,7 @@ double measured_poisson_ratio(const SolvedCase& solved) {
   EXPECT_EQ(probe.name, "poisson_ratio");
   StepFields fields;
   fields.displacement = &solved.result.state.displacement;
-  return probe_values(probe, solved.body->points, fields).at(0);
+  return probe_values(probe, solved.body->points, fields, {}).at(0);
 }
 
 double axis_poisson_ratio(const SolvedCase& solved) {

@@ -109,7 +109,16 @@ def cells_of(results, step, limit: int, size: float, *fields: np.ndarray):
     is_whole = len(reference) == len(results.reference) and results.tells_broken_bonds
     ends, steps = results.broken_bonds() if is_whole else (None, None)
     separate(cells, reference, results.cracks, ends[steps <= step.number] if is_whole else None, results.reach)
+    if is_whole:
+        _separate_pieces(cells, np.rint(step.fragment))
     loose = damage > (LOST_DAMAGE if is_whole else LOOSE_DAMAGE)
     if floating.any() and not is_whole:
         loose |= at_the_rim(cells, floating)
     return cells, reference / size, displacement / size, floating, loose, *fields
+
+
+def _separate_pieces(cells, piece: np.ndarray) -> None:
+    """Parts cells of different pieces: between these there is no bond at all."""
+    for axis in range(cells.dimension):
+        other = cells.neighbours(axis, 1)
+        cells.part(axis, np.flatnonzero((other >= 0) & (piece != piece[other])))

@@ -95,6 +95,11 @@ void PrintTo(const Setting& setting, std::ostream* out) {
   *out << setting.dimension << "D, horizon ratio " << setting.horizon_ratio;
 }
 
+std::string lattice_name(const ::testing::TestParamInfo<Setting>& tested) {
+  return std::to_string(tested.param.dimension) + "DRatio" +
+         std::to_string(std::lround(1000.0 * tested.param.horizon_ratio));
+}
+
 class LatticeStiffness : public ::testing::TestWithParam<Setting> {};
 
 TEST_P(LatticeStiffness, IsTheSecondDifferenceOfTheEnergyDensity) {
@@ -137,11 +142,7 @@ TEST_P(LatticeStiffness, IsTheSecondDifferenceOfTheEnergyDensity) {
 INSTANTIATE_TEST_SUITE_P(Lattices, LatticeStiffness,
                          ::testing::Values(Setting{2, 2.015, 1.0}, Setting{2, 3.015, 0.3},
                                            Setting{3, 1.5, 1.0}, Setting{3, 2.015, 1.0}),
-                         [](const auto& tested) {
-                           const auto [dimension, ratio, thickness] = tested.param;
-                           return std::to_string(dimension) + "DRatio" +
-                                  std::to_string(std::lround(1000.0 * ratio));
-                         });
+                         lattice_name);
 
 /// Largest relative deviation of the isotropic parts from the continuum's, per constant.
 std::array<double, 3> deviation(int dimension, double ratio) {

@@ -1,0 +1,79 @@
+#!/usr/bin/env python3
+"""Fracture on one, two and three threads: the same bonds break in the same steps, after the same
+counts of iterations.
+
+    /usr/bin/python3 benchmarks/thread_independence.py [--threads 1,2,3] [CASE[:key=value...]...]
+
+Prints a row per case and number of threads; ends with 1 if they differ. Without cases the four
+problems of fracture as they are shipped.
+"""
+
+import argparse
+import csv
+import json
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+ROOT = pathlib.Path(__file__).resolve().parents[1]
+PROGRAM = os.environ.get("PERISTAT_PROGRAM", str(ROOT / "build/release/peristat"))
+CASES = ["plate_with_hole/square", "plate_with_hole/rectangle", "three_point_bending/notched",
+         "four_holes/tension"]  # fmt: skip
+COUNTS = ["step", "mode", "newton_iterations", "relaxation_iterations", "broken_bonds"]
+
+
+def rows(file):
+    with open(file, newline="") as table:
+        return list(csv.DictReader(table))
+
+
+def run(case, settings, threads, folder):
+    """@return counts of each step, the bonds that break in each, and what is printed of them"""
+    command = [PROGRAM, "run", str(ROOT / "cases" / f"{case}.toml"), "--quiet", "--output", folder]
+    for setting in settings:
+        command += ["--set", setting]
+    subprocess.run(command + ["--threads", str(threads)], check=True)
+    history = rows(f"{folder}/history.csv")
+    counts = [[row[name] for name in COUNTS] for row in history]
+    bonds = [(row["step"], row["first_point"], row["second_point"])
+             for row in rows(f"{folder}/broken_bonds.csv")]  # fmt: skip
+    summary = json.loads(pathlib.Path(f"{folder}/summary.json").read_text())
+    broken = [row for row in history if int(row["broken_bonds"]) > 0]
+    first = f"{broken[0]['broken_bonds']} at {float(broken[0]['load_factor']):.4f}" if broken else "none"
+    told = (f"| {case} | {threads} | {summary['steps']} | {summary['newton_iterations']} "
+            f"| {summary['relaxation_iterations']} | {first} | {summary['broken_bonds']} |")  # fmt: skip
+    return counts, bonds, told
+
+
+def compare(case, settings, threads):
+    """@return whether runs on all numbers of threads are the same"""
+    found = []
+    for count in threads:
+        with tempfile.TemporaryDirectory(prefix="peristat_threads_") as folder:
+            *result, told = run(case, settings, count, f"{folder}/results")
+        print(told, flush=True)
+        found.append(result)
+    return all(result == found[0] for result in found)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
+    parser.add_argument("--threads", default="1,2,3")
+    parser.add_argument("cases", nargs="*", default=CASES, metavar="CASE[:key=value...]")
+    asked = parser.parse_args()
+    threads = [int(count) for count in asked.threads.split(",")]
+    print("| case | threads | steps | Newton iterations | relaxation iterations | first broken bonds "
+          "| broken bonds |\n|---|---|---|---|---|---|---|")  # fmt: skip
+    same = True
+    for entry in asked.cases:
+        case, *settings = entry.split(":")
+        if not compare(case, settings, threads):
+            print(f"{case}: the runs differ", file=sys.stderr)
+            same = False
+    return 0 if same else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,36 @@
+"""Cracks take the same path, bond by bond, on any number of threads."""
+
+import os
+import pathlib
+import subprocess
+import sys
+import unittest
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+
+
+class ThreadIndependence(unittest.TestCase):
+    def told(self, *cases):
+        process = subprocess.run(
+            [sys.executable, "-BEs", str(ROOT / "benchmarks/thread_independence.py"), *cases],
+            capture_output=True, text=True, env=dict(os.environ))  # fmt: skip
+        self.assertEqual(process.returncode, 0, process.stdout + process.stderr)
+        return [[cell.strip() for cell in line.strip("|").split("|")]
+                for line in process.stdout.splitlines()[2:]]  # fmt: skip
+
+    def test_square_breaks_sixteen_bonds_first(self):
+        # What a relaxation without inertia does, which cannot jump a barrier.
+        for row in self.told("plate_with_hole/square"):
+            self.assertEqual(row[5].split(" at ")[0], "16")
+            self.assertAlmostEqual(float(row[5].split(" at ")[1]), 0.5575, delta=0.003)
+
+    def test_coarser_plates_break_the_same_bonds_on_any_number_of_threads(self):
+        # The problems as they are shipped take minutes: benchmarks/thread_independence.py.
+        for row in self.told("plate_with_hole/rectangle:lattice.spacing=2e-3",
+                             "three_point_bending/notched:lattice.spacing=2.4e-3",
+                             "four_holes/tension:lattice.spacing=2e-3"):  # fmt: skip
+            self.assertGreater(int(row[6]), 20)
+
+
+if __name__ == "__main__":
+    unittest.main()
