@@ -32,13 +32,15 @@ constexpr int most_finishing_iterations = 8;
 /// to the onset of damage.
 constexpr double share_to_onset = 0.98;
 
-/// Forces that do work on the body: loads, and on degrees of freedom without an equation what holds
-/// them, which is dE/dx there.
-std::vector<double> working_force(const FreeDofs& free, const std::vector<double>& external_force,
+/// Forces that do work on the body: loads, and on prescribed degrees of freedom what holds them,
+/// which is dE/dx there. Pins of fragments do none: they don't move, and when they are taken away
+/// nothing follows them.
+std::vector<double> working_force(const std::vector<char>& prescribed,
+                                  const std::vector<double>& external_force,
                                   const std::vector<double>& gradient) {
   std::vector<double> force = external_force;
   for (std::size_t dof = 0; dof < force.size(); ++dof) {
-    if (free.equation[dof] == FreeDofs::none) force[dof] = gradient[dof];
+    if (prescribed[dof]) force[dof] = gradient[dof];
   }
   return force;
 }
@@ -158,7 +160,7 @@ class LoadPath {
     std::vector<double> gradient(dofs), external_force(dofs);
     conditions.external_force(0.0, external_force);
     const Stored reference = assembler().gradient(result_.state.displacement, gradient);
-    force_ = working_force(*free_, external_force, gradient);
+    force_ = working_force(conditions_.prescribed(), external_force, gradient);
     // Of a body that is not free of stress in the reference.
     ledger_.external_work = ledger_.stored = reference.energy;
   }
@@ -357,7 +359,8 @@ class LoadPath {
       return stop(std::move(attempt), 0.0, reason);
     }
     result_.state.displacement = attempt.state.displacement;
-    force_ = working_force(*free_, attempt.external_force, attempt.state.gradient);
+    force_ =
+        working_force(conditions_.prescribed(), attempt.external_force, attempt.state.gradient);
     ledger_ = {};
     ledger_.external_work = ledger_.stored = attempt.state.stored_energy;
     return true;
@@ -563,7 +566,8 @@ class LoadPath {
     const DamageState damaged = assess_damage(assembler.model(), assembler.history(), {}, damage);
     found.record.broken_bonds = damaged.broken_bonds;
     const double work = trapezoidal_work(
-        force_, working_force(*free_, attempt.external_force, attempt.state.gradient),
+        force_,
+        working_force(conditions_.prescribed(), attempt.external_force, attempt.state.gradient),
         result_.state.displacement, attempt.state.displacement);
     found.ledger = ledger_;
     found.ledger.stored = attempt.state.stored_energy;
@@ -605,7 +609,8 @@ class LoadPath {
     result_.state = {attempt.state.displacement, attempt.load_factor};
     ++result_.steps;
     is_near_onset_ = is_near_onset_ && !relaxes_;
-    force_ = working_force(*free_, attempt.external_force, attempt.state.gradient);
+    force_ =
+        working_force(conditions_.prescribed(), attempt.external_force, attempt.state.gradient);
     ledger_ = found.ledger;
     released_energy_ += found.released;
     if (found.growth.breaking > 0) find_pieces();
@@ -643,11 +648,21 @@ class LoadPath {
     pieces_ = find_fragments(assembler.points(), assembler.model().bonds,
                              broken_bonds(assembler.model(), assembler.history()),
                              conditions_.prescribed(), result_.state.displacement);
-    if (options_.fragments == FragmentRemedy::remove) {
-      const int d = assembler.points().dimension;
-      for (std::size_t dof = 0; dof < pieces_.pinned.size(); ++dof) {
-        pieces_.pinned[dof] |= pieces_.piece[dof / std::size_t(d)] > 0;
-      }
+    if (options_.fragments == FragmentRemedy::remove) remove_pieces();
+  }
+
+  /// Takes floating pieces out of the equations. One that a support still moves goes with it: only
+  /// what is missing is pinned there.
+  void remove_pieces() {
+    const auto d = std::size_t(main_.assembler.points().dimension);
+    const std::vector<char>& prescribed = conditions_.prescribed();
+    std::vector<char> removed(std::size_t(pieces_.count) + 1, 1);
+    removed[0] = 0;  // the pieces that are held
+    for (std::size_t dof = 0; dof < prescribed.size(); ++dof) {
+      if (prescribed[dof]) removed[std::size_t(pieces_.piece[dof / d])] = 0;
+    }
+    for (std::size_t dof = 0; dof < prescribed.size(); ++dof) {
+      pieces_.pinned[dof] |= removed[std::size_t(pieces_.piece[dof / d])];
     }
   }
 

@@ -151,7 +151,13 @@ NewtonResult newton(const EquilibriumProblem& problem, LinearSolver& solver,
   // Right after the jump bonds beside the supports are stretched as no equilibrium will ask for.
   // Where they may break, nothing would be left to measure the residual against, and the search
   // would begin in a torn body: damage is held until the predictor has spread the jump.
-  std::optional<DamageHold> hold(std::in_place, problem.assembler);
+  std::optional<DamageHold> hold;
+  if (load_factor != from.load_factor) hold.emplace(problem.assembler);
+  const auto release = [&] {
+    if (!hold) return;
+    hold.reset();
+    if (!problem.assembler.holds_damage()) evaluate(problem, external_force, current);
+  };
   problem.conditions.prescribe(load_factor, current.displacement);
   evaluate(problem, external_force, current);
   const double scale = options.scale > 0.0
@@ -185,7 +191,10 @@ NewtonResult newton(const EquilibriumProblem& problem, LinearSolver& solver,
     result.outcome = Outcome::interrupted;
     return result;
   }
-  if (converged()) return result;
+  if (converged()) {  // all that moves is prescribed
+    release();
+    if (converged()) return result;
+  }
 
   Trial next;
   Linearisation linearisation(problem, solver, tangent, external_force);
@@ -251,10 +260,7 @@ NewtonResult newton(const EquilibriumProblem& problem, LinearSolver& solver,
     }
     if (result.outcome != Outcome::converged) break;
     current = std::exchange(next, {});
-    if (hold) {
-      hold.reset();
-      if (!problem.assembler.holds_damage()) evaluate(problem, external_force, current);
-    }
+    release();
     if (row.projection > 0.0) last_projection = row.projection;
     result.iterations = iteration;
     row.step_length = search.step_length;

@@ -11,6 +11,7 @@
 #include "cases/runner/cpd_model.hpp"
 #include "src/conditions/fragments.hpp"
 #include "src/input_error.hpp"
+#include "src/neighbourhood/bulk_neighbourhood.hpp"
 #include "src/neighbourhood/horizon.hpp"
 #include "src/number_text.hpp"
 #include "src/points/point_file.hpp"
@@ -42,12 +43,26 @@ auto errors_in_table(const std::string& table, const Make& make) {
 
 const Lattice* lattice_of(const Case& from) { return std::get_if<Lattice>(&from.body); }
 
+/// Refuses a horizon whose neighbourhood in the bulk takes minutes to sum, however small the body.
+void require_summable(const Case& from, const std::string& key, double value, double ratio) {
+  const bool counts_pairs = from.material.model == MaterialModel::cpd;
+  const double largest = counts_pairs          ? largest_ratio_with_pairs(from.dimension)
+                         : from.dimension == 3 ? 100.0
+                                               : 1000.0;
+  if (ratio <= reach(largest)) return;
+  throw InputError(key, number_text(value),
+                   "the horizon is " + number_text(ratio) + " spacings; at most " +
+                       number_text(largest) + (counts_pairs ? " with model \"cpd\"" : "") + " in " +
+                       std::to_string(from.dimension) + "D");
+}
+
 BondSetting setting_of(const Case& from, const Points& points) {
   BondSetting setting;
   setting.dimension = from.dimension;
   setting.plane = from.material.plane;
   if (const Lattice* lattice = lattice_of(from)) {
     setting.horizon = from.horizon_ratio * lattice->spacing;
+    require_summable(from, "lattice.horizon_ratio", from.horizon_ratio, from.horizon_ratio);
     setting.cross_section = lattice->cross_section;
   } else {
     const auto& source = std::get<PointSource>(from.body);
@@ -58,6 +73,7 @@ BondSetting setting_of(const Case& from, const Points& points) {
                        "horizon smaller than the mean spacing of the points, " +
                            number_text(points.spacing) + " m");
     }
+    require_summable(from, "points.horizon", source.horizon, source.horizon / points.spacing);
   }
   return setting;
 }
@@ -237,6 +253,8 @@ std::optional<Model> make_elastic_stand_in(const Case& from, const Body& body, i
       throw InputError(key, number_text(from.solver.elastic_horizon_ratio),
                        "needs the bond model with a youngs_modulus: a micromodulus belongs to one "
                        "horizon");
+    require_summable(from, key, from.solver.elastic_horizon_ratio,
+                     from.solver.elastic_horizon_ratio);
     BondSetting setting = body.setting;
     setting.horizon = from.solver.elastic_horizon_ratio * body.points.spacing;
     Bonds bonds = make_bonds(body.points, {from.volume_correction, from.surface_correction},

@@ -14,9 +14,6 @@
 namespace peristat {
 namespace {
 
-/// Above this the triplets of a point take minutes to sum.
-constexpr double largest_horizon_ratio_2d = 50.0, largest_horizon_ratio_3d = 8.0;
-
 /// "youngs_modulus" as the option that gives it.
 std::string option(std::string key) {
   for (char& c : key) {
@@ -43,8 +40,7 @@ void check(const CalibrationQuestion& question) {
   require_positive("spacing", question.spacing);
   require_positive("horizon_ratio", question.horizon_ratio);
   require_positive("thickness", question.thickness);
-  const double largest =
-      question.dimension == 2 ? largest_horizon_ratio_2d : largest_horizon_ratio_3d;
+  const double largest = largest_ratio_with_pairs(question.dimension);
   if (question.horizon_ratio < 1.5 || question.horizon_ratio > largest) {
     throw InputError("--horizon-ratio", number_text(question.horizon_ratio),
                      "must be between 1.5 (below, no neighbours of a point are neighbours) and " +

@@ -13,6 +13,12 @@ struct BulkNeighbourhood {
   std::int64_t triplets = 0;    ///< #N3, ordered: … and not coplanar; 0 in 2D
 };
 
+/// Largest horizon / spacing of which the pairs (2D) and triplets (3D) are counted: above it that
+/// takes minutes, whatever the body's size.
+[[nodiscard]] constexpr double largest_ratio_with_pairs(int dimension) {
+  return dimension == 2 ? 50.0 : 8.0;
+}
+
 /// @param cross_section thickness h in 2D [m], 1 in 3D
 [[nodiscard]] BulkNeighbourhood bulk_neighbourhood(int dimension, double spacing, double horizon,
                                                    double cross_section);

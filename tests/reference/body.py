@@ -130,7 +130,10 @@ class Body:
         length = numpy.sqrt((arm**2).sum(axis=1))
 
         def share(of):
-            return numpy.clip((self.horizon + of / 2 - length) / of, 0, 1) if linear else numpy.ones(len(pairs))
+            if not linear:
+                return numpy.ones(len(pairs))
+            inside = numpy.clip((self.horizon + of / 2 - length) / of, 0, 1)
+            return numpy.where(inside < HORIZON_TOLERANCE, 0, inside)  # round-off at the far end
 
         mean_share = (share(size[j]) + share(size[i])) / 2
         weight = self.volume[i] * self.volume[j] * mean_share

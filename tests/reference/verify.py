@@ -26,6 +26,7 @@ class Verification:
         self.case = case_text if isinstance(case_text, Case) else Case(case_text, case_folder)
         self.results = Results(folder)
         self.complaints, self.worst = [], {}
+        self.broken_when_looked_for, self.last_unheld = 0, None
         self.rows = {int(row["step"]): row for row in self.results.table("history")}
         reference, volume, sets = self.results.reference, self.results.volume, self.results.sets
         self.conditions = Conditions(self.case, reference, volume, sets)
@@ -110,7 +111,7 @@ class Verification:
         self.compare(step, "prescribed displacement", step.displacement[prescribed], target[prescribed], reach, 1e-12)
         external = self.conditions.force(step.load)
         unheld = self.unheld(step, old)
-        self.judge_residual(mechanics, step, old, history, gradient - external, magnitude, unheld)
+        self.judge_residual(mechanics, step, row, old, history, gradient - external, magnitude, unheld)
         self.judge_reactions(step, row, gradient - external, largest, unheld, external)
         self.judge_energies(mechanics, step, row, old, history)
         if mechanics is self.mechanics:
@@ -125,14 +126,19 @@ class Verification:
         return body.constants[1] * body.weight[1].max() * reach
 
     def unheld(self, step, old):
-        """Points that may be pinned or have left the equations in this step."""
+        """Points that may be pinned or have left the equations in this step: those that nothing held
+        after the last step that broke bonds."""
         broken = self.mechanics.is_broken(old.history)
         if not broken.any() or step.number < self.first_real_step:
             return numpy.zeros(len(self.results.volume), bool)
+        if old.number + 1 == step.number and broken.sum() == self.broken_when_looked_for:
+            return self.last_unheld
         places = self.results.reference + old.displacement
-        return unheld_points(places, self.mechanics.body.bonds[~broken], self.conditions.prescribed)
+        self.broken_when_looked_for = broken.sum()
+        self.last_unheld = unheld_points(places, self.mechanics.body.bonds[~broken], self.conditions.prescribed)
+        return self.last_unheld
 
-    def judge_residual(self, mechanics, step, old, history, out_of_balance, magnitude, unheld):
+    def judge_residual(self, mechanics, step, row, old, history, out_of_balance, magnitude, unheld):
         free = ~self.conditions.prescribed & ~unheld[:, None]
         if not free.any():
             return
@@ -144,19 +150,30 @@ class Verification:
         reactions = mechanics.gradient(old.displacement, past) - self.conditions.force(old.load)
         # Reactions of both states: Newton's method that finishes a relaxed step starts from the latter.
         norms = [numpy.linalg.norm(part) for part in (external, reactions[prescribed], out_of_balance[prescribed])]
-        # Implicit steps of mode adaptive and relaxed steps hold the damage in the jump they begin with.
-        for held in (False,) if self.case["solver"]["mode"] == "newton" else (False, True):
-            norms.append(numpy.linalg.norm((mechanics.gradient(jumped, past, held=held) - external)[~prescribed]))
+        # The jump that a step begins with is measured with the damage held.
+        norms.append(numpy.linalg.norm((mechanics.gradient(jumped, past, held=True) - external)[~prescribed]))
         scale = max(norms)
         floor = 8 * UNIT_ROUND_OFF * (numpy.linalg.norm(magnitude) + self.whole_force(mechanics, step))
         residual = numpy.linalg.norm(out_of_balance[free])
         # A tenth more: the program's scale has the same three norms in its own rounding and its own
         # idea of the jump that a cut or relaxed step begins with.
         allowed = 1.1 * self.case["solver"]["relative_tolerance"] * scale + floor
+        self.judge_pins(step, row, numpy.linalg.norm(out_of_balance[unheld[:, None] & ~prescribed]), allowed)
+        if row["settled"]:  # owes no equilibrium
+            return
         self.worst["residual / allowed"] = max(self.worst.get("residual / allowed", 0.0), residual / allowed)
         if not residual <= allowed:
             self.complain(step, f"not in equilibrium: residual {residual:.4g} N, {allowed:.4g} N is allowed "
                                 f"(relative {residual / scale if scale else numpy.inf:.3g})")  # fmt: skip
+
+    def judge_pins(self, step, row, on_unheld, allowed):
+        """Nothing but pins may bear a force on points that nothing holds, and all of it is told."""
+        if step.number < self.first_real_step:
+            return
+        if not row["settled"] and not on_unheld <= row["pin_force"] + allowed:
+            self.complain(step, f"{on_unheld:.4g} N on points that nothing holds, pins bear {row['pin_force']:.4g} N")
+        if not row["pin_force"] <= on_unheld * (1 + 1e-6) + allowed:
+            self.complain(step, f"pins bear {row['pin_force']:.4g} N, points that nothing holds {on_unheld:.4g} N")
 
     def judge_reactions(self, step, row, reaction, largest, unheld, external):
         total = numpy.zeros(reaction.shape[1])
@@ -195,7 +212,8 @@ class Verification:
                 density += numpy.bincount(mechanics.body.tuples[order][:, k], part / (order + 1), minlength=len(density))
         if mechanics is self.mechanics:
             self.compare(step, "energy density", step.energy_density * self.results.volume, density, scale)
-        rest = row["external_work"] - row["stored_energy"] - row["dissipated_energy"] - row["drained_energy"]
+        rest = row["external_work"] + row["numerical_work"] - row["stored_energy"] - row["dissipated_energy"] - row["drained_energy"]
+        scale += abs(row["numerical_work"])
         self.compare(step, "ledger", row["balance_error"], rest, scale, 1e-12)
 
     def judge_damage(self, mechanics, step, row, history):
@@ -214,11 +232,11 @@ class Verification:
         self.compare(step, "max_stretch", row["max_stretch"], largest, max(abs(stretch).max(), 1e-300))
 
     def judge_work(self, mechanics, step, row, old, gradient, external):
-        """Work of an implicit step by the trapezoidal rule; relaxed steps sum their iterations."""
-        if step.mode != "newton" or old.mechanics not in (None, mechanics) or old.number + 1 != step.number:
+        """External work by the trapezoidal rule over the accepted steps; implicit ones add no other."""
+        if old.mechanics not in (None, mechanics) or old.number + 1 != step.number:
             return
-        if row["relaxation_iterations"] > 0:
-            return
+        if step.mode == "newton" and row["numerical_work"] != old.numerical_work:
+            self.complain(step, f"numerical work {row['numerical_work']} in an implicit step, {old.numerical_work} before it")
         prescribed = self.conditions.prescribed
         before = mechanics.gradient(old.displacement, old.history if mechanics is self.mechanics else mechanics.no_history())
         pull = numpy.where(prescribed, before + gradient, self.conditions.force(old.load) + external) / 2
@@ -250,13 +268,14 @@ class Old:
     def __init__(self, shape, history):
         self.number, self.load, self.mechanics = 0, 0.0, None
         self.displacement, self.history = numpy.zeros(shape), history
-        self.dissipated = self.external_work = 0.0
+        self.dissipated = self.external_work = self.numerical_work = 0.0
 
     def followed_by(self, step, history, mechanics, row):
         new = Old.__new__(Old)
         new.number, new.load, new.mechanics = step.number, step.load, mechanics
         new.displacement, new.history = step.displacement, history
         new.dissipated, new.external_work = row["dissipated_energy"], row["external_work"]
+        new.numerical_work = row["numerical_work"]
         return new
 
 

@@ -80,8 +80,8 @@ class Generator:
 
     def horizon_ratio(self):
         if self.model == "cpd" and self.dimension == 3:
-            return self.choice(1.55, 1.75, 2.015)
-        return self.choice(1.55, 2.015, 3.015, 3.0, self.between(1.45, 3.3))
+            return self.choice(1.5, 1.75, 2.015)
+        return self.choice(1.5, 2.015, 3.015, 3.0, self.between(1.45, 3.3))
 
     def lattice(self):
         self.size = [n * self.spacing for n in self.counts()]
