@@ -1,0 +1,157 @@
+"""What README, pages and headers of cases print as the result of a command is what it gives.
+
+Values are expected as the page prints them; here stand the words around them, the command, and a
+tolerance where it isn't the rounding of the printed digits. Runs of fracture are in tests/slow.
+"""
+
+import csv
+import math
+import pathlib
+import unittest
+
+from tests.printed.comparison import PrintedTest
+from tests.printed.runs import calibrate, check, run
+from tests.reference.program import ROOT
+
+ENERGY = "quadrature.surface_correction=energy"
+
+
+class Bar(PrintedTest):
+    page = "cases/bar/tension.toml"
+
+    def test_header(self):
+        bar = run("bar/tension")
+        self.prints('Probe "tip": {} m', bar.summary["probes"]["tip"])
+        self.prints('Reaction on "left": {} N', bar.reaction("left"))
+        self.prints("u(x) = F x / (A E), so {} m", 200.0 * 1.0 / (1e-6 * 200e9))
+
+    def test_error_falls_with_the_spacing_or_stays(self):
+        def error(spacing, correction):
+            changes = f"lattice.spacing={spacing}", f"quadrature.volume_correction={correction}"
+            return abs(run("bar/tension", *changes).summary["probes"]["tip"] / 1e-3 - 1.0)
+
+        # in proportion: to a tenth, what terms of the second order leave at 500 points
+        self.assertAlmostEqual(error(2e-3, "linear") / error(1e-3, "linear"), 2.0, delta=0.2)
+        for spacing in (2e-3, 1e-3):  # theory.md: "keeps an error of a quarter at any spacing"
+            self.assertAlmostEqual(error(spacing, "none"), 0.25, delta=0.005)
+
+
+class Cantilever(PrintedTest):
+    def test_plate(self):
+        self.page = "cases/cantilever/plate.toml"
+        plain, corrected = run("cantilever/plate"), run("cantilever/plate", ENERGY)
+        classical = 125 * 0.5**3 / (3 * 200e9 * 5e-3 * 0.05**3 / 12)
+        self.prints("P L^3 / (3 E I) = {} m down", classical)
+        self.prints("edges ({} m); within", -plain.summary["probes"]["tip"][1])
+        self.prints("=energy ({} m)", -corrected.summary["probes"]["tip"][1])
+        self.within_percent("within {} % of it, because", plain, classical)
+        self.within_percent("within {} % with quadrature", corrected, classical)
+        self.prints('Reaction on "clamped": {} N up', plain.reaction("clamped", "y"))
+        self.prints("plate tip {} m with one pass", -corrected.summary["probes"]["tip"][1],
+                    page="docs/architecture.md")  # fmt: skip
+
+    def test_beam(self):
+        self.page = "cases/cantilever/beam.toml"
+        plain, corrected = run("cantilever/beam"), run("cantilever/beam", ENERGY)
+        classical = 5000 * 1.0**3 / (3 * 200e9 * 0.1**4 / 12)
+        self.prints("P L^3 / (3 E I) = {} m down", classical)
+        self.prints("faces ({} m); within", -plain.summary["probes"]["tip"][1])
+        self.prints("=energy ({} m)", -corrected.summary["probes"]["tip"][1])
+        self.within_percent("within {} % of it, because", plain, classical)
+        self.within_percent("within {} % with quadrature", corrected, classical)
+        self.prints('Reaction on "clamped": {} N up', plain.reaction("clamped", "y"))
+        self.prints("A cantilever of {} points in 3D", plain.summary["points"], page="README.md")
+        self.prints("(beam {} and", -corrected.summary["probes"]["tip"][1], page="docs/architecture.md")
+
+    def within_percent(self, phrase, result, classical):
+        from tests.printed.page import numbers  # noqa: PLC0415
+
+        (limit,) = numbers(self.page, phrase)
+        self.assertLess(abs(-result.summary["probes"]["tip"][1] / classical - 1.0), limit.value / 100)
+
+    def test_residual_rises_on_the_way(self):
+        residuals = [row["step_1"] for row in run("cantilever/plate").convergence]
+        self.prints("and its residual grows ({}, {}, {})", *residuals[:3], page="docs/theory.md")
+
+
+class ElasticPlate(PrintedTest):
+    page = "cases/plate_with_hole/elastic.toml"
+
+    def test_header(self):
+        plate = run("plate_with_hole/elastic")
+        self.prints('reaction on "right" {} N', plate.reaction("right"))
+        self.assertAlmostEqual(plate.reaction("left") / plate.reaction("right"), -1.0, delta=1e-9)
+        self.prints("layers of 3 x 50 whose displacement is prescribed in both components: {} points",
+                    plate.summary["points"])  # fmt: skip
+        self.prints("E w h 1.333e-3 = {} N", 192e9 * 0.05 * 1e-3 * 0.2 / 150)
+
+    def test_linear_iterations_of_a_step(self):
+        plate = run("plate_with_hole/elastic")
+        beam = run("cantilever/beam")
+        self.prints_range('takes some {} to {} iterations of `"pcg"` with rigid pieces in all',
+                          plate.summary["linear_iterations"] / plate.summary["steps"],
+                          beam.summary["linear_iterations"], page="docs/linear-solvers.md")  # fmt: skip
+
+
+class Cpd(PrintedTest):
+    def test_square(self):
+        self.page = "cases/cpd/square.toml"
+        ratios = []
+        for c2 in (0, 50, 400, 1200, 4000):
+            words = check("cpd/square", f"material.c2={c2}").split()
+            ratios.append(float(words[words.index("ratio") + 1]))
+        self.prints("Poisson's ratio of the lattice {} {} {} {} {}", *ratios)
+        # the equilibrium does not depend on the steps that lead there
+        pulls = [run("cpd/square", f"material.c2={c2}", "loading.steps=2").reaction("pulled")
+                 for c2 in (0, 50, 400, 1200, 4000)]  # fmt: skip
+        self.prints('reaction on "pulled" [N] {} {} {} {} {}', *pulls)
+
+    def test_square_hole(self):
+        self.page = "cases/cpd/square_hole.toml"
+        pulls = [run("cpd/square_hole", f"material.c2={c2}", "loading.steps=2").reaction("pulled")
+                 for c2 in (0, 50, 400, 1200, 4000)]  # fmt: skip
+        self.prints('reaction on "pulled" [N] {} {} {} {} {}', *pulls)
+
+    def test_iterations_of_the_squares(self):
+        for case in ("cpd/square", "cpd/square_hole"):
+            steps = run(case).history
+            self.assertTrue(all(row["newton_iterations"] == 4 for row in steps), case)
+            self.assertIn("Four iterations in a step", " ".join((ROOT / f"cases/{case}.toml").read_text()
+                                                               .replace("\n#", "").split()))  # fmt: skip
+
+
+class Calibrated(PrintedTest):
+    def test_poisson_2d(self):
+        self.page = "cases/cpd/poisson_2d.toml"
+        lattice = [calibrate("--dimension", 2, "--spacing", 0.02, "--horizon-ratio", 3.015,
+                             "--c1", 1, "--c2", c2)["lattice"] for c2 in (0, 1200)]  # fmt: skip
+        self.prints("c12/c11 of the lattice's bulk sums {} {}", *(row["axis_poisson_ratio"] for row in lattice))
+        self.prints("Poisson's ratio, all directions {} {}", *(row["poisson_ratio"] for row in lattice))
+        probes = [run("cpd/poisson_2d", f"material.c2={c2}").summary["probes"]["poisson_ratio"] for c2 in (0, 1200)]
+        self.prints("probe poisson_ratio {} {}", *probes)
+        for row, probe in zip(lattice, probes):
+            self.assertLess(abs(row["axis_poisson_ratio"] - probe), 0.005)  # "the probe within 0.005"
+
+    def test_poisson_3d(self):
+        self.page = "cases/cpd/poisson_3d.toml"
+        lattice = [calibrate("--dimension", 3, "--spacing", 0.1, "--horizon-ratio", 2.015,
+                             "--c1", 1, "--c2", 0, "--c3", c3)["lattice"] for c3 in (0, 3.3e4)]  # fmt: skip
+        self.prints("c12/(c11 + c12) of the lattice {} {}", *(row["axis_poisson_ratio"] for row in lattice))
+        self.prints("Poisson's ratio, all directions {} {}", *(row["poisson_ratio"] for row in lattice))
+        probes = [run("cpd/poisson_3d", f"material.c3={c3}").summary["probes"]["poisson_ratio"] for c3 in (0, 3.3e4)]
+        self.prints("probe poisson_ratio {} {}", *probes)
+        for row, probe in zip(lattice, probes):
+            self.assertLess(abs(row["axis_poisson_ratio"] - probe), 0.01)  # "the probe within 0.01"
+
+    def test_calibrate_page(self):
+        self.page = "docs/calibrate.md"
+        flat = calibrate("--dimension", 2, "--spacing", 0.02, "--horizon-ratio", 3, "--c1", 1, "--c2", 1)
+        solid = calibrate("--dimension", 3, "--spacing", 0.05, "--horizon-ratio", 2, "--c1", 1, "--c2", 0, "--c3", 1)
+        self.prints("{} for $C_2$ in 2D at horizon 3 spacings, {} for $C_3$ in 3D at 2",
+                    flat["lattice_over_continuum"]["c2"], solid["lattice_over_continuum"]["c3"])  # fmt: skip
+        flat = calibrate("--dimension", 2, "--spacing", 0.02, "--horizon-ratio", 3.015, "--thickness", 0.01,
+                         "--lambda", "2e6", "--mu", "1e6")  # fmt: skip
+        solid = calibrate("--dimension", 3, "--spacing", 0.05, "--horizon-ratio", 2.015,
+                          "--youngs-modulus", "1e6", "--poisson-ratio", 0.4)  # fmt: skip
+        self.prints("(Zener's ratio {} in 2D at 3.015, {} in 3D at 2.015)",
+                    flat["lattice"]["anisotropy"], solid["lattice"]["anisotropy"])  # fmt: skip
