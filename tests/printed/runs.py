@@ -71,8 +71,6 @@ class Run:
 @functools.cache
 def run(case, *changes, code=0, threads=1):
     """Runs cases/CASE.toml with overrides `key=value` and expects an exit code."""
-
-
     folder = pathlib.Path(tempfile.mkdtemp(dir=_folder()))
     words = [word for change in changes for word in ("--set", change)]
     ended = peristat("run", ROOT / "cases" / f"{case}.toml", "--output", folder / "out", "--threads", threads,

@@ -4,14 +4,16 @@ Values are expected as the page prints them; here stand the words around them, t
 tolerance where it isn't the rounding of the printed digits. Runs of fracture are in tests/slow.
 """
 
-import csv
 import math
 import pathlib
+import re
+import tempfile
 import unittest
 
 from tests.printed.comparison import PrintedTest
+from tests.printed.page import numbers
 from tests.printed.runs import calibrate, check, run
-from tests.reference.program import ROOT
+from tests.reference.program import ROOT, peristat
 
 ENERGY = "quadrature.surface_correction=energy"
 
@@ -64,8 +66,6 @@ class Cantilever(PrintedTest):
         self.prints("(beam {} and", -corrected.summary["probes"]["tip"][1], page="docs/architecture.md")
 
     def within_percent(self, phrase, result, classical):
-        from tests.printed.page import numbers  # noqa: PLC0415
-
         (limit,) = numbers(self.page, phrase)
         self.assertLess(abs(-result.summary["probes"]["tip"][1] / classical - 1.0), limit.value / 100)
 
@@ -155,3 +155,80 @@ class Calibrated(PrintedTest):
                           "--youngs-modulus", "1e6", "--poisson-ratio", 0.4)  # fmt: skip
         self.prints("(Zener's ratio {} in 2D at 3.015, {} in 3D at 2.015)",
                     flat["lattice"]["anisotropy"], solid["lattice"]["anisotropy"])  # fmt: skip
+
+
+class Theory(PrintedTest):
+    page = "docs/theory.md"
+
+    def test_continuum_constants_of_cpd(self):
+        def moduli(c1, c2, c3):
+            # horizon 1 m, where the powers of the horizon are 1
+            given = calibrate("--dimension", 3, "--spacing", 0.5, "--horizon-ratio", 2,
+                              "--c1", c1, "--c2", c2, "--c3", c3)["continuum"]  # fmt: skip
+            return given["mu"], given["lambda"]
+
+        bonds, triangles, tetrahedra = moduli(1, 0, 0), moduli(1, 1, 0), moduli(1, 0, 1)
+        self.assertAlmostEqual(bonds[0], math.pi / 30, delta=1e-11)
+        self.prints(r"+ {}\,\delta^8C_2$ | $", triangles[0] - bonds[0])
+        self.prints(r"+ {}\,\delta^8C_2 + {}\,\delta^{12}C_3$", triangles[1] - bonds[1], tetrahedra[1] - bonds[1])
+
+    def test_stability_at_rest(self):
+        square = """dimension = 2
+            [lattice]
+            spacing = 0.05
+            shape = [{ add = "box", min = [0, 0], max = [1, 1] }]
+            [[set]]
+            name = "left"
+            where = "x < spacing"
+            [material]
+            model = "cpd"
+            youngs_modulus = 1e6
+            poisson_ratio = 0.3
+            [[support]]
+            set = "left"
+            displacement = [0, 0]"""
+        with tempfile.TemporaryDirectory(prefix="peristat_printed_") as folder:
+            case = pathlib.Path(folder, "square.toml")
+            case.write_text(square)
+            for place, perturbation in ((r"is stable at $\nu = {}$ and unstable at ${}$;", 0),
+                                        (r"it is stable at ${}$ and unstable at ${}$.", 0.2)):  # fmt: skip
+                for ratio, code in zip(numbers(self.page, place), (0, 2)):
+                    ended = peristat("check", case, "--set", f"lattice.perturbation={perturbation}",
+                                     "--set", f"material.poisson_ratio={ratio.value}")  # fmt: skip
+                    self.assertEqual(ended.code, code, ended.said)
+
+    def test_softening(self):
+        """The table of the force's peak and the lowest stiffness, from the formulas above it."""
+        for onset, critical, row in ((0.015, 0.020, "0.015, 0.020, 3"), (0.016, 0.020, "0.016, 0.020, 3"),
+                                     (0.033, 0.066, "0.033, 0.066, 3")):  # fmt: skip
+            stretches = [onset + (critical - onset) * k / 20000 for k in range(20001)]
+
+            def force(s):
+                return s / (1 + math.exp(6 * (2 * s - onset - critical) / (critical - onset)))
+
+            def stiffness(s):
+                integrity = force(s) / s
+                return integrity - s * 12 / (critical - onset) * integrity * (1 - integrity)
+
+            self.prints(f"| {row} | {{}} | {{}} |", max(stretches, key=force), min(map(stiffness, stretches)))
+        self.prints(r"at both ends, {} for $\beta = 3$", 0.5 * (1 - math.tanh(3)))
+
+    def test_counts_of_points(self):
+        square, notched = (check(case).split() for case in ("plate_with_hole/square", "three_point_bending/notched"))
+        self.prints("leave the hole and the notch out: {} and {}.", *(int(words[words.index("points") + 1])
+                                                                      for words in (square, notched)))  # fmt: skip
+
+
+class Headers(unittest.TestCase):
+    def test_every_header_is_compared(self):
+        tests = "".join(path.read_text() for path in (ROOT / "tests").glob("*/printed_*_test.py"))
+        cases = list((ROOT / "cases").glob("*/*.toml"))
+        expecting = [case for case in cases if re.search(r"# Expect:[^$]*?\d[^$]*?# Time:", case.read_text())]
+        self.assertGreater(len(expecting), 10)
+        for case in expecting:
+            name = f"{case.parent.name}/{case.stem}"
+            self.assertTrue(name in tests, f"no test compares what the header of {name} prints")
+
+
+if __name__ == "__main__":
+    unittest.main()
