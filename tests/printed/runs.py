@@ -18,7 +18,8 @@ def _folder():
     return folder
 
 
-def _rows(path):
+def rows(path):
+    """Rows of a table, numbers as such."""
     with open(path, newline="") as table:
         return [{key: _value(text) for key, text in row.items()} for row in csv.DictReader(table)]
 
@@ -36,10 +37,10 @@ class Run:
     def __init__(self, folder, output):
         self.output = output
         self.summary = json.loads((folder / "summary.json").read_text())
-        self.history = _rows(folder / "history.csv")
-        self.iterations = _rows(folder / "iterations.csv")
-        self.decisions = _rows(folder / "decisions.csv")
-        self.convergence = _rows(folder / "convergence.csv")
+        self.history = rows(folder / "history.csv")
+        self.iterations = rows(folder / "iterations.csv")
+        self.decisions = rows(folder / "decisions.csv")
+        self.convergence = rows(folder / "convergence.csv")
 
     def reaction(self, support, axis="x"):
         """Of the last step [N]."""

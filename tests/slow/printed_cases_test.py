@@ -39,6 +39,10 @@ class Fracture(PrintedTest):
         plate = run("four_holes/tension")
         peak = plate.step_of_peak("top", "y")
         self.prints("(peak reaction {} N at {})", peak["reaction_y:top"], peak["load_factor"], within=PEAK)
+        breaks = [after["load_factor"] for before, after in zip(plate.history, plate.history[1:])
+                  if after["broken_bonds"] > before["broken_bonds"] + 3000]  # fmt: skip
+        self.prints("to load factor {} (peak", breaks[0])
+        self.prints("in that to {};", breaks[1])
         self.prints("{} broken bonds in", plate.summary["broken_bonds"], within=COUNTS)
         self.prints("broken bonds in {} steps", plate.summary["steps"])
 

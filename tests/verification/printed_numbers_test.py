@@ -12,7 +12,7 @@ import unittest
 
 from tests.printed.comparison import PrintedTest
 from tests.printed.page import numbers
-from tests.printed.runs import calibrate, check, run
+from tests.printed.runs import calibrate, check, rows, run
 from tests.reference.program import ROOT, peristat
 
 ENERGY = "quadrature.surface_correction=energy"
@@ -217,6 +217,60 @@ class Theory(PrintedTest):
         square, notched = (check(case).split() for case in ("plate_with_hole/square", "three_point_bending/notched"))
         self.prints("leave the hole and the notch out: {} and {}.", *(int(words[words.index("points") + 1])
                                                                       for words in (square, notched)))  # fmt: skip
+
+
+class LinearSolvers(PrintedTest):
+    """The table's bodies with loads that look random, and the first system of a step. Another
+    right-hand side than the benchmark's: a tenth, and one iteration."""
+
+    CASE = """dimension = 3
+        [lattice]
+        spacing = 1.0
+        shape = [{{ add = "box", min = [0, 0, 0], max = {extent} }}]
+        [material]
+        youngs_modulus = 1.0
+        [[set]]
+        name = "held"
+        where = "x < 3"
+        [[set]]
+        name = "all"
+        where = "x > 0"
+        [[support]]
+        set = "held"
+        displacement = [0, 0, 0]
+        [[load]]
+        set = "all"
+        body_force = ["1e-9*load*sin(1e3*sin(12.9898*x+78.233*y+37.719*z))",
+                      "1e-9*load*sin(1e3*sin(39.346*x+11.135*y+83.155*z))",
+                      "1e-9*load*sin(1e3*sin(73.156*x+52.235*y+9.151*z))"]
+        [solver]
+        linear = "pcg"
+        linear_tolerance = 1e-8
+        {more}"""
+    CUT = """[[crack]]
+        vertices = [[10, 0, -1], [10, 13.334, -1], [10, 13.334, 21], [10, 0, 21]]"""
+    BODIES = {"cube-10": ([10, 10, 10], ""), "cube-20": ([20, 20, 20], ""), "bar-10": ([80, 8, 8], ""),
+              "cube-20-cracked": ([20, 20, 20], CUT)}  # fmt: skip
+
+    def iterations(self, body, preconditioner):
+        extent, more = self.BODIES[body]
+        with tempfile.TemporaryDirectory(prefix="peristat_printed_") as folder:
+            case = pathlib.Path(folder, "case.toml")
+            case.write_text(self.CASE.format(extent=extent, more=more))
+            ended = peristat("run", case, "--quiet", "--threads", 1, "--output", pathlib.Path(folder, "out"),
+                             "--set", f"solver.preconditioner={preconditioner}", limited=False)  # fmt: skip
+            self.assertEqual(ended.code, 0, ended.said)
+            return rows(pathlib.Path(folder, "out", "iterations.csv"))[1]["linear_iterations"]
+
+    def test_table(self):
+        text = (ROOT / "docs/linear-solvers.md").read_text()
+        for body in self.BODIES:
+            (line,) = (line for line in text.splitlines() if line.startswith(f"| {body} |"))
+            cells = [cell.strip() for cell in line.strip("|").split("|")]
+            for preconditioner, cell in zip(("jacobi", "rigid_pieces", "surrogate", "multigrid"), cells[3:]):
+                printed = int(cell.split("/")[0])
+                self.assertAlmostEqual(self.iterations(body, preconditioner), printed, delta=1 + 0.1 * printed,
+                                       msg=f"{body}, {preconditioner}")  # fmt: skip
 
 
 class Headers(unittest.TestCase):
