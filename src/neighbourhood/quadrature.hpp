@@ -10,7 +10,7 @@ namespace peristat {
 /// while the distance runs over one spacing about the horizon.
 enum class VolumeCorrection { none, linear };
 
-/// Repair of the missing neighbours near surfaces; see set_bond_weights.
+/// Repair of the missing neighbours near surfaces; see make_bonds.
 enum class SurfaceCorrection { none, volume, energy };
 
 struct Quadrature {
@@ -35,12 +35,11 @@ struct Quadrature {
 /// nu is the partial volume and mu the surface correction, both symmetric and frozen in the
 /// reference configuration:
 ///  - none:   mu = 1.
-///  - volume: mu = 2 V_H / (V_i + V_j) with V_i = sum_j nu_ij V_j and V_H that of a point inside
-///  the
-///            bulk of the lattice (for a cloud of points: of the continuum) (Le and Bobaru 2018).
+///  - volume: mu = 2 V_H / (V_i + V_j) with V_i = sum_j 1/2 (nu_ij + nu_ji) V_j and V_H that of a
+///            point inside the lattice, for a cloud of points inside a lattice of the cloud's mean
+///            spacing (Le and Bobaru 2018).
 ///  - energy: every point gets per axis a the factor g_a = classical / discrete energy density
-///  under
-///            a confined unit strain along the axis, and a bond with direction n gets
+///            under a confined unit strain along the axis, and a bond with direction n gets
 ///            mu = (sum_a (n_a / gbar_a)^2)^(-1/2), gbar the mean of its points' factors (Madenci
 ///            and Oterkus 2014, sec. 4.2). Iterating this until the corrected energies are
 ///            classical was tried: it makes bending softer again, not better.

@@ -6,8 +6,8 @@
 namespace peristat {
 
 /// All unique bonds no longer than `radius` [m] (up to horizon_tolerance), found with a cell list
-/// in time proportional to their number. Lengths are filled in; weights are left at zero for
-/// `set_bond_weights`. The result does not depend on the number of threads.
+/// in time proportional to their number. Lengths are filled in; weights are left at zero, for
+/// `make_bonds` to set. The result does not depend on the number of threads.
 [[nodiscard]] Bonds search_bonds(const Points& points, double radius, int threads);
 
 }  // namespace peristat

@@ -15,6 +15,8 @@ import unittest
 import h5py
 import numpy
 
+from tests.acceptance.strip import PULLED
+
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 PROGRAM = os.environ["PERISTAT_PROGRAM"]
 
@@ -36,30 +38,7 @@ SUMMARY_KEYS = {
     "ranks",
 }  # fmt: skip
 
-STRIP = """\
-title = "Strip"
-dimension = 2
-[lattice]
-spacing = 1e-3
-thickness = 1e-3
-[[lattice.shape]]
-add = "box"
-min = [0.0, 0.0]
-max = [0.02, 0.01]
-[[lattice.layer]]
-name = "left"
-side = "x-"
-[[lattice.layer]]
-name = "right"
-side = "x+"
-[material]
-youngs_modulus = 200e9
-[[support]]
-set = "left"
-displacement = [0, 0]
-[[support]]
-set = "right"
-displacement = ["1e-5*load", "free"]
+STRIP = 'title = "Strip"\n' + PULLED + """\
 [[probe]]
 name = "end"
 set = "right"

@@ -14,36 +14,14 @@ import unittest
 
 import h5py
 
+from tests.acceptance.strip import PULLED
+
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 PROGRAM = os.environ["PERISTAT_PROGRAM"]
 PLAIN = {"results.h5", "results.xdmf", "history.csv", "iterations.csv", "decisions.csv", "broken_bonds.csv",
          "convergence.csv", "summary.json", "peristat.json"}  # fmt: skip
 
-STRIP = """\
-title = "Strip"
-dimension = 2
-[lattice]
-spacing = 1e-3
-thickness = 1e-3
-[[lattice.shape]]
-add = "box"
-min = [0.0, 0.0]
-max = [0.02, 0.01]
-[[lattice.layer]]
-name = "left"
-side = "x-"
-[[lattice.layer]]
-name = "right"
-side = "x+"
-[material]
-youngs_modulus = 200e9
-[[support]]
-set = "left"
-displacement = [0, 0]
-[[support]]
-set = "right"
-displacement = ["1e-5*load", "free"]
-"""
+STRIP = 'title = "Strip"\n' + PULLED
 LONG = ["--set", "loading.steps=20000"]  # a run that lasts until something happens to it
 CAN_MOUNT = subprocess.run(["unshare", "-rm", "sh", "-c", "mount -t tmpfs tmpfs /mnt"],
                            capture_output=True).returncode == 0  # fmt: skip

@@ -14,6 +14,8 @@ import unittest
 import h5py
 import numpy
 
+from tests.acceptance.strip import LATTICE
+
 PROGRAM = os.environ["PERISTAT_PROGRAM"]
 CASES = pathlib.Path(__file__).resolve().parents[2] / "cases"
 SQUARE = CASES / "plate_with_hole/square.toml"
@@ -30,21 +32,7 @@ law = "tanh"
 onset = 0.015
 critical = 0.020
 """
-STRIP = f"""\
-dimension = 2
-[lattice]
-spacing = 1e-3
-thickness = 1e-3
-[[lattice.shape]]
-add = "box"
-min = [0.0, 0.0]
-max = [0.02, 0.01]
-[[lattice.layer]]
-name = "left"
-side = "x-"
-[[lattice.layer]]
-name = "right"
-side = "x+"
+STRIP = LATTICE + f"""\
 [[set]]
 name = "all"
 where = "x > -1"

@@ -12,25 +12,13 @@ import unittest
 import h5py
 import numpy
 
+from tests.acceptance.strip import LATTICE
+
 PROGRAM = os.environ["PERISTAT_PROGRAM"]
 NEVER_FAILS = -1.0
 
 # 20 x 10 points, half cut at x = 10 mm; a row along the upper edge never fails.
-STRIP = """\
-dimension = 2
-[lattice]
-spacing = 1e-3
-thickness = 1e-3
-[[lattice.shape]]
-add = "box"
-min = [0.0, 0.0]
-max = [0.02, 0.01]
-[[lattice.layer]]
-name = "left"
-side = "x-"
-[[lattice.layer]]
-name = "right"
-side = "x+"
+STRIP = LATTICE + """\
 [[set]]
 name = "strong"
 where = "y > 9e-3"

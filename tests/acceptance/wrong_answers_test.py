@@ -9,35 +9,14 @@ import subprocess
 import tempfile
 import unittest
 
+from tests.acceptance.strip import PULLED
+
 PROGRAM = os.environ["PERISTAT_PROGRAM"]
 CASES = pathlib.Path(__file__).resolve().parents[2] / "cases"
 SQUARE = CASES / "plate_with_hole/square.toml"
 BAR = CASES / "bar/tension.toml"
 CANTILEVER = CASES / "cantilever/plate.toml"
 
-PLATE = """\
-dimension = 2
-[lattice]
-spacing = 1e-3
-[[lattice.shape]]
-add = "box"
-min = [0.0, 0.0]
-max = [0.02, 0.01]
-[[lattice.layer]]
-name = "left"
-side = "x-"
-[[lattice.layer]]
-name = "right"
-side = "x+"
-[material]
-youngs_modulus = 200e9
-[[support]]
-set = "left"
-displacement = [0, 0]
-[[support]]
-set = "right"
-displacement = ["1e-5*load", "free"]
-"""
 
 
 class Ended:
@@ -104,7 +83,7 @@ class Damage(WrongAnswers):
             self.assertLess(reached, 0.60)
 
     def test_an_elastic_stand_in_without_damage_is_refused(self):
-        self.refused(self.write(PLATE + '[solver]\nmode = "adaptive"\n'),
+        self.refused(self.write(PULLED + '[solver]\nmode = "adaptive"\n'),
                      "solver.elastic_horizon_ratio=1.5", told="without damage")  # fmt: skip
 
 
@@ -124,26 +103,26 @@ class Supports(WrongAnswers):
     SECOND = '[[support]]\nset = "right"\ndisplacement = ["{}", "free"]\n'
 
     def test_contradictions_away_from_the_ends_and_the_middle_are_found(self):
-        text = PLATE.replace('"1e-5*load"', '"1e-3*load*(load-0.5)*(load-1)"')
+        text = PULLED.replace('"1e-5*load"', '"1e-3*load*(load-0.5)*(load-1)"')
         self.refused(self.write(text + self.SECOND.format("0")), told="contradict each other")
 
     def test_a_contradiction_that_shows_in_mid_run_fails_its_step(self):
-        text = PLATE + self.SECOND.format("1e-5*load + (abs(load-0.42)<1e-9 ? 1e-6 : 0)")
+        text = PULLED + self.SECOND.format("1e-5*load + (abs(load-0.42)<1e-9 ? 1e-6 : 0)")
         ended = self.run_case(self.write(text), "loading.steps=50", "loading.adaptive=false")
         self.assertEqual(ended.code, 3, ended.said)
         self.assertIn("contradict each other", ended.said)
         self.assertEqual(ended.summary["steps"], 20)
 
     def test_the_last_digits_of_two_expressions_are_no_contradiction(self):
-        text = PLATE.replace('"1e-5*load"', '"1e-5*load*3"')
+        text = PULLED.replace('"1e-5*load"', '"1e-5*load*3"')
         self.completed(self.write(text + self.SECOND.format("3e-5*load")))
 
     def test_an_expression_without_a_value_in_mid_run_is_a_failed_step(self):
-        text = PLATE.replace('"1e-5*load"', '"1e-5*load+0*ln(abs(load-0.3)>1e-6?1:-1)"')
+        text = PULLED.replace('"1e-5*load"', '"1e-5*load+0*ln(abs(load-0.3)>1e-6?1:-1)"')
         case = self.write(text)
         ended = self.run_case(case, "loading.steps=10", "loading.adaptive=false")
         self.assertEqual(ended.code, 3, ended.said)
-        self.assertIn("case.toml:21:17", ended.said)
+        self.assertIn("case.toml:22:17", ended.said)
         self.assertIn("support[1].displacement[0]", ended.said)
         self.assertEqual(ended.summary["status"], "not_converged")
         self.assertEqual(ended.summary["steps"], 2)
@@ -154,7 +133,7 @@ class Supports(WrongAnswers):
 
 class Magnitudes(WrongAnswers):
     def test_bodies_too_far_from_the_origin_are_refused(self):
-        text = PLATE.replace("[0.0, 0.0]", "[1e12, 0.0]").replace("[0.02, 0.01]", "[1000000000000.02, 0.01]")
+        text = PULLED.replace("[0.0, 0.0]", "[1e12, 0.0]").replace("[0.02, 0.01]", "[1000000000000.02, 0.01]")
         self.refused(self.write(text), told="origin")
         points = self.folder / "points.txt"
         points.write_text("".join(f"{x} 0 1\n" for x in [0, 1, 2, 3, 1e300]))
@@ -165,12 +144,12 @@ class Magnitudes(WrongAnswers):
         self.assertEqual(ended.code, 2, ended.said)
 
     def test_displacements_may_be_as_small_as_digits_go(self):
-        expected = self.completed(self.write(PLATE)).summary["reactions"]["right"][0]
-        small = PLATE.replace('"1e-5*load"', '"1e-90*load"')
+        expected = self.completed(self.write(PULLED)).summary["reactions"]["right"][0]
+        small = PULLED.replace('"1e-5*load"', '"1e-90*load"')
         force = self.completed(self.write(small)).summary["reactions"]["right"][0]
         # Linear: at 1e-5 m the stretch is 5e-4, by which finite deformation changes the force.
         self.assertTrue(math.isclose(force / 1e-90, expected / 1e-5, rel_tol=2e-3))
-        vanishing = PLATE.replace('"1e-5*load"', '"1e-170*load"')
+        vanishing = PULLED.replace('"1e-5*load"', '"1e-170*load"')
         ended = self.run_case(self.write(vanishing))
         self.assertEqual(ended.code, 3, ended.said)
         self.assertEqual(ended.summary["status"], "inconsistent")

@@ -196,6 +196,19 @@ def mark_pieces(figure, axes, step, plate: Plate) -> None:
     piece_legend(figure, piece_words(step) + ", in part outside the picture" * bool(outside))
 
 
+def displacement_panels(displacement, floating):
+    """Values, label, title and colours of each component, in a unit of its own; 0 where only round-off moves."""
+    largest = np.abs(held_values(displacement, floating)).max()
+    panels = []
+    for axis, values in zip("xy", displacement.T):
+        own = np.abs(held_values(values, floating)).max()
+        if own < 1e-9 * largest:
+            values, own = np.zeros_like(values), largest
+        length, size = unit_for(own, LENGTHS)
+        panels.append((values / size, f"$u_{axis}$ [{length}]", f"displacement in {axis}", None))
+    return panels
+
+
 def draw_plane_fields(results, step):
     """Displacement components and energy density on the reference configuration."""
     unit, size = unit_for(np.ptp(results.reference, axis=0).max(), LENGTHS)
@@ -204,11 +217,9 @@ def draw_plane_fields(results, step):
     )
     displacement = displacement * size
     still = cells.corners(reference, np.zeros_like(reference), loose)[:, ROUND]
-    length, length_size = unit_for(np.abs(held_values(displacement, floating)).max(), LENGTHS)
     density, density_size = unit_for(np.percentile(held_values(energy, floating), CLIPPED_SHARE), ENERGY_DENSITIES)
     panels = [
-        (displacement[:, 0] / length_size, f"$u_x$ [{length}]", "displacement in x", None),
-        (displacement[:, 1] / length_size, f"$u_y$ [{length}]", "displacement in y", None),
+        *displacement_panels(displacement, floating),
         (energy / density_size, f"[{density}]", "energy density", "inferno"),
     ]
 

@@ -1,0 +1,31 @@
+"""The comparison of a page with a run."""
+
+import unittest
+
+from tests.printed.page import numbers
+
+
+class PrintedTest(unittest.TestCase):
+    """Compares values with the numbers that stand in `self.page` where a phrase has {}."""
+
+    page = ""
+
+    def prints(self, phrase, *values, page=None, within=None):
+        """Within half a unit of the last digit printed: what rounding leaves of a result that repeats
+        itself to round-off. `within` widens that to a share of the number; say where it comes from.
+        """
+        printed = numbers(page or self.page, phrase)
+        self.assertEqual(len(printed), len(values), phrase)
+        for number, value in zip(printed, values):
+            tolerance = max(number.rounding, (within or 0.0) * abs(number.value))
+            self.assertLessEqual(abs(number.value - value), tolerance * (1 + 1e-9),
+                                 f'{page or self.page}: "{phrase}" prints {number.text}, the run gives {value:.8g}')  # fmt: skip
+
+    def prints_range(self, phrase, *values, page=None):
+        """The phrase has two numbers, and all values lie from the one to the other (to their rounding)."""
+        low, high = numbers(page or self.page, phrase)
+        self.assertTrue(values)
+        for value in values:
+            told = f'{page or self.page}: "{phrase}" prints {low.text} to {high.text}, the run gives {value:.8g}'
+            self.assertGreaterEqual(value, low.value - low.rounding, told)
+            self.assertLessEqual(value, high.value + high.rounding, told)

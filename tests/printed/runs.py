@@ -1,0 +1,96 @@
+"""Runs whose results are compared with what pages print; each command runs once in a process."""
+
+import atexit
+import csv
+import functools
+import json
+import pathlib
+import shutil
+import tempfile
+
+from tests.reference.program import ROOT, peristat
+
+
+@functools.cache
+def _folder():
+    folder = tempfile.mkdtemp(prefix="peristat_printed_")
+    atexit.register(shutil.rmtree, folder, ignore_errors=True)
+    return folder
+
+
+def rows(path):
+    """Rows of a table, numbers as such."""
+    with open(path, newline="") as table:
+        return [{key: _value(text) for key, text in row.items()} for row in csv.DictReader(table)]
+
+
+def _value(text):
+    try:
+        return float(text)
+    except ValueError:
+        return text
+
+
+class Run:
+    """Results folder of a run."""
+
+    def __init__(self, folder, output):
+        self.output = output
+        self.summary = json.loads((folder / "summary.json").read_text())
+        self.history = rows(folder / "history.csv")
+        self.iterations = rows(folder / "iterations.csv")
+        self.decisions = rows(folder / "decisions.csv")
+        self.convergence = rows(folder / "convergence.csv")
+
+    def reaction(self, support, axis="x"):
+        """Of the last step [N]."""
+        return self.summary["reactions"][support]["xyz".index(axis)]
+
+    def reactions(self, support, axis):
+        """Of all steps [N]."""
+        return [row[f"reaction_{axis}:{support}"] for row in self.history]
+
+    def peak(self, support, axis):
+        return max(abs(reaction) for reaction in self.reactions(support, axis))
+
+    def step(self, number):
+        return self.history[number - 1]
+
+    def step_of_peak(self, support, axis):
+        return max(self.history, key=lambda row: abs(row[f"reaction_{axis}:{support}"]))
+
+    def first(self, column):
+        """The first step with a positive value in the column."""
+        return next(row for row in self.history if row[column] > 0)
+
+    def accepted_residuals(self):
+        """Relative residual in which each accepted step ended."""
+        last = {row["step"]: row["relative_residual"] for row in self.iterations}
+        return [last[row["step"]] for row in self.history]
+
+
+@functools.cache
+def run(case, *changes, code=0, threads=1):
+    """Runs cases/CASE.toml with overrides `key=value` and expects an exit code."""
+    folder = pathlib.Path(tempfile.mkdtemp(dir=_folder()))
+    words = [word for change in changes for word in ("--set", change)]
+    ended = peristat("run", ROOT / "cases" / f"{case}.toml", "--output", folder / "out", "--threads", threads,
+                     *words, seconds=900, limited=False)  # fmt: skip
+    assert ended.code == code, f"{' '.join(ended.command)}: exit code {ended.code}\n{ended.said}"
+    return Run(folder / "out", ended.output)
+
+
+@functools.cache
+def check(case, *changes):
+    """What `check` prints."""
+    words = [word for change in changes for word in ("--set", change)]
+    ended = peristat("check", ROOT / "cases" / f"{case}.toml", *words)
+    assert ended.code == 0, ended.said
+    return ended.output
+
+
+@functools.cache
+def calibrate(*options):
+    ended = peristat("calibrate", *options)
+    assert ended.code == 0, ended.said
+    return ended.json()

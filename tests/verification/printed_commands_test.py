@@ -1,0 +1,81 @@
+"""Commands that README, pages and headers of cases print are accepted, and do what stands beside them."""
+
+import pathlib
+import re
+import shlex
+import tempfile
+import unittest
+
+from tests.printed.runs import rows
+from tests.reference.program import ROOT, peristat
+
+PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
+
+
+def blocks(path, language):
+    """Texts of the page's blocks of code in a language ("": none is named)."""
+    fenced = path.read_text().split("```")[1::2]
+    return [text for head, _, text in (block.partition("\n") for block in fenced) if head == language]
+
+
+def commands(path):
+    """Words of the command lines in the page's shell blocks, without `./peristat`."""
+    lines = "\n".join(blocks(path, "sh") + blocks(path, "")).replace("\\\n", " ").splitlines()
+    return [shlex.split(line, comments=True)[1:] for line in lines if line.startswith("./peristat ")]
+
+
+class Commands(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory(prefix="peristat_commands_")
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+        (self.folder / "cases").symlink_to(ROOT / "cases")
+        (strip,) = (text for text in blocks(ROOT / "README.md", "toml") if 'title = "Pulled strip"' in text)
+        (self.folder / "strip.toml").write_text(strip)
+
+    def assert_accepted(self, words):
+        """By `check`, which reads a case as `run` does; `sweep` with the first of its values."""
+        command, *rest = words
+        sets = [rest[k + 1] for k, word in enumerate(rest) if word == "--set"]
+        sets += [re.split(r",(?![^\[]*\])", rest[k + 1])[0] for k, word in enumerate(rest) if word == "--vary"]
+        settings = [word for key in sets for word in ("--set", key)]
+        if command == "calibrate":
+            ended = peristat(command, *rest, folder=self.folder)
+        else:
+            ended = peristat("check", rest[0], *settings, folder=self.folder)
+        self.assertEqual(ended.code, 0, f"{' '.join(words)}\n{ended.said}")
+
+    def test_are_accepted(self):
+        asked = [(page.name, words) for page in PAGES for words in commands(page)
+                 if words[0] in ("run", "check", "check-tangent", "sweep", "calibrate")]  # fmt: skip
+        self.assertGreater(len(asked), 20)
+        for page, words in asked:
+            with self.subTest(page=page, command=" ".join(words)):
+                self.assert_accepted(words)
+
+    def test_settings_within_the_text_are_accepted(self):
+        """`--set …` in the tutorial's sentences, of the case of the last command before them."""
+        text, case, tried = (ROOT / "docs/tutorial-fracture.md").read_text(), None, 0
+        for line in text.splitlines():
+            if named := re.match(r"\./peristat \w+ (cases/\S+)", line):
+                case = named[1]
+            for quoted in re.findall(r"`(--set [^`…]*)`", line):
+                mode = ["--set", "solver.mode=relaxation"] if "relaxation.load" in quoted else []
+                self.assert_accepted(["check", case, *mode, *shlex.split(quoted)])
+                tried += 1
+        self.assertGreater(tried, 0)
+
+    def test_strip_of_readme(self):
+        elastic, torn = (words for words in commands(ROOT / "README.md") if words[:2] == ["run", "strip.toml"])
+        self.assertEqual(peristat(*elastic, "--quiet", folder=self.folder).code, 0)
+        self.assertEqual(len(rows(self.folder / "results/strip/history.csv")), 10)
+        ended = peristat(*torn, "--quiet", "--output", "torn", folder=self.folder, limited=False)
+        self.assertEqual(ended.code, 0, ended.said)
+        last = rows(self.folder / "torn/history.csv")[-1]
+        self.assertGreater(last["broken_bonds"], 0)  # "until it breaks"
+        peak = max(abs(row["reaction_x:left"]) for row in rows(self.folder / "torn/history.csv"))
+        self.assertLess(abs(last["reaction_x:left"]), 1e-2 * peak)  # what loose points between the pieces carry
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,288 @@
+"""What README, pages and headers of cases print as the result of a command is what it gives.
+
+Values are expected as the page prints them; here stand the words around them, the command, and a
+tolerance where it isn't the rounding of the printed digits. Runs of fracture are in tests/slow.
+"""
+
+import math
+import pathlib
+import re
+import tempfile
+import unittest
+
+from tests.printed.comparison import PrintedTest
+from tests.printed.page import numbers
+from tests.printed.runs import calibrate, check, rows, run
+from tests.reference.program import ROOT, peristat
+
+ENERGY = "quadrature.surface_correction=energy"
+
+
+class Bar(PrintedTest):
+    page = "cases/bar/tension.toml"
+
+    def test_header(self):
+        bar = run("bar/tension")
+        self.prints('Probe "tip": {} m', bar.summary["probes"]["tip"])
+        self.prints('Reaction on "left": {} N', bar.reaction("left"))
+        self.prints("u(x) = F x / (A E), so {} m", 200.0 * 1.0 / (1e-6 * 200e9))
+
+    def test_error_falls_with_the_spacing_or_stays(self):
+        def error(spacing, correction):
+            changes = f"lattice.spacing={spacing}", f"quadrature.volume_correction={correction}"
+            return abs(run("bar/tension", *changes).summary["probes"]["tip"] / 1e-3 - 1.0)
+
+        # in proportion: to a tenth, what terms of the second order leave at 500 points
+        self.assertAlmostEqual(error(2e-3, "linear") / error(1e-3, "linear"), 2.0, delta=0.2)
+        for spacing in (2e-3, 1e-3):  # theory.md: "keeps an error of a quarter at any spacing"
+            self.assertAlmostEqual(error(spacing, "none"), 0.25, delta=0.005)
+
+
+class Cantilever(PrintedTest):
+    def test_plate(self):
+        self.page = "cases/cantilever/plate.toml"
+        plain, corrected = run("cantilever/plate"), run("cantilever/plate", ENERGY)
+        classical = 125 * 0.5**3 / (3 * 200e9 * 5e-3 * 0.05**3 / 12)
+        self.prints("P L^3 / (3 E I) = {} m down", classical)
+        self.prints("edges ({} m); within", -plain.summary["probes"]["tip"][1])
+        self.prints("=energy ({} m)", -corrected.summary["probes"]["tip"][1])
+        self.within_percent("within {} % of it, because", plain, classical)
+        self.within_percent("within {} % with quadrature", corrected, classical)
+        self.prints('Reaction on "clamped": {} N up', plain.reaction("clamped", "y"))
+        self.prints("plate tip {} m with one pass", -corrected.summary["probes"]["tip"][1],
+                    page="docs/architecture.md")  # fmt: skip
+
+    def test_beam(self):
+        self.page = "cases/cantilever/beam.toml"
+        plain, corrected = run("cantilever/beam"), run("cantilever/beam", ENERGY)
+        classical = 5000 * 1.0**3 / (3 * 200e9 * 0.1**4 / 12)
+        self.prints("P L^3 / (3 E I) = {} m down", classical)
+        self.prints("faces ({} m); within", -plain.summary["probes"]["tip"][1])
+        self.prints("=energy ({} m)", -corrected.summary["probes"]["tip"][1])
+        self.within_percent("within {} % of it, because", plain, classical)
+        self.within_percent("within {} % with quadrature", corrected, classical)
+        self.prints('Reaction on "clamped": {} N up', plain.reaction("clamped", "y"))
+        self.prints("A cantilever of {} points in 3D", plain.summary["points"], page="README.md")
+        self.prints("(beam {} and", -corrected.summary["probes"]["tip"][1], page="docs/architecture.md")
+
+    def within_percent(self, phrase, result, classical):
+        (limit,) = numbers(self.page, phrase)
+        self.assertLess(abs(-result.summary["probes"]["tip"][1] / classical - 1.0), limit.value / 100)
+
+    def test_residual_rises_on_the_way(self):
+        residuals = [row["step_1"] for row in run("cantilever/plate").convergence]
+        self.prints("and its residual grows ({}, {}, {})", *residuals[:3], page="docs/theory.md")
+
+
+class ElasticPlate(PrintedTest):
+    page = "cases/plate_with_hole/elastic.toml"
+
+    def test_header(self):
+        plate = run("plate_with_hole/elastic")
+        self.prints('reaction on "right" {} N', plate.reaction("right"))
+        self.assertAlmostEqual(plate.reaction("left") / plate.reaction("right"), -1.0, delta=1e-9)
+        self.prints("layers of 3 x 50 whose displacement is prescribed in both components: {} points",
+                    plate.summary["points"])  # fmt: skip
+        self.prints("E w h 1.333e-3 = {} N", 192e9 * 0.05 * 1e-3 * 0.2 / 150)
+
+    def test_linear_iterations_of_a_step(self):
+        plate = run("plate_with_hole/elastic")
+        beam = run("cantilever/beam")
+        self.prints_range('takes some {} to {} iterations of `"pcg"` with rigid pieces in all',
+                          plate.summary["linear_iterations"] / plate.summary["steps"],
+                          beam.summary["linear_iterations"], page="docs/linear-solvers.md")  # fmt: skip
+
+
+class Cpd(PrintedTest):
+    def test_square(self):
+        self.page = "cases/cpd/square.toml"
+        ratios = []
+        for c2 in (0, 50, 400, 1200, 4000):
+            words = check("cpd/square", f"material.c2={c2}").split()
+            ratios.append(float(words[words.index("ratio") + 1]))
+        self.prints("Poisson's ratio of the lattice {} {} {} {} {}", *ratios)
+        # the equilibrium does not depend on the steps that lead there
+        pulls = [run("cpd/square", f"material.c2={c2}", "loading.steps=2").reaction("pulled")
+                 for c2 in (0, 50, 400, 1200, 4000)]  # fmt: skip
+        self.prints('reaction on "pulled" [N] {} {} {} {} {}', *pulls)
+
+    def test_square_hole(self):
+        self.page = "cases/cpd/square_hole.toml"
+        pulls = [run("cpd/square_hole", f"material.c2={c2}", "loading.steps=2").reaction("pulled")
+                 for c2 in (0, 50, 400, 1200, 4000)]  # fmt: skip
+        self.prints('reaction on "pulled" [N] {} {} {} {} {}', *pulls)
+
+    def test_iterations_of_the_squares(self):
+        for case in ("cpd/square", "cpd/square_hole"):
+            steps = run(case).history
+            self.assertTrue(all(row["newton_iterations"] == 4 for row in steps), case)
+            self.assertIn("Four iterations in a step", " ".join((ROOT / f"cases/{case}.toml").read_text()
+                                                               .replace("\n#", "").split()))  # fmt: skip
+
+
+class Calibrated(PrintedTest):
+    def test_poisson_2d(self):
+        self.page = "cases/cpd/poisson_2d.toml"
+        lattice = [calibrate("--dimension", 2, "--spacing", 0.02, "--horizon-ratio", 3.015,
+                             "--c1", 1, "--c2", c2)["lattice"] for c2 in (0, 1200)]  # fmt: skip
+        self.prints("c12/c11 of the lattice's bulk sums {} {}", *(row["axis_poisson_ratio"] for row in lattice))
+        self.prints("Poisson's ratio, all directions {} {}", *(row["poisson_ratio"] for row in lattice))
+        probes = [run("cpd/poisson_2d", f"material.c2={c2}").summary["probes"]["poisson_ratio"] for c2 in (0, 1200)]
+        self.prints("probe poisson_ratio {} {}", *probes)
+        for row, probe in zip(lattice, probes):
+            self.assertLess(abs(row["axis_poisson_ratio"] - probe), 0.005)  # "the probe within 0.005"
+
+    def test_poisson_3d(self):
+        self.page = "cases/cpd/poisson_3d.toml"
+        lattice = [calibrate("--dimension", 3, "--spacing", 0.1, "--horizon-ratio", 2.015,
+                             "--c1", 1, "--c2", 0, "--c3", c3)["lattice"] for c3 in (0, 3.3e4)]  # fmt: skip
+        self.prints("c12/(c11 + c12) of the lattice {} {}", *(row["axis_poisson_ratio"] for row in lattice))
+        self.prints("Poisson's ratio, all directions {} {}", *(row["poisson_ratio"] for row in lattice))
+        probes = [run("cpd/poisson_3d", f"material.c3={c3}").summary["probes"]["poisson_ratio"] for c3 in (0, 3.3e4)]
+        self.prints("probe poisson_ratio {} {}", *probes)
+        for row, probe in zip(lattice, probes):
+            self.assertLess(abs(row["axis_poisson_ratio"] - probe), 0.01)  # "the probe within 0.01"
+
+    def test_calibrate_page(self):
+        self.page = "docs/calibrate.md"
+        flat = calibrate("--dimension", 2, "--spacing", 0.02, "--horizon-ratio", 3, "--c1", 1, "--c2", 1)
+        solid = calibrate("--dimension", 3, "--spacing", 0.05, "--horizon-ratio", 2, "--c1", 1, "--c2", 0, "--c3", 1)
+        self.prints("{} for $C_2$ in 2D at horizon 3 spacings, {} for $C_3$ in 3D at 2",
+                    flat["lattice_over_continuum"]["c2"], solid["lattice_over_continuum"]["c3"])  # fmt: skip
+        flat = calibrate("--dimension", 2, "--spacing", 0.02, "--horizon-ratio", 3.015, "--thickness", 0.01,
+                         "--lambda", "2e6", "--mu", "1e6")  # fmt: skip
+        solid = calibrate("--dimension", 3, "--spacing", 0.05, "--horizon-ratio", 2.015,
+                          "--youngs-modulus", "1e6", "--poisson-ratio", 0.4)  # fmt: skip
+        self.prints("(Zener's ratio {} in 2D at 3.015, {} in 3D at 2.015)",
+                    flat["lattice"]["anisotropy"], solid["lattice"]["anisotropy"])  # fmt: skip
+
+
+class Theory(PrintedTest):
+    page = "docs/theory.md"
+
+    def test_continuum_constants_of_cpd(self):
+        def moduli(c1, c2, c3):
+            # horizon 1 m, where the powers of the horizon are 1
+            given = calibrate("--dimension", 3, "--spacing", 0.5, "--horizon-ratio", 2,
+                              "--c1", c1, "--c2", c2, "--c3", c3)["continuum"]  # fmt: skip
+            return given["mu"], given["lambda"]
+
+        bonds, triangles, tetrahedra = moduli(1, 0, 0), moduli(1, 1, 0), moduli(1, 0, 1)
+        self.assertAlmostEqual(bonds[0], math.pi / 30, delta=1e-11)
+        self.prints(r"+ {}\,\delta^8C_2$ | $", triangles[0] - bonds[0])
+        self.prints(r"+ {}\,\delta^8C_2 + {}\,\delta^{12}C_3$", triangles[1] - bonds[1], tetrahedra[1] - bonds[1])
+
+    def test_stability_at_rest(self):
+        square = """dimension = 2
+            [lattice]
+            spacing = 0.05
+            shape = [{ add = "box", min = [0, 0], max = [1, 1] }]
+            [[set]]
+            name = "left"
+            where = "x < spacing"
+            [material]
+            model = "cpd"
+            youngs_modulus = 1e6
+            poisson_ratio = 0.3
+            [[support]]
+            set = "left"
+            displacement = [0, 0]"""
+        with tempfile.TemporaryDirectory(prefix="peristat_printed_") as folder:
+            case = pathlib.Path(folder, "square.toml")
+            case.write_text(square)
+            for place, perturbation in ((r"is stable at $\nu = {}$ and unstable at ${}$;", 0),
+                                        (r"it is stable at ${}$ and unstable at ${}$.", 0.2)):  # fmt: skip
+                for ratio, code in zip(numbers(self.page, place), (0, 2)):
+                    ended = peristat("check", case, "--set", f"lattice.perturbation={perturbation}",
+                                     "--set", f"material.poisson_ratio={ratio.value}")  # fmt: skip
+                    self.assertEqual(ended.code, code, ended.said)
+
+    def test_softening(self):
+        """The table of the force's peak and the lowest stiffness, from the formulas above it."""
+        for onset, critical, row in ((0.015, 0.020, "0.015, 0.020, 3"), (0.016, 0.020, "0.016, 0.020, 3"),
+                                     (0.033, 0.066, "0.033, 0.066, 3")):  # fmt: skip
+            stretches = [onset + (critical - onset) * k / 20000 for k in range(20001)]
+
+            def force(s):
+                return s / (1 + math.exp(6 * (2 * s - onset - critical) / (critical - onset)))
+
+            def stiffness(s):
+                integrity = force(s) / s
+                return integrity - s * 12 / (critical - onset) * integrity * (1 - integrity)
+
+            self.prints(f"| {row} | {{}} | {{}} |", max(stretches, key=force), min(map(stiffness, stretches)))
+        self.prints(r"at both ends, {} for $\beta = 3$", 0.5 * (1 - math.tanh(3)))
+
+    def test_counts_of_points(self):
+        square, notched = (check(case).split() for case in ("plate_with_hole/square", "three_point_bending/notched"))
+        self.prints("leave the hole and the notch out: {} and {}.", *(int(words[words.index("points") + 1])
+                                                                      for words in (square, notched)))  # fmt: skip
+
+
+class LinearSolvers(PrintedTest):
+    """The table's bodies with loads that look random, and the first system of a step. Another
+    right-hand side than the benchmark's: a fifth, and one iteration."""
+
+    CASE = """dimension = 3
+        [lattice]
+        spacing = 1.0
+        shape = [{{ add = "box", min = [0, 0, 0], max = {extent} }}]
+        [material]
+        youngs_modulus = 1.0
+        [[set]]
+        name = "held"
+        where = "x < 3"
+        [[set]]
+        name = "all"
+        where = "x > 0"
+        [[support]]
+        set = "held"
+        displacement = [0, 0, 0]
+        [[load]]
+        set = "all"
+        body_force = ["1e-9*load*sin(1e3*sin(12.9898*x+78.233*y+37.719*z))",
+                      "1e-9*load*sin(1e3*sin(39.346*x+11.135*y+83.155*z))",
+                      "1e-9*load*sin(1e3*sin(73.156*x+52.235*y+9.151*z))"]
+        [solver]
+        linear = "pcg"
+        linear_tolerance = 1e-8
+        {more}"""
+    CUT = """[[crack]]
+        vertices = [[10, 0, -1], [10, 13.334, -1], [10, 13.334, 21], [10, 0, 21]]"""
+    BODIES = {"cube-10": ([10, 10, 10], ""), "cube-20": ([20, 20, 20], ""), "bar-10": ([80, 8, 8], ""),
+              "cube-20-cracked": ([20, 20, 20], CUT)}  # fmt: skip
+
+    def iterations(self, body, preconditioner):
+        extent, more = self.BODIES[body]
+        with tempfile.TemporaryDirectory(prefix="peristat_printed_") as folder:
+            case = pathlib.Path(folder, "case.toml")
+            case.write_text(self.CASE.format(extent=extent, more=more))
+            ended = peristat("run", case, "--quiet", "--threads", 1, "--output", pathlib.Path(folder, "out"),
+                             "--set", f"solver.preconditioner={preconditioner}", limited=False)  # fmt: skip
+            self.assertEqual(ended.code, 0, ended.said)
+            return rows(pathlib.Path(folder, "out", "iterations.csv"))[1]["linear_iterations"]
+
+    def test_table(self):
+        text = (ROOT / "docs/linear-solvers.md").read_text()
+        for body in self.BODIES:
+            (line,) = (line for line in text.splitlines() if line.startswith(f"| {body} |"))
+            cells = [cell.strip() for cell in line.strip("|").split("|")]
+            for preconditioner, cell in zip(("jacobi", "rigid_pieces", "surrogate", "multigrid"), cells[3:]):
+                printed = int(cell.split("/")[0])
+                self.assertAlmostEqual(self.iterations(body, preconditioner), printed, delta=1 + 0.2 * printed,
+                                       msg=f"{body}, {preconditioner}")  # fmt: skip
+
+
+class Headers(unittest.TestCase):
+    def test_every_header_is_compared(self):
+        tests = "".join(path.read_text() for path in (ROOT / "tests").glob("*/printed_*_test.py"))
+        cases = list((ROOT / "cases").glob("*/*.toml"))
+        expecting = [case for case in cases if re.search(r"# Expect:[^$]*?\d[^$]*?# Time:", case.read_text())]
+        self.assertGreater(len(expecting), 10)
+        for case in expecting:
+            name = f"{case.parent.name}/{case.stem}"
+            self.assertTrue(name in tests, f"no test compares what the header of {name} prints")
+
+
+if __name__ == "__main__":
+    unittest.main()
