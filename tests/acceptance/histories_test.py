@@ -118,7 +118,8 @@ class Histories(unittest.TestCase):
             ended = subprocess.run([PROGRAM, "run", "strip.toml", "--quiet", "--threads", "2", "--output", name, *words],
                                    cwd=base, text=True, timeout=300, stdin=subprocess.DEVNULL,
                                    capture_output=True)  # fmt: skip
-            assert ended.returncode == 0, (name, ended)
+            # Mode newton ends at the limit point, when 10 bonds are broken.
+            assert ended.returncode == (3 if name == "newton" else 0), (name, ended)
             cls.runs[name] = Run(base / name)
 
     def test_replayed_they_give_the_broken_bonds_of_every_step(self):
@@ -129,7 +130,7 @@ class Histories(unittest.TestCase):
                     broken = {bond for bond, largest in known.items() if largest >= run.law["critical"]}
                     told = {(first, second) for number, first, second in run.broken if number <= step["number"]}
                     self.assertEqual(broken, told)
-                self.assertGreater(len(broken), 20)
+                self.assertGreater(len(broken), 20 if name != "newton" else 5)
 
     def test_they_are_told_when_they_change_and_never_heal(self):
         for name, run in self.runs.items():
