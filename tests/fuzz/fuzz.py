@@ -179,8 +179,8 @@ class Input:
         if places:
             raise Finding(f"not finite: {', '.join(places[:5])}", run)
         results = Results(self.folder / "out")
-        status = {0: "completed", 3: "not_converged"}.get(run.code)
-        if status and results.summary["status"] != status:
+        statuses = {0: ("completed",), 3: ("not_converged", "inconsistent")}.get(run.code)
+        if statuses and results.summary["status"] not in statuses:
             raise Finding(f"exit code {run.code}, status {results.summary['status']}", run)
         if run.code == 0:
             self.judge_steps(run, results)
