@@ -115,6 +115,11 @@ std::vector<char> never_failing_bonds(const Case& from, const Points& points, co
   return of_bond;
 }
 
+/// No more than there are pairs of points.
+double expected_bonds(double points, int dimension, double horizon_ratio) {
+  return points * std::min(bonds_per_point(dimension, horizon_ratio), 0.5 * points);
+}
+
 /// Refuses a lattice that can't fit before any of its points is made.
 void require_memory_for_lattice(const Case& from, const Lattice& lattice) {
   const double points = estimate_points(lattice);
@@ -123,7 +128,7 @@ void require_memory_for_lattice(const Case& from, const Lattice& lattice) {
   size.points = points;
   size.longest = std::pow(points, 1.0 / from.dimension);
   size.horizon_ratio = from.horizon_ratio;
-  size.bonds = points * bonds_per_point(from.dimension, from.horizon_ratio);
+  size.bonds = expected_bonds(points, from.dimension, from.horizon_ratio);
   size.free_dofs = points * from.dimension;
   const Box box = lattice.shapes.empty() ? Box{} : bounds(lattice.shapes.front().shape);
   for (int c = 0; c < from.dimension; ++c) {
@@ -217,7 +222,7 @@ std::unique_ptr<const Body> make_body(const Case& from, int threads) {
     require_resolved(from, body.points, body.setting.horizon);
     BodySize expected = size_of(body.points);
     expected.horizon_ratio = body.horizon_ratio();
-    expected.bonds = expected.points * bonds_per_point(from.dimension, body.horizon_ratio());
+    expected.bonds = expected_bonds(expected.points, from.dimension, body.horizon_ratio());
     require_memory(estimate_memory(expected).least_bytes(),
                    "the case with " + std::to_string(body.points.count()) + " points");
     {

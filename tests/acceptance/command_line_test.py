@@ -93,6 +93,9 @@ class CommandLine(unittest.TestCase):
             "wrong type": (changed("spacing = 1e-3", "spacing = 'fine'"), ["bad.toml:4:", "lattice.spacing"]),
             "negative spacing": (changed("spacing = 1e-3", "spacing = -1e-3"), ["bad.toml:4:", "lattice.spacing"]),
             "small horizon": (changed("thickness", "horizon_ratio = 0.5\nthickness"), ["bad.toml:5:", "horizon smaller"]),
+            "horizon of a city": (changed("thickness", "horizon_ratio = 1001\nthickness"), ["bad.toml:5:", "at most 1000"]),
+            "triplets without end": (changed("thickness", "horizon_ratio = 51\nthickness").replace(
+                "youngs_modulus = 200e9", 'model = "cpd"\nc1 = 1'), ["bad.toml:5:", "at most 50"]),
             "zero modulus": (changed("200e9", "0.0"), ["bad.toml:17:", "youngs_modulus"]),
             "modulus nan": (changed("200e9", "nan"), ["bad.toml:17:", "youngs_modulus"]),
             "unknown variable": (changed("1e-5*load", "1e-5*lod"), ["bad.toml:23:", "lod", "load"]),

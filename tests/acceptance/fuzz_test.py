@@ -4,12 +4,20 @@ import tempfile
 import time
 import unittest
 
-from tests.fuzz.fuzz import fuzz
+from tests.fuzz.fuzz import CORPUS, fuzz
+from tests.reference.program import peristat
 
 INPUTS = 250  # about a minute of processor time
 
 
 class Fuzz(unittest.TestCase):
+    def test_what_inputs_start_from_is_right(self):
+        cases = sorted(CORPUS.glob("*.toml"))
+        self.assertGreater(len(cases), 4)
+        for case in cases:
+            run = peristat("check", case)
+            self.assertEqual(run.code, 0, run.said)
+
     def test_no_input_gets_more_than_an_answer(self):
         said = []
         with tempfile.TemporaryDirectory(prefix="peristat_fuzz_") as keep:

@@ -19,6 +19,38 @@ CANTILEVER = CASES / "cantilever/plate.toml"
 
 
 
+# Two rows of points, pulled to a tenth of their strength.
+ROW = """\
+dimension = 2
+[lattice]
+spacing = 1e-3
+horizon_ratio = 1.5
+thickness = 1e-3
+shape = [{ add = "box", min = [0.0, 0.0], max = [0.01, 0.002] }]
+layer = [{ name = "left", side = "x-" }, { name = "right", side = "x+" }]
+[material]
+youngs_modulus = 1e9
+damage = { law = "critical_stretch", critical = 1e-2 }
+[loading]
+steps = 2
+[[support]]
+set = "left"
+displacement = [0, 0]
+[[support]]
+set = "right"
+displacement = ["1e-5*load", 0]
+"""
+# Nothing is free; at the end the last bonds are stretched by a hundredth more than they bear.
+ALL_PRESCRIBED = """\
+[[set]]
+name = "inside"
+where = "x > 0 && x < 0.01"
+[[support]]
+set = "inside"
+displacement = [0, 0]
+"""
+
+
 class Ended:
     def __init__(self, process, folder):
         self.code, self.said, self.folder = process.returncode, process.stdout + process.stderr, folder
@@ -85,6 +117,23 @@ class Damage(WrongAnswers):
     def test_an_elastic_stand_in_without_damage_is_refused(self):
         self.refused(self.write(PULLED + '[solver]\nmode = "adaptive"\n'),
                      "solver.elastic_horizon_ratio=1.5", told="without damage")  # fmt: skip
+
+
+    def test_points_that_are_loose_from_the_start_are_refused(self):
+        # A row of points, each on two bonds along it: pins would bear the load across it.
+        row = ROW.replace("max = [0.01, 0.002]", "max = [0.01, 0.001]")
+        for mode in ("newton", "relaxation", "adaptive"):
+            self.completed(self.write(ROW), f"solver.mode={mode}")
+            self.refused(self.write(row), f"solver.mode={mode}", told="hang on too few bonds")
+
+    def test_a_step_that_its_jump_completes_has_its_damage(self):
+        # All points are prescribed: the jump alone is the step. Bonds that it breaks bear nothing.
+        ended = self.completed(self.write(ROW.replace("1e-5*load", "2e-5*load") + ALL_PRESCRIBED), "solver.mode=newton")
+        torn = [row for row in ended.table("history") if float(row["stored_energy"]) == 0.0]
+        self.assertGreater(float(ended.table("history")[0]["reaction_x:right"]), 0.0)
+        self.assertGreater(len(torn), 0)
+        for row in torn:
+            self.assertEqual(float(row["reaction_x:right"]), 0.0)
 
 
 class Threads(WrongAnswers):

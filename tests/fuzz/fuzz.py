@@ -231,7 +231,9 @@ class Input:
 
     def try_plot(self):
         self.write_corpus(self.random.choice(["strip.toml", "cloud.toml", "bar.toml"]))
-        self.peristat("run", "case.toml", "--quiet", "--threads", "1", "--output", "out")
+        run = self.peristat("run", "case.toml", "--quiet", "--threads", "1", "--output", "out")
+        if run.code != 0:
+            raise Finding("a case of the corpus does not run", run)
         for _ in range(self.random.choice((1, 1, 2))):
             mutations.spoil_folder(self.random, self.folder / "out")
         self.execute([*program.PLOT, "out"], seconds=10 * CPU_SECONDS, cpu_seconds=2 * CPU_SECONDS)

@@ -185,6 +185,8 @@ def spoil_folder(random, folder):
     """Damages a results folder in place; returns what was done."""
     folder = pathlib.Path(folder)
     files = sorted(path for path in folder.rglob("*") if path.is_file())
+    if not files:
+        return "nothing left"
     path = random.choice(files)
     kind = random.choice(("bytes", "cut", "remove", "swap", "cells", "datasets", "datasets", "datasets", "links", "text"))
     if kind == "bytes":
