@@ -39,11 +39,11 @@ struct FoundState {
 ///   (balances_of). Round-off leaves about eps sum_b |f_b| <= eps sqrt(2 E tr K), by Cauchy and
 ///   Schwarz from E = sum_b f_b^2 / (2 k_b); a thousand times as much is a fault;
 /// - the stored energy is not negative, where the model owes that, and dissipation never falls;
-/// - no energy comes from nothing: where damage grew or relaxation ran, what the body has taken up
-///   is covered by work, up to a twentieth of what was turned over. That is what the trapezoidal
-///   rule may err by where bonds break within a step; an implicit step that exceeds it is too long
-///   for its work to be known. Elastic implicit steps owe nothing: their energy is a function of
-///   the state;
+/// - no energy comes from nothing: where damage grew, or relaxation came to rest, what the body has
+///   taken up is covered by work, up to a twentieth of what was turned over. That is what the
+///   trapezoidal rule may err by where bonds break within a step; an implicit step that exceeds it
+///   is too long for its work to be known. Elastic implicit steps owe nothing: their energy is a
+///   function of the state. Nor do steps that still move: they hold energy of the steps before;
 /// - products of forces and displacements do not underflow.
 ///
 /// @param damaged the body whose bonds are damaged: not that of the equilibrium while an elastic

@@ -45,6 +45,13 @@ const std::vector<Column>& step_columns() {
       {number, "max_damage", "1", "largest damage of a point, 0 intact to 1"},
       {number, "max_stretch", "1",
        "largest stretch of an unbroken bond: current / reference length - 1"},
+  };
+  return columns;
+}
+
+/// Those that stand behind reactions and probes: scripts know the others' places.
+const std::vector<Column>& later_step_columns() {
+  static const std::vector<Column> columns{
       {number, "numerical_work", "J",
        "what relaxation has spent since the start beyond the external work: against its pseudo "
        "inertia, and along the way between two accepted steps"},
@@ -102,6 +109,7 @@ std::vector<Column> history_columns(const std::vector<std::string>& support_sets
   }
   std::set<std::string> names;
   for (const Column& column : columns) names.insert(column.name);
+  for (const Column& column : later_step_columns()) names.insert(column.name);
   for (const ProbeColumns& probe : probes) {
     for (int c = 0; c < probe.components; ++c) {
       const std::string name = probe.components == 1 ? probe.name : probe.name + "_" + axes[c];
@@ -113,6 +121,7 @@ std::vector<Column> history_columns(const std::vector<std::string>& support_sets
       columns.push_back({number, name, probe.unit, "probe " + probe.name + " of the case"});
     }
   }
+  columns.insert(columns.end(), later_step_columns().begin(), later_step_columns().end());
   return columns;
 }
 
@@ -149,13 +158,13 @@ Row make_row(const StepRecord& record, const std::vector<std::string>& support_s
   if (record.reactions.size() != support_sets.size() || record.probes.size() != probes.size()) {
     throw std::logic_error("results: a step needs the reactions and probes that were announced");
   }
-  Row row = checked(
-      step_columns(),
-      {std::int64_t{record.step}, record.load_factor, record.mode,
-       std::int64_t{record.newton_iterations}, std::int64_t{record.relaxation_iterations},
-       record.stored_energy, record.dissipated_energy, record.drained_energy, record.external_work,
-       record.balance_error, std::int64_t{record.broken_bonds}, record.max_damage,
-       record.max_stretch, record.numerical_work, record.pin_force, std::int64_t{record.settled}});
+  Row row =
+      checked(step_columns(),
+              {std::int64_t{record.step}, record.load_factor, record.mode,
+               std::int64_t{record.newton_iterations}, std::int64_t{record.relaxation_iterations},
+               record.stored_energy, record.dissipated_energy, record.drained_energy,
+               record.external_work, record.balance_error, std::int64_t{record.broken_bonds},
+               record.max_damage, record.max_stretch});
   const auto append = [&row](const std::string& name, double value) {
     if (!std::isfinite(value)) {
       throw std::logic_error("results: " + name + " is " + number_text(value));
@@ -177,6 +186,9 @@ Row make_row(const StepRecord& record, const std::vector<std::string>& support_s
     }
     for (const double value : values->second) append("probe " + probe.name, value);
   }
+  append("numerical_work", record.numerical_work);
+  append("pin_force", record.pin_force);
+  row.emplace_back(std::int64_t{record.settled});
   return row;
 }
 

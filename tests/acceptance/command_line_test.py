@@ -25,11 +25,12 @@ HISTORY_COLUMNS = [
     "dissipated_energy", "drained_energy", "external_work", "balance_error", "broken_bonds",
     "max_damage", "max_stretch", "reaction_x:left", "reaction_y:left", "reaction_z:left",
     "reaction_x:right", "reaction_y:right", "reaction_z:right", "end_x", "end_y",
+    "numerical_work", "pin_force", "settled",
 ]  # fmt: skip
 ITERATION_COLUMNS = [
     "step", "iteration", "residual", "relative_residual", "energy", "step_length",
     "linear_iterations", "changed_bonds", "projection", "negative_pivots", "rejected_trials",
-    "degenerate_trials",
+    "degenerate_trials", "linear_tolerance",
 ]  # fmt: skip
 SUMMARY_KEYS = {
     "status", "points", "free_dofs", "bonds", "triangles", "tetrahedra", "steps", "newton_iterations",
@@ -102,7 +103,7 @@ class CommandLine(unittest.TestCase):
             "no supports": (without_supports, ["bad.toml", "move along x", "move along y", "rotate about z"]),
             "half held": (changed("displacement = [0, 0]", 'displacement = [0, "free"]'), ["bad.toml:18:", "move along y"]),
             "contradiction": (STRIP + '[[support]]\nset = "left"\ndisplacement = [1e-3, 0]\n',
-                              ["bad.toml:29:", "contradict", "left"]),
+                              ["bad.toml:29:17:", "contradict", "left"]),
         }  # fmt: skip
         for name, (text, fragments) in bad.items():
             with self.subTest(name):
@@ -265,7 +266,8 @@ class CommandLine(unittest.TestCase):
                 self.assertGreater(told["tangent_frobenius_norm"], 0.0)
                 self.assertLess(abs(told["residual_error"]), 1e-7)
                 self.assertLess(abs(told["tangent_error"]), 1e-7)
-                self.assertLess(abs(told["asymmetry"]), 1e-13)
+                # differences, with short steps where a bond is close to a kink: round-off over the step
+                self.assertLess(abs(told["asymmetry"]), 1e-9)
                 self.assertLess(abs(told["force_sum"]), 1e-11)
                 self.assertLess(abs(told["moment_sum"]), 1e-11)
                 if case.parent.name == "bar":  # quadratic energy: differences are exact at any step

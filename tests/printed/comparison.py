@@ -14,12 +14,13 @@ class PrintedTest(unittest.TestCase):
         """Within half a unit of the last digit printed: what rounding leaves of a result that repeats
         itself to round-off. `within` widens that to a share of the number; say where it comes from.
         """
-        printed = numbers(page or self.page, phrase)
+        page = page or self.page
+        printed = numbers(page, phrase)
         self.assertEqual(len(printed), len(values), phrase)
         for number, value in zip(printed, values):
             tolerance = max(number.rounding, (within or 0.0) * abs(number.value))
-            self.assertLessEqual(abs(number.value - value), tolerance * (1 + 1e-9),
-                                 f'{page or self.page}: "{phrase}" prints {number.text}, the run gives {value:.8g}')  # fmt: skip
+            told = f'{page}: "{phrase}" prints {number.text}, the run gives {value:.8g}'
+            self.assertLessEqual(abs(number.value - value), tolerance * (1 + 1e-9), told)
 
     def prints_range(self, phrase, *values, page=None):
         """The phrase has two numbers, and all values lie from the one to the other (to their rounding)."""

@@ -8,6 +8,8 @@ import pathlib
 import shutil
 import tempfile
 
+import h5py
+
 from tests.reference.program import ROOT, peristat
 
 
@@ -35,6 +37,7 @@ class Run:
     """Results folder of a run."""
 
     def __init__(self, folder, output):
+        self.folder = folder
         self.output = output
         self.summary = json.loads((folder / "summary.json").read_text())
         self.history = rows(folder / "history.csv")
@@ -62,6 +65,11 @@ class Run:
     def first(self, column):
         """The first step with a positive value in the column."""
         return next(row for row in self.history if row[column] > 0)
+
+    def field(self, name):
+        """A field of the points at the last step."""
+        with h5py.File(self.folder / "results.h5") as file:
+            return list(file["steps"].values())[-1][name][...]
 
     def accepted_residuals(self):
         """Relative residual in which each accepted step ended."""

@@ -139,7 +139,7 @@ class Notched(PrintedTest):
         self.page = f"cases/{NOTCHED}.toml"
         beam = run(NOTCHED)
         peak = beam.step_of_peak("load", "y")
-        self.prints("(peak reaction {} N at {}", -peak["reaction_y:load"], peak["load_factor"], within=PEAK)
+        self.prints("(peak reaction {} N at {},", -peak["reaction_y:load"], peak["load_factor"], within=PEAK)
         self.prints("{} broken bonds in", beam.summary["broken_bonds"], within=COUNTS)
         self.prints("broken bonds in {} steps", beam.summary["steps"])
         self.prints("{} % of the peak at the end", 100 * beam.reaction("load", "y") / peak["reaction_y:load"],
@@ -154,15 +154,13 @@ class Notched(PrintedTest):
         self.prints("of which {} J are numerical work", energy["numerical_work"], within=COUNTS)
 
     def test_steps(self):
-        for steps in STEPS_OF_NOTCHED:
+        for steps in (20, 40):
             beam = run(NOTCHED, f"relaxation.steps={steps}") if steps != 20 else run(NOTCHED)
             energy = beam.summary["energy"]
             self.prints(f"| {steps} | {{}} kN | {{}} | {{}} J | {{}} J | {{}} J |", beam.peak("load", "y") / 1e3,
                         beam.summary["broken_bonds"], energy["dissipated"], energy["drained"],
                         energy["numerical_work"], within=COUNTS)  # fmt: skip
 
-
-STEPS_OF_NOTCHED = 20, 40, 80
 
 if __name__ == "__main__":
     unittest.main()

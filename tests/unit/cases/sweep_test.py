@@ -119,8 +119,9 @@ class Picture(unittest.TestCase):
                 plot_test.write_folder(folders[1], plot_test.lattice(20, 8), damaged=damaged)
                 statuses = ["completed", "not_converged", "out_of_memory"]
                 figure = draw_sweep(["a"], [("1",), ("2",), ("3",)], folders, statuses)
-                left, right = figure.axes
+                left, right, *outcomes = figure.axes
                 self.assertIn(wanted, right.get_ylabel())
+                self.assertTrue(outcomes)  # peak reaction and probes against the varied key
                 self.assertEqual(len(left.lines), 2 + 1 + 1 + 1)  # curves, cross, zero, legend's cross
                 first, second, _ = (line.get_ydata() for line in right.lines)
                 self.assertEqual(len(first), 20)
