@@ -26,6 +26,13 @@ constexpr std::size_t buffer_bytes = std::size_t(128) << 20;
 constexpr std::size_t loading_bytes = std::size_t(16) << 20;
 constexpr int most_buffers = 128;  // OpenBLAS of Debian takes no more threads
 
+int processors() {
+  cpu_set_t allowed;
+  CPU_ZERO(&allowed);
+  return sched_getaffinity(0, sizeof allowed, &allowed) == 0 ? std::max(1, CPU_COUNT(&allowed)) : 1;
+}
+
+#if !defined(__SANITIZE_ADDRESS__)
 /// Value of a variable among "NAME=value", or 0.
 int positive_variable(char** environment, const char* name) {
   const std::size_t length = std::strlen(name);
@@ -37,13 +44,6 @@ int positive_variable(char** environment, const char* name) {
   return 0;
 }
 
-int processors() {
-  cpu_set_t allowed;
-  CPU_ZERO(&allowed);
-  return sched_getaffinity(0, sizeof allowed, &allowed) == 0 ? std::max(1, CPU_COUNT(&allowed)) : 1;
-}
-
-#if !defined(__SANITIZE_ADDRESS__)
 /// Runs before the initialisers of all libraries, so it may only use what needs none.
 void require_room_to_load(int, char**, char** environment) {
   int buffers = std::min(processors(), most_buffers);
