@@ -185,18 +185,22 @@ double relative_moment_sum(const Points& points, const std::vector<double>& disp
   return size > 0.0 ? std::hypot(sum[0], sum[1], sum[2]) / size : 0.0;
 }
 
+/// Gradients that differenced_block evaluates for a column.
+constexpr double passes_per_column = 6.0;
+
 /// Degrees of freedom of points that see one another, from several places of the body: those whose
 /// columns of the tangent are found by differences.
 /// @param direction of the check; where it is zero a difference would meet a kink
 std::vector<std::size_t> sampled_dofs(const Body& body, const std::vector<double>& direction) {
   constexpr Index places = 6, most_partners = 8;
-  constexpr double most_work = 5e8;  // interactions, some seconds
+  constexpr double most_work = 1e8;  // interactions in all passes, some seconds
   const Bonds& bonds = body.model.bonds;
   double interactions = double(bonds.count());
   if (body.model.triangles) interactions += double(body.model.triangles->interactions.count());
   if (body.model.tetrahedra) interactions += double(body.model.tetrahedra->interactions.count());
   const auto d = std::size_t(body.points.dimension);
-  const auto most = std::size_t(std::max(2.0 * double(d), most_work / interactions));
+  const auto most =
+      std::size_t(std::max(2.0 * double(d), most_work / (passes_per_column * interactions)));
 
   std::vector<Index> points;
   for (Index k = 0; k < std::min(places, bonds.points()); ++k) {
