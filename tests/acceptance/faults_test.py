@@ -346,7 +346,7 @@ class Faults(unittest.TestCase):
         self.assertEqual(gathered, 6, "no size of the disk made the gathering fail")
 
     def test_a_limit_of_file_sizes(self):
-        for blocks in [1, 8, 32, 64, 100, 200]:
+        for blocks in [1, 8, 32, 64, 100, 200, 400]:
             shutil.rmtree(self.out, ignore_errors=True)
             run = self.limited(f"ulimit -f {blocks}", "--set", "loading.steps=2000")
             self.assert_code(run, 5)
