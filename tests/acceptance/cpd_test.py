@@ -190,7 +190,7 @@ class Cpd(unittest.TestCase):
     # ---- almost collinear and coplanar points -----------------------------------------------------
 
     def reaction(self, *settings):
-        run = self.peristat("run", *settings, "--output", "out", "--quiet")
+        run = self.peristat("run", *settings, "--output", "out", "--overwrite", "--quiet")
         self.assertEqual(run.returncode, 0, run.stdout + run.stderr)
         return json.loads((self.folder / "out/summary.json").read_text())["reactions"]["pulled"][0]
 
