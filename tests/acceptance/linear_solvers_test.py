@@ -22,13 +22,13 @@ class LinearSolvers(unittest.TestCase):
         self.addCleanup(folder.cleanup)
         self.folder = pathlib.Path(folder.name)
 
-    def peristat(self, command, case, *settings):
-        words = [word for setting in settings for word in ("--set", setting)]
+    def peristat(self, command, case, *settings, overwrite=False):
+        words = ["--overwrite"] * overwrite + [word for setting in settings for word in ("--set", setting)]
         return subprocess.run([PROGRAM, command, str(case), *words], cwd=self.folder, text=True, timeout=300,
                               stdin=subprocess.DEVNULL, capture_output=True)  # fmt: skip
 
     def run_case(self, case, *settings):
-        run = self.peristat("run", case, "output.directory='out'", *settings)
+        run = self.peristat("run", case, "output.directory='out'", *settings, overwrite=True)
         self.assertEqual(run.returncode, 0, run.stdout + run.stderr)
         return run.stdout, json.loads((self.folder / "out/summary.json").read_text())
 
