@@ -140,7 +140,7 @@ class Sweep(unittest.TestCase):
         self.assertGreater(soft, 0.0)
         self.assertAlmostEqual(stiff / soft, 2.0, delta=1e-9)
         picture = matplotlib.image.imread(self.out / "sweep.png")
-        self.assertEqual(picture.shape[:2], (720, 1600))
+        self.assertEqual(picture.shape[1], 1600)  # the height follows from the number of outcomes
         self.assertGreater(picture[100:, :, :3].std(), 0.05)
         self.assertEqual(sorted(path.name for path in self.out.glob("sweep.*")), ["sweep.csv", "sweep.png"])
 
