@@ -41,7 +41,7 @@ std::string ConvergenceTable::csv() const {
 }
 
 std::optional<double> observed_order(const std::vector<ResidualRatio>& ratios) {
-  constexpr double far = 0.2, round_off = 1e-13, clear_of_linear_error = 10.0;
+  constexpr double far = 0.2, round_off = 1e-13, clear_of_linear_error = 100.0;
   const auto is_exact = [&](std::size_t k) {
     return ratios[k].value >
            clear_of_linear_error * ratios[k].linear_tolerance * ratios[k - 1].value;

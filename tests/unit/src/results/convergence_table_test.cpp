@@ -72,7 +72,7 @@ TEST(ObservedOrder, IsThatOfTheLastResidualsAboveRoundOff) {
 
 TEST(ObservedOrder, IsNotThatOfTheLinearSolver) {
   const std::vector<double> quadratic{1.0, 1e-1, 1e-3, 1e-7};
-  EXPECT_TRUE(observed_order(ratios(quadratic, 1e-6)));
+  EXPECT_TRUE(observed_order(ratios(quadratic, 1e-7)));
   // Systems solved to a share of 1e-4 leave 1e-7 of 1e-3: what is seen is that.
   EXPECT_FALSE(observed_order(ratios(quadratic, 1e-4)));
   EXPECT_FALSE(observed_order(ratios({1.0, 1e-1, 1e-4, 1e-7}, 1e-3)));
