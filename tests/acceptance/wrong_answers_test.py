@@ -5,6 +5,7 @@ import json
 import math
 import os
 import pathlib
+import statistics
 import subprocess
 import tempfile
 import unittest
@@ -237,9 +238,12 @@ class Tangents(WrongAnswers):
             with open(ended.folder / "convergence.csv", newline="") as file:
                 orders[name] = [float(cell) for cell in list(csv.reader(file))[-1][1:] if cell]
         self.assertTrue(orders["exact"])
+        # Three residuals that begin at some per cent of the first are not quite quadratic yet; what a
+        # linear solver leaves would be of order one and below.
         for order in orders["exact"] + orders["inexact"]:
-            self.assertGreater(order, 1.7)
+            self.assertGreater(order, 1.5)
             self.assertLess(order, 2.4)
+        self.assertAlmostEqual(statistics.median(orders["exact"]), 2.0, delta=0.15)
 
 
 if __name__ == "__main__":
