@@ -57,10 +57,10 @@ cp -L /etc/resolv.conf /etc/hosts "$system/etc/"
 mount -t proc proc "$system/proc"
 mount --bind /dev "$system/dev"
 
-mkdir "$system/root/peristat"
+mkdir -p "$system/opt/peristat"
 git -C "$tree" ls-files -z --cached --others --exclude-standard |
   tar -C "$tree" --null --files-from=- --ignore-failed-read -c |
-  tar -C "$system/root/peristat" --no-same-owner -x
+  tar -C "$system/opt/peristat" --no-same-owner -x
 
 environment=(PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin HOME=/root)
 for name in http_proxy https_proxy no_proxy; do
@@ -69,7 +69,7 @@ done
 status=0
 for line; do
   timed "./peristat $line" env -i "${environment[@]}" \
-    chroot "$system" bash -c "cd /root/peristat && ./peristat $line" </dev/null || status=1
+    chroot "$system" bash -c "cd /opt/peristat && ./peristat $line" </dev/null || status=1
 done
 printf '\n'
 printf '%s\n' "${report[@]}"

@@ -15,8 +15,9 @@ namespace {
 
 constexpr double unlimited = std::numeric_limits<double>::infinity();
 
-/// Program, libraries and files; Trilinos, which is loaded where it is used [bytes].
-constexpr double base_bytes = 26e6, trilinos_bytes = 44e6;
+/// Program, libraries and files; Trilinos, which is loaded where it is used; what its multigrid, of
+/// more libraries, takes beside that [bytes].
+constexpr double base_bytes = 26e6, trilinos_bytes = 44e6, multigrid_bytes = 11e6;
 
 /// CHOLMOD's workspace beside the factor, as measured: 460 MB for the beam of
 /// cases/cantilever, 1.56 GB for the plate with a hole at 120 000 points.
@@ -175,7 +176,7 @@ MemoryEstimate estimate_memory(const BodySize& size) {
 }
 
 double MemoryEstimate::iterative_bytes(const LinearSolverOptions& options) const {
-  const double bytes = trilinos_bytes + krylov_bytes(size, options.method == LinearMethod::gmres);
+  double bytes = trilinos_bytes + krylov_bytes(size, options.method == LinearMethod::gmres);
   const double d = size.dimension;
   switch (options.preconditioner) {
     case PreconditionerKind::jacobi:
@@ -186,9 +187,11 @@ double MemoryEstimate::iterative_bytes(const LinearSolverOptions& options) const
       return bytes + rigid_pieces_bytes(size);
     case PreconditionerKind::surrogate:
       return bytes + surrogate_bytes(size);
+    case PreconditionerKind::multigrid:
+      bytes += multigrid_bytes;
+      [[fallthrough]];
     case PreconditionerKind::riluk:
     case PreconditionerKind::chebyshev:
-    case PreconditionerKind::multigrid:
       return bytes + trilinos_bytes_per_entry(options.preconditioner) * d * d *
                          (2.0 * size.bonds + size.points);
   }

@@ -11,27 +11,10 @@ import unittest
 import h5py
 import numpy
 
+from tests.acceptance.strip import LATTICE
+
 PROGRAM = os.environ["PERISTAT_PROGRAM"]
-STRIP = """
-dimension = 2
-
-[lattice]
-spacing = 1e-3
-thickness = 1e-3
-
-[[lattice.shape]]
-add = "box"
-min = [0.0, 0.0]
-max = [0.02, 0.01]
-
-[[lattice.layer]]
-name = "left"
-side = "x-"
-
-[[lattice.layer]]
-name = "right"
-side = "x+"
-
+STRIP = LATTICE + """\
 [material]
 model = "cpd"
 youngs_modulus = 200e9
