@@ -88,6 +88,10 @@ Attempt to_attempt(RelaxationResult result, double load_factor) {
   return common_attempt(std::move(result), load_factor);
 }
 
+State state_of(const Attempt& attempt) {
+  return {attempt.state.displacement, attempt.load_factor, attempt.state.history};
+}
+
 /// Whether a smaller step can help.
 bool worth_cutting(const Attempt& attempt) {
   const Outcome outcome = attempt.outcome;
@@ -157,9 +161,10 @@ class LoadPath {
         free_(&body.free) {
     const std::size_t dofs = pinned_.size();
     result_.state.displacement.assign(dofs, 0.0);
+    result_.state.history = main_.assembler.initial_history();
     std::vector<double> gradient(dofs), external_force(dofs);
     conditions.external_force(0.0, external_force);
-    const Stored reference = assembler().gradient(result_.state.displacement, gradient);
+    const Stored reference = assembler().gradient(result_.state, gradient);
     force_ = working_force(conditions_.prescribed(), external_force, gradient);
     // Of a body that is not free of stress in the reference.
     ledger_.external_work = ledger_.stored = reference.energy;
@@ -209,6 +214,7 @@ class LoadPath {
     attempt.outcome = Outcome::undefined_condition;
     attempt.load_factor = load_factor;
     attempt.state.displacement = result_.state.displacement;
+    attempt.state.history = result_.state.history;
     return attempt;
   }
 
@@ -222,15 +228,13 @@ class LoadPath {
     }
     // Damage is relaxation's: where an implicit state would damage a bond does not matter, but that
     // it would.
-    const bool holds_damage = options_.mode == Mode::adaptive;
-    Attempt attempt = [&] {
-      const DamageHold hold(assembler(), holds_damage);
-      return search(result_.state, target, newton_options_);
-    }();
+    NewtonOptions options = newton_options_;
+    if (options_.mode == Mode::adaptive) options.damage = Damage::held;
+    Attempt attempt = search(result_.state, target, options);
     if (attempt.outcome != Outcome::converged)
       return implicit_failure(std::move(attempt), attempted);
 
-    const DamageGrowth growth = main_.assembler.growth(attempt.state.displacement);
+    const DamageGrowth growth = main_.assembler.growth(attempt.state.at());
     if (options_.mode == Mode::adaptive && growth.utilisation > 1.0) {
       return approach_damage(growth, target, attempted);
     }
@@ -238,23 +242,21 @@ class LoadPath {
       attempt.outcome = Outcome::damage_limit;
       return implicit_failure(std::move(attempt), attempted, bonds_text(growth.breaking));
     }
-    const std::vector<double> history(assembler().history().begin(), assembler().history().end());
     FoundStep found;
     found.record.mode = "newton";
     if (growth.degrading > 0) {
       commit(attempt, found, [&] {
-        const State from{attempt.state.displacement, target};
-        NewtonOptions options = newton_options_;
-        options.scale = attempt.scale;
+        const State from = state_of(attempt);
+        NewtonOptions again = newton_options_;
+        again.scale = attempt.scale;
         const int before = attempt.iterations;
-        attempt = search(from, target, options);
+        attempt = search(from, target, again);
         attempt.iterations += before;
         return attempt.outcome;
       });
     }
     found.record.newton_iterations = attempt.iterations;
     if (const std::string fault = complete(found, attempt); attempt.outcome != Outcome::converged) {
-      assembler().restore(history);
       return implicit_failure(std::move(attempt), attempted, fault);
     }
     const bool grows = attempt.iterations <= options_.easy_iterations && implicit_.grow();
@@ -270,7 +272,7 @@ class LoadPath {
 
   /// An implicit step has converged to a state that would damage bonds.
   bool approach_damage(const DamageGrowth& growth, double target, double attempted) {
-    const double before = main_.assembler.growth(result_.state.displacement).utilisation;
+    const double before = main_.assembler.growth(result_.state).utilisation;
     const double share = (1.0 - before) / (growth.utilisation - before);
     const double rest = share_to_onset * std::min(share, 1.0) * attempted;
     const std::string why = bonds_text(growth.degrading) +
@@ -292,7 +294,7 @@ class LoadPath {
     if (attempt.inertia && attempt.inertia->negative > 0) {
       reason += " (" + std::to_string(attempt.inertia->negative) + " negative pivots)";
     }
-    const bool may_fail = !assembler().history().empty() || is_standing_in();
+    const bool may_fail = main_.assembler.model().has_history();
     if (options_.mode == Mode::adaptive && may_fail && worth_relaxing(attempt)) {
       return hand_over(target, attempted, attempt.outcome, reason);
     }
@@ -313,7 +315,7 @@ class LoadPath {
 
   /// Whether a step as small as allowed has failed because bonds soften.
   [[nodiscard]] bool is_limit_point(const Attempt& attempt) {
-    if (assembler().history().empty() || !options_.adaptive) return false;
+    if (!assembler().model().has_history() || !options_.adaptive) return false;
     return attempt.outcome == Outcome::not_positive_definite ||
            attempt.outcome == Outcome::limit_point ||
            (attempt.has_negative_pivots && worth_cutting(attempt) &&
@@ -388,7 +390,6 @@ class LoadPath {
     if (const auto refusal = refusal_of_conditions(target)) {
       return relaxation_failure(undefined_attempt(target), attempted, *refusal);
     }
-    const std::vector<double> history(assembler().history().begin(), assembler().history().end());
     const RelaxationMotion motion = motion_;
     const bool with_newton = options_.mode == Mode::adaptive && options_.relaxation.holds;
 
@@ -396,6 +397,7 @@ class LoadPath {
     step.found.record.mode = "relaxation";
     step.found.relaxed.emplace();
     step.attempt.state.displacement = result_.state.displacement;
+    step.attempt.state.history = result_.state.history;
     step.attempt.load_factor = load_factor;
     const auto equilibrate = [&] {
       if (with_newton) {
@@ -411,7 +413,6 @@ class LoadPath {
     std::string fault;
     if (step.attempt.outcome == Outcome::converged) fault = complete(step.found, step.attempt);
     if (step.attempt.outcome != Outcome::converged) {
-      assembler().restore(history);
       motion_ = motion;
       return relaxation_failure(std::move(step.attempt), attempted, fault);
     }
@@ -438,7 +439,7 @@ class LoadPath {
 
   void relax_towards(RelaxedStep& step, double target, RelaxationOptions options) {
     const int number = next_step();
-    const State from{step.attempt.state.displacement, step.attempt.load_factor};
+    const State from = state_of(step.attempt);
     if (from.load_factor == target && options.holds) options.ramp = 1;
     options.scale = step.scale;
     const Stopwatch watch(result_.relaxation_seconds);
@@ -469,7 +470,7 @@ class LoadPath {
   /// @return false if relaxation has to go on
   bool finish(RelaxedStep& step, NewtonOptions options) {
     options.scale = step.scale;
-    const State near{step.attempt.state.displacement, step.attempt.load_factor};
+    const State near = state_of(step.attempt);
     Attempt finished = search(near, near.load_factor, options);
     if (finished.outcome != Outcome::converged && worth_relaxing(finished)) return false;
     step.found.record.newton_iterations += finished.iterations;
@@ -526,7 +527,7 @@ class LoadPath {
 
   /// Of the state that a search has ended in, for what is told of it.
   void count_pivots(Attempt& attempt) {
-    active_->tangent.linearise(assembler(), attempt.state.displacement, 0.0);
+    active_->tangent.linearise(assembler(), attempt.state.at(), 0.0);
     active_->solver.count_pivots(true);
     static_cast<void>(active_->solver.factorize(active_->tangent, FactorUse::factorize_now));
     attempt.inertia = active_->solver.inertia();
@@ -547,7 +548,8 @@ class LoadPath {
   template <class Equilibrate>
   void commit(Attempt& attempt, FoundStep& found, const Equilibrate& equilibrate) {
     for (int pass = 0; pass < most_commits; ++pass) {
-      const Stored committed = assembler().commit(attempt.state.displacement);
+      const Stored committed =
+          assembler().commit(attempt.state.displacement, attempt.state.history);
       found.growth.degrading += committed.growth.degrading;
       found.growth.breaking += committed.growth.breaking;
       found.released += committed.released;
@@ -563,7 +565,7 @@ class LoadPath {
   std::string complete(FoundStep& found, Attempt& attempt) {
     const Assembler& assembler = active_->assembler;
     std::vector<double> damage(std::size_t(assembler.points().count()));
-    const DamageState damaged = assess_damage(assembler.model(), assembler.history(), {}, damage);
+    const DamageState damaged = assess_damage(assembler.model(), attempt.state.history, {}, damage);
     found.record.broken_bonds = damaged.broken_bonds;
     const double work = trapezoidal_work(
         force_,
@@ -579,7 +581,7 @@ class LoadPath {
     }
     if (attempt.outcome != Outcome::converged) return {};
     if (attempt.iterations == 0) {  // no tangent was needed so far
-      active_->tangent.linearise(active_->assembler, attempt.state.displacement, 0.0);
+      active_->tangent.linearise(active_->assembler, attempt.state.at(), 0.0);
     }
     std::string fault =
         find_inconsistency(problem(), main_.assembler, active_->tangent,
@@ -606,7 +608,7 @@ class LoadPath {
 
   /// Finds what has come off and tells the step.
   bool accept(FoundStep found, Attempt attempt) {
-    result_.state = {attempt.state.displacement, attempt.load_factor};
+    result_.state = state_of(attempt);
     ++result_.steps;
     is_near_onset_ = is_near_onset_ && !relaxes_;
     force_ =
@@ -627,8 +629,7 @@ class LoadPath {
     record.pin_force = pin_force(attempt);
     record.reactions = conditions_.reactions(attempt.state.gradient, attempt.external_force);
     if (observer_.accepted) {
-      observer_.accepted(record, {attempt.state, attempt.external_force,
-                                  active_->assembler.history(), pieces_.piece});
+      observer_.accepted(record, {attempt.state, attempt.external_force, pieces_.piece});
     }
     result_.last_attempt = std::move(attempt);
     return resolve_fragments();
@@ -646,7 +647,7 @@ class LoadPath {
   void find_pieces() {
     const Assembler& assembler = active_->assembler;
     pieces_ = find_fragments(assembler.points(), assembler.model().bonds,
-                             broken_bonds(assembler.model(), assembler.history()),
+                             broken_bonds(assembler.model(), result_.state.history),
                              conditions_.prescribed(), result_.state.displacement);
     if (options_.fragments == FragmentRemedy::remove) remove_pieces();
   }

@@ -47,9 +47,8 @@ struct LoadSteppingOptions {
 
 /// What an accepted state is made of besides its record.
 struct AcceptedState {
-  const Trial& trial;
+  const Trial& trial;  ///< with its damage committed
   const std::vector<double>& external_force;
-  std::span<const double> history;      ///< committed, of the assembler
   std::span<const std::int32_t> piece;  ///< per point, see Fragments; empty: none
 };
 

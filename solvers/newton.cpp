@@ -37,17 +37,16 @@ class Linearisation {
 
   /// Finds the direction du with K_ff du_f = f_ext - dE/dx_f - K_fp jump_p at a state.
   /// @param projection of the interactions; after the exact tangent (0) of a state any other share
-  /// may
-  ///        follow at the same state
+  ///        may follow at the same state
   /// @param after_jump displacement whose difference from the state's is the jump of the prescribed
   ///        ones; empty for none
   /// @param tolerance of the linear system's relative residual
-  [[nodiscard]] LinearOutcome solve(std::span<const double> displacement,
-                                    std::span<const double> gradient, double projection,
-                                    FactorUse use, std::span<const double> after_jump,
-                                    double tolerance, std::vector<double>& direction) {
+  [[nodiscard]] LinearOutcome solve(const StateView& at, std::span<const double> gradient,
+                                    double projection, FactorUse use,
+                                    std::span<const double> after_jump, double tolerance,
+                                    std::vector<double>& direction) {
     direction = std::vector<double>();
-    assemble(displacement, projection);
+    assemble(at, projection);
     std::vector<double> right_hand_side(std::size_t(problem_.free.count()));
     for (std::size_t e = 0; e < right_hand_side.size(); ++e) {
       const Index dof = problem_.free.dof[e];
@@ -55,7 +54,7 @@ class Linearisation {
     }
     if (!after_jump.empty()) {
       std::vector<double> jump(after_jump.begin(), after_jump.end()), force(jump.size());
-      add_scaled(jump, -1.0, displacement);
+      add_scaled(jump, -1.0, at.displacement);
       tangent_.multiply(jump, force);
       for (std::size_t e = 0; e < right_hand_side.size(); ++e) {
         right_hand_side[e] -= force[problem_.free.dof[e]];
@@ -66,16 +65,16 @@ class Linearisation {
     if (outcome == LinearOutcome::solved) {
       outcome = solver_.solve(right_hand_side, solution, tolerance);
     }
-    direction.resize(displacement.size());
+    direction.resize(at.displacement.size());
     problem_.free.extend_by_zero(solution, direction);
     return outcome;
   }
 
  private:
-  void assemble(std::span<const double> displacement, double projection) {
+  void assemble(const StateView& at, double projection) {
     Tangent* const stored = tangent_.stored();
     if (projection == 0.0 || !exact_is_known_ || !stored) {
-      tangent_.linearise(problem_.assembler, displacement, projection);
+      tangent_.linearise(problem_.assembler, at, projection);
       exact_is_known_ = projection == 0.0;
       to_projected_.reset();
       projection_ = projection;
@@ -84,7 +83,7 @@ class Linearisation {
     // Linear in the share: the projection of every interaction, which is what costs, is done once.
     if (!to_projected_) {
       to_projected_.emplace(stored->pattern, stored->dimension, stored->threads(), stored->blocks);
-      problem_.assembler.tangent(displacement, *to_projected_, 1.0);
+      problem_.assembler.tangent(at, *to_projected_, 1.0);
       add_scaled(to_projected_->diagonal, -1.0, stored->diagonal);
       add_scaled(to_projected_->off_diagonal, -1.0, stored->off_diagonal);
     }
@@ -145,21 +144,21 @@ NewtonResult newton(const EquilibriumProblem& problem, LinearSolver& solver,
 
   Trial& current = result.state;
   current.displacement = from.displacement;
-  evaluate(problem, external_force, current);
+  current.history = from.history;
+  evaluate(problem, external_force, current, options.damage);
   const std::vector<double> old_gradient = current.gradient;
 
   // Right after the jump bonds beside the supports are stretched as no equilibrium will ask for.
   // Where they may break, nothing would be left to measure the residual against, and the search
   // would begin in a torn body: damage is held until the predictor has spread the jump.
-  std::optional<DamageHold> hold;
-  if (load_factor != from.load_factor) hold.emplace(problem.assembler);
+  Damage damage = load_factor == from.load_factor ? options.damage : Damage::held;
   const auto release = [&] {
-    if (!hold) return;
-    hold.reset();
-    if (!problem.assembler.holds_damage()) evaluate(problem, external_force, current);
+    if (damage == options.damage) return;
+    damage = options.damage;
+    evaluate(problem, external_force, current, damage);
   };
   problem.conditions.prescribe(load_factor, current.displacement);
-  evaluate(problem, external_force, current);
+  evaluate(problem, external_force, current, damage);
   const double scale = options.scale > 0.0
                            ? options.scale
                            : residual_scale(problem, external_force, old_gradient, current);
@@ -219,10 +218,10 @@ NewtonResult newton(const EquilibriumProblem& problem, LinearSolver& solver,
                                 ? FactorUse::factorize_now
                                 : FactorUse::may_reuse;
       const LinearOutcome linear =
-          is_predictor ? linearisation.solve(from.displacement, old_gradient, projection, use,
+          is_predictor ? linearisation.solve({from, damage}, old_gradient, projection, use,
                                              current.displacement, forcing, direction)
-                       : linearisation.solve(current.displacement, current.gradient, projection,
-                                             use, {}, forcing, direction);
+                       : linearisation.solve(current.at(damage), current.gradient, projection, use,
+                                             {}, forcing, direction);
       if (exact) {
         result.inertia = solver.inertia();
         row.negative_pivots = told_negative_pivots(linear, result.inertia);
@@ -237,8 +236,8 @@ NewtonResult newton(const EquilibriumProblem& problem, LinearSolver& solver,
       row.linear_tolerance = row.linear_iterations > 0 ? forcing : 0.0;
       result.outcome = outcome_of(linear);
       if (result.outcome == Outcome::converged) {
-        search =
-            line_search(problem, external_force, current, direction, options.line_search, next);
+        search = line_search(problem, external_force, current, direction, options.line_search, next,
+                             damage);
         result.outcome = search.outcome;
       }
       row.rejected_trials += search.rejected;
@@ -248,8 +247,9 @@ NewtonResult newton(const EquilibriumProblem& problem, LinearSolver& solver,
         // bonds beside the supports): the predictor is then taken in full, and the next iteration
         // judges it.
         next.displacement = current.displacement;
+        next.history = current.history;
         add_scaled(next.displacement, 1.0, direction);
-        evaluate(problem, external_force, next);
+        evaluate(problem, external_force, next, damage);
         search.step_length = 1.0;
         result.outcome = next.degenerate ? Outcome::degenerate : Outcome::converged;
       }
