@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <utility>
 
 #include "src/input_error.hpp"
@@ -156,7 +157,9 @@ void Conditions::external_force(double load_factor, std::span<double> force) con
 std::map<std::string, Coordinates> Conditions::reactions(std::span<const double> gradient,
                                                          std::span<const double> external) const {
   std::map<std::string, Coordinates> sums;
+  std::set<std::pair<std::string, int>> summed;  // two supports may hold one set in one component
   for (const Prescription& prescription : prescriptions_) {
+    if (!summed.emplace(prescription.set, prescription.component).second) continue;
     double& sum = sums[prescription.set][prescription.component];
     for (Index point : *prescription.points) {
       const std::size_t dof = std::size_t(point) * points_.dimension + prescription.component;

@@ -33,7 +33,7 @@ class Conditions {
   void external_force(double load_factor, std::span<double> force) const;
 
   /// Reaction of each support's set [N]: the sum over its prescribed degrees of freedom of what the
-  /// support adds to hold them, dE/dx - external force.
+  /// supports add to hold them, dE/dx - external force. Points of two sets count in both.
   [[nodiscard]] std::map<std::string, Coordinates> reactions(
       std::span<const double> gradient, std::span<const double> external) const;
 

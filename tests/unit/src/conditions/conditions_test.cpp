@@ -101,6 +101,19 @@ TEST(Conditions, ReactionsAreWhatTheSupportsAdd) {
   EXPECT_EQ(reactions.at("middle"), (Coordinates{0, (8 - 0.125) + 32, 0}));
 }
 
+TEST(Conditions, ReactionsOfASetThatIsSupportedTwiceCountOnce) {
+  const Points points = four_points();
+  const std::vector<double> gradient{1, 2, 4, 8, 16, 32, 64, 128};
+  const std::vector<double> external(8, 0.0);
+  const auto reactions = [&](const std::vector<SupportSpecification>& supports) {
+    return Conditions(points, supports, {}).reactions(gradient, external);
+  };
+  const auto once = reactions({support("left", "0", "0")});
+  EXPECT_EQ(reactions({support("left", "0", "0"), support("left", "0", "0")}), once);
+  EXPECT_EQ(reactions({support("left", "0"), support("left", std::nullopt, "0")}), once);
+  EXPECT_EQ(reactions({support("left", "0", "0"), support("left", "0*load")}), once);
+}
+
 TEST(Conditions, TakesSupportsThatAgreeWhereTheyOverlap) {
   const Points points = four_points();
   EXPECT_NO_THROW(Conditions(points, {support("left", "x*load"), support("middle", "load")},
