@@ -169,11 +169,11 @@ struct AtHistory {
 
 /// The potential as a function of the stretch alone: at the bonds' histories, if it has one.
 template <class P>
-[[gnu::always_inline]] inline auto at_history(const Workspace& a, const P& potential,
+[[gnu::always_inline]] inline auto at_history(const double* largest_stretch, const P& potential,
                                               Offset first_bond) {
   if constexpr (PotentialWithHistory<P>) {
-    const double* from = &a.largest_stretch[std::size_t(first_bond)];
-    return AtHistory<P>{potential, Lanes(from, std::experimental::element_aligned)};
+    return AtHistory<P>{potential,
+                        Lanes(largest_stretch + first_bond, std::experimental::element_aligned)};
   } else {
     return potential;
   }
@@ -182,13 +182,12 @@ template <class P>
 /// Moves the histories of a batch to its stretches where these damage the bonds.
 template <int D, class P>
 inline void commit(const P& potential, const Batch<D>& batch, const Lanes& stretch,
-                   std::vector<double>& largest_stretch, DamageGrowth& growth) {
-  const Lanes before(&largest_stretch[std::size_t(batch.first)],
-                     std::experimental::element_aligned);
+                   double* largest_stretch, DamageGrowth& growth) {
+  const Lanes before(largest_stretch + batch.first, std::experimental::element_aligned);
   const auto may_grow = stretch > potential.law.onset() && before < potential.law.critical();
   if (std::experimental::none_of(may_grow)) return;
   for (int l = 0; l < batch.count; ++l) {
-    double& largest = largest_stretch[std::size_t(batch.first + l)];
+    double& largest = largest_stretch[batch.first + l];
     const double s = stretch[l];
     if (!potential.is_loading(s, largest)) continue;
     largest = s;
@@ -200,10 +199,10 @@ inline void commit(const P& potential, const Batch<D>& batch, const Lanes& stret
 /// What committing a batch would damage.
 template <int D, class P>
 inline void look_at(const P& potential, const Batch<D>& batch, const Lanes& stretch,
-                    const std::vector<double>& largest_stretch, DamageGrowth& growth) {
+                    const double* largest_stretch, DamageGrowth& growth) {
   if (largest(stretch) <= std::min(growth.utilisation, 1.0) * potential.law.onset()) return;
   for (int l = 0; l < batch.count; ++l) {
-    const double before = largest_stretch[std::size_t(batch.first + l)], s = stretch[l];
+    const double before = largest_stretch[batch.first + l], s = stretch[l];
     growth.utilisation = std::max(growth.utilisation, potential.utilisation(s, before));
     if (!potential.is_loading(s, before)) continue;
     ++growth.degrading;
@@ -220,7 +219,8 @@ inline InteractionEnergy<Lanes> projected(const InteractionEnergy<Lanes>& psi, d
 }
 
 /// The passes over the bonds, for one dimension; the potential is chosen once, outside the loops.
-/// Each overwrites its result.
+/// Each overwrites its result. `largest_stretch` is the bonds' history and a batch more; null for a
+/// potential without one.
 template <int D>
 struct BondKernels {
   using Span = std::span<const double>;
@@ -228,6 +228,7 @@ struct BondKernels {
   /// @tparam commits whether histories follow: the energy is then what is stored after that
   template <bool commits, class P>
   static Stored gradient(Workspace& a, const P& potential, Span displacement,
+                         std::conditional_t<commits, double*, const double*> largest_stretch,
                          std::span<double> result) {
     a.pack<D>(a.points.reference, displacement);
     std::vector<Stored>& parts = a.stored;
@@ -247,10 +248,10 @@ struct BondKernels {
               const auto measure =
                   Length::at<D, Lanes>(batch.inverse_length, {batch.vector0}, {batch.vector1});
               if constexpr (commits) {
-                commit<D>(potential, batch, measure.relative_change, a.largest_stretch, growth);
+                commit<D>(potential, batch, measure.relative_change, largest_stretch, growth);
               }
-              const auto psi =
-                  interaction_energy(batch.weight, at_history(a, potential, batch.first), measure);
+              const auto psi = interaction_energy(
+                  batch.weight, at_history(largest_stretch, potential, batch.first), measure);
               row_energy += psi.value;
               shortest = std::experimental::min(shortest, measure.current);
               if (energy_only) return;
@@ -271,7 +272,8 @@ struct BondKernels {
   }
 
   template <class P>
-  static DamageGrowth growth(Workspace& a, const P& potential, Span displacement) {
+  static DamageGrowth growth(Workspace& a, const P& potential, Span displacement,
+                             const double* largest_stretch) {
     a.pack<D>(a.points.reference, displacement);
     const auto body = [&](int thread, RowRange range, double*) {
       DamageGrowth found;
@@ -279,7 +281,7 @@ struct BondKernels {
         for_each_batch<D>(a.model.bonds, a.rows.data(), i, [&](const Batch<D>& batch) {
           const auto measure =
               Length::at<D, Lanes>(batch.inverse_length, {batch.vector0}, {batch.vector1});
-          look_at<D>(potential, batch, measure.relative_change, a.largest_stretch, found);
+          look_at<D>(potential, batch, measure.relative_change, largest_stretch, found);
         });
       }
       a.stored[thread] = {0.0, false, found};
@@ -292,8 +294,9 @@ struct BondKernels {
   /// @param done(thread, i) called once they are there
   /// @param diagonal blocks; empty: not wanted
   template <Tangent::Blocks stored_as, class P, class BlocksOf, class Done>
-  static void tangent(Workspace& a, const P& potential, Span displacement, double projection,
-                      const BlocksOf& blocks_of, const Done& done, std::span<double> diagonal) {
+  static void tangent(Workspace& a, const P& potential, Span displacement,
+                      const double* largest_stretch, double projection, const BlocksOf& blocks_of,
+                      const Done& done, std::span<double> diagonal) {
     a.pack<D>(a.points.reference, displacement);
     const Bonds& bonds = a.model.bonds;
     constexpr int width = block_width(D);
@@ -306,8 +309,8 @@ struct BondKernels {
             bonds, a.rows.data(), i, [&](const Batch<D>& batch) __attribute__((always_inline)) {
               const auto measure =
                   Length::at<D, Lanes>(batch.inverse_length, {batch.vector0}, {batch.vector1});
-              auto psi =
-                  interaction_energy(batch.weight, at_history(a, potential, batch.first), measure);
+              auto psi = interaction_energy(
+                  batch.weight, at_history(largest_stretch, potential, batch.first), measure);
               if (projection > 0.0) psi = projected(psi, projection);
               const Matrix<D, Lanes> block = energy_hessian<0, 0>(psi, measure);
               const auto half = upper_half<D>(block);
@@ -336,8 +339,9 @@ struct BondKernels {
   }
 
   template <class P>
-  static void product(Workspace& a, const P& potential, Span displacement, Span v,
-                      double projection, std::span<double> result) {
+  static void product(Workspace& a, const P& potential, Span displacement,
+                      const double* largest_stretch, Span v, double projection,
+                      std::span<double> result) {
     a.pack<D>(displacement, v);
     constexpr int row = row_width(D);
     const Index count = a.points.count();
@@ -357,8 +361,8 @@ struct BondKernels {
             bonds, a.rows.data(), i, [&](const Batch<D>& batch) __attribute__((always_inline)) {
               const auto measure =
                   Length::from_current<D, Lanes>(batch.inverse_length, {batch.vector0});
-              auto psi =
-                  interaction_energy(batch.weight, at_history(a, potential, batch.first), measure);
+              auto psi = interaction_energy(
+                  batch.weight, at_history(largest_stretch, potential, batch.first), measure);
               if (projection > 0.0) psi = projected(psi, projection);
               const Vector<D, Lanes> force =
                   energy_hessian_times(psi, measure, Arms<1, D, Lanes>{batch.vector1})[0];
@@ -375,7 +379,7 @@ struct BondKernels {
 
   template <class P>
   static double point_energies(Workspace& a, const P& potential, Span displacement,
-                               std::span<double> energies) {
+                               const double* largest_stretch, std::span<double> energies) {
     a.pack<D>(a.points.reference, displacement);
     const Bonds& bonds = a.model.bonds;
     std::vector<double>& longest = a.longest;
@@ -388,9 +392,10 @@ struct BondKernels {
               const auto measure =
                   Length::at<D, Lanes>(batch.inverse_length, {batch.vector0}, {batch.vector1});
               const Lanes half =
-                  0.5 *
-                  interaction_energy(batch.weight, at_history(a, potential, batch.first), measure)
-                      .value;
+                  0.5 * interaction_energy(batch.weight,
+                                           at_history(largest_stretch, potential, batch.first),
+                                           measure)
+                            .value;
               most = std::experimental::max(most, measure.relative_change);
               own += half;
               add_to_partners<1>(sums, batch.partner, Vector<1, Lanes>{half});

@@ -6,10 +6,9 @@
 namespace peristat {
 namespace {
 
-/// Calls visit(law) if the bonds have a history.
+/// Calls visit(law) if the bonds can be damaged.
 template <class Visit>
-void with_law(const Model& model, std::span<const double> history, const Visit& visit) {
-  if (history.empty()) return;
+void with_law(const Model& model, const Visit& visit) {
   std::visit(
       [&]<class P>(const P& law) {
         if constexpr (PotentialWithHistory<P>) visit(law);
@@ -19,7 +18,7 @@ void with_law(const Model& model, std::span<const double> history, const Visit& 
 
 }  // namespace
 
-DamageState assess_damage(const Model& model, std::span<const double> history,
+DamageState assess_damage(const Model& model, const History& history,
                           std::span<const double> cut_weight, std::span<double> damage) {
   const Bonds& bonds = model.bonds;
   DamageState state;
@@ -40,10 +39,11 @@ DamageState assess_damage(const Model& model, std::span<const double> history,
       }
     }
   };
-  if (history.empty()) for_each_bond([](Offset) { return 1.0; });
-  with_law(model, history, [&](const auto& law) {
+  if (!model.has_history()) for_each_bond([](Offset) { return 1.0; });
+  const std::span<const double> stretches = bond_stretches(model, history);
+  with_law(model, [&](const auto& law) {
     for_each_bond([&](Offset bond) {
-      const double largest = history[bond];
+      const double largest = stretches[bond];
       state.dissipated_energy += bonds.weight(bond) * bonds.length(bond) * law.dissipated(largest);
       state.broken_bonds += law.is_broken(largest);
       return law.integrity_after(largest);
@@ -56,10 +56,16 @@ DamageState assess_damage(const Model& model, std::span<const double> history,
   return state;
 }
 
-std::vector<char> broken_bonds(const Model& model, std::span<const double> history) {
-  std::vector<char> broken(history.size());
-  with_law(model, history, [&](const auto& law) {
-    std::transform(history.begin(), history.end(), broken.begin(),
+std::span<const double> bond_stretches(const Model& model, const History& history) {
+  if (!model.has_history()) return {};
+  return history.of(bond_history).first(std::size_t(model.bonds.count()));
+}
+
+std::vector<char> broken_bonds(const Model& model, const History& history) {
+  const std::span<const double> stretches = bond_stretches(model, history);
+  std::vector<char> broken(stretches.size());
+  with_law(model, [&](const auto& law) {
+    std::transform(stretches.begin(), stretches.end(), broken.begin(),
                    [&](double largest) { return law.is_broken(largest); });
   });
   return broken;

@@ -3,6 +3,7 @@
 #include <span>
 #include <vector>
 
+#include "assembly/history.hpp"
 #include "assembly/model.hpp"
 #include "src/points/points.hpp"
 
@@ -23,13 +24,16 @@ struct DamageState {
 /// pre-crack has cut, which `cut_weight` gives where these are to count. With equal weights and T
 /// either 0 or 1 this is one minus the share of unbroken bonds ([GPMB] eq. 13). A point without
 /// bonds has the damage 0, or 1 if a crack has cut them.
-/// @param history of the assembler; empty without damage
 /// @param cut_weight per point [m6], or empty
-[[nodiscard]] DamageState assess_damage(const Model& model, std::span<const double> history,
+[[nodiscard]] DamageState assess_damage(const Model& model, const History& history,
                                         std::span<const double> cut_weight,
                                         std::span<double> damage);
 
-/// Whether each bond is broken, in the order of the bonds; empty without history.
-[[nodiscard]] std::vector<char> broken_bonds(const Model& model, std::span<const double> history);
+/// Largest stretch of each bond over the committed states, as far as it has damaged the bond (0
+/// before, Degraded::never_fails where the model says so); empty for bonds that can't be damaged.
+[[nodiscard]] std::span<const double> bond_stretches(const Model& model, const History& history);
+
+/// Whether each bond is broken, in the order of the bonds; empty for bonds that can't be.
+[[nodiscard]] std::vector<char> broken_bonds(const Model& model, const History& history);
 
 }  // namespace peristat

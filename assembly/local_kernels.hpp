@@ -81,10 +81,10 @@ struct LocalKernels {
   }
 
   static void move_to(const Workspace& a, LocalWorkspace<D>& w, Index i, Span displacement,
-                      bool find_pairs) {
+                      const Integrity& integrity, bool find_pairs) {
     w.local.move_to(i);
     if (find_pairs) w.local.upper.find_pairs();
-    w.find_integrity(a.integrity, a.degraded_points, a.model.bonds.offset[i], find_pairs);
+    w.find_integrity(integrity, a.model.bonds.offset[i], find_pairs);
     assign_relative(w, displacement, w.displacement);
   }
 
@@ -119,7 +119,8 @@ struct LocalKernels {
     for (int c = 0; c < width; ++c) row[c] += own[c];
   }
 
-  static Stored gradient(Workspace& a, Span displacement, std::span<double> result) {
+  static Stored gradient(Workspace& a, Span displacement, const Integrity& integrity,
+                         std::span<double> result) {
     const bool energy_only = result.empty();
     const bool find_pairs = must_find(a.model);
     constexpr int stride = vector_width(D);
@@ -128,7 +129,7 @@ struct LocalKernels {
       Lanes smallest_measure = std::numeric_limits<double>::infinity();
       double energy = 0.0;
       for (Index i = range.first; i < range.last; ++i) {
-        move_to(a, w, i, displacement, find_pairs);
+        move_to(a, w, i, displacement, integrity, find_pairs);
         w.clear(D);
         Lanes row_energy = 0.0;
         for_each_term(a.model, [&](auto kind, const auto& interactions, const auto& potential) {
@@ -167,13 +168,14 @@ struct LocalKernels {
     return a.total_stored();
   }
 
-  static void product(Workspace& a, Span displacement, Span v, std::span<double> result) {
+  static void product(Workspace& a, Span displacement, const Integrity& integrity, Span v,
+                      std::span<double> result) {
     const bool find_pairs = must_find(a.model);
     constexpr int stride = vector_width(D);
     const auto body = [&](int thread, RowRange range, double* sums) {
       LocalWorkspace<D>& w = a.template local_of<D>(thread);
       for (Index i = range.first; i < range.last; ++i) {
-        move_to(a, w, i, displacement, find_pairs);
+        move_to(a, w, i, displacement, integrity, find_pairs);
         assign_relative(w, v, w.vector);
         w.clear(D);
         for_each_term(a.model, [&](auto kind, const auto& interactions, const auto& potential) {
@@ -206,12 +208,13 @@ struct LocalKernels {
   }
 
   /// Shares every interaction's energy equally among its points.
-  static void point_energies(Workspace& a, Span displacement, std::span<double> energies) {
+  static void point_energies(Workspace& a, Span displacement, const Integrity& integrity,
+                             std::span<double> energies) {
     const bool find_pairs = must_find(a.model);
     const auto body = [&](int thread, RowRange range, double* sums) {
       LocalWorkspace<D>& w = a.template local_of<D>(thread);
       for (Index i = range.first; i < range.last; ++i) {
-        move_to(a, w, i, displacement, find_pairs);
+        move_to(a, w, i, displacement, integrity, find_pairs);
         w.clear(1);
         Lanes own = 0.0;
         for_each_term(a.model, [&](auto kind, const auto& interactions, const auto& potential) {
@@ -363,7 +366,8 @@ struct LocalKernels {
     }
   }
 
-  static void tangent(Workspace& a, Span displacement, double projection, Tangent& result) {
+  static void tangent(Workspace& a, Span displacement, const Integrity& integrity,
+                      double projection, Tangent& result) {
     const Bonds& bonds = a.model.bonds;
     constexpr int stride = block_width(D), entries = D * D;
     const auto body = [&](int thread, RowRange range, double* sums) {
@@ -376,7 +380,7 @@ struct LocalKernels {
                                    : &beyond[std::size_t(bond - first_beyond) * entries];
       };
       for (Index i = range.first; i < range.last; ++i) {
-        move_to(a, w, i, displacement, true);
+        move_to(a, w, i, displacement, integrity, true);
         w.clear(half_entries);
         w.clear_hessian();
         for_each_term(a.model, [&](auto kind, const auto& interactions, const auto& potential) {

@@ -12,6 +12,12 @@
 
 namespace peristat {
 
+/// What is left of bonds; both empty: all are whole.
+struct Integrity {
+  std::span<const double> of_bond;
+  std::span<const double> of_point;  ///< the least of its bonds
+};
+
 /// What a thread adds up over the interactions of one point with the partners above it. Everything
 /// is a function of the arms alone: sums belong to partners, and the point's own part follows from
 /// them, because an interaction does not change when all of its points move together.
@@ -34,15 +40,13 @@ struct LocalWorkspace {
   InteractionScratch scratch;
 
   /// Takes up the integrities of the bonds among the point and its partners.
-  /// @param of_bond integrity of each bond; empty: all are whole
-  /// @param degraded per point, whether one of its bonds is not whole
-  void find_integrity(std::span<const double> of_bond, const std::vector<char>& degraded,
-                      Offset first_bond, bool pairs_are_known) {
+  void find_integrity(const Integrity& integrity, Offset first_bond, bool pairs_are_known) {
     const std::span<const Index> partners = local.upper.points();
+    const std::span<const double> of_bond = integrity.of_bond, of_point = integrity.of_point;
     is_degraded_ =
-        !of_bond.empty() && (degraded[local.upper.own()] ||
+        !of_bond.empty() && (of_point[local.upper.own()] < 1.0 ||
                              std::any_of(partners.begin(), partners.end(),
-                                         [&](Index partner) { return degraded[partner] != 0; }));
+                                         [&](Index partner) { return of_point[partner] < 1.0; }));
     if (!is_degraded_) return;
     if (!pairs_are_known) local.upper.find_pairs();
     std::copy_n(of_bond.begin() + first_bond, partners.size(), own_integrity_.begin());

@@ -19,21 +19,22 @@ std::vector<double> MatrixFreeTangent::positions() const {
   return current;
 }
 
-void MatrixFreeTangent::linearise(Assembler& assembler, std::span<const double> displacement,
-                                  double projection) {
+void MatrixFreeTangent::linearise(Assembler& assembler, const StateView& at, double projection) {
   assembler_ = &assembler;
-  displacement_.assign(displacement.begin(), displacement.end());
+  displacement_.assign(at.displacement.begin(), at.displacement.end());
+  history_ = at.history;
+  damage_ = at.damage;
   projection_ = projection;
   assembler.visit_tangent(
-      displacement, projection, [](int, Index, std::span<const double>) {}, diagonal);
+      at, projection, [](int, Index, std::span<const double>) {}, diagonal);
 }
 
 void MatrixFreeTangent::multiply(std::span<const double> v, std::span<double> result) const {
-  assembler_->product(displacement_, v, result, projection_);
+  assembler_->product(at(), v, result, projection_);
 }
 
 void MatrixFreeTangent::for_each_row(const RowVisitor& visit) const {
-  assembler_->visit_tangent(displacement_, projection_, visit, {});
+  assembler_->visit_tangent(at(), projection_, visit, {});
 }
 
 }  // namespace peristat

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <variant>
 #include <vector>
 
 #include "src/neighbourhood/bonds.hpp"
@@ -19,6 +20,11 @@ struct InteractionTerm {
 using TriangleTerm = InteractionTerm<Area>;
 using TetrahedronTerm = InteractionTerm<Volume>;
 
+/// Where a History keeps what the terms of a model remember: bonds their largest stretch over the
+/// committed states as far as it has damaged them (0 before, Degraded::never_fails where the model
+/// says so), triangles and tetrahedra the integrity of every bond and then of every point.
+inline constexpr std::size_t bond_history = 0, integrity_history = 1;
+
 /// The discrete energy of a body: the sum of w psi(m; M) over its bonds (measure l), and in
 /// continuum-kinematics-inspired peridynamics over its triangles (a) and tetrahedra (v)
 /// ([CPD] eq. 14). Constant in a solve.
@@ -35,6 +41,11 @@ struct Model {
   std::optional<TetrahedronTerm> tetrahedra{};
 
   [[nodiscard]] bool has_only_bonds() const { return !triangles && !tetrahedra; }
+
+  /// Whether its bonds can be damaged.
+  [[nodiscard]] bool has_history() const {
+    return std::visit([]<class P>(const P&) { return PotentialWithHistory<P>; }, potential);
+  }
 };
 
 }  // namespace peristat

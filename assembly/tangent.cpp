@@ -116,9 +116,8 @@ std::size_t Tangent::place_in_block(int r, int c) const {
   return std::size_t(row * dimension - row * (row - 1) / 2 + column - row);
 }
 
-void Tangent::linearise(Assembler& assembler, std::span<const double> displacement,
-                        double projection) {
-  assembler.tangent(displacement, *this, projection);
+void Tangent::linearise(Assembler& assembler, const StateView& at, double projection) {
+  assembler.tangent(at, *this, projection);
 }
 
 void Tangent::multiply(std::span<const double> v, std::span<double> result) const {

@@ -32,8 +32,7 @@ struct Tangent : TangentOperator {
   [[nodiscard]] std::size_t place_in_block(int r, int c) const;
 
   [[nodiscard]] std::vector<double> positions() const override { return position; }
-  void linearise(Assembler& assembler, std::span<const double> displacement,
-                 double projection) override;
+  void linearise(Assembler& assembler, const StateView& at, double projection) override;
   void multiply(std::span<const double> v, std::span<double> result) const override;
   void for_each_row(const RowVisitor& visit) const override;
   [[nodiscard]] const Tangent* stored() const override { return this; }

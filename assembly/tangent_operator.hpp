@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "assembly/pattern.hpp"
+#include "assembly/state.hpp"
 
 namespace peristat {
 
@@ -32,10 +33,9 @@ struct TangentOperator {
   /// Current positions, where K is linearised; points x d [m].
   [[nodiscard]] virtual std::vector<double> positions() const = 0;
 
-  /// Makes this the tangent at a displacement [m].
+  /// Makes this the tangent at a state.
   /// @param projection see Assembler::tangent
-  virtual void linearise(Assembler& assembler, std::span<const double> displacement,
-                         double projection) = 0;
+  virtual void linearise(Assembler& assembler, const StateView& at, double projection) = 0;
 
   /// result = K v; both have one entry per degree of freedom. They are the same array, if
   /// multiplies_in_place, or don't overlap.

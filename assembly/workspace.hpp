@@ -32,20 +32,13 @@ struct Workspace {
 
   const Points& points;
   const Model& model;
-  BondPotential potential;  ///< the model's, or with its damage held
   std::vector<RowRange> ranges;
   AlignedVector<double> rows;               ///< per point, what kernels gather; see pack
   std::vector<AlignedVector<double>> sums;  ///< per thread, rows first..reach of what it adds up
   std::vector<Stored> stored;               ///< per thread
   std::vector<double> longest;              ///< per thread, largest stretch
-  /// Largest stretch of each bond over the accepted states, as far as it has damaged the bond, and
-  /// 0 or never_fails before; a batch more than there are bonds. Empty for a potential without
-  /// history.
-  std::vector<double> largest_stretch;
 
   // Only for models with more than bonds.
-  std::vector<double> integrity;            ///< of each bond by its history; empty: all are whole
-  std::vector<char> degraded_points;        ///< whether one of a point's bonds is not whole
   std::vector<std::vector<double>> blocks;  ///< per thread, off-diagonal blocks of rows last..reach
   std::variant<std::monostate, std::vector<std::unique_ptr<LocalWorkspace<2>>>,
                std::vector<std::unique_ptr<LocalWorkspace<3>>>>
@@ -101,9 +94,6 @@ struct Workspace {
   void sum_rows(const Body& body, const Write& write) {
     sum_rows<width>(body, write, [](int, RowRange) {});
   }
-
-  /// Takes the integrity of the bonds from their histories.
-  void find_integrity();
 
   /// What the threads found, together.
   [[nodiscard]] Stored total_stored() const {

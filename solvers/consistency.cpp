@@ -63,6 +63,7 @@ std::string check_equilibrium(const EquilibriumProblem& problem, const FoundStat
   if (found.largest_residual < 0.0) return {};
   Trial again;
   again.displacement = found.trial.displacement;
+  again.history = found.trial.history;
   evaluate(problem, found.external_force, again);
   // The committed histories may change the last digits of forces that were summed before.
   const double allowed = 2.0 * found.largest_residual;
@@ -72,7 +73,7 @@ std::string check_equilibrium(const EquilibriumProblem& problem, const FoundStat
 }
 
 std::string check_strength(Assembler& damaged, const FoundState& found) {
-  const DamageGrowth growth = damaged.growth(found.trial.displacement);
+  const DamageGrowth growth = damaged.growth(found.trial.at());
   if (growth.degrading == 0) return {};
   return std::to_string(growth.degrading) +
          " unbroken bonds are stretched beyond what they bear, to " +

@@ -81,7 +81,7 @@ class Relaxation {
   }
 
   void find_density(TangentOperator& tangent) {
-    tangent.linearise(problem_.assembler, at_.displacement, 0.0);
+    tangent.linearise(problem_.assembler, at_.at(), 0.0);
     std::vector<double> sums(at_.displacement.size());
     tangent.absolute_row_sums(sums);
     for (std::size_t e = 0; e < dofs_.size(); ++e) {
@@ -95,8 +95,8 @@ class Relaxation {
   void evaluate() {
     Assembler& assembler = problem_.assembler;
     const Stored stored = options_.breaking == Breaking::transient
-                              ? assembler.commit(at_.displacement, at_.gradient)
-                              : assembler.gradient(at_.displacement, at_.gradient);
+                              ? assembler.commit(at_.displacement, at_.history, at_.gradient)
+                              : assembler.gradient(at_.at(), at_.gradient);
     result_.growth.degrading += stored.growth.degrading;
     result_.growth.breaking += stored.growth.breaking;
     result_.released_energy += stored.released;
@@ -274,8 +274,7 @@ double scale_of_step(const EquilibriumProblem& problem, const Way& way, const Tr
     after_jump.displacement[dof] = way.end_displacement()[dof];
   }
   // A jump that tears bonds would leave no residual to measure against.
-  const DamageHold hold(problem.assembler);
-  evaluate(problem, way.end_force(), after_jump);
+  evaluate(problem, way.end_force(), after_jump, Damage::held);
   if (after_jump.degenerate) after_jump.residual_norm = 0.0;  // a jump onto a neighbour
   return residual_scale(problem, way.end_force(), start.gradient, after_jump);
 }
@@ -287,8 +286,7 @@ double taken_up(const EquilibriumProblem& problem, const RelaxationOptions& opti
   if (options.breaking == Breaking::at_equilibrium) return at.stored_energy;
   std::vector<double> damage(std::size_t(problem.assembler.points().count()));
   return at.stored_energy +
-         assess_damage(problem.assembler.model(), problem.assembler.history(), {}, damage)
-             .dissipated_energy;
+         assess_damage(problem.assembler.model(), at.history, {}, damage).dissipated_energy;
 }
 
 }  // namespace
@@ -298,6 +296,7 @@ RelaxationResult relax(const EquilibriumProblem& problem, TangentOperator& tange
                        RelaxationMotion& motion, const RelaxationObserver& observer) {
   RelaxationResult result;
   result.state.displacement = from.displacement;
+  result.state.history = from.history;
   result.external_force.resize(from.displacement.size());
   const Way way(problem, from, load_factor);
   way.load(0.0, result.external_force);
@@ -316,9 +315,7 @@ RelaxationResult relax(const EquilibriumProblem& problem, TangentOperator& tange
 
   const int ramp = std::max(options.ramp, 1);
   const int last = options.holds ? ramp + options.max_iterations : ramp;
-  const auto would_break = [&] {
-    return problem.assembler.growth(result.state.displacement).breaking;
-  };
+  const auto would_break = [&] { return problem.assembler.growth(result.state.at()).breaking; };
   Index breaking = 0;
   int quiet = 0;
   result.outcome = options.holds ? Outcome::iteration_limit : Outcome::converged;

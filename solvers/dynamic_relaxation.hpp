@@ -44,7 +44,7 @@ struct RelaxationOptions {
 struct RelaxationResult {
   Outcome outcome = Outcome::converged;
   int iterations = 0;
-  Trial state;  ///< last state; equilibrium only if converged and held
+  Trial state;  ///< last state, with what it has broken; equilibrium only if converged and held
   std::vector<double> external_force;
   double scale = 0.0;  ///< norm that the residual was measured against [N]
   /// Residual that counted as equilibrium [N]; negative: none was asked for, the state has merely

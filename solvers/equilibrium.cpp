@@ -85,9 +85,9 @@ std::string explanation(Outcome outcome) {
 }
 
 void evaluate(const EquilibriumProblem& problem, std::span<const double> external_force,
-              Trial& trial) {
+              Trial& trial, Damage damage) {
   trial.gradient.resize(trial.displacement.size());
-  const Stored stored = problem.assembler.gradient(trial.displacement, trial.gradient);
+  const Stored stored = problem.assembler.gradient(trial.at(damage), trial.gradient);
   trial.stored_energy = stored.energy;
   trial.total_energy = stored.energy - dot(external_force, trial.displacement);
   trial.residual_norm = norm_of(problem.free.dof.size(), [&](std::size_t e) {

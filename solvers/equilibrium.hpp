@@ -12,12 +12,6 @@
 
 namespace peristat {
 
-/// What the search for equilibrium changes.
-struct State {
-  std::vector<double> displacement;  ///< points x dimension, row major [m]
-  double load_factor = 0.0;
-};
-
 /// How a search for equilibrium ended. Reaching a limit is never success.
 enum class Outcome {
   converged,
@@ -51,16 +45,21 @@ struct EquilibriumProblem {
 /// A trial state with everything that a decision about it needs.
 struct Trial {
   std::vector<double> displacement;  ///< [m]
+  History history;                   ///< that it comes after
   std::vector<double> gradient;      ///< dE/dx [N]
   double stored_energy = 0.0;        ///< [J]
   double total_energy = 0.0;         ///< stored energy - f_ext.u [J]
   double residual_norm = 0.0;        ///< 2-norm of f_ext - dE/dx over free degrees of freedom [N]
   bool degenerate = false;
+
+  [[nodiscard]] StateView at(Damage damage = Damage::grows) const {
+    return {displacement, history, damage};
+  }
 };
 
-/// Evaluates energy and gradient at trial.displacement.
+/// Evaluates energy and gradient at the trial's displacement and history.
 void evaluate(const EquilibriumProblem& problem, std::span<const double> external_force,
-              Trial& trial);
+              Trial& trial, Damage damage = Damage::grows);
 
 /// Norm that the residual of a step is measured against [N]: the largest of ||f_ext||, of the
 /// reactions in the old state, and of the residual right after the step's jump of supports and

@@ -20,7 +20,7 @@ double slope_along(std::span<const double> direction, const Trial& trial,
 LineSearchResult line_search(const EquilibriumProblem& problem,
                              std::span<const double> external_force, const Trial& from,
                              std::span<const double> direction, const LineSearchOptions& options,
-                             Trial& trial) {
+                             Trial& trial, Damage damage) {
   const double slope = slope_along(direction, from, external_force);
   LineSearchResult result;
   if (!std::isfinite(slope)) result.outcome = Outcome::degenerate;
@@ -30,11 +30,12 @@ LineSearchResult line_search(const EquilibriumProblem& problem,
   const double work = dot(external_force, from.displacement);
   const double round_off = 64.0 * std::numeric_limits<double>::epsilon() *
                            std::max(std::abs(from.stored_energy), std::abs(work));
+  trial.history = from.history;
   double length = 1.0;
   for (int count = 0; count < options.max_trials; ++count, length *= options.shrink) {
     trial.displacement = from.displacement;
     add_scaled(trial.displacement, length, direction);
-    evaluate(problem, external_force, trial);
+    evaluate(problem, external_force, trial, damage);
     if (trial.degenerate) {
       ++result.degenerate;
       continue;

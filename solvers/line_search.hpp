@@ -30,6 +30,7 @@ struct LineSearchResult {
 [[nodiscard]] LineSearchResult line_search(const EquilibriumProblem& problem,
                                            std::span<const double> external_force,
                                            const Trial& from, std::span<const double> direction,
-                                           const LineSearchOptions& options, Trial& trial);
+                                           const LineSearchOptions& options, Trial& trial,
+                                           Damage damage = Damage::grows);
 
 }  // namespace peristat

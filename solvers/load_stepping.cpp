@@ -7,20 +7,16 @@
 
 #include "assembly/damage.hpp"
 #include "solvers/consistency.hpp"
+#include "solvers/fragment_pins.hpp"
+#include "solvers/increment.hpp"
+#include "solvers/path_ledger.hpp"
 #include "solvers/vector_verbs.hpp"
-#include "src/conditions/fragments.hpp"
 #include "src/input_error.hpp"
 #include "src/number_text.hpp"
 #include "src/stopwatch.hpp"
 
 namespace peristat {
 namespace {
-
-/// Share of the body's energy whose release in an implicit step is a jump over a limit point.
-constexpr double share_of_jump = 5e-3;
-
-/// A remainder of the load factor below this is round-off of the sum of steps.
-constexpr double end_tolerance = 1e-9;
 
 /// Commits of one step of a body with triangles or tetrahedra, each of which may damage more bonds.
 constexpr int most_commits = 1000;
@@ -31,27 +27,6 @@ constexpr int most_finishing_iterations = 8;
 /// Where an implicit step that would damage a bond is cut to: this share of the interpolated way
 /// to the onset of damage.
 constexpr double share_to_onset = 0.98;
-
-/// Forces that do work on the body: loads, and on prescribed degrees of freedom what holds them,
-/// which is dE/dx there. Pins of fragments do none: they don't move, and when they are taken away
-/// nothing follows them.
-std::vector<double> working_force(const std::vector<char>& prescribed,
-                                  const std::vector<double>& external_force,
-                                  const std::vector<double>& gradient) {
-  std::vector<double> force = external_force;
-  for (std::size_t dof = 0; dof < force.size(); ++dof) {
-    if (prescribed[dof]) force[dof] = gradient[dof];
-  }
-  return force;
-}
-
-double trapezoidal_work(const std::vector<double>& force0, const std::vector<double>& force1,
-                        const std::vector<double>& u0, const std::vector<double>& u1) {
-  double work = 0.0;
-  for (std::size_t k = 0; k < u0.size(); ++k)
-    work += 0.5 * (force0[k] + force1[k]) * (u1[k] - u0[k]);
-  return work;
-}
 
 /// What searches of both kinds end with.
 template <class Result>
@@ -88,6 +63,10 @@ Attempt to_attempt(RelaxationResult result, double load_factor) {
   return common_attempt(std::move(result), load_factor);
 }
 
+State state_of(const Attempt& attempt) {
+  return {attempt.state.displacement, attempt.load_factor, attempt.state.history};
+}
+
 /// Whether a smaller step can help.
 bool worth_cutting(const Attempt& attempt) {
   const Outcome outcome = attempt.outcome;
@@ -105,39 +84,9 @@ std::string bonds_text(Index count) {
   return std::to_string(count) + (count == 1 ? " bond" : " bonds");
 }
 
-/// What is left of the load, and how large a step of it is taken next.
-class Increment {
- public:
-  Increment(int steps, double largest, const LoadSteppingOptions& options)
-      : options_(options),
-        largest_(largest > 0.0 ? largest : 1.0 / steps),
-        first_(std::min(1.0 / steps, largest_)),
-        value_(first_) {}
-
-  [[nodiscard]] double value() const { return value_; }
-
-  /// Target of the next step; the last one is not left a remainder of round-off.
-  [[nodiscard]] double target(double load_factor) const {
-    const double rest = 1.0 - load_factor;
-    return rest - value_ > end_tolerance ? load_factor + value_ : 1.0;
-  }
-
-  [[nodiscard]] bool can_cut_to(double increment) const {
-    return options_.adaptive && increment >= options_.smallest_step;
-  }
-  void cut_to(double increment) { value_ = increment; }
-  /// @return whether it grew
-  bool grow() {
-    if (!options_.adaptive || value_ >= largest_) return false;
-    value_ = std::min(options_.growth * value_, largest_);
-    return true;
-  }
-  void start_again() { value_ = first_; }
-
- private:
-  const LoadSteppingOptions& options_;
-  double largest_, first_, value_;
-};
+IncrementOptions increment_options(const LoadSteppingOptions& options) {
+  return {options.adaptive, options.smallest_step, options.growth};
+}
 
 class LoadPath {
  public:
@@ -150,23 +99,23 @@ class LoadPath {
         options_(options),
         newton_options_(newton_options),
         observer_(observer),
-        implicit_(options.steps, options.largest_step, options),
-        relaxed_(options.relaxation_steps, 0.0, options),
+        implicit_(options.steps, options.largest_step, increment_options(options)),
+        relaxed_(options.relaxation_steps, 0.0, increment_options(options)),
         relaxes_(options.mode == Mode::relaxation),
-        pinned_(conditions.prescribed().size(), 0),
-        free_(&body.free) {
-    const std::size_t dofs = pinned_.size();
-    result_.state.displacement.assign(dofs, 0.0);
-    std::vector<double> gradient(dofs), external_force(dofs);
+        pins_(conditions.prescribed(), body.free, options.fragments),
+        ledger_(conditions.prescribed()) {
+    Trial reference;  // of a body that need not be free of stress
+    reference.displacement.assign(conditions.prescribed().size(), 0.0);
+    reference.history = main_.assembler.initial_history();
+    std::vector<double> external_force(reference.displacement.size());
     conditions.external_force(0.0, external_force);
-    const Stored reference = assembler().gradient(result_.state.displacement, gradient);
-    force_ = working_force(conditions_.prescribed(), external_force, gradient);
-    // Of a body that is not free of stress in the reference.
-    ledger_.external_work = ledger_.stored = reference.energy;
+    evaluate(problem(), external_force, reference);
+    ledger_.begin(reference, external_force);
+    result_.state = {reference.displacement, 0.0, reference.history};
   }
 
   LoadSteppingResult follow() {
-    while (1.0 - result_.state.load_factor > end_tolerance) {
+    while (1.0 - result_.state.load_factor > load_factor_tolerance) {
       result_.last_attempt = {};  // the vectors of a large body count
       const bool goes_on = relaxes_ ? relaxation_step() : implicit_step();
       if (!goes_on) break;
@@ -176,7 +125,7 @@ class LoadPath {
 
  private:
   [[nodiscard]] Assembler& assembler() { return active_->assembler; }
-  [[nodiscard]] EquilibriumProblem problem() { return {assembler(), conditions_, *free_}; }
+  [[nodiscard]] EquilibriumProblem problem() { return {assembler(), conditions_, pins_.free()}; }
   [[nodiscard]] bool is_standing_in() const { return active_ != &main_; }
   [[nodiscard]] int next_step() const { return result_.steps + 1; }
 
@@ -184,17 +133,13 @@ class LoadPath {
   struct FoundStep {
     StepRecord record;
     DamageGrowth growth;
-    double released = 0.0;  // see Stored::released
-    struct Relaxed {
-      double work = 0.0, drained = 0.0;  // summed over the iterations [J]
-    };
-    std::optional<Relaxed> relaxed;
+    StepEnergies energies;
     Ledger ledger;  // with the step
   };
 
   /// Whether supports and loads have a value at a load factor; otherwise why not.
   std::optional<std::string> refusal_of_conditions(double load_factor) {
-    std::vector<double> values(pinned_.size());
+    std::vector<double> values(conditions_.prescribed().size());
     try {
       conditions_.prescribe(load_factor, values);
       conditions_.external_force(load_factor, values);
@@ -209,6 +154,7 @@ class LoadPath {
     attempt.outcome = Outcome::undefined_condition;
     attempt.load_factor = load_factor;
     attempt.state.displacement = result_.state.displacement;
+    attempt.state.history = result_.state.history;
     return attempt;
   }
 
@@ -222,15 +168,13 @@ class LoadPath {
     }
     // Damage is relaxation's: where an implicit state would damage a bond does not matter, but that
     // it would.
-    const bool holds_damage = options_.mode == Mode::adaptive;
-    Attempt attempt = [&] {
-      const DamageHold hold(assembler(), holds_damage);
-      return search(result_.state, target, newton_options_);
-    }();
+    NewtonOptions options = newton_options_;
+    if (options_.mode == Mode::adaptive) options.damage = Damage::held;
+    Attempt attempt = search(result_.state, target, options);
     if (attempt.outcome != Outcome::converged)
       return implicit_failure(std::move(attempt), attempted);
 
-    const DamageGrowth growth = main_.assembler.growth(attempt.state.displacement);
+    const DamageGrowth growth = main_.assembler.growth(attempt.state.at());
     if (options_.mode == Mode::adaptive && growth.utilisation > 1.0) {
       return approach_damage(growth, target, attempted);
     }
@@ -238,23 +182,21 @@ class LoadPath {
       attempt.outcome = Outcome::damage_limit;
       return implicit_failure(std::move(attempt), attempted, bonds_text(growth.breaking));
     }
-    const std::vector<double> history(assembler().history().begin(), assembler().history().end());
     FoundStep found;
     found.record.mode = "newton";
     if (growth.degrading > 0) {
       commit(attempt, found, [&] {
-        const State from{attempt.state.displacement, target};
-        NewtonOptions options = newton_options_;
-        options.scale = attempt.scale;
+        const State from = state_of(attempt);
+        NewtonOptions again = newton_options_;
+        again.scale = attempt.scale;
         const int before = attempt.iterations;
-        attempt = search(from, target, options);
+        attempt = search(from, target, again);
         attempt.iterations += before;
         return attempt.outcome;
       });
     }
     found.record.newton_iterations = attempt.iterations;
     if (const std::string fault = complete(found, attempt); attempt.outcome != Outcome::converged) {
-      assembler().restore(history);
       return implicit_failure(std::move(attempt), attempted, fault);
     }
     const bool grows = attempt.iterations <= options_.easy_iterations && implicit_.grow();
@@ -270,7 +212,7 @@ class LoadPath {
 
   /// An implicit step has converged to a state that would damage bonds.
   bool approach_damage(const DamageGrowth& growth, double target, double attempted) {
-    const double before = main_.assembler.growth(result_.state.displacement).utilisation;
+    const double before = main_.assembler.growth(result_.state).utilisation;
     const double share = (1.0 - before) / (growth.utilisation - before);
     const double rest = share_to_onset * std::min(share, 1.0) * attempted;
     const std::string why = bonds_text(growth.degrading) +
@@ -292,7 +234,7 @@ class LoadPath {
     if (attempt.inertia && attempt.inertia->negative > 0) {
       reason += " (" + std::to_string(attempt.inertia->negative) + " negative pivots)";
     }
-    const bool may_fail = !assembler().history().empty() || is_standing_in();
+    const bool may_fail = main_.assembler.model().has_history();
     if (options_.mode == Mode::adaptive && may_fail && worth_relaxing(attempt)) {
       return hand_over(target, attempted, attempt.outcome, reason);
     }
@@ -313,7 +255,7 @@ class LoadPath {
 
   /// Whether a step as small as allowed has failed because bonds soften.
   [[nodiscard]] bool is_limit_point(const Attempt& attempt) {
-    if (assembler().history().empty() || !options_.adaptive) return false;
+    if (!assembler().model().has_history() || !options_.adaptive) return false;
     return attempt.outcome == Outcome::not_positive_definite ||
            attempt.outcome == Outcome::limit_point ||
            (attempt.has_negative_pivots && worth_cutting(attempt) &&
@@ -351,7 +293,7 @@ class LoadPath {
   /// Equilibrium of the body itself at the load that its stand-in has reached.
   bool take_up_body() {
     active_ = &main_;
-    if (!pieces_.pinned.empty() && !analyze()) return false;
+    if (pins_.have_pinned() && !analyze()) return false;
     const double load_factor = result_.state.load_factor;
     Attempt attempt = search(result_.state, load_factor, newton_options_);
     if (attempt.outcome != Outcome::converged) {
@@ -359,10 +301,7 @@ class LoadPath {
       return stop(std::move(attempt), 0.0, reason);
     }
     result_.state.displacement = attempt.state.displacement;
-    force_ =
-        working_force(conditions_.prescribed(), attempt.external_force, attempt.state.gradient);
-    ledger_ = {};
-    ledger_.external_work = ledger_.stored = attempt.state.stored_energy;
+    ledger_.begin(attempt.state, attempt.external_force);
     return true;
   }
 
@@ -388,14 +327,14 @@ class LoadPath {
     if (const auto refusal = refusal_of_conditions(target)) {
       return relaxation_failure(undefined_attempt(target), attempted, *refusal);
     }
-    const std::vector<double> history(assembler().history().begin(), assembler().history().end());
     const RelaxationMotion motion = motion_;
     const bool with_newton = options_.mode == Mode::adaptive && options_.relaxation.holds;
 
     RelaxedStep step;
     step.found.record.mode = "relaxation";
-    step.found.relaxed.emplace();
+    step.found.energies.relaxed.emplace();
     step.attempt.state.displacement = result_.state.displacement;
+    step.attempt.state.history = result_.state.history;
     step.attempt.load_factor = load_factor;
     const auto equilibrate = [&] {
       if (with_newton) {
@@ -411,7 +350,6 @@ class LoadPath {
     std::string fault;
     if (step.attempt.outcome == Outcome::converged) fault = complete(step.found, step.attempt);
     if (step.attempt.outcome != Outcome::converged) {
-      assembler().restore(history);
       motion_ = motion;
       return relaxation_failure(std::move(step.attempt), attempted, fault);
     }
@@ -438,7 +376,7 @@ class LoadPath {
 
   void relax_towards(RelaxedStep& step, double target, RelaxationOptions options) {
     const int number = next_step();
-    const State from{step.attempt.state.displacement, step.attempt.load_factor};
+    const State from = state_of(step.attempt);
     if (from.load_factor == target && options.holds) options.ramp = 1;
     options.scale = step.scale;
     const Stopwatch watch(result_.relaxation_seconds);
@@ -446,11 +384,11 @@ class LoadPath {
                                      [&](IterationRecord row) { return told(number, row); });
     step.found.record.relaxation_iterations += relaxed.iterations;
     step.found.record.settled = relaxed.largest_residual < 0.0;
-    step.found.relaxed->work += relaxed.external_work;
-    step.found.relaxed->drained += relaxed.drained_energy;
+    step.found.energies.relaxed->work += relaxed.external_work;
+    step.found.energies.relaxed->drained += relaxed.drained_energy;
     step.found.growth.degrading += relaxed.growth.degrading;
     step.found.growth.breaking += relaxed.growth.breaking;
-    step.found.released += relaxed.released_energy;
+    step.found.energies.released += relaxed.released_energy;
     step.scale = relaxed.scale;
     step.attempt = to_attempt(std::move(relaxed), target);
   }
@@ -469,15 +407,17 @@ class LoadPath {
   /// @return false if relaxation has to go on
   bool finish(RelaxedStep& step, NewtonOptions options) {
     options.scale = step.scale;
-    const State near{step.attempt.state.displacement, step.attempt.load_factor};
+    const State near = state_of(step.attempt);
     Attempt finished = search(near, near.load_factor, options);
     if (finished.outcome != Outcome::converged && worth_relaxing(finished)) return false;
     step.found.record.newton_iterations += finished.iterations;
     if (finished.outcome == Outcome::converged) {
       step.found.record.settled = false;
-      step.found.relaxed->drained += step.attempt.state.total_energy - finished.state.total_energy;
-      step.found.relaxed->work += dot(finished.external_force, finished.state.displacement) -
-                                  dot(finished.external_force, near.displacement);
+      step.found.energies.relaxed->drained +=
+          step.attempt.state.total_energy - finished.state.total_energy;
+      step.found.energies.relaxed->work +=
+          dot(finished.external_force, finished.state.displacement) -
+          dot(finished.external_force, near.displacement);
     }
     step.attempt = std::move(finished);
     return true;
@@ -504,7 +444,7 @@ class LoadPath {
     if (!accept(std::move(step.found), std::move(step.attempt))) return false;
     const bool hands_back =
         options_.mode == Mode::adaptive && options_.relaxation.holds && !was_damaged;
-    if (hands_back && 1.0 - result_.state.load_factor > end_tolerance) hand_back();
+    if (hands_back && 1.0 - result_.state.load_factor > load_factor_tolerance) hand_back();
     return true;
   }
 
@@ -526,7 +466,7 @@ class LoadPath {
 
   /// Of the state that a search has ended in, for what is told of it.
   void count_pivots(Attempt& attempt) {
-    active_->tangent.linearise(assembler(), attempt.state.displacement, 0.0);
+    active_->tangent.linearise(assembler(), attempt.state.at(), 0.0);
     active_->solver.count_pivots(true);
     static_cast<void>(active_->solver.factorize(active_->tangent, FactorUse::factorize_now));
     attempt.inertia = active_->solver.inertia();
@@ -547,10 +487,11 @@ class LoadPath {
   template <class Equilibrate>
   void commit(Attempt& attempt, FoundStep& found, const Equilibrate& equilibrate) {
     for (int pass = 0; pass < most_commits; ++pass) {
-      const Stored committed = assembler().commit(attempt.state.displacement);
+      const Stored committed =
+          assembler().commit(attempt.state.displacement, attempt.state.history);
       found.growth.degrading += committed.growth.degrading;
       found.growth.breaking += committed.growth.breaking;
-      found.released += committed.released;
+      found.energies.released += committed.released;
       attempt.state.stored_energy = committed.energy;
       if (committed.growth.degrading == 0 || assembler().model().has_only_bonds()) return;
       if (equilibrate() != Outcome::converged) return;
@@ -563,72 +504,49 @@ class LoadPath {
   std::string complete(FoundStep& found, Attempt& attempt) {
     const Assembler& assembler = active_->assembler;
     std::vector<double> damage(std::size_t(assembler.points().count()));
-    const DamageState damaged = assess_damage(assembler.model(), assembler.history(), {}, damage);
+    const DamageState damaged = assess_damage(assembler.model(), attempt.state.history, {}, damage);
     found.record.broken_bonds = damaged.broken_bonds;
-    const double work = trapezoidal_work(
-        force_,
-        working_force(conditions_.prescribed(), attempt.external_force, attempt.state.gradient),
-        result_.state.displacement, attempt.state.displacement);
-    found.ledger = ledger_;
-    found.ledger.stored = attempt.state.stored_energy;
-    found.ledger.dissipated = damaged.dissipated_energy + released_energy_ + found.released;
-    found.ledger.external_work += work;
-    if (found.relaxed) {
-      found.ledger.numerical_work += found.relaxed->work - work;
-      found.ledger.drained += found.relaxed->drained;
-    }
+    found.ledger =
+        ledger_.with_step(result_.state.displacement, attempt.state, attempt.external_force,
+                          damaged.dissipated_energy, found.energies);
     if (attempt.outcome != Outcome::converged) return {};
     if (attempt.iterations == 0) {  // no tangent was needed so far
-      active_->tangent.linearise(active_->assembler, attempt.state.displacement, 0.0);
+      active_->tangent.linearise(active_->assembler, attempt.state.at(), 0.0);
     }
     std::string fault =
         find_inconsistency(problem(), main_.assembler, active_->tangent,
                            {attempt.state, attempt.external_force, attempt.largest_residual,
-                            found.relaxed.has_value(), ledger_, found.ledger});
+                            found.energies.relaxed.has_value(), ledger_.entries(), found.ledger});
     if (!fault.empty()) {
       attempt.outcome = Outcome::inconsistent;
-    } else if (!found.relaxed && found.growth.degrading > 0) {
-      fault = has_jumped(found.ledger);
+    } else if (!found.energies.relaxed && found.growth.degrading > 0) {
+      fault = ledger_.jump_to(found.ledger);
       if (!fault.empty()) attempt.outcome = Outcome::limit_point;
     }
     return fault;
   }
 
-  /// Whether an implicit step in which damage grew has released what nobody takes up. A stable path
-  /// balances, but for the little that single bonds release as they snap; beyond a limit point the
-  /// search lands where its steps happen to lead.
-  [[nodiscard]] std::string has_jumped(const Ledger& after) const {
-    const double released = after.balance_error() - ledger_.balance_error();
-    if (released <= share_of_jump * std::max(ledger_.stored, after.external_work)) return {};
-    return number_text(released) + " J of " + number_text(after.external_work) +
-           " J are released and taken up by nobody: the body has jumped to another equilibrium";
-  }
-
   /// Finds what has come off and tells the step.
   bool accept(FoundStep found, Attempt attempt) {
-    result_.state = {attempt.state.displacement, attempt.load_factor};
+    result_.state = state_of(attempt);
     ++result_.steps;
     is_near_onset_ = is_near_onset_ && !relaxes_;
-    force_ =
-        working_force(conditions_.prescribed(), attempt.external_force, attempt.state.gradient);
-    ledger_ = found.ledger;
-    released_energy_ += found.released;
-    if (found.growth.breaking > 0) find_pieces();
+    ledger_.accept(found.ledger, attempt.state, attempt.external_force, found.energies);
+    if (found.growth.breaking > 0) pins_.find(assembler(), result_.state);
 
     StepRecord& record = found.record;
     record.step = result_.steps;
     record.load_factor = attempt.load_factor;
-    record.stored_energy = ledger_.stored;
-    record.dissipated_energy = ledger_.dissipated;
-    record.drained_energy = ledger_.drained;
-    record.external_work = ledger_.external_work;
-    record.numerical_work = ledger_.numerical_work;
-    record.balance_error = ledger_.balance_error();
-    record.pin_force = pin_force(attempt);
+    record.stored_energy = found.ledger.stored;
+    record.dissipated_energy = found.ledger.dissipated;
+    record.drained_energy = found.ledger.drained;
+    record.external_work = found.ledger.external_work;
+    record.numerical_work = found.ledger.numerical_work;
+    record.balance_error = found.ledger.balance_error();
+    record.pin_force = pins_.force(attempt.state, attempt.external_force);
     record.reactions = conditions_.reactions(attempt.state.gradient, attempt.external_force);
     if (observer_.accepted) {
-      observer_.accepted(record, {attempt.state, attempt.external_force,
-                                  active_->assembler.history(), pieces_.piece});
+      observer_.accepted(record, {attempt.state, attempt.external_force, pins_.piece()});
     }
     result_.last_attempt = std::move(attempt);
     return resolve_fragments();
@@ -636,71 +554,30 @@ class LoadPath {
 
   // ---- Fragments
 
-  /// Forces of the pins that hold what has come off: no support, and no reaction.
-  [[nodiscard]] double pin_force(const Attempt& attempt) const {
-    return norm_of(pinned_.size(), [&](std::size_t dof) {
-      return pinned_[dof] ? attempt.state.gradient[dof] - attempt.external_force[dof] : 0.0;
-    });
-  }
-
-  void find_pieces() {
-    const Assembler& assembler = active_->assembler;
-    pieces_ = find_fragments(assembler.points(), assembler.model().bonds,
-                             broken_bonds(assembler.model(), assembler.history()),
-                             conditions_.prescribed(), result_.state.displacement);
-    if (options_.fragments == FragmentRemedy::remove) remove_pieces();
-  }
-
-  /// Takes floating pieces out of the equations. One that a support still moves goes with it: only
-  /// what is missing is pinned there.
-  void remove_pieces() {
-    const auto d = std::size_t(main_.assembler.points().dimension);
-    const std::vector<char>& prescribed = conditions_.prescribed();
-    std::vector<char> removed(std::size_t(pieces_.count) + 1, 1);
-    removed[0] = 0;  // the pieces that are held
-    for (std::size_t dof = 0; dof < prescribed.size(); ++dof) {
-      if (prescribed[dof]) removed[std::size_t(pieces_.piece[dof / d])] = 0;
-    }
-    for (std::size_t dof = 0; dof < prescribed.size(); ++dof) {
-      pieces_.pinned[dof] |= removed[std::size_t(pieces_.piece[dof / d])];
-    }
-  }
-
   /// Pins what has come free.
   bool resolve_fragments() {
-    if (pieces_.pinned.empty() || pieces_.pinned == pinned_) return true;
-    const std::string what = std::to_string(pieces_.count) + " floating pieces, " +
-                             std::to_string(pieces_.loose.size()) + " loose points";
-    const double load_factor = result_.state.load_factor;
-    if (options_.fragments == FragmentRemedy::stop && pieces_.count > 0) {
+    if (!pins_.are_outdated()) return true;
+    if (pins_.shall_stop()) {
       Attempt attempt = std::move(result_.last_attempt);
       attempt.outcome = Outcome::fragmented;
-      return stop(std::move(attempt), 0.0, what);
+      return stop(std::move(attempt), 0.0, pins_.described());
     }
-    const bool removes = options_.fragments == FragmentRemedy::remove;
-    pinned_ = pieces_.pinned;
-    tell(load_factor, 0.0, Outcome::converged, removes ? "remove fragments" : "hold fragments",
-         relaxes_ ? relaxed_.value() : implicit_.value(), what);
-    number_free_dofs();
+    pins_.pin();
+    tell(result_.state.load_factor, 0.0, Outcome::converged,
+         pins_.removes_pieces() ? "remove fragments" : "hold fragments",
+         relaxes_ ? relaxed_.value() : implicit_.value(), pins_.described());
     motion_ = {};
     return analyze();
   }
 
   /// Prepares the solver for other free degrees of freedom.
   bool analyze() {
-    if (active_->solver.analyze(active_->tangent.pattern, *free_) == LinearOutcome::solved) {
+    if (active_->solver.analyze(active_->tangent.pattern, pins_.free()) == LinearOutcome::solved) {
       return true;
     }
     Attempt attempt = std::move(result_.last_attempt);
     attempt.outcome = Outcome::out_of_memory;
     return stop(std::move(attempt), 0.0, explanation(Outcome::out_of_memory));
-  }
-
-  void number_free_dofs() {
-    std::vector<char> without_equation = conditions_.prescribed();
-    for (std::size_t dof = 0; dof < pinned_.size(); ++dof) without_equation[dof] |= pinned_[dof];
-    own_free_ = std::make_unique<FreeDofs>(without_equation, main_.assembler.points().dimension);
-    free_ = own_free_.get();
   }
 
   SolvedBody main_;
@@ -712,14 +589,9 @@ class LoadPath {
   Increment implicit_, relaxed_;
   bool relaxes_;
   bool is_near_onset_ = false;  // an implicit step was cut to end just before damage begins
-  std::vector<char> pinned_;    // per degree of freedom
-  const FreeDofs* free_;
-  std::unique_ptr<FreeDofs> own_free_;  // once something is pinned
-  Fragments pieces_;
+  FragmentPins pins_;
   RelaxationMotion motion_;
-  std::vector<double> force_;  // that does work, in the last accepted state
-  Ledger ledger_;
-  double released_energy_ = 0.0;  // by triangles and tetrahedra whose bonds were damaged
+  PathLedger ledger_;
   LoadSteppingResult result_;
 };
 

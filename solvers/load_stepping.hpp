@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "solvers/dynamic_relaxation.hpp"
+#include "solvers/fragment_pins.hpp"
 #include "solvers/newton.hpp"
 #include "src/input_error.hpp"
 
@@ -17,13 +18,6 @@ enum class Mode {
   newton,      ///< implicitly throughout
   relaxation,  ///< by dynamic relaxation throughout
   adaptive,    ///< implicitly while no damage grows, by relaxation while it does
-};
-
-/// What becomes of pieces that come off, and of points that hang on too few bonds.
-enum class FragmentRemedy {
-  hold,    ///< just enough of their degrees of freedom are pinned that they can't move freely
-  remove,  ///< all degrees of freedom of a piece leave the equations; loose points are held
-  stop,    ///< the run ends
 };
 
 struct LoadSteppingOptions {
@@ -47,9 +41,8 @@ struct LoadSteppingOptions {
 
 /// What an accepted state is made of besides its record.
 struct AcceptedState {
-  const Trial& trial;
+  const Trial& trial;  ///< with its damage committed
   const std::vector<double>& external_force;
-  std::span<const double> history;      ///< committed, of the assembler
   std::span<const std::int32_t> piece;  ///< per point, see Fragments; empty: none
 };
 

@@ -34,6 +34,7 @@ struct NewtonOptions {
   /// negative pivots, four times as much up to 1; this is the least.
   double least_projection = 1.0 / 16.0;
   LineSearchOptions line_search;
+  Damage damage = Damage::grows;  ///< of the states that are searched
   double scale = 0.0;  ///< that the residual is measured against [N]; 0: that of this step
   /// Whether the first tangent is factorised even where an earlier factor would do, so that its
   /// pivots tell whether the old state is stable.
@@ -83,8 +84,8 @@ using IterationObserver = std::function<bool(const IterationRecord&)>;
 /// iteration hardly lowers it any more and it is within what round-off leaves, the state has
 /// converged, too.
 ///
-/// Damage is held (Assembler::hold_damage) up to the end of the first iteration: iteration 0 and
-/// the predictor are those of the body as it was.
+/// Damage is held up to the end of the first iteration: iteration 0 and the predictor are those of
+/// the body as it was.
 [[nodiscard]] NewtonResult newton(const EquilibriumProblem& problem, LinearSolver& solver,
                                   TangentOperator& tangent, const State& from, double load_factor,
                                   const NewtonOptions& options, const IterationObserver& observer);

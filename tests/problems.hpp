@@ -62,7 +62,9 @@ struct Problem {
     return solver.analyze(tangent.pattern, free);
   }
 
-  [[nodiscard]] State at_rest() const { return {std::vector<double>(body.dofs(), 0.0), 0.0}; }
+  [[nodiscard]] State at_rest() const {
+    return {std::vector<double>(body.dofs(), 0.0), 0.0, assembler.initial_history()};
+  }
 };
 
 }  // namespace peristat::tests

@@ -222,19 +222,20 @@ std::vector<std::size_t> sampled_dofs(const Body& body, const std::vector<double
 
 /// Entries of the columns of some degrees of freedom in their own rows, by central differences of
 /// the gradient with steps h, h/2 and h/4 and Richardson's extrapolation: an error of order h^6.
-std::vector<double> differenced_block(Assembler& assembler, const std::vector<double>& displacement,
+std::vector<double> differenced_block(Assembler& assembler, const StateView& at,
                                       const std::vector<std::size_t>& dofs, double step) {
   const std::size_t count = dofs.size();
-  std::vector<double> block(count * count), shifted = displacement;
+  const std::span<const double> displacement = at.displacement;
+  std::vector<double> block(count * count), shifted(displacement.begin(), displacement.end());
   std::vector<double> forward(displacement.size()), backward(displacement.size());
   constexpr double weights[] = {1.0 / 45.0, -20.0 / 45.0, 64.0 / 45.0};
   for (std::size_t j = 0; j < count; ++j) {
     double h = step;
     for (const double weight : weights) {
       shifted[dofs[j]] = displacement[dofs[j]] + h;
-      static_cast<void>(assembler.gradient(shifted, forward));
+      static_cast<void>(assembler.gradient({shifted, at.history}, forward));
       shifted[dofs[j]] = displacement[dofs[j]] - h;
-      static_cast<void>(assembler.gradient(shifted, backward));
+      static_cast<void>(assembler.gradient({shifted, at.history}, backward));
       for (std::size_t i = 0; i < count; ++i) {
         block[i * count + j] += weight * (forward[dofs[i]] - backward[dofs[i]]) / (2.0 * h);
       }
@@ -274,12 +275,13 @@ Exit check_tangent(const Case& from, const std::string& deformation, int threads
   Assembler assembler(points, body.model, threads);
   const std::size_t dofs = displacement.size();
   std::vector<double> gradient(dofs), image(dofs), shifted(dofs), forward(dofs), backward(dofs);
-  const Stored stored = assembler.gradient(displacement, gradient);
+  const History history = assembler.initial_history();
+  const Stored stored = assembler.gradient({displacement, history}, gradient);
   if (stored.degenerate) {
     throw InputError("--deformation", '"' + text + '"', "collapses a bond to zero length");
   }
   Tangent tangent(assembler);
-  assembler.tangent(displacement, tangent);
+  assembler.tangent({displacement, history}, tangent);
   std::vector<double> direction = test_direction(points);
   const double largest_step = keep_off_kinks(body, displacement, gradient, direction, 0.05);
   tangent.multiply(direction, image);
@@ -299,10 +301,10 @@ Exit check_tangent(const Case& from, const std::string& deformation, int threads
   for (int k = 0; k < halvings; ++k, step *= 0.5) {
     shifted = displacement;
     add_scaled(shifted, step, direction);
-    const double energy_forward = assembler.gradient(shifted, forward).energy;
+    const double energy_forward = assembler.gradient({shifted, history}, forward).energy;
     shifted = displacement;
     add_scaled(shifted, -step, direction);
-    const double energy_backward = assembler.gradient(shifted, backward).energy;
+    const double energy_backward = assembler.gradient({shifted, history}, backward).energy;
     const double difference = (energy_forward - energy_backward) / (2.0 * step);
     residual_errors.push_back(std::abs(difference - slope) / energy_scale);
     add_scaled(forward, -1.0, backward);
@@ -314,8 +316,8 @@ Exit check_tangent(const Case& from, const std::string& deformation, int threads
   double fastest = 0.0;
   for (const double entry : direction) fastest = std::max(fastest, std::abs(entry));
   const double sample_step = std::min(0.01 * points.spacing, 0.25 * largest_step * fastest);
-  const double asymmetry =
-      asymmetry_of(differenced_block(assembler, displacement, sample, sample_step), sample.size());
+  const double asymmetry = asymmetry_of(
+      differenced_block(assembler, {displacement, history}, sample, sample_step), sample.size());
 
   const Convergence of_residual = convergence_of(residual_errors);
   const Convergence of_tangent = convergence_of(tangent_errors);

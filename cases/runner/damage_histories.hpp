@@ -10,7 +10,7 @@
 
 namespace peristat {
 
-/// The histories of the bonds (Assembler::history) as a reader of the results knows them. Only
+/// The histories of the bonds (bond_stretches) as a reader of the results knows them. Only
 /// those that differ from 0 are kept: nearly all bonds of a body are never damaged.
 class DamageHistories {
  public:

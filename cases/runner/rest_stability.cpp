@@ -57,7 +57,8 @@ void refuse_unstable_rest(const Case& from, const Body& body, int threads) {
   require_memory(systems.bytes, fmt::format("the case with {} points", body.points.count()));
   Assembler assembler(body.points, body.model, threads);
   Tangent tangent(assembler);
-  assembler.tangent(std::vector<double>(body.points.reference.size(), 0.0), tangent);
+  const std::vector<double> reference(body.points.reference.size(), 0.0);
+  assembler.tangent({reference, assembler.initial_history()}, tangent);
   std::unique_ptr<LinearSolver> solver;
   if (systems.chosen.is_direct) {
     solver = std::make_unique<Cholesky>(FactorReuse{0});

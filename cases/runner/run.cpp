@@ -102,23 +102,24 @@ class Recorder {
 
   void accepted(StepRecord record, const AcceptedState& state) {
     const std::size_t points = points_.volume.size();
+    const StateView at = state.trial.at();
+    const std::span<const double> stretches = bond_stretches(body_.model, at.history);
     Fields made{state.trial.displacement,
                 state.trial.gradient,
                 std::vector<double>(points),
                 std::vector<double>(points),
                 std::vector<double>(points),
                 std::vector<double>(points, 0.0),
-                told_histories_.changes(body_.model.bonds, state.history)};
+                told_histories_.changes(body_.model.bonds, stretches)};
     for (double& force : made.force) force = -force;
-    static_cast<void>(assembler_.point_energies(made.displacement, made.energy_density));
-    assembler_.point_stretches(made.displacement, made.stretch);
+    static_cast<void>(assembler_.point_energies(at, made.energy_density));
+    assembler_.point_stretches(at, made.stretch);
     record.max_stretch = *std::max_element(made.stretch.begin(), made.stretch.end());
     const auto cut_weight =
         case_.output.count_cracks ? std::span(body_.cut_weight) : std::span<const double>();
-    record.max_damage =
-        assess_damage(body_.model, state.history, cut_weight, made.damage).max_damage;
+    record.max_damage = assess_damage(body_.model, at.history, cut_weight, made.damage).max_damage;
     std::copy(state.piece.begin(), state.piece.end(), made.fragment.begin());
-    tell_broken_bonds(record, state.history);
+    tell_broken_bonds(record, at.history);
     for (std::size_t i = 0; i < points; ++i) made.energy_density[i] /= points_.volume[i];
     const StepFields fields = made.view();
     for (const ProbeSpecification& probe : case_.probes) {
@@ -126,7 +127,7 @@ class Recorder {
     }
     const bool write_fields = record.step % case_.output.every == 0;
     results_.add(record, write_fields ? std::optional(fields) : std::nullopt);
-    if (write_fields) told_histories_.tell(state.history);
+    if (write_fields) told_histories_.tell(stretches);
     progress_.accepted(record, relative_residual_);
     last_ = std::move(record);
     unwritten_.reset();
@@ -156,7 +157,7 @@ class Recorder {
   };
 
   /// Adds the bonds that have broken since the last step to the results.
-  void tell_broken_bonds(const StepRecord& record, std::span<const double> history) {
+  void tell_broken_bonds(const StepRecord& record, const History& history) {
     std::vector<char> broken = broken_bonds(body_.model, history);
     if (broken.empty()) return;
     broken_.resize(broken.size(), 0);

@@ -29,12 +29,13 @@ TEST(MatrixFreeTangent, IsTheStoredTangent) {
           if (softens) box.potential = softening;
           const BoxBody body(box);
           Assembler assembler(body.points, body.model, threads);
-          if (softens) assembler.commit(body.random_state(1));
+          History history = assembler.initial_history();
+          if (softens) assembler.commit(body.random_state(1), history);
           const std::vector<double> state = body.random_state(2);
           Tangent stored(Pattern(body.model.bonds), dimension, threads);
           MatrixFreeTangent free(assembler);
-          stored.linearise(assembler, state, projection);
-          free.linearise(assembler, state, projection);
+          stored.linearise(assembler, {state, history}, projection);
+          free.linearise(assembler, {state, history}, projection);
           EXPECT_EQ(free.diagonal, stored.diagonal);
           EXPECT_EQ(free.positions(), stored.positions());
 
@@ -56,7 +57,7 @@ TEST(MatrixFreeTangent, IsTheStoredTangent) {
           stored.multiply(v, by_blocks);
           EXPECT_LE(tests::distance(by_bonds, by_blocks), 1e-13 * tests::norm(by_blocks));
           Tangent one_thread(Pattern(body.model.bonds), dimension, 1);
-          one_thread.linearise(assembler, state, projection);
+          one_thread.linearise(assembler, {state, history}, projection);
           one_thread.multiply(v, serial);
           EXPECT_LE(tests::distance(by_blocks, serial), 1e-14 * tests::norm(serial));
 

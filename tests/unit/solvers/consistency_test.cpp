@@ -123,12 +123,12 @@ TEST(Consistency, FindsBondsAboveWhatTheyBear) {
   Problem problem(brittle, {support("left", "0", "0"), support("right", "0.1*load", "0")}, {});
   Trial stretched;
   stretched.displacement.assign(problem.body.dofs(), 0.0);
+  stretched.history = problem.assembler.initial_history();
   for (std::size_t k = 0; k < stretched.displacement.size(); k += 2) {
     stretched.displacement[k] = 2e-3 * problem.body.points.reference[k];
   }
   const std::vector<double> no_force(problem.body.dofs(), 0.0);
-  const DamageHold hold(problem.assembler);
-  evaluate(problem.equilibrium, no_force, stretched);
+  evaluate(problem.equilibrium, no_force, stretched, Damage::held);
   Ledger ledger;
   ledger.stored = stretched.stored_energy;
   const std::string fault =

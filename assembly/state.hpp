@@ -1,0 +1,42 @@
+#pragma once
+
+#include <concepts>
+#include <span>
+#include <vector>
+
+#include "assembly/history.hpp"
+
+namespace peristat {
+
+/// What changes along a path of equilibria.
+struct State {
+  std::vector<double> displacement;  ///< points x dimension, row major [m]
+  double load_factor = 0.0;
+  History history{};
+};
+
+/// Bonds that are stretched beyond their histories: they soften, or follow their secants as if they
+/// did not. A state in which `growth` is zero is the same in both.
+enum class Damage { grows, held };
+
+/// Where energy, gradient, tangent and product are evaluated: a view of a displacement and of the
+/// history that it comes after. Both must outlive the view.
+struct StateView {
+  template <std::convertible_to<std::span<const double>> Displacement>
+  StateView(const Displacement& at, const History& after = none(), Damage rule = Damage::grows)
+      : displacement(at), history(after), damage(rule) {}
+  StateView(const State& state, Damage rule = Damage::grows)
+      : StateView(state.displacement, state.history, rule) {}
+
+  std::span<const double> displacement;  ///< points x dimension, row major [m]
+  const History& history;                ///< of the same model
+  Damage damage;
+
+ private:
+  static const History& none() {
+    static const History history;
+    return history;
+  }
+};
+
+}  // namespace peristat

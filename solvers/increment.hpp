@@ -1,0 +1,53 @@
+#pragma once
+
+#include <algorithm>
+
+namespace peristat {
+
+/// How the step of the load factor is cut and grows.
+struct IncrementOptions {
+  bool adaptive = true;  ///< cut after a failure and grow again; otherwise a failure ends the run
+  double smallest_step = 1e-6;  ///< of the load factor; a cut below it ends the run
+  double growth = 2.0;          ///< factor of the step after an easy success
+};
+
+/// A remainder of the load factor below this is round-off of the sum of steps.
+inline constexpr double load_factor_tolerance = 1e-9;
+
+/// What is left of the load, and how large a step of it is taken next.
+class Increment {
+ public:
+  /// @param steps equal ones, from 0 to 1, of which the first is tried
+  /// @param largest that it may grow to; 0 means 1 / steps
+  Increment(int steps, double largest, const IncrementOptions& options)
+      : options_(options),
+        largest_(largest > 0.0 ? largest : 1.0 / steps),
+        first_(std::min(1.0 / steps, largest_)),
+        value_(first_) {}
+
+  [[nodiscard]] double value() const { return value_; }
+
+  /// Target of the next step; the last one is not left a remainder of round-off.
+  [[nodiscard]] double target(double load_factor) const {
+    const double rest = 1.0 - load_factor;
+    return rest - value_ > load_factor_tolerance ? load_factor + value_ : 1.0;
+  }
+
+  [[nodiscard]] bool can_cut_to(double increment) const {
+    return options_.adaptive && increment >= options_.smallest_step;
+  }
+  void cut_to(double increment) { value_ = increment; }
+  /// @return whether it grew
+  bool grow() {
+    if (!options_.adaptive || value_ >= largest_) return false;
+    value_ = std::min(options_.growth * value_, largest_);
+    return true;
+  }
+  void start_again() { value_ = first_; }
+
+ private:
+  IncrementOptions options_;
+  double largest_, first_, value_;
+};
+
+}  // namespace peristat

@@ -1,0 +1,63 @@
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "solvers/consistency.hpp"
+
+namespace peristat {
+
+/// What a step has turned over, beside what follows from the states before and after it [J].
+struct StepEnergies {
+  double released = 0.0;  ///< see Stored::released
+  struct Relaxed {
+    double work = 0.0;     ///< of supports and loads
+    double drained = 0.0;  ///< see RelaxationResult
+  };
+  std::optional<Relaxed> relaxed;  ///< summed over the iterations of relaxation
+};
+
+/// Energies of the accepted steps of a load path.
+///
+/// External work is summed with the trapezoidal rule over each step, of the loads on the free and
+/// of the reactions on the prescribed degrees of freedom. Relaxation sums the work over each of its
+/// iterations, too: what that is more is the numerical work.
+class PathLedger {
+ public:
+  /// @param prescribed per degree of freedom; outlives the ledger
+  explicit PathLedger(const std::vector<char>& prescribed) : prescribed_(prescribed) {}
+
+  /// Begins in a state: what is stored there counts as work that was done before.
+  void begin(const Trial& state, std::span<const double> external_force);
+
+  /// The entries with a step to a state whose damage is committed.
+  /// @param dissipated by the bonds on the whole path, see DamageState [J]
+  [[nodiscard]] Ledger with_step(std::span<const double> displacement_before, const Trial& state,
+                                 std::span<const double> external_force, double dissipated,
+                                 const StepEnergies& step) const;
+
+  /// Takes up a step that was accepted, with its entries.
+  void accept(const Ledger& with_step, const Trial& state, std::span<const double> external_force,
+              const StepEnergies& step);
+
+  [[nodiscard]] const Ledger& entries() const { return entries_; }
+
+  /// Whether an implicit step in which damage grew has released what nobody takes up. A stable path
+  /// balances, but for the little that single bonds release as they snap; beyond a limit point the
+  /// search lands where its steps happen to lead.
+  /// @return a sentence for a person; empty if it has not
+  [[nodiscard]] std::string jump_to(const Ledger& with_step) const;
+
+ private:
+  [[nodiscard]] std::vector<double> working_force(const Trial& state,
+                                                  std::span<const double> external_force) const;
+
+  const std::vector<char>& prescribed_;
+  Ledger entries_;
+  double released_ = 0.0;      // by triangles and tetrahedra whose bonds were damaged
+  std::vector<double> force_;  // that does work, in the last accepted state
+};
+
+}  // namespace peristat
