@@ -65,7 +65,7 @@ void assembly(benchmark::State& state) {
     }
     benchmark::ClobberMemory();
   }
-  count_bonds(state, double(model.bonds.count()));
+  count_bonds(state, double(model.bonds().count()));
 }
 
 void both_dimensions(benchmark::internal::Benchmark* benchmark) {

@@ -17,7 +17,7 @@ void factorisation(benchmark::State& state) {
   const Points points = benchmark_bodies::box(2, {width, width, 0});
   const Model model = benchmark_bodies::model(points);
   Assembler assembler(points, model, omp_get_max_threads());
-  Tangent tangent(Pattern(model.bonds), 2);
+  Tangent tangent(BlockPattern(model.bonds()), 2);
   assembler.tangent(std::vector<double>(points.reference.size(), 0.0), tangent);
   std::vector<char> prescribed(points.reference.size(), 0);
   std::fill_n(prescribed.begin(), std::size_t(2) * 3 * width, 1);

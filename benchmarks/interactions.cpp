@@ -21,19 +21,19 @@ void assembly(benchmark::State& state) {
   BondSetting setting = benchmark_bodies::setting(3);
   setting.horizon = 1e-3 * double(state.range(0));
   const int threads = omp_get_max_threads();
-  Model model{make_bonds(points, {}, setting, 1), Harmonic{micromodulus(1.0, setting)}};
-  Interactions<Measure> interactions(points, model.bonds, setting.cross_section, threads);
+  Model model(make_bonds(points, {}, setting, 1), Harmonic{micromodulus(1.0, setting)});
+  Interactions<Measure> interactions(points, model.bonds(), setting.cross_section, threads);
   interactions.set_shares(std::vector<double>(points.volume.size(), 1.0));
-  if (state.range(1)) interactions.store(points, model.bonds, threads);
+  if (state.range(1)) interactions.store(points, model.bonds(), threads);
   const double count = double(interactions.count());
-  InteractionTerm<Measure> term{std::move(interactions), Harmonic{1e-3}};
+  Simplices<Measure> simplices{std::move(interactions), Harmonic{1e-3}};
   if constexpr (Measure::arms == 2) {
-    model.triangles = std::move(term);
+    model.add(std::make_shared<SimplexTerm>(model.bond_term(), std::move(simplices), std::nullopt));
   } else {
-    model.tetrahedra = std::move(term);
+    model.add(std::make_shared<SimplexTerm>(model.bond_term(), std::nullopt, std::move(simplices)));
   }
   Assembler assembler(points, model, threads);
-  Tangent tangent(Pattern(model.bonds), 3);
+  Tangent tangent(BlockPattern(model.bonds()), 3);
   std::vector<double> displacement(points.reference.size()), result(displacement.size());
   for (std::size_t k = 0; k < displacement.size(); ++k) {
     displacement[k] = 1e-2 * std::sin(7.0 * double(k));

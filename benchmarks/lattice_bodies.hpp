@@ -2,7 +2,7 @@
 
 #include <array>
 
-#include "assembly/model.hpp"
+#include "assembly/terms/model.hpp"
 #include "src/neighbourhood/quadrature.hpp"
 #include "src/points/lattice.hpp"
 
@@ -28,7 +28,7 @@ inline constexpr double horizon = 3.015;
 /// Bonds with the micromodulus of a unit Young's modulus.
 [[nodiscard]] inline Model model(const Points& points) {
   const BondSetting bond = setting(points.dimension);
-  return {make_bonds(points, {}, bond, 1), Harmonic{micromodulus(1.0, bond)}};
+  return Model(make_bonds(points, {}, bond, 1), Harmonic{micromodulus(1.0, bond)});
 }
 
 }  // namespace peristat::benchmark_bodies

@@ -29,12 +29,10 @@ Points held_box(const benchmark::State& state) {
 }
 
 Model model_of(const Points& points, Law law) {
-  Model model = benchmark_bodies::model(points);
-  if (law != elastic) {
-    const double modulus = std::get<Harmonic>(model.potential).modulus;
-    model.potential = Degraded<TanhDegradation>{modulus, {0.016, 0.020, 3.0}};
-  }
-  return model;
+  const Model model = benchmark_bodies::model(points);
+  if (law == elastic) return model;
+  const double modulus = std::get<Harmonic>(model.bond_term()->potential()).modulus;
+  return Model(model.bonds(), Degraded<TanhDegradation>{modulus, {0.016, 0.020, 3.0}});
 }
 
 SupportSpecification hold(int dimension) {
@@ -66,20 +64,20 @@ struct HeldBody {
       from.displacement[k] = 1e-3 * std::sin(7.0 * double(k));
     }
     if (state.range(1) != broken) return;
-    std::vector<double> stretches(std::size_t(model.bonds.count()), 0.0);
+    std::vector<double> stretches(std::size_t(model.bonds().count()), 0.0);
     for (std::size_t bond = 0; bond < stretches.size(); bond += 50) stretches[bond] = 0.021;
     from.history = assembler.history_of(stretches);
   }
 };
 
 void count(benchmark::State& state, const HeldBody& body, int passes) {
-  state.counters["bond"] = benchmark::Counter(double(passes) * double(body.model.bonds.count()),
+  state.counters["bond"] = benchmark::Counter(double(passes) * double(body.model.bonds().count()),
                                               benchmark::Counter::kIsIterationInvariantRate);
 }
 
 void relaxation(benchmark::State& state) {
   HeldBody body(state);
-  Tangent tangent(Pattern(body.model.bonds), body.points.dimension);
+  Tangent tangent(BlockPattern(body.model.bonds()), body.points.dimension);
   RelaxationOptions options;
   options.ramp = iterations_per_call;
   options.holds = false;

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "assembly/balances.hpp"
+#include "assembly/assembler.hpp"
 #include "solvers/vector_verbs.hpp"
 #include "src/number_text.hpp"
 
@@ -82,7 +82,7 @@ std::string check_strength(Assembler& damaged, const FoundState& found) {
 
 std::string check_resultants(const Assembler& assembler, const TangentOperator& tangent,
                              const FoundState& found) {
-  const Balances owed = balances_of(assembler.model());
+  const Balances owed = assembler.model().balances();
   const std::size_t d = std::size_t(tangent.dimension);
   double trace = 0.0;
   for (std::size_t i = 0; i < tangent.diagonal.size(); i += d * d) {
@@ -143,7 +143,7 @@ std::string find_inconsistency(const EquilibriumProblem& problem, Assembler& dam
   if (fault.empty()) fault = check_equilibrium(problem, found);
   if (fault.empty()) fault = check_strength(damaged, found);
   if (fault.empty()) fault = check_resultants(problem.assembler, tangent, found);
-  if (fault.empty()) fault = check_energies(balances_of(problem.assembler.model()), found);
+  if (fault.empty()) fault = check_energies(problem.assembler.model().balances(), found);
   return fault;
 }
 

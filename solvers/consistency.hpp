@@ -4,7 +4,7 @@
 #include <string>
 
 #include "assembly/assembler.hpp"
-#include "assembly/tangent_operator.hpp"
+#include "assembly/operators/tangent_operator.hpp"
 #include "solvers/equilibrium.hpp"
 
 namespace peristat {
@@ -36,7 +36,7 @@ struct FoundState {
 /// - in equilibrium: the residual, evaluated anew with the committed histories;
 /// - no unbroken bond above what it bears: committing the state again would damage nothing;
 /// - forces and moments of the interactions add up to zero, as far as the model owes it
-///   (balances_of). Round-off leaves about eps sum_b |f_b| <= eps sqrt(2 E tr K), by Cauchy and
+///   (Model::balances). Round-off leaves about eps sum_b |f_b| <= eps sqrt(2 E tr K), by Cauchy and
 ///   Schwarz from E = sum_b f_b^2 / (2 k_b); a thousand times as much is a fault;
 /// - the stored energy is not negative, where the model owes that, and dissipation never falls;
 /// - no energy comes from nothing: where damage grew, or relaxation came to rest, what the body has

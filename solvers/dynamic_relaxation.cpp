@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-#include "assembly/damage.hpp"
+#include "assembly/terms/damage.hpp"
 #include "solvers/vector_verbs.hpp"
 #include "src/threads.hpp"
 

@@ -3,7 +3,7 @@
 #include <functional>
 #include <vector>
 
-#include "assembly/tangent.hpp"
+#include "assembly/operators/tangent.hpp"
 #include "solvers/equilibrium.hpp"
 #include "src/results/history.hpp"
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "assembly/assembler.hpp"
-#include "assembly/tangent_operator.hpp"
+#include "assembly/operators/tangent_operator.hpp"
 #include "solvers/linear/free_dofs.hpp"
 #include "src/conditions/conditions.hpp"
 

@@ -1,6 +1,6 @@
 #include "solvers/fragment_pins.hpp"
 
-#include "assembly/damage.hpp"
+#include "assembly/terms/damage.hpp"
 #include "solvers/vector_verbs.hpp"
 
 namespace peristat {
@@ -10,7 +10,7 @@ FragmentPins::FragmentPins(const std::vector<char>& prescribed, const FreeDofs& 
     : prescribed_(prescribed), free_(free), remedy_(remedy), pinned_(prescribed.size(), 0) {}
 
 void FragmentPins::find(const Assembler& assembler, const State& state) {
-  found_ = find_fragments(assembler.points(), assembler.model().bonds,
+  found_ = find_fragments(assembler.points(), assembler.model().bonds(),
                           broken_bonds(assembler.model(), state.history), prescribed_,
                           state.displacement);
   if (removes_pieces()) remove_pieces();

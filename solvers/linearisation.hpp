@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "assembly/tangent.hpp"
+#include "assembly/operators/tangent.hpp"
 #include "solvers/equilibrium.hpp"
 #include "solvers/linear/linear_solver.hpp"
 

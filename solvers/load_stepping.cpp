@@ -5,7 +5,7 @@
 #include <memory>
 #include <utility>
 
-#include "assembly/damage.hpp"
+#include "assembly/terms/damage.hpp"
 #include "solvers/consistency.hpp"
 #include "solvers/fragment_pins.hpp"
 #include "solvers/increment.hpp"
@@ -493,7 +493,7 @@ class LoadPath {
       found.growth.breaking += committed.growth.breaking;
       found.energies.released += committed.released;
       attempt.state.stored_energy = committed.energy;
-      if (committed.growth.degrading == 0 || assembler().model().has_only_bonds()) return;
+      if (!committed.moves_equilibrium) return;
       if (equilibrate() != Outcome::converged) return;
     }
     attempt.outcome = Outcome::iteration_limit;

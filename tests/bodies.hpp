@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <random>
 #include <span>
@@ -13,7 +14,8 @@
 #include <variant>
 #include <vector>
 
-#include "assembly/model.hpp"
+#include "assembly/terms/model.hpp"
+#include "assembly/terms/simplices/simplex_term.hpp"
 #include "src/neighbourhood/effective_volumes.hpp"
 #include "src/neighbourhood/quadrature.hpp"
 #include "src/points/lattice.hpp"
@@ -123,32 +125,61 @@ struct BoxBody {
   BoxBody(Points from, const BoxSetting& box, int threads = 1)
       : points(std::move(from)),
         setting(bond_setting(box)),
-        model{make_bonds(points, box.quadrature, setting, threads),
-              bond_potential(box, setting),
-              {},
-              {}} {
-    add(model.triangles, box.triangles, box, threads);
-    add(model.tetrahedra, box.tetrahedra, box, threads);
+        model(make_bonds(points, box.quadrature, setting, threads), bond_potential(box, setting)) {
+    auto triangles = simplices<Area>(box.triangles, box, threads);
+    auto tetrahedra = simplices<Volume>(box.tetrahedra, box, threads);
+    if (triangles || tetrahedra) {
+      model.add(std::make_shared<SimplexTerm>(model.bond_term(), std::move(triangles),
+                                              std::move(tetrahedra)));
+    }
   }
 
   /// Interactions with the weights of continuum-kinematics-inspired peridynamics.
   template <class Measure>
-  void add(std::optional<InteractionTerm<Measure>>& to, double stiffness, const BoxSetting& box,
-           int threads) {
-    if (stiffness == 0.0) return;
-    Interactions<Measure> interactions(points, model.bonds, setting.cross_section, threads);
+  [[nodiscard]] std::optional<Simplices<Measure>> simplices(double stiffness, const BoxSetting& box,
+                                                            int threads) const {
+    if (stiffness == 0.0) return std::nullopt;
+    Interactions<Measure> interactions(points, model.bonds(), setting.cross_section, threads);
     const BulkNeighbourhood bulk =
         bulk_neighbourhood(box.dimension, box.spacing, setting.horizon, box.cross_section);
     interactions.set_shares(weight_shares<Measure>(
-        points, effective_volumes(interactions, neighbour_counts(model.bonds), bulk,
+        points, effective_volumes(interactions, neighbour_counts(model.bonds()), bulk,
                                   InteractionWeights::mean)));
     // psi is C M e^2 / 2 with M of the order of horizon^arms, and there are V_H^arms of them.
     const double unit = std::pow(setting.horizon * bulk.volume, 1 - Measure::arms);
     const double micromodulus_of_bonds =
-        std::visit([](const auto& law) { return law.modulus; }, model.potential);
-    if (box.stored) interactions.store(points, model.bonds, threads);
-    to.emplace(InteractionTerm<Measure>{std::move(interactions),
-                                        Harmonic{stiffness * unit * micromodulus_of_bonds}});
+        std::visit([](const auto& law) { return law.modulus; }, potential());
+    if (box.stored) interactions.store(points, model.bonds(), threads);
+    return Simplices<Measure>{std::move(interactions),
+                              Harmonic{stiffness * unit * micromodulus_of_bonds}};
+  }
+
+  [[nodiscard]] const BondPotential& potential() const { return model.bond_term()->potential(); }
+
+  /// Its triangles and tetrahedra, if it has any.
+  [[nodiscard]] const SimplexTerm* simplex_term() const {
+    return dynamic_cast<const SimplexTerm*>(model.terms().back().get());
+  }
+
+  /// The same bonds without triangles and tetrahedra.
+  [[nodiscard]] Model bonds_alone() const { return Model(model.bonds(), potential()); }
+
+  /// Other bonds with the same potentials.
+  void replace_bonds(Bonds bonds, std::vector<char> never_fails = {}) {
+    Model changed(std::move(bonds), potential(), std::move(never_fails));
+    if (const SimplexTerm* const simplices = simplex_term()) {
+      changed.add(std::make_shared<SimplexTerm>(changed.bond_term(), simplices->triangles(),
+                                                simplices->tetrahedra()));
+    }
+    model = std::move(changed);
+  }
+
+  /// Takes away the bonds with drop(i, bond).
+  template <class Drop>
+  void remove_bonds(const Drop& drop) {
+    Bonds bonds = model.bonds();
+    bonds.remove_if(drop);
+    replace_bonds(std::move(bonds));
   }
 
   [[nodiscard]] std::size_t dofs() const { return points.reference.size(); }

@@ -53,7 +53,7 @@ struct Problem {
         conditions(body.points, supports, loads),
         free(conditions.prescribed(), box.dimension),
         assembler(body.points, body.model, threads),
-        tangent(Pattern(body.model.bonds), box.dimension) {}
+        tangent(BlockPattern(body.model.bonds()), box.dimension) {}
   Problem(const Problem&) = delete;
   Problem& operator=(const Problem&) = delete;
 

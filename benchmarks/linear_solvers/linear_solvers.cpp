@@ -17,8 +17,8 @@
 #include <omp.h>
 
 #include "assembly/assembler.hpp"
-#include "assembly/matrix_free_tangent.hpp"
-#include "assembly/tangent.hpp"
+#include "assembly/operators/matrix_free_tangent.hpp"
+#include "assembly/operators/tangent.hpp"
 #include "benchmarks/lattice_bodies.hpp"
 #include "solvers/linear/make_linear_solver.hpp"
 
@@ -78,10 +78,12 @@ double seconds_of(const std::function<void()>& work) {
 
 void cut(Model& model, const Points& points, const BodyShape& shape) {
   const double plane = 0.5 * shape.extent[0], height = 2.0 / 3.0 * shape.extent[1];
-  model.bonds.remove_if([&](Index i, Offset bond) {
-    const Coordinates a = points.position(i), b = points.position(model.bonds.partner[bond]);
+  Bonds bonds = model.bonds();
+  bonds.remove_if([&](Index i, Offset bond) {
+    const Coordinates a = points.position(i), b = points.position(bonds.partner[bond]);
     return (a[0] - plane) * (b[0] - plane) < 0.0 && 0.5 * (a[1] + b[1]) < height;
   });
+  model = Model(std::move(bonds), model.bond_term()->potential());
 }
 
 void measure(const std::string& name, const BodyShape& shape,
@@ -95,7 +97,7 @@ void measure(const std::string& name, const BodyShape& shape,
     prescribed[k] = points.reference[k - k % std::size_t(shape.dimension)] < 3.0;
   }
   const FreeDofs free(prescribed, shape.dimension);
-  const Pattern pattern(model.bonds);
+  const BlockPattern pattern(model.bonds());
   std::vector<double> b(std::size_t(free.count())), x(b.size());
   std::mt19937_64 engine(3);
   for (double& entry : b) entry = double(engine() >> 11) * 0x1p-52 - 1.0;

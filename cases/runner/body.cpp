@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <variant>
 
 #include <fmt/format.h>
 
@@ -90,31 +89,6 @@ void require_resolved(const Case& from, const Points& points, double horizon) {
                        " m; move the body to the origin");
 }
 
-double micromodulus_of(const Case& from, const BondSetting& setting) {
-  const MaterialSpecification& material = from.material;
-  return material.micromodulus ? *material.micromodulus
-                               : micromodulus(*material.youngs_modulus, setting);
-}
-
-/// Flags of the bonds of the points of the sets that never fail; empty without such sets.
-std::vector<char> never_failing_bonds(const Case& from, const Points& points, const Bonds& bonds) {
-  const std::vector<std::string>& sets = from.material.damage.no_fail;
-  if (sets.empty()) return {};
-  std::vector<char> of_point(std::size_t(points.count())), of_bond(std::size_t(bonds.count()));
-  for (const std::string& set : sets) {
-    const auto members = points.sets.find(set);
-    if (members == points.sets.end())
-      throw InputError("material.damage.no_fail", '"' + set + '"', "no set of this name");
-    for (const Index i : members->second) of_point[i] = 1;
-  }
-  for (Index i = 0; i < bonds.points(); ++i) {
-    for (Offset bond = bonds.offset[i]; bond < bonds.offset[i + 1]; ++bond) {
-      of_bond[bond] = of_point[i] | of_point[bonds.partner[bond]];
-    }
-  }
-  return of_bond;
-}
-
 /// No more than there are pairs of points.
 double expected_bonds(double points, int dimension, double horizon_ratio) {
   return points * std::min(bonds_per_point(dimension, horizon_ratio), 0.5 * points);
@@ -141,17 +115,13 @@ void require_memory_for_lattice(const Case& from, const Lattice& lattice) {
                  fmt::format("the case with up to {:.3g} points", points));
 }
 
-/// Stores triangles and tetrahedra if they fit into half of what everything else leaves.
+/// Stores interactions that can be stored if they fit into half of what everything else leaves.
 void store_interactions(Body& body, int threads) {
-  const auto for_each_term = [&](const auto& visit) {
-    if (body.model.triangles) visit(body.model.triangles->interactions);
-    if (body.model.tetrahedra) visit(body.model.tetrahedra->interactions);
-  };
   InteractionStorage& storage = body.interaction_storage;
-  for_each_term([&](const auto& term) { storage.needed += term.stored_bytes(); });
+  for (const auto& term : body.model.terms()) storage.needed += term->bytes_to_store();
   storage.room = std::max(0.5 * (available_memory() - estimate_memory(body).least_bytes()), 0.0);
   if (!storage.fits()) return;
-  for_each_term([&](auto& term) { term.store(body.points, body.model.bonds, threads); });
+  for (const auto& term : body.model.terms()) term->store(body.points, threads);
 }
 
 }  // namespace
@@ -236,12 +206,14 @@ std::unique_ptr<const Body> make_body(const Case& from, int threads) {
       } else {
         // Corrections near surfaces are those of the whole body: a crack is no surface.
         cut = cut_bonds(bonds, body.points, from.cracks);
-        body.model = Model{std::move(bonds), bond_potential(from.material.damage,
-                                                            micromodulus_of(from, body.setting))};
+        std::vector<char> never_fails = never_failing_bonds(from, body.points, bonds);
+        body.model =
+            Model(std::move(bonds),
+                  bond_potential(from.material.damage, micromodulus_of(from, body.setting)),
+                  std::move(never_fails));
       }
       body.cut_weight = std::move(cut.weight);
       body.cut_bonds = std::move(cut.ends);
-      body.model.never_fails = never_failing_bonds(from, body.points, body.model.bonds);
     }
     body.conditions = std::make_unique<Conditions>(body.points, from.supports, from.loads);
     const Stopwatch watch(body.seconds_neighbourhood);
@@ -268,7 +240,7 @@ std::optional<Model> make_elastic_stand_in(const Case& from, const Body& body, i
     if (!free_motions(body.points, bonds, body.conditions->prescribed()).empty())
       throw InputError(key, number_text(from.solver.elastic_horizon_ratio),
                        "leaves points that may move freely");
-    return Model{std::move(bonds), Harmonic{micromodulus(*from.material.youngs_modulus, setting)}};
+    return Model(std::move(bonds), Harmonic{micromodulus(*from.material.youngs_modulus, setting)});
   });
 }
 
@@ -276,36 +248,28 @@ MemoryEstimate estimate_memory(const Body& body) {
   const auto& prescribed = body.conditions->prescribed();
   BodySize size = size_of(body.points);
   size.horizon_ratio = body.horizon_ratio();
-  size.bonds = double(body.model.bonds.count());
-  size.bytes_per_bond = double(sizeof(Index) + body.model.bonds.kind.bytes_per_bond());
-  size.has_history =
-      std::visit([]<class P>(const P&) { return PotentialWithHistory<P>; }, body.model.potential);
-  size.has_only_bonds = body.model.has_only_bonds();
+  size.bonds = double(body.model.bonds().count());
+  size.bytes_per_bond = double(sizeof(Index) + body.model.bonds().kind.bytes_per_bond());
+  size.has_history = body.model.has_history();
+  size.has_symmetric_blocks = body.model.has_symmetric_blocks();
   size.free_dofs = double(std::count(prescribed.begin(), prescribed.end(), 0));
   MemoryEstimate estimate = estimate_memory(size);
-  const auto add_stored = [&](const auto& term) {
-    if (term && term->interactions.is_stored()) {
-      estimate.body_bytes += term->interactions.stored_bytes();
-    }
-  };
-  add_stored(body.model.triangles);
-  add_stored(body.model.tetrahedra);
+  for (const auto& term : body.model.terms()) estimate.body_bytes += term->stored_bytes();
   return estimate;
 }
 
 std::vector<std::string> describe_interactions(const Body& body) {
   std::vector<std::string> lines;
-  const auto tell = [&](const char* what, const auto& term) {
-    if (!term) return;
-    const auto& per_point = term->interactions.per_point();
-    const auto [least, most] = std::minmax_element(per_point.begin(), per_point.end());
-    lines.push_back(
-        fmt::format("{} {}; per point {} to {}", term->interactions.count(), what, *least, *most));
-  };
-  tell("triangles", body.model.triangles);
-  tell("tetrahedra", body.model.tetrahedra);
-  if (!lines.empty()) {
-    const InteractionStorage& storage = body.interaction_storage;
+  for (const auto& term : body.model.terms()) {
+    if (term.get() == body.model.bond_term().get()) continue;  // told apart
+    for (const InteractionCount& kind : term->counts()) {
+      const auto [least, most] = std::minmax_element(kind.per_point.begin(), kind.per_point.end());
+      lines.push_back(
+          fmt::format("{} {}; per point {} to {}", kind.count, kind.name, *least, *most));
+    }
+  }
+  const InteractionStorage& storage = body.interaction_storage;
+  if (storage.needed > 0.0) {
     lines.push_back(fmt::format("{}: storing them takes {} of {} that are free for it",
                                 storage.fits() ? "stored" : "found anew in every pass",
                                 bytes_text(storage.needed), bytes_text(storage.room)));
@@ -315,7 +279,7 @@ std::vector<std::string> describe_interactions(const Body& body) {
 
 std::string describe_free_motions(const Body& body) {
   const std::vector<FreeMotion> parts =
-      free_motions(body.points, body.model.bonds, body.conditions->prescribed());
+      free_motions(body.points, body.model.bonds(), body.conditions->prescribed());
   std::string text;
   constexpr std::size_t most_told = 5;
   for (std::size_t k = 0; k < std::min(parts.size(), most_told); ++k) {
@@ -344,7 +308,7 @@ std::string describe_free_motions(const Body& body) {
 std::string describe_loose_points(const Body& body) {
   const std::vector<double> at_rest(body.points.reference.size(), 0.0);
   const Fragments fragments =
-      find_fragments(body.points, body.model.bonds, {}, body.conditions->prescribed(), at_rest);
+      find_fragments(body.points, body.model.bonds(), {}, body.conditions->prescribed(), at_rest);
   if (fragments.loose.empty()) return {};
   const std::size_t count = fragments.loose.size();
   return fmt::format(

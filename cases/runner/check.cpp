@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "cases/runner/body.hpp"
+#include "cases/runner/bond_potential.hpp"
 #include "cases/runner/cpd_model.hpp"
 #include "cases/runner/rest_stability.hpp"
 #include "cases/runner/solver_options.hpp"
@@ -44,14 +45,13 @@ std::string seconds_text(double seconds) {
 
 void print_constants(const Case& from, const Body& body) {
   if (from.material.model == MaterialModel::bond) {
-    const double modulus =
-        std::visit([](const auto& law) { return law.modulus; }, body.model.potential);
+    const double modulus = micromodulus_of(from, body.setting);
     fmt::print(
         "constants   micromodulus {:.6g} N/m6, Young's modulus {:.6g} Pa, Poisson's ratio {:.4g}\n",
         modulus, youngs_modulus_of(modulus, body.setting), poisson_ratio(body.setting));
     fmt::print(
         "quadrature  energy of a confined strain deviates by at most {:.3g} from the classical\n",
-        confined_energy_error(body.points, body.model.bonds, body.setting));
+        confined_energy_error(body.points, body.model.bonds(), body.setting));
     return;
   }
   const int dimension = from.dimension;
@@ -80,13 +80,13 @@ Exit check(const Case& from, int threads) {
   const std::unique_ptr<const Body> made = make_body(from, threads);
   const Body& body = *made;
   const Points& points = body.points;
-  const NeighbourCounts neighbours = count_neighbours(body.model.bonds);
+  const NeighbourCounts neighbours = count_neighbours(body.model.bonds());
   fmt::print("case        {}\n", from.title.empty() ? from.file : from.title);
   fmt::print("points      {} in {}D, spacing {:g} m, horizon {:g} m ({:.4g} spacings)\n",
              points.count(), points.dimension, points.spacing, body.setting.horizon,
              body.horizon_ratio());
   fmt::print("bonds       {}; neighbours per point {} to {}, {:.1f} on average\n",
-             body.model.bonds.count(), neighbours.least, neighbours.most, neighbours.mean);
+             body.model.bonds().count(), neighbours.least, neighbours.most, neighbours.mean);
   for (const std::string& line : describe_interactions(body)) {
     fmt::print("interaction {}\n", line);
   }
@@ -104,7 +104,7 @@ Exit check(const Case& from, int threads) {
 
   const MemoryEstimate estimate = estimate_memory(body);
   const FreeDofs free(prescribed, points.dimension);
-  const Pattern pattern(body.model.bonds);
+  const BlockPattern pattern = body.model.pattern();
   std::string reason;
   const LinearSystems systems =
       choose_linear_systems(from, estimate, [&](const std::string& told) { reason = told; });

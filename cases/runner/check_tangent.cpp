@@ -85,20 +85,18 @@ double keep_off_kinks(const Body& body, const std::vector<double>& displacement,
                       const std::vector<double>& gradient, std::vector<double>& direction,
                       double largest_step) {
   std::vector<double> kinks;
-  std::visit(
-      [&]<class P>(const P& potential) {
-        if constexpr (PotentialWithHistory<P>) {
-          kinks = {potential.law.onset(), potential.law.critical()};
-        }
-      },
-      body.model.potential);
+  if (const BondTerm* const failing = body.model.failing_bonds()) {
+    failing->with_damage_law([&](const auto& potential) {
+      kinks = {potential.law.onset(), potential.law.critical()};
+    });
+  }
   if (kinks.empty()) return largest_step;
   steepen(gradient, body.points.spacing, direction);
   const double width = kinks[1] > kinks[0] ? kinks[1] - kinks[0] : kinks[1];
   const double margin = 0.02 * width;
 
   const Points& points = body.points;
-  const Bonds& bonds = body.model.bonds;
+  const Bonds& bonds = body.model.bonds();
   const auto d = std::size_t(points.dimension);
   const auto place = [&](Index i) {
     Coordinates at = points.position(i);
@@ -194,10 +192,11 @@ constexpr double passes_per_column = 6.0;
 std::vector<std::size_t> sampled_dofs(const Body& body, const std::vector<double>& direction) {
   constexpr Index places = 6, most_partners = 8;
   constexpr double most_work = 1e8;  // interactions in all passes, some seconds
-  const Bonds& bonds = body.model.bonds;
-  double interactions = double(bonds.count());
-  if (body.model.triangles) interactions += double(body.model.triangles->interactions.count());
-  if (body.model.tetrahedra) interactions += double(body.model.tetrahedra->interactions.count());
+  const Bonds& bonds = body.model.bonds();
+  double interactions = 0.0;
+  for (const auto& term : body.model.terms()) {
+    for (const InteractionCount& kind : term->counts()) interactions += double(kind.count);
+  }
   const auto d = std::size_t(body.points.dimension);
   const auto most =
       std::size_t(std::max(2.0 * double(d), most_work / (passes_per_column * interactions)));

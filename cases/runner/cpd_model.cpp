@@ -1,5 +1,8 @@
 #include "cases/runner/cpd_model.hpp"
 
+#include <optional>
+
+#include "assembly/terms/simplices/simplex_term.hpp"
 #include "cases/runner/bond_potential.hpp"
 #include "src/input_error.hpp"
 #include "src/number_text.hpp"
@@ -10,9 +13,9 @@ namespace {
 /// @param bonds of the whole body, which the effective volumes belong to: a crack is no surface
 /// @param left those that pre-cracks have not cut; an interaction with a cut bond is lost
 template <class Measure>
-InteractionTerm<Measure> make_term(const Case& from, const Points& points, const Bonds& bonds,
-                                   const Bonds& left, const BulkNeighbourhood& bulk,
-                                   double cross_section, double constant, int threads) {
+Simplices<Measure> make_simplices(const Case& from, const Points& points, const Bonds& bonds,
+                                  const Bonds& left, const BulkNeighbourhood& bulk,
+                                  double cross_section, double constant, int threads) {
   Interactions<Measure> interactions(points, bonds, cross_section, threads);
   if (interactions.count() == 0) {
     constexpr bool is_triangle = Measure::arms == 2;
@@ -86,15 +89,24 @@ Model make_cpd_model(const Case& from, const Points& points, const BondSetting& 
   const BulkNeighbourhood bulk =
       bulk_neighbourhood(from.dimension, points.spacing, setting.horizon, setting.cross_section);
   set_one_neighbour_weights(bonds, points, bulk);
-  Model model{bonds, bond_potential(from.material.damage, constants.c1)};
-  cut = cut_bonds(model.bonds, points, from.cracks);
+  Bonds left = bonds;
+  cut = cut_bonds(left, points, from.cracks);
+  std::vector<char> never_fails = never_failing_bonds(from, points, left);
+  Model model(std::move(left), bond_potential(from.material.damage, constants.c1),
+              std::move(never_fails));
+  std::optional<Simplices<Area>> triangles;
+  std::optional<Simplices<Volume>> tetrahedra;
   if (constants.c2 != 0.0) {
-    model.triangles = make_term<Area>(from, points, bonds, model.bonds, bulk, setting.cross_section,
-                                      constants.c2, threads);
+    triangles = make_simplices<Area>(from, points, bonds, model.bonds(), bulk,
+                                     setting.cross_section, constants.c2, threads);
   }
   if (constants.c3 != 0.0) {
-    model.tetrahedra = make_term<Volume>(from, points, bonds, model.bonds, bulk,
-                                         setting.cross_section, constants.c3, threads);
+    tetrahedra = make_simplices<Volume>(from, points, bonds, model.bonds(), bulk,
+                                        setting.cross_section, constants.c3, threads);
+  }
+  if (triangles || tetrahedra) {
+    model.add(std::make_shared<SimplexTerm>(model.bond_term(), std::move(triangles),
+                                            std::move(tetrahedra)));
   }
   return model;
 }

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "assembly/model.hpp"
+#include "assembly/terms/model.hpp"
 #include "cases/runner/case.hpp"
 #include "src/materials/cpd_constants.hpp"
 #include "src/neighbourhood/bulk_neighbourhood.hpp"

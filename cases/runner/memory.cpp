@@ -164,7 +164,7 @@ MemoryEstimate estimate_memory(const BodySize& size) {
   estimate.factor_entries = std::min(natural_entries, dissection_entries);
   estimate.factor_flops = std::min(natural_flops, dissection_flops);
 
-  const double block = size.has_only_bonds ? 0.5 * d * (d + 1.0) : d * d;
+  const double block = size.has_symmetric_blocks ? 0.5 * d * (d + 1.0) : d * d;
   estimate.body_bytes = body_bytes(size) + 8.0 * size.points * d * (d + 1.0);
   estimate.tangent_bytes = 8.0 * size.bonds * block;
   estimate.matrix_bytes = 16.0 * (size.bonds + size.points) * d * d;

@@ -19,9 +19,9 @@ struct BodySize {
   double longest = 1.0;  ///< points along the longest direction
   double horizon_ratio = 0.0;
   double bonds = 0.0;
-  double bytes_per_bond = 6.0;  ///< partner and kind, see BondKinds
-  bool has_history = false;     ///< bonds may be damaged
-  bool has_only_bonds = true;
+  double bytes_per_bond = 6.0;       ///< partner and kind, see BondKinds
+  bool has_history = false;          ///< bonds may be damaged
+  bool has_symmetric_blocks = true;  ///< off-diagonal blocks of the tangent are
   double free_dofs = 0.0;
 };
 

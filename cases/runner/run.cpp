@@ -9,7 +9,8 @@
 #include <H5public.h>
 #include <fmt/format.h>
 
-#include "assembly/damage.hpp"
+#include "assembly/terms/bonds/point_stretches.hpp"
+#include "assembly/terms/damage.hpp"
 #include "cases/runner/body.hpp"
 #include "cases/runner/damage_histories.hpp"
 #include "cases/runner/dossier.hpp"
@@ -64,19 +65,12 @@ double largest_displacement(const std::vector<double>& displacement, int dimensi
 
 /// The counts of [CPD] sec. 3.1 for the results folder.
 std::vector<PointCounts> neighbour_counts_of(const Body& body) {
-  const auto ordered = [](std::vector<std::int32_t> counts, std::int32_t orders) {
-    for (std::int32_t& count : counts) count *= orders;
-    return counts;
-  };
-  std::vector<PointCounts> counts{
-      {"neighbours", "neighbours within the horizon, #N1", neighbour_counts(body.model.bonds)}};
-  if (body.model.triangles) {
-    counts.push_back({"neighbour_pairs", "contributing ordered pairs of neighbours, #N2",
-                      ordered(body.model.triangles->interactions.per_point(), 2)});
-  }
-  if (body.model.tetrahedra) {
-    counts.push_back({"neighbour_triplets", "contributing ordered triplets of neighbours, #N3",
-                      ordered(body.model.tetrahedra->interactions.per_point(), 6)});
+  std::vector<PointCounts> counts;
+  for (const auto& term : body.model.terms()) {
+    for (InteractionCount& kind : term->counts()) {
+      for (std::int32_t& count : kind.per_point) count *= kind.orders;
+      counts.push_back({kind.per_point_name, kind.per_point_meaning, std::move(kind.per_point)});
+    }
   }
   return counts;
 }
@@ -110,10 +104,10 @@ class Recorder {
                 std::vector<double>(points),
                 std::vector<double>(points),
                 std::vector<double>(points, 0.0),
-                told_histories_.changes(body_.model.bonds, stretches)};
+                told_histories_.changes(body_.model.bonds(), stretches)};
     for (double& force : made.force) force = -force;
-    static_cast<void>(assembler_.point_energies(at, made.energy_density));
-    assembler_.point_stretches(at, made.stretch);
+    assembler_.point_energies(at, made.energy_density);
+    point_stretches(points_, body_.model, at, made.stretch);
     record.max_stretch = *std::max_element(made.stretch.begin(), made.stretch.end());
     const auto cut_weight =
         case_.output.count_cracks ? std::span(body_.cut_weight) : std::span<const double>();
@@ -162,7 +156,7 @@ class Recorder {
     if (broken.empty()) return;
     broken_.resize(broken.size(), 0);
     std::vector<BrokenBondRecord> records;
-    const Bonds& bonds = body_.model.bonds;
+    const Bonds& bonds = body_.model.bonds();
     for (Index i = 0; i < bonds.points(); ++i) {
       for (Offset bond = bonds.offset[i]; bond < bonds.offset[i + 1]; ++bond) {
         if (!broken[bond] || broken_[bond]) continue;
@@ -192,9 +186,9 @@ class Recorder {
 void count(const Body& body, const FreeDofs& free, const RunOptions& options, Summary& summary) {
   summary.points = body.points.count();
   summary.free_dofs = free.count();
-  summary.bonds = body.model.bonds.count();
-  if (body.model.triangles) summary.triangles = body.model.triangles->interactions.count();
-  if (body.model.tetrahedra) summary.tetrahedra = body.model.tetrahedra->interactions.count();
+  for (const auto& term : body.model.terms()) {
+    for (const InteractionCount& kind : term->counts()) summary.count(kind.name, kind.count);
+  }
   summary.seconds.neighbourhood = body.seconds_neighbourhood;
   summary.threads = options.threads;
 }
@@ -212,16 +206,15 @@ LoadSteppingResult follow_with_stand_in(const Case& from, const Body& body,
                                         const SolvedBody& solved, const Model& stand_in,
                                         const FreeDofs& free, const LoadSteppingObserver& observer,
                                         Summary& summary) {
-  const Pattern pattern(stand_in.bonds);
   Assembler assembler(body.points, stand_in, solved.assembler.threads());
   BodySize size = size_of(body.points);
   size.horizon_ratio = from.solver.elastic_horizon_ratio;
-  size.bonds = double(stand_in.bonds.count());
+  size.bonds = double(stand_in.bonds().count());
   size.free_dofs = double(free.count());
   const LinearSystems systems = choose_linear_systems(from, estimate_memory(size), {});
   LinearSolver& solver = *systems.chosen.solver;
   const std::unique_ptr<TangentOperator> tangent = systems.make_tangent(assembler);
-  if (solver.analyze(pattern, free) != LinearOutcome::solved) {
+  if (solver.analyze(assembler.pattern(), free) != LinearOutcome::solved) {
     LoadSteppingResult result;
     result.outcome = Outcome::out_of_memory;
     return result;
@@ -306,7 +299,7 @@ Exit run_case(const Case& from, const RunOptions& options, Progress& progress, S
   require_memory(systems.bytes, fmt::format("the case with {} points", body.points.count()));
   const FreeDofs free(body.conditions->prescribed(), from.dimension);
   progress.say(fmt::format("{} points, {} bonds, {} free degrees of freedom, {} threads",
-                           body.points.count(), body.model.bonds.count(), free.count(),
+                           body.points.count(), body.model.bonds().count(), free.count(),
                            options.threads));
   for (const std::string& line : describe_interactions(body)) progress.say(line);
   count(body, free, options, summary);
@@ -324,11 +317,10 @@ Exit run_case(const Case& from, const RunOptions& options, Progress& progress, S
   }
   leave_note(from.output.directory);
 
-  const Pattern pattern(body.model.bonds);
   Assembler assembler(body.points, body.model, options.threads);
   const std::unique_ptr<TangentOperator> tangent = systems.make_tangent(assembler);
   LinearSolver& solver = *systems.chosen.solver;
-  const LinearOutcome analysis = solver.analyze(pattern, free);
+  const LinearOutcome analysis = solver.analyze(assembler.pattern(), free);
   progress.say(fmt::format("linear solver: {}{} ({})", solver.describe(),
                            systems.is_stored ? "" : ", tangent matrix-free",
                            systems.chosen.reason));

@@ -1,7 +1,7 @@
 #include "cases/runner/solver_options.hpp"
 
-#include "assembly/matrix_free_tangent.hpp"
-#include "assembly/tangent.hpp"
+#include "assembly/operators/matrix_free_tangent.hpp"
+#include "assembly/operators/tangent.hpp"
 
 namespace peristat {
 

@@ -12,7 +12,7 @@ class AssembledPreconditioner : public Preconditioner {
  public:
   explicit AssembledPreconditioner(MatrixPreconditionerKind kind) : preconditioner_(kind) {}
 
-  void analyze(const Pattern&, const FreeDofs& free) override { free_ = &free; }
+  void analyze(const BlockPattern&, const FreeDofs& free) override { free_ = &free; }
   /// @throws std::logic_error for a tangent without stored blocks
   [[nodiscard]] LinearOutcome build(const TangentOperator& tangent) override;
   void apply(std::span<const double> residual, std::span<double> correction) override {

@@ -102,7 +102,7 @@ void add_all(const FreeDofs& free, const std::vector<double>& upper_halves, int 
 
 }  // namespace
 
-void BlockJacobi::analyze(const Pattern&, const FreeDofs& free) { free_ = &free; }
+void BlockJacobi::analyze(const BlockPattern&, const FreeDofs& free) { free_ = &free; }
 
 LinearOutcome BlockJacobi::build(const TangentOperator& tangent) {
   threads_ = tangent.threads();

@@ -12,7 +12,7 @@ class BlockJacobi : public Preconditioner {
   enum class Blocks { entries, points };
   explicit BlockJacobi(Blocks blocks) : blocks_(blocks) {}
 
-  void analyze(const Pattern& pattern, const FreeDofs& free) override;
+  void analyze(const BlockPattern& pattern, const FreeDofs& free) override;
   /// Negative or zero pivots of a diagonal block are the tangent's, too.
   [[nodiscard]] LinearOutcome build(const TangentOperator& tangent) override;
   void apply(std::span<const double> residual, std::span<double> correction) override;

@@ -9,7 +9,7 @@
 
 #include <suitesparse/cholmod.h>
 
-#include "assembly/tangent.hpp"
+#include "assembly/operators/tangent.hpp"
 #include "solvers/linear/trilinos/krylov.hpp"
 #include "solvers/vector_verbs.hpp"
 #include "src/stopwatch.hpp"
@@ -81,8 +81,8 @@ struct Cholesky::Cholmod {
   }
 
   /// Fill-reducing order of the points that have an equation, in terms of those points.
-  std::vector<Long> order_points(const Pattern& pattern, const std::vector<Index>& number_of_point,
-                                 Index points) {
+  std::vector<Long> order_points(const BlockPattern& pattern,
+                                 const std::vector<Index>& number_of_point, Index points) {
     const auto at = [](void* array) { return static_cast<Long*>(array); };
     Offset entries = 0;
     for_each_free_block(pattern, number_of_point, [&](Index, Index) { ++entries; });
@@ -118,7 +118,7 @@ struct Cholesky::Cholmod {
   /// visit(i, j) for the diagonal and each block i < j of points with an equation, in their
   /// numbers.
   template <class Visit>
-  static void for_each_free_block(const Pattern& pattern, const std::vector<Index>& number,
+  static void for_each_free_block(const BlockPattern& pattern, const std::vector<Index>& number,
                                   const Visit& visit) {
     for (Index i = 0; i < pattern.points(); ++i) {
       if (number[i] == FreeDofs::none) continue;
@@ -133,7 +133,8 @@ struct Cholesky::Cholmod {
   /// visit(row, on_diagonal, k, r, c) for each stored entry of one column (the lower triangle) in
   /// ascending rows: entry (r, c) of the diagonal block of point k, or of the block of bond k.
   template <class Visit>
-  void for_each_entry_of_column(const Pattern& pattern, Index equation, const Visit& visit) const {
+  void for_each_entry_of_column(const BlockPattern& pattern, Index equation,
+                                const Visit& visit) const {
     const int d = free->dimension;
     const Index dof = free->dof[equation];
     const Index i = dof / d;
@@ -151,7 +152,7 @@ struct Cholesky::Cholmod {
     }
   }
 
-  void build_matrix(const Pattern& pattern) {
+  void build_matrix(const BlockPattern& pattern) {
     const Index size = free->count();
     std::vector<Long> begin(std::size_t(size) + 1, 0);
     for (Index e = 0; e < size; ++e) {
@@ -312,7 +313,7 @@ Cholesky::Cholesky(FactorReuse reuse, double largest_factor)
 }
 Cholesky::~Cholesky() = default;
 
-LinearOutcome Cholesky::analyze(const Pattern& pattern, const FreeDofs& free) {
+LinearOutcome Cholesky::analyze(const BlockPattern& pattern, const FreeDofs& free) {
   Cholmod& c = *cholmod_;
   const Stopwatch watch(c.statistics.seconds);
   c.release_symbolic();

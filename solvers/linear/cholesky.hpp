@@ -43,7 +43,7 @@ class Cholesky : public LinearSolver {
                     double largest_factor = std::numeric_limits<double>::infinity());
   ~Cholesky() override;
 
-  LinearOutcome analyze(const Pattern& pattern, const FreeDofs& free) override;
+  LinearOutcome analyze(const BlockPattern& pattern, const FreeDofs& free) override;
   void count_pivots(bool counts) override;
   /// @throws std::logic_error for a tangent without stored blocks
   LinearOutcome factorize(const TangentOperator& tangent, FactorUse use) override;

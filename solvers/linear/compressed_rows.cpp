@@ -8,7 +8,7 @@
 namespace peristat {
 
 CompressedRows compressed_rows(const Tangent& tangent, const FreeDofs& free) {
-  const Pattern& pattern = tangent.pattern;
+  const BlockPattern& pattern = tangent.pattern;
   const Index points = pattern.points();
   const int d = tangent.dimension;
 

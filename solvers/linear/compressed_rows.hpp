@@ -2,7 +2,7 @@
 
 #include <span>
 
-#include "assembly/tangent.hpp"
+#include "assembly/operators/tangent.hpp"
 #include "solvers/linear/free_dofs.hpp"
 #include "solvers/linear/trilinos/matrix_preconditioner.hpp"
 

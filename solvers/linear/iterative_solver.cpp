@@ -26,7 +26,7 @@ IterativeSolver::IterativeSolver(KrylovMethod method,
       preconditioner_(std::move(preconditioner)),
       max_iterations_(max_iterations) {}
 
-LinearOutcome IterativeSolver::analyze(const Pattern& pattern, const FreeDofs& free) {
+LinearOutcome IterativeSolver::analyze(const BlockPattern& pattern, const FreeDofs& free) {
   const Stopwatch watch(statistics_.seconds);
   free_ = &free;
   full_.resize(free.equation.size());

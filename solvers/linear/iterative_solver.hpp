@@ -18,7 +18,7 @@ class IterativeSolver : public LinearSolver {
   IterativeSolver(KrylovMethod method, std::unique_ptr<Preconditioner> preconditioner,
                   int max_iterations);
 
-  LinearOutcome analyze(const Pattern& pattern, const FreeDofs& free) override;
+  LinearOutcome analyze(const BlockPattern& pattern, const FreeDofs& free) override;
   void count_pivots(bool) override {}  // they are never known
   LinearOutcome factorize(const TangentOperator& tangent, FactorUse use) override;
   /// @return not_positive_definite where conjugate gradients meet negative curvature, inaccurate at

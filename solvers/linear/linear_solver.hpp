@@ -5,7 +5,7 @@
 #include <span>
 #include <string>
 
-#include "assembly/tangent_operator.hpp"
+#include "assembly/operators/tangent_operator.hpp"
 #include "solvers/linear/free_dofs.hpp"
 
 namespace peristat {
@@ -45,7 +45,8 @@ class LinearSolver {
   /// Once per pattern, before anything else. The pattern and the degrees of freedom outlive the
   /// solver.
   /// @return solved, or out_of_memory
-  [[nodiscard]] virtual LinearOutcome analyze(const Pattern& pattern, const FreeDofs& free) = 0;
+  [[nodiscard]] virtual LinearOutcome analyze(const BlockPattern& pattern,
+                                              const FreeDofs& free) = 0;
 
   /// Takes a new tangent, which must live until the last solve with it.
   [[nodiscard]] virtual LinearOutcome factorize(const TangentOperator& tangent, FactorUse use) = 0;

@@ -3,7 +3,7 @@
 #include <span>
 #include <string>
 
-#include "assembly/tangent_operator.hpp"
+#include "assembly/operators/tangent_operator.hpp"
 #include "solvers/linear/free_dofs.hpp"
 #include "solvers/linear/linear_solver.hpp"
 
@@ -15,7 +15,7 @@ class Preconditioner {
   virtual ~Preconditioner() = default;
 
   /// Once per pattern. The degrees of freedom outlive the preconditioner.
-  virtual void analyze(const Pattern& pattern, const FreeDofs& free) = 0;
+  virtual void analyze(const BlockPattern& pattern, const FreeDofs& free) = 0;
 
   /// Takes up the numbers of a tangent, which need not live on.
   /// @return solved; not_positive_definite or singular where the tangent turns out to be so;

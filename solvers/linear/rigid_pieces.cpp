@@ -152,7 +152,7 @@ struct RigidPieces::Levels {
 
   /// Parts of the boxes that unbroken bonds join.
   void find_pieces(const TangentOperator& tangent) {
-    const Pattern& pattern = tangent.pattern;
+    const BlockPattern& pattern = tangent.pattern;
     const int d = dimension, entries = d * d;
     const Index points = pattern.points();
     const auto trace = [&](Index i) {
@@ -314,7 +314,7 @@ struct RigidPieces::Levels {
     constexpr int motions = motions_of(D);
     using Motions = Eigen::Matrix<double, motions, D>;
     using Entries = Eigen::Map<const Eigen::Matrix<double, D, D, Eigen::RowMajor>>;
-    const Pattern& pattern = tangent.pattern;
+    const BlockPattern& pattern = tangent.pattern;
     std::vector<CoarseBlocks<D>> parts(std::size_t(tangent.threads()));
     tangent.for_each_row([&](int thread, Index i, std::span<const double> blocks) {
       CoarseBlocks<D>& part = parts[std::size_t(thread)];
@@ -468,7 +468,7 @@ RigidPieces::RigidPieces() : levels_(std::make_unique<Levels>()) {
 }
 RigidPieces::~RigidPieces() = default;
 
-void RigidPieces::analyze(const Pattern& pattern, const FreeDofs& free) {
+void RigidPieces::analyze(const BlockPattern& pattern, const FreeDofs& free) {
   levels_->free = &free;
   levels_->dimension = free.dimension;
   levels_->box.clear();

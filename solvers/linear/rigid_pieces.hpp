@@ -26,7 +26,7 @@ class RigidPieces : public Preconditioner {
   RigidPieces();
   ~RigidPieces() override;
 
-  void analyze(const Pattern& pattern, const FreeDofs& free) override;
+  void analyze(const BlockPattern& pattern, const FreeDofs& free) override;
   /// Negative pivots of a diagonal block or of E are the tangent's, too.
   [[nodiscard]] LinearOutcome build(const TangentOperator& tangent) override;
   void apply(std::span<const double> residual, std::span<double> correction) override;

@@ -33,7 +33,7 @@ LinearOutcome SolverLadder::climb_down(LinearOutcome why) {
   return why;
 }
 
-LinearOutcome SolverLadder::analyze(const Pattern& pattern, const FreeDofs& free) {
+LinearOutcome SolverLadder::analyze(const BlockPattern& pattern, const FreeDofs& free) {
   pattern_.emplace(pattern);
   free_ = &free;
   // Once more means that pieces were pinned: the rung that failed before would fail again.

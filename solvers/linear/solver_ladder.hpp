@@ -24,7 +24,7 @@ class SolverLadder : public LinearSolver {
 
   SolverLadder(std::vector<Rung> rungs, Teller tell);
 
-  LinearOutcome analyze(const Pattern& pattern, const FreeDofs& free) override;
+  LinearOutcome analyze(const BlockPattern& pattern, const FreeDofs& free) override;
   void count_pivots(bool counts) override;
   LinearOutcome factorize(const TangentOperator& tangent, FactorUse use) override;
   LinearOutcome solve(std::span<const double> b, std::span<double> x, double tolerance) override;
@@ -42,7 +42,7 @@ class SolverLadder : public LinearSolver {
   Teller tell_;
   std::size_t rung_ = 0;
   std::unique_ptr<LinearSolver> solver_;
-  std::optional<Pattern> pattern_;
+  std::optional<BlockPattern> pattern_;
   const FreeDofs* free_ = nullptr;
   const TangentOperator* tangent_ = nullptr;
   LinearStatistics before_;  // of the rungs above

@@ -8,7 +8,7 @@
 
 #include <fmt/format.h>
 
-#include "assembly/tangent.hpp"
+#include "assembly/operators/tangent.hpp"
 #include "solvers/linear/block_jacobi.hpp"
 #include "solvers/linear/cholesky.hpp"
 #include "solvers/linear/compressed_rows.hpp"
@@ -45,7 +45,7 @@ struct Surrogate::StandIn {
 
   /// Chooses the short bonds, in the configuration of the first tangent.
   LinearOutcome choose_bonds(const TangentOperator& tangent, std::span<const double> position) {
-    const Pattern& pattern = tangent.pattern;
+    const BlockPattern& pattern = tangent.pattern;
     const Index points = pattern.points();
     // Spacing about a point: the mean distance of as many nearest neighbours as a lattice's point
     // has at one spacing.
@@ -89,7 +89,8 @@ struct Surrogate::StandIn {
       ++short_bonds.offset[i + 1];
     });
     for (Index i = 0; i < points; ++i) short_bonds.offset[i + 1] += short_bonds.offset[i];
-    springs = std::make_unique<Tangent>(Pattern(short_bonds), tangent.dimension, tangent.threads());
+    springs =
+        std::make_unique<Tangent>(BlockPattern(short_bonds), tangent.dimension, tangent.threads());
     multigrid.reset();
     const LinearOutcome analysis = solver.analyze(springs->pattern, *free);
     if (analysis == LinearOutcome::out_of_memory ||
@@ -101,7 +102,7 @@ struct Surrogate::StandIn {
   }
 
   void find_springs(const TangentOperator& tangent, std::span<const double> position) {
-    const Pattern& pattern = tangent.pattern;
+    const BlockPattern& pattern = tangent.pattern;
     const int d = tangent.dimension, entries = d * d;
     const auto count = std::size_t(tangent.threads());
     std::vector<double> moment(count, 0.0), short_moment(count, 0.0);
@@ -164,7 +165,7 @@ struct Surrogate::StandIn {
 Surrogate::Surrogate() : stand_in_(std::make_unique<StandIn>()) {}
 Surrogate::~Surrogate() = default;
 
-void Surrogate::analyze(const Pattern& pattern, const FreeDofs& free) {
+void Surrogate::analyze(const BlockPattern& pattern, const FreeDofs& free) {
   StandIn& s = *stand_in_;
   s.free = &free;
   s.fine.analyze(pattern, free);

@@ -25,7 +25,7 @@ class Surrogate : public Preconditioner {
   Surrogate();
   ~Surrogate() override;
 
-  void analyze(const Pattern& pattern, const FreeDofs& free) override;
+  void analyze(const BlockPattern& pattern, const FreeDofs& free) override;
   /// Negative pivots of a diagonal block are the tangent's, too.
   /// @return inaccurate as well, where S is singular and the tangent need not be: short bonds are
   ///         broken and long ones are not

@@ -18,13 +18,18 @@ struct Summary {
   std::string status;  ///< "completed", "not_converged", "inconsistent", "interrupted", "failed"
   std::string reason;  ///< sentence for a person when the status is not "completed"
   Index points = 0;
-  std::int64_t free_dofs = 0, bonds = 0, triangles = 0, tetrahedra = 0;
+  std::int64_t free_dofs = 0;
+  /// How many interactions of each kind there are; readers find these three in every run.
+  std::vector<std::pair<std::string, std::int64_t>> interactions{
+      {"bonds", 0}, {"triangles", 0}, {"tetrahedra", 0}};
   std::int64_t factorisations = 0, linear_iterations = 0;
   double max_displacement = 0.0;
   struct Seconds {
     double total = 0, neighbourhood = 0, assembly = 0, linear = 0, relaxation = 0, output = 0;
   } seconds;
   int threads = 1, ranks = 1;
+
+  void count(const std::string& kind, std::int64_t interactions_of_kind);
 };
 
 /// Text that describes the run: the case under /case, title and versions as attributes of the file.

@@ -50,6 +50,15 @@ class Members {
 
 }  // namespace
 
+void Summary::count(const std::string& kind, std::int64_t interactions_of_kind) {
+  for (auto& [known, number] : interactions) {
+    if (known != kind) continue;
+    number = interactions_of_kind;
+    return;
+  }
+  interactions.emplace_back(kind, interactions_of_kind);
+}
+
 std::string json_string(const std::string& text) {
   std::string json = "\"";
   for (const char character : text) {
@@ -107,9 +116,7 @@ std::string summary_json(const Summary& summary, const StepTotals& totals,
   all.add("reason", summary.reason);
   all.add("points", summary.points);
   all.add("free_dofs", summary.free_dofs);
-  all.add("bonds", summary.bonds);
-  all.add("triangles", summary.triangles);
-  all.add("tetrahedra", summary.tetrahedra);
+  for (const auto& [kind, count] : summary.interactions) all.add(kind, count);
   all.add("steps", totals.steps);
   all.add("newton_iterations", totals.newton_iterations);
   all.add("relaxation_iterations", totals.relaxation_iterations);

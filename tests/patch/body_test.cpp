@@ -79,7 +79,7 @@ class ElasticBody : public ::testing::TestWithParam<Setting> {
   BoxBody body_{box()};
   Assembler assembler_{body_.points, body_.model, 2};
 
-  void SetUp() override { ASSERT_GT(body_.model.bonds.count(), 30); }
+  void SetUp() override { ASSERT_GT(body_.model.bonds().count(), 30); }
 
   std::vector<double> gradient(const std::vector<double>& displacement) {
     std::vector<double> result(body_.dofs());
@@ -228,7 +228,7 @@ TEST_P(HomogeneousDeformation, IsInEquilibriumAtInteriorPoints) {
   Assembler assembler(body.points, body.model, 2);
   // Weights that depend on the points' own neighbourhoods differ up to two horizons from surfaces.
   const bool corrected =
-      setting.quadrature.surface != SurfaceCorrection::none || !body.model.has_only_bonds();
+      setting.quadrature.surface != SurfaceCorrection::none || body.simplex_term();
   // A cell's half beside the horizon belongs to the neighbourhood with the linear correction.
   const double margin = (setting.horizon_ratio + 0.5) * setting.spacing * (corrected ? 2.0 : 1.0);
 

@@ -38,7 +38,7 @@ class Collocation {
     }
     const BulkNeighbourhood bulk =
         bulk_neighbourhood(3, body.points.spacing, body.setting.horizon, 1.0);
-    const std::vector<std::int32_t> neighbours = neighbour_counts(body.model.bonds);
+    const std::vector<std::int32_t> neighbours = neighbour_counts(body.model.bonds());
     constexpr double orders = arms == 2 ? 2.0 : 6.0;
     for (std::size_t a = 0; a < count.size(); ++a) {
       const double v_h = bulk.volume * neighbours[a] / double(bulk.neighbours);
@@ -141,9 +141,9 @@ std::vector<double> our_force(const BoxBody& body, const tests::BoxSetting& box,
   EXPECT_FALSE(Assembler(body.points, bonds_alone.model, 1).gradient(state, of_bonds).degenerate);
   double modulus = 0.0;
   if constexpr (Measure::arms == 2) {
-    modulus = std::get<Harmonic>(body.model.triangles->potential).modulus;
+    modulus = std::get<Harmonic>(body.simplex_term()->triangles()->potential).modulus;
   } else {
-    modulus = std::get<Harmonic>(body.model.tetrahedra->potential).modulus;
+    modulus = std::get<Harmonic>(body.simplex_term()->tetrahedra()->potential).modulus;
   }
   for (std::size_t k = 0; k < all.size(); ++k) all[k] = -(all[k] - of_bonds[k]) / modulus;
   return all;

@@ -59,7 +59,7 @@ class Architecture(unittest.TestCase):
         def wrong(file, line):
             return len(misplaced_includes(file, "#pragma once\n" + line + "\n"))
 
-        self.assertEqual(wrong("src/points/points.hpp", '#include "assembly/pattern.hpp"'), 1)
+        self.assertEqual(wrong("src/points/points.hpp", '#include "assembly/operators/block_pattern.hpp"'), 1)
         self.assertEqual(wrong("src/points/points.cpp", '#include "solvers/newton.hpp"'), 1)
         self.assertEqual(wrong("solvers/newton.cpp", '  #  include "cases/runner/case.hpp"'), 1)
         self.assertEqual(wrong("src/types.cpp", '#include "tests/support.hpp"'), 1)

@@ -40,7 +40,7 @@ inline SolvedCase solve_case(const std::string& name,
   solved.body = make_body(solved.from, threads);
   const FreeDofs free(solved.body->conditions->prescribed(), solved.from.dimension);
   Assembler assembler(solved.body->points, solved.body->model, threads);
-  const Pattern pattern(solved.body->model.bonds);
+  const BlockPattern pattern(solved.body->model.bonds());
   Tangent tangent(assembler);
   Cholesky solver;
   if (solver.analyze(pattern, free) != LinearOutcome::solved) {

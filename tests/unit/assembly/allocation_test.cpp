@@ -47,7 +47,7 @@ TEST(Assembler, AllocatesNothingInItsCalls) {
     const std::vector<double> state = body.random_state(1);
     std::vector<double> gradient(body.dofs()), product(body.dofs()),
         v = state, energies(body.points.volume.size());
-    Tangent tangent(Pattern(body.model.bonds), dimension);
+    Tangent tangent(BlockPattern(body.model.bonds()), dimension);
     bool degenerate = assembler.energy(state).degenerate;  // the threads start here
 
     const long before = allocations;

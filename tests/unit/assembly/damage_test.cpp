@@ -1,4 +1,4 @@
-#include "assembly/damage.hpp"
+#include "assembly/terms/damage.hpp"
 
 #include <algorithm>
 #include <array>
@@ -35,14 +35,16 @@ struct OneBond {
   Points points;
   Model model;
 
-  explicit OneBond(const BondPotential& potential) : model{{}, potential} {
+  explicit OneBond(const BondPotential& potential) {
     points.dimension = 1;
     points.spacing = length;
     points.reference = {0.1, 0.1 + length};
     points.volume = {1.0, 1.0};
-    model.bonds.offset = {0, 1, 1};
-    model.bonds.partner = {1};
-    model.bonds.kind.push_back({1.0 / length, weight});
+    Bonds bonds;
+    bonds.offset = {0, 1, 1};
+    bonds.partner = {1};
+    bonds.kind.push_back({1.0 / length, weight});
+    model = Model(std::move(bonds), potential);
   }
   [[nodiscard]] static std::vector<double> stretched(double s) { return {0.0, s * length}; }
 };
@@ -198,7 +200,7 @@ std::vector<double> moved(const std::vector<double>& from, double t,
 std::vector<double> stretches(const BoxBody& body, const std::vector<double>& state) {
   const int d = body.points.dimension;
   std::vector<double> result;
-  tests::for_each_bond(body.model.bonds, [&](Index i, Index j, Offset) {
+  tests::for_each_bond(body.model.bonds(), [&](Index i, Index j, Offset) {
     double squared = 0.0;
     for (int c = 0; c < d; ++c) {
       const double along = body.points.position(j)[c] - body.points.position(i)[c] +
@@ -303,7 +305,7 @@ TEST(Damage, TangentAndProductAreTheDerivativeOfTheGradientOnEveryBranch) {
     DamagedBody damaged(box);
     ASSERT_TRUE(damaged.found);
     const std::size_t dofs = damaged.body.dofs();
-    Tangent tangent(Pattern(damaged.body.model.bonds), box.dimension);
+    Tangent tangent(BlockPattern(damaged.body.model.bonds()), box.dimension);
     damaged.assembler.tangent({damaged.state, damaged.history}, tangent);
     std::vector<double> column(dofs), product(dofs);
     tangent.multiply(damaged.along, column);
@@ -330,7 +332,7 @@ TEST(Damage, ProjectedTangentIsPositiveSemidefinite) {
     const std::vector<double> far = pulled_state(damaged.body, 7, 0.35);
     const auto dofs = Eigen::Index(damaged.body.dofs());
     const auto least_over_largest = [&](double projection) {
-      Tangent tangent(Pattern(damaged.body.model.bonds), box.dimension);
+      Tangent tangent(BlockPattern(damaged.body.model.bonds()), box.dimension);
       damaged.assembler.tangent({far, damaged.history}, tangent, projection);
       Eigen::MatrixXd matrix(dofs, dofs);
       std::vector<double> unit(damaged.body.dofs(), 0.0), column(damaged.body.dofs());
@@ -371,7 +373,7 @@ TEST(Damage, TrialStatesLeaveTheHistoryAlone) {
     // Every call but commit, far beyond the histories.
     const std::vector<double> far = pulled_state(body, 6, 0.8);
     ASSERT_GT(assembler.growth({far, history}).breaking, 10);
-    Tangent tangent(Pattern(body.model.bonds), box.dimension);
+    Tangent tangent(BlockPattern(body.model.bonds()), box.dimension);
     (void)assembler.energy({far, history});
     (void)assembler.gradient({far, history}, trial);
     assembler.tangent({far, history}, tangent);
@@ -457,7 +459,8 @@ TEST(Damage, BondsThatNeverFailStayHarmonic) {
     EXPECT_EQ(harmonic.commit(far, nothing, expected).growth.degrading, 0);
 
     // All of them: the body is harmonic.
-    body.model.never_fails.assign(std::size_t(body.model.bonds.count()), 1);
+    std::vector<char> never_fails(std::size_t(body.model.bonds().count()), 1);
+    body.replace_bonds(body.model.bonds(), never_fails);
     {
       Assembler assembler(body.points, body.model, 1);
       History history = assembler.initial_history();
@@ -474,9 +477,8 @@ TEST(Damage, BondsThatNeverFailStayHarmonic) {
     }
 
     // Every other one: just these have no history of damage, whatever is committed.
-    for (std::size_t b = 0; b < body.model.never_fails.size(); b += 2) {
-      body.model.never_fails[b] = 0;
-    }
+    for (std::size_t b = 0; b < never_fails.size(); b += 2) never_fails[b] = 0;
+    body.replace_bonds(body.model.bonds(), never_fails);
     Assembler assembler(body.points, body.model, 1);
     History history = assembler.initial_history();
     const std::vector<double> s = stretches(body, far);
@@ -484,14 +486,14 @@ TEST(Damage, BondsThatNeverFailStayHarmonic) {
     double energy = 0.0;
     Index damaged = 0;
     for (Index i = 0, b = 0; i < body.points.count(); ++i) {
-      for (; b < body.model.bonds.offset[i + 1]; ++b) {
-        const bool never = body.model.never_fails[b] != 0;
+      for (; b < body.model.bonds().offset[i + 1]; ++b) {
+        const bool never = never_fails[b] != 0;
         const double kappa = bond_stretches(body.model, history)[b];
         EXPECT_EQ(kappa, never ? Degraded<TanhDegradation>::never_fails : kappa);
         damaged += !never && kappa > wide_onset;
         const double integrity = never ? 1.0 : softened(std::max(s[b], 0.0));
         energy += 0.5 * micromodulus(box.youngs_modulus, body.setting) * integrity * s[b] * s[b] *
-                  body.model.bonds.weight(b) * body.model.bonds.length(b);
+                  body.model.bonds().weight(b) * body.model.bonds().length(b);
       }
     }
     EXPECT_GT(damaged, 3);
@@ -507,13 +509,13 @@ TEST(Damage, HeldDamageLetsBondsFollowTheirSecants) {
     const History& history = damaged.history;
     const std::vector<double>& state = damaged.state;
     const std::vector<double> s = stretches(damaged.body, state);
-    const Bonds& bonds = damaged.body.model.bonds;
+    const Bonds& bonds = damaged.body.model.bonds();
     const double c = micromodulus(box.youngs_modulus, damaged.body.setting);
     double secants = 0.0, taken_up = 0.0;
     const double free = assembler.energy({state, history}).energy;
     const double held = assembler.energy({state, history, Damage::held}).energy;
     EXPECT_EQ(assembler.energy({state, history}).energy, free);
-    const auto potential = std::get<Degraded<TanhDegradation>>(damaged.body.model.potential);
+    const auto potential = std::get<Degraded<TanhDegradation>>(damaged.body.potential());
     for (std::size_t b = 0; b < s.size(); ++b) {
       const double scale = bonds.weight(b) * bonds.length(Offset(b));
       const double kappa = bond_stretches(damaged.body.model, history)[b];
@@ -533,9 +535,9 @@ TEST(Damage, IsTheShareOfTheWeightThatIsLost) {
     (void)assembler.commit(damaging_state(body), history);
     const std::span<const double> kappas = bond_stretches(body.model, history);
     const auto n = std::size_t(body.points.count());
-    std::vector<double> cut = tests::Random(3).vector(n, body.model.bonds.weight(0));
+    std::vector<double> cut = tests::Random(3).vector(n, body.model.bonds().weight(0));
     for (double& weight : cut) weight = std::max(weight, 0.0);  // nothing is cut at some
-    const auto potential = std::get<Degraded<TanhDegradation>>(body.model.potential);
+    const auto potential = std::get<Degraded<TanhDegradation>>(body.potential());
 
     for (const bool with_cut : {false, true}) {
       // Point by point, over all bonds.
@@ -544,17 +546,17 @@ TEST(Damage, IsTheShareOfTheWeightThatIsLost) {
       double dissipated = 0.0;
       for (std::size_t p = 0; p < n; ++p) {
         double whole = with_cut ? cut[p] : 0.0, left = 0.0;
-        tests::for_each_bond(body.model.bonds, [&](Index i, Index j, Offset b) {
+        tests::for_each_bond(body.model.bonds(), [&](Index i, Index j, Offset b) {
           if (std::size_t(i) != p && std::size_t(j) != p) return;
-          const double weight = body.model.bonds.weight(b);
+          const double weight = body.model.bonds().weight(b);
           whole += weight;
           left += weight * softened(kappas[b]);
         });
         expected[p] = 1.0 - left / whole;
       }
-      tests::for_each_bond(body.model.bonds, [&](Index, Index, Offset b) {
+      tests::for_each_bond(body.model.bonds(), [&](Index, Index, Offset b) {
         broken += kappas[b] >= wide_critical;
-        dissipated += body.model.bonds.weight(b) * body.model.bonds.length(b) *
+        dissipated += body.model.bonds().weight(b) * body.model.bonds().length(b) *
                       potential.dissipated(kappas[b]);
       });
       const DamageState state =
@@ -583,8 +585,8 @@ TEST(Damage, WithoutHistoryIsWhatACrackHasCut) {
   cut[3] = 1.0;
   const DamageState state = assess_damage(body.model, {}, cut, damage);
   double weight = 0.0;
-  tests::for_each_bond(body.model.bonds, [&](Index i, Index j, Offset b) {
-    if (i == 3 || j == 3) weight += body.model.bonds.weight(b);
+  tests::for_each_bond(body.model.bonds(), [&](Index i, Index j, Offset b) {
+    if (i == 3 || j == 3) weight += body.model.bonds().weight(b);
   });
   for (std::size_t p = 0; p < n; ++p) {
     EXPECT_NEAR(damage[p], p == 3 ? 1.0 / (1.0 + weight) : 0.0, 1e-14);
@@ -686,7 +688,7 @@ double energy_of_triangles(const BoxBody& body, const tests::BoxSetting& box,
   const Points& points = body.points;
   const auto n = std::size_t(points.count());
   std::vector<double> integrity(n * n, -1.0);  // negative: no bond
-  tests::for_each_bond(body.model.bonds, [&](Index i, Index j, Offset b) {
+  tests::for_each_bond(body.model.bonds(), [&](Index i, Index j, Offset b) {
     integrity[std::size_t(i) * n + j] = integrity[std::size_t(j) * n + i] = softened(history[b]);
   });
   const auto area = [&](std::size_t i, std::size_t j, std::size_t k, bool current) {
@@ -698,7 +700,7 @@ double energy_of_triangles(const BoxBody& body, const tests::BoxSetting& box,
     return arm(j, 0) * arm(k, 1) - arm(j, 1) * arm(k, 0);
   };
   const auto bulk = bulk_neighbourhood(2, box.spacing, body.setting.horizon, box.cross_section);
-  const double c2 = std::get<Harmonic>(body.model.triangles->potential).modulus;
+  const double c2 = std::get<Harmonic>(body.simplex_term()->triangles()->potential).modulus;
   double energy = 0.0;
   for (std::size_t i = 0; i < n; ++i) {
     double neighbours = 0.0, pairs = 0.0, psi = 0.0;
@@ -817,15 +819,13 @@ TEST(DamageOfTriangles, IsRefusedToThoseThatHoldNegativeEnergy) {
     for (const bool tetrahedra : {false, true}) {
       box.triangles = tetrahedra ? 0.1 : stiffness;
       box.tetrahedra = tetrahedra ? stiffness : 0.1;
-      const BoxBody body(box);
-      if (stiffness < 0.0) {
-        EXPECT_THROW(Assembler(body.points, body.model, 1), std::logic_error);
-        box.potential = {};
-        const BoxBody elastic(box);
-        EXPECT_NO_THROW(Assembler(elastic.points, elastic.model, 1));
-        box = softening_box(3);
+      if (stiffness > 0.0) {
+        EXPECT_NO_THROW(BoxBody{box});
       } else {
-        EXPECT_NO_THROW(Assembler(body.points, body.model, 1));
+        EXPECT_THROW(BoxBody{box}, std::logic_error);
+        tests::BoxSetting elastic = box;
+        elastic.potential = {};
+        EXPECT_NO_THROW(BoxBody{elastic});
       }
     }
   }

@@ -1,11 +1,12 @@
-#include "assembly/matrix_free_tangent.hpp"
+#include "assembly/operators/matrix_free_tangent.hpp"
 
 #include <stdexcept>
 #include <vector>
 
 #include <gtest/gtest.h>
 
-#include "assembly/tangent.hpp"
+#include "assembly/assembler.hpp"
+#include "assembly/operators/tangent.hpp"
 #include "src/potentials/tanh_degradation.hpp"
 #include "tests/bodies.hpp"
 
@@ -32,7 +33,7 @@ TEST(MatrixFreeTangent, IsTheStoredTangent) {
           History history = assembler.initial_history();
           if (softens) assembler.commit(body.random_state(1), history);
           const std::vector<double> state = body.random_state(2);
-          Tangent stored(Pattern(body.model.bonds), dimension, threads);
+          Tangent stored(BlockPattern(body.model.bonds()), dimension, threads);
           MatrixFreeTangent free(assembler);
           stored.linearise(assembler, {state, history}, projection);
           free.linearise(assembler, {state, history}, projection);
@@ -56,7 +57,7 @@ TEST(MatrixFreeTangent, IsTheStoredTangent) {
           EXPECT_EQ(in_place, by_bonds);
           stored.multiply(v, by_blocks);
           EXPECT_LE(tests::distance(by_bonds, by_blocks), 1e-13 * tests::norm(by_blocks));
-          Tangent one_thread(Pattern(body.model.bonds), dimension, 1);
+          Tangent one_thread(BlockPattern(body.model.bonds()), dimension, 1);
           one_thread.linearise(assembler, {state, history}, projection);
           one_thread.multiply(v, serial);
           EXPECT_LE(tests::distance(by_blocks, serial), 1e-14 * tests::norm(serial));

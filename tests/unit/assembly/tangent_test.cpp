@@ -1,4 +1,4 @@
-#include "assembly/tangent.hpp"
+#include "assembly/operators/tangent.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -17,7 +17,7 @@ namespace {
 /// Three points in a row, bonds 0-1 and 1-2, with numbers that tell their place.
 struct Example {
   Bonds bonds{{0, 1, 2, 2}, {1, 2}, {}};
-  Tangent tangent{Pattern(bonds), 2};
+  Tangent tangent{BlockPattern(bonds), 2};
 
   Example() {
     tangent.diagonal = {1, 2, 2, 3, 4, 5, 5, 6, 7, 8, 8, 9};
@@ -50,9 +50,9 @@ TEST(Tangent, FrobeniusNormCountsBothHalves) {
 
 TEST(Tangent, StartsAtZero) {
   const tests::BoxBody body(tests::small_box(3));
-  const Tangent tangent(Pattern(body.model.bonds), 3);
+  const Tangent tangent(BlockPattern(body.model.bonds()), 3);
   EXPECT_EQ(tangent.diagonal.size(), body.points.volume.size() * 9);
-  EXPECT_EQ(tangent.off_diagonal.size(), std::size_t(body.model.bonds.count()) * 9);
+  EXPECT_EQ(tangent.off_diagonal.size(), std::size_t(body.model.bonds().count()) * 9);
   EXPECT_EQ(tangent.frobenius_norm(), 0.0);
 }
 
@@ -62,17 +62,17 @@ TEST(Tangent, OfBondsIsStoredByUpperHalves) {
     const tests::BoxBody body(tests::small_box(dimension));
     Assembler assembler(body.points, body.model, 2);
     const std::vector<double> state = body.random_state(7);
-    Tangent halves(assembler), whole(Pattern(body.model.bonds), dimension, 2);
+    Tangent halves(assembler), whole(BlockPattern(body.model.bonds()), dimension, 2);
     ASSERT_EQ(halves.blocks, Tangent::Blocks::upper_halves);
     ASSERT_EQ(whole.blocks, Tangent::Blocks::whole);
     assembler.tangent(state, halves);
     assembler.tangent(state, whole);
     EXPECT_EQ(halves.off_diagonal.size(),
-              std::size_t(body.model.bonds.count()) * dimension * (dimension + 1) / 2);
+              std::size_t(body.model.bonds().count()) * dimension * (dimension + 1) / 2);
     EXPECT_EQ(halves.diagonal, whole.diagonal);
     EXPECT_GT(whole.frobenius_norm(), 0.0);
     EXPECT_EQ(halves.frobenius_norm(), whole.frobenius_norm());
-    for (Offset bond = 0; bond < body.model.bonds.count(); ++bond) {
+    for (Offset bond = 0; bond < body.model.bonds().count(); ++bond) {
       for (int r = 0; r < dimension; ++r) {
         for (int c = 0; c < dimension; ++c) {
           ASSERT_EQ(halves.entry(bond, r, c), whole.entry(bond, r, c));
@@ -88,7 +88,7 @@ TEST(Tangent, OfBondsIsStoredByUpperHalves) {
     std::vector<double> blocks(whole.off_diagonal.size(), 0.0);
     halves.for_each_row([&](int, Index i, std::span<const double> row) {
       std::copy(row.begin(), row.end(),
-                blocks.begin() + body.model.bonds.offset[i] * dimension * dimension);
+                blocks.begin() + body.model.bonds().offset[i] * dimension * dimension);
     });
     EXPECT_EQ(blocks, whole.off_diagonal);
   }
@@ -100,7 +100,7 @@ TEST(Tangent, OfTrianglesAndTetrahedraIsStoredByWholeBlocks) {
   const tests::BoxBody body(box);
   Assembler assembler(body.points, body.model, 1);
   EXPECT_EQ(Tangent(assembler).blocks, Tangent::Blocks::whole);
-  Tangent halves(Pattern(body.model.bonds), 3, 1, Tangent::Blocks::upper_halves);
+  Tangent halves(BlockPattern(body.model.bonds()), 3, 1, Tangent::Blocks::upper_halves);
   EXPECT_THROW(assembler.tangent(body.random_state(7), halves), std::logic_error);
 }
 

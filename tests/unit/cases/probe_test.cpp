@@ -50,7 +50,7 @@ TEST(CrackLength, IsThatOfAStraightCrackWhateverTheHorizon) {
       const BoxBody body = plate(dimension, horizon_ratio);
       // From the edge, inside, and from edge to edge; the body is 4 m long.
       for (const auto& [low, high] : {std::pair(-1.0, 1.23), {0.77, 2.52}, {-1.0, 5.0}}) {
-        Bonds bonds = body.model.bonds;
+        Bonds bonds = body.model.bonds();
         const CutBonds cut = cut_bonds(bonds, body.points, {crack(dimension, low, high)});
         const double inside = std::min(high, 4.0) - std::max(low, 0.0);
         // A tip lies anywhere between two columns of points: half a spacing each.
@@ -64,7 +64,7 @@ TEST(CrackLength, IsThatOfAStraightCrackWhateverTheHorizon) {
 TEST(CrackLength, CountsCutAndBrokenBondsAlike) {
   const BoxBody body = plate(2, 3.015);
   const auto separated_by = [&](double low, double high) {
-    Bonds bonds = body.model.bonds;
+    Bonds bonds = body.model.bonds();
     return cut_bonds(bonds, body.points, {crack(2, low, high)}).ends;
   };
   std::vector<BondEnds> separated = separated_by(-1.0, 1.0);  // the pre-crack
@@ -78,7 +78,7 @@ TEST(CrackLength, CountsCutAndBrokenBondsAlike) {
 
 TEST(CrackLength, IsFoundOnAPerturbedLattice) {
   const BoxBody body = plate(2, 3.015, 0.2);
-  Bonds bonds = body.model.bonds;
+  Bonds bonds = body.model.bonds();
   const CutBonds cut = cut_bonds(bonds, body.points, {crack(2, -1.0, 2.0)});
   // Bonds up to half a spacing out of the normal count: their middles move by half of that.
   EXPECT_NEAR(length_of(cut.ends, body.points), 2.0, 1.5 * spacing);
@@ -86,7 +86,7 @@ TEST(CrackLength, IsFoundOnAPerturbedLattice) {
 
 TEST(CrackLength, LeavesOtherSetsAlone) {
   BoxBody body = plate(2, 3.015);
-  Bonds bonds = body.model.bonds;
+  Bonds bonds = body.model.bonds();
   const CutBonds cut = cut_bonds(bonds, body.points, {crack(2, -1.0, 2.0)});
   auto& members = body.points.sets["all"];
   std::erase_if(members, [&](Index i) { return body.points.position(i)[0] > 1.0; });

@@ -9,7 +9,7 @@
 #include <Eigen/Dense>
 #include <gtest/gtest.h>
 
-#include "assembly/damage.hpp"
+#include "assembly/terms/damage.hpp"
 #include "solvers/newton.hpp"
 #include "tests/problems.hpp"
 
@@ -261,7 +261,7 @@ TEST(DynamicRelaxation, NamesADegenerateState) {
   box.extent = {3, 0, 0};
   box.spacing = 0.125;
   Problem problem(box, {support("left", "0"), support("right", "-0.25*load")}, {});
-  ASSERT_EQ(problem.body.model.bonds.count(), 3);
+  ASSERT_EQ(problem.body.model.bonds().count(), 3);
   RelaxationOptions options = tight();
   options.ramp = 8;  // shares of the way that are exact
   const Relaxed run = relaxed(problem, problem.at_rest(), 1.0, options);

@@ -10,7 +10,7 @@
 
 #include <gtest/gtest.h>
 
-#include "assembly/damage.hpp"
+#include "assembly/terms/damage.hpp"
 #include "tests/problems.hpp"
 
 namespace peristat {
@@ -318,7 +318,7 @@ struct Strip {
         conditions((change(middle), body.points), supports, {}),
         free(conditions.prescribed(), 2),
         assembler(body.points, body.model, threads),
-        tangent(Pattern(body.model.bonds), 2) {}
+        tangent(BlockPattern(body.model.bonds()), 2) {}
   Strip(const Strip&) = delete;
   Strip& operator=(const Strip&) = delete;
 
@@ -336,23 +336,24 @@ struct Strip {
 
  private:
   void change(Middle middle) {
-    Bonds& bonds = body.model.bonds;
+    const Bonds& bonds = body.model.bonds();
     const auto crosses = [&](Index i, Offset bond) {
       const double a = body.points.position(i)[0] - 0.7,
                    b = body.points.position(bonds.partner[bond])[0] - 0.7;
       return a * b < 0.0;
     };
     if (middle == Middle::notched) {
-      bonds.remove_if([&](Index i, Offset bond) {
+      body.remove_bonds([&](Index i, Offset bond) {
         return crosses(i, bond) && body.points.position(i)[1] < 0.3 &&
                body.points.position(bonds.partner[bond])[1] < 0.3;
       });
       return;
     }
-    body.model.never_fails.assign(std::size_t(bonds.count()), 1);
+    std::vector<char> never_fails(std::size_t(bonds.count()), 1);
     tests::for_each_bond(bonds, [&](Index i, Index, Offset bond) {
-      if (crosses(i, bond)) body.model.never_fails[std::size_t(bond)] = 0;
+      if (crosses(i, bond)) never_fails[std::size_t(bond)] = 0;
     });
+    body.replace_bonds(bonds, std::move(never_fails));
   }
 };
 

@@ -284,7 +284,7 @@ TEST(Newton, NamesADegenerateState) {
   box.extent = {3, 0, 0};
   box.spacing = 0.125;
   Problem problem(box, {support("left", "0"), support("right", "-0.25*load")}, {});
-  ASSERT_EQ(problem.body.model.bonds.count(), 3);
+  ASSERT_EQ(problem.body.model.bonds().count(), 3);
   EXPECT_EQ(solve(problem, problem.at_rest()).result.outcome, Outcome::degenerate);
   EXPECT_EQ(solve(problem, problem.at_rest(), 0.5).result.outcome, Outcome::converged);
 }

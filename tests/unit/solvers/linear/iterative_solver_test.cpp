@@ -9,8 +9,8 @@
 #include <gtest/gtest.h>
 
 #include "assembly/assembler.hpp"
-#include "assembly/matrix_free_tangent.hpp"
-#include "assembly/tangent.hpp"
+#include "assembly/operators/matrix_free_tangent.hpp"
+#include "assembly/operators/tangent.hpp"
 #include "solvers/linear/assembled_preconditioner.hpp"
 #include "solvers/linear/block_jacobi.hpp"
 #include "solvers/linear/cholesky.hpp"
@@ -74,7 +74,7 @@ struct System {
   System(BoxBody from, const std::vector<char>& prescribed, int threads = 1)
       : body(std::move(from)),
         free(prescribed, body.points.dimension),
-        tangent(Pattern(body.model.bonds), body.points.dimension, threads),
+        tangent(BlockPattern(body.model.bonds()), body.points.dimension, threads),
         b(tests::Random(3).vector(std::size_t(free.count()))),
         x(b.size()) {
     linearise(std::vector<double>(body.dofs(), 0.0));
@@ -97,7 +97,7 @@ struct System {
 
   /// Scales the stiffness of the bonds that begin in the right half.
   void scale_right_half(double by) {
-    const Pattern& pattern = tangent.pattern;
+    const BlockPattern& pattern = tangent.pattern;
     const double middle = 0.5 * body.points.position(body.points.count() - 1)[0];
     for (Index i = 0; i < pattern.points(); ++i) {
       if (body.points.position(i)[0] < middle) continue;
@@ -152,9 +152,9 @@ BoxSetting box_of(int dimension, std::array<int, 3> extent, double horizon_ratio
 /// Cuts the bonds across the plane x = `at`, below the height y = `height` (both in spacings).
 BoxBody cracked(const BoxSetting& box, double at, double height) {
   BoxBody body(box);
-  body.model.bonds.remove_if([&](Index i, Offset bond) {
+  body.remove_bonds([&](Index i, Offset bond) {
     const Coordinates a = body.points.position(i),
-                      b = body.points.position(body.model.bonds.partner[bond]);
+                      b = body.points.position(body.model.bonds().partner[bond]);
     return (a[0] - at * box.spacing) * (b[0] - at * box.spacing) < 0.0 &&
            0.5 * (a[1] + b[1]) < height * box.spacing;
   });
@@ -296,8 +296,8 @@ TEST(IterativeSolver, HeldFragmentsDoNotSpoilConvergence) {
   const std::size_t last = std::size_t(points) - 1;
   prescribed[last * 2] = prescribed[last * 2 + 1] = prescribed[(last - 20) * 2] = 1;
   for (const Index loose : {points / 2, points / 3}) {
-    body.model.bonds.remove_if([&](Index i, Offset bond) {
-      return i == loose || body.model.bonds.partner[bond] == loose;
+    body.remove_bonds([&](Index i, Offset bond) {
+      return i == loose || body.model.bonds().partner[bond] == loose;
     });
     prescribed[std::size_t(loose) * 2] = prescribed[std::size_t(loose) * 2 + 1] = 1;
   }
@@ -314,7 +314,7 @@ TEST(IterativeSolver, DamagedBondsDivideTheRigidPieces) {
   // Broken bonds keep their place in the pattern, with a block of zeros.
   const BoxSetting box = box_of(2, {48, 36, 0});
   System system(box);
-  const Pattern& pattern = system.tangent.pattern;
+  const BlockPattern& pattern = system.tangent.pattern;
   for (Index i = 0; i < pattern.points(); ++i) {
     for (Offset bond = pattern.offset[i]; bond < pattern.offset[i + 1]; ++bond) {
       const Index j = pattern.partner[bond];

@@ -46,7 +46,7 @@ struct System {
   System(const tests::BoxSetting& box, Support support)
       : body(box),
         free(prescribed(body.points, support), box.dimension),
-        tangent(Pattern(body.model.bonds), box.dimension) {
+        tangent(BlockPattern(body.model.bonds()), box.dimension) {
     const std::vector<double> rest(body.dofs(), 0.0);
     Assembler(body.points, body.model, 1).tangent(rest, tangent);
     matrix = compressed_rows(tangent, free);

@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "assembly/assembler.hpp"
-#include "assembly/tangent.hpp"
+#include "assembly/operators/tangent.hpp"
 #include "solvers/linear/cholesky.hpp"
 #include "tests/bodies.hpp"
 
@@ -19,7 +19,7 @@ class Scripted : public LinearSolver {
   LinearOutcome of_analyze = LinearOutcome::solved, of_factorize = LinearOutcome::solved,
                 of_solve = LinearOutcome::solved;
 
-  LinearOutcome analyze(const Pattern&, const FreeDofs&) override { return of_analyze; }
+  LinearOutcome analyze(const BlockPattern&, const FreeDofs&) override { return of_analyze; }
   LinearOutcome factorize(const TangentOperator&, FactorUse) override { return of_factorize; }
   void count_pivots(bool) override {}
   LinearOutcome solve(std::span<const double>, std::span<double>, double) override {
@@ -34,7 +34,7 @@ class Scripted : public LinearSolver {
 struct LadderOnABox {
   tests::BoxBody body{tests::small_box(2)};
   FreeDofs free{held(), 2};
-  Tangent tangent{Pattern(body.model.bonds), 2};
+  Tangent tangent{BlockPattern(body.model.bonds()), 2};
   std::vector<double> b, x;
   std::vector<std::string> told;
 

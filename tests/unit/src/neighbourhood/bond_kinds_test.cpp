@@ -88,11 +88,11 @@ TEST(BondKinds, OfALatticeAreFew) {
     box.spacing = 0.1 / 3.0;
     box.quadrature = quadrature;
     const tests::BoxBody body(box);
-    EXPECT_GT(body.model.bonds.count(), 200000);
-    EXPECT_EQ(body.model.bonds.kind.bytes_per_bond(), 2u);
-    tests::for_each_bond(body.model.bonds, [&](Index i, Index j, Offset bond) {
+    EXPECT_GT(body.model.bonds().count(), 200000);
+    EXPECT_EQ(body.model.bonds().kind.bytes_per_bond(), 2u);
+    tests::for_each_bond(body.model.bonds(), [&](Index i, Index j, Offset bond) {
       const double distance = tests::reference_distance(body.points, i, j);
-      ASSERT_NEAR(body.model.bonds.length(bond) / distance, 1.0, 2e-12);
+      ASSERT_NEAR(body.model.bonds().length(bond) / distance, 1.0, 2e-12);
     });
   }
 }

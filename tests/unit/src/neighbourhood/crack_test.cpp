@@ -415,7 +415,7 @@ struct Kept {
 /// Cuts the body's bonds and compares with a sign test: is_cut(a, b) of two places.
 template <class IsCut>
 Offset expect_cut(const BoxBody& body, const std::vector<Crack>& cracks, const IsCut& is_cut) {
-  const Bonds& before = body.model.bonds;
+  const Bonds& before = body.model.bonds();
   std::vector<Kept> expected, found;
   std::vector<BondEnds> expected_ends;
   std::vector<double> expected_removed(body.points.volume.size(), 0.0);

@@ -25,8 +25,8 @@ using Found = std::map<std::array<Index, Count>, std::array<double, 2>>;
 template <int D, class Measure>
 Found<Measure::arms + 1> all_of(const BoxBody& body, const Interactions<Measure>& interactions) {
   Found<Measure::arms + 1> found;
-  LocalNeighbourhood<D> local(body.points, body.model.bonds);
-  InteractionScratch scratch(UpperNeighbourhood::largest(body.model.bonds));
+  LocalNeighbourhood<D> local(body.points, body.model.bonds());
+  InteractionScratch scratch(UpperNeighbourhood::largest(body.model.bonds()));
   for (Index i = 0; i < body.points.count(); ++i) {
     local.move_to(i);
     local.upper.find_pairs();
@@ -102,7 +102,7 @@ void expect_full_weights(const Found& found, const Interactions& interactions) {
 TEST(Triangles, AreAllWithMutualDistancesWithinTheHorizonButCollinearOnes) {
   for (int dimension : {2, 3}) {
     const Body body(tests::small_box(dimension));
-    const Triangles triangles(body.points, body.model.bonds, body.setting.cross_section, 2);
+    const Triangles triangles(body.points, body.model.bonds(), body.setting.cross_section, 2);
     const auto found = dimension == 2 ? all_of<2>(body, triangles) : all_of<3>(body, triangles);
     const Index n = body.points.count();
     std::size_t count = 0, collinear = 0;
@@ -137,7 +137,7 @@ TEST(Triangles, AreAllWithMutualDistancesWithinTheHorizonButCollinearOnes) {
 
 TEST(Tetrahedra, AreAllWithMutualDistancesWithinTheHorizonButCoplanarOnes) {
   const Body body(tests::small_box(3));
-  const Tetrahedra tetrahedra(body.points, body.model.bonds, body.setting.cross_section, 2);
+  const Tetrahedra tetrahedra(body.points, body.model.bonds(), body.setting.cross_section, 2);
   const auto found = all_of<3>(body, tetrahedra);
   const Index n = body.points.count();
   std::size_t count = 0, coplanar = 0;
@@ -177,10 +177,11 @@ void expect_consistent(double perturbation) {
   box.horizon_ratio = D == 2 ? 9.1 : 2.6;  // 2D: more than 64 partners, two words of bits
   if (D == 2) box.extent = {13, 12, 0};
   BoxBody body(box);
-  ASSERT_GT(UpperNeighbourhood::largest(body.model.bonds), D == 2 ? 64 : 30);
+  ASSERT_GT(UpperNeighbourhood::largest(body.model.bonds()), D == 2 ? 64 : 30);
   tests::Random random(3);  // cells of every size, as of a cloud of points
   for (double& volume : body.points.volume) volume *= 1.0 + 0.3 * random.number();
-  Interactions<Measure> interactions(body.points, body.model.bonds, body.setting.cross_section, 1);
+  Interactions<Measure> interactions(body.points, body.model.bonds(), body.setting.cross_section,
+                                     1);
   std::vector<double> shares(body.points.volume.size());
   for (std::size_t a = 0; a < shares.size(); ++a) shares[a] = 1.0 + 0.01 * double(a);
   interactions.set_shares(shares);
@@ -222,7 +223,8 @@ void expect_consistent(double perturbation) {
   // Stored, and counted with any number of threads, they are the same.
   const double bytes = interactions.stored_bytes();
   for (int threads : {1, 3}) {
-    Interactions<Measure> other(body.points, body.model.bonds, body.setting.cross_section, threads);
+    Interactions<Measure> other(body.points, body.model.bonds(), body.setting.cross_section,
+                                threads);
     EXPECT_EQ(other.count(), interactions.count());
     EXPECT_EQ(other.per_point(), interactions.per_point());
     for (std::size_t a = 0; a < effective.size(); ++a) {
@@ -231,7 +233,7 @@ void expect_consistent(double perturbation) {
     EXPECT_EQ(other.stored_bytes(), bytes);
     other.set_shares(shares);
     EXPECT_FALSE(other.is_stored());
-    other.store(body.points, body.model.bonds, threads);
+    other.store(body.points, body.model.bonds(), threads);
     EXPECT_TRUE(other.is_stored());
     EXPECT_EQ(all_of<D>(body, other), found);
   }
@@ -246,9 +248,9 @@ TEST(Interactions, OfABodyWithoutNeighboursAreNone) {
   tests::BoxSetting box = tests::small_box(3);
   box.extent = {2, 1, 1};
   const BoxBody body(box);
-  ASSERT_EQ(body.model.bonds.count(), 1);
-  EXPECT_EQ(Triangles(body.points, body.model.bonds, body.setting.cross_section, 2).count(), 0);
-  EXPECT_EQ(Tetrahedra(body.points, body.model.bonds, body.setting.cross_section, 2).count(), 0);
+  ASSERT_EQ(body.model.bonds().count(), 1);
+  EXPECT_EQ(Triangles(body.points, body.model.bonds(), body.setting.cross_section, 2).count(), 0);
+  EXPECT_EQ(Tetrahedra(body.points, body.model.bonds(), body.setting.cross_section, 2).count(), 0);
 }
 
 // Conditions (35) of [CPD]: the quadrature of 1 over the neighbourhood, its square and its cube.
@@ -260,7 +262,7 @@ TEST(EffectiveVolumes, SumUpToThePowersOfTheNeighbourhoodsVolume) {
       const BoxBody body(box);
       const BulkNeighbourhood bulk = bulk_neighbourhood(
           dimension, body.points.spacing, body.setting.horizon, body.setting.cross_section);
-      const std::vector<std::int32_t> neighbours = neighbour_counts(body.model.bonds);
+      const std::vector<std::int32_t> neighbours = neighbour_counts(body.model.bonds());
       const double v1 = effective_neighbour_volume(bulk);
       const auto check = [&](const auto& interactions, auto power, double orders) {
         const std::vector<double> effective =
@@ -283,10 +285,10 @@ TEST(EffectiveVolumes, SumUpToThePowersOfTheNeighbourhoodsVolume) {
           EXPECT_NEAR(sum[a] / std::pow(volume, power()), 1.0, 1e-12);
         }
       };
-      check(Triangles(body.points, body.model.bonds, body.setting.cross_section, 1),
+      check(Triangles(body.points, body.model.bonds(), body.setting.cross_section, 1),
             std::integral_constant<int, 2>{}, 2.0);
       if (dimension == 3) {
-        check(Tetrahedra(body.points, body.model.bonds, body.setting.cross_section, 1),
+        check(Tetrahedra(body.points, body.model.bonds(), body.setting.cross_section, 1),
               std::integral_constant<int, 3>{}, 6.0);
       }
     }
@@ -300,8 +302,8 @@ TEST(EffectiveVolumes, OfTheBulkAreThoseOfAPointFarFromSurfaces) {
   const BulkNeighbourhood bulk =
       bulk_neighbourhood(3, body.points.spacing, body.setting.horizon, 1.0);
   EXPECT_NEAR(bulk.volume / (4.0 / 3.0 * M_PI * std::pow(body.setting.horizon, 3)), 1.0, 1e-14);
-  const Tetrahedra tetrahedra(body.points, body.model.bonds, body.setting.cross_section, 1);
-  const std::vector<std::int32_t> neighbours = neighbour_counts(body.model.bonds);
+  const Tetrahedra tetrahedra(body.points, body.model.bonds(), body.setting.cross_section, 1);
+  const std::vector<std::int32_t> neighbours = neighbour_counts(body.model.bonds());
   const auto mean = effective_volumes(tetrahedra, neighbours, bulk, InteractionWeights::mean);
   const auto constant = effective_volumes(tetrahedra, neighbours, bulk, InteractionWeights::bulk);
   int inside = 0, outside = 0;
@@ -350,12 +352,11 @@ std::vector<double> state_of(const BoxBody& body) {
   const double scale = tests::norm(all);
   for (double& entry : all) entry /= scale;
   all.push_back(energy / (scale * 0.004));
-  const auto add_counts = [&](const auto& term) {
-    if (!term) return;
-    for (const double count : term->interactions.effective_counts()) all.push_back(count / 10.0);
-  };
-  add_counts(body.model.triangles);
-  add_counts(body.model.tetrahedra);
+  if (const SimplexTerm* const simplices = body.simplex_term()) {
+    simplices->for_each_kind([&](const auto& kind) {
+      for (const double count : kind.interactions.effective_counts()) all.push_back(count / 10.0);
+    });
+  }
   return all;
 }
 
@@ -381,8 +382,7 @@ double largest_second_difference(int dimension, bool tetrahedra, int steps) {
     middle[1] += 0.43 * way;
     if (dimension == 3) middle[2] += 0.61 * way;
     const BoxBody body(points, box);
-    const Offset present = tetrahedra ? body.model.tetrahedra->interactions.count()
-                                      : body.model.triangles->interactions.count();
+    const Offset present = body.simplex_term()->counts().front().count;
     changes += present != count;
     count = present;
     last = {last[1], last[2], state_of(body)};
@@ -422,7 +422,7 @@ TEST(FlatInteractions, OfAPointWithoutOthersVanish) {
     points.volume.assign(3, box.spacing * box.spacing * box.cross_section);
     points.reference = {0.0, 0.0, 0.1, 0.0, 0.0, height * 0.1};
     const BoxBody body(points, box);
-    const Model bonds_alone{body.model.bonds, body.model.potential};
+    const Model bonds_alone = body.bonds_alone();
     const double energy = Assembler(body.points, body.model, 1).energy(pulled).energy -
                           Assembler(body.points, bonds_alone, 1).energy(pulled).energy;
     EXPECT_GT(energy, last);

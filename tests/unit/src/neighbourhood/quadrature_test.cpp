@@ -44,10 +44,10 @@ double depth(const BoxSetting& box) { return (2.0 * box.horizon_ratio + 1.0) * b
 std::vector<double> confined_energy(const tests::BoxBody& body, int axis) {
   std::vector<double> energy(body.points.volume.size(), 0.0);
   const double modulus = micromodulus(1.0, body.setting);
-  for_each_bond(body.model.bonds, [&](Index i, Index j, Offset bond) {
+  for_each_bond(body.model.bonds(), [&](Index i, Index j, Offset bond) {
     const double length = tests::reference_distance(body.points, i, j);
     const double n = (body.points.position(j)[axis] - body.points.position(i)[axis]) / length;
-    const double whole = 0.5 * modulus * std::pow(n, 4) * length * body.model.bonds.weight(bond);
+    const double whole = 0.5 * modulus * std::pow(n, 4) * length * body.model.bonds().weight(bond);
     energy[i] += 0.5 * whole / body.points.volume[i];
     energy[j] += 0.5 * whole / body.points.volume[j];
   });
@@ -73,9 +73,9 @@ TEST(MakeBonds, WeighsWithTheProductOfVolumesWithoutCorrections) {
     tests::Random random(1);
     for (double& volume : points.volume) volume *= 1.0 + 0.5 * random.number();
     const tests::BoxBody body(points, tests::small_box(dimension));
-    ASSERT_GT(body.model.bonds.count(), 20);
-    for_each_bond(body.model.bonds, [&](Index i, Index j, Offset bond) {
-      EXPECT_DOUBLE_EQ(body.model.bonds.weight(bond), points.volume[i] * points.volume[j]);
+    ASSERT_GT(body.model.bonds().count(), 20);
+    for_each_bond(body.model.bonds(), [&](Index i, Index j, Offset bond) {
+      EXPECT_DOUBLE_EQ(body.model.bonds().weight(bond), points.volume[i] * points.volume[j]);
     });
   }
 }
@@ -91,8 +91,8 @@ TEST(MakeBonds, AveragesTheLinearPartialVolumesOfBothPoints) {
   double widest = 0.0;
   Offset partial = 0;
   std::map<std::pair<Index, Index>, double> weight;
-  for_each_bond(body.model.bonds, [&](Index i, Index j, Offset bond) {
-    weight[{i, j}] = body.model.bonds.weight(bond);
+  for_each_bond(body.model.bonds(), [&](Index i, Index j, Offset bond) {
+    weight[{i, j}] = body.model.bonds().weight(bond);
   });
   for (Index i = 0; i < points.count(); ++i) {
     for (Index j = i + 1; j < points.count(); ++j) {
@@ -132,14 +132,14 @@ TEST(MakeBonds, IsSymmetricInTheTwoPoints) {
       }
       const tests::BoxBody one(points, box), other(backwards, box);
       std::map<std::pair<Index, Index>, double> weight;
-      for_each_bond(other.model.bonds, [&](Index i, Index j, Offset bond) {
-        weight[{last - j, last - i}] = other.model.bonds.weight(bond);
+      for_each_bond(other.model.bonds(), [&](Index i, Index j, Offset bond) {
+        weight[{last - j, last - i}] = other.model.bonds().weight(bond);
       });
-      ASSERT_GT(one.model.bonds.count(), 20);
-      ASSERT_EQ(std::size_t(one.model.bonds.count()), weight.size());
-      for_each_bond(one.model.bonds, [&](Index i, Index j, Offset bond) {
+      ASSERT_GT(one.model.bonds().count(), 20);
+      ASSERT_EQ(std::size_t(one.model.bonds().count()), weight.size());
+      for_each_bond(one.model.bonds(), [&](Index i, Index j, Offset bond) {
         // Sums over a neighbourhood in another order: some round-offs.
-        EXPECT_NEAR(one.model.bonds.weight(bond) / (weight.at({i, j})), 1.0, 64 * epsilon);
+        EXPECT_NEAR(one.model.bonds().weight(bond) / (weight.at({i, j})), 1.0, 64 * epsilon);
       });
     }
   }
@@ -149,8 +149,8 @@ TEST(MakeBonds, HasOnlyPositiveWeights) {
   for (int dimension = 1; dimension <= 3; ++dimension) {
     for (const Quadrature& quadrature : all_quadratures) {
       const tests::BoxBody body(deep_box(dimension, quadrature));
-      ASSERT_GT(body.model.bonds.count(), 0);
-      for (const BondKind& kind : tests::kinds(body.model.bonds)) EXPECT_GT(kind.weight, 0.0);
+      ASSERT_GT(body.model.bonds().count(), 0);
+      for (const BondKind& kind : tests::kinds(body.model.bonds())) EXPECT_GT(kind.weight, 0.0);
     }
   }
 }
@@ -160,8 +160,8 @@ TEST(MakeBonds, GivesTheSameForAnyNumberOfThreads) {
     BoxSetting box = tests::small_box(3);
     box.quadrature = quadrature;
     const tests::BoxBody one(box, 1), three(box, 3);
-    EXPECT_EQ(one.model.bonds.partner, three.model.bonds.partner);
-    EXPECT_EQ(tests::kinds(one.model.bonds), tests::kinds(three.model.bonds));
+    EXPECT_EQ(one.model.bonds().partner, three.model.bonds().partner);
+    EXPECT_EQ(tests::kinds(one.model.bonds()), tests::kinds(three.model.bonds()));
   }
 }
 
@@ -176,18 +176,19 @@ TEST(VolumeMethod, ScalesByTheMissingNeighbourhood) {
       const tests::BoxBody corrected(box);
       const auto neighbourhoods = [&](const tests::BoxBody& body) {
         std::vector<double> sums(body.points.volume.size(), 0.0);
-        for_each_bond(body.model.bonds, [&](Index i, Index j, Offset bond) {
-          sums[i] += body.model.bonds.weight(bond) / body.points.volume[i];
-          sums[j] += body.model.bonds.weight(bond) / body.points.volume[j];
+        for_each_bond(body.model.bonds(), [&](Index i, Index j, Offset bond) {
+          sums[i] += body.model.bonds().weight(bond) / body.points.volume[i];
+          sums[j] += body.model.bonds().weight(bond) / body.points.volume[j];
         });
         return sums;
       };
       const std::vector<double> before = neighbourhoods(plain), after = neighbourhoods(corrected);
       const double bulk = *std::max_element(before.begin(), before.end());
-      ASSERT_EQ(plain.model.bonds.partner, corrected.model.bonds.partner);
+      ASSERT_EQ(plain.model.bonds().partner, corrected.model.bonds().partner);
       Offset in_bulk = 0, at_surface = 0;
-      for_each_bond(plain.model.bonds, [&](Index i, Index j, Offset bond) {
-        const double factor = corrected.model.bonds.weight(bond) / plain.model.bonds.weight(bond);
+      for_each_bond(plain.model.bonds(), [&](Index i, Index j, Offset bond) {
+        const double factor =
+            corrected.model.bonds().weight(bond) / plain.model.bonds().weight(bond);
         EXPECT_NEAR(factor * (before[i] + before[j]) / (2.0 * bulk), 1.0, 1e-13);
         const double whole = (box.horizon_ratio + 0.5) * box.spacing;
         const bool inside = tests::is_inside(plain.points, i, box, whole) &&
@@ -249,8 +250,8 @@ TEST(EnergyMethod, ReducesTheErrorAtSurfaces) {
       }
       ASSERT_GT(before, 0.0);
       EXPECT_LT(after, 0.75 * before) << dimension << "D";
-      EXPECT_LT(confined_energy_error(corrected.points, corrected.model.bonds, corrected.setting),
-                confined_energy_error(plain.points, plain.model.bonds, plain.setting))
+      EXPECT_LT(confined_energy_error(corrected.points, corrected.model.bonds(), corrected.setting),
+                confined_energy_error(plain.points, plain.model.bonds(), plain.setting))
           << dimension << "D";
     }
   }
@@ -266,7 +267,7 @@ TEST(ConfinedEnergyError, IsTheLargestOverPointsAndAxes) {
       }
     }
     ASSERT_GT(expected, 0.3);
-    EXPECT_NEAR(confined_energy_error(body.points, body.model.bonds, body.setting), expected,
+    EXPECT_NEAR(confined_energy_error(body.points, body.model.bonds(), body.setting), expected,
                 1e-13);
   }
 }

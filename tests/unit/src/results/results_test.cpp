@@ -471,9 +471,9 @@ TEST_F(ResultsTest, SummaryTakesSumsFromAllStepsAndTheRestFromTheLast) {
   summary.reason = "line\n\"quoted\" \\";
   summary.points = 6;
   summary.free_dofs = 5'000'000'000;
-  summary.bonds = 11;
-  summary.triangles = 12;
-  summary.tetrahedra = 13;
+  summary.count("bonds", 11);
+  summary.count("triangles", 12);
+  summary.count("tetrahedra", 13);
   summary.factorisations = 14;
   summary.linear_iterations = 15;
   summary.max_displacement = 0.1;

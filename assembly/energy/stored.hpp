@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+
 #include "src/types.hpp"
 
 namespace peristat {
@@ -22,6 +24,20 @@ struct Stored {
   /// Only of a pass that commits: energy that triangles and tetrahedra lose with the integrity of
   /// their bonds [J].
   double released = 0.0;
+  /// Only of a pass that commits: forces are no longer those of the bonds' loading, since others
+  /// have lost their stiffness with them.
+  bool moves_equilibrium = false;
+
+  /// Adds what another term has found.
+  void operator+=(const Stored& other) {
+    energy += other.energy;
+    degenerate |= other.degenerate;
+    growth.degrading += other.growth.degrading;
+    growth.breaking += other.growth.breaking;
+    growth.utilisation = std::max(growth.utilisation, other.growth.utilisation);
+    released += other.released;
+    moves_equilibrium |= other.moves_equilibrium;
+  }
 };
 
 }  // namespace peristat

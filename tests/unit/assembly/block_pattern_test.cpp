@@ -1,4 +1,4 @@
-#include "assembly/pattern.hpp"
+#include "assembly/operators/block_pattern.hpp"
 
 #include <algorithm>
 #include <vector>
@@ -11,7 +11,7 @@ namespace peristat {
 namespace {
 
 void expect_partition(const Bonds& bonds, int threads) {
-  const Pattern pattern(bonds);
+  const BlockPattern pattern(bonds);
   const std::vector<RowRange> ranges = partition_rows(pattern, threads);
   ASSERT_EQ(ranges.size(), std::size_t(threads));
   Index next = 0;
@@ -34,7 +34,7 @@ TEST(PartitionRows, CoversEveryRowOnce) {
   for (int dimension = 1; dimension <= 3; ++dimension) {
     const tests::BoxBody body(tests::small_box(dimension));
     ASSERT_GT(body.points.count(), 20);
-    for (int threads : {1, 2, 3, 5, 16, 1000}) expect_partition(body.model.bonds, threads);
+    for (int threads : {1, 2, 3, 5, 16, 1000}) expect_partition(body.model.bonds(), threads);
   }
 }
 
@@ -42,14 +42,14 @@ TEST(PartitionRows, TakesRowsWithoutBonds) {
   Bonds bonds;
   bonds.offset.assign(11, 0);
   for (int threads : {1, 3}) expect_partition(bonds, threads);
-  EXPECT_EQ(partition_rows(Pattern(bonds), 2)[0].last, 5);
+  EXPECT_EQ(partition_rows(BlockPattern(bonds), 2)[0].last, 5);
 }
 
 TEST(PartitionRows, SharesBondsEvenly) {
   tests::BoxSetting box = tests::small_box(2);
   box.extent = {40, 30, 0};
   const tests::BoxBody body(box);
-  const Pattern pattern(body.model.bonds);
+  const BlockPattern pattern(body.model.bonds());
   for (int threads : {2, 3, 5}) {
     for (const RowRange& range : partition_rows(pattern, threads)) {
       const double share = double(pattern.offset[range.last] - pattern.offset[range.first]);

@@ -1,11 +1,11 @@
-#include "assembly/tangent_operator.hpp"
+#include "assembly/operators/tangent_operator.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 namespace peristat {
 
-TangentOperator::TangentOperator(const Pattern& of, int dimension_of_points, int threads)
+TangentOperator::TangentOperator(const BlockPattern& of, int dimension_of_points, int threads)
     : pattern(of),
       dimension(dimension_of_points),
       ranges(partition_rows(of, threads)),

@@ -1,4 +1,4 @@
-#include "assembly/damage.hpp"
+#include "assembly/terms/damage.hpp"
 
 #include <algorithm>
 #include <variant>
@@ -9,18 +9,14 @@ namespace {
 /// Calls visit(law) if the bonds can be damaged.
 template <class Visit>
 void with_law(const Model& model, const Visit& visit) {
-  std::visit(
-      [&]<class P>(const P& law) {
-        if constexpr (PotentialWithHistory<P>) visit(law);
-      },
-      model.potential);
+  if (const BondTerm* const bonds = model.failing_bonds()) bonds->with_damage_law(visit);
 }
 
 }  // namespace
 
 DamageState assess_damage(const Model& model, const History& history,
                           std::span<const double> cut_weight, std::span<double> damage) {
-  const Bonds& bonds = model.bonds;
+  const Bonds& bonds = model.bonds();
   DamageState state;
   std::vector<double> whole(cut_weight.begin(), cut_weight.end());
   whole.resize(damage.size(), 0.0);
@@ -39,7 +35,7 @@ DamageState assess_damage(const Model& model, const History& history,
       }
     }
   };
-  if (!model.has_history()) for_each_bond([](Offset) { return 1.0; });
+  if (!model.failing_bonds()) for_each_bond([](Offset) { return 1.0; });
   const std::span<const double> stretches = bond_stretches(model, history);
   with_law(model, [&](const auto& law) {
     for_each_bond([&](Offset bond) {
@@ -57,8 +53,9 @@ DamageState assess_damage(const Model& model, const History& history,
 }
 
 std::span<const double> bond_stretches(const Model& model, const History& history) {
-  if (!model.has_history()) return {};
-  return history.of(bond_history).first(std::size_t(model.bonds.count()));
+  const BondTerm* const bonds = model.failing_bonds();
+  if (!bonds) return {};
+  return history.of(model.slot_of(*bonds)).first(std::size_t(bonds->bonds().count()));
 }
 
 std::vector<char> broken_bonds(const Model& model, const History& history) {

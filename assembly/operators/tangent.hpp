@@ -3,7 +3,7 @@
 #include <span>
 #include <vector>
 
-#include "assembly/tangent_operator.hpp"
+#include "assembly/operators/tangent_operator.hpp"
 
 namespace peristat {
 
@@ -13,26 +13,31 @@ struct Tangent : TangentOperator {
   /// those of bonds are symmetric, those of triangles and tetrahedra are not.
   enum class Blocks { whole, upper_halves };
 
-  Tangent(const Pattern& of, int dimension_of_points, int threads = 1,
+  Tangent(const BlockPattern& of, int dimension_of_points, int threads = 1,
           Blocks stored_as = Blocks::whole);
-  /// For the assembler's model, with what its blocks need.
-  explicit Tangent(const Assembler& assembler);
+  /// For an energy, with what its blocks need.
+  explicit Tangent(const Energy& energy);
 
   Blocks blocks;
-  std::vector<double> off_diagonal;  ///< block (i, partner), in the order of the bonds [N/m]
+  std::vector<double> off_diagonal;  ///< block (i, partner), in the order of the pattern [N/m]
   std::vector<double> position;      ///< see positions
 
   /// Numbers that are stored of an off-diagonal block.
   [[nodiscard]] std::size_t block_size() const;
-  /// Entry (r, c) of the block of a bond [N/m].
-  [[nodiscard]] double entry(Offset bond, int r, int c) const {
-    return off_diagonal[std::size_t(bond) * block_size() + place_in_block(r, c)];
+  /// Entry (r, c) of an off-diagonal block [N/m].
+  [[nodiscard]] double entry(Offset block, int r, int c) const {
+    return off_diagonal[std::size_t(block) * block_size() + place_in_block(r, c)];
   }
   /// Where a block keeps its entry (r, c).
   [[nodiscard]] std::size_t place_in_block(int r, int c) const;
 
+  /// Makes all blocks zero.
+  void clear();
+  /// Adds dimension x dimension numbers, row major, to an off-diagonal block [N/m].
+  void add_to_block(Offset block, std::span<const double> entries);
+
   [[nodiscard]] std::vector<double> positions() const override { return position; }
-  void linearise(Assembler& assembler, const StateView& at, double projection) override;
+  void linearise(Energy& energy, const StateView& at, double projection) override;
   void multiply(std::span<const double> v, std::span<double> result) const override;
   void for_each_row(const RowVisitor& visit) const override;
   [[nodiscard]] const Tangent* stored() const override { return this; }

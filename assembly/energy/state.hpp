@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "assembly/history.hpp"
+#include "assembly/energy/history.hpp"
 
 namespace peristat {
 

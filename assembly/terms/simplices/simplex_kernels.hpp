@@ -6,10 +6,10 @@
 #include <span>
 #include <utility>
 
-#include "assembly/interaction.hpp"
-#include "assembly/projection.hpp"
-#include "assembly/tangent.hpp"
-#include "assembly/workspace.hpp"
+#include "assembly/operators/tangent.hpp"
+#include "assembly/terms/interaction.hpp"
+#include "assembly/terms/projection.hpp"
+#include "assembly/terms/simplices/simplex_workspace.hpp"
 
 namespace peristat {
 
@@ -59,32 +59,34 @@ class BatchArms {
 
 /// The passes over triangles and tetrahedra, for one dimension. Each adds to its result.
 template <int D>
-struct LocalKernels {
+struct SimplexKernels {
   using Span = std::span<const double>;
 
   /// Calls visit(measure type, interactions, potential) for each kind of interaction.
   template <class Visit>
-  static void for_each_term(const Model& model, const Visit& visit) {
-    const auto with_potential = [&](auto measure, const auto& term) {
-      std::visit([&](const auto& law) { visit(measure, term.interactions, law); }, term.potential);
+  static void for_each_kind(const SimplexTerm& term, const Visit& visit) {
+    const auto with_potential = [&](auto measure, const auto& simplices) {
+      std::visit([&](const auto& law) { visit(measure, simplices.interactions, law); },
+                 simplices.potential);
     };
-    if (model.triangles) with_potential(Area{}, *model.triangles);
+    if (term.triangles()) with_potential(Area{}, *term.triangles());
     if constexpr (D == 3) {
-      if (model.tetrahedra) with_potential(Volume{}, *model.tetrahedra);
+      if (term.tetrahedra()) with_potential(Volume{}, *term.tetrahedra());
     }
   }
 
   /// Whether the pairs of a neighbourhood are needed to find an interaction.
-  static bool must_find(const Model& model) {
-    return (model.triangles && !model.triangles->interactions.is_stored()) ||
-           (model.tetrahedra && !model.tetrahedra->interactions.is_stored());
+  static bool must_find(const SimplexTerm& term) {
+    bool finds = false;
+    term.for_each_kind([&](const auto& kind) { finds |= !kind.interactions.is_stored(); });
+    return finds;
   }
 
-  static void move_to(const Workspace& a, LocalWorkspace<D>& w, Index i, Span displacement,
-                      const Integrity& integrity, bool find_pairs) {
+  static void move_to(const SimplexWorkspace<D>& a, LocalWorkspace<D>& w, Index i,
+                      Span displacement, const Integrity& integrity, bool find_pairs) {
     w.local.move_to(i);
     if (find_pairs) w.local.upper.find_pairs();
-    w.find_integrity(integrity, a.model.bonds.offset[i], find_pairs);
+    w.find_integrity(integrity, a.term.bonds().offset[i], find_pairs);
     assign_relative(w, displacement, w.displacement);
   }
 
@@ -119,20 +121,20 @@ struct LocalKernels {
     for (int c = 0; c < width; ++c) row[c] += own[c];
   }
 
-  static Stored gradient(Workspace& a, Span displacement, const Integrity& integrity,
+  static Stored gradient(SimplexWorkspace<D>& a, Span displacement, const Integrity& integrity,
                          std::span<double> result) {
     const bool energy_only = result.empty();
-    const bool find_pairs = must_find(a.model);
+    const bool find_pairs = must_find(a.term);
     constexpr int stride = vector_width(D);
     const auto body = [&](int thread, RowRange range, double* sums) {
-      LocalWorkspace<D>& w = a.template local_of<D>(thread);
+      LocalWorkspace<D>& w = *a.local[std::size_t(thread)];
       Lanes smallest_measure = std::numeric_limits<double>::infinity();
       double energy = 0.0;
       for (Index i = range.first; i < range.last; ++i) {
         move_to(a, w, i, displacement, integrity, find_pairs);
         w.clear(D);
         Lanes row_energy = 0.0;
-        for_each_term(a.model, [&](auto kind, const auto& interactions, const auto& potential) {
+        for_each_kind(a.term, [&](auto kind, const auto& interactions, const auto& potential) {
           using Measure = decltype(kind);
           constexpr int last = Measure::arms - 1;
           interactions.template for_each_group<D>(w.local, w.scratch, [&](const auto& group) {
@@ -159,26 +161,26 @@ struct LocalKernels {
         energy += sum(row_energy);
         if (!energy_only) add_to_rows<D, stride>(w, sums);
       }
-      a.stored[thread] = {energy, !(smallest(smallest_measure) > 0.0)};
+      a.threads.stored[thread] = {energy, !(smallest(smallest_measure) > 0.0)};
     };
-    a.sum_rows<stride>(body, [&](Index i, const double* total) {
+    a.threads.template sum_rows<stride>(body, [&](Index i, const double* total) {
       if (energy_only) return;
       for (int c = 0; c < D; ++c) result[std::size_t(i) * D + c] += total[c];
     });
-    return a.total_stored();
+    return a.threads.total_stored();
   }
 
-  static void product(Workspace& a, Span displacement, const Integrity& integrity, Span v,
+  static void product(SimplexWorkspace<D>& a, Span displacement, const Integrity& integrity, Span v,
                       std::span<double> result) {
-    const bool find_pairs = must_find(a.model);
+    const bool find_pairs = must_find(a.term);
     constexpr int stride = vector_width(D);
     const auto body = [&](int thread, RowRange range, double* sums) {
-      LocalWorkspace<D>& w = a.template local_of<D>(thread);
+      LocalWorkspace<D>& w = *a.local[std::size_t(thread)];
       for (Index i = range.first; i < range.last; ++i) {
         move_to(a, w, i, displacement, integrity, find_pairs);
         assign_relative(w, v, w.vector);
         w.clear(D);
-        for_each_term(a.model, [&](auto kind, const auto& interactions, const auto& potential) {
+        for_each_kind(a.term, [&](auto kind, const auto& interactions, const auto& potential) {
           using Measure = decltype(kind);
           constexpr int last = Measure::arms - 1;
           interactions.template for_each_group<D>(w.local, w.scratch, [&](const auto& group) {
@@ -202,22 +204,22 @@ struct LocalKernels {
         add_to_rows<D, stride>(w, sums);
       }
     };
-    a.sum_rows<stride>(body, [&](Index i, const double* total) {
+    a.threads.template sum_rows<stride>(body, [&](Index i, const double* total) {
       for (int c = 0; c < D; ++c) result[std::size_t(i) * D + c] += total[c];
     });
   }
 
   /// Shares every interaction's energy equally among its points.
-  static void point_energies(Workspace& a, Span displacement, const Integrity& integrity,
+  static void point_energies(SimplexWorkspace<D>& a, Span displacement, const Integrity& integrity,
                              std::span<double> energies) {
-    const bool find_pairs = must_find(a.model);
+    const bool find_pairs = must_find(a.term);
     const auto body = [&](int thread, RowRange range, double* sums) {
-      LocalWorkspace<D>& w = a.template local_of<D>(thread);
+      LocalWorkspace<D>& w = *a.local[std::size_t(thread)];
       for (Index i = range.first; i < range.last; ++i) {
         move_to(a, w, i, displacement, integrity, find_pairs);
         w.clear(1);
         Lanes own = 0.0;
-        for_each_term(a.model, [&](auto kind, const auto& interactions, const auto& potential) {
+        for_each_kind(a.term, [&](auto kind, const auto& interactions, const auto& potential) {
           using Measure = decltype(kind);
           constexpr double share = 1.0 / (Measure::arms + 1);
           interactions.template for_each_group<D>(w.local, w.scratch, [&](const auto& group) {
@@ -240,7 +242,7 @@ struct LocalKernels {
         sums[i] += sum(own);
       }
     };
-    a.sum_rows<1>(body, [&](Index i, const double* total) { energies[i] += *total; });
+    a.threads.template sum_rows<1>(body, [&](Index i, const double* total) { energies[i] += *total; });
   }
 
   // ---- Tangent
@@ -360,45 +362,43 @@ struct LocalKernels {
     });
   }
 
-  static void add_transposed(const Matrix<D, double>& block, double* to) {
-    for (int r = 0; r < D; ++r) {
-      for (int c = 0; c < D; ++c) to[c * D + r] += block[r][c];
-    }
-  }
-
-  static void tangent(Workspace& a, Span displacement, const Integrity& integrity,
+  static void tangent(SimplexWorkspace<D>& a, Span displacement, const Integrity& integrity,
                       double projection, Tangent& result) {
-    const Bonds& bonds = a.model.bonds;
+    const Bonds& bonds = a.term.bonds();
     constexpr int stride = block_width(D), entries = D * D;
     const auto body = [&](int thread, RowRange range, double* sums) {
-      LocalWorkspace<D>& w = a.template local_of<D>(thread);
+      LocalWorkspace<D>& w = *a.local[std::size_t(thread)];
       std::vector<double>& beyond = a.blocks[thread];
-      const Offset first_beyond = bonds.offset[range.last];
+      const Offset first_beyond = a.pattern.offset[range.last];
       std::fill(beyond.begin(), beyond.end(), 0.0);
       const auto block_of = [&](Offset bond) {
-        return bond < first_beyond ? &result.off_diagonal[std::size_t(bond) * entries]
-                                   : &beyond[std::size_t(bond - first_beyond) * entries];
+        const Offset place = a.place(bond);
+        return place < first_beyond ? &result.off_diagonal[std::size_t(place) * entries]
+                                    : &beyond[std::size_t(place - first_beyond) * entries];
       };
       for (Index i = range.first; i < range.last; ++i) {
         move_to(a, w, i, displacement, integrity, true);
         w.clear(half_entries);
         w.clear_hessian();
-        for_each_term(a.model, [&](auto kind, const auto& interactions, const auto& potential) {
+        for_each_kind(a.term, [&](auto kind, const auto& interactions, const auto& potential) {
           add_hessian<decltype(kind)>(w, interactions, potential, projection);
         });
 
         // With H_ab the relative Hessian: K_ab += H_ab, K_ib -= sum_a H_ab, K_ii += sum_ab H_ab.
         const std::span<const Index> partner = w.local.upper.points();
-        double* of_own_bonds = &result.off_diagonal[std::size_t(bonds.offset[i]) * entries];
+        const auto of_own_bond = [&](int k) {
+          return &result.off_diagonal[std::size_t(a.place(bonds.offset[i] + k)) * entries];
+        };
         Matrix<D, double> own{};
         for (int k = 0; k < w.local.upper.count(); ++k) {
           const auto half = w.template total_of<half_entries>(k);
           double* row = sums + std::ptrdiff_t(partner[k]) * stride;
           for (int c = 0; c < half_entries; ++c) row[c] += half[c];
           const Matrix<D, double> block = full_of(half);
+          double* const to = of_own_bond(k);
           for (int r = 0; r < D; ++r) {
             for (int c = 0; c < D; ++c) {
-              of_own_bonds[k * entries + r * D + c] -= block[r][c];
+              to[r * D + c] -= block[r][c];
               own[r][c] += block[r][c];
             }
           }
@@ -406,7 +406,7 @@ struct LocalKernels {
         for (const UpperNeighbourhood::Pair& pair : w.local.upper.pairs()) {
           const Matrix<D, double> block = w.pair(pair.a, pair.b);
           double* to = block_of(pair.bond);
-          double *to_a = of_own_bonds + pair.a * entries, *to_b = of_own_bonds + pair.b * entries;
+          double *const to_a = of_own_bond(pair.a), *const to_b = of_own_bond(pair.b);
           for (int r = 0; r < D; ++r) {
             for (int c = 0; c < D; ++c) {
               to[r * D + c] += block[r][c];
@@ -426,17 +426,17 @@ struct LocalKernels {
     };
     const auto add_spilled_blocks = [&](int thread, RowRange range) {
       for (int earlier = 0; earlier < thread; ++earlier) {
-        const RowRange other = a.ranges[earlier];
+        const RowRange other = a.threads.ranges[earlier];
         const Index last = std::min(range.last, other.reach);
         if (last <= range.first) continue;
-        const std::size_t from = std::size_t(bonds.offset[range.first]) * entries;
-        const std::size_t count = std::size_t(bonds.offset[last]) * entries - from;
+        const std::size_t from = std::size_t(a.pattern.offset[range.first]) * entries;
+        const std::size_t count = std::size_t(a.pattern.offset[last]) * entries - from;
         const double* spilled =
-            a.blocks[earlier].data() + from - std::size_t(bonds.offset[other.last]) * entries;
+            a.blocks[earlier].data() + from - std::size_t(a.pattern.offset[other.last]) * entries;
         for (std::size_t k = 0; k < count; ++k) result.off_diagonal[from + k] += spilled[k];
       }
     };
-    a.sum_rows<stride>(
+    a.threads.template sum_rows<stride>(
         body,
         [&](Index i, const double* total) {
           double* block = &result.diagonal[std::size_t(i) * entries];

@@ -1,28 +1,21 @@
 #pragma once
 
-#include <functional>
 #include <span>
 #include <vector>
 
-#include "assembly/pattern.hpp"
-#include "assembly/state.hpp"
+#include "assembly/energy/energy.hpp"
+#include "assembly/operators/block_pattern.hpp"
 
 namespace peristat {
-
-class Assembler;
-struct Tangent;
 
 /// Tangent K = d2E/dx2 [N/m] of the stored energy over all degrees of freedom, as solvers see it:
 /// they multiply by it, and read its blocks (i, j), i <= j, each dimension x dimension, row major;
 /// block (j, i) is the transpose of block (i, j).
 struct TangentOperator {
-  /// Called with the off-diagonal blocks (i, partner) of row i, in the order of its bonds.
-  using RowVisitor = std::function<void(int thread, Index i, std::span<const double> blocks)>;
-
-  TangentOperator(const Pattern& of, int dimension_of_points, int threads);
+  TangentOperator(const BlockPattern& of, int dimension_of_points, int threads);
   virtual ~TangentOperator() = default;
 
-  Pattern pattern;
+  BlockPattern pattern;
   int dimension;
   std::vector<RowRange> ranges;  ///< rows of each thread
   std::vector<double> diagonal;  ///< points x d x d
@@ -34,8 +27,8 @@ struct TangentOperator {
   [[nodiscard]] virtual std::vector<double> positions() const = 0;
 
   /// Makes this the tangent at a state.
-  /// @param projection see Assembler::tangent
-  virtual void linearise(Assembler& assembler, const StateView& at, double projection) = 0;
+  /// @param projection see Energy::tangent
+  virtual void linearise(Energy& energy, const StateView& at, double projection) = 0;
 
   /// result = K v; both have one entry per degree of freedom. They are the same array, if
   /// multiplies_in_place, or don't overlap.

@@ -6,11 +6,13 @@
 #include <limits>
 #include <span>
 
-#include "assembly/interaction.hpp"
-#include "assembly/tangent.hpp"
-#include "assembly/workspace.hpp"
+#include "assembly/operators/tangent.hpp"
+#include "assembly/terms/bonds/bond_workspace.hpp"
+#include "assembly/terms/interaction.hpp"
+#include "assembly/terms/term.hpp"
 #include "src/lanes.hpp"
 #include "src/measures/length.hpp"
+#include "src/potentials/potential.hpp"
 
 namespace peristat {
 
@@ -218,8 +220,14 @@ inline InteractionEnergy<Lanes> projected(const InteractionEnergy<Lanes>& psi, d
           psi.second - share * std::experimental::min(psi.second, zero)};
 }
 
+/// Writes a row's total over what is there, or adds it.
+template <int width>
+inline void put(Write how, const double* total, double* to) {
+  for (int c = 0; c < width; ++c) to[c] = how == Write::over ? total[c] : to[c] + total[c];
+}
+
 /// The passes over the bonds, for one dimension; the potential is chosen once, outside the loops.
-/// Each overwrites its result. `largest_stretch` is the bonds' history and a batch more; null for a
+/// `largest_stretch` is the bonds' history and a batch more; null for a
 /// potential without one.
 template <int D>
 struct BondKernels {
@@ -227,12 +235,12 @@ struct BondKernels {
 
   /// @tparam commits whether histories follow: the energy is then what is stored after that
   template <bool commits, class P>
-  static Stored gradient(Workspace& a, const P& potential, Span displacement,
+  static Stored gradient(BondWorkspace& a, const P& potential, Span displacement,
                          std::conditional_t<commits, double*, const double*> largest_stretch,
-                         std::span<double> result) {
+                         std::span<double> result, Write how) {
     a.pack<D>(a.points.reference, displacement);
-    std::vector<Stored>& parts = a.stored;
-    const Bonds& bonds = a.model.bonds;
+    std::vector<Stored>& parts = a.threads.stored;
+    const Bonds& bonds = a.bonds;
     const bool energy_only = result.empty();
     constexpr int width = vector_width(D);
     const auto body = [&](int thread, RowRange range, double* sums) {
@@ -264,41 +272,40 @@ struct BondKernels {
       }
       parts[thread] = {energy, !(smallest(shortest) > 0.0), growth};
     };
-    a.sum_rows<width>(body, [&](Index i, const double* total) {
-      if (energy_only) return;
-      for (int c = 0; c < D; ++c) result[std::size_t(i) * D + c] = total[c];
+    a.threads.sum_rows<width>(body, [&](Index i, const double* total) {
+      if (!energy_only) put<D>(how, total, &result[std::size_t(i) * D]);
     });
-    return a.total_stored();
+    return a.threads.total_stored();
   }
 
   template <class P>
-  static DamageGrowth growth(Workspace& a, const P& potential, Span displacement,
+  static DamageGrowth growth(BondWorkspace& a, const P& potential, Span displacement,
                              const double* largest_stretch) {
     a.pack<D>(a.points.reference, displacement);
     const auto body = [&](int thread, RowRange range, double*) {
       DamageGrowth found;
       for (Index i = range.first; i < range.last; ++i) {
-        for_each_batch<D>(a.model.bonds, a.rows.data(), i, [&](const Batch<D>& batch) {
+        for_each_batch<D>(a.bonds, a.rows.data(), i, [&](const Batch<D>& batch) {
           const auto measure =
               Length::at<D, Lanes>(batch.inverse_length, {batch.vector0}, {batch.vector1});
           look_at<D>(potential, batch, measure.relative_change, largest_stretch, found);
         });
       }
-      a.stored[thread] = {0.0, false, found};
+      a.threads.stored[thread] = {0.0, false, found};
     };
-    a.sum_rows<1>(body, [](Index, const double*) {});
-    return a.total_stored().growth;
+    a.threads.sum_rows<1>(body, [](Index, const double*) {});
+    return a.threads.total_stored().growth;
   }
 
   /// @param blocks_of(thread, i) where the off-diagonal blocks of row i go
   /// @param done(thread, i) called once they are there
   /// @param diagonal blocks; empty: not wanted
   template <Tangent::Blocks stored_as, class P, class BlocksOf, class Done>
-  static void tangent(Workspace& a, const P& potential, Span displacement,
+  static void tangent(BondWorkspace& a, const P& potential, Span displacement,
                       const double* largest_stretch, double projection, const BlocksOf& blocks_of,
                       const Done& done, std::span<double> diagonal) {
     a.pack<D>(a.points.reference, displacement);
-    const Bonds& bonds = a.model.bonds;
+    const Bonds& bonds = a.bonds;
     constexpr int width = block_width(D);
     const auto body = [&](int thread, RowRange range, double* sums) {
       for (Index i = range.first; i < range.last; ++i) {
@@ -328,7 +335,7 @@ struct BondKernels {
         done(thread, i);
       }
     };
-    a.sum_rows<width>(body, [&](Index i, const double* total) {
+    a.threads.sum_rows<width>(body, [&](Index i, const double* total) {
       if (diagonal.empty()) return;
       double* block = &diagonal[std::size_t(i) * D * D];
       int k = 0;
@@ -339,19 +346,19 @@ struct BondKernels {
   }
 
   template <class P>
-  static void product(Workspace& a, const P& potential, Span displacement,
+  static void product(BondWorkspace& a, const P& potential, Span displacement,
                       const double* largest_stretch, Span v, double projection,
-                      std::span<double> result) {
+                      std::span<double> result, Write how) {
     a.pack<D>(displacement, v);
     constexpr int row = row_width(D);
     const Index count = a.points.count();
-#pragma omp parallel for num_threads(a.threads())
+#pragma omp parallel for num_threads(a.threads.threads())
     for (Index i = 0; i < count; ++i) {
       for (int c = 0; c < D; ++c) {
         a.rows[std::size_t(i) * row + c] += a.points.reference[std::size_t(i) * D + c];
       }
     }
-    const Bonds& bonds = a.model.bonds;
+    const Bonds& bonds = a.bonds;
     constexpr int width = vector_width(D);
     const auto body = [&](int, RowRange range, double* sums) {
       for (Index i = range.first; i < range.last; ++i) {
@@ -372,19 +379,17 @@ struct BondKernels {
         for (int c = 0; c < D; ++c) sums[std::ptrdiff_t(i) * width + c] += sum(own[c]);
       }
     };
-    a.sum_rows<width>(body, [&](Index i, const double* total) {
-      for (int c = 0; c < D; ++c) result[std::size_t(i) * D + c] = total[c];
+    a.threads.sum_rows<width>(body, [&](Index i, const double* total) {
+      put<D>(how, total, &result[std::size_t(i) * D]);
     });
   }
 
   template <class P>
-  static double point_energies(Workspace& a, const P& potential, Span displacement,
-                               const double* largest_stretch, std::span<double> energies) {
+  static void point_energies(BondWorkspace& a, const P& potential, Span displacement,
+                             const double* largest_stretch, std::span<double> energies, Write how) {
     a.pack<D>(a.points.reference, displacement);
-    const Bonds& bonds = a.model.bonds;
-    std::vector<double>& longest = a.longest;
-    const auto body = [&](int thread, RowRange range, double* sums) {
-      Lanes most = -1.0;
+    const Bonds& bonds = a.bonds;
+    const auto body = [&](int, RowRange range, double* sums) {
       for (Index i = range.first; i < range.last; ++i) {
         Lanes own = 0.0;
         for_each_batch<D>(
@@ -396,16 +401,14 @@ struct BondKernels {
                                            at_history(largest_stretch, potential, batch.first),
                                            measure)
                             .value;
-              most = std::experimental::max(most, measure.relative_change);
               own += half;
               add_to_partners<1>(sums, batch.partner, Vector<1, Lanes>{half});
             });
         sums[i] += sum(own);
       }
-      longest[thread] = largest(most);
     };
-    a.sum_rows<1>(body, [&](Index i, const double* total) { energies[i] = *total; });
-    return *std::max_element(longest.begin(), longest.end());
+    a.threads.sum_rows<1>(body,
+                          [&](Index i, const double* total) { put<1>(how, total, &energies[i]); });
   }
 };
 

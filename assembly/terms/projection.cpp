@@ -1,4 +1,4 @@
-#include "assembly/projection.hpp"
+#include "assembly/terms/projection.hpp"
 
 #include <cassert>
 

@@ -3,8 +3,8 @@
 #include <span>
 #include <vector>
 
-#include "assembly/history.hpp"
-#include "assembly/model.hpp"
+#include "assembly/energy/history.hpp"
+#include "assembly/terms/model.hpp"
 #include "src/points/points.hpp"
 
 namespace peristat {

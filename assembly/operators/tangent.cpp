@@ -1,11 +1,10 @@
-#include "assembly/tangent.hpp"
+#include "assembly/operators/tangent.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <type_traits>
 
-#include "assembly/assembler.hpp"
 #include "src/threads.hpp"
 
 namespace peristat {
@@ -98,15 +97,15 @@ void multiply_rows(const Tangent& tangent, std::span<const double> v, std::span<
 
 }  // namespace
 
-Tangent::Tangent(const Pattern& of, int dimension_of_points, int threads, Blocks stored_as)
+Tangent::Tangent(const BlockPattern& of, int dimension_of_points, int threads, Blocks stored_as)
     : TangentOperator(of, dimension_of_points, threads),
       blocks(stored_as),
       off_diagonal(std::size_t(of.blocks()) * block_size()),
       position(std::size_t(of.points()) * dimension) {}
 
-Tangent::Tangent(const Assembler& assembler)
-    : Tangent(Pattern(assembler.model().bonds), assembler.points().dimension, assembler.threads(),
-              assembler.model().has_only_bonds() ? Blocks::upper_halves : Blocks::whole) {}
+Tangent::Tangent(const Energy& energy)
+    : Tangent(energy.pattern(), energy.points().dimension, energy.threads(),
+              energy.has_symmetric_blocks() ? Blocks::upper_halves : Blocks::whole) {}
 
 std::size_t Tangent::block_size() const { return std::size_t(block_size_of(dimension, blocks)); }
 
@@ -116,8 +115,23 @@ std::size_t Tangent::place_in_block(int r, int c) const {
   return std::size_t(row * dimension - row * (row - 1) / 2 + column - row);
 }
 
-void Tangent::linearise(Assembler& assembler, const StateView& at, double projection) {
-  assembler.tangent(at, *this, projection);
+void Tangent::clear() {
+  std::fill(diagonal.begin(), diagonal.end(), 0.0);
+  std::fill(off_diagonal.begin(), off_diagonal.end(), 0.0);
+}
+
+void Tangent::add_to_block(Offset block, std::span<const double> entries) {
+  double* const to = &off_diagonal[std::size_t(block) * block_size()];
+  for (int r = 0; r < dimension; ++r) {
+    const int first = blocks == Blocks::whole ? 0 : r;  // an upper half holds each entry once
+    for (int c = first; c < dimension; ++c) {
+      to[place_in_block(r, c)] += entries[std::size_t(r * dimension + c)];
+    }
+  }
+}
+
+void Tangent::linearise(Energy& energy, const StateView& at, double projection) {
+  energy.tangent(at, *this, projection);
 }
 
 void Tangent::multiply(std::span<const double> v, std::span<double> result) const {

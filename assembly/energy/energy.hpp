@@ -1,0 +1,49 @@
+#pragma once
+
+#include <functional>
+#include <span>
+
+#include "assembly/energy/state.hpp"
+#include "src/points/points.hpp"
+
+namespace peristat {
+
+class BlockPattern;
+struct Tangent;
+
+/// Called with the off-diagonal blocks (i, partner) of row i of a tangent, each dimension x
+/// dimension, row major, in the order of its pattern. Rows of a thread come in ascending order.
+using RowVisitor = std::function<void(int thread, Index i, std::span<const double> blocks)>;
+
+/// An energy E(u) as the operators see it that are linearised from it; see Assembler.
+class Energy {
+ public:
+  virtual ~Energy() = default;
+
+  [[nodiscard]] virtual const Points& points() const = 0;
+  [[nodiscard]] virtual const BlockPattern& pattern() const = 0;
+  [[nodiscard]] virtual int threads() const = 0;
+  /// Whether each off-diagonal block of its tangent is symmetric.
+  [[nodiscard]] virtual bool has_symmetric_blocks() const = 0;
+  /// Whether its tangent can do without being stored: rows are found one by one, and product and v
+  /// may be one array.
+  [[nodiscard]] virtual bool visits_rows() const = 0;
+
+  /// d2E/dx2 [N/m], every entry overwritten.
+  /// @param projection share in [0, 1] by which the relative Hessian of every interaction moves
+  ///        towards its positive semidefinite part: 0 is exact, 1 gives a positive semidefinite
+  ///        tangent
+  virtual void tangent(const StateView& at, Tangent& tangent, double projection) = 0;
+
+  /// product = d2E/dx2 v, without a stored tangent.
+  /// @param projection other than 0 only if it visits_rows
+  virtual void product(const StateView& at, std::span<const double> v, std::span<double> product,
+                       double projection) = 0;
+
+  /// Visits the rows of the tangent, without storing it; only if it visits_rows.
+  /// @param diagonal blocks, overwritten; empty: not wanted
+  virtual void visit_tangent(const StateView& at, double projection, const RowVisitor& visit,
+                             std::span<double> diagonal) = 0;
+};
+
+}  // namespace peristat

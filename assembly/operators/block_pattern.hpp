@@ -1,0 +1,67 @@
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "src/neighbourhood/bonds.hpp"
+#include "src/types.hpp"
+
+namespace peristat {
+
+/// Which points share interactions: the partners of i above it are partner[offset[i]] ..
+/// partner[offset[i+1]-1], ascending. A view.
+struct Couplings {
+  std::span<const Offset> offset;  ///< points + 1
+  std::span<const Index> partner;
+
+  Couplings(std::span<const Offset> offset_of_rows, std::span<const Index> partners)
+      : offset(offset_of_rows), partner(partners) {}
+  Couplings(const Bonds& bonds) : Couplings(bonds.offset, bonds.partner) {}
+
+  [[nodiscard]] Index points() const { return static_cast<Index>(offset.size()) - 1; }
+  [[nodiscard]] std::span<const Index> of(Index i) const {
+    return partner.subspan(std::size_t(offset[i]), std::size_t(offset[i + 1] - offset[i]));
+  }
+};
+
+/// Sparsity of a tangent: the diagonal blocks, and one block (i, j), i < j, per pair of points that
+/// some term couples. Copies share what they hold.
+class BlockPattern : public Couplings {
+ public:
+  /// A view of the couplings, which outlive it.
+  explicit BlockPattern(const Couplings& couplings) : Couplings(couplings) {}
+
+  /// All blocks that any of several terms has, each of them with the same points; a view if one of
+  /// the terms has all of them.
+  [[nodiscard]] static BlockPattern united(const std::vector<Couplings>& terms, Index points);
+
+  [[nodiscard]] Offset blocks() const { return static_cast<Offset>(partner.size()); }
+
+  /// Where the blocks of one of its terms are, in the order of the couplings; empty: in that order.
+  /// @throws std::logic_error if it lacks one
+  [[nodiscard]] std::vector<Offset> places_of(const Couplings& couplings) const;
+
+ private:
+  struct Rows {
+    std::vector<Offset> offset;
+    std::vector<Index> partner;
+  };
+  explicit BlockPattern(std::shared_ptr<const Rows> rows)
+      : Couplings(rows->offset, rows->partner), own_(std::move(rows)) {}
+
+  std::shared_ptr<const Rows> own_;  // nothing: a view
+};
+
+/// Rows [first, last) of one thread. Its interactions also touch rows up to `reach`, exclusive,
+/// which belong to later threads: what it adds there goes to a buffer of its own and is summed
+/// afterwards in the order of the threads, so that a given number of threads always gives the same
+/// result.
+struct RowRange {
+  Index first = 0, last = 0, reach = 0;
+};
+
+/// Ranges of rows with nearly equal numbers of blocks.
+[[nodiscard]] std::vector<RowRange> partition_rows(const BlockPattern& pattern, int threads);
+
+}  // namespace peristat

@@ -1,0 +1,37 @@
+#include "assembly/operators/matrix_free_tangent.hpp"
+
+#include <stdexcept>
+
+namespace peristat {
+
+MatrixFreeTangent::MatrixFreeTangent(Energy& energy)
+    : TangentOperator(energy.pattern(), energy.points().dimension, energy.threads()),
+      energy_(&energy) {
+  if (!energy.visits_rows()) throw std::logic_error("the tangent of this energy must be stored");
+}
+
+std::vector<double> MatrixFreeTangent::positions() const {
+  std::vector<double> current = energy_->points().reference;
+  for (std::size_t k = 0; k < displacement_.size(); ++k) current[k] += displacement_[k];
+  return current;
+}
+
+void MatrixFreeTangent::linearise(Energy& energy, const StateView& at, double projection) {
+  energy_ = &energy;
+  displacement_.assign(at.displacement.begin(), at.displacement.end());
+  history_ = at.history;
+  damage_ = at.damage;
+  projection_ = projection;
+  energy.visit_tangent(
+      at, projection, [](int, Index, std::span<const double>) {}, diagonal);
+}
+
+void MatrixFreeTangent::multiply(std::span<const double> v, std::span<double> result) const {
+  energy_->product(at(), v, result, projection_);
+}
+
+void MatrixFreeTangent::for_each_row(const RowVisitor& visit) const {
+  energy_->visit_tangent(at(), projection_, visit, {});
+}
+
+}  // namespace peristat

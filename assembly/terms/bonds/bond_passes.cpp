@@ -1,0 +1,156 @@
+#include "assembly/terms/bonds/bond_passes.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+#include <type_traits>
+
+#include "assembly/terms/bonds/bond_kernels.hpp"
+#include "assembly/terms/model.hpp"
+
+namespace peristat {
+
+BondPasses::BondPasses(const BondTerm& term, const TermSetting& setting)
+    : term_(term),
+      slot_(setting.model.slot_of(term)),
+      pattern_(setting.pattern),
+      places_(setting.pattern.places_of(term.couplings())),
+      workspace_(setting.points, term.bonds(), setting.workspace) {}
+
+template <class Body>
+auto BondPasses::dispatch(const StateView& at, const Body& body) const {
+  const auto with_law = [&](const auto& law, const double* largest_stretch) {
+    switch (workspace_.points.dimension) {
+      case 1:
+        return body(std::integral_constant<int, 1>{}, law, largest_stretch);
+      case 2:
+        return body(std::integral_constant<int, 2>{}, law, largest_stretch);
+      default:
+        return body(std::integral_constant<int, 3>{}, law, largest_stretch);
+    }
+  };
+  return std::visit(
+      [&]<class P>(const P& potential) {
+        if constexpr (PotentialWithHistory<P>) {
+          const std::span<const double> history = at.history.of(slot_);
+          if (history.size() != std::size_t(term_.bonds().count()) + lane_count) {
+            throw std::logic_error("bonds that can be damaged are evaluated after their history");
+          }
+          P law = potential;
+          law.holds_damage = at.damage == Damage::held;
+          return with_law(law, history.data());
+        } else {
+          return with_law(potential, nullptr);
+        }
+      },
+      term_.potential());
+}
+
+Stored BondPasses::gradient(const StateView& at, std::span<double> gradient, Write how) {
+  return dispatch(at, [&](auto d, const auto& law, const double* largest_stretch) {
+    return BondKernels<decltype(d)::value>::template gradient<false>(
+        workspace_, law, at.displacement, largest_stretch, gradient, how);
+  });
+}
+
+Stored BondPasses::commit(std::span<const double> displacement, History& history,
+                          std::span<double> gradient, Write how) {
+  if (!term_.can_fail()) return this->gradient({displacement, history}, gradient, how);
+  double* const largest_stretch = history.change(slot_).data();
+  return dispatch({displacement, history}, [&]<class P>(auto d, const P& law, const double*) {
+    if constexpr (PotentialWithHistory<P>) {
+      return BondKernels<decltype(d)::value>::template gradient<true>(
+          workspace_, law, displacement, largest_stretch, gradient, how);
+    } else {
+      return Stored{};
+    }
+  });
+}
+
+DamageGrowth BondPasses::growth(const StateView& at) {
+  if (!term_.can_fail()) return {};
+  return dispatch(at, [&]<class P>(auto d, const P& law, const double* largest_stretch) {
+    if constexpr (PotentialWithHistory<P>) {
+      return BondKernels<decltype(d)::value>::growth(workspace_, law, at.displacement,
+                                                     largest_stretch);
+    } else {
+      return DamageGrowth{};
+    }
+  });
+}
+
+void BondPasses::tangent(const StateView& at, double projection, Tangent& tangent, Write how) {
+  if (how == Write::over && places_.empty()) return write_tangent(at, projection, tangent);
+  if (how == Write::over) tangent.clear();
+  std::vector<double> diagonal(tangent.diagonal.size());
+  visit_tangent(
+      at, projection,
+      [&](int, Index i, std::span<const double> blocks) {
+        Offset bond = term_.bonds().offset[i];
+        const std::size_t entries = std::size_t(tangent.dimension * tangent.dimension);
+        for (std::size_t k = 0; k < blocks.size(); k += entries, ++bond) {
+          tangent.add_to_block(places_.empty() ? bond : places_[std::size_t(bond)],
+                               blocks.subspan(k, entries));
+        }
+      },
+      diagonal);
+  for (std::size_t k = 0; k < diagonal.size(); ++k) tangent.diagonal[k] += diagonal[k];
+}
+
+void BondPasses::visit_tangent(const StateView& at, double projection, const RowVisitor& visit,
+                               std::span<double> diagonal) {
+  const std::vector<Offset>& offset = term_.bonds().offset;
+  Offset longest = 0;
+  for (std::size_t i = 1; i < offset.size(); ++i) {
+    longest = std::max(longest, offset[i] - offset[i - 1]);
+  }
+  const int threads = workspace_.threads.threads();
+  dispatch(at, [&](auto d, const auto& law, const double* largest_stretch) {
+    constexpr std::size_t entries = decltype(d)::value * decltype(d)::value;
+    std::vector<std::vector<double>> rows(std::size_t(threads),
+                                          std::vector<double>(std::size_t(longest) * entries));
+    BondKernels<decltype(d)::value>::template tangent<Tangent::Blocks::whole>(
+        workspace_, law, at.displacement, largest_stretch, projection,
+        [&](int thread, Index) { return rows[std::size_t(thread)].data(); },
+        [&](int thread, Index i) {
+          const std::size_t bonds = std::size_t(offset[i + 1] - offset[i]);
+          visit(thread, i, std::span(rows[std::size_t(thread)]).first(bonds * entries));
+        },
+        diagonal);
+  });
+}
+
+void BondPasses::product(const StateView& at, std::span<const double> v, double projection,
+                         std::span<double> product, Write how) {
+  dispatch(at, [&](auto d, const auto& law, const double* largest_stretch) {
+    BondKernels<decltype(d)::value>::product(workspace_, law, at.displacement, largest_stretch, v,
+                                             projection, product, how);
+  });
+}
+
+void BondPasses::point_energies(const StateView& at, std::span<double> energies, Write how) {
+  dispatch(at, [&](auto d, const auto& law, const double* largest_stretch) {
+    BondKernels<decltype(d)::value>::point_energies(workspace_, law, at.displacement,
+                                                    largest_stretch, energies, how);
+  });
+}
+
+void BondPasses::write_tangent(const StateView& at, double projection, Tangent& tangent) {
+  dispatch(at, [&](auto d, const auto& law, const double* largest_stretch) {
+    using Kernels = BondKernels<decltype(d)::value>;
+    const auto blocks_of = [&](int, Index i) {
+      return &tangent.off_diagonal[std::size_t(pattern_.offset[i]) * tangent.block_size()];
+    };
+    const auto done = [](int, Index) {};
+    if (tangent.blocks == Tangent::Blocks::whole) {
+      Kernels::template tangent<Tangent::Blocks::whole>(workspace_, law, at.displacement,
+                                                        largest_stretch, projection, blocks_of,
+                                                        done, tangent.diagonal);
+    } else {
+      Kernels::template tangent<Tangent::Blocks::upper_halves>(workspace_, law, at.displacement,
+                                                               largest_stretch, projection,
+                                                               blocks_of, done, tangent.diagonal);
+    }
+  });
+}
+
+}  // namespace peristat

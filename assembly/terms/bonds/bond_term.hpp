@@ -1,0 +1,62 @@
+#pragma once
+
+#include <memory>
+#include <span>
+#include <variant>
+#include <vector>
+
+#include "assembly/terms/term.hpp"
+#include "src/neighbourhood/bonds.hpp"
+#include "src/potentials/potential.hpp"
+
+namespace peristat {
+
+/// The energy of bonds, the sum of w psi(l; L) ([CPD] eq. 14, one neighbour).
+///
+/// If their potential is one of damage, it remembers the largest stretch of each bond over the
+/// committed states as far as it has damaged it: 0 before, Degraded::never_fails where the term
+/// says so.
+class BondTerm : public Term {
+ public:
+  /// @param never_fails per bond, 1: no damage whatever the stretch; empty: none
+  BondTerm(std::shared_ptr<const Bonds> bonds, BondPotential potential,
+           std::vector<char> never_fails = {})
+      : bonds_(std::move(bonds)),
+        potential_(std::move(potential)),
+        never_fails_(std::move(never_fails)) {}
+
+  [[nodiscard]] const Bonds& bonds() const { return *bonds_; }
+  [[nodiscard]] const BondPotential& potential() const { return potential_; }
+  [[nodiscard]] bool can_fail() const {
+    return std::visit([]<class P>(const P&) { return PotentialWithHistory<P>; }, potential_);
+  }
+
+  /// Calls visit(law) if the bonds can be damaged.
+  template <class Visit>
+  void with_damage_law(const Visit& visit) const {
+    std::visit(
+        [&]<class P>(const P& law) {
+          if constexpr (PotentialWithHistory<P>) visit(law);
+        },
+        potential_);
+  }
+
+  /// What it remembers if its bonds have had these largest stretches.
+  /// @throws std::logic_error unless there is one for every bond
+  [[nodiscard]] std::vector<double> history_of(std::span<const double> largest_stretches) const;
+
+  [[nodiscard]] Couplings couplings() const override { return *bonds_; }
+  [[nodiscard]] bool has_symmetric_blocks() const override { return true; }
+  [[nodiscard]] bool visits_rows() const override { return true; }
+  [[nodiscard]] Balances balances() const override;
+  [[nodiscard]] std::vector<double> initial_history() const override;
+  [[nodiscard]] std::vector<InteractionCount> counts() const override;
+  [[nodiscard]] std::unique_ptr<TermPasses> passes(const TermSetting& setting) const override;
+
+ private:
+  std::shared_ptr<const Bonds> bonds_;
+  BondPotential potential_;
+  std::vector<char> never_fails_;
+};
+
+}  // namespace peristat

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <span>
+
+#include "assembly/terms/workspace.hpp"
+#include "src/aligned_vector.hpp"
+#include "src/neighbourhood/bonds.hpp"
+#include "src/points/points.hpp"
+
+namespace peristat {
+
+/// Doubles of a gathered row: two vectors of the dimension, each padded to a transposition's width
+/// where they don't fit one together.
+constexpr int row_width(int dimension) { return dimension == 3 ? 8 : 4; }
+
+/// What the passes over bonds work with.
+struct BondWorkspace {
+  BondWorkspace(const Points& of, const Bonds& with, Workspace& shared)
+      : points(of),
+        bonds(with),
+        threads(shared),
+        rows(std::size_t(of.count()) * row_width(of.dimension)) {}
+
+  const Points& points;
+  const Bonds& bonds;
+  Workspace& threads;
+  AlignedVector<double> rows;  ///< per point, what kernels gather; see pack
+
+  /// Gathered rows: two vectors per point, e.g. reference position and displacement.
+  template <int D>
+  void pack(std::span<const double> first, std::span<const double> second) {
+    constexpr int width = row_width(D);
+    const Index count = points.count();
+#pragma omp parallel for num_threads(threads.threads())
+    for (Index i = 0; i < count; ++i) {
+      double* row = &rows[std::size_t(i) * width];
+      for (int c = 0; c < D; ++c) {
+        row[c] = first[std::size_t(i) * D + c];
+        row[width / 2 + c] = second[std::size_t(i) * D + c];
+      }
+    }
+  }
+};
+
+}  // namespace peristat

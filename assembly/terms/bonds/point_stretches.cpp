@@ -1,0 +1,58 @@
+#include "assembly/terms/bonds/point_stretches.hpp"
+
+#include <algorithm>
+#include <type_traits>
+
+#include "assembly/terms/damage.hpp"
+#include "src/measures/length.hpp"
+
+namespace peristat {
+namespace {
+
+constexpr double none = -2.0;  // below every stretch
+
+template <int D>
+void find_largest(const Points& points, const Model& model, const StateView& at,
+                  std::span<double> stretches) {
+  const std::vector<char> broken = broken_bonds(model, at.history);
+  const Bonds& bonds = model.bonds();
+  const auto difference = [](std::span<const double> field, Index i, Index j) {
+    Vector<D, double> result;
+    for (int c = 0; c < D; ++c) {
+      result[c] = field[std::size_t(j) * D + c] - field[std::size_t(i) * D + c];
+    }
+    return result;
+  };
+  for (Index i = 0; i < bonds.points(); ++i) {
+    for (Offset bond = bonds.offset[i]; bond < bonds.offset[i + 1]; ++bond) {
+      if (!broken.empty() && broken[bond]) continue;
+      const Index j = bonds.partner[bond];
+      const double stretch =
+          Length::at<D, double>(bonds.inverse_length(bond), {difference(points.reference, i, j)},
+                                {difference(at.displacement, i, j)})
+              .relative_change;
+      stretches[i] = std::max(stretches[i], stretch);
+      stretches[j] = std::max(stretches[j], stretch);
+    }
+  }
+}
+
+}  // namespace
+
+void point_stretches(const Points& points, const Model& model, const StateView& at,
+                     std::span<double> stretches) {
+  std::fill(stretches.begin(), stretches.end(), none);
+  switch (points.dimension) {
+    case 1:
+      find_largest<1>(points, model, at, stretches);
+      break;
+    case 2:
+      find_largest<2>(points, model, at, stretches);
+      break;
+    default:
+      find_largest<3>(points, model, at, stretches);
+  }
+  std::replace(stretches.begin(), stretches.end(), none, 0.0);
+}
+
+}  // namespace peristat

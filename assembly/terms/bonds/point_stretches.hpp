@@ -1,0 +1,15 @@
+#pragma once
+
+#include <span>
+
+#include "assembly/energy/state.hpp"
+#include "assembly/terms/model.hpp"
+#include "src/points/points.hpp"
+
+namespace peristat {
+
+/// Largest stretch l/L - 1 of the unbroken bonds of each point; 0 without such a bond.
+void point_stretches(const Points& points, const Model& model, const StateView& at,
+                     std::span<double> stretches);
+
+}  // namespace peristat

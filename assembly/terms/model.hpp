@@ -1,0 +1,54 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "assembly/terms/bonds/bond_term.hpp"
+#include "assembly/terms/term.hpp"
+
+namespace peristat {
+
+/// The discrete energy of a body: a sum of terms on a network of bonds, which tells what hangs
+/// together, what a crack cuts and what is damaged. Copies share their terms.
+class Model {
+ public:
+  Model() : Model(Bonds{{0}, {}, {}}) {}
+
+  /// Bonds that hold together what terms to come have energies of.
+  explicit Model(Bonds network) : bonds_(std::make_shared<const Bonds>(std::move(network))) {}
+
+  /// Bonds with the energy sum_b w psi(l; L).
+  /// @param never_fails per bond, 1: no damage whatever the stretch; empty: none
+  Model(Bonds network, BondPotential potential, std::vector<char> never_fails = {});
+
+  void add(std::shared_ptr<Term> term) { terms_.push_back(std::move(term)); }
+
+  [[nodiscard]] const Bonds& bonds() const { return *bonds_; }
+  [[nodiscard]] const std::vector<std::shared_ptr<Term>>& terms() const { return terms_; }
+
+  /// The energy of the bonds, or null.
+  [[nodiscard]] const std::shared_ptr<const BondTerm>& bond_term() const { return bond_term_; }
+  /// The same if they can be damaged, otherwise null.
+  [[nodiscard]] const BondTerm* failing_bonds() const;
+
+  [[nodiscard]] bool has_history() const { return failing_bonds() != nullptr; }
+
+  /// Where a History keeps what a term remembers.
+  /// @throws std::logic_error if it is none of the terms
+  [[nodiscard]] std::size_t slot_of(const Term& term) const;
+
+  /// Blocks that any term has.
+  [[nodiscard]] BlockPattern pattern() const;
+
+  [[nodiscard]] bool has_symmetric_blocks() const;
+  /// Whether its tangent can do without being stored.
+  [[nodiscard]] bool visits_rows() const;
+  [[nodiscard]] Balances balances() const;
+
+ private:
+  std::shared_ptr<const Bonds> bonds_;
+  std::shared_ptr<const BondTerm> bond_term_;
+  std::vector<std::shared_ptr<Term>> terms_;
+};
+
+}  // namespace peristat

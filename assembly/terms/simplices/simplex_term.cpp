@@ -1,0 +1,180 @@
+#include "assembly/terms/simplices/simplex_term.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+#include <type_traits>
+
+#include "assembly/terms/model.hpp"
+#include "assembly/terms/simplices/simplex_kernels.hpp"
+
+namespace peristat {
+namespace {
+
+void clear(std::span<double> result) { std::fill(result.begin(), result.end(), 0.0); }
+
+template <int D>
+class SimplexPasses : public TermPasses {
+ public:
+  SimplexPasses(const SimplexTerm& term, const TermSetting& setting)
+      : term_(term),
+        model_(setting.model),
+        slot_(setting.model.slot_of(term)),
+        workspace_(term, setting) {}
+
+  Stored gradient(const StateView& at, std::span<double> gradient, Write how) override {
+    if (how == Write::over) clear(gradient);
+    return Kernels::gradient(workspace_, at.displacement, integrity_after(at.history), gradient);
+  }
+
+  Stored commit(std::span<const double> displacement, History& history, std::span<double> gradient,
+                Write how) override {
+    const History before = history;
+    term_.follow(model_, history);
+    Stored stored = this->gradient({displacement, history}, gradient, how);
+    stored.moves_equilibrium = !std::ranges::equal(before.of(slot_), history.of(slot_));
+    if (stored.moves_equilibrium) {
+      const double energy = this->gradient({displacement, before}, {}, how).energy;
+      // No integrity rises in a commit, but for the last digit of an exponential.
+      stored.released = std::max(energy - stored.energy, 0.0);
+    }
+    return stored;
+  }
+
+  void tangent(const StateView& at, double projection, Tangent& tangent, Write how) override {
+    if (tangent.blocks != Tangent::Blocks::whole) {
+      throw std::logic_error("the blocks of triangles and tetrahedra are not symmetric");
+    }
+    if (how == Write::over) tangent.clear();
+    Kernels::tangent(workspace_, at.displacement, integrity_after(at.history), projection, tangent);
+  }
+
+  void product(const StateView& at, std::span<const double> v, double projection,
+               std::span<double> product, Write how) override {
+    if (projection != 0.0) {
+      throw std::logic_error("triangles and tetrahedra have no projected product");
+    }
+    if (how == Write::over) clear(product);
+    Kernels::product(workspace_, at.displacement, integrity_after(at.history), v, product);
+  }
+
+  void point_energies(const StateView& at, std::span<double> energies, Write how) override {
+    if (how == Write::over) clear(energies);
+    Kernels::point_energies(workspace_, at.displacement, integrity_after(at.history), energies);
+  }
+
+ private:
+  using Kernels = SimplexKernels<D>;
+
+  [[nodiscard]] Integrity integrity_after(const History& history) const {
+    const std::span<const double> integrity = history.of(slot_);
+    if (integrity.empty()) return {};
+    const auto bonds = std::size_t(term_.bonds().count());
+    return {integrity.first(bonds), integrity.subspan(bonds)};
+  }
+
+  const SimplexTerm& term_;
+  const Model& model_;
+  std::size_t slot_;
+  SimplexWorkspace<D> workspace_;
+};
+
+template <class Kind>
+bool is_negative(const std::optional<Kind>& kind) {
+  return kind && std::visit([](const auto& law) { return law.modulus < 0.0; }, kind->potential);
+}
+
+/// The same names for one kind of simplices as for the other.
+template <class Measure>
+InteractionCount count_of(const Simplices<Measure>& kind) {
+  constexpr bool is_triangle = Measure::arms == 2;
+  const auto& interactions = kind.interactions;
+  if constexpr (is_triangle) {
+    return {"triangles",
+            interactions.count(),
+            "neighbour_pairs",
+            "contributing ordered pairs of neighbours, #N2",
+            interactions.per_point(),
+            2};
+  } else {
+    return {"tetrahedra",
+            interactions.count(),
+            "neighbour_triplets",
+            "contributing ordered triplets of neighbours, #N3",
+            interactions.per_point(),
+            6};
+  }
+}
+
+}  // namespace
+
+SimplexTerm::SimplexTerm(std::shared_ptr<const BondTerm> bonds,
+                         std::optional<Simplices<Area>> triangles,
+                         std::optional<Simplices<Volume>> tetrahedra)
+    : bonds_(std::move(bonds)),
+      triangles_(std::move(triangles)),
+      tetrahedra_(std::move(tetrahedra)) {
+  if (bonds_->can_fail() && (is_negative(triangles_) || is_negative(tetrahedra_))) {
+    throw std::logic_error("what is lost with a bond must not hold negative energy");
+  }
+}
+
+Balances SimplexTerm::balances() const {
+  Balances balances;
+  balances.positive_energy = !is_negative(triangles_) && !is_negative(tetrahedra_);
+  return balances;
+}
+
+/// Takes the integrity of bonds and points from the histories of the bonds.
+void SimplexTerm::follow(const Model& model, History& history) const {
+  const auto count = std::size_t(bonds().count());
+  bonds_->with_damage_law([&](const auto& law) {
+    std::vector<double> integrity(count + std::size_t(bonds().points()), 1.0);
+    double* const of_point = integrity.data() + count;
+    const std::span<const double> largest_stretch = history.of(model.slot_of(*bonds_));
+    for (Index i = 0; i < bonds().points(); ++i) {
+      for (Offset bond = bonds().offset[i]; bond < bonds().offset[i + 1]; ++bond) {
+        integrity[bond] = law.integrity_after(largest_stretch[bond]);
+        for (const Index point : {i, bonds().partner[bond]}) {
+          of_point[point] = std::min(of_point[point], integrity[bond]);
+        }
+      }
+    }
+    const std::size_t slot = model.slot_of(*this);
+    const std::span<const double> before = history.of(slot);
+    const bool is_whole = std::ranges::all_of(integrity, [](double left) { return left == 1.0; });
+    const bool is_known = before.empty() ? is_whole : std::ranges::equal(integrity, before);
+    if (!is_known) history.replace(slot, std::move(integrity));
+  });
+}
+
+std::vector<InteractionCount> SimplexTerm::counts() const {
+  std::vector<InteractionCount> counts;
+  for_each_kind([&](const auto& kind) { counts.push_back(count_of(kind)); });
+  return counts;
+}
+
+double SimplexTerm::bytes_to_store() const {
+  double bytes = 0.0;
+  for_each_kind([&](const auto& kind) { bytes += kind.interactions.stored_bytes(); });
+  return bytes;
+}
+
+double SimplexTerm::stored_bytes() const {
+  double bytes = 0.0;
+  for_each_kind([&](const auto& kind) {
+    if (kind.interactions.is_stored()) bytes += kind.interactions.stored_bytes();
+  });
+  return bytes;
+}
+
+void SimplexTerm::store(const Points& points, int threads) {
+  if (triangles_) triangles_->interactions.store(points, bonds(), threads);
+  if (tetrahedra_) tetrahedra_->interactions.store(points, bonds(), threads);
+}
+
+std::unique_ptr<TermPasses> SimplexTerm::passes(const TermSetting& setting) const {
+  if (setting.points.dimension == 2) return std::make_unique<SimplexPasses<2>>(*this, setting);
+  return std::make_unique<SimplexPasses<3>>(*this, setting);
+}
+
+}  // namespace peristat

@@ -1,0 +1,65 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "assembly/terms/bonds/bond_term.hpp"
+#include "assembly/terms/term.hpp"
+#include "src/neighbourhood/interactions.hpp"
+#include "src/potentials/potential.hpp"
+
+namespace peristat {
+
+/// Triangles or tetrahedra with their potential.
+template <class Measure>
+struct Simplices {
+  Interactions<Measure> interactions;
+  HigherPotential potential;
+};
+
+/// The energies of triangles and tetrahedra, sums of w psi(a; A) and w psi(v; V) ([CPD] eq. 14, two
+/// and three neighbours). Both are passed over at once: they share the neighbourhoods of their
+/// points.
+///
+/// A triangle or tetrahedron loses its stiffness with the bonds it stands on: its energy is
+/// multiplied by the product of the integrities T(kappa) that the committed histories leave to
+/// them. These are constant between commits, so that the product has no derivative of its own, and
+/// forces and tangent stay those of one energy. The term remembers the integrity of every bond and
+/// then of every point, the least of its bonds'.
+class SimplexTerm : public Term {
+ public:
+  /// @param bonds that they stand on
+  /// @throws std::logic_error for a negative constant if these can be damaged: what is lost with
+  ///         them would have to be paid with energy that nobody has put in
+  SimplexTerm(std::shared_ptr<const BondTerm> bonds, std::optional<Simplices<Area>> triangles,
+              std::optional<Simplices<Volume>> tetrahedra);
+
+  [[nodiscard]] const BondTerm& bond_term() const { return *bonds_; }
+  [[nodiscard]] const Bonds& bonds() const { return bonds_->bonds(); }
+  [[nodiscard]] const std::optional<Simplices<Area>>& triangles() const { return triangles_; }
+  [[nodiscard]] const std::optional<Simplices<Volume>>& tetrahedra() const { return tetrahedra_; }
+
+  /// Calls visit(simplices) for the triangles and for the tetrahedra, if there are any.
+  template <class Visit>
+  void for_each_kind(const Visit& visit) const {
+    if (triangles_) visit(*triangles_);
+    if (tetrahedra_) visit(*tetrahedra_);
+  }
+
+  [[nodiscard]] Couplings couplings() const override { return bonds(); }
+  [[nodiscard]] Balances balances() const override;
+  void follow(const Model& model, History& history) const override;
+  [[nodiscard]] std::vector<InteractionCount> counts() const override;
+  [[nodiscard]] double bytes_to_store() const override;
+  [[nodiscard]] double stored_bytes() const override;
+  void store(const Points& points, int threads) override;
+  [[nodiscard]] std::unique_ptr<TermPasses> passes(const TermSetting& setting) const override;
+
+ private:
+  std::shared_ptr<const BondTerm> bonds_;
+  std::optional<Simplices<Area>> triangles_;
+  std::optional<Simplices<Volume>> tetrahedra_;
+};
+
+}  // namespace peristat

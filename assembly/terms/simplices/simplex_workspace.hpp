@@ -1,0 +1,39 @@
+#pragma once
+
+#include <vector>
+
+#include "assembly/terms/simplices/local_workspace.hpp"
+#include "assembly/terms/simplices/simplex_term.hpp"
+#include "assembly/terms/workspace.hpp"
+
+namespace peristat {
+
+/// What the passes over triangles and tetrahedra of one dimension work with.
+template <int D>
+struct SimplexWorkspace {
+  SimplexWorkspace(const SimplexTerm& of, const TermSetting& setting)
+      : term(of),
+        pattern(setting.pattern),
+        places(setting.pattern.places_of(of.couplings())),
+        threads(setting.workspace) {
+    for (const RowRange& range : threads.ranges) {
+      const Offset beyond = pattern.offset[range.reach] - pattern.offset[range.last];
+      blocks.emplace_back(std::size_t(beyond) * D * D);
+      local.push_back(std::make_unique<LocalWorkspace<D>>(setting.points, of.bonds()));
+    }
+  }
+
+  const SimplexTerm& term;
+  const BlockPattern& pattern;
+  std::vector<Offset> places;  ///< of the bonds' blocks in the pattern; empty: in its order
+  Workspace& threads;
+  std::vector<std::unique_ptr<LocalWorkspace<D>>> local;  ///< per thread
+  std::vector<std::vector<double>> blocks;  ///< per thread, off-diagonal blocks of rows last..reach
+
+  /// Where the block of a bond is in the pattern.
+  [[nodiscard]] Offset place(Offset bond) const {
+    return places.empty() ? bond : places[std::size_t(bond)];
+  }
+};
+
+}  // namespace peristat
