@@ -202,9 +202,9 @@ class LoadPath {
     const bool grows = attempt.iterations <= options_.easy_iterations && implicit_.grow();
     const bool is_exact = attempt.note.empty();
     tell(target, attempted, attempt.outcome,
-         !is_exact ? "accept at round-off"
-         : grows   ? "accept and grow"
-                   : "accept",
+         !is_exact ? Decision::accept_at_round_off
+         : grows   ? Decision::accept_and_grow
+                   : Decision::accept,
          implicit_.value(),
          is_exact ? std::to_string(attempt.iterations) + " iterations" : attempt.note);
     return accept(std::move(found), std::move(attempt));
@@ -222,7 +222,7 @@ class LoadPath {
     if (!near && implicit_.can_cut_to(rest)) {
       is_near_onset_ = true;
       implicit_.cut_to(rest);
-      tell(target, attempted, Outcome::converged, "cut", rest, why);
+      tell(target, attempted, Outcome::converged, Decision::cut, rest, why);
       return true;
     }
     return hand_over(target, attempted, Outcome::converged, why);
@@ -241,7 +241,7 @@ class LoadPath {
     const double next = attempted * options_.cut;
     if (worth_cutting(attempt) && implicit_.can_cut_to(next)) {
       implicit_.cut_to(next);
-      tell(target, attempted, attempt.outcome, "cut", next, reason);
+      tell(target, attempted, attempt.outcome, Decision::cut, next, reason);
       return true;
     }
     if (is_limit_point(attempt)) {
@@ -286,7 +286,7 @@ class LoadPath {
     relaxes_ = true;
     is_near_onset_ = false;
     motion_ = {};
-    tell(target, attempted, outcome, "hand over to relaxation", relaxed_.value(), reason);
+    tell(target, attempted, outcome, Decision::hand_over, relaxed_.value(), reason);
     return true;
   }
 
@@ -308,8 +308,8 @@ class LoadPath {
   void hand_back() {
     relaxes_ = false;
     implicit_.start_again();
-    tell(result_.state.load_factor, 0.0, Outcome::converged, "hand back to newton",
-         implicit_.value(), "no bond was damaged in the last step, which ended in equilibrium");
+    tell(result_.state.load_factor, 0.0, Outcome::converged, Decision::hand_back, implicit_.value(),
+         "no bond was damaged in the last step, which ended in equilibrium");
   }
 
   // ---- Relaxed steps
@@ -429,7 +429,7 @@ class LoadPath {
         explanation(attempt.outcome) + (what.empty() ? "" : " (" + what + ")");
     if (worth_cutting(attempt) && relaxed_.can_cut_to(next)) {
       relaxed_.cut_to(next);
-      tell(attempt.load_factor, attempted, attempt.outcome, "cut", next, reason);
+      tell(attempt.load_factor, attempted, attempt.outcome, Decision::cut, next, reason);
       return true;
     }
     return stop(std::move(attempt), attempted, reason);
@@ -439,7 +439,7 @@ class LoadPath {
     const bool grew = relaxed_.grow();
     const bool was_damaged = step.found.growth.degrading > 0;
     tell(step.attempt.load_factor, attempted, step.attempt.outcome,
-         grew ? "accept and grow" : "accept", relaxed_.value(),
+         grew ? Decision::accept_and_grow : Decision::accept, relaxed_.value(),
          std::to_string(step.found.record.relaxation_iterations) + " iterations of relaxation");
     if (!accept(std::move(step.found), std::move(step.attempt))) return false;
     const bool hands_back =
@@ -450,8 +450,8 @@ class LoadPath {
 
   // ---- What follows a search
 
-  void tell(double load_factor, double increment, Outcome outcome, const std::string& action,
-            double next, const std::string& reason) {
+  void tell(double load_factor, double increment, Outcome outcome, Decision action, double next,
+            const std::string& reason) {
     if (!observer_.decision) return;
     DecisionRecord decision;
     decision.step = next_step();
@@ -474,7 +474,7 @@ class LoadPath {
 
   bool stop(Attempt attempt, double attempted, const std::string& reason) {
     if (!attempt.inertia && attempt.has_negative_pivots) count_pivots(attempt);
-    tell(attempt.load_factor, attempted, attempt.outcome, "stop", 0.0, reason);
+    tell(attempt.load_factor, attempted, attempt.outcome, Decision::stop, 0.0, reason);
     result_.outcome = attempt.outcome;
     result_.last_attempt = std::move(attempt);
     return false;
@@ -564,7 +564,7 @@ class LoadPath {
     }
     pins_.pin();
     tell(result_.state.load_factor, 0.0, Outcome::converged,
-         pins_.removes_pieces() ? "remove fragments" : "hold fragments",
+         pins_.removes_pieces() ? Decision::remove_fragments : Decision::hold_fragments,
          relaxes_ ? relaxed_.value() : implicit_.value(), pins_.described());
     motion_ = {};
     return analyze();

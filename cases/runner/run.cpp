@@ -299,7 +299,7 @@ Exit run_case(const Case& from, const RunOptions& options, Progress& progress, S
         DecisionRecord record;
         record.step = last_step.step + 1;
         record.load_factor = last_step.load_factor;
-        record.action = "change linear solver";
+        record.action = Decision::change_linear_solver;
         record.reason = reason;
         decide(record);
       });
