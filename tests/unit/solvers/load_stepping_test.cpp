@@ -505,7 +505,7 @@ TEST(LoadStepping, LedgerOfRelaxationClosesThroughDamage) {
 TEST(LoadStepping, TrianglesLoseTheirStiffnessInEquilibrium) {
   // Each loss of a commit lets other bonds take over and is followed to an equilibrium with it.
   for (const Mode mode : {Mode::relaxation, Mode::adaptive}) {
-    SCOPED_TRACE(int(mode));
+    SCOPED_TRACE(mode.name);
     Strip strip(Strip::Middle::weak, drawn("0.045*load"), 1, 0.2);
     const Followed followed = follow(strip, in_mode(mode, 10, 30));
     ASSERT_EQ(followed.result.outcome, Outcome::converged);
