@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "cases/runner/case.hpp"
+#include "solvers/drivers/drivers.hpp"
 
 namespace peristat {
 
@@ -62,8 +63,11 @@ inline const Choices<DamageLaw> damage_laws{{"none", DamageLaw::none},
                                             {"critical_stretch", DamageLaw::critical_stretch},
                                             {"tanh", DamageLaw::tanh},
                                             {"tanh_continuous", DamageLaw::tanh_continuous}};
-inline const Choices<Mode> modes{
-    {"newton", Mode::newton}, {"relaxation", Mode::relaxation}, {"adaptive", Mode::adaptive}};
+inline const Choices<Mode> modes = [] {
+  Choices<Mode> all;
+  for (const DriverEntry& driver : all_drivers()) all.emplace_back(driver.mode.name, driver.mode);
+  return all;
+}();
 inline const Choices<FragmentRemedy> fragment_remedies{{"hold", FragmentRemedy::hold},
                                                        {"remove", FragmentRemedy::remove},
                                                        {"stop", FragmentRemedy::stop}};

@@ -148,7 +148,7 @@ Dossier make_dossier(const Case& from, const Body& body, const LoadSteppingResul
   const std::size_t first = decisions.size() - std::min(decisions_told, decisions.size());
   for (std::size_t k = first; k < decisions.size(); ++k) {
     const DecisionRecord& row = decisions[k];
-    say(fmt::format("  step {}, load {:.9g}: {}; {}", row.step, row.load_factor, row.action,
+    say(fmt::format("  step {}, load {:.9g}: {}; {}", row.step, row.load_factor, name(row.action),
                     row.reason));
   }
   return dossier;

@@ -115,14 +115,14 @@ void Progress::iteration(const IterationRecord& record) {
 }
 
 void Progress::decision(const DecisionRecord& record) {
-  if (record.action == "accept") return;
-  if (record.action == "accept and grow") {
+  if (record.action == Decision::accept) return;
+  if (record.action == Decision::accept_and_grow) {
     say(fmt::format("  next step of the load factor grows to {:.4g}", record.next_increment));
     return;
   }
-  const std::string what = record.action == "cut"
+  const std::string what = record.action == Decision::cut
                                ? fmt::format("step cut to {:.4g}", record.next_increment)
-                               : record.action;
+                               : name(record.action);
   // Where a search has converged, what follows from its state is told, not that it has.
   const std::string why = record.outcome == "converged"
                               ? record.reason

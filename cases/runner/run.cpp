@@ -9,15 +9,12 @@
 #include <H5public.h>
 #include <fmt/format.h>
 
-#include "assembly/terms/bonds/point_stretches.hpp"
-#include "assembly/terms/damage.hpp"
 #include "cases/runner/body.hpp"
-#include "cases/runner/damage_histories.hpp"
 #include "cases/runner/dossier.hpp"
 #include "cases/runner/failure.hpp"
 #include "cases/runner/interruption.hpp"
 #include "cases/runner/probe.hpp"
-#include "cases/runner/progress.hpp"
+#include "cases/runner/recorder.hpp"
 #include "cases/runner/rest_stability.hpp"
 #include "cases/runner/solver_options.hpp"
 #include "solvers/linear/cholesky.hpp"
@@ -74,113 +71,6 @@ std::vector<PointCounts> neighbour_counts_of(const Body& body) {
   }
   return counts;
 }
-
-/// Turns accepted equilibria into rows, fields and probes of the results folder.
-class Recorder {
- public:
-  Recorder(const Case& from, const Body& body, Assembler& assembler, Results& results,
-           Progress& progress)
-      : case_(from),
-        points_(body.points),
-        assembler_(assembler),
-        results_(results),
-        progress_(progress),
-        body_(body),
-        separated_(body.cut_bonds) {}
-
-  void iteration(const IterationRecord& record) {
-    relative_residual_ = record.relative_residual;
-    results_.add(record);
-    progress_.iteration(record);
-  }
-
-  void accepted(StepRecord record, const AcceptedState& state) {
-    const std::size_t points = points_.volume.size();
-    const StateView at = state.trial.at();
-    const std::span<const double> stretches = bond_stretches(body_.model, at.history);
-    Fields made{state.trial.displacement,
-                state.trial.gradient,
-                std::vector<double>(points),
-                std::vector<double>(points),
-                std::vector<double>(points),
-                std::vector<double>(points, 0.0),
-                told_histories_.changes(body_.model.bonds(), stretches)};
-    for (double& force : made.force) force = -force;
-    assembler_.point_energies(at, made.energy_density);
-    point_stretches(points_, body_.model, at, made.stretch);
-    record.max_stretch = *std::max_element(made.stretch.begin(), made.stretch.end());
-    const auto cut_weight =
-        case_.output.count_cracks ? std::span(body_.cut_weight) : std::span<const double>();
-    record.max_damage = assess_damage(body_.model, at.history, cut_weight, made.damage).max_damage;
-    std::copy(state.piece.begin(), state.piece.end(), made.fragment.begin());
-    tell_broken_bonds(record, at.history);
-    for (std::size_t i = 0; i < points; ++i) made.energy_density[i] /= points_.volume[i];
-    const StepFields fields = made.view();
-    for (const ProbeSpecification& probe : case_.probes) {
-      record.probes[probe.name] = probe_values(probe, points_, fields, separated_);
-    }
-    const bool write_fields = record.step % case_.output.every == 0;
-    results_.add(record, write_fields ? std::optional(fields) : std::nullopt);
-    if (write_fields) told_histories_.tell(stretches);
-    progress_.accepted(record, relative_residual_);
-    last_ = std::move(record);
-    unwritten_.reset();
-    if (!write_fields) unwritten_ = std::move(made);
-  }
-
-  /// Writes the fields of the last accepted state, whatever output.every says.
-  void finish() {
-    if (unwritten_) results_.add_fields(*last_, unwritten_->view());
-  }
-
-  [[nodiscard]] const std::optional<StepRecord>& last() const { return last_; }
-
- private:
-  struct Fields {
-    std::vector<double> displacement, force, damage, energy_density, stretch, fragment;
-    std::optional<BondHistories> histories;
-    [[nodiscard]] StepFields view() const {
-      return {&displacement,
-              &force,
-              &damage,
-              &energy_density,
-              &stretch,
-              &fragment,
-              histories ? &*histories : nullptr};
-    }
-  };
-
-  /// Adds the bonds that have broken since the last step to the results.
-  void tell_broken_bonds(const StepRecord& record, const History& history) {
-    std::vector<char> broken = broken_bonds(body_.model, history);
-    if (broken.empty()) return;
-    broken_.resize(broken.size(), 0);
-    std::vector<BrokenBondRecord> records;
-    const Bonds& bonds = body_.model.bonds();
-    for (Index i = 0; i < bonds.points(); ++i) {
-      for (Offset bond = bonds.offset[i]; bond < bonds.offset[i + 1]; ++bond) {
-        if (!broken[bond] || broken_[bond]) continue;
-        records.push_back({record.step, record.load_factor, i, bonds.partner[bond]});
-        separated_.push_back({i, bonds.partner[bond]});
-      }
-    }
-    broken_ = std::move(broken);
-    results_.add(records);
-  }
-
-  const Case& case_;
-  const Points& points_;
-  Assembler& assembler_;
-  Results& results_;
-  Progress& progress_;
-  const Body& body_;
-  std::optional<Fields> unwritten_;  // of the last step, if it only entered the history
-  std::vector<char> broken_;         // per bond, in the last accepted state
-  DamageHistories told_histories_;   // in the last state that was written with fields
-  std::vector<BondEnds> separated_;  // by pre-cracks, and broken until the last accepted state
-  double relative_residual_ = 0.0;
-  std::optional<StepRecord> last_;
-};
 
 /// What is known of a run before its first step.
 void count(const Body& body, const FreeDofs& free, const RunOptions& options, Summary& summary) {
@@ -269,119 +159,146 @@ std::map<std::string, std::string> versions() {
 
 namespace {
 
-/// @param results is made as soon as the case is known to be right
-Exit run_case(const Case& from, const RunOptions& options, Progress& progress, Summary& summary,
-              std::optional<Results>& results) {
-  std::optional<Stopwatch> total(std::in_place, summary.seconds.total);
-  progress.say(from.title.empty() ? from.file : fmt::format("{} ({})", from.title, from.file));
+/// A run of a case, step by step.
+class CaseRun {
+ public:
+  /// @param results is made as soon as the case is known to be right
+  CaseRun(const Case& from, const RunOptions& options, Progress& progress, Summary& summary,
+          std::optional<Results>& results)
+      : from_(from), options_(options), progress_(progress), summary_(summary), results_(results) {}
 
-  const std::unique_ptr<const Body> made = make_body(from, options.threads);
-  const Body& body = *made;
-  refuse_unheld_bodies(from, body);
-  refuse_unstable_rest(from, body, options.threads);
-  std::vector<DecisionRecord> decisions;
-  const auto decide = [&](const DecisionRecord& record) {
-    decisions.push_back(record);
-    results->add(record);
-    progress.decision(record);
-  };
-  StepRecord last_step;
-  const MemoryEstimate estimate = estimate_memory(body);
-  const LinearSystems systems =
-      choose_linear_systems(from, estimate, [&](const std::string& reason) {
-        DecisionRecord record;
-        record.step = last_step.step + 1;
-        record.load_factor = last_step.load_factor;
-        record.action = "change linear solver";
-        record.reason = reason;
-        decide(record);
-      });
-  require_memory(systems.bytes, fmt::format("the case with {} points", body.points.count()));
-  const FreeDofs free(body.conditions->prescribed(), from.dimension);
-  progress.say(fmt::format("{} points, {} bonds, {} free degrees of freedom, {} threads",
-                           body.points.count(), body.model.bonds().count(), free.count(),
-                           options.threads));
-  for (const std::string& line : describe_interactions(body)) progress.say(line);
-  count(body, free, options, summary);
-
-  heed_interruptions();
-  std::vector<ProbeColumns> probes;
-  for (const auto& probe : from.probes) probes.push_back(columns_of(probe, from.dimension));
-  try {
-    results.emplace(
-        from.output.directory, body.points,
-        CaseText{from.as_read, from.as_resolved, from.title, versions(), identity(from.file)},
-        support_sets(from), probes, neighbour_counts_of(body), options.overwrite);
-  } catch (const InputError& error) {
-    throw located(from, error);
+  Exit run() {
+    std::optional<Stopwatch> total(std::in_place, summary_.seconds.total);
+    progress_.say(from_.title.empty() ? from_.file
+                                      : fmt::format("{} ({})", from_.title, from_.file));
+    make();
+    heed_interruptions();
+    open_results();
+    const LoadSteppingResult result = follow();
+    conclude(result);
+    total.reset();
+    results_->close(summary_);
+    return tell(result);
   }
-  leave_note(from.output.directory);
 
-  Assembler assembler(body.points, body.model, options.threads);
-  const std::unique_ptr<TangentOperator> tangent = systems.make_tangent(assembler);
-  LinearSolver& solver = *systems.chosen.solver;
-  const LinearOutcome analysis = solver.analyze(assembler.pattern(), free);
-  progress.say(fmt::format("linear solver: {}{} ({})", solver.describe(),
-                           systems.is_stored ? "" : ", tangent matrix-free",
-                           systems.chosen.reason));
+ private:
+  /// Body, equations and their solver; refuses what can't be run.
+  void make() {
+    body_ = make_body(from_, options_.threads);
+    refuse_unheld_bodies(from_, *body_);
+    refuse_unstable_rest(from_, *body_, options_.threads);
+    systems_ = choose_linear_systems(
+        from_, estimate_memory(*body_),
+        [this](const std::string& reason) { recorder_->changed_solver(reason); });
+    const Index points = body_->points.count();
+    require_memory(systems_.bytes, fmt::format("the case with {} points", points));
+    free_.emplace(body_->conditions->prescribed(), from_.dimension);
+    progress_.say(fmt::format("{} points, {} bonds, {} free degrees of freedom, {} threads", points,
+                              body_->model.bonds().count(), free_->count(), options_.threads));
+    for (const std::string& line : describe_interactions(*body_)) progress_.say(line);
+    count(*body_, *free_, options_, summary_);
+  }
 
-  Recorder recorder(from, body, assembler, *results, progress);
-  LoadSteppingObserver observer;
-  observer.iteration = [&](const IterationRecord& record) { recorder.iteration(record); };
-  observer.decision = decide;
-  observer.accepted = [&](const StepRecord& record, const AcceptedState& state) {
-    recorder.accepted(record, state);
-    last_step = record;
-    summary.max_displacement = largest_displacement(state.trial.displacement, from.dimension);
-  };
-  observer.describe = [&](const InputError& error) {
-    return std::string(located(from, error).what());
-  };
-  observer.interrupted = interruption_requested;
-
-  LoadSteppingResult result;
-  if (analysis == LinearOutcome::solved) {
-    const SolvedBody solved{assembler, solver, *tangent, free};
-    if (const std::optional<Model> stand_in = make_elastic_stand_in(from, body, options.threads)) {
-      result = follow_with_stand_in(from, body, solved, *stand_in, free, observer, summary);
-    } else {
-      result = follow_loading(solved, *body.conditions, load_stepping_options(from),
-                              newton_options(from), observer);
+  void open_results() {
+    std::vector<ProbeColumns> probes;
+    for (const auto& probe : from_.probes) probes.push_back(columns_of(probe, from_.dimension));
+    try {
+      results_.emplace(
+          from_.output.directory, body_->points,
+          CaseText{from_.as_read, from_.as_resolved, from_.title, versions(), identity(from_.file)},
+          support_sets(from_), probes, neighbour_counts_of(*body_), options_.overwrite);
+    } catch (const InputError& error) {
+      throw located(from_, error);
     }
-  } else {
-    result.outcome = Outcome::out_of_memory;
+    leave_note(from_.output.directory);
   }
 
-  const bool interrupted = result.outcome == Outcome::interrupted;
-  const bool completed = result.outcome == Outcome::converged;
-  summary.status = status_of(result.outcome);
-  if (!completed) summary.reason = failure_reason(result);
-  add_costs(assembler, solver, summary);
-  summary.max_displacement = largest_displacement(result.state.displacement, from.dimension);
-  summary.seconds.relaxation = result.relaxation_seconds;
-  summary.seconds.output = results->seconds_spent();
-  recorder.finish();
-  if (!completed && !interrupted) {
-    const Dossier dossier = make_dossier(from, body, result, recorder.last(), decisions);
-    results->add_dossier(dossier.text, dossier.residual, dossier.displacement);
+  LoadSteppingResult follow() {
+    assembler_.emplace(body_->points, body_->model, options_.threads);
+    tangent_ = systems_.make_tangent(*assembler_);
+    recorder_.emplace(from_, *body_, *assembler_, *results_, progress_);
+    LinearSolver& solver = *systems_.chosen.solver;
+    const LinearOutcome analysis = solver.analyze(assembler_->pattern(), *free_);
+    progress_.say(fmt::format("linear solver: {}{} ({})", solver.describe(),
+                              systems_.is_stored ? "" : ", tangent matrix-free",
+                              systems_.chosen.reason));
+    LoadSteppingResult result;
+    if (analysis == LinearOutcome::solved) {
+      result = follow({*assembler_, solver, *tangent_, *free_});
+    } else {
+      result.outcome = Outcome::out_of_memory;
+    }
+    add_costs(*assembler_, solver, summary_);
+    return result;
   }
-  total.reset();
-  results->close(summary);
 
-  if (completed) {
-    tell_result(recorder, progress);
-    progress.say(fmt::format("completed in {:.2f} s: {} steps, {} factorisations; results in {}",
-                             summary.seconds.total, result.steps, summary.factorisations,
-                             from.output.directory.string()));
-    return Exit::done;
+  LoadSteppingResult follow(const SolvedBody& solved) {
+    const LoadSteppingObserver told = observer();
+    if (const std::optional<Model> stand_in =
+            make_elastic_stand_in(from_, *body_, options_.threads)) {
+      return follow_with_stand_in(from_, *body_, solved, *stand_in, *free_, told, summary_);
+    }
+    return follow_loading(solved, *body_->conditions, load_stepping_options(from_),
+                          newton_options(from_), told);
   }
-  progress.problem(summary.reason);
-  progress.problem(
-      fmt::format("{} accepted steps are in {}", result.steps, from.output.directory.string()));
-  if (!interrupted) progress.problem("dossier.txt there tells where it failed and what to do");
-  if (interrupted) return Exit::interrupted;
-  return result.outcome == Outcome::out_of_memory ? Exit::out_of_memory : Exit::not_converged;
-}
+
+  LoadSteppingObserver observer() {
+    LoadSteppingObserver told;
+    told.iteration = [this](const IterationRecord& record) { recorder_->iteration(record); };
+    told.decision = [this](const DecisionRecord& record) { recorder_->decided(record); };
+    told.accepted = [this](const StepRecord& record, const AcceptedState& state) {
+      recorder_->accepted(record, state);
+      summary_.max_displacement = largest_displacement(state.trial.displacement, from_.dimension);
+    };
+    told.describe = [this](const InputError& error) {
+      return std::string(located(from_, error).what());
+    };
+    told.interrupted = interruption_requested;
+    return told;
+  }
+
+  /// What is known of a run after its last step.
+  void conclude(const LoadSteppingResult& result) {
+    summary_.status = status_of(result.outcome);
+    if (result.outcome != Outcome::converged) summary_.reason = failure_reason(result);
+    summary_.max_displacement = largest_displacement(result.state.displacement, from_.dimension);
+    summary_.seconds.relaxation = result.relaxation_seconds;
+    summary_.seconds.output = results_->seconds_spent();
+    recorder_->finish();
+    if (result.outcome == Outcome::converged || result.outcome == Outcome::interrupted) return;
+    const Dossier dossier =
+        make_dossier(from_, *body_, result, recorder_->last(), recorder_->decisions());
+    results_->add_dossier(dossier.text, dossier.residual, dossier.displacement);
+  }
+
+  Exit tell(const LoadSteppingResult& result) {
+    const std::string folder = from_.output.directory.string();
+    if (result.outcome == Outcome::converged) {
+      tell_result(*recorder_, progress_);
+      progress_.say(fmt::format("completed in {:.2f} s: {} steps, {} factorisations; results in {}",
+                                summary_.seconds.total, result.steps, summary_.factorisations,
+                                folder));
+      return Exit::done;
+    }
+    progress_.problem(summary_.reason);
+    progress_.problem(fmt::format("{} accepted steps are in {}", result.steps, folder));
+    if (result.outcome == Outcome::interrupted) return Exit::interrupted;
+    progress_.problem("dossier.txt there tells where it failed and what to do");
+    return result.outcome == Outcome::out_of_memory ? Exit::out_of_memory : Exit::not_converged;
+  }
+
+  const Case& from_;
+  const RunOptions& options_;
+  Progress& progress_;
+  Summary& summary_;
+  std::optional<Results>& results_;
+  std::unique_ptr<const Body> body_;
+  LinearSystems systems_;
+  std::optional<FreeDofs> free_;
+  std::optional<Assembler> assembler_;
+  std::unique_ptr<TangentOperator> tangent_;
+  std::optional<Recorder> recorder_;
+};
 
 }  // namespace
 
@@ -391,7 +308,7 @@ Exit run(const Case& from, const RunOptions& options) {
   Summary summary;
   std::optional<Results> results;
   try {
-    return run_case(from, options, progress, summary, results);
+    return CaseRun(from, options, progress, summary, results).run();
   } catch (...) {
     if (!results) throw;
     const Failure failure = current_failure();

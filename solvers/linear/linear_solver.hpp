@@ -69,6 +69,11 @@ class LinearSolver {
   /// Iterations of the last solve; 0 for a direct solve.
   [[nodiscard]] virtual int last_iterations() const = 0;
 
+  /// Of a ladder of solvers, how many were given up; 0 for a solver by itself.
+  [[nodiscard]] virtual int rung() const { return 0; }
+  /// Where a ladder begins; before `analyze`.
+  virtual void start_at(int /*rung*/) {}
+
   /// A line for the log: what it is and what it costs.
   [[nodiscard]] virtual std::string describe() const = 0;
 };

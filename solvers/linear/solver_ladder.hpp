@@ -32,6 +32,8 @@ class SolverLadder : public LinearSolver {
   [[nodiscard]] LinearStatistics statistics() const override;
   [[nodiscard]] int last_iterations() const override;
   [[nodiscard]] std::string describe() const override;
+  [[nodiscard]] int rung() const override { return int(rung_); }
+  void start_at(int rung) override { rung_ = std::size_t(rung); }
 
  private:
   /// Takes the next rung that can be analysed.

@@ -54,15 +54,30 @@ struct StepRecord {
   std::map<std::string, std::vector<double>> probes;  ///< by probe name: components, or one scalar
 };
 
+/// What load stepping did next.
+enum class Decision {
+  accept,
+  accept_and_grow,
+  accept_at_round_off,
+  cut,
+  stop,
+  hand_over,  ///< to relaxation
+  hand_back,  ///< to Newton's method
+  hold_fragments,
+  remove_fragments,
+  change_linear_solver,
+};
+
+/// As decisions.csv spells it.
+[[nodiscard]] std::string name(Decision decision);
+
 /// One decision of the load stepping (a row of decisions.csv).
 struct DecisionRecord {
   int step = 0;              ///< number that the step has, or would have had
   double load_factor = 0.0;  ///< that was attempted
   double increment = 0.0;    ///< of the load factor that was attempted
   std::string outcome;       ///< name of the equilibrium search's outcome
-  /// "accept", "accept and grow", "accept at round-off", "cut", "stop", "hand over to relaxation",
-  /// "hand back to newton", "hold fragments", "remove fragments", "change linear solver"
-  std::string action;
+  Decision action = Decision::accept;
   double next_increment = 0.0;
   std::string reason;
 };

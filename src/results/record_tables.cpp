@@ -137,8 +137,9 @@ Row make_row(const IterationRecord& record) {
 
 Row make_row(const DecisionRecord& record) {
   static const std::vector<Column> columns = decision_columns();
-  return checked(columns, {std::int64_t{record.step}, record.load_factor, record.increment,
-                           record.outcome, record.action, record.next_increment, record.reason});
+  return checked(columns,
+                 {std::int64_t{record.step}, record.load_factor, record.increment, record.outcome,
+                  name(record.action), record.next_increment, record.reason});
 }
 
 std::vector<Column> broken_bond_columns() {

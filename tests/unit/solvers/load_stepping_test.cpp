@@ -11,12 +11,15 @@
 #include <gtest/gtest.h>
 
 #include "assembly/terms/damage.hpp"
-#include "tests/problems.hpp"
+#include "tests/softening_strip.hpp"
 
 namespace peristat {
 namespace {
 
+using tests::critical;
+using tests::drawn;
 using tests::Problem;
+using tests::Strip;
 using tests::support;
 
 struct Followed {
@@ -69,6 +72,11 @@ LoadSteppingOptions steps(int count) {
   return options;
 }
 
+bool is_accepted(const DecisionRecord& decision) {
+  return decision.action == Decision::accept || decision.action == Decision::accept_and_grow ||
+         decision.action == Decision::accept_at_round_off;
+}
+
 /// What every run must satisfy: accepted load factors rise, each decision continues the last.
 void expect_consistent(const Followed& followed) {
   ASSERT_EQ(followed.result.steps, int(followed.steps.size()));
@@ -78,7 +86,7 @@ void expect_consistent(const Followed& followed) {
     EXPECT_EQ(decision.step, int(accepted) + 1);
     EXPECT_NEAR(decision.load_factor, reached + decision.increment, 1e-12);
     EXPECT_FALSE(decision.reason.empty());
-    if (decision.action.rfind("accept", 0) != 0) continue;
+    if (!is_accepted(decision)) continue;
     EXPECT_EQ(decision.outcome, "converged");
     ASSERT_LT(accepted, followed.steps.size());
     EXPECT_EQ(followed.steps[accepted].load_factor, decision.load_factor);
@@ -130,11 +138,11 @@ TEST(LoadStepping, CutsAStepThatFailsAndGrowsItAgain) {
   for (const DecisionRecord& decision : followed.decisions) {
     EXPECT_LE(decision.increment, increment);  // less where only a rest is left
     increment = decision.next_increment;
-    if (decision.action == "cut") {
+    if (decision.action == Decision::cut) {
       ++cuts;
       EXPECT_EQ(decision.outcome, "iteration_limit");
       EXPECT_DOUBLE_EQ(decision.next_increment, 0.5 * decision.increment);
-    } else if (decision.action == "accept and grow") {
+    } else if (decision.action == Decision::accept_and_grow) {
       ++grown;
       EXPECT_GT(cuts, 0);
     }
@@ -183,9 +191,9 @@ TEST(LoadStepping, StopsBelowTheSmallestStepWithTheOutcomesName) {
   EXPECT_EQ(followed.result.steps, 0);
   expect_consistent(followed);
   ASSERT_EQ(followed.decisions.size(), 3u);  // 1, 1/2, 1/4; an eighth is too small
-  EXPECT_EQ(followed.decisions[0].action, "cut");
-  EXPECT_EQ(followed.decisions[1].action, "cut");
-  EXPECT_EQ(followed.decisions[2].action, "stop");
+  EXPECT_EQ(followed.decisions[0].action, Decision::cut);
+  EXPECT_EQ(followed.decisions[1].action, Decision::cut);
+  EXPECT_EQ(followed.decisions[2].action, Decision::stop);
   EXPECT_EQ(followed.decisions[2].increment, 0.25);
   EXPECT_EQ(followed.decisions[2].outcome, "iteration_limit");
   EXPECT_NE(followed.decisions[2].reason.find("max_iterations"), std::string::npos);
@@ -202,7 +210,7 @@ TEST(LoadStepping, StopsAtTheFirstFailureUnlessAdaptive) {
   const Followed followed = follow(problem, options, newton_options);
   EXPECT_EQ(followed.result.outcome, Outcome::iteration_limit);
   ASSERT_EQ(followed.decisions.size(), 1u);
-  EXPECT_EQ(followed.decisions[0].action, "stop");
+  EXPECT_EQ(followed.decisions[0].action, Decision::stop);
 }
 
 TEST(LoadStepping, DoesNotCutWhereASmallerStepCannotHelp) {
@@ -211,7 +219,7 @@ TEST(LoadStepping, DoesNotCutWhereASmallerStepCannotHelp) {
   const Followed followed = follow(problem, steps(1));
   EXPECT_EQ(followed.result.outcome, Outcome::singular_tangent);
   ASSERT_EQ(followed.decisions.size(), 1u);
-  EXPECT_EQ(followed.decisions[0].action, "stop");
+  EXPECT_EQ(followed.decisions[0].action, Decision::stop);
   EXPECT_EQ(followed.decisions[0].outcome, "singular_tangent");
 }
 
@@ -223,7 +231,7 @@ TEST(LoadStepping, KeepsTheLastAcceptedStateWhenInterrupted) {
   EXPECT_EQ(followed.result.steps, 2);
   expect_consistent(followed);
   EXPECT_NEAR(followed.result.state.load_factor, 0.4, 1e-14);
-  EXPECT_EQ(followed.decisions.back().action, "stop");
+  EXPECT_EQ(followed.decisions.back().action, Decision::stop);
   EXPECT_EQ(followed.decisions.back().outcome, "interrupted");
 }
 
@@ -295,72 +303,6 @@ TEST(LoadStepping, LedgerOfALinearBodyCloses) {
 
 // ---- Damage
 
-constexpr double onset = 0.01, critical = 0.03;
-
-BondPotential softening(double micromodulus) {
-  return Degraded<TanhDegradation>{micromodulus, TanhDegradation::continuous(onset, critical, 3.0)};
-}
-
-/// A strip with a notch from below in its middle, or whose bonds across the middle alone may fail.
-struct Strip {
-  enum class Middle { notched, weak };
-  tests::BoxSetting box;
-  tests::BoxBody body;
-  Conditions conditions;
-  FreeDofs free;
-  Assembler assembler;
-  Tangent tangent;
-
-  Strip(Middle middle, const std::vector<SupportSpecification>& supports, int threads = 1,
-        double triangles = 0.0)
-      : box(setting(triangles)),
-        body(tests::points_with_ends(box), box),
-        conditions((change(middle), body.points), supports, {}),
-        free(conditions.prescribed(), 2),
-        assembler(body.points, body.model, threads),
-        tangent(BlockPattern(body.model.bonds()), 2) {}
-  Strip(const Strip&) = delete;
-  Strip& operator=(const Strip&) = delete;
-
-  LinearOutcome analyze(LinearSolver& solver) const {
-    return solver.analyze(tangent.pattern, free);
-  }
-
-  static tests::BoxSetting setting(double triangles) {
-    tests::BoxSetting strip = tests::small_box(2);
-    strip.triangles = triangles;
-    strip.extent = {15, 7, 0};
-    strip.potential = softening;
-    return strip;
-  }
-
- private:
-  void change(Middle middle) {
-    const Bonds& bonds = body.model.bonds();
-    const auto crosses = [&](Index i, Offset bond) {
-      const double a = body.points.position(i)[0] - 0.7,
-                   b = body.points.position(bonds.partner[bond])[0] - 0.7;
-      return a * b < 0.0;
-    };
-    if (middle == Middle::notched) {
-      body.remove_bonds([&](Index i, Offset bond) {
-        return crosses(i, bond) && body.points.position(i)[1] < 0.3 &&
-               body.points.position(bonds.partner[bond])[1] < 0.3;
-      });
-      return;
-    }
-    std::vector<char> never_fails(std::size_t(bonds.count()), 1);
-    tests::for_each_bond(bonds, [&](Index i, Index, Offset bond) {
-      if (crosses(i, bond)) never_fails[std::size_t(bond)] = 0;
-    });
-    body.replace_bonds(bonds, std::move(never_fails));
-  }
-};
-
-std::vector<SupportSpecification> drawn(const std::string& displacement) {
-  return {support("left", "0", "0"), support("right", displacement, "0")};
-}
-
 LoadSteppingOptions in_mode(Mode mode, int implicit_steps, int relaxation_steps) {
   LoadSteppingOptions options = steps(implicit_steps);
   options.mode = mode;
@@ -368,7 +310,7 @@ LoadSteppingOptions in_mode(Mode mode, int implicit_steps, int relaxation_steps)
   return options;
 }
 
-int count_of(const Followed& followed, const std::string& action) {
+int count_of(const Followed& followed, Decision action) {
   return int(std::count_if(followed.decisions.begin(), followed.decisions.end(),
                            [&](const DecisionRecord& row) { return row.action == action; }));
 }
@@ -426,23 +368,22 @@ TEST(LoadStepping, AdaptiveModeRelaxesWhileDamageGrows) {
   EXPECT_EQ(followed.steps.back().load_factor, 1.0);
   EXPECT_GT(followed.steps.back().dissipated_energy, 0.0);
   EXPECT_GT(followed.steps.back().broken_bonds, 0);
-  EXPECT_GE(count_of(followed, "hand over to relaxation"), 1);
-  EXPECT_EQ(count_of(followed, "hand over to relaxation"),
-            count_of(followed, "hand back to newton"));
+  EXPECT_GE(count_of(followed, Decision::hand_over), 1);
+  EXPECT_EQ(count_of(followed, Decision::hand_over), count_of(followed, Decision::hand_back));
   // Newton's steps damage nothing; every relaxed one does but the last, after which it hands back.
   std::string mode = "newton";
   std::size_t accepted = 0;
   double dissipated = 0.0;
   for (const DecisionRecord& decision : followed.decisions) {
-    if (decision.action == "hand over to relaxation") {
+    if (decision.action == Decision::hand_over) {
       EXPECT_EQ(mode, "newton");
       mode = "relaxation";
-    } else if (decision.action == "hand back to newton") {
+    } else if (decision.action == Decision::hand_back) {
       EXPECT_EQ(mode, "relaxation");
       ASSERT_GE(accepted, 2u);
       EXPECT_EQ(followed.histories[accepted - 1], followed.histories[accepted - 2]);
       mode = "newton";
-    } else if (decision.action.rfind("accept", 0) == 0) {
+    } else if (is_accepted(decision)) {
       const StepRecord& step = followed.steps.at(accepted);
       EXPECT_EQ(step.mode, mode);
       EXPECT_EQ(step.relaxation_iterations > 0, mode == "relaxation");
@@ -502,7 +443,7 @@ TEST(LoadStepping, LedgerOfRelaxationClosesThroughDamage) {
 TEST(LoadStepping, TrianglesLoseTheirStiffnessInEquilibrium) {
   // Each loss of a commit lets other bonds take over and is followed to an equilibrium with it.
   for (const Mode mode : {Mode::relaxation, Mode::adaptive}) {
-    SCOPED_TRACE(int(mode));
+    SCOPED_TRACE(mode.name);
     Strip strip(Strip::Middle::weak, drawn("0.045*load"), 1, 0.2);
     const Followed followed = follow(strip, in_mode(mode, 10, 30));
     ASSERT_EQ(followed.result.outcome, Outcome::converged);
@@ -550,7 +491,7 @@ TEST(LoadStepping, CutsStepsInWhichTooManyBondsBreak) {
     for (const Index broken : broken_in_steps(followed)) EXPECT_LE(broken, limit);
     int cuts = 0;  // for broken bonds; softening ones make searches fail, too
     for (const DecisionRecord& decision : followed.decisions) {
-      if (decision.action != "cut") continue;
+      if (decision.action != Decision::cut) continue;
       cuts += decision.outcome == "damage_limit";
       EXPECT_DOUBLE_EQ(decision.next_increment, 0.5 * decision.increment);
     }
@@ -561,7 +502,7 @@ TEST(LoadStepping, CutsStepsInWhichTooManyBondsBreak) {
     } else {
       // The bonds of a column break at the same load, however small the step.
       EXPECT_EQ(followed.result.outcome, Outcome::damage_limit);
-      EXPECT_EQ(followed.decisions.back().action, "stop");
+      EXPECT_EQ(followed.decisions.back().action, Decision::stop);
       EXPECT_EQ(followed.decisions.back().outcome, "damage_limit");
       EXPECT_LT(0.5 * followed.decisions.back().increment, options.smallest_step);
       const Trial& last = followed.result.last_attempt.state;
@@ -588,9 +529,10 @@ TEST(LoadStepping, HoldsRemovesOrStopsAtFragments) {
     for (Index i = 0; i < strip.body.points.count(); ++i) {
       EXPECT_EQ(followed.pieces.back()[std::size_t(i)], strip.body.points.position(i)[0] > 0.7);
     }
-    EXPECT_EQ(count_of(followed, "hold fragments"), remedy == FragmentRemedy::hold ? 1 : 0);
-    EXPECT_EQ(count_of(followed, "remove fragments"), remedy == FragmentRemedy::remove ? 1 : 0);
-    EXPECT_EQ(count_of(followed, "stop"), stops ? 1 : 0);
+    EXPECT_EQ(count_of(followed, Decision::hold_fragments), remedy == FragmentRemedy::hold ? 1 : 0);
+    EXPECT_EQ(count_of(followed, Decision::remove_fragments),
+              remedy == FragmentRemedy::remove ? 1 : 0);
+    EXPECT_EQ(count_of(followed, Decision::stop), stops ? 1 : 0);
     if (stops) {
       EXPECT_LT(followed.steps.back().load_factor, 1.0);
       EXPECT_EQ(followed.decisions.back().outcome, "fragmented");

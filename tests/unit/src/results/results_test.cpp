@@ -227,7 +227,7 @@ StepRecord example_step(int step) {
 void add_step(Results& results, int step, int dimension = 2) {
   results.add(IterationRecord{step, 0, 100.0, 1.0, -1.0, 1.0, 0, 0});
   results.add(IterationRecord{step, 1, 1e-9, 1e-11, -2.0, 0.5, 17, 3, 0.25, 12, 4, 1, 1e-6});
-  results.add(DecisionRecord{step, 0.1 * step, 0.1, "converged", "accept and grow", 0.2,
+  results.add(DecisionRecord{step, 0.1 * step, 0.1, "converged", Decision::accept_and_grow, 0.2,
                              "quick, \"easy\""});
   const ExampleFields fields(step, dimension);
   results.add(example_step(step), fields.views());
@@ -456,7 +456,7 @@ TEST_F(ResultsTest, StepWithoutFieldsEntersTheHistoryOnly) {
 
 TEST_F(ResultsTest, DecisionsAfterTheLastStepArePublishedByClose) {
   Results results = open_results(directory);
-  results.add(DecisionRecord{1, 0.5, 0.5, "stalled", "stop", 0.0, "too small"});
+  results.add(DecisionRecord{1, 0.5, 0.5, "stalled", Decision::stop, 0.0, "too small"});
   results.close({});
   EXPECT_EQ(Reader(directory / "results.h5").texts("/decisions/action"),
             std::vector<std::string>{"stop"});

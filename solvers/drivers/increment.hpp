@@ -19,35 +19,37 @@ class Increment {
  public:
   /// @param steps equal ones, from 0 to 1, of which the first is tried
   /// @param largest that it may grow to; 0 means 1 / steps
-  Increment(int steps, double largest, const IncrementOptions& options)
+  /// @param next size of the next step, kept by the path's state; 0: that of the first
+  Increment(int steps, double largest, const IncrementOptions& options, double& next)
       : options_(options),
         largest_(largest > 0.0 ? largest : 1.0 / steps),
         first_(std::min(1.0 / steps, largest_)),
-        value_(first_) {}
+        next_(next) {}
 
-  [[nodiscard]] double value() const { return value_; }
+  [[nodiscard]] double value() const { return next_ > 0.0 ? next_ : first_; }
 
   /// Target of the next step; the last one is not left a remainder of round-off.
   [[nodiscard]] double target(double load_factor) const {
     const double rest = 1.0 - load_factor;
-    return rest - value_ > load_factor_tolerance ? load_factor + value_ : 1.0;
+    return rest - value() > load_factor_tolerance ? load_factor + value() : 1.0;
   }
 
   [[nodiscard]] bool can_cut_to(double increment) const {
     return options_.adaptive && increment >= options_.smallest_step;
   }
-  void cut_to(double increment) { value_ = increment; }
+  void cut_to(double increment) { next_ = increment; }
   /// @return whether it grew
   bool grow() {
-    if (!options_.adaptive || value_ >= largest_) return false;
-    value_ = std::min(options_.growth * value_, largest_);
+    if (!options_.adaptive || value() >= largest_) return false;
+    next_ = std::min(options_.growth * value(), largest_);
     return true;
   }
-  void start_again() { value_ = first_; }
+  void start_again() { next_ = 0.0; }
 
  private:
   IncrementOptions options_;
-  double largest_, first_, value_;
+  double largest_, first_;
+  double& next_;
 };
 
 }  // namespace peristat

@@ -19,45 +19,42 @@ struct StepEnergies {
   std::optional<Relaxed> relaxed;  ///< summed over the iterations of relaxation
 };
 
-/// Energies of the accepted steps of a load path.
+/// Forces that do work on the body: loads, and on prescribed degrees of freedom what holds them,
+/// which is dE/dx there. Pins of fragments do none: they don't move, and when they are taken away
+/// nothing follows them.
+/// @param prescribed per degree of freedom
+[[nodiscard]] std::vector<double> working_force(const std::vector<char>& prescribed,
+                                                const Trial& state,
+                                                std::span<const double> external_force);
+
+/// Energies of the accepted steps of a load path. A value.
 ///
 /// External work is summed with the trapezoidal rule over each step, of the loads on the free and
 /// of the reactions on the prescribed degrees of freedom. Relaxation sums the work over each of its
 /// iterations, too: what that is more is the numerical work.
-class PathLedger {
- public:
-  /// @param prescribed per degree of freedom; outlives the ledger
-  explicit PathLedger(const std::vector<char>& prescribed) : prescribed_(prescribed) {}
+struct PathLedger {
+  Ledger entries;
+  double released = 0.0;      ///< by triangles and tetrahedra whose bonds were damaged [J]
+  std::vector<double> force;  ///< that does work, in the last accepted state [N]
 
   /// Begins in a state: what is stored there counts as work that was done before.
-  void begin(const Trial& state, std::span<const double> external_force);
+  /// @param working see working_force
+  void begin(const Trial& state, std::vector<double> working);
 
   /// The entries with a step to a state whose damage is committed.
   /// @param dissipated by the bonds on the whole path, see DamageState [J]
   [[nodiscard]] Ledger with_step(std::span<const double> displacement_before, const Trial& state,
-                                 std::span<const double> external_force, double dissipated,
+                                 std::span<const double> working, double dissipated,
                                  const StepEnergies& step) const;
 
   /// Takes up a step that was accepted, with its entries.
-  void accept(const Ledger& with_step, const Trial& state, std::span<const double> external_force,
-              const StepEnergies& step);
-
-  [[nodiscard]] const Ledger& entries() const { return entries_; }
+  void accept(const Ledger& with_step, std::vector<double> working, const StepEnergies& step);
 
   /// Whether an implicit step in which damage grew has released what nobody takes up. A stable path
   /// balances, but for the little that single bonds release as they snap; beyond a limit point the
   /// search lands where its steps happen to lead.
   /// @return a sentence for a person; empty if it has not
   [[nodiscard]] std::string jump_to(const Ledger& with_step) const;
-
- private:
-  [[nodiscard]] std::vector<double> working_force(const Trial& state,
-                                                  std::span<const double> external_force) const;
-
-  const std::vector<char>& prescribed_;
-  Ledger entries_;
-  double released_ = 0.0;      // by triangles and tetrahedra whose bonds were damaged
-  std::vector<double> force_;  // that does work, in the last accepted state
 };
 
 }  // namespace peristat

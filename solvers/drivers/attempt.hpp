@@ -1,0 +1,47 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "solvers/dynamic_relaxation.hpp"
+#include "solvers/newton.hpp"
+
+namespace peristat {
+
+/// The last search for equilibrium, for what is told when it failed.
+struct Attempt {
+  Outcome outcome = Outcome::converged;
+  int iterations = 0;
+  double load_factor = 0.0;
+  double scale = 0.0;  ///< norm that the residual was measured against [N]
+  std::optional<Inertia> inertia;
+  bool has_negative_pivots = false;
+  bool unstable_start = false;
+  double largest_residual = 0.0;  ///< that counts as equilibrium [N]; negative: none was asked for
+  std::string note;               ///< what else is to be told if it is accepted
+  Trial state;
+  std::vector<double> external_force;
+
+  [[nodiscard]] bool has_converged() const { return outcome == Outcome::converged; }
+};
+
+[[nodiscard]] Attempt to_attempt(NewtonResult result, double load_factor);
+[[nodiscard]] Attempt to_attempt(RelaxationResult result, double load_factor);
+
+/// One that can't begin, since supports or loads have no value there.
+[[nodiscard]] Attempt undefined_attempt(const State& from, double load_factor);
+
+[[nodiscard]] State state_of(const Attempt& attempt);
+
+/// Whether a smaller step can help.
+[[nodiscard]] bool worth_cutting(const Attempt& attempt);
+
+/// Whether relaxation may succeed where an implicit search has failed.
+[[nodiscard]] bool worth_relaxing(const Attempt& attempt);
+
+/// Why an attempt has failed, in words.
+/// @param what else is known of it; may be empty
+[[nodiscard]] std::string reason_of(const Attempt& attempt, const std::string& what);
+
+}  // namespace peristat

@@ -1,0 +1,110 @@
+#include "solvers/drivers/found_step.hpp"
+
+#include <utility>
+#include <vector>
+
+#include "assembly/terms/damage.hpp"
+
+namespace peristat {
+namespace {
+
+/// Commits of one step of a body with triangles or tetrahedra, each of which may damage more bonds.
+constexpr int most_commits = 1000;
+
+void complete_record(const Path& path, const Attempt& attempt, FoundStep& found) {
+  StepRecord& record = found.record;
+  record.step = path.state().steps;
+  record.load_factor = attempt.load_factor;
+  record.stored_energy = found.ledger.stored;
+  record.dissipated_energy = found.ledger.dissipated;
+  record.drained_energy = found.ledger.drained;
+  record.external_work = found.ledger.external_work;
+  record.numerical_work = found.ledger.numerical_work;
+  record.balance_error = found.ledger.balance_error();
+  record.pin_force = path.state().pins.force(attempt.state, attempt.external_force);
+  record.reactions =
+      path.setting().conditions.reactions(attempt.state.gradient, attempt.external_force);
+}
+
+/// Pins what has come free.
+Advance resolve_fragments(Path& path, double next) {
+  PathState& state = path.state();
+  if (!state.pins.are_outdated()) return Advance::goes_on;
+  const FragmentRemedy remedy = path.options().fragments;
+  if (remedy == FragmentRemedy::stop && state.pins.found.count > 0) {
+    Attempt attempt = std::move(path.last_attempt());
+    attempt.outcome = Outcome::fragmented;
+    return path.stop(std::move(attempt), 0.0, state.pins.described());
+  }
+  path.tell({.load_factor = state.accepted.load_factor,
+             .outcome = name(Outcome::converged),
+             .action = remedy == FragmentRemedy::remove ? Decision::remove_fragments
+                                                        : Decision::hold_fragments,
+             .next_increment = next,
+             .reason = state.pins.described()});
+  state.relaxed.motion = {};
+  return path.pin();
+}
+
+}  // namespace
+
+void commit(Path& path, Attempt& attempt, FoundStep& found,
+            const std::function<Outcome()>& equilibrate) {
+  Assembler& assembler = path.body().assembler;
+  for (int pass = 0; pass < most_commits; ++pass) {
+    const Stored committed = assembler.commit(attempt.state.displacement, attempt.state.history);
+    found.growth.degrading += committed.growth.degrading;
+    found.growth.breaking += committed.growth.breaking;
+    found.energies.released += committed.released;
+    attempt.state.stored_energy = committed.energy;
+    if (!committed.moves_equilibrium) return;
+    if (equilibrate() != Outcome::converged) return;
+  }
+  attempt.outcome = Outcome::iteration_limit;
+}
+
+std::string complete(Path& path, Attempt& attempt, FoundStep& found) {
+  const auto& [assembler, solver, tangent, free] = path.body();
+  const PathLedger& ledger = path.state().ledger;
+  std::vector<double> damage(std::size_t(assembler.points().count()));
+  const DamageState damaged = assess_damage(assembler.model(), attempt.state.history, {}, damage);
+  found.record.broken_bonds = damaged.broken_bonds;
+  found.ledger = ledger.with_step(path.state().accepted.displacement, attempt.state,
+                                  path.working_force(attempt.state, attempt.external_force),
+                                  damaged.dissipated_energy, found.energies);
+  if (!attempt.has_converged()) return {};
+  if (attempt.iterations == 0) {  // no tangent was needed so far
+    tangent.linearise(assembler, attempt.state.at(), 0.0);
+  }
+  std::string fault =
+      find_inconsistency(path.problem(), path.damaged(), tangent,
+                         {attempt.state, attempt.external_force, attempt.largest_residual,
+                          found.energies.relaxed.has_value(), ledger.entries, found.ledger});
+  if (!fault.empty()) {
+    attempt.outcome = Outcome::inconsistent;
+  } else if (!found.energies.relaxed && found.growth.degrading > 0) {
+    fault = ledger.jump_to(found.ledger);
+    if (!fault.empty()) attempt.outcome = Outcome::limit_point;
+  }
+  return fault;
+}
+
+Advance accept(Path& path, Attempt attempt, FoundStep found, double next) {
+  PathState& state = path.state();
+  state.accepted = state_of(attempt);
+  ++state.steps;
+  state.ledger.accept(found.ledger, path.working_force(attempt.state, attempt.external_force),
+                      found.energies);
+  if (found.growth.breaking > 0) {
+    state.pins.find(path.body().assembler, state.accepted, path.setting().conditions.prescribed(),
+                    path.options().fragments);
+  }
+  complete_record(path, attempt, found);
+  if (const auto& tell = path.setting().observer.accepted) {
+    tell(found.record, {attempt.state, attempt.external_force, state.pins.found.piece});
+  }
+  path.last_attempt() = std::move(attempt);
+  return resolve_fragments(path, next);
+}
+
+}  // namespace peristat

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "solvers/drivers/path.hpp"
+
+namespace peristat {
+
+/// A step that was found and may be accepted.
+struct FoundStep {
+  StepRecord record;
+  DamageGrowth growth;
+  StepEnergies energies;
+  Ledger ledger;  ///< with the step
+};
+
+/// Commits an equilibrium. Triangles and tetrahedra then lose what their bonds have lost, so that
+/// the body is out of equilibrium again: it is equilibrated at the fixed load and committed until
+/// nothing more is damaged.
+/// @param equilibrate leaves the next equilibrium in `attempt`, and its outcome
+void commit(Path& path, Attempt& attempt, FoundStep& found,
+            const std::function<Outcome()>& equilibrate);
+
+/// Closes the ledger of a step whose damage is committed, and checks what it owes.
+/// @return what is wrong with it; the attempt's outcome is then inconsistent
+[[nodiscard]] std::string complete(Path& path, Attempt& attempt, FoundStep& found);
+
+/// Makes an attempt the path's last accepted state, tells it, and pins what has come free in it.
+/// @param next increment of the load factor, for what is told
+[[nodiscard]] Advance accept(Path& path, Attempt attempt, FoundStep found, double next);
+
+}  // namespace peristat

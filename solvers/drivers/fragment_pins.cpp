@@ -1,0 +1,59 @@
+#include "solvers/drivers/fragment_pins.hpp"
+
+#include <algorithm>
+
+#include "assembly/terms/damage.hpp"
+#include "solvers/vector_verbs.hpp"
+
+namespace peristat {
+namespace {
+
+/// Takes floating pieces out of the equations. One that a support still moves goes with it: only
+/// what is missing is pinned there.
+void remove_pieces(Fragments& found, const std::vector<char>& prescribed, int dimension) {
+  const auto d = std::size_t(dimension);
+  std::vector<char> removed(std::size_t(found.count) + 1, 1);
+  removed[0] = 0;  // the pieces that are held
+  for (std::size_t dof = 0; dof < prescribed.size(); ++dof) {
+    if (prescribed[dof]) removed[std::size_t(found.piece[dof / d])] = 0;
+  }
+  for (std::size_t dof = 0; dof < prescribed.size(); ++dof) {
+    found.pinned[dof] |= removed[std::size_t(found.piece[dof / d])];
+  }
+}
+
+}  // namespace
+
+void FragmentPins::find(const Assembler& assembler, const State& state,
+                        const std::vector<char>& prescribed, FragmentRemedy remedy) {
+  found = find_fragments(assembler.points(), assembler.model().bonds(),
+                         broken_bonds(assembler.model(), state.history), prescribed,
+                         state.displacement);
+  if (remedy == FragmentRemedy::remove) {
+    remove_pieces(found, prescribed, assembler.points().dimension);
+  }
+}
+
+bool FragmentPins::are_outdated() const {
+  if (!pinned.empty()) return !found.pinned.empty() && found.pinned != pinned;
+  return std::any_of(found.pinned.begin(), found.pinned.end(), [](char pin) { return pin != 0; });
+}
+
+FreeDofs FragmentPins::free_dofs(const std::vector<char>& prescribed, int dimension) const {
+  std::vector<char> without_equation = prescribed;
+  for (std::size_t dof = 0; dof < pinned.size(); ++dof) without_equation[dof] |= pinned[dof];
+  return {without_equation, dimension};
+}
+
+double FragmentPins::force(const Trial& state, std::span<const double> external_force) const {
+  return norm_of(pinned.size(), [&](std::size_t dof) {
+    return pinned[dof] ? state.gradient[dof] - external_force[dof] : 0.0;
+  });
+}
+
+std::string FragmentPins::described() const {
+  return std::to_string(found.count) + " floating pieces, " + std::to_string(found.loose.size()) +
+         " loose points";
+}
+
+}  // namespace peristat

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <string>
+
+#include "solvers/drivers/driver.hpp"
+#include "solvers/drivers/found_step.hpp"
+#include "solvers/drivers/increment.hpp"
+
+namespace peristat {
+
+/// An implicit step on its way.
+struct ImplicitStep {
+  double attempted = 0.0;  ///< increment of the load factor
+  Attempt attempt;
+  DamageGrowth growth;  ///< that committing what the first search has found would bring
+  FoundStep found;
+  std::string fault;  ///< what is known of a failure beside its outcome
+};
+
+/// Implicit steps. One that fails is cut and tried again; an easy one lets the next grow.
+class ImplicitStepping : public Driver {
+ public:
+  explicit ImplicitStepping(Path& path);
+
+  /// Searches the equilibrium of the next step.
+  /// @param damage whether it may grow in it
+  [[nodiscard]] ImplicitStep search(Damage damage);
+  /// Commits the damage of a state that was found, and checks it: it may still fail.
+  void establish(ImplicitStep& step);
+  [[nodiscard]] Advance accept(ImplicitStep step);
+  /// Cuts, or stops.
+  [[nodiscard]] Advance fail(ImplicitStep step);
+
+  [[nodiscard]] Increment& increment() { return increment_; }
+
+ protected:
+  [[nodiscard]] Advance next() override;
+
+ private:
+  [[nodiscard]] bool is_limit_point(const Attempt& attempt) const;
+
+  Increment increment_;
+};
+
+/// Why a step has failed, with its pivots.
+[[nodiscard]] std::string reason_of(const ImplicitStep& step);
+
+/// "1 bond", "2 bonds"
+[[nodiscard]] std::string bonds_text(Index count);
+
+}  // namespace peristat

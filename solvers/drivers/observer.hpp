@@ -1,0 +1,33 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "solvers/equilibrium.hpp"
+#include "src/input_error.hpp"
+#include "src/results/history.hpp"
+
+namespace peristat {
+
+/// What an accepted state is made of besides its record.
+struct AcceptedState {
+  const Trial& trial;  ///< with its damage committed
+  const std::vector<double>& external_force;
+  std::span<const std::int32_t> piece;  ///< per point, see Fragments; empty: none
+};
+
+/// Receives what happens; all members may be empty.
+struct LoadSteppingObserver {
+  std::function<void(const IterationRecord&)> iteration;
+  std::function<void(const DecisionRecord&)> decision;
+  /// An accepted state. The record's energies, damage and reactions are set.
+  std::function<void(const StepRecord&, const AcceptedState&)> accepted;
+  std::function<bool()> interrupted;
+  /// A sentence about an error of supports or loads that shows only at some load factor.
+  std::function<std::string(const InputError&)> describe;
+};
+
+}  // namespace peristat

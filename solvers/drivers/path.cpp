@@ -1,0 +1,131 @@
+#include "solvers/drivers/path.hpp"
+
+#include <utility>
+
+#include "solvers/drivers/increment.hpp"
+
+namespace peristat {
+
+Path::Path(const PathSetting& setting) : setting_(setting) {
+  state_.stands_in = setting.stand_in != nullptr;
+  const Conditions& conditions = setting.conditions;
+  Trial reference;
+  reference.displacement.assign(conditions.prescribed().size(), 0.0);
+  reference.history = damaged().initial_history();
+  std::vector<double> external_force(reference.displacement.size());
+  conditions.external_force(0.0, external_force);
+  evaluate(problem(), external_force, reference);
+  state_.ledger.begin(reference, working_force(reference, external_force));
+  state_.accepted = {reference.displacement, 0.0, reference.history};
+  note_rungs();
+}
+
+Path::Path(const PathSetting& setting, PathState from)
+    : setting_(setting), state_(std::move(from)) {
+  number_equations();
+}
+
+LinearOutcome Path::prepare_solvers() {
+  const auto prepare = [&](const SolvedBody& solved, int rung) {
+    solved.solver.start_at(rung);
+    return solved.solver.analyze(solved.tangent.pattern, free());
+  };
+  const LinearOutcome outcome = prepare(setting_.body, state_.rungs.body);
+  if (outcome != LinearOutcome::solved || !state_.stands_in) return outcome;
+  return prepare(*setting_.stand_in, state_.rungs.stand_in);
+}
+
+void Path::note_rungs() {
+  state_.rungs.body = setting_.body.solver.rung();
+  if (setting_.stand_in) state_.rungs.stand_in = setting_.stand_in->solver.rung();
+}
+
+bool Path::has_load_left() const {
+  return 1.0 - state_.accepted.load_factor > load_factor_tolerance;
+}
+
+const SolvedBody& Path::body() const {
+  return state_.stands_in ? *setting_.stand_in : setting_.body;
+}
+
+const FreeDofs& Path::free() const { return own_free_ ? *own_free_ : setting_.body.free; }
+
+EquilibriumProblem Path::problem() const { return {body().assembler, setting_.conditions, free()}; }
+
+std::vector<double> Path::working_force(const Trial& state,
+                                        std::span<const double> external_force) const {
+  return peristat::working_force(setting_.conditions.prescribed(), state, external_force);
+}
+
+std::optional<std::string> Path::refusal_of_conditions(double load_factor) const {
+  std::vector<double> values(setting_.conditions.prescribed().size());
+  try {
+    setting_.conditions.prescribe(load_factor, values);
+    setting_.conditions.external_force(load_factor, values);
+  } catch (const InputError& error) {
+    return setting_.observer.describe ? setting_.observer.describe(error) : error.what();
+  }
+  return std::nullopt;
+}
+
+Attempt Path::search(const State& from, double target, const NewtonOptions& options) {
+  return to_attempt(newton(problem(), body().solver, body().tangent, from, target, options,
+                           [this](const IterationRecord& row) { return iterated(row); }),
+                    target);
+}
+
+void Path::number_equations() {
+  if (state_.pins.pinned.empty()) return;
+  own_free_ = std::make_unique<FreeDofs>(
+      state_.pins.free_dofs(setting_.conditions.prescribed(), setting_.body.free.dimension));
+}
+
+Advance Path::pin() {
+  state_.pins.pin();
+  number_equations();
+  return analyze();
+}
+
+Advance Path::analyze() {
+  if (body().solver.analyze(body().tangent.pattern, free()) == LinearOutcome::solved) {
+    return Advance::goes_on;
+  }
+  Attempt attempt = std::move(last_attempt_);
+  attempt.outcome = Outcome::out_of_memory;
+  return stop(std::move(attempt), 0.0, explanation(Outcome::out_of_memory));
+}
+
+bool Path::iterated(IterationRecord row) const {
+  const LoadSteppingObserver& observer = setting_.observer;
+  row.step = next_step();
+  if (observer.iteration) observer.iteration(row);
+  return observer.interrupted && observer.interrupted();
+}
+
+void Path::tell(DecisionRecord decision) const {
+  if (!setting_.observer.decision) return;
+  decision.step = next_step();
+  setting_.observer.decision(decision);
+}
+
+void Path::count_pivots(Attempt& attempt) const {
+  const auto& [assembler, solver, tangent, free] = body();
+  tangent.linearise(assembler, attempt.state.at(), 0.0);
+  solver.count_pivots(true);
+  static_cast<void>(solver.factorize(tangent, FactorUse::factorize_now));
+  attempt.inertia = solver.inertia();
+}
+
+Advance Path::stop(Attempt attempt, double attempted, const std::string& reason) {
+  if (!attempt.inertia && attempt.has_negative_pivots) count_pivots(attempt);
+  tell({.load_factor = attempt.load_factor,
+        .increment = attempted,
+        .outcome = name(attempt.outcome),
+        .action = Decision::stop,
+        .reason = reason});
+  outcome_ = attempt.outcome;
+  last_attempt_ = std::move(attempt);
+  return Advance::ended;
+}
+
+}  // namespace peristat

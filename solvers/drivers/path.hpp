@@ -1,0 +1,101 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "solvers/drivers/attempt.hpp"
+#include "solvers/drivers/load_stepping_options.hpp"
+#include "solvers/drivers/observer.hpp"
+#include "solvers/drivers/path_state.hpp"
+
+namespace peristat {
+
+/// A body, and what searches its equilibria.
+struct SolvedBody {
+  Assembler& assembler;
+  LinearSolver& solver;  ///< analyzed for the body's pattern and `free`
+  TangentOperator& tangent;
+  const FreeDofs& free;  ///< what the supports leave free
+};
+
+/// What a path is followed with; all that it refers to outlives the path.
+struct PathSetting {
+  SolvedBody body;
+  const Conditions& conditions;
+  const LoadSteppingOptions& options;
+  const NewtonOptions& newton_options;
+  const LoadSteppingObserver& observer;
+  const SolvedBody* stand_in = nullptr;  ///< see follow_loading
+};
+
+/// Whether a driver goes on.
+enum class Advance { goes_on, ended };
+
+/// A path and its state, with what all drivers share: searches, and telling what happens.
+class Path {
+ public:
+  /// From rest, which need not be free of stress.
+  explicit Path(const PathSetting& setting);
+
+  /// From a state that a path with the same setting has reached. Its solvers have to be prepared
+  /// before a driver goes on.
+  Path(const PathSetting& setting, PathState from);
+
+  /// Puts the solvers on the rungs, and before the equations, of the state.
+  [[nodiscard]] LinearOutcome prepare_solvers();
+
+  [[nodiscard]] const PathSetting& setting() const { return setting_; }
+  [[nodiscard]] const LoadSteppingOptions& options() const { return setting_.options; }
+  [[nodiscard]] PathState& state() { return state_; }
+  [[nodiscard]] const PathState& state() const { return state_; }
+  [[nodiscard]] Outcome outcome() const { return outcome_; }
+  [[nodiscard]] Attempt& last_attempt() { return last_attempt_; }
+
+  [[nodiscard]] bool has_load_left() const;
+  [[nodiscard]] int next_step() const { return state_.steps + 1; }
+
+  /// The body in force: the stand-in until damage begins.
+  [[nodiscard]] const SolvedBody& body() const;
+  /// The body whose bonds are damaged, whatever stands in for it.
+  [[nodiscard]] Assembler& damaged() const { return setting_.body.assembler; }
+  /// The equations, without what is pinned.
+  [[nodiscard]] const FreeDofs& free() const;
+  [[nodiscard]] EquilibriumProblem problem() const;
+  [[nodiscard]] std::vector<double> working_force(const Trial& state,
+                                                  std::span<const double> external_force) const;
+
+  /// Whether supports and loads have a value at a load factor; otherwise why not.
+  [[nodiscard]] std::optional<std::string> refusal_of_conditions(double load_factor) const;
+
+  /// By Newton's method.
+  [[nodiscard]] Attempt search(const State& from, double target, const NewtonOptions& options);
+
+  /// Prepares the solver of the body in force for the equations.
+  [[nodiscard]] Advance analyze();
+  /// Pins what was found last: there are other equations.
+  [[nodiscard]] Advance pin();
+
+  /// Told of every iteration of the next step; returns true to interrupt.
+  [[nodiscard]] bool iterated(IterationRecord row) const;
+  /// Tells a decision about the next step.
+  void tell(DecisionRecord decision) const;
+  /// Ends the path with an attempt that failed.
+  [[nodiscard]] Advance stop(Attempt attempt, double attempted, const std::string& reason);
+
+  void forget_last_attempt() { last_attempt_ = {}; }  // the vectors of a large body count
+  void note_rungs();
+
+ private:
+  void number_equations();
+  /// Of the state that a search has ended in, for what is told of it.
+  void count_pivots(Attempt& attempt) const;
+
+  PathSetting setting_;
+  PathState state_;
+  std::unique_ptr<FreeDofs> own_free_;  // once something is pinned
+  Outcome outcome_ = Outcome::converged;
+  Attempt last_attempt_;
+};
+
+}  // namespace peristat

@@ -1,0 +1,68 @@
+#include "solvers/drivers/path_ledger.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "src/number_text.hpp"
+
+namespace peristat {
+namespace {
+
+/// Share of the body's energy whose release in an implicit step is a jump over a limit point.
+constexpr double share_of_jump = 5e-3;
+
+double trapezoidal_work(std::span<const double> force0, std::span<const double> force1,
+                        std::span<const double> u0, std::span<const double> u1) {
+  double work = 0.0;
+  for (std::size_t k = 0; k < u0.size(); ++k)
+    work += 0.5 * (force0[k] + force1[k]) * (u1[k] - u0[k]);
+  return work;
+}
+
+}  // namespace
+
+std::vector<double> working_force(const std::vector<char>& prescribed, const Trial& state,
+                                  std::span<const double> external_force) {
+  std::vector<double> force(external_force.begin(), external_force.end());
+  for (std::size_t dof = 0; dof < force.size(); ++dof) {
+    if (prescribed[dof]) force[dof] = state.gradient[dof];
+  }
+  return force;
+}
+
+void PathLedger::begin(const Trial& state, std::vector<double> working) {
+  force = std::move(working);
+  entries = {};
+  entries.external_work = entries.stored = state.stored_energy;
+}
+
+Ledger PathLedger::with_step(std::span<const double> displacement_before, const Trial& state,
+                             std::span<const double> working, double dissipated,
+                             const StepEnergies& step) const {
+  const double work = trapezoidal_work(force, working, displacement_before, state.displacement);
+  Ledger after = entries;
+  after.stored = state.stored_energy;
+  after.dissipated = dissipated + released + step.released;
+  after.external_work += work;
+  if (step.relaxed) {
+    after.numerical_work += step.relaxed->work - work;
+    after.drained += step.relaxed->drained;
+  }
+  return after;
+}
+
+void PathLedger::accept(const Ledger& with_step, std::vector<double> working,
+                        const StepEnergies& step) {
+  force = std::move(working);
+  entries = with_step;
+  released += step.released;
+}
+
+std::string PathLedger::jump_to(const Ledger& with_step) const {
+  const double lost = with_step.balance_error() - entries.balance_error();
+  if (lost <= share_of_jump * std::max(entries.stored, with_step.external_work)) return {};
+  return number_text(lost) + " J of " + number_text(with_step.external_work) +
+         " J are released and taken up by nobody: the body has jumped to another equilibrium";
+}
+
+}  // namespace peristat

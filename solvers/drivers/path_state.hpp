@@ -1,0 +1,42 @@
+#pragma once
+
+#include "assembly/energy/state.hpp"
+#include "solvers/drivers/fragment_pins.hpp"
+#include "solvers/drivers/path_ledger.hpp"
+#include "solvers/dynamic_relaxation.hpp"
+
+namespace peristat {
+
+/// Everything that a path needs to go on from where a driver has left it. Bodies, conditions and
+/// options are constant and not in it; searches keep nothing from one step to the next, and draw
+/// no random numbers. A value: a copy goes on by itself.
+///
+/// One thing a solver keeps is not in it: the factor, or preconditioner, that is at hand. Newton's
+/// last iterations of a relaxed step take it as it is (NewtonOptions::factorizes_first), so that
+/// with a fresh solver they agree within the tolerance of the linear systems instead of to the last
+/// bit, where the solver finds that reuse pays.
+struct PathState {
+  State accepted;  ///< the last one: displacement, load factor, histories
+  int steps = 0;   ///< accepted
+  PathLedger ledger;
+  FragmentPins pins;
+  bool stands_in = false;  ///< the stand-in is in the place of the body
+  struct Rungs {
+    int body = 0, stand_in = 0;
+  } rungs;                          ///< of ladders of solvers: see LinearSolver::rung
+  double relaxation_seconds = 0.0;  ///< wall time in relaxation
+
+  struct Implicit {
+    double increment = 0.0;  ///< of the load factor in the next step; 0: as in the first
+  } implicit;
+  struct Relaxed {
+    double increment = 0.0;  ///< likewise
+    RelaxationMotion motion;
+  } relaxed;
+  struct HandOver {
+    bool relaxes = false;        ///< on the side of relaxation
+    bool is_near_onset = false;  ///< an implicit step was cut to end just before damage begins
+  } hand_over;
+};
+
+}  // namespace peristat

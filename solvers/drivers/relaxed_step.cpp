@@ -1,0 +1,90 @@
+#include "solvers/drivers/relaxed_step.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "solvers/vector_verbs.hpp"
+#include "src/stopwatch.hpp"
+
+namespace peristat {
+namespace {
+
+/// Newton iterations that may finish a relaxed step: quadratic convergence needs no more.
+constexpr int most_finishing_iterations = 8;
+
+/// Only a stable equilibrium close by is taken; anything else is left to relaxation.
+NewtonOptions finishing_options(NewtonOptions options) {
+  options.projection = Projection::never;
+  options.factorizes_first = false;
+  options.counts_pivots = false;
+  options.max_iterations = std::min(options.max_iterations, most_finishing_iterations);
+  return options;
+}
+
+/// Newton's last iterations at the fixed load.
+/// @return false if relaxation has to go on
+bool finish(Path& path, RelaxedStep& step, NewtonOptions options) {
+  options.scale = step.scale;
+  const State near = state_of(step.attempt);
+  Attempt finished = path.search(near, near.load_factor, options);
+  if (!finished.has_converged() && worth_relaxing(finished)) return false;
+  step.found.record.newton_iterations += finished.iterations;
+  if (finished.has_converged()) {
+    step.found.record.settled = false;
+    step.found.energies.relaxed->drained +=
+        step.attempt.state.total_energy - finished.state.total_energy;
+    step.found.energies.relaxed->work += dot(finished.external_force, finished.state.displacement) -
+                                         dot(finished.external_force, near.displacement);
+  }
+  step.attempt = std::move(finished);
+  return true;
+}
+
+}  // namespace
+
+RelaxedStep::RelaxedStep(const State& accepted) {
+  found.record.mode = Mode::relaxation.name;
+  found.energies.relaxed.emplace();
+  attempt.state.displacement = accepted.displacement;
+  attempt.state.history = accepted.history;
+  attempt.load_factor = accepted.load_factor;
+}
+
+void relax_towards(Path& path, RelaxedStep& step, double target, RelaxationOptions options) {
+  const State from = state_of(step.attempt);
+  if (from.load_factor == target && options.holds) options.ramp = 1;
+  options.scale = step.scale;
+  const Stopwatch watch(path.state().relaxation_seconds);
+  RelaxationResult relaxed =
+      relax(path.problem(), path.body().tangent, from, target, options, path.state().relaxed.motion,
+            [&](const IterationRecord& row) { return path.iterated(row); });
+  step.found.record.relaxation_iterations += relaxed.iterations;
+  step.found.record.settled = relaxed.largest_residual < 0.0;
+  step.found.energies.relaxed->work += relaxed.external_work;
+  step.found.energies.relaxed->drained += relaxed.drained_energy;
+  step.found.growth.degrading += relaxed.growth.degrading;
+  step.found.growth.breaking += relaxed.growth.breaking;
+  step.found.energies.released += relaxed.released_energy;
+  step.scale = relaxed.scale;
+  step.attempt = to_attempt(std::move(relaxed), target);
+}
+
+void relax_and_finish(Path& path, RelaxedStep& step, double target) {
+  const NewtonOptions& newton_options = path.setting().newton_options;
+  RelaxationOptions options = path.options().relaxation;
+  const double last = options.relative_tolerance;
+  for (double tolerance = path.options().newton_takes_over_at;; tolerance *= 1e-2) {
+    options.relative_tolerance = std::max(tolerance, last);
+    relax_towards(path, step, target, options);
+    if (step.attempt.outcome == Outcome::iteration_limit) {
+      // A motion without much stiffness, as of a part that hangs on its last bonds: relaxation
+      // hardly sees it, a search with projected tangents does.
+      finish(path, step, newton_options);
+      return;
+    }
+    const bool goes_on = step.attempt.has_converged() && tolerance > last;
+    if (!goes_on || finish(path, step, finishing_options(newton_options))) return;
+  }
+}
+
+}  // namespace peristat

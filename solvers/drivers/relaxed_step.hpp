@@ -1,0 +1,23 @@
+#pragma once
+
+#include "solvers/drivers/found_step.hpp"
+
+namespace peristat {
+
+/// A relaxed step on its way: where it is, and its share of the ledger.
+struct RelaxedStep {
+  /// At the last accepted state.
+  explicit RelaxedStep(const State& accepted);
+
+  Attempt attempt;
+  FoundStep found;
+  double scale = 0.0;  ///< norm that the residual is measured against [N]
+};
+
+/// By dynamic relaxation.
+void relax_towards(Path& path, RelaxedStep& step, double target, RelaxationOptions options);
+
+/// By dynamic relaxation until Newton's method is able to finish.
+void relax_and_finish(Path& path, RelaxedStep& step, double target);
+
+}  // namespace peristat

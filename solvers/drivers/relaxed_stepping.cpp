@@ -1,0 +1,78 @@
+#include "solvers/drivers/relaxed_stepping.hpp"
+
+#include <utility>
+
+namespace peristat {
+
+RelaxedStepping::RelaxedStepping(Path& path, Finish finish)
+    : Driver(path),
+      finish_(path.options().relaxation.holds ? finish : Finish::relaxation),
+      increment_(path.options().relaxation_steps, 0.0,
+                 {path.options().adaptive, path.options().smallest_step, path.options().growth},
+                 path.state().relaxed.increment) {}
+
+Advance RelaxedStepping::next() {
+  if (!path_.has_load_left()) return Advance::ended;
+  Found found = search();
+  return found.step.attempt.has_converged() ? accept(std::move(found)) : fail(std::move(found));
+}
+
+RelaxedStepping::Found RelaxedStepping::search() {
+  const State& from = path_.state().accepted;
+  const double target = increment_.target(from.load_factor);
+  Found found{RelaxedStep(from), target - from.load_factor, {}};
+  RelaxedStep& step = found.step;
+  if (const auto refusal = path_.refusal_of_conditions(target)) {
+    step.attempt = undefined_attempt(from, target);
+    found.fault = *refusal;
+    return found;
+  }
+  const RelaxationMotion motion = path_.state().relaxed.motion;
+  const auto equilibrate = [&] {
+    if (finish_ == Finish::newton) {
+      relax_and_finish(path_, step, target);
+    } else {
+      relax_towards(path_, step, target, path_.options().relaxation);
+    }
+    return step.attempt.outcome;
+  };
+  if (equilibrate() == Outcome::converged && path_.options().relaxation.holds) {
+    commit(path_, step.attempt, step.found, equilibrate);
+  }
+  if (step.attempt.has_converged()) found.fault = complete(path_, step.attempt, step.found);
+  if (!step.attempt.has_converged()) path_.state().relaxed.motion = motion;
+  return found;
+}
+
+Advance RelaxedStepping::accept(Found found) {
+  const bool grew = increment_.grow();
+  const Attempt& attempt = found.step.attempt;
+  path_.tell({.load_factor = attempt.load_factor,
+              .increment = found.attempted,
+              .outcome = name(attempt.outcome),
+              .action = grew ? Decision::accept_and_grow : Decision::accept,
+              .next_increment = increment_.value(),
+              .reason = std::to_string(found.step.found.record.relaxation_iterations) +
+                        " iterations of relaxation"});
+  return peristat::accept(path_, std::move(found.step.attempt), std::move(found.step.found),
+                          increment_.value());
+}
+
+Advance RelaxedStepping::fail(Found found) {
+  Attempt& attempt = found.step.attempt;
+  const double next = found.attempted * path_.options().cut;
+  const std::string reason = reason_of(attempt, found.fault);
+  if (worth_cutting(attempt) && increment_.can_cut_to(next)) {
+    increment_.cut_to(next);
+    path_.tell({.load_factor = attempt.load_factor,
+                .increment = found.attempted,
+                .outcome = name(attempt.outcome),
+                .action = Decision::cut,
+                .next_increment = next,
+                .reason = reason});
+    return Advance::goes_on;
+  }
+  return path_.stop(std::move(attempt), found.attempted, reason);
+}
+
+}  // namespace peristat

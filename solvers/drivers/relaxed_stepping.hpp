@@ -1,0 +1,40 @@
+#pragma once
+
+#include <string>
+
+#include "solvers/drivers/driver.hpp"
+#include "solvers/drivers/increment.hpp"
+#include "solvers/drivers/relaxed_step.hpp"
+
+namespace peristat {
+
+/// Steps by dynamic relaxation. One that fails is cut and tried again.
+class RelaxedStepping : public Driver {
+ public:
+  /// Who does the last iterations of a step that holds.
+  enum class Finish { relaxation, newton };
+
+  explicit RelaxedStepping(Path& path, Finish finish = Finish::relaxation);
+
+  struct Found {
+    RelaxedStep step;
+    double attempted = 0.0;  ///< increment of the load factor
+    std::string fault;       ///< what is known of a failure beside its outcome
+  };
+  /// Relaxes the next step, commits its damage, and checks it.
+  [[nodiscard]] Found search();
+  [[nodiscard]] Advance accept(Found found);
+  /// Cuts, or stops.
+  [[nodiscard]] Advance fail(Found found);
+
+  [[nodiscard]] const Increment& increment() const { return increment_; }
+
+ protected:
+  [[nodiscard]] Advance next() override;
+
+ private:
+  Finish finish_;
+  Increment increment_;
+};
+
+}  // namespace peristat

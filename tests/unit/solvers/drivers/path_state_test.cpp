@@ -1,0 +1,254 @@
+#include "solvers/drivers/path_state.hpp"
+
+#include <algorithm>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "solvers/drivers/drivers.hpp"
+#include "solvers/linear/solver_ladder.hpp"
+#include "src/results/record_tables.hpp"
+#include "tests/softening_strip.hpp"
+
+namespace peristat {
+namespace {
+
+using tests::drawn;
+using tests::Strip;
+using tests::support;
+
+/// Out of memory from the third system on.
+class ShortOfMemory : public Cholesky {
+ public:
+  LinearOutcome factorize(const TangentOperator& tangent, FactorUse use) override {
+    return ++systems_ > 2 ? LinearOutcome::out_of_memory : Cholesky::factorize(tangent, use);
+  }
+
+ private:
+  int systems_ = 0;
+};
+
+/// What a path is followed with. All else is made anew for every path.
+struct Setting {
+  std::vector<SupportSpecification> supports;
+  LoadSteppingOptions options;
+  Strip::Middle middle = Strip::Middle::notched;
+  double triangles = 0.0;
+  bool has_stand_in = false, falls = false;
+  int interrupt_after = -1;  ///< accepted steps
+  NewtonOptions newton_options{};
+};
+
+/// A path that has been followed to its end: states and rows that were told.
+struct Followed {
+  std::vector<PathState> states;  ///< after every step and decision
+  std::vector<std::size_t> rows_before;
+  std::vector<Row> rows;
+  std::vector<std::vector<double>> told;  ///< displacements and pieces of accepted states
+  Outcome outcome = Outcome::converged;
+};
+
+/// A body and a solver of its own.
+struct Solved {
+  Strip strip;
+  SolverLadder solver;
+
+  Solved(const Setting& setting, Followed& followed)
+      : strip(setting.middle, setting.supports, 1, setting.triangles),
+        solver({{"first",
+                 [&setting]() -> std::unique_ptr<LinearSolver> {
+                   if (setting.falls) return std::make_unique<ShortOfMemory>();
+                   return std::make_unique<Cholesky>();
+                 }},
+                {"second", [] { return std::make_unique<Cholesky>(); }}},
+               [&followed](const std::string& fall) { followed.rows.push_back({fall}); }) {}
+
+  [[nodiscard]] SolvedBody body() { return {strip.assembler, solver, strip.tangent, strip.free}; }
+};
+
+/// Elastic, with a longer horizon.
+struct StandIn {
+  tests::BoxSetting box = setting();
+  tests::BoxBody body{tests::points_with_ends(box), box};
+  Assembler assembler{body.points, body.model, 1};
+  Tangent tangent{BlockPattern(body.model.bonds()), 2};
+  Cholesky solver;
+
+  static tests::BoxSetting setting() {
+    tests::BoxSetting box = Strip::setting(0.0);
+    box.potential = {};
+    box.horizon_ratio = 3.015;
+    return box;
+  }
+};
+
+/// @param from state to go on from; null: from rest
+Followed follow(const Setting& setting, const PathState* from = nullptr) {
+  Followed followed;
+  Solved solved(setting, followed);
+  StandIn standing;
+  const SolvedBody stand_in{standing.assembler, standing.solver, standing.tangent,
+                            solved.strip.free};
+  EXPECT_EQ(solved.strip.analyze(solved.solver), LinearOutcome::solved);
+  EXPECT_EQ(standing.solver.analyze(standing.tangent.pattern, solved.strip.free),
+            LinearOutcome::solved);
+  LoadSteppingObserver observer;
+  observer.iteration = [&](const IterationRecord& row) { followed.rows.push_back(make_row(row)); };
+  observer.decision = [&](const DecisionRecord& row) { followed.rows.push_back(make_row(row)); };
+  observer.accepted = [&](const StepRecord& row, const AcceptedState& state) {
+    followed.rows.push_back(make_row(row, {"left", "right"}, {}));
+    std::vector<double> told = state.trial.displacement;
+    told.insert(told.end(), state.piece.begin(), state.piece.end());
+    followed.told.push_back(std::move(told));
+  };
+  const int steps_before = from ? from->steps : 0;
+  observer.interrupted = [&] {
+    return steps_before + int(followed.told.size()) == setting.interrupt_after;
+  };
+  const PathSetting all{solved.body(),   solved.strip.conditions,
+                        setting.options, setting.newton_options,
+                        observer,        setting.has_stand_in ? &stand_in : nullptr};
+  Path path = from ? Path(all, *from) : Path(all);
+  if (from) {
+    EXPECT_EQ(path.prepare_solvers(), LinearOutcome::solved);
+  }
+  const std::unique_ptr<Driver> driver = make_driver(setting.options.mode, path);
+  do {
+    followed.states.push_back(path.state());
+    followed.rows_before.push_back(followed.rows.size());
+  } while (driver->advance() == Advance::goes_on);
+  followed.outcome = path.outcome();
+  return followed;
+}
+
+/// From copies of its first states and some ten others, other paths go on as this one did, to the
+/// last bit.
+/// @return the path
+Followed expect_to_go_on_from_copies(const Setting& setting) {
+  const Followed whole = follow(setting);
+  const std::size_t count = whole.states.size();
+  EXPECT_GT(count, 3u);
+  EXPECT_GT(whole.told.size(), 1u);
+  for (std::size_t k = 1; k < count; k += k < 3 ? 1 : 1 + count / 10) {
+    SCOPED_TRACE(k);
+    const PathState copy = whole.states[k];
+    const Followed rest = follow(setting, &copy);
+    EXPECT_EQ(rest.outcome, whole.outcome);
+    const auto begin = whole.rows.begin() + std::ptrdiff_t(whole.rows_before[k]);
+    EXPECT_TRUE(std::equal(rest.rows.begin(), rest.rows.end(), begin, whole.rows.end()));
+    const auto told = whole.told.begin() + whole.states[k].steps;
+    EXPECT_TRUE(std::equal(rest.told.begin(), rest.told.end(), told, whole.told.end()));
+  }
+  return whole;
+}
+
+bool any_state(const Followed& followed, const std::function<bool(const PathState&)>& is_so) {
+  return std::any_of(followed.states.begin(), followed.states.end(), is_so);
+}
+
+LoadSteppingOptions options_of(Mode mode, int implicit_steps, int relaxation_steps) {
+  LoadSteppingOptions options;
+  options.mode = mode;
+  options.steps = implicit_steps;
+  options.relaxation_steps = relaxation_steps;
+  return options;
+}
+
+TEST(PathState, GoesOnInImplicitSteps) {
+  // Triangles release energy as their bonds soften; the weak middle tears at a limit point.
+  Setting setting{drawn("0.03*load"), options_of(Mode::newton, 8, 1)};
+  setting.middle = Strip::Middle::weak;
+  setting.triangles = 0.2;
+  setting.options.smallest_step = 1e-2;
+  const Followed whole = expect_to_go_on_from_copies(setting);
+  EXPECT_EQ(whole.outcome, Outcome::limit_point);
+  EXPECT_TRUE(any_state(whole, [](const PathState& s) { return s.ledger.released != 0.0; }));
+  EXPECT_TRUE(any_state(whole, [](const PathState& s) { return s.implicit.increment > 0.0; }));
+}
+
+TEST(PathState, GoesOnInRelaxedSteps) {
+  // Too few iterations for the first step, which is cut.
+  Setting setting{drawn("0.03*load"), options_of(Mode::relaxation, 1, 2)};
+  setting.options.relaxation.relative_tolerance = 1e-6;
+  setting.options.relaxation.max_iterations = 150;
+  setting.interrupt_after = 5;
+  const Followed whole = expect_to_go_on_from_copies(setting);
+  EXPECT_TRUE(any_state(whole, [](const PathState& s) { return s.relaxed.increment > 0.0; }));
+}
+
+TEST(PathState, GoesOnInTheMidstOfMotion) {
+  Setting setting{drawn("0.03*load"), options_of(Mode::relaxation, 1, 10)};
+  setting.options.relaxation.holds = false;
+  setting.options.relaxation.breaking = Breaking::transient;
+  const Followed whole = expect_to_go_on_from_copies(setting);
+  EXPECT_TRUE(
+      any_state(whole, [](const PathState& s) { return !s.relaxed.motion.velocity.empty(); }));
+}
+
+TEST(PathState, GoesOnBeforeAndAfterAHandOver) {
+  // Pulled and then let go.
+  const Setting setting{drawn("0.045*min(load, 1.2 - load)"), options_of(Mode::adaptive, 10, 50)};
+  const Followed whole = expect_to_go_on_from_copies(setting);
+  EXPECT_EQ(whole.outcome, Outcome::converged);
+  EXPECT_TRUE(any_state(whole, [](const PathState& s) { return s.hand_over.relaxes; }));
+  EXPECT_TRUE(any_state(whole, [](const PathState& s) { return s.hand_over.is_near_onset; }));
+  EXPECT_FALSE(whole.states.back().hand_over.relaxes);
+}
+
+TEST(PathState, GoesOnNearTheOnsetOfDamage) {
+  // What is left before the onset is more than a relaxed step, and would be cut to once more.
+  Setting setting{drawn("0.02*load"), options_of(Mode::adaptive, 1, 500)};
+  setting.interrupt_after = 4;
+  const Followed whole = expect_to_go_on_from_copies(setting);
+  EXPECT_TRUE(any_state(whole, [](const PathState& s) { return s.hand_over.is_near_onset; }));
+}
+
+TEST(PathState, GoesOnWithFragmentsPinned) {
+  // Only x is held on the right: once the strip is pulled in two, that half is free along y.
+  for (const FragmentRemedy remedy : {FragmentRemedy::hold, FragmentRemedy::remove}) {
+    Setting setting{{support("left", "0", "0"), support("right", "0.1*load")},
+                    options_of(Mode::adaptive, 10, 20)};
+    setting.middle = Strip::Middle::weak;
+    setting.options.fragments = remedy;
+    const Followed whole = expect_to_go_on_from_copies(setting);
+    EXPECT_EQ(whole.outcome, Outcome::converged);
+    EXPECT_FALSE(whole.states.back().pins.pinned.empty());
+  }
+}
+
+TEST(PathState, GoesOnWithAStandInAndWithoutIt) {
+  Setting setting{drawn("0.03*load"), options_of(Mode::adaptive, 10, 20)};
+  setting.has_stand_in = true;
+  const Followed whole = expect_to_go_on_from_copies(setting);
+  EXPECT_EQ(whole.outcome, Outcome::converged);
+  EXPECT_TRUE(any_state(whole, [](const PathState& s) { return s.stands_in && s.steps > 0; }));
+  EXPECT_FALSE(whole.states.back().stands_in);
+}
+
+TEST(PathState, GoesOnOnTheRungOfItsSolver) {
+  Setting setting{drawn("0.005*load"), options_of(Mode::newton, 4, 1)};
+  setting.falls = true;
+  const Followed whole = expect_to_go_on_from_copies(setting);
+  EXPECT_EQ(whole.outcome, Outcome::converged);
+  EXPECT_EQ(whole.states.front().rungs.body, 0);
+  EXPECT_EQ(whole.states.back().rungs.body, 1);
+}
+
+TEST(Drivers, EachModeHasOne) {
+  Followed followed;
+  const Setting setting{drawn("0.005*load"), {}};
+  Solved solved(setting, followed);
+  const LoadSteppingObserver observer;
+  Path path(
+      {solved.body(), solved.strip.conditions, setting.options, setting.newton_options, observer});
+  for (const Mode& mode : {Mode::newton, Mode::relaxation, Mode::adaptive}) {
+    EXPECT_TRUE(make_driver(mode, path));
+  }
+  EXPECT_GE(all_drivers().size(), 3u);
+  EXPECT_THROW((void)make_driver(Mode{"none"}, path), std::logic_error);
+}
+
+}  // namespace
+}  // namespace peristat
