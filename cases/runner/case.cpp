@@ -40,7 +40,7 @@ Case read_case(const std::filesystem::path& file,
   for (const auto& [key, value] : overrides) apply_override(document, key, value);
   collect_locations(document, "", result.locations);
   try {
-    document_keys().read(TomlTable(document, "", result.file), result, result);
+    document_keys().read({TomlTable(document, "", result.file), "", result}, result);
   } catch (const InputError& error) {
     throw located(result, error);
   }

@@ -41,12 +41,12 @@ std::map<std::string, std::string> set_names(const Case& from) {
 bool has_sets_from_file(const Case& from) { return std::holds_alternative<PointSource>(from.body); }
 
 /// Refuses a component that is no expression of load and, in `dimension` > 0, of place.
-void check_component(const TomlTable& from, const std::string& key, std::size_t component,
-                     const std::string& text, int dimension, double spacing) {
+void check_component(const Entry& at, std::size_t component, const std::string& text,
+                     int dimension) {
   try {
-    Expression(text, dimension, spacing, Expression::LoadFactor::allowed);
+    Expression(text, dimension, spacing_of(at.so_far), Expression::LoadFactor::allowed);
   } catch (const InputError& error) {
-    from.refuse(key, component, error.allowed());
+    at.from.refuse(at.key, component, error.allowed());
   }
 }
 
@@ -60,9 +60,7 @@ std::string tuples_text(const std::vector<std::array<double, count>>& tuples, co
 }  // namespace
 
 Kind<double> number(const Range& range, std::string allowed, std::string unit) {
-  return {[=](const TomlTable& from, const std::string& key, const Case&) {
-            return from.number(key, range);
-          },
+  return {[=](const Entry& at) { return at.from.number(at.key, range); },
           [](double value, const Case&) { return toml_number(value); }, std::move(allowed),
           std::move(unit)};
 }
@@ -77,65 +75,56 @@ Kind<double> between(double low, double high, std::string unit) {
 }
 
 Kind<std::int64_t> integer(std::int64_t low, std::int64_t high, std::string unit) {
-  return {[=](const TomlTable& from, const std::string& key, const Case&) {
-            return from.integer(key, low, high);
-          },
+  return {[=](const Entry& at) { return at.from.integer(at.key, low, high); },
           [](std::int64_t value, const Case&) { return std::to_string(value); },
           std::to_string(low) + " to " + std::to_string(high), std::move(unit)};
 }
 
-Kind<std::int64_t> count_from(std::int64_t low, std::string unit) {
-  Kind<std::int64_t> kind = integer(low, 1'000'000'000, std::move(unit));
+Kind<std::int64_t> count_from(std::int64_t low, std::string unit, std::int64_t high) {
+  Kind<std::int64_t> kind = integer(low, high, std::move(unit));
   kind.allowed = "whole number from " + std::to_string(low);
   return kind;
 }
 
 Kind<bool> boolean() {
-  return {
-      [](const TomlTable& from, const std::string& key, const Case&) { return from.boolean(key); },
-      [](bool value, const Case&) { return std::string(value ? "true" : "false"); }, "true, false",
-      ""};
+  return {[](const Entry& at) { return at.from.boolean(at.key); },
+          [](bool value, const Case&) { return std::string(value ? "true" : "false"); },
+          "true, false"};
 }
 
 Kind<std::string> text() {
-  return {
-      [](const TomlTable& from, const std::string& key, const Case&) { return from.string(key); },
-      string_text, "", ""};
+  return {[](const Entry& at) { return at.from.string(at.key); }, string_text, ""};
 }
 
 Kind<std::string> one_of(const std::vector<std::string>& names) {
   std::string allowed;
   for (const auto& known : names) allowed += (allowed.empty() ? "`\"" : ", `\"") + known + "\"`";
-  return {[=](const TomlTable& from, const std::string& key, const Case&) {
-            return from.one_of(key, names);
-          },
-          string_text, allowed, ""};
+  return {[=](const Entry& at) { return at.from.one_of(at.key, names); }, string_text, allowed};
 }
 
 Kind<std::string> name() {
-  const auto read = [](const TomlTable& from, const std::string& key, const Case&) {
-    const std::string given = from.string(key);
+  const auto read = [](const Entry& at) {
+    const std::string given = at.from.string(at.key);
     const auto allowed = [](char c) {
       return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
              c == '_' || c == '-';
     };
-    if (given.empty()) from.refuse(key, "is empty");
+    if (given.empty()) at.refuse("is empty");
     for (const char c : given)
-      if (!allowed(c)) from.refuse(key, "may only have letters, digits, _ and -");
+      if (!allowed(c)) at.refuse("may only have letters, digits, _ and -");
     return given;
   };
-  return {read, string_text, "letters, digits, `_`, `-`", ""};
+  return {read, string_text, "letters, digits, `_`, `-`"};
 }
 
 Kind<std::string> set_name() {
   Kind<std::string> kind = name();
-  kind.read = [read = kind.read](const TomlTable& from, const std::string& key,
-                                 const Case& so_far) {
-    const std::string given = read(from, key, so_far);
-    const auto names = set_names(so_far);
+  kind.read = [read = kind.read](const Entry& at) {
+    const std::string given = read(at);
+    const auto names = set_names(at.so_far);
     if (const auto taken = names.find(given); taken != names.end())
-      from.refuse(
-          key, "this name is taken by " + taken->second + "; sets and layers need different names");
+      at.refuse("this name is taken by " + taken->second +
+                "; sets and layers need different names");
     return given;
   };
   kind.allowed += "; no other set or layer has it";
@@ -143,39 +132,38 @@ Kind<std::string> set_name() {
 }
 
 Kind<std::string> known_set() {
-  const auto read = [](const TomlTable& from, const std::string& key, const Case& so_far) {
-    const std::string asked = from.string(key);
-    const auto known = set_names(so_far);
-    if (known.count(asked) > 0 || has_sets_from_file(so_far)) return asked;
+  const auto read = [](const Entry& at) {
+    const std::string asked = at.from.string(at.key);
+    const auto known = set_names(at.so_far);
+    if (known.count(asked) > 0 || has_sets_from_file(at.so_far)) return asked;
     std::vector<std::string> names;
     for (const auto& [set, path] : known) names.push_back(set);
-    from.refuse(key,
-                "no set or layer of this name" + did_you_mean(asked, names) +
-                    (names.empty() ? "; the case has none" : "  (there: " + listed(names) + ")"));
+    at.refuse("no set or layer of this name" + did_you_mean(asked, names) +
+              (names.empty() ? "; the case has none" : "  (there: " + listed(names) + ")"));
   };
-  return {read, string_text, "name of a set or layer", ""};
+  return {read, string_text, "name of a set or layer"};
 }
 
 Kind<std::vector<std::string>> known_sets() {
-  const auto read = [](const TomlTable& from, const std::string& key, const Case& so_far) {
-    const auto known = set_names(so_far);
-    const std::vector<std::string> sets = from.strings(key);
+  const auto read = [](const Entry& at) {
+    const auto known = set_names(at.so_far);
+    const std::vector<std::string> sets = at.from.strings(at.key);
     for (const std::string& set : sets)
-      if (known.count(set) == 0 && !has_sets_from_file(so_far))
-        from.refuse(key, "there is no set or layer \"" + set + "\"");
+      if (known.count(set) == 0 && !has_sets_from_file(at.so_far))
+        at.refuse("there is no set or layer \"" + set + "\"");
     return sets;
   };
   return {read,
           [](const auto& sets, const Case&) {
             return sets.empty() ? std::string() : array_text(sets, toml_string);
           },
-          "list of names of sets and layers", ""};
+          "list of names of sets and layers"};
 }
 
 Kind<Coordinates> coordinates(std::string unit) {
-  const auto read = [](const TomlTable& from, const std::string& key, const Case& so_far) {
+  const auto read = [](const Entry& at) {
     Coordinates place{};
-    const auto numbers = from.numbers(key, dimension_of(so_far), Range{});
+    const auto numbers = at.from.numbers(at.key, dimension_of(at.so_far), Range{});
     std::copy(numbers.begin(), numbers.end(), place.begin());
     return place;
   };
@@ -187,52 +175,50 @@ Kind<Coordinates> coordinates(std::string unit) {
 }
 
 Kind<std::vector<std::array<double, 2>>> pairs() {
-  return {
-      [](const TomlTable& from, const std::string& key, const Case&) { return from.pairs(key); },
-      tuples_text<2>, "3 or more pairs `[x, y]`", "m"};
+  return {[](const Entry& at) { return at.from.pairs(at.key); }, tuples_text<2>,
+          "3 or more pairs `[x, y]`", "m"};
 }
 
 Kind<std::vector<std::array<double, 3>>> triples() {
-  return {
-      [](const TomlTable& from, const std::string& key, const Case&) { return from.triples(key); },
-      tuples_text<3>, "3 or more `[x, y, z]`", "m"};
+  return {[](const Entry& at) { return at.from.triples(at.key); }, tuples_text<3>,
+          "3 or more `[x, y, z]`", "m"};
 }
 
 Kind<int> axis() {
-  const auto read = [](const TomlTable& from, const std::string& key, const Case& so_far) {
+  const auto read = [](const Entry& at) {
     const std::vector<std::string> axes{"x", "y", "z"};
-    return from.one_of(key, {axes.begin(), axes.begin() + so_far.dimension})[0] - 'x';
+    return at.from.one_of(at.key, {axes.begin(), axes.begin() + at.so_far.dimension})[0] - 'x';
   };
   return {read, [](int axis, const Case&) { return toml_string(std::string(1, "xyz"[axis])); },
-          "`\"x\"`, `\"y\"`, `\"z\"` of the dimension", ""};
+          "`\"x\"`, `\"y\"`, `\"z\"` of the dimension"};
 }
 
 Kind<std::string> condition() {
-  const auto read = [](const TomlTable& from, const std::string& key, const Case& so_far) {
-    const std::string selection = from.string(key);
+  const auto read = [](const Entry& at) {
+    const std::string selection = at.from.string(at.key);
     try {
-      Expression(selection, so_far.dimension, spacing_of(so_far),
+      Expression(selection, at.so_far.dimension, spacing_of(at.so_far),
                  Expression::LoadFactor::not_allowed);
     } catch (const InputError& error) {
-      from.refuse(key, error.allowed());
+      at.refuse(error.allowed());
     }
     return selection;
   };
-  return {read, string_text, "an expression of place", ""};
+  return {read, string_text, "an expression of place"};
 }
 
 Kind<std::array<std::optional<std::string>, 3>> prescribed_components() {
-  const auto read = [](const TomlTable& from, const std::string& key, const Case& so_far) {
+  const auto read = [](const Entry& at) {
     std::array<std::optional<std::string>, 3> prescribed;
-    const auto components = from.components(key, dimension_of(so_far));
+    const auto components = at.from.components(at.key, dimension_of(at.so_far));
     bool all_free = true;
     for (std::size_t c = 0; c < components.size(); ++c) {
       if (components[c] == "free") continue;
       all_free = false;
-      check_component(from, key, c, components[c], so_far.dimension, spacing_of(so_far));
+      check_component(at, c, components[c], at.so_far.dimension);
       prescribed[c] = components[c];
     }
-    if (all_free) from.refuse(key, "every component is free, so this supports nothing");
+    if (all_free) at.refuse("every component is free, so this supports nothing");
     return prescribed;
   };
   return {read,
@@ -245,14 +231,14 @@ Kind<std::array<std::optional<std::string>, 3>> prescribed_components() {
 }
 
 Kind<std::array<std::string, 3>> force_components(bool is_total) {
-  const auto read = [=](const TomlTable& from, const std::string& key, const Case& so_far) {
+  const auto read = [=](const Entry& at) {
     std::array<std::string, 3> force = LoadSpecification().value;
-    const auto components = from.components(key, dimension_of(so_far));
+    const auto components = at.from.components(at.key, dimension_of(at.so_far));
     for (std::size_t c = 0; c < components.size(); ++c) {
       if (components[c] == "free")
-        from.refuse(key, c, "only displacements of supports can be free; write 0 for no force");
-      check_component(from, key, c, components[c], is_total ? 0 : so_far.dimension,
-                      spacing_of(so_far));
+        at.from.refuse(at.key, c,
+                       "only displacements of supports can be free; write 0 for no force");
+      check_component(at, c, components[c], is_total ? 0 : at.so_far.dimension);
       force[c] = components[c];
     }
     return force;

@@ -19,8 +19,9 @@ namespace peristat {
 [[nodiscard]] Kind<double> between(double low, double high, std::string unit = {});
 [[nodiscard]] Kind<std::int64_t> integer(std::int64_t low, std::int64_t high,
                                          std::string unit = {});
-/// An integer that counts something, from `low`.
-[[nodiscard]] Kind<std::int64_t> count_from(std::int64_t low, std::string unit = {});
+/// An integer that counts something and is limited for the machine's sake alone.
+[[nodiscard]] Kind<std::int64_t> count_from(std::int64_t low, std::string unit = {},
+                                            std::int64_t high = 1'000'000'000);
 [[nodiscard]] Kind<bool> boolean();
 [[nodiscard]] Kind<std::string> text();
 /// A string out of a list.
@@ -30,13 +31,14 @@ namespace peristat {
 template <class Value>
 using Choices = std::vector<std::pair<std::string, Value>>;
 
+/// A value of an enumeration by its name.
 template <class Value>
 [[nodiscard]] Kind<Value> choice(const Choices<Value>& choices) {
   std::vector<std::string> names;
   for (const auto& [name, value] : choices) names.push_back(name);
   const Kind<std::string> name_kind = one_of(names);
-  return {[=](const TomlTable& from, const std::string& key, const Case& so_far) {
-            const std::string chosen = name_kind.read(from, key, so_far);
+  return {[=](const Entry& at) {
+            const std::string chosen = name_kind.read(at);
             return std::find_if(choices.begin(), choices.end(),
                                 [&](const auto& choice) { return choice.first == chosen; })
                 ->second;
@@ -46,7 +48,7 @@ template <class Value>
               if (choice == value) return toml_string(name);
             return std::string();
           },
-          name_kind.allowed, ""};
+          name_kind.allowed};
 }
 
 /// A name that is given: letters, digits, _ and -.

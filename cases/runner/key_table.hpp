@@ -14,13 +14,21 @@
 
 namespace peristat {
 
+/// A key while it is read: its table, and the case with all that was read before.
+struct Entry {
+  const TomlTable& from;
+  std::string key;  ///< empty for the table itself
+  const Case& so_far;
+
+  [[noreturn]] void refuse(const std::string& why) const { from.refuse(key, why); }
+};
+
 /// What the value of a key may be: how it is read and checked, written as TOML, and described.
 template <class Value>
 struct Kind {
-  /// @param so_far the case with all that was read before
-  std::function<Value(const TomlTable& from, const std::string& key, const Case& so_far)> read;
+  std::function<Value(const Entry&)> read;
   std::function<std::string(const Value&, const Case&)> text;
-  std::string allowed, unit;
+  std::string allowed, unit = {};
 };
 
 /// Member of a member, to be used like a pointer to a member.
@@ -35,7 +43,7 @@ template <class Spec>
 class Key {
  public:
   using Predicate = std::function<bool(const Spec&, const Case& so_far)>;
-  using Action = std::function<void(const TomlTable& from, Spec&, const Case& so_far)>;
+  using Action = std::function<void(const Entry&, Spec&)>;
 
   /// @param member  pointer to a member of the specification, or what gives a reference to one
   /// @param meaning a sentence for the reference, as are the words below
@@ -43,8 +51,8 @@ class Key {
   Key(std::string name, Member member, Kind<Value> kind, std::string meaning)
       : description_{name, std::move(meaning), kind.unit, {}, kind.allowed} {
     using Held = std::remove_cvref_t<std::invoke_result_t<Member, Spec&>>;
-    read_ = [=](const TomlTable& from, Spec& spec, const Case& so_far) {
-      std::invoke(member, spec) = static_cast<Held>(kind.read(from, name, so_far));
+    read_ = [=](const Entry& at, Spec& spec) {
+      std::invoke(member, spec) = static_cast<Held>(kind.read(at));
     };
     value_text_ = [=](const Spec& spec, const Case& from) -> std::string {
       const Held& stored = std::invoke(member, spec);
@@ -63,19 +71,19 @@ class Key {
     if (is_array) description_.fallback = "none";
     describe_inside_ = [=](auto& all) { inner.describe(all, is_array); };
     if constexpr (is_array) {
-      read_ = [=](const TomlTable& from, Spec& spec, const Case& so_far) {
-        for (const TomlTable& table : from.tables(name)) {
+      read_ = [=](const Entry& at, Spec& spec) {
+        for (const TomlTable& table : at.from.tables(name)) {
           Inner element{};
-          inner.read(table, element, so_far);
+          inner.read({table, "", at.so_far}, element);
           std::invoke(member, spec).push_back(std::move(element));
         }
       };
     } else {
-      read_ = [=](const TomlTable& from, Spec& spec, const Case& so_far) {
-        inner.read(from.table(name), std::invoke(member, spec), so_far);
+      read_ = [=](const Entry& at, Spec& spec) {
+        inner.read({at.from.table(name), "", at.so_far}, std::invoke(member, spec));
       };
-      fallback_ = [=](const TomlTable& from, Spec& spec, const Case& so_far) {
-        inner.read(from.empty_table(name), std::invoke(member, spec), so_far);
+      fallback_ = [=](const Entry& at, Spec& spec) {
+        inner.read({at.from.empty_table(name), "", at.so_far}, std::invoke(member, spec));
       };
     }
     lines_ = [=](const Spec& spec, const Case& from) {
@@ -96,7 +104,7 @@ class Key {
   /// A default that depends on other keys.
   template <class Fallback>
   Key& otherwise(Fallback fallback, std::string words) {
-    fallback_ = [=](const TomlTable&, Spec& spec, const Case& so_far) { fallback(spec, so_far); };
+    fallback_ = [=](const Entry& at, Spec& spec) { fallback(spec, at.so_far); };
     return default_words(std::move(words));
   }
   Key& default_words(std::string words) {
@@ -148,29 +156,32 @@ class Key {
 
   const std::string& name() const { return description_.name; }
 
-  /// Whether the key means something here. @throws InputError if it is there and means nothing
-  bool applies(const TomlTable& from, const Spec& spec, const Case& so_far) const {
-    for (const auto& [holds, reason] : exclusions_) {
-      if (!holds(spec, so_far)) continue;
-      if (!reason.empty() && from.has(name())) from.refuse(name(), reason);
-      return false;
-    }
-    return true;
+  const std::string* exclusion(const Spec& spec, const Case& so_far) const {
+    for (const auto& [holds, reason] : exclusions_)
+      if (holds(spec, so_far)) return &reason;
+    return nullptr;
   }
 
-  void read(const TomlTable& from, Spec& spec, const Case& so_far) const {
-    if (!applies(from, spec, so_far)) return;
-    if (is_required_ || from.has(name()))
-      read_(from, spec, so_far);
+  /// Whether the key means something here. @throws InputError if it is there and means nothing
+  bool applies(const Entry& at, const Spec& spec) const {
+    const std::string* reason = exclusion(spec, at.so_far);
+    if (reason != nullptr && !reason->empty() && at.from.has(name()))
+      at.from.refuse(name(), *reason);
+    return reason == nullptr;
+  }
+
+  void read(const Entry& table, Spec& spec) const {
+    const Entry at{table.from, name(), table.so_far};
+    if (!applies(at, spec)) return;
+    if (is_required_ || at.from.has(name()))
+      read_(at, spec);
     else if (fallback_)
-      fallback_(from, spec, so_far);
-    if (then_) then_(from, spec, so_far);
+      fallback_(at, spec);
+    if (then_) then_(at, spec);
   }
 
   std::string lines(const Spec& spec, const Case& from) const {
-    if (written_if_ && !written_if_(spec, from)) return {};
-    for (const auto& [holds, reason] : exclusions_)
-      if (holds(spec, from)) return {};
+    if (exclusion(spec, from) != nullptr || (written_if_ && !written_if_(spec, from))) return {};
     if (lines_) return lines_(spec, from);
     const std::string value = value_text_(spec, from);
     return value.empty() ? value : name() + " = " + value + "\n";
@@ -193,19 +204,19 @@ struct Table {
   std::vector<Key<Spec>> keys;
   typename Key<Spec>::Action before{}, after{};
 
-  void read(const TomlTable& from, Spec& spec, const Case& so_far) const {
-    if (before) before(from, spec, so_far);
+  void read(const Entry& at, Spec& spec) const {
+    if (before) before(at, spec);
     for (const auto& key : keys)
-      if (key.is_early_) key.read(from, spec, so_far);
+      if (key.is_early_) key.read(at, spec);
     std::vector<std::string> group;
     for (const auto& key : keys)
-      if (key.applies(from, spec, so_far) && key.is_one_of_) group.push_back(key.name());
-    const std::string one = group.empty() ? "" : from.exactly_one(group);
+      if (key.applies(at, spec) && key.is_one_of_) group.push_back(key.name());
+    const std::string one = group.empty() ? "" : at.from.exactly_one(group);
     for (const auto& key : keys)
-      if (key.name() == one) key.read(from, spec, so_far);
+      if (key.name() == one) key.read(at, spec);
     for (const auto& key : keys)
-      if (!key.is_early_ && !key.is_one_of_) key.read(from, spec, so_far);
-    if (after) after(from, spec, so_far);
+      if (!key.is_early_ && !key.is_one_of_) key.read(at, spec);
+    if (after) after(at, spec);
   }
 
   /// Keys and values in force as lines of TOML, without the header.
