@@ -94,12 +94,13 @@ Table<Case> lattice_keys() {
       {K("spacing", in(lattice, &Lattice::spacing), positive("m"),
          "distance of neighbouring points")
            .required(),
-       K("horizon_ratio", &Case::horizon_ratio, positive("-"), "horizon / spacing")
+       K("horizon_ratio", &Case::horizon_ratio, number(Range::positive("-"), "1 to 1000"),
+         "horizon / spacing")
            .then([](auto& at, auto& result) {
              if (result.horizon_ratio < 1.0)
                at.refuse("horizon smaller than the spacing; must be at least 1, usually 3.015");
            })
-           .moreover("1 to 1000, in 3D to 100; with model `cpd` to 50 in 2D, to 8 in 3D"),
+           .moreover("in 3D to 100; with model `cpd` to 50 in 2D, to 8 in 3D"),
        thickness(in(lattice, &Lattice::cross_section)), area(in(lattice, &Lattice::cross_section)),
        K("origin", in(lattice, &Lattice::origin),
          choice<LatticeOrigin>(
@@ -185,7 +186,7 @@ Table<Crack> crack_keys() {
            K("vertices", in(polygon, &CrackPolygon::vertices), triples(),
              "3D: corners in order, the last is joined to the first")
                .unless(in_dimension<2>, "is for dimension 3; 2D has from and to")
-               .moreover("in one plane (to 10⁻⁹ of the extent), around an area; edges must not "
+               .moreover("in one plane (to 10⁻⁹ of the extent) and around an area; edges must not "
                          "cross or touch")
                .required("required in 3D")},
           [](auto& at, auto& crack) {
@@ -335,7 +336,7 @@ Table<MaterialSpecification> material_keys() {
                  return material.youngs_modulus && so_far.dimension == 2;
                },
                "follows from youngs_modulus and poisson_ratio in 2D; give c1 for a free c2")
-           .moreover("but a negative one is refused with damage, and where it makes the body "
+           .moreover("a negative one is refused with damage, and where it makes the body "
                      "[unstable at rest](theory.md#stability-at-rest)"),
        K("c3", &Spec::c3, stiffness("N/m14"),
          "`cpd`: three-neighbour constant, 3D; follows from `youngs_modulus`")
@@ -673,6 +674,7 @@ Table<Case> all_keys() {
   return {
       "",
       {K("title", &Case::title, text(), "one line for people")
+           .moreover("any text")
            .otherwise(
                [](auto& result, auto&) {
                  result.title = std::filesystem::path(result.file).stem().string();

@@ -171,7 +171,7 @@ Kind<Coordinates> coordinates(std::string unit) {
           [](const Coordinates& place, const Case& from) {
             return array_text(components_of(place, from), toml_number);
           },
-          "", std::move(unit)};
+          "a number per dimension", std::move(unit)};
 }
 
 Kind<std::vector<std::array<double, 2>>> pairs() {

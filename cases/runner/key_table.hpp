@@ -113,7 +113,7 @@ class Key {
   }
   /// Limits beside those of the kind.
   Key& moreover(const std::string& words) {
-    description_.allowed += (description_.allowed.empty() ? "" : ", ") + words;
+    description_.allowed += (description_.allowed.empty() ? "" : "; ") + words;
     return *this;
   }
   /// Where this holds the key is neither read nor written: it is refused, or ignored if there is no

@@ -37,7 +37,7 @@ const Table<Cylinder>& keys_of(const Cylinder&) {
   static const Table<Cylinder> table{
       "set.shape.cylinder",
       {centre<Cylinder>(),
-       K("axis", &Cylinder::axis, coordinates(), "cylinder: direction")
+       K("axis", &Cylinder::axis, coordinates(""), "cylinder: direction")
            .moreover("not zero")
            .default_words("`[0, 0, 1]`")
            .listed_after("radius"),
@@ -59,7 +59,7 @@ const Table<Polygon>& keys_of(const Polygon&) {
   static const Table<Polygon> table{"set.shape.polygon",
                                     {K("vertices", &Polygon::vertices, pairs(),
                                        "polygon: corners in order, the last is joined to the first")
-                                         .moreover("that enclose an area")
+                                         .moreover("around an area")
                                          .required()}};
   return table;
 }
@@ -155,7 +155,7 @@ Kind<Shape> shape_inside() {
       inside.replace(end, 1, ", ");
     return "{ " + kind_of(shape) + " = { " + inside + " } }";
   };
-  return {read, text, "one of `" + listed(shape_kinds()) + "`"};
+  return {read, text, one_of(shape_kinds()).allowed};
 }
 
 void describe_shapes(std::vector<TableDescription>& all) {

@@ -12,7 +12,6 @@
 
 #include <gtest/gtest.h>
 
-#include "cases/runner/case_keys.hpp"
 #include "src/input_error.hpp"
 
 namespace peristat {
@@ -750,23 +749,6 @@ std::string text_of(const fs::path& file) {
   std::ifstream in(file);
   EXPECT_TRUE(in.is_open()) << file;
   return {std::istreambuf_iterator<char>(in), {}};
-}
-
-TEST_F(CaseDocumentation, HasEveryKeyAndTable) {
-  const std::string page = text_of(fs::path(PERISTAT_SOURCE_DIR) / "docs/case-file.md");
-  std::size_t keys = 0;
-  for (const auto& [table, known] : case_keys()) {
-    for (const auto& key : known) {
-      EXPECT_NE(page.find("`" + key + "`"), std::string::npos) << table << "." << key;
-      ++keys;
-    }
-    // set.shape and what is below it stand in the table of [[set]]
-    if (table.empty() || table.rfind("set.", 0) == 0) continue;
-    EXPECT_TRUE(page.find("# `[" + table + "]`") != std::string::npos ||
-                page.find("# `[[" + table + "]]`") != std::string::npos)
-        << table;
-  }
-  EXPECT_GT(keys, 50u);
 }
 
 TEST_F(CaseDocumentation, ExampleIsACase) {
