@@ -1,5 +1,7 @@
 #include "cases/runner/case.hpp"
 
+#include <algorithm>
+
 #include "cases/runner/case_file.hpp"
 #include "cases/runner/key_table.hpp"
 #include "cases/runner/toml_table.hpp"
@@ -28,6 +30,44 @@ CaseLocation location_of(const Case& from, const std::string& key) {
   return {};
 }
 
+/// Keys by the names that lower floors have for what they are given.
+const std::map<std::string, std::string>& keys_of_members() {
+  static const std::map<std::string, std::string> keys{{"spacing", "lattice.spacing"},
+                                                       {"perturbation", "lattice.perturbation"},
+                                                       {"shapes", "lattice.shape"},
+                                                       {"layers", "lattice.layer"},
+                                                       {"file", "points.file"},
+                                                       {"supports", "support"},
+                                                       {"loads", "load"},
+                                                       {"directory", "output.directory"}};
+  return keys;
+}
+
+/// "load[0].body_force[1]" for "loads[0].value[1]"; a key of the case file stays as it is.
+std::string key_of(const Case& from, std::string member) {
+  const auto* lattice = std::get_if<Lattice>(&from.body);
+  if (member == "cross_section")
+    return std::string(lattice != nullptr ? "lattice." : "points.") +
+           (from.dimension == 1 ? "area" : "thickness");
+  const std::size_t end = std::min(member.find_first_of("[."), member.size());
+  const auto known = keys_of_members().find(member.substr(0, end));
+  if (known == keys_of_members().end()) return member;
+  const auto replace = [&](const std::string& part, const auto& key_of_element) {
+    const std::size_t at = member.find(part);
+    if (at == std::string::npos) return;
+    const std::size_t number = std::stoul(member.substr(end + 1));
+    member.replace(at + 2, part.size() - 2, key_of_element(number));
+  };
+  replace("].value", [&](std::size_t k) {
+    return from.loads.at(k).kind == LoadSpecification::Kind::body_force ? "body_force"
+                                                                        : "total_force";
+  });
+  replace("].action", [&](std::size_t k) {
+    return lattice->shapes.at(k).action == ShapeStep::Action::add ? "add" : "subtract";
+  });
+  return known->second + member.substr(end);
+}
+
 }  // namespace
 
 Case read_case(const std::filesystem::path& file,
@@ -54,8 +94,8 @@ std::string located(const Case& from, const std::string& key, const std::string&
 
 InputError located(const Case& from, const InputError& error) {
   if (!error.place().empty()) return error;
-  return InputError(error.key(), error.value(), error.allowed(),
-                    location_of(from, error.key()).text(from.file));
+  const std::string key = key_of(from, error.key());
+  return InputError(key, error.value(), error.allowed(), location_of(from, key).text(from.file));
 }
 
 }  // namespace peristat

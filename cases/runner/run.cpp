@@ -314,14 +314,10 @@ Exit run_case(const Case& from, const RunOptions& options, Progress& progress, S
   heed_interruptions();
   std::vector<ProbeColumns> probes;
   for (const auto& probe : from.probes) probes.push_back(columns_of(probe, from.dimension));
-  try {
-    results.emplace(
-        from.output.directory, body.points,
-        CaseText{from.as_read, from.as_resolved, from.title, versions(), identity(from.file)},
-        support_sets(from), probes, neighbour_counts_of(body), options.overwrite);
-  } catch (const InputError& error) {
-    throw located(from, error);
-  }
+  results.emplace(
+      from.output.directory, body.points,
+      CaseText{from.as_read, from.as_resolved, from.title, versions(), identity(from.file)},
+      support_sets(from), probes, neighbour_counts_of(body), options.overwrite);
   leave_note(from.output.directory);
 
   const Pattern pattern(body.model.bonds);
@@ -399,7 +395,8 @@ Exit run(const Case& from, const RunOptions& options) {
   Summary summary;
   std::optional<Results> results;
   try {
-    return run_case(from, options, progress, summary, results);
+    return located_errors(from,
+                          [&] { return run_case(from, options, progress, summary, results); });
   } catch (...) {
     if (!results) throw;
     const Failure failure = current_failure();
