@@ -10,12 +10,13 @@ namespace peristat {
 
 /// Wrong input, told to the person who wrote it (exit code 2).
 ///
-/// Code below the runner names the key of the case file that it was made from, the value found and
-/// what is allowed; the runner, which knows the file, puts file, line and column in front. What
-/// somebody wrote is quoted shortened and without control characters (readable_text.hpp).
+/// Code below the runner names what it was given in its own terms, the member of a specification
+/// ("supports[1].displacement[0]"), the value found and what is allowed; the runner, which knows
+/// the case file, says which key that is and puts file, line and column in front. What somebody
+/// wrote is quoted shortened and without control characters (readable_text.hpp).
 class InputError : public std::runtime_error {
  public:
-  /// @param key   dotted key of the case file ("lattice.spacing"), or empty
+  /// @param key   dotted key of the case file, below the runner a member; or empty
   /// @param value the offending value as text, or empty
   /// @param allowed a sentence that says what is wrong and what is allowed
   /// @param place where it stands ("case.toml:12:3"), put in front of the message, or empty

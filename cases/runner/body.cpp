@@ -19,16 +19,6 @@
 namespace peristat {
 namespace {
 
-/// Runs `make`; input errors leave with the place of their key in the case file.
-template <class Make>
-auto located_errors(const Case& from, const Make& make) {
-  try {
-    return make();
-  } catch (const InputError& error) {
-    throw located(from, error);
-  }
-}
-
 /// Input errors of `make` speak of keys inside a table.
 template <class Make>
 auto errors_in_table(const std::string& table, const Make& make) {

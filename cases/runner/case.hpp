@@ -149,7 +149,18 @@ struct Case {
 [[nodiscard]] std::string located(const Case& from, const std::string& key,
                                   const std::string& message);
 
-/// The error with the place of its key, unless it has a place already.
+/// The error with its key of the case file, where a lower floor has named what it was given, and
+/// with the key's place, unless it has a place already.
 [[nodiscard]] InputError located(const Case& from, const InputError& error);
+
+/// Runs `make`; input errors leave with the place of their key in the case file.
+template <class Make>
+auto located_errors(const Case& from, const Make& make) {
+  try {
+    return make();
+  } catch (const InputError& error) {
+    throw located(from, error);
+  }
+}
 
 }  // namespace peristat

@@ -14,6 +14,7 @@
 #include "cases/runner/check.hpp"
 #include "cases/runner/check_tangent.hpp"
 #include "cases/runner/failure.hpp"
+#include "cases/runner/key_reference.hpp"
 #include "cases/runner/run.hpp"
 #include "cases/runner/runtime_environment.hpp"
 #include "cases/runner/toml_text.hpp"
@@ -28,7 +29,7 @@ namespace {
 using namespace peristat;
 
 struct CommandLine {
-  std::string case_file, output, log_file, deformation;
+  std::string case_file, output, log_file, deformation, table;
   std::vector<std::string> settings;
   int threads = 0;
   bool quiet = false, overwrite = false;
@@ -89,6 +90,7 @@ void add_calibration(CLI::App& command, CommandLine& line) {
 }
 
 Exit execute(const CLI::App& program, const CommandLine& line, int threads) {
+  if (program.got_subcommand("keys")) return print_keys(line.table);
   const bool is_calibration = program.got_subcommand("calibrate");
   if (is_calibration && line.case_file.empty()) return calibrate(line.calibration);
   const Case from = read_case(line.case_file, overrides(line));
@@ -155,6 +157,9 @@ int main(int count, char** arguments) try {
   add_case_options(*tangent_command, line);
   tangent_command->add_option("--deformation", line.deformation,
                               "current coordinates as expressions of x, y, z: 'EXPR; EXPR; …'");
+  program.add_subcommand("keys", "keys of case files, as tables in markdown")
+      ->add_option("table", line.table,
+                   "one table, such as solver or lattice.shape (default: all)");
   add_calibration(
       *program.add_subcommand("calibrate", "constants of cpd from moduli and back; prints JSON"),
       line);

@@ -202,14 +202,10 @@ class CaseRun {
   void open_results() {
     std::vector<ProbeColumns> probes;
     for (const auto& probe : from_.probes) probes.push_back(columns_of(probe, from_.dimension));
-    try {
-      results_.emplace(
-          from_.output.directory, body_->points,
-          CaseText{from_.as_read, from_.as_resolved, from_.title, versions(), identity(from_.file)},
-          support_sets(from_), probes, neighbour_counts_of(*body_), options_.overwrite);
-    } catch (const InputError& error) {
-      throw located(from_, error);
-    }
+    results_.emplace(
+        from_.output.directory, body_->points,
+        CaseText{from_.as_read, from_.as_resolved, from_.title, versions(), identity(from_.file)},
+        support_sets(from_), probes, neighbour_counts_of(*body_), options_.overwrite);
     leave_note(from_.output.directory);
   }
 
@@ -308,7 +304,8 @@ Exit run(const Case& from, const RunOptions& options) {
   Summary summary;
   std::optional<Results> results;
   try {
-    return CaseRun(from, options, progress, summary, results).run();
+    return located_errors(from,
+                          [&] { return CaseRun(from, options, progress, summary, results).run(); });
   } catch (...) {
     if (!results) throw;
     const Failure failure = current_failure();

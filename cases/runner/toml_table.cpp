@@ -128,9 +128,7 @@ std::string TomlTable::exactly_one(const std::vector<std::string>& keys) const {
   return one;
 }
 
-std::string TomlTable::string(const std::string& key,
-                              const std::optional<std::string>& fallback) const {
-  if (fallback && !has(key)) return *fallback;
+std::string TomlTable::string(const std::string& key) const {
   const TomlValue& value = need(key);
   if (value.kind == TomlValue::Kind::string) return value.string;
   // "--set output.directory=2024" needs no quotes
@@ -140,12 +138,11 @@ std::string TomlTable::string(const std::string& key,
   refuse(value, path(key), "must be a string, not " + kind_name(value));
 }
 
-bool TomlTable::boolean(const std::string& key, bool fallback) const {
-  const auto* value = find(key);
-  if (value == nullptr) return fallback;
-  if (value->kind != TomlValue::Kind::boolean)
-    refuse(*value, path(key), "must be true or false, not " + kind_name(*value));
-  return value->boolean;
+bool TomlTable::boolean(const std::string& key) const {
+  const TomlValue& value = need(key);
+  if (value.kind != TomlValue::Kind::boolean)
+    refuse(value, path(key), "must be true or false, not " + kind_name(value));
+  return value.boolean;
 }
 
 double TomlTable::checked_number(const TomlValue& value, const std::string& path,
@@ -163,15 +160,11 @@ double TomlTable::checked_number(const TomlValue& value, const std::string& path
   refuse(value, path, words);
 }
 
-double TomlTable::number(const std::string& key, const Range& range,
-                         std::optional<double> fallback) const {
-  if (fallback && !has(key)) return *fallback;
+double TomlTable::number(const std::string& key, const Range& range) const {
   return checked_number(need(key), path(key), range);
 }
 
-std::int64_t TomlTable::integer(const std::string& key, std::int64_t low, std::int64_t high,
-                                std::optional<std::int64_t> fallback) const {
-  if (fallback && !has(key)) return *fallback;
+std::int64_t TomlTable::integer(const std::string& key, std::int64_t low, std::int64_t high) const {
   const TomlValue& value = need(key);
   const std::string words =
       "must be a whole number from " + std::to_string(low) + " to " + std::to_string(high);
@@ -181,9 +174,9 @@ std::int64_t TomlTable::integer(const std::string& key, std::int64_t low, std::i
   return value.integer;
 }
 
-std::string TomlTable::one_of(const std::string& key, const std::vector<std::string>& allowed,
-                              const std::optional<std::string>& fallback) const {
-  const std::string name = string(key, fallback);
+std::string TomlTable::one_of(const std::string& key,
+                              const std::vector<std::string>& allowed) const {
+  const std::string name = string(key);
   if (contains(allowed, name)) return name;
   refuse(key, "not known" + did_you_mean(name, allowed) + "  (allowed: " + listed(allowed) + ")");
 }
@@ -239,7 +232,6 @@ std::vector<std::array<double, 3>> TomlTable::triples(const std::string& key) co
 
 std::vector<std::string> TomlTable::strings(const std::string& key) const {
   std::vector<std::string> strings;
-  if (!has(key)) return strings;
   for (const auto& item : items(key, 0, "strings")) {
     if (item.kind != TomlValue::Kind::string)
       refuse(item, path(key) + "[" + std::to_string(strings.size()) + "]", "must be a string");
@@ -264,6 +256,11 @@ std::vector<std::string> TomlTable::components(const std::string& key, std::size
 
 TomlTable TomlTable::table(const std::string& key) const {
   return TomlTable(need(key), path(key), *file_);
+}
+
+TomlTable TomlTable::empty_table(const std::string& key) const {
+  static const TomlValue no_entries;
+  return TomlTable(no_entries, path(key), *file_);
 }
 
 std::vector<TomlTable> TomlTable::tables(const std::string& key) const {

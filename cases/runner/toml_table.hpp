@@ -2,9 +2,7 @@
 
 #include <array>
 #include <cstdint>
-#include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "cases/runner/toml_value.hpp"
@@ -48,30 +46,15 @@ class TomlTable {
   /// The one of the keys that is there. @throws InputError if there is none or more than one
   [[nodiscard]] std::string exactly_one(const std::vector<std::string>& keys) const;
 
-  /// These need the key, unless a fallback is given.
-  [[nodiscard]] std::string string(const std::string& key,
-                                   const std::optional<std::string>& fallback = {}) const;
-  [[nodiscard]] bool boolean(const std::string& key, bool fallback) const;
-  [[nodiscard]] double number(const std::string& key, const Range& range,
-                              std::optional<double> fallback = {}) const;
-  [[nodiscard]] std::int64_t integer(const std::string& key, std::int64_t low, std::int64_t high,
-                                     std::optional<std::int64_t> fallback = {}) const;
+  /// These need the key.
+  [[nodiscard]] std::string string(const std::string& key) const;
+  [[nodiscard]] bool boolean(const std::string& key) const;
+  [[nodiscard]] double number(const std::string& key, const Range& range) const;
+  [[nodiscard]] std::int64_t integer(const std::string& key, std::int64_t low,
+                                     std::int64_t high) const;
   /// A string out of a list.
-  [[nodiscard]] std::string one_of(const std::string& key, const std::vector<std::string>& allowed,
-                                   const std::optional<std::string>& fallback = {}) const;
-  /// One of the values of an enumeration by its name.
-  template <class Value>
-  [[nodiscard]] Value choice(const std::string& key,
-                             const std::vector<std::pair<std::string, Value>>& choices,
-                             Value fallback) const {
-    std::vector<std::string> names;
-    for (const auto& [name, value] : choices) names.push_back(name);
-    if (!has(key)) return fallback;
-    const std::string chosen = one_of(key, names);
-    for (const auto& [name, value] : choices)
-      if (name == chosen) return value;
-    return fallback;
-  }
+  [[nodiscard]] std::string one_of(const std::string& key,
+                                   const std::vector<std::string>& allowed) const;
   /// An array of numbers.
   [[nodiscard]] std::vector<double> numbers(const std::string& key, std::size_t count,
                                             const Range& range) const;
@@ -79,13 +62,15 @@ class TomlTable {
   [[nodiscard]] std::vector<std::array<double, 2>> pairs(const std::string& key) const;
   /// An array of triples of numbers.
   [[nodiscard]] std::vector<std::array<double, 3>> triples(const std::string& key) const;
-  /// An array of strings; without the key there are none.
+  /// An array of strings.
   [[nodiscard]] std::vector<std::string> strings(const std::string& key) const;
   /// An array of numbers and strings, all as text.
   [[nodiscard]] std::vector<std::string> components(const std::string& key,
                                                     std::size_t count) const;
 
   [[nodiscard]] TomlTable table(const std::string& key) const;
+  /// The table that the key would have if nothing stood in it.
+  [[nodiscard]] TomlTable empty_table(const std::string& key) const;
   /// An array of tables; without the key there are none.
   [[nodiscard]] std::vector<TomlTable> tables(const std::string& key) const;
 

@@ -43,7 +43,7 @@ Conditions::Conditions(const Points& points, const std::vector<SupportSpecificat
                        const std::vector<LoadSpecification>& loads)
     : points_(points), prescribed_(points.reference.size(), 0) {
   for (std::size_t k = 0; k < supports.size(); ++k) {
-    const std::string table = indexed("support", k);
+    const std::string table = indexed("supports", k);
     const std::vector<Index>& members = points_of(points, supports[k].set, table + ".set");
     for (int c = 0; c < points.dimension; ++c) {
       const auto& text = supports[k].displacement[c];
@@ -57,7 +57,7 @@ Conditions::Conditions(const Points& points, const std::vector<SupportSpecificat
     }
   }
   for (std::size_t k = 0; k < loads.size(); ++k) {
-    const std::string table = indexed("load", k);
+    const std::string table = indexed("loads", k);
     const std::vector<Index>& members = points_of(points, loads[k].set, table + ".set");
     const bool total = loads[k].kind == LoadSpecification::Kind::total_force;
     double volume = 1.0;
@@ -66,8 +66,7 @@ Conditions::Conditions(const Points& points, const std::vector<SupportSpecificat
       for (Index point : members) volume += points.volume[point];
     }
     for (int c = 0; c < points.dimension; ++c) {
-      const std::string key =
-          indexed(table + (total ? ".total_force" : ".body_force"), std::size_t(c));
+      const std::string key = indexed(table + ".value", std::size_t(c));
       loads_.push_back({key, &members, c,
                         with_key(key,
                                  [&] {

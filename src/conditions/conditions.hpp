@@ -15,7 +15,7 @@ namespace peristat {
 /// of freedom (point x dimension + component).
 class Conditions {
  public:
-  /// @throws InputError (keys "support[k].…", "load[k].…", k from 0) for a set that is unknown or
+  /// @throws InputError ("supports[k].…", "loads[k].…", k from 0) for a set that is unknown or
   ///         empty, a bad expression, or two supports that prescribe different displacements to one
   ///         point and component (compared at some load factors, and whenever they are used)
   Conditions(const Points& points, const std::vector<SupportSpecification>& supports,

@@ -34,7 +34,7 @@ inline constexpr double polygon_tolerance = 1e-9;
 /// Refuses a crack that does not fit the dimension (segment: 2; polygon: 3; in 1D there is none),
 /// has components that are not finite or is degenerate: a segment without length, a polygon with
 /// fewer than three vertices, without area, out of plane, or with edges that cross or touch.
-/// @param table key of the table that holds the crack ("crack[0]"); the errors name its "from",
+/// @param table what holds the crack ("crack[0]"); the errors name its "from",
 ///              "to" or "vertices"
 /// @throws InputError
 void check_crack(const Crack& crack, int dimension, const std::string& table);

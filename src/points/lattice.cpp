@@ -72,29 +72,29 @@ double largest_number_of_points(const Lattice& lattice, const Grid& grid) {
 }
 
 std::string element(const char* list, std::size_t number) {
-  return "lattice." + std::string(list) + "[" + std::to_string(number) + "]";
+  return std::string(list) + "[" + std::to_string(number) + "]";
 }
 
 void check_shape_step(const Lattice& lattice, std::size_t number) {
   const ShapeStep& step = lattice.shapes[number];
   const bool adds = step.action == ShapeStep::Action::add;
-  const std::string table = element("shape", number);
+  const std::string table = element("shapes", number);
   if (number == 0 && !adds) {
-    throw InputError(table + ".subtract", "", "the first shape must be added");
+    throw InputError(table + ".action", "", "the first shape must be added");
   }
-  check_shape(step.shape, lattice.dimension, table, table + (adds ? ".add" : ".subtract"));
+  check_shape(step.shape, lattice.dimension, table, table + ".action");
   const Box box = bounds(step.shape);
   for (int c = 0; c < lattice.dimension && adds; ++c) {
     if (std::isfinite(box.min[c]) && std::isfinite(box.max[c])) continue;
     throw InputError(
-        table + ".add", "",
+        table + ".action", "",
         std::string("an added shape must be bounded, but this one is infinite in ") + "xyz"[c]);
   }
 }
 
 void check_layer(const Lattice& lattice, std::size_t number) {
   const Layer& layer = lattice.layers[number];
-  const std::string table = element("layer", number);
+  const std::string table = element("layers", number);
   if (layer.name.empty()) throw InputError(table + ".name", "\"\"", "a layer needs a name");
   const int axis = layer.side.axis, sign = layer.side.sign;
   if (axis < 0 || axis >= lattice.dimension || (sign != 1 && sign != -1)) {
@@ -115,7 +115,7 @@ void check_layer(const Lattice& lattice, std::size_t number) {
 void require_numbers(const Lattice& lattice) {
   const double points = largest_number_of_points(lattice, make_grid(lattice));
   if (points < most_points) return;
-  throw InputError("lattice.spacing", number_text(lattice.spacing),
+  throw InputError("spacing", number_text(lattice.spacing),
                    "up to " + number_text(points) + " points, but there must be fewer than " +
                        number_text(most_points));
 }
@@ -212,20 +212,19 @@ void check_lattice(const Lattice& lattice) {
     refuse("dimension", lattice.dimension, "must be 1, 2 or 3");
   }
   if (!is_positive(lattice.spacing)) {
-    refuse("lattice.spacing", lattice.spacing, "must be positive and finite");
+    refuse("spacing", lattice.spacing, "must be positive and finite");
   }
   if (!is_positive(lattice.cross_section)) {
-    refuse(lattice.dimension == 1 ? "lattice.area" : "lattice.thickness", lattice.cross_section,
-           "must be positive and finite");
+    refuse("cross_section", lattice.cross_section, "must be positive and finite");
   }
   if (!is_positive(std::pow(lattice.spacing, lattice.dimension) * lattice.cross_section)) {
-    refuse("lattice.spacing", lattice.spacing, "the volume of a point is zero or infinite");
+    refuse("spacing", lattice.spacing, "the volume of a point is zero or infinite");
   }
   if (!(lattice.perturbation >= 0.0 && lattice.perturbation < 0.5)) {
-    refuse("lattice.perturbation", lattice.perturbation, "must be at least 0 and below 0.5");
+    refuse("perturbation", lattice.perturbation, "must be at least 0 and below 0.5");
   }
   if (lattice.shapes.empty()) {
-    throw InputError("lattice.shape", "", "a lattice needs at least one added shape");
+    throw InputError("shapes", "", "a lattice needs at least one added shape");
   }
   for (std::size_t k = 0; k < lattice.shapes.size(); ++k) check_shape_step(lattice, k);
   for (std::size_t k = 0; k < lattice.layers.size(); ++k) check_layer(lattice, k);
@@ -243,7 +242,7 @@ Points make_points(const Lattice& lattice) {
   const std::vector<Cell> body = body_cells(lattice, grid);
   if (body.empty()) {
     throw InputError(
-        "lattice.shape", "",
+        "shapes", "",
         "no lattice point lies in the body; spacing = " + number_text(lattice.spacing));
   }
 
@@ -255,7 +254,7 @@ Points make_points(const Lattice& lattice) {
   for (std::size_t k = 0; k < lattice.layers.size(); ++k) {
     const Layer& layer = lattice.layers[k];
     std::vector<Cell> cells = layer_cells(body, layer);
-    keep_where(lattice, grid, layer, element("layer", k) + ".where", cells);
+    keep_where(lattice, grid, layer, element("layers", k) + ".where", cells);
     std::vector<Index>& set = points.sets[layer.name];
     for (const Cell& cell : cells) {
       const Index next = Index(body.size() + outside.size());

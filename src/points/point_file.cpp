@@ -115,7 +115,7 @@ class Reader {
   }
 
   [[noreturn]] void refuse_file(const std::string& what) const {
-    throw InputError("points.file", file_.string(), what);
+    throw InputError("file", file_.string(), what);
   }
 
   std::vector<std::string> required_columns() const {
@@ -236,8 +236,7 @@ class Reader {
 
 Points read_points(const std::filesystem::path& file, int dimension, double cross_section) {
   if (!(std::isfinite(cross_section) && cross_section > 0)) {
-    throw InputError(dimension == 1 ? "points.area" : "points.thickness",
-                     number_text(cross_section), "must be positive and finite");
+    throw InputError("cross_section", number_text(cross_section), "must be positive and finite");
   }
   return Reader(file, dimension).read(cross_section);
 }

@@ -15,7 +15,7 @@ namespace peristat {
 /// with locality; the spacing is the (mean volume / cross_section)^(1/dimension).
 /// @throws InputError with "FILE:LINE" as its place for a missing or unknown column, a value that
 ///         is not a number or not finite, a volume that is not positive, and two points at one
-///         place; with key "points.file" for a file that can't be read or has no points
+///         place; with "file" for a file that can't be read or has no points
 [[nodiscard]] Points read_points(const std::filesystem::path& file, int dimension,
                                  double cross_section);
 

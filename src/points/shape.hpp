@@ -49,8 +49,8 @@ using Shape = std::variant<Box, Disk, Cylinder, Sphere, Polygon>;
 
 /// Refuses a shape that has no inside or that does not fit the dimension (disk: 2; cylinder,
 /// sphere: 3; polygon: 2 or 3; box: all). Only a box and a cylinder's length may be infinite.
-/// @param table key of the table that holds the shape's numbers ("lattice.shape[0]")
-/// @param kind_key key that names the kind of shape ("lattice.shape[0].add")
+/// @param table    what holds the shape's numbers, for errors ("shapes[0]")
+/// @param kind_key what names the kind of shape ("shapes[0].action")
 /// @throws InputError
 void check_shape(const Shape& shape, int dimension, const std::string& table,
                  const std::string& kind_key);

@@ -73,7 +73,7 @@ class Results {
   /// Creates the folder and its files; an earlier run of the same case file is replaced, other
   /// files are left alone.
   /// @param overwrite also an earlier run of another case is replaced
-  /// @throws InputError (key "output.directory") if the folder can't be written or must be left
+  /// @throws InputError ("directory") if the folder can't be written or must be left
   ///         alone, see claim_results_folder; (key "probe") if a probe's name is the name of
   ///         another column
   /// @throws OutputError if the disk is full, or the like

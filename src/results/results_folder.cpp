@@ -157,7 +157,7 @@ void remove_parts(const ResultsFolder& folder) {
 
 ClaimedFolder claim_results_folder(const fs::path& directory, RunIdentity run, bool overwrite) {
   const auto refusal = [&](const std::string& reason) {
-    return InputError("output.directory", directory.string(), reason);
+    return InputError("directory", directory.string(), reason);
   };
   const auto unwritable = [&](const std::string& what, int cause) {
     if (is_about_means(cause)) throw OutputError(what, cause);

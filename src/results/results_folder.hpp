@@ -40,7 +40,7 @@ struct ClaimedFolder {
 /// folder.
 /// @param run   its list of files is filled in
 /// @param overwrite also an earlier run of another case, or of version 1, which left no marker
-/// @throws InputError (key "output.directory") before anything is changed: the folder can't be
+/// @throws InputError ("directory") before anything is changed: the folder can't be
 ///         written, holds files but no earlier run (it may be somebody's home folder), an earlier
 ///         run of another case, or links in place of our folders, or another run is writing it
 /// @throws OutputError if the disk is full, or the like

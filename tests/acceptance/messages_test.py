@@ -92,6 +92,11 @@ class Messages(unittest.TestCase):
         run = self.peristat("run", self.write(PLATE.replace('add = "box"', 'subtract = "box"')))
         self.assert_refused(run, "lattice.shape[0]", "the first shape must be added")
 
+    def test_a_load_without_a_value_at_the_start_is_told_with_its_place(self):
+        text = PLATE + '[[load]]\nset = "ligament"\ntotal_force = ["1/load", 0]\n'
+        place = f"case.toml:{text.count(chr(10))}:16: load[0].total_force[0] = "
+        self.assert_refused(self.peristat("run", self.write(text)), place, "at load = 0 is inf")
+
     def test_long_values_are_quoted_shortly(self):
         long = "x" * 100_000
         for setting in (f"loading.steps={long}", f"{long}=1", f'title=["{long}"]', f"lattice.{long}=1"):

@@ -130,7 +130,7 @@ TEST(Conditions, RefusesSupportsThatContradictEachOther) {
     });
   };
   const InputError error = make("0.25", "x");
-  EXPECT_EQ(error.key(), "support[1].displacement[0]");
+  EXPECT_EQ(error.key(), "supports[1].displacement[0]");
   for (const char* told : {"left", "middle", "contradict", "in x", "(1,", "0.25"}) {
     EXPECT_NE(error.allowed().find(told), std::string::npos) << told << ": " << error.allowed();
   }
@@ -147,7 +147,7 @@ TEST(Conditions, RefusesContradictionsWhereverTheyAreUsed) {
   std::vector<double> displacement(8);
   EXPECT_NO_THROW(conditions.prescribe(0.41, displacement));
   const InputError error = refusal([&] { conditions.prescribe(0.42, displacement); });
-  EXPECT_EQ(error.key(), "support[1].displacement[0]");
+  EXPECT_EQ(error.key(), "supports[1].displacement[0]");
   EXPECT_NE(error.allowed().find("0.42 m by one and 1.42 m by the other"), std::string::npos)
       << error.allowed();
 }
@@ -166,29 +166,29 @@ TEST(Conditions, RefusesUnknownAndEmptySets) {
   const InputError unknown = refusal([&] {
     Conditions(points, {support("first", "0"), support("riht", "0")}, {});
   });
-  EXPECT_EQ(unknown.key(), "support[1].set");
+  EXPECT_EQ(unknown.key(), "supports[1].set");
   EXPECT_EQ(unknown.value(), "\"riht\"");
   EXPECT_NE(unknown.allowed().find("middle"), std::string::npos);
   const InputError empty = refusal([&] {
     Conditions(points, {}, {load(body_force, "none", {"0", "0", "0"})});
   });
-  EXPECT_EQ(empty.key(), "load[0].set");
+  EXPECT_EQ(empty.key(), "loads[0].set");
   EXPECT_NE(empty.allowed().find("no point"), std::string::npos);
 }
 
 TEST(Conditions, NamesTheKeyOfABadExpression) {
   const Points points = four_points();
   EXPECT_EQ(refusal([&] { Conditions(points, {support("left", "2*q")}, {}); }).key(),
-            "support[0].displacement[0]");
+            "supports[0].displacement[0]");
   EXPECT_EQ(refusal([&] {
               Conditions(points, {}, {load(body_force, "left", {"(", "0", "0"})});
             }).key(),
-            "load[0].body_force[0]");
+            "loads[0].value[0]");
   // A total force has no place.
   EXPECT_EQ(refusal([&] {
               Conditions(points, {}, {load(total_force, "left", {"x", "0", "0"})});
             }).key(),
-            "load[0].total_force[0]");
+            "loads[0].value[0]");
 }
 
 TEST(Conditions, TellsWhereATotalForceIsNotFinite) {

@@ -134,7 +134,7 @@ TEST_F(PointFile, FindsOnePairInALatticeOfManyPoints) {
 
 TEST_F(PointFile, RefusesAFileWithoutPoints) {
   for (const char* text : {"", "# nothing\n", "x,y,volume\n"}) {
-    EXPECT_NE(refusal(text).second.find("points.file = " + file().string()), std::string::npos);
+    EXPECT_NE(refusal(text).second.find("file = " + file().string()), std::string::npos);
   }
   EXPECT_THROW((void)read_points(folder_ / "missing.csv", 2, 1.0), InputError);
   EXPECT_THROW((void)read_points(folder_, 2, 1.0), InputError);

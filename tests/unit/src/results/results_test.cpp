@@ -607,7 +607,7 @@ TEST_F(ResultsTest, AFolderThatCannotBeUsedIsRefusedByName) {
       open_results(folder);
       ADD_FAILURE() << folder << " was accepted";
     } catch (const InputError& error) {
-      EXPECT_EQ(error.key(), "output.directory");
+      EXPECT_EQ(error.key(), "directory");
       EXPECT_EQ(error.value(), folder.string());
       EXPECT_NE(error.allowed(), "");
     }

@@ -1,0 +1,65 @@
+"""The tables of docs/case-file.md are what `peristat keys` prints.
+
+    PERISTAT_PROGRAM=build/release/peristat /usr/bin/python3 -BEs tests/unit/cases/case_file_page_test.py --write
+
+writes them anew, after a key has changed; the text around them is written by hand.
+"""
+
+import os
+import pathlib
+import re
+import subprocess
+import sys
+import unittest
+
+ROOT = pathlib.Path(__file__).resolve().parents[3]
+PAGE = ROOT / "docs/case-file.md"
+PROGRAM = os.environ["PERISTAT_PROGRAM"]
+# <!-- keys: TABLE --> ... <!-- end -->, below a heading
+BLOCK = re.compile(r"(?<=<!-- keys: )([\w.]+) -->\n(.*?)(?=<!-- end -->)", re.DOTALL)
+HEADING = re.compile(r"^(?:(The document)|\[+([\w.]+)\]+)\n\n", re.MULTILINE)
+
+
+def keys(*table):
+    return subprocess.run([PROGRAM, "keys", *table], capture_output=True, text=True, timeout=60)
+
+
+def printed_tables():
+    """By name; every other piece between headings is one."""
+    _, *parts = HEADING.split(keys().stdout)
+    return {"document" if parts[k] else parts[k + 1]: parts[k + 2].rstrip("\n") + "\n" for k in range(0, len(parts), 3)}
+
+
+class CaseFilePage(unittest.TestCase):
+    maxDiff = None
+
+    def test_has_the_tables_that_the_program_prints(self):
+        on_page = dict(BLOCK.findall(PAGE.read_text()))
+        printed = printed_tables()
+        self.assertGreater(len(printed), 15)
+        self.assertEqual(list(on_page), list(printed))
+        for table, text in printed.items():
+            command = f"PERISTAT_PROGRAM={PROGRAM} /usr/bin/python3 -BEs {pathlib.Path(__file__).relative_to(ROOT)} --write"
+            self.assertEqual(on_page[table], text, f"[{table}] in {PAGE.name} is out of date; write it anew by\n{command}")
+
+    def test_has_a_heading_for_every_table(self):
+        page = PAGE.read_text()
+        for table in printed_tables():
+            if table != "document":
+                self.assertRegex(page, rf"(?m)^#+ `\[+{re.escape(table)}\]+`$")
+
+    def test_one_table_is_printed_by_name(self):
+        printed = keys("material.damage")
+        self.assertEqual(printed.returncode, 0)
+        self.assertEqual(printed.stdout, "[material.damage]\n\n" + printed_tables()["material.damage"])
+        refused = keys("solvr")
+        self.assertEqual((refused.returncode, refused.stdout), (2, ""))
+        self.assertIn("did you mean solver?", refused.stderr)
+
+
+if __name__ == "__main__":
+    if sys.argv[1:] == ["--write"]:
+        tables = printed_tables()
+        PAGE.write_text(BLOCK.sub(lambda block: f"{block[1]} -->\n{tables[block[1]]}", PAGE.read_text()))
+    else:
+        unittest.main()
