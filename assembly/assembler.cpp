@@ -2,7 +2,7 @@
 
 #include <stdexcept>
 
-#include "src/stopwatch.hpp"
+#include "src/core/stopwatch.hpp"
 
 namespace peristat {
 

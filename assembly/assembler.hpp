@@ -9,7 +9,7 @@
 #include "assembly/operators/tangent.hpp"
 #include "assembly/terms/model.hpp"
 #include "assembly/terms/workspace.hpp"
-#include "src/points/points.hpp"
+#include "src/geometry/points.hpp"
 
 namespace peristat {
 

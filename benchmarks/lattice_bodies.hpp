@@ -3,8 +3,8 @@
 #include <array>
 
 #include "assembly/terms/model.hpp"
-#include "src/neighbourhood/quadrature.hpp"
-#include "src/points/lattice.hpp"
+#include "src/geometry/lattice.hpp"
+#include "src/materials/quadrature.hpp"
 
 namespace peristat::benchmark_bodies {
 

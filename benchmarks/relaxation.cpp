@@ -8,7 +8,7 @@
 
 #include "assembly/assembler.hpp"
 #include "benchmarks/lattice_bodies.hpp"
-#include "solvers/dynamic_relaxation.hpp"
+#include "solvers/search/dynamic_relaxation.hpp"
 
 namespace {
 

@@ -16,9 +16,9 @@
 
 #include "assembly/terms/model.hpp"
 #include "assembly/terms/simplices/simplex_term.hpp"
-#include "src/neighbourhood/effective_volumes.hpp"
-#include "src/neighbourhood/quadrature.hpp"
-#include "src/points/lattice.hpp"
+#include "src/geometry/lattice.hpp"
+#include "src/materials/effective_volumes.hpp"
+#include "src/materials/quadrature.hpp"
 
 namespace peristat::tests {
 

@@ -6,8 +6,8 @@
 #include <utility>
 #include <vector>
 
-#include "solvers/equilibrium.hpp"
 #include "solvers/linear/cholesky.hpp"
+#include "solvers/problem/equilibrium.hpp"
 #include "tests/bodies.hpp"
 
 namespace peristat::tests {

@@ -4,7 +4,7 @@
 #include <span>
 
 #include "assembly/energy/state.hpp"
-#include "src/points/points.hpp"
+#include "src/geometry/points.hpp"
 
 namespace peristat {
 

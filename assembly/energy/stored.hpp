@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "src/types.hpp"
+#include "src/core/types.hpp"
 
 namespace peristat {
 

@@ -4,8 +4,8 @@
 #include <span>
 #include <vector>
 
+#include "src/core/types.hpp"
 #include "src/neighbourhood/bonds.hpp"
-#include "src/types.hpp"
 
 namespace peristat {
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <type_traits>
 
-#include "src/threads.hpp"
+#include "src/core/threads.hpp"
 
 namespace peristat {
 namespace {

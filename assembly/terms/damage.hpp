@@ -5,7 +5,7 @@
 
 #include "assembly/energy/history.hpp"
 #include "assembly/terms/model.hpp"
-#include "src/points/points.hpp"
+#include "src/geometry/points.hpp"
 
 namespace peristat {
 

@@ -10,7 +10,7 @@
 #include "assembly/operators/block_pattern.hpp"
 #include "assembly/operators/tangent.hpp"
 #include "assembly/terms/balances.hpp"
-#include "src/points/points.hpp"
+#include "src/geometry/points.hpp"
 
 namespace peristat {
 

@@ -6,8 +6,8 @@
 
 #include "assembly/energy/stored.hpp"
 #include "assembly/operators/block_pattern.hpp"
-#include "src/aligned_vector.hpp"
-#include "src/threads.hpp"
+#include "src/core/aligned_vector.hpp"
+#include "src/core/threads.hpp"
 
 namespace peristat {
 

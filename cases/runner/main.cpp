@@ -9,20 +9,20 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
-#include "cases/runner/calibrate.hpp"
-#include "cases/runner/case.hpp"
-#include "cases/runner/check.hpp"
-#include "cases/runner/check_tangent.hpp"
-#include "cases/runner/failure.hpp"
-#include "cases/runner/key_reference.hpp"
-#include "cases/runner/run.hpp"
-#include "cases/runner/runtime_environment.hpp"
-#include "cases/runner/toml_text.hpp"
-#include "cases/runner/unknown_option.hpp"
+#include "cases/runner/commands/calibrate.hpp"
+#include "cases/runner/commands/check.hpp"
+#include "cases/runner/commands/check_tangent.hpp"
+#include "cases/runner/commands/key_reference.hpp"
+#include "cases/runner/commands/run.hpp"
+#include "cases/runner/commands/unknown_option.hpp"
+#include "cases/runner/input/case.hpp"
+#include "cases/runner/input/toml_text.hpp"
+#include "cases/runner/process/failure.hpp"
+#include "cases/runner/process/runtime_environment.hpp"
 #include "solvers/linear/blas_memory.hpp"
-#include "src/input_error.hpp"
-#include "src/machine_error.hpp"
-#include "src/threads.hpp"
+#include "src/core/input_error.hpp"
+#include "src/core/machine_error.hpp"
+#include "src/core/threads.hpp"
 
 namespace {
 

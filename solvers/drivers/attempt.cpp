@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "src/number_text.hpp"
+#include "src/core/number_text.hpp"
 
 namespace peristat {
 namespace {

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "solvers/dynamic_relaxation.hpp"
-#include "solvers/newton.hpp"
+#include "solvers/search/dynamic_relaxation.hpp"
+#include "solvers/search/newton.hpp"
 
 namespace peristat {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "assembly/terms/damage.hpp"
-#include "solvers/vector_verbs.hpp"
+#include "solvers/linear/vector_verbs.hpp"
 
 namespace peristat {
 namespace {

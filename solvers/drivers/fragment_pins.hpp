@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "solvers/equilibrium.hpp"
-#include "src/conditions/fragments.hpp"
+#include "solvers/problem/equilibrium.hpp"
+#include "src/connectivity/fragments.hpp"
 
 namespace peristat {
 

@@ -2,7 +2,7 @@
 
 #include "solvers/drivers/fragment_pins.hpp"
 #include "solvers/drivers/mode.hpp"
-#include "solvers/dynamic_relaxation.hpp"
+#include "solvers/search/dynamic_relaxation.hpp"
 
 namespace peristat {
 

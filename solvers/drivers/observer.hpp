@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "solvers/equilibrium.hpp"
-#include "src/input_error.hpp"
-#include "src/results/history.hpp"
+#include "solvers/problem/equilibrium.hpp"
+#include "solvers/problem/records.hpp"
+#include "src/core/input_error.hpp"
 
 namespace peristat {
 

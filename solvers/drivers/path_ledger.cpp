@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "src/number_text.hpp"
+#include "src/core/number_text.hpp"
 
 namespace peristat {
 namespace {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "solvers/consistency.hpp"
+#include "solvers/problem/consistency.hpp"
 
 namespace peristat {
 

@@ -3,7 +3,7 @@
 #include "assembly/energy/state.hpp"
 #include "solvers/drivers/fragment_pins.hpp"
 #include "solvers/drivers/path_ledger.hpp"
-#include "solvers/dynamic_relaxation.hpp"
+#include "solvers/search/dynamic_relaxation.hpp"
 
 namespace peristat {
 

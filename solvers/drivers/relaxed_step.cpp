@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <utility>
 
-#include "solvers/vector_verbs.hpp"
-#include "src/stopwatch.hpp"
+#include "solvers/linear/vector_verbs.hpp"
+#include "src/core/stopwatch.hpp"
 
 namespace peristat {
 namespace {

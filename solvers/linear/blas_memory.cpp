@@ -14,8 +14,8 @@
 #include <sched.h>
 #include <unistd.h>
 
-#include "src/address_space.hpp"
-#include "src/machine_error.hpp"
+#include "src/core/address_space.hpp"
+#include "src/core/machine_error.hpp"
 
 namespace peristat {
 namespace {

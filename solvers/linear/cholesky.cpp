@@ -11,8 +11,8 @@
 
 #include "assembly/operators/tangent.hpp"
 #include "solvers/linear/trilinos/krylov.hpp"
-#include "solvers/vector_verbs.hpp"
-#include "src/stopwatch.hpp"
+#include "solvers/linear/vector_verbs.hpp"
+#include "src/core/stopwatch.hpp"
 
 namespace peristat {
 namespace {

@@ -3,7 +3,7 @@
 #include <span>
 #include <vector>
 
-#include "src/types.hpp"
+#include "src/core/types.hpp"
 
 namespace peristat {
 

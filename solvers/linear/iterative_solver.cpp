@@ -6,8 +6,8 @@
 
 #include <fmt/format.h>
 
-#include "solvers/vector_verbs.hpp"
-#include "src/stopwatch.hpp"
+#include "solvers/linear/vector_verbs.hpp"
+#include "src/core/stopwatch.hpp"
 
 namespace peristat {
 namespace {

@@ -7,8 +7,8 @@
 #include <dlfcn.h>
 
 #include "solvers/linear/trilinos/module.hpp"
-#include "src/address_space.hpp"
-#include "src/machine_error.hpp"
+#include "src/core/address_space.hpp"
+#include "src/core/machine_error.hpp"
 
 namespace peristat {
 namespace {

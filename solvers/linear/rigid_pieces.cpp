@@ -17,7 +17,7 @@
 #include <omp.h>
 
 #include "solvers/linear/block_jacobi.hpp"
-#include "src/points/squared_distance.hpp"
+#include "src/geometry/squared_distance.hpp"
 
 namespace peristat {
 namespace {

@@ -12,7 +12,7 @@
 #include "solvers/linear/block_jacobi.hpp"
 #include "solvers/linear/cholesky.hpp"
 #include "solvers/linear/compressed_rows.hpp"
-#include "src/points/squared_distance.hpp"
+#include "src/geometry/squared_distance.hpp"
 
 namespace peristat {
 namespace {

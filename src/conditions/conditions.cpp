@@ -5,8 +5,8 @@
 #include <set>
 #include <utility>
 
-#include "src/input_error.hpp"
-#include "src/number_text.hpp"
+#include "src/core/input_error.hpp"
+#include "src/core/number_text.hpp"
 
 namespace peristat {
 namespace {

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "src/conditions/expression.hpp"
 #include "src/conditions/specification.hpp"
-#include "src/points/points.hpp"
+#include "src/core/expression.hpp"
+#include "src/geometry/points.hpp"
 
 namespace peristat {
 

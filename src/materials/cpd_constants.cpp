@@ -4,10 +4,10 @@
 #include <cmath>
 #include <numbers>
 
-#include "src/input_error.hpp"
+#include "src/core/input_error.hpp"
+#include "src/core/number_text.hpp"
 #include "src/neighbourhood/bulk_neighbourhood.hpp"
 #include "src/neighbourhood/lattice_ball.hpp"
-#include "src/number_text.hpp"
 
 namespace peristat {
 namespace {

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "src/types.hpp"
+#include "src/core/types.hpp"
 
 namespace peristat {
 

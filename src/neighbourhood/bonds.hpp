@@ -5,8 +5,8 @@
 #include <utility>
 #include <vector>
 
+#include "src/core/types.hpp"
 #include "src/neighbourhood/bond_kinds.hpp"
-#include "src/types.hpp"
 
 namespace peristat {
 

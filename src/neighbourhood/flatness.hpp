@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "src/lanes.hpp"
+#include "src/core/lanes.hpp"
 
 namespace peristat {
 

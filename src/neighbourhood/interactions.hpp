@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "src/lanes.hpp"
+#include "src/core/lanes.hpp"
 #include "src/measures/area.hpp"
 #include "src/measures/volume.hpp"
 #include "src/neighbourhood/flatness.hpp"

@@ -3,9 +3,9 @@
 #include <cmath>
 #include <vector>
 
+#include "src/core/types.hpp"
 #include "src/neighbourhood/flatness.hpp"
 #include "src/neighbourhood/horizon.hpp"
-#include "src/types.hpp"
 
 namespace peristat {
 

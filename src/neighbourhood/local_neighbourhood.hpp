@@ -1,8 +1,8 @@
 #pragma once
 
+#include "src/geometry/points.hpp"
 #include "src/neighbourhood/local_vectors.hpp"
 #include "src/neighbourhood/upper_neighbourhood.hpp"
-#include "src/points/points.hpp"
 
 namespace peristat {
 

@@ -2,8 +2,8 @@
 
 #include <cstddef>
 
-#include "src/aligned_vector.hpp"
-#include "src/lanes.hpp"
+#include "src/core/aligned_vector.hpp"
+#include "src/core/lanes.hpp"
 #include "src/measures/small_algebra.hpp"
 
 namespace peristat {

@@ -1,7 +1,7 @@
 #pragma once
 
+#include "src/geometry/points.hpp"
 #include "src/neighbourhood/bonds.hpp"
-#include "src/points/points.hpp"
 
 namespace peristat {
 

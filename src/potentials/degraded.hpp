@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "src/lanes.hpp"
+#include "src/core/lanes.hpp"
 #include "src/potentials/potential_density.hpp"
 
 namespace peristat {

@@ -4,7 +4,7 @@
 #include <type_traits>
 #include <variant>
 
-#include "src/lanes.hpp"
+#include "src/core/lanes.hpp"
 #include "src/potentials/critical_stretch.hpp"
 #include "src/potentials/degraded.hpp"
 #include "src/potentials/harmonic.hpp"

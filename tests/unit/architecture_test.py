@@ -11,6 +11,31 @@ import unittest
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 # From the ground up. Tests and benchmarks look at the house from outside and may include any floor.
 FLOORS = ["src", "assembly", "solvers", "cases"]
+# Rooms of the floors, each of which may include itself and those before it.
+ROOMS = [
+    "src/core",
+    "src/measures",
+    "src/potentials",
+    "src/geometry",
+    "src/neighbourhood",
+    "src/connectivity",
+    "src/materials",
+    "src/conditions",
+    "assembly/energy",
+    "assembly/operators",
+    "assembly/terms",
+    "assembly",
+    "solvers/linear",
+    "solvers/problem",
+    "solvers/search",
+    "solvers/drivers",
+    "cases/runner/process",
+    "cases/runner/input",
+    "cases/runner/build",
+    "cases/runner/results",
+    "cases/runner/commands",
+    "cases/runner",
+]
 OUTSIDE = ["tests", "benchmarks"]
 # Headers outside the standard library that headers of a floor may include; keep it this small.
 ALLOWED_IN_HEADERS = {"omp.h", "experimental/simd"}
@@ -30,6 +55,15 @@ def sources(*suffixes, places=tuple(FLOORS + OUTSIDE)):
     return found
 
 
+def room_of(file):
+    """The room that a file is in, however deep; its folder if that is none."""
+    folders = file.split("/")[:-1]
+    for depth in range(len(folders), 0, -1):
+        if "/".join(folders[:depth]) in ROOMS:
+            return "/".join(folders[:depth])
+    return "/".join(folders)
+
+
 def misplaced_includes(file, text):
     """What is wrong with the includes of a file; `file` is relative to the root, with slashes."""
     floor = file.split("/")[0]
@@ -43,6 +77,9 @@ def misplaced_includes(file, text):
                 wrong.append(f'{file}: "{name}" is outside the house')
             elif floor in FLOORS and FLOORS.index(target) > FLOORS.index(floor):
                 wrong.append(f'{file}: "{name}" runs up a floor')
+            elif floor in FLOORS and room_of(file) in ROOMS and room_of(name) in ROOMS:
+                if ROOMS.index(room_of(name)) > ROOMS.index(room_of(file)):
+                    wrong.append(f'{file}: "{name}" is in a room above its own')
         elif file.endswith(".hpp") and floor in FLOORS:
             if not STANDARD_HEADER.fullmatch(name) and name not in ALLOWED_IN_HEADERS:
                 wrong.append(f"{file}: <{name}> belongs in a .cpp file")
@@ -59,17 +96,25 @@ class Architecture(unittest.TestCase):
         def wrong(file, line):
             return len(misplaced_includes(file, "#pragma once\n" + line + "\n"))
 
-        self.assertEqual(wrong("src/points/points.hpp", '#include "assembly/operators/block_pattern.hpp"'), 1)
-        self.assertEqual(wrong("src/points/points.cpp", '#include "solvers/newton.hpp"'), 1)
-        self.assertEqual(wrong("solvers/newton.cpp", '  #  include "cases/runner/case.hpp"'), 1)
+        self.assertEqual(wrong("src/geometry/points.hpp", '#include "assembly/operators/block_pattern.hpp"'), 1)
+        self.assertEqual(wrong("src/points/points.cpp", '#include "solvers/search/newton.hpp"'), 1)
+        self.assertEqual(wrong("solvers/search/newton.cpp", '  #  include "cases/runner/input/case.hpp"'), 1)
+        self.assertEqual(wrong("src/geometry/points.hpp", '#include "src/materials/quadrature.hpp"'), 1)
+        self.assertEqual(wrong("assembly/terms/bonds/a.hpp", '#include "assembly/terms/term.hpp"'), 0)
+        self.assertEqual(wrong("assembly/terms/bonds/a.hpp", '#include "assembly/assembler.hpp"'), 1)
         self.assertEqual(wrong("src/types.cpp", '#include "tests/support.hpp"'), 1)
-        self.assertEqual(wrong("src/points/points.hpp", '#include "shape.hpp"'), 1)
-        self.assertEqual(wrong("src/points/points.hpp", "#include <Eigen/Dense>"), 1)
+        self.assertEqual(wrong("src/geometry/points.hpp", '#include "shape.hpp"'), 1)
+        self.assertEqual(wrong("src/geometry/points.hpp", "#include <Eigen/Dense>"), 1)
         self.assertEqual(wrong("solvers/linear/solver.hpp", "#include <cholmod.h>"), 1)
         self.assertEqual(wrong("solvers/linear/solver.cpp", "#include <cholmod.h>"), 0)
-        self.assertEqual(wrong("solvers/newton.cpp", '#include "src/types.hpp"'), 0)
-        self.assertEqual(wrong("src/points/points.hpp", "#include <vector>"), 0)
-        self.assertEqual(wrong("tests/unit/a_test.cpp", '#include "cases/runner/case.hpp"'), 0)
+        self.assertEqual(wrong("solvers/search/newton.cpp", '#include "src/core/types.hpp"'), 0)
+        self.assertEqual(wrong("src/geometry/points.hpp", "#include <vector>"), 0)
+        self.assertEqual(wrong("tests/unit/a_test.cpp", '#include "cases/runner/input/case.hpp"'), 0)
+
+    def test_every_file_stands_in_a_room(self):
+        files = [path.relative_to(ROOT).as_posix() for path in sources(".hpp", ".cpp", places=FLOORS)]
+        self.assertEqual([file for file in files if room_of(file) not in ROOMS], [])
+        self.assertEqual(room_of("src/shape.cpp"), "src")  # is none
 
     def test_includes_never_run_up_a_floor(self):
         wrong = []

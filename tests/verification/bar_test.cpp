@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "src/number_text.hpp"
+#include "src/core/number_text.hpp"
 #include "tests/verification/solved_case.hpp"
 
 namespace peristat {

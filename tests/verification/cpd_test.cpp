@@ -9,9 +9,9 @@
 
 #include <gtest/gtest.h>
 
-#include "cases/runner/cpd_model.hpp"
-#include "cases/runner/probe.hpp"
-#include "src/number_text.hpp"
+#include "cases/runner/build/cpd_model.hpp"
+#include "cases/runner/results/probe.hpp"
+#include "src/core/number_text.hpp"
 #include "tests/verification/solved_case.hpp"
 
 namespace peristat {

@@ -5,9 +5,9 @@
 #include <utility>
 #include <vector>
 
-#include "cases/runner/body.hpp"
-#include "cases/runner/case.hpp"
-#include "cases/runner/solver_options.hpp"
+#include "cases/runner/build/body.hpp"
+#include "cases/runner/build/solver_options.hpp"
+#include "cases/runner/input/case.hpp"
 #include "solvers/linear/cholesky.hpp"
 
 namespace peristat {

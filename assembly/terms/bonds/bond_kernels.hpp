@@ -10,7 +10,7 @@
 #include "assembly/terms/bonds/bond_workspace.hpp"
 #include "assembly/terms/interaction.hpp"
 #include "assembly/terms/term.hpp"
-#include "src/lanes.hpp"
+#include "src/core/lanes.hpp"
 #include "src/measures/length.hpp"
 #include "src/potentials/potential.hpp"
 

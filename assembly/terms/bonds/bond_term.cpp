@@ -4,8 +4,8 @@
 #include <stdexcept>
 
 #include "assembly/terms/bonds/bond_passes.hpp"
-#include "src/lanes.hpp"
-#include "src/neighbourhood/effective_volumes.hpp"
+#include "src/core/lanes.hpp"
+#include "src/materials/effective_volumes.hpp"
 
 namespace peristat {
 namespace {

@@ -3,9 +3,9 @@
 #include <span>
 
 #include "assembly/terms/workspace.hpp"
-#include "src/aligned_vector.hpp"
+#include "src/core/aligned_vector.hpp"
+#include "src/geometry/points.hpp"
 #include "src/neighbourhood/bonds.hpp"
-#include "src/points/points.hpp"
 
 namespace peristat {
 

@@ -4,7 +4,7 @@
 
 #include "assembly/energy/state.hpp"
 #include "assembly/terms/model.hpp"
-#include "src/points/points.hpp"
+#include "src/geometry/points.hpp"
 
 namespace peristat {
 

@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
-#include "src/aligned_vector.hpp"
-#include "src/lanes.hpp"
+#include "src/core/aligned_vector.hpp"
+#include "src/core/lanes.hpp"
 #include "src/neighbourhood/interactions.hpp"
 
 namespace peristat {

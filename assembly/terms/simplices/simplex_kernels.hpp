@@ -242,7 +242,8 @@ struct SimplexKernels {
         sums[i] += sum(own);
       }
     };
-    a.threads.template sum_rows<1>(body, [&](Index i, const double* total) { energies[i] += *total; });
+    a.threads.template sum_rows<1>(body,
+                                   [&](Index i, const double* total) { energies[i] += *total; });
   }
 
   // ---- Tangent

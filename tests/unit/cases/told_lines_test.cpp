@@ -4,10 +4,10 @@
 
 #include <gtest/gtest.h>
 
-#include "cases/runner/folded_text.hpp"
-#include "cases/runner/time_left.hpp"
-#include "cases/runner/unit_remark.hpp"
-#include "cases/runner/unknown_option.hpp"
+#include "cases/runner/commands/unknown_option.hpp"
+#include "cases/runner/input/unit_remark.hpp"
+#include "cases/runner/process/folded_text.hpp"
+#include "cases/runner/process/time_left.hpp"
 
 namespace peristat {
 namespace {

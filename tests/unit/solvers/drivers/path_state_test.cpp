@@ -7,9 +7,9 @@
 
 #include <gtest/gtest.h>
 
+#include "cases/runner/results/record_tables.hpp"
 #include "solvers/drivers/drivers.hpp"
 #include "solvers/linear/solver_ladder.hpp"
-#include "src/results/record_tables.hpp"
 #include "tests/softening_strip.hpp"
 
 namespace peristat {

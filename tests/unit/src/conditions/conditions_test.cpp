@@ -9,7 +9,7 @@
 
 #include <gtest/gtest.h>
 
-#include "src/input_error.hpp"
+#include "src/core/input_error.hpp"
 
 namespace peristat {
 namespace {

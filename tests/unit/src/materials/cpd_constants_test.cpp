@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-#include "src/input_error.hpp"
+#include "src/core/input_error.hpp"
 #include "src/neighbourhood/bulk_neighbourhood.hpp"
 
 namespace peristat {

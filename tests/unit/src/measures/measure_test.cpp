@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-#include "src/lanes.hpp"
+#include "src/core/lanes.hpp"
 #include "src/measures/area.hpp"
 #include "src/measures/length.hpp"
 #include "src/measures/volume.hpp"

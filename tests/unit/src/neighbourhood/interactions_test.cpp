@@ -10,7 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "assembly/assembler.hpp"
-#include "src/neighbourhood/effective_volumes.hpp"
+#include "src/materials/effective_volumes.hpp"
 #include "tests/bodies.hpp"
 
 namespace peristat {

@@ -1,0 +1,88 @@
+#include "cases/runner/build/rest_stability.hpp"
+
+#include <cmath>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "cases/runner/build/cpd_model.hpp"
+#include "cases/runner/build/solver_options.hpp"
+#include "cases/runner/process/available_memory.hpp"
+#include "solvers/linear/cholesky.hpp"
+#include "solvers/linear/iterative_solver.hpp"
+#include "solvers/linear/rigid_pieces.hpp"
+#include "src/core/input_error.hpp"
+#include "src/core/number_text.hpp"
+
+namespace peristat {
+namespace {
+
+/// Iterations and relative residual of the search for negative curvature. A residual this small
+/// leaves no room for a direction of negative curvature that the start has a part in, and a start
+/// that oscillates like this has a part in all of them.
+constexpr int most_iterations = 5'000;
+constexpr double search_tolerance = 1e-8;
+
+struct Stability {
+  LinearOutcome outcome;
+  std::optional<Inertia> inertia;
+};
+
+Stability at_rest(LinearSolver& solver, const Tangent& tangent, const FreeDofs& free) {
+  LinearOutcome outcome = solver.analyze(tangent.pattern, free);
+  if (outcome == LinearOutcome::solved) {
+    outcome = solver.factorize(tangent, FactorUse::factorize_now);
+  }
+  if (outcome == LinearOutcome::solved && !solver.inertia()) {
+    std::vector<double> start(std::size_t(free.count())), x(start.size(), 0.0);
+    for (std::size_t k = 0; k < start.size(); ++k) start[k] = std::sin(1.0 + 1e4 * double(k));
+    outcome = solver.solve(start, x, search_tolerance);
+  }
+  return {outcome, solver.inertia()};
+}
+
+}  // namespace
+
+void refuse_unstable_rest(const Case& from, const Body& body, int threads) {
+  const MaterialSpecification& material = from.material;
+  if (material.model != MaterialModel::cpd) return;
+  const std::string negative = negative_constant(cpd_constants_of(from, body.points, body.setting));
+  const FreeDofs free(body.conditions->prescribed(), from.dimension);
+  if (negative.empty() || free.count() == 0) return;
+
+  const MemoryEstimate estimate = estimate_memory(body);
+  const LinearSystems systems = choose_linear_systems(from, estimate, {});
+  require_memory(systems.bytes, fmt::format("the case with {} points", body.points.count()));
+  Assembler assembler(body.points, body.model, threads);
+  Tangent tangent(assembler);
+  const std::vector<double> reference(body.points.reference.size(), 0.0);
+  assembler.tangent({reference, assembler.initial_history()}, tangent);
+  std::unique_ptr<LinearSolver> solver;
+  if (systems.chosen.is_direct) {
+    solver = std::make_unique<Cholesky>(FactorReuse{0});
+  } else {
+    solver = std::make_unique<IterativeSolver>(KrylovMethod::conjugate_gradients,
+                                               std::make_unique<RigidPieces>(), most_iterations);
+  }
+  const auto [outcome, inertia] = at_rest(*solver, tangent, free);
+  if (outcome != LinearOutcome::not_positive_definite) return;
+  const std::string pivots =
+      inertia ? fmt::format(" (its tangent has {} negative pivots)", inertia->negative) : "";
+  throw located(
+      from,
+      InputError(
+          "material." + (material.poisson_ratio ? "poisson_ratio" : negative),
+          number_text(material.poisson_ratio ? *material.poisson_ratio
+                      : negative == "c2"     ? material.c2
+                                             : material.c3),
+          fmt::format("the body is unstable before anything is loaded{}: its {} is negative, and "
+                      "some of its interactions store less energy the more they deform. Give it a "
+                      "larger Poisson's ratio (constant), a smaller lattice.perturbation or a "
+                      "larger horizon",
+                      pivots, negative)));
+}
+
+}  // namespace peristat

@@ -1,0 +1,208 @@
+#include "cases/runner/commands/calibrate.hpp"
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "cases/runner/build/body.hpp"
+#include "src/core/input_error.hpp"
+#include "src/core/number_text.hpp"
+#include "src/neighbourhood/bulk_neighbourhood.hpp"
+
+namespace peristat {
+namespace {
+
+/// "youngs_modulus" as the option that gives it.
+std::string option(std::string key) {
+  for (char& c : key) {
+    if (c == '_') c = '-';
+  }
+  return "--" + key;
+}
+
+void require_positive(const std::string& key, double value) {
+  if (value > 0.0 && std::isfinite(value)) return;
+  throw InputError(option(key), number_text(value), "must be a positive number");
+}
+
+void require_finite(const std::string& key, const std::optional<double>& value) {
+  if (!value || std::isfinite(*value)) return;
+  throw InputError(option(key), number_text(*value), "must be a finite number");
+}
+
+/// Checks that exactly one way to describe the material was chosen, completely.
+void check(const CalibrationQuestion& question) {
+  if (question.dimension != 2 && question.dimension != 3) {
+    throw InputError("--dimension", std::to_string(question.dimension), "must be 2 or 3");
+  }
+  require_positive("spacing", question.spacing);
+  require_positive("horizon_ratio", question.horizon_ratio);
+  require_positive("thickness", question.thickness);
+  const double largest = largest_ratio_with_pairs(question.dimension);
+  if (question.horizon_ratio < 1.5 || question.horizon_ratio > largest) {
+    throw InputError("--horizon-ratio", number_text(question.horizon_ratio),
+                     "must be between 1.5 (below, no neighbours of a point are neighbours) and " +
+                         number_text(largest));
+  }
+  if (question.dimension == 3 && question.thickness != 1.0) {
+    throw InputError("--thickness", number_text(question.thickness), "is for --dimension 2");
+  }
+  const bool young = question.youngs_modulus || question.poisson_ratio;
+  const bool lame = question.lambda || question.mu;
+  const bool constants = question.c1 || question.c3;
+  if (int(young) + int(lame) + int(constants) != 1) {
+    throw InputError("", "",
+                     "calibrate needs exactly one of --youngs-modulus with --poisson-ratio, "
+                     "--lambda with --mu, or --c1 with --c2 and --c3");
+  }
+  const auto require_both = [](const char* first, bool has_first, const char* second,
+                               bool has_second) {
+    if (has_first != has_second) {
+      throw InputError(option(has_first ? second : first), "", "is missing");
+    }
+  };
+  if (young) {
+    require_both("youngs_modulus", question.youngs_modulus.has_value(), "poisson_ratio",
+                 question.poisson_ratio.has_value());
+  }
+  if (lame) {
+    require_both("lambda", question.lambda.has_value(), "mu", question.mu.has_value());
+  }
+  if (constants && !question.c1) throw InputError("--c1", "", "is missing");
+  if (constants) require_positive("c1", *question.c1);
+  if (!constants && question.dimension == 2 && question.c2) {
+    throw InputError("--c2", number_text(*question.c2), "follows from the moduli in 2D");
+  }
+  if (question.dimension == 2 && question.c3.value_or(0.0) != 0.0) {
+    throw InputError("--c3", number_text(*question.c3), "must be 0 in 2D");
+  }
+  require_finite("youngs_modulus", question.youngs_modulus);
+  require_finite("poisson_ratio", question.poisson_ratio);
+  require_finite("lambda", question.lambda);
+  require_finite("mu", question.mu);
+  require_finite("c2", question.c2);
+  require_finite("c3", question.c3);
+}
+
+CpdConstants constants_of(const CalibrationQuestion& question, const CpdStiffness& stiffness) {
+  const double c2 = question.c2.value_or(0.0);
+  if (question.c1) return {*question.c1, c2, question.c3.value_or(0.0)};
+  LameModuli moduli;
+  if (question.lambda) {
+    moduli = {*question.lambda, *question.mu};
+    require_stable(moduli, question.dimension);
+  } else {
+    moduli = lame_moduli(*question.youngs_modulus, *question.poisson_ratio, question.dimension);
+  }
+  return stiffness.constants(moduli, c2);
+}
+
+/// "key": value, refused if there is no such number.
+std::string pair(const char* key, double value) {
+  if (std::isfinite(value)) return fmt::format("\"{}\": {:.12g}", key, value);
+  throw InputError("", "",
+                   std::string("what is asked for has no finite ") + key +
+                       ": give a lattice and a material whose constants and moduli can be told in "
+                       "double precision");
+}
+
+std::string section(const CpdConstants& constants, const CpdStiffness& stiffness) {
+  const CubicElasticity elasticity = stiffness.elasticity(constants);
+  const int dimension = stiffness.dimension;
+  const LameModuli moduli = elasticity.isotropic(dimension);
+  const std::vector<std::string> pairs{
+      pair("c1", constants.c1),
+      pair("c2", constants.c2),
+      pair("c3", constants.c3),
+      pair("lambda", moduli.lambda),
+      pair("mu", moduli.mu),
+      pair("youngs_modulus", youngs_modulus_of(moduli, dimension)),
+      pair("poisson_ratio", poisson_ratio_of(moduli, dimension)),
+      pair("anisotropy", elasticity.anisotropy()),
+      pair("axis_poisson_ratio", elasticity.axis_poisson_ratio(dimension))};
+  return fmt::format("{{{}}}", fmt::join(pairs, ", "));
+}
+
+/// Refuses a lattice on which what a unit of a constant contributes is lost to underflow (with the
+/// ninth power of a length in 3D) or overflows: its ratios would be arbitrary.
+void require_representable(const CalibrationQuestion& question, const CpdStiffness& stiffness) {
+  for (const CubicElasticity* part : {&stiffness.of_c1, &stiffness.of_c2, &stiffness.of_c3}) {
+    const double lambda = part->isotropic(stiffness.dimension).lambda;
+    if (lambda == 0.0 && part == &stiffness.of_c3 && stiffness.dimension == 2) continue;
+    if (std::isnormal(lambda)) continue;
+    throw InputError(
+        "--spacing", number_text(question.spacing),
+        "with horizon_ratio = " + number_text(question.horizon_ratio) +
+            " and thickness = " + number_text(question.thickness) +
+            " the stiffness of a point can't be told in double precision; give lengths in m");
+  }
+}
+
+}  // namespace
+
+Exit calibrate(const CalibrationQuestion& question) {
+  check(question);
+  const int dimension = question.dimension;
+  const double horizon = question.horizon_ratio * question.spacing;
+  const CpdStiffness lattice =
+      lattice_stiffness(dimension, question.spacing, horizon, question.thickness);
+  const CpdStiffness continuum = continuum_stiffness(dimension, horizon, question.thickness);
+  for (const CpdStiffness* stiffness : {&lattice, &continuum}) {
+    require_representable(question, *stiffness);
+  }
+  CpdConstants on_lattice, in_continuum;
+  try {
+    on_lattice = constants_of(question, lattice);
+    in_continuum = constants_of(question, continuum);
+  } catch (const InputError& error) {
+    throw InputError(option(error.key()), error.value(), error.allowed());
+  }
+  const BulkNeighbourhood bulk =
+      bulk_neighbourhood(dimension, question.spacing, horizon, question.thickness);
+  const auto ratio = [&](CubicElasticity CpdStiffness::*part) {
+    const double of_lattice = (lattice.*part).isotropic(dimension).lambda;
+    const double of_continuum = (continuum.*part).isotropic(dimension).lambda;
+    return of_continuum == 0.0 ? "null" : fmt::format("{:.6g}", of_lattice / of_continuum);
+  };
+  fmt::print(
+      "{{\n"
+      "  \"dimension\": {}, \"spacing\": {:.12g}, \"horizon\": {:.12g}, \"thickness\": {:.12g},\n"
+      "  \"neighbours\": {}, \"pairs\": {}, \"triplets\": {},\n"
+      "  \"lattice\": {},\n"
+      "  \"continuum\": {},\n"
+      "  \"lattice_over_continuum\": {{\"c1\": {}, \"c2\": {}, \"c3\": {}}}\n"
+      "}}\n",
+      dimension, question.spacing, horizon, question.thickness, bulk.neighbours, bulk.pairs,
+      bulk.triplets, section(on_lattice, lattice), section(in_continuum, continuum),
+      ratio(&CpdStiffness::of_c1), ratio(&CpdStiffness::of_c2), ratio(&CpdStiffness::of_c3));
+  return Exit::done;
+}
+
+Exit calibrate(const Case& from) {
+  const MaterialSpecification& material = from.material;
+  if (material.model != MaterialModel::cpd) {
+    throw located(from, InputError("material.model", "\"bond\"", "calibrate is for model \"cpd\""));
+  }
+  const Points points = make_points_of(from);
+  CalibrationQuestion question;
+  question.dimension = from.dimension;
+  question.spacing = points.spacing;
+  if (const auto* lattice = std::get_if<Lattice>(&from.body)) {
+    question.horizon_ratio = from.horizon_ratio;
+    if (from.dimension == 2) question.thickness = lattice->cross_section;
+  } else {
+    const auto& source = std::get<PointSource>(from.body);
+    question.horizon_ratio = source.horizon / points.spacing;
+    if (from.dimension == 2) question.thickness = source.cross_section;
+  }
+  question.youngs_modulus = material.youngs_modulus;
+  question.poisson_ratio = material.poisson_ratio;
+  question.c1 = material.c1;
+  if (material.c1 || from.dimension == 3) question.c2 = material.c2;
+  if (material.c1) question.c3 = material.c3;
+  return calibrate(question);
+}
+
+}  // namespace peristat

@@ -1,0 +1,127 @@
+#include "cases/runner/commands/check.hpp"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "cases/runner/build/body.hpp"
+#include "cases/runner/build/bond_potential.hpp"
+#include "cases/runner/build/cpd_model.hpp"
+#include "cases/runner/build/rest_stability.hpp"
+#include "cases/runner/build/solver_options.hpp"
+#include "cases/runner/process/available_memory.hpp"
+#include "solvers/linear/make_linear_solver.hpp"
+
+namespace peristat {
+namespace {
+
+struct NeighbourCounts {
+  Index least = 0, most = 0, isolated = 0;
+  double mean = 0.0;
+};
+
+NeighbourCounts count_neighbours(const Bonds& bonds) {
+  std::vector<Index> neighbours(bonds.points(), 0);
+  for (Index i = 0; i < bonds.points(); ++i) {
+    for (Offset bond = bonds.offset[i]; bond < bonds.offset[i + 1]; ++bond) {
+      ++neighbours[i];
+      ++neighbours[bonds.partner[bond]];
+    }
+  }
+  NeighbourCounts counts;
+  const auto [least, most] = std::minmax_element(neighbours.begin(), neighbours.end());
+  counts.least = *least;
+  counts.most = *most;
+  counts.isolated = static_cast<Index>(std::count(neighbours.begin(), neighbours.end(), 0));
+  counts.mean = 2.0 * double(bonds.count()) / double(bonds.points());
+  return counts;
+}
+
+std::string seconds_text(double seconds) {
+  if (seconds < 1.0) return "below a second";
+  if (seconds < 120.0) return fmt::format("about {:.0f} s", seconds);
+  if (seconds < 7200.0) return fmt::format("about {:.0f} min", seconds / 60.0);
+  return fmt::format("about {:.1f} h", seconds / 3600.0);
+}
+
+void print_constants(const Case& from, const Body& body) {
+  if (from.material.model == MaterialModel::bond) {
+    const double modulus = micromodulus_of(from, body.setting);
+    fmt::print(
+        "constants   micromodulus {:.6g} N/m6, Young's modulus {:.6g} Pa, Poisson's ratio {:.4g}\n",
+        modulus, youngs_modulus_of(modulus, body.setting), poisson_ratio(body.setting));
+    fmt::print(
+        "quadrature  energy of a confined strain deviates by at most {:.3g} from the classical\n",
+        confined_energy_error(body.points, body.model.bonds(), body.setting));
+    return;
+  }
+  const int dimension = from.dimension;
+  const CpdConstants constants = cpd_constants_of(from, body.points, body.setting);
+  fmt::print("constants   C1 {:.6g} N/m6, C2 {:.6g} N/m10, C3 {:.6g} N/m14\n", constants.c1,
+             constants.c2, constants.c3);
+  const auto print_moduli = [&](const char* where, const CpdStiffness& stiffness) {
+    const CubicElasticity elasticity = stiffness.elasticity(constants);
+    const LameModuli moduli = elasticity.isotropic(dimension);
+    fmt::print(
+        "moduli      {}: Young's modulus {:.6g} Pa, Poisson's ratio {:.4g} (along the axes "
+        "{:.4g}), "
+        "anisotropy {:.4g}\n",
+        where, youngs_modulus_of(moduli, dimension), poisson_ratio_of(moduli, dimension),
+        elasticity.axis_poisson_ratio(dimension), elasticity.anisotropy());
+  };
+  print_moduli("lattice", lattice_stiffness(dimension, body.points.spacing, body.setting.horizon,
+                                            body.setting.cross_section));
+  print_moduli("continuum",
+               continuum_stiffness(dimension, body.setting.horizon, body.setting.cross_section));
+}
+
+}  // namespace
+
+Exit check(const Case& from, int threads) {
+  const std::unique_ptr<const Body> made = make_body(from, threads);
+  const Body& body = *made;
+  const Points& points = body.points;
+  const NeighbourCounts neighbours = count_neighbours(body.model.bonds());
+  fmt::print("case        {}\n", from.title.empty() ? from.file : from.title);
+  fmt::print("points      {} in {}D, spacing {:g} m, horizon {:g} m ({:.4g} spacings)\n",
+             points.count(), points.dimension, points.spacing, body.setting.horizon,
+             body.horizon_ratio());
+  fmt::print("bonds       {}; neighbours per point {} to {}, {:.1f} on average\n",
+             body.model.bonds().count(), neighbours.least, neighbours.most, neighbours.mean);
+  for (const std::string& line : describe_interactions(body)) {
+    fmt::print("interaction {}\n", line);
+  }
+  print_constants(from, body);
+  for (const auto& [set, members] : points.sets) {
+    fmt::print("set         {}: {} points\n", set, members.size());
+  }
+  const auto& prescribed = body.conditions->prescribed();
+  const auto held = std::count(prescribed.begin(), prescribed.end(), 1);
+  fmt::print("supports    {} prescribed and {} free degrees of freedom\n", held,
+             std::int64_t(prescribed.size()) - held);
+  if (neighbours.isolated > 0) {
+    fmt::print("isolated    {} points have no neighbour\n", neighbours.isolated);
+  }
+
+  const MemoryEstimate estimate = estimate_memory(body);
+  const FreeDofs free(prescribed, points.dimension);
+  const BlockPattern pattern = body.model.pattern();
+  std::string reason;
+  const LinearSystems systems =
+      choose_linear_systems(from, estimate, [&](const std::string& told) { reason = told; });
+  const ChosenSolver& chosen = systems.chosen;
+  require_memory(systems.bytes, fmt::format("the case with {} points", points.count()));
+  if (chosen.solver->analyze(pattern, free) == LinearOutcome::solved) {
+    fmt::print("solver      {} ({})\n", chosen.solver->describe(),
+               reason.empty() ? chosen.reason : reason);
+  }
+  fmt::print("memory      about {} of {} available\n", bytes_text(systems.bytes),
+             bytes_text(available_memory()));
+  fmt::print("time        {} for {} load steps, if none has to be cut\n",
+             seconds_text(chosen.seconds * from.loading.steps / threads), from.loading.steps);
+  refuse_unheld_bodies(from, body);
+  refuse_unstable_rest(from, body, threads);
+  return Exit::done;
+}
+
+}  // namespace peristat

@@ -1,0 +1,344 @@
+#include "cases/runner/commands/check_tangent.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <sstream>
+
+#include <fmt/format.h>
+
+#include "cases/runner/build/body.hpp"
+#include "solvers/linear/vector_verbs.hpp"
+#include "src/core/expression.hpp"
+#include "src/core/input_error.hpp"
+#include "src/core/number_text.hpp"
+
+namespace peristat {
+namespace {
+
+/// A homogeneous deformation plus a bending-like part, different in every direction.
+std::string default_deformation(const Points& points) {
+  double length = points.spacing;
+  for (double at : points.reference) length = std::max(length, std::abs(at));
+  const std::string l = number_text(length);
+  switch (points.dimension) {
+    case 1:
+      return "1.03*x + 0.01*" + l + "*sin(2*x/" + l + ")";
+    case 2:
+      return "1.03*x + 0.02*y + 0.02*x*y/" + l + "; 0.98*y - 0.01*x + 0.015*x*x/" + l;
+    default:
+      return "1.03*x + 0.02*y - 0.01*z + 0.02*x*y/" + l + "; 0.98*y - 0.01*x + 0.015*x*z/" + l +
+             "; 1.01*z + 0.02*x - 0.015*y*y/" + l;
+  }
+}
+
+std::vector<double> displacement_of(const std::string& deformation, const Points& points) {
+  std::vector<Expression> component;
+  std::istringstream parts(deformation);
+  for (std::string part; std::getline(parts, part, ';');) {
+    component.emplace_back(part, points.dimension, points.spacing,
+                           Expression::LoadFactor::not_allowed);
+  }
+  if (component.size() != std::size_t(points.dimension)) {
+    throw InputError("", '"' + deformation + '"',
+                     "needs " + std::to_string(points.dimension) +
+                         " expressions of the current coordinates, separated by ';'");
+  }
+  std::vector<double> displacement(points.reference.size());
+  for (Index i = 0; i < points.count(); ++i) {
+    for (int c = 0; c < points.dimension; ++c) {
+      const std::size_t dof = std::size_t(i) * points.dimension + c;
+      displacement[dof] = component[c](points.position(i)) - points.reference[dof];
+    }
+  }
+  return displacement;
+}
+
+/// Fixed pseudo-random direction with entries of the size of the spacing.
+std::vector<double> test_direction(const Points& points) {
+  std::vector<double> direction(points.reference.size());
+  std::uint64_t state = 88172645463325252ULL;
+  for (double& entry : direction) {
+    state ^= state << 13;
+    state ^= state >> 7;
+    state ^= state << 17;
+    entry = points.spacing * (2.0 * double(state >> 11) / 9007199254740992.0 - 1.0);
+  }
+  return direction;
+}
+
+/// Adds a little of the gradient's direction: where steps have to be small, the slope along a
+/// random direction alone may be, too, and drown in round-off.
+void steepen(const std::vector<double>& gradient, double size, std::vector<double>& direction) {
+  constexpr double share = 0.05;
+  double largest = 0.0;
+  for (const double entry : gradient) largest = std::max(largest, std::abs(entry));
+  if (largest > 0.0) add_scaled(direction, share * size / largest, gradient);
+}
+
+/// Where a case has damage its forces have kinks (or jumps) at the onset and at the critical
+/// stretch, over which no difference converges. Takes the points whose bonds are close to one out
+/// of the direction.
+/// @return the largest step along the direction at which no bond reaches one
+double keep_off_kinks(const Body& body, const std::vector<double>& displacement,
+                      const std::vector<double>& gradient, std::vector<double>& direction,
+                      double largest_step) {
+  std::vector<double> kinks;
+  if (const BondTerm* const failing = body.model.failing_bonds()) {
+    failing->with_damage_law([&](const auto& potential) {
+      kinks = {potential.law.onset(), potential.law.critical()};
+    });
+  }
+  if (kinks.empty()) return largest_step;
+  steepen(gradient, body.points.spacing, direction);
+  const double width = kinks[1] > kinks[0] ? kinks[1] - kinks[0] : kinks[1];
+  const double margin = 0.02 * width;
+
+  const Points& points = body.points;
+  const Bonds& bonds = body.model.bonds();
+  const auto d = std::size_t(points.dimension);
+  const auto place = [&](Index i) {
+    Coordinates at = points.position(i);
+    for (std::size_t c = 0; c < d; ++c) at[c] += displacement[std::size_t(i) * d + c];
+    return at;
+  };
+  double shortest = std::numeric_limits<double>::infinity();
+  const std::vector<double> all = direction;
+  for (Index i = 0; i < bonds.points(); ++i) {
+    for (Offset bond = bonds.offset[i]; bond < bonds.offset[i + 1]; ++bond) {
+      const Index j = bonds.partner[bond];
+      const Coordinates a = place(i), b = place(j);
+      const double stretch =
+          std::hypot(b[0] - a[0], b[1] - a[1], b[2] - a[2]) * bonds.inverse_length(bond) - 1.0;
+      shortest = std::min(shortest, bonds.length(bond));
+      const bool close = std::any_of(kinks.begin(), kinks.end(), [&](double kink) {
+        return std::abs(stretch - kink) < margin;
+      });
+      if (!close) continue;
+      for (const Index point : {i, j}) {
+        std::fill_n(direction.begin() + std::ptrdiff_t(std::size_t(point) * d), d, 0.0);
+      }
+    }
+  }
+  if (norm(direction) == 0.0) direction = all;  // a homogeneous stretch on a kink: let it show
+  double fastest = 0.0;
+  for (const double entry : direction) fastest = std::max(fastest, std::abs(entry));
+  return std::min(largest_step, margin * shortest / (2.0 * std::sqrt(double(d)) * fastest));
+}
+
+struct Convergence {
+  double error = 0.0;
+  std::optional<double> order;
+
+  /// As JSON: null where no step size stands clear of round-off.
+  [[nodiscard]] std::string order_text() const {
+    return order ? fmt::format("{:.6g}", *order) : "null";
+  }
+};
+
+/// Smallest error, and the order at the smallest step whose error still stands clear of round-off:
+/// of 100 times the smallest error or, where no step's does, of 15 times, which leaves an order of
+/// 2 an error of up to 0.1.
+Convergence convergence_of(const std::vector<double>& errors) {
+  Convergence result;
+  result.error = *std::min_element(errors.begin(), errors.end());
+  for (const double clear_of_round_off : {100.0, 15.0}) {
+    for (std::size_t k = 0; k + 1 < errors.size() && !result.order; ++k) {
+      const bool is_last =
+          k + 2 == errors.size() || errors[k + 2] < clear_of_round_off * result.error;
+      if (errors[k + 1] < clear_of_round_off * result.error) break;
+      if (is_last) result.order = std::log2(errors[k] / errors[k + 1]);
+    }
+  }
+  return result;
+}
+
+double relative_force_sum(const Points& points, const std::vector<double>& gradient) {
+  Coordinates sum{};
+  double size = 0.0;
+  for (std::size_t dof = 0; dof < gradient.size(); ++dof) {
+    sum[dof % std::size_t(points.dimension)] += gradient[dof];
+    size += std::abs(gradient[dof]);
+  }
+  return size > 0.0 ? std::hypot(sum[0], sum[1], sum[2]) / size : 0.0;
+}
+
+double relative_moment_sum(const Points& points, const std::vector<double>& displacement,
+                           const std::vector<double>& gradient) {
+  Coordinates sum{};
+  double size = 0.0;
+  for (Index i = 0; i < points.count(); ++i) {
+    Coordinates at = points.position(i), force{};
+    for (int c = 0; c < points.dimension; ++c) {
+      const std::size_t dof = std::size_t(i) * points.dimension + c;
+      at[c] += displacement[dof];
+      force[c] = gradient[dof];
+    }
+    sum[0] += at[1] * force[2] - at[2] * force[1];
+    sum[1] += at[2] * force[0] - at[0] * force[2];
+    sum[2] += at[0] * force[1] - at[1] * force[0];
+    size += std::hypot(at[0], at[1], at[2]) * std::hypot(force[0], force[1], force[2]);
+  }
+  return size > 0.0 ? std::hypot(sum[0], sum[1], sum[2]) / size : 0.0;
+}
+
+/// Gradients that differenced_block evaluates for a column.
+constexpr double passes_per_column = 6.0;
+
+/// Degrees of freedom of points that see one another, from several places of the body: those whose
+/// columns of the tangent are found by differences.
+/// @param direction of the check; where it is zero a difference would meet a kink
+std::vector<std::size_t> sampled_dofs(const Body& body, const std::vector<double>& direction) {
+  constexpr Index places = 6, most_partners = 8;
+  constexpr double most_work = 1e8;  // interactions in all passes, some seconds
+  const Bonds& bonds = body.model.bonds();
+  double interactions = 0.0;
+  for (const auto& term : body.model.terms()) {
+    for (const InteractionCount& kind : term->counts()) interactions += double(kind.count);
+  }
+  const auto d = std::size_t(body.points.dimension);
+  const auto most =
+      std::size_t(std::max(2.0 * double(d), most_work / (passes_per_column * interactions)));
+
+  std::vector<Index> points;
+  for (Index k = 0; k < std::min(places, bonds.points()); ++k) {
+    const Index i = bonds.points() / std::min(places, bonds.points()) * k;
+    points.push_back(i);
+    const Offset last = std::min(bonds.offset[i + 1], bonds.offset[i] + most_partners);
+    for (Offset bond = bonds.offset[i]; bond < last; ++bond) points.push_back(bonds.partner[bond]);
+  }
+  std::vector<std::size_t> dofs;
+  for (const Index point : points) {
+    for (std::size_t c = 0; c < d; ++c) {
+      const std::size_t dof = std::size_t(point) * d + c;
+      const bool is_known = std::find(dofs.begin(), dofs.end(), dof) != dofs.end();
+      if (!is_known && direction[dof] != 0.0 && dofs.size() < most) dofs.push_back(dof);
+    }
+  }
+  return dofs;
+}
+
+/// Entries of the columns of some degrees of freedom in their own rows, by central differences of
+/// the gradient with steps h, h/2 and h/4 and Richardson's extrapolation: an error of order h^6.
+std::vector<double> differenced_block(Assembler& assembler, const StateView& at,
+                                      const std::vector<std::size_t>& dofs, double step) {
+  const std::size_t count = dofs.size();
+  const std::span<const double> displacement = at.displacement;
+  std::vector<double> block(count * count), shifted(displacement.begin(), displacement.end());
+  std::vector<double> forward(displacement.size()), backward(displacement.size());
+  constexpr double weights[] = {1.0 / 45.0, -20.0 / 45.0, 64.0 / 45.0};
+  for (std::size_t j = 0; j < count; ++j) {
+    double h = step;
+    for (const double weight : weights) {
+      shifted[dofs[j]] = displacement[dofs[j]] + h;
+      static_cast<void>(assembler.gradient({shifted, at.history}, forward));
+      shifted[dofs[j]] = displacement[dofs[j]] - h;
+      static_cast<void>(assembler.gradient({shifted, at.history}, backward));
+      for (std::size_t i = 0; i < count; ++i) {
+        block[i * count + j] += weight * (forward[dofs[i]] - backward[dofs[i]]) / (2.0 * h);
+      }
+      h *= 0.5;
+    }
+    shifted[dofs[j]] = displacement[dofs[j]];
+  }
+  return block;
+}
+
+/// Largest |K_ij - K_ji| over the largest |K_ij|. Of differences: the tangent itself is stored once
+/// for both places of a block, and can't be unsymmetric.
+double asymmetry_of(const std::vector<double>& block, std::size_t count) {
+  double difference = 0.0, largest = 0.0;
+  for (std::size_t i = 0; i < count; ++i) {
+    for (std::size_t j = 0; j < count; ++j) {
+      largest = std::max(largest, std::abs(block[i * count + j]));
+      difference = std::max(difference, std::abs(block[i * count + j] - block[j * count + i]));
+    }
+  }
+  return largest > 0.0 ? difference / largest : 0.0;
+}
+
+}  // namespace
+
+Exit check_tangent(const Case& from, const std::string& deformation, int threads) {
+  const std::unique_ptr<const Body> made = make_body(from, threads);
+  const Body& body = *made;
+  const Points& points = body.points;
+  const std::string text = deformation.empty() ? default_deformation(points) : deformation;
+  std::vector<double> displacement;
+  try {
+    displacement = displacement_of(text, points);
+  } catch (const InputError& error) {
+    throw InputError("--deformation", error.value(), error.allowed());
+  }
+  Assembler assembler(points, body.model, threads);
+  const std::size_t dofs = displacement.size();
+  std::vector<double> gradient(dofs), image(dofs), shifted(dofs), forward(dofs), backward(dofs);
+  const History history = assembler.initial_history();
+  const Stored stored = assembler.gradient({displacement, history}, gradient);
+  if (stored.degenerate) {
+    throw InputError("--deformation", '"' + text + '"', "collapses a bond to zero length");
+  }
+  Tangent tangent(assembler);
+  assembler.tangent({displacement, history}, tangent);
+  std::vector<double> direction = test_direction(points);
+  const double largest_step = keep_off_kinks(body, displacement, gradient, direction, 0.05);
+  tangent.multiply(direction, image);
+  const double slope = dot(gradient, direction), curvature = dot(image, direction);
+  // At a state without forces the slope is round-off: there the energy of a unit step is the scale.
+  constexpr double no_slope = 1e-10;
+  const double energy_scale =
+      std::abs(slope) > no_slope * std::abs(curvature) ? std::abs(slope) : std::abs(curvature);
+  const double force_scale = norm(image);
+  if (energy_scale == 0.0 || force_scale == 0.0) {
+    throw InputError("", "", "the case has no bonds whose derivatives could be checked");
+  }
+
+  std::vector<double> residual_errors, tangent_errors;
+  constexpr int halvings = 20;
+  double step = largest_step;
+  for (int k = 0; k < halvings; ++k, step *= 0.5) {
+    shifted = displacement;
+    add_scaled(shifted, step, direction);
+    const double energy_forward = assembler.gradient({shifted, history}, forward).energy;
+    shifted = displacement;
+    add_scaled(shifted, -step, direction);
+    const double energy_backward = assembler.gradient({shifted, history}, backward).energy;
+    const double difference = (energy_forward - energy_backward) / (2.0 * step);
+    residual_errors.push_back(std::abs(difference - slope) / energy_scale);
+    add_scaled(forward, -1.0, backward);
+    for (double& entry : forward) entry /= 2.0 * step;
+    add_scaled(forward, -1.0, image);
+    tangent_errors.push_back(norm(forward) / force_scale);
+  }
+  const std::vector<std::size_t> sample = sampled_dofs(body, direction);
+  double fastest = 0.0;
+  for (const double entry : direction) fastest = std::max(fastest, std::abs(entry));
+  const double sample_step = std::min(0.01 * points.spacing, 0.25 * largest_step * fastest);
+  const double asymmetry = asymmetry_of(
+      differenced_block(assembler, {displacement, history}, sample, sample_step), sample.size());
+
+  const Convergence of_residual = convergence_of(residual_errors);
+  const Convergence of_tangent = convergence_of(tangent_errors);
+
+  fmt::print(
+      "{{\n"
+      "  \"deformation\": \"{}\",\n"
+      "  \"energy\": {:.17g},\n"
+      "  \"residual_norm\": {:.17g},\n"
+      "  \"tangent_frobenius_norm\": {:.17g},\n"
+      "  \"asymmetry\": {:.6g},\n"
+      "  \"force_sum\": {:.6g},\n"
+      "  \"moment_sum\": {:.6g},\n"
+      "  \"residual_error\": {:.6g},\n"
+      "  \"tangent_error\": {:.6g},\n"
+      "  \"residual_order\": {},\n"
+      "  \"tangent_order\": {}\n"
+      "}}\n",
+      text, stored.energy, norm(gradient), tangent.frobenius_norm(), asymmetry,
+      relative_force_sum(points, gradient), relative_moment_sum(points, displacement, gradient),
+      of_residual.error, of_tangent.error, of_residual.order_text(), of_tangent.order_text());
+  return Exit::done;
+}
+
+}  // namespace peristat

@@ -1,0 +1,81 @@
+#include "cases/runner/commands/key_reference.hpp"
+
+#include <cctype>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "cases/runner/input/toml_table.hpp"
+#include "src/core/input_error.hpp"
+
+namespace peristat {
+namespace {
+
+void replace_all(std::string& text, const std::string& part, const std::string& by) {
+  for (std::size_t at = 0; (at = text.find(part, at)) != std::string::npos; at += by.size())
+    text.replace(at, part.size(), by);
+}
+
+/// 1e-6 for 1e-06
+std::string short_exponents(std::string text) {
+  for (const auto& [part, by] : {std::pair("e-0", "e-"), {"e+0", "e"}, {"e+", "e"}})
+    replace_all(text, part, by);
+  return text;
+}
+
+/// N/m⁶ for N/m6
+std::string raised(const std::string& unit) {
+  static const std::vector<std::string> digits{"⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};
+  std::string text;
+  const bool is_number = unit.find_first_not_of("0123456789") == std::string::npos;
+  for (const char c : unit)
+    text += is_number || !std::isdigit(c) ? std::string(1, c) : digits[std::size_t(c - '0')];
+  return text;
+}
+
+std::string shown_name(const TableDescription& table) {
+  return table.name.empty() ? "document" : table.name;
+}
+
+}  // namespace
+
+std::string default_text(const std::string& toml) {
+  if (toml.empty()) return "none";
+  if (toml.front() == '"' || toml.front() == '[') return "`" + toml + "`";
+  return short_exponents(toml.ends_with(".0") ? toml.substr(0, toml.size() - 2) : toml);
+}
+
+std::string key_reference(const TableDescription& table) {
+  std::string rows = "| key | meaning | unit | default | allowed |\n|---|---|---|---|---|\n";
+  for (const auto& key : table.keys) {
+    rows += "| `" + key.name + "` |";
+    for (const auto& cell :
+         {key.meaning, raised(key.unit), key.fallback, short_exponents(key.allowed)})
+      rows += cell.empty() ? " |" : " " + cell + " |";
+    rows += "\n";
+  }
+  return rows;
+}
+
+Exit print_keys(const std::string& asked) {
+  std::vector<std::string> names;
+  std::string page;
+  for (const auto& table : table_descriptions()) {
+    // what is in set.shape stands in lattice.shape
+    if (!table.name.starts_with("set.shape")) names.push_back(shown_name(table));
+    if (asked == shown_name(table) || (asked.empty() && names.back() == shown_name(table)))
+      page += fmt::format("{}{}\n\n{}", page.empty() ? "" : "\n",
+                          table.name.empty() ? "The document"
+                          : table.is_array   ? "[[" + table.name + "]]"
+                                             : "[" + table.name + "]",
+                          key_reference(table));
+  }
+  if (page.empty())
+    throw InputError("", asked,
+                     "no table of a case file" + did_you_mean(asked, names) +
+                         "  (there are: " + listed(names) + ")");
+  fmt::print("{}", page);
+  return Exit::done;
+}
+
+}  // namespace peristat

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <map>
+#include <string>
+
+#include "cases/runner/input/case.hpp"
+#include "cases/runner/process/exit.hpp"
+
+namespace peristat {
+
+struct RunOptions {
+  int threads = 1;
+  bool quiet = false;
+  std::string log_file;
+  bool overwrite = false;  ///< an earlier run of another case in the folder, too
+};
+
+/// Versions of the program and of its libraries, for the results file and the version command.
+[[nodiscard]] std::map<std::string, std::string> versions();
+
+/// Runs a case and writes its results folder; follows SIGINT, SIGTERM and SIGHUP by closing the
+/// results and returning `interrupted`. The folder's absolute path is written to the file that the
+/// environment variable PERISTAT_NOTE names, for the launcher.
+/// @throws InputError, MemoryError before anything is written
+/// @throws MachineError if the machine fails, std::bad_alloc if the memory does: every accepted
+/// step
+///         is kept, and the summary says "failed" if it can be written
+[[nodiscard]] Exit run(const Case& from, const RunOptions& options);
+
+}  // namespace peristat

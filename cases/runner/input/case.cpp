@@ -1,0 +1,101 @@
+#include "cases/runner/input/case.hpp"
+
+#include <algorithm>
+
+#include "cases/runner/input/case_file.hpp"
+#include "cases/runner/input/key_table.hpp"
+#include "cases/runner/input/toml_table.hpp"
+#include "src/core/input_error.hpp"
+
+namespace peristat {
+namespace {
+
+void collect_locations(const TomlValue& value, const std::string& path,
+                       std::map<std::string, CaseLocation>& locations) {
+  if (!path.empty()) locations[path] = value.location;
+  for (const auto& [key, entry] : value.entries)
+    collect_locations(entry, path.empty() ? key : path + "." + key, locations);
+  for (std::size_t k = 0; k < value.items.size(); ++k)
+    collect_locations(value.items[k], path + "[" + std::to_string(k) + "]", locations);
+}
+
+/// Place of a key, or of the longest part of it that the case file has.
+CaseLocation location_of(const Case& from, const std::string& key) {
+  for (std::string part = key; !part.empty();) {
+    const auto known = from.locations.find(part);
+    if (known != from.locations.end()) return known->second;
+    const auto cut = part.find_last_of(".[");
+    part.resize(cut == std::string::npos ? 0 : cut);
+  }
+  return {};
+}
+
+/// Keys by the names that lower floors have for what they are given.
+const std::map<std::string, std::string>& keys_of_members() {
+  static const std::map<std::string, std::string> keys{{"spacing", "lattice.spacing"},
+                                                       {"perturbation", "lattice.perturbation"},
+                                                       {"shapes", "lattice.shape"},
+                                                       {"layers", "lattice.layer"},
+                                                       {"file", "points.file"},
+                                                       {"supports", "support"},
+                                                       {"loads", "load"},
+                                                       {"directory", "output.directory"}};
+  return keys;
+}
+
+/// "load[0].body_force[1]" for "loads[0].value[1]"; a key of the case file stays as it is.
+std::string key_of(const Case& from, std::string member) {
+  const auto* lattice = std::get_if<Lattice>(&from.body);
+  if (member == "cross_section")
+    return std::string(lattice != nullptr ? "lattice." : "points.") +
+           (from.dimension == 1 ? "area" : "thickness");
+  const std::size_t end = std::min(member.find_first_of("[."), member.size());
+  const auto known = keys_of_members().find(member.substr(0, end));
+  if (known == keys_of_members().end()) return member;
+  const auto replace = [&](const std::string& part, const auto& key_of_element) {
+    const std::size_t at = member.find(part);
+    if (at == std::string::npos) return;
+    const std::size_t number = std::stoul(member.substr(end + 1));
+    member.replace(at + 2, part.size() - 2, key_of_element(number));
+  };
+  replace("].value", [&](std::size_t k) {
+    return from.loads.at(k).kind == LoadSpecification::Kind::body_force ? "body_force"
+                                                                        : "total_force";
+  });
+  replace("].action", [&](std::size_t k) {
+    return lattice->shapes.at(k).action == ShapeStep::Action::add ? "add" : "subtract";
+  });
+  return known->second + member.substr(end);
+}
+
+}  // namespace
+
+Case read_case(const std::filesystem::path& file,
+               const std::vector<std::pair<std::string, std::string>>& overrides) {
+  Case result;
+  result.file = file.string();
+  result.as_read = read_case_text(file);
+
+  TomlValue document = parse_toml(result.as_read, result.file);
+  for (const auto& [key, value] : overrides) apply_override(document, key, value);
+  collect_locations(document, "", result.locations);
+  try {
+    document_keys().read({TomlTable(document, "", result.file), "", result}, result);
+  } catch (const InputError& error) {
+    throw located(result, error);
+  }
+  result.as_resolved = document_keys().lines(result, result);
+  return result;
+}
+
+std::string located(const Case& from, const std::string& key, const std::string& message) {
+  return location_of(from, key).text(from.file) + ": " + message;
+}
+
+InputError located(const Case& from, const InputError& error) {
+  if (!error.place().empty()) return error;
+  const std::string key = key_of(from, error.key());
+  return InputError(key, error.value(), error.allowed(), location_of(from, key).text(from.file));
+}
+
+}  // namespace peristat

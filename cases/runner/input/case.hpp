@@ -1,0 +1,166 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "cases/runner/input/case_location.hpp"
+#include "solvers/drivers/load_stepping.hpp"
+#include "solvers/linear/make_linear_solver.hpp"
+#include "src/conditions/specification.hpp"
+#include "src/connectivity/crack.hpp"
+#include "src/core/input_error.hpp"
+#include "src/geometry/lattice.hpp"
+#include "src/geometry/point_set.hpp"
+#include "src/materials/bond_constants.hpp"
+#include "src/materials/effective_volumes.hpp"
+#include "src/materials/quadrature.hpp"
+
+namespace peristat {
+
+/// Points that come from a file instead of a lattice (table [points]).
+struct PointSource {
+  std::filesystem::path file;  ///< absolute; in the case file relative to the case file's folder
+  double cross_section = 1.0;  ///< 1D: area [m2]; 2D: thickness [m]
+  double horizon = 0.0;        ///< [m]
+};
+
+/// Bonds alone, or continuum-kinematics-inspired peridynamics.
+enum class MaterialModel { bond, cpd };
+
+/// What constants from E and nu are to be right on.
+enum class Calibration { lattice, continuum };
+
+/// How bonds fail.
+enum class DamageLaw { none, critical_stretch, tanh, tanh_continuous };
+
+struct DamageSpecification {
+  DamageLaw law = DamageLaw::none;
+  double onset = 0.0;                ///< s_m, of the tanh laws
+  double critical = 0.0;             ///< s_c
+  double rate = 3.0;                 ///< beta, of the tanh laws
+  std::vector<std::string> no_fail;  ///< sets whose points' bonds never fail
+};
+
+struct MaterialSpecification {
+  MaterialModel model = MaterialModel::bond;
+  PlaneState plane = PlaneState::stress;
+  std::optional<double> youngs_modulus;  ///< [Pa]; exactly one of this, micromodulus and c1 is set
+  std::optional<double> micromodulus;    ///< c [N/m6]
+  std::optional<double> poisson_ratio;   ///< cpd, with youngs_modulus
+  std::optional<double> c1;              ///< C1 [N/m6]
+  double c2 = 0.0;                       ///< C2 [N/m10]; in 2D not with youngs_modulus
+  double c3 = 0.0;                       ///< C3 [N/m14]; with c1 only
+  Calibration calibration = Calibration::lattice;
+  std::optional<double> density;  ///< [kg/m3], for dynamics only
+  DamageSpecification damage;
+};
+
+struct LoadingSpecification {
+  int steps = 1;                ///< equal steps of the load factor from 0 to 1
+  bool adaptive = true;         ///< cut and grow; otherwise a failed step ends the run
+  double smallest_step = 1e-6;  ///< of the load factor
+  double largest_step = 0.0;  ///< of the load factor; 0 means 1 / steps (the reader writes it out)
+  int max_broken_bonds = 0;   ///< in one implicit step; 0: no limit
+};
+
+struct SolverSpecification {
+  Mode mode = Mode::newton;
+  LinearMethod linear = LinearMethod::automatic;
+  PreconditionerKind preconditioner = PreconditionerKind::automatic;
+  TangentStorage tangent = TangentStorage::automatic;
+  Projection projection = Projection::automatic;
+  Predictor predictor = Predictor::consistent;
+  double relative_tolerance = 1e-10;
+  int max_iterations = 25;         ///< of Newton in a step
+  double linear_tolerance = 1e-3;  ///< largest relative residual of a linear system in it
+  FragmentRemedy fragments = FragmentRemedy::hold;
+  /// Horizon / spacing of the elastic stand-in that the adaptive mode uses until damage begins; 0:
+  /// none.
+  double elastic_horizon_ratio = 0.0;
+};
+
+/// Table [relaxation]: steps of the load factor, and how each is relaxed.
+struct RelaxationSpecification {
+  int steps = 1;
+  bool moving = false;      ///< the load moves in every iteration, as in [ADAPT]; nothing is held
+  int iterations = 10'000;  ///< of the whole load, if it moves
+  RelaxationOptions options;
+};
+
+struct OutputSpecification {
+  std::filesystem::path directory;  ///< default results/FOLDER_STEM of the case file
+  int every = 1;                    ///< fields of every n-th accepted step; the last always
+  bool count_cracks = false;        ///< whether bonds that a pre-crack has cut count as damage
+};
+
+/// Mean of a field over a set, reported at every accepted step.
+struct ProbeSpecification {
+  std::string name, set;
+  /// displacement, force, damage, stretch, energy_density, poisson_ratio, opening, or crack_length
+  std::string field = "displacement";
+  int axis = 0;       ///< poisson_ratio: direction that is pulled; crack_length: of the crack
+  std::string other;  ///< opening: set whose mean displacement is taken off
+};
+
+/// A case as read and checked once; constant from then on.
+struct Case {
+  std::string title;
+  int dimension = 2;
+  std::variant<Lattice, PointSource> body;
+  double horizon_ratio = 3.015;  ///< horizon / spacing, for a lattice
+  std::vector<SetRule> sets;
+  VolumeCorrection volume_correction = VolumeCorrection::none;
+  std::vector<Crack> cracks;
+  SurfaceCorrection surface_correction = SurfaceCorrection::none;
+  InteractionWeights weights = InteractionWeights::mean;
+  MaterialSpecification material;
+  std::vector<SupportSpecification> supports;
+  std::vector<LoadSpecification> loads;
+  LoadingSpecification loading;
+  SolverSpecification solver;
+  RelaxationSpecification relaxation;
+  OutputSpecification output;
+  std::vector<ProbeSpecification> probes;
+
+  std::string file;         ///< as given by the person
+  std::string as_read;      ///< text of the file
+  std::string as_resolved;  ///< TOML with overrides and defaults in place
+  /// Places of every key, table and array element by dotted key, e.g. "support[1].displacement[0]".
+  std::map<std::string, CaseLocation> locations;
+};
+
+/// Reads and checks a case file.
+/// @param overrides dotted key and TOML value ("loading.steps", "50"); a value that is no TOML is
+///        taken as a string
+/// @throws InputError whose place is "FILE:LINE:COLUMN", "--set KEY=VALUE" or, if the file can't be
+///         read at all, empty
+[[nodiscard]] Case read_case(
+    const std::filesystem::path& file,
+    const std::vector<std::pair<std::string, std::string>>& overrides = {});
+
+/// The error's message with file, line and column of its key in front; of the longest part of the
+/// key that the case file has, or of the file alone.
+[[nodiscard]] std::string located(const Case& from, const std::string& key,
+                                  const std::string& message);
+
+/// The error with its key of the case file, where a lower floor has named what it was given, and
+/// with the key's place, unless it has a place already.
+[[nodiscard]] InputError located(const Case& from, const InputError& error);
+
+/// Runs `make`; input errors leave with the place of their key in the case file.
+template <class Make>
+auto located_errors(const Case& from, const Make& make) {
+  try {
+    return make();
+  } catch (const InputError& error) {
+    throw located(from, error);
+  }
+}
+
+}  // namespace peristat

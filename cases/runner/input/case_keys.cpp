@@ -1,0 +1,734 @@
+#include "cases/runner/input/case_keys.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <limits>
+#include <variant>
+
+#include "cases/runner/input/key_kinds.hpp"
+#include "cases/runner/input/shape_keys.hpp"
+#include "solvers/drivers/drivers.hpp"
+
+namespace peristat {
+namespace {
+
+// ---- What several tables share
+
+template <int dimension>
+constexpr auto in_dimension = [](auto&, const Case& from) { return from.dimension == dimension; };
+
+template <class Body>
+constexpr auto body_is =
+    [](auto&, const Case& from) { return std::holds_alternative<Body>(from.body); };
+
+bool is_cpd(const Case& from) { return from.material.model == MaterialModel::cpd; }
+
+constexpr auto itself = [](auto& spec) -> auto& { return spec; };
+constexpr auto lattice = [](auto& from) -> auto& { return std::get<Lattice>(from.body); };
+constexpr auto points = [](auto& from) -> auto& { return std::get<PointSource>(from.body); };
+
+template <class Member>
+Key<Case> thickness(Member cross_section) {
+  return Key<Case>("thickness", cross_section, positive("m"), "of the plate, dimension 2 only")
+      .unless(in_dimension<1>, "is for dimension 2; dimension 1 has an area")
+      .unless(in_dimension<3>, "is for dimension 2 only")
+      .default_words("1");
+}
+
+template <class Member>
+Key<Case> area(Member cross_section) {
+  return Key<Case>("area", cross_section, positive("m2"), "of the bar, dimension 1 only")
+      .unless(in_dimension<2>, "is for dimension 1; dimension 2 has a thickness")
+      .unless(in_dimension<3>, "is for dimension 1 only")
+      .default_words("1");
+}
+
+template <class Spec>
+Key<Spec> where(const std::string& meaning, const std::string& fallback) {
+  return Key<Spec>("where", &Spec::where, condition(), meaning)
+      .written_if([](auto& spec, auto&) { return !spec.where.empty(); })
+      .default_words(fallback);
+}
+
+// ---- The body
+
+Table<ShapeStep> shape_step_keys() {
+  using K = Key<ShapeStep>;
+  using Action = ShapeStep::Action;
+  return {"lattice.shape",
+          {K("add", &ShapeStep::shape, shape_beside(), "kind of the shape to add")
+               .written_if([](auto& step, auto&) { return step.action == Action::add; })
+               .one_of(),
+           K("subtract", &ShapeStep::shape, shape_beside(), "kind of the shape to take away")
+               .then([](auto&, auto& step) { step.action = Action::subtract; })
+               .written_if([](auto& step, auto&) { return step.action == Action::subtract; })
+               .one_of()}};
+}
+
+Kind<Side> side() {
+  const auto read = [](const Entry& at) {
+    std::vector<std::string> sides;
+    for (int axis = 0; axis < at.so_far.dimension; ++axis)
+      for (const char sign : {'-', '+'}) sides.push_back({"xyz"[axis], sign});
+    const std::string chosen = at.from.one_of(at.key, sides);
+    return Side{chosen[0] - 'x', chosen[1] == '+' ? 1 : -1};
+  };
+  const auto text = [](const Side& side, const Case&) {
+    return toml_string(std::string(1, "xyz"[side.axis]) + (side.sign > 0 ? "+" : "-"));
+  };
+  return {read, text, "`\"x-\"`, `\"x+\"`, and so on for y and z"};
+}
+
+Table<Layer> layer_keys() {
+  using K = Key<Layer>;
+  return {"lattice.layer",
+          {K("name", &Layer::name, set_name(), "of the layer and of its set").required(),
+           K("side", &Layer::side, side(), "of the body").required(),
+           K("thickness", &Layer::thickness, integer(1, 1000, "spacings"), "number of planes"),
+           where<Layer>("keeps a part of the layer", "all of it")}};
+}
+
+Table<Case> lattice_keys() {
+  using K = Key<Case>;
+  return {
+      "lattice",
+      {K("spacing", in(lattice, &Lattice::spacing), positive("m"),
+         "distance of neighbouring points")
+           .required(),
+       K("horizon_ratio", &Case::horizon_ratio, number(Range::positive("-"), "1 to 1000"),
+         "horizon / spacing")
+           .then([](auto& at, auto& result) {
+             if (result.horizon_ratio < 1.0)
+               at.refuse("horizon smaller than the spacing; must be at least 1, usually 3.015");
+           })
+           .moreover("in 3D to 100; with model `cpd` to 50 in 2D, to 8 in 3D"),
+       thickness(in(lattice, &Lattice::cross_section)), area(in(lattice, &Lattice::cross_section)),
+       K("origin", in(lattice, &Lattice::origin),
+         choice<LatticeOrigin>(
+             {{"cell_centres", LatticeOrigin::cell_centres}, {"nodes", LatticeOrigin::nodes}}),
+         "where points stand relative to the lower corner of the first shape: cells' centres, half "
+         "a spacing inside, or the corner itself"),
+       K("perturbation", in(lattice, &Lattice::perturbation), between(0.0, 0.49, "spacings"),
+         "largest random shift of a point per component; points of layers stay"),
+       K("seed", in(lattice, &Lattice::seed),
+         count_from(0, "", std::numeric_limits<std::int64_t>::max()),
+         "of the random shifts; the same seed gives the same points"),
+       K("shape", in(lattice, &Lattice::shapes), shape_step_keys(), "tables: the body")
+           .then([](auto& at, auto& result) {
+             if (lattice(result).shapes.empty())
+               at.refuse("this array of tables is missing; a lattice needs at least one shape");
+           })
+           .default_words("at least one is required"),
+       K("layer", in(lattice, &Lattice::layers), layer_keys(), "tables: points outside the body")},
+      [](auto&, auto& result) {
+        result.body = Lattice();
+        lattice(result).dimension = result.dimension;
+      }};
+}
+
+Kind<std::filesystem::path> file_beside_the_case() {
+  const auto read = [](const Entry& at) {
+    const std::filesystem::path given = at.from.string(at.key);
+    if (given.empty()) at.refuse("is empty");
+    const auto folder = std::filesystem::path(at.so_far.file).parent_path();
+    const auto file = std::filesystem::absolute(folder / given).lexically_normal();
+    std::error_code error;
+    if (!std::filesystem::is_regular_file(file, error))
+      at.refuse("no such file; looked for " + file.string());
+    return file;
+  };
+  return {read, [](auto& file, auto&) { return toml_string(file.string()); }, "an existing file"};
+}
+
+Table<Case> points_keys() {
+  using K = Key<Case>;
+  return {
+      "points",
+      {K("file", in(points, &PointSource::file), file_beside_the_case(),
+         "comma- or blank-separated text, relative to the case file's folder")
+           .required(),
+       K("horizon", in(points, &PointSource::horizon), positive("m"), "the same for every point")
+           .moreover("at least the mean spacing; at most as many mean spacings as "
+                     "`lattice.horizon_ratio` allows")
+           .required(),
+       thickness(in(points, &PointSource::cross_section)),
+       area(in(points, &PointSource::cross_section))},
+      [](auto&, auto& result) { result.body = PointSource(); }};
+}
+
+Table<SetRule> set_keys() {
+  using K = Key<SetRule>;
+  return {"set",
+          {K("name", &SetRule::name, set_name(), "of the set").required(),
+           where<SetRule>("selects points where it is not zero", "this or `shape` is required"),
+           K("shape", &SetRule::shape, shape_inside(),
+             "selects the points in it; its keys are those of `[[lattice.shape]]`: `{ box = { min "
+             "= [0, 0], max = [1, 1] } }`")
+               .describes(describe_shapes)
+               .default_words("this or `where` is required")},
+          {},
+          [](auto& at, auto& set) {
+            if (set.where.empty() && !set.shape) at.refuse("needs a where or a shape");
+          }};
+}
+
+Table<Crack> crack_keys() {
+  using K = Key<Crack>;
+  constexpr auto segment = [](auto& crack) -> auto& { return std::get<CrackSegment>(crack); };
+  constexpr auto polygon = [](auto& crack) -> auto& { return std::get<CrackPolygon>(crack); };
+  return {"crack",
+          {K("from", in(segment, &CrackSegment::from), coordinates(), "2D: one end")
+               .unless(in_dimension<3>, "is for dimension 2; 3D has vertices")
+               .required("required in 2D"),
+           K("to", in(segment, &CrackSegment::to), coordinates(), "2D: the other end")
+               .unless(in_dimension<3>, "is for dimension 2; 3D has vertices")
+               .moreover("not `from`")
+               .required("required in 2D"),
+           K("vertices", in(polygon, &CrackPolygon::vertices), triples(),
+             "3D: corners in order, the last is joined to the first")
+               .unless(in_dimension<2>, "is for dimension 3; 2D has from and to")
+               .moreover("in one plane (to 10⁻⁹ of the extent) and around an area; edges must not "
+                         "cross or touch")
+               .required("required in 3D")},
+          [](auto& at, auto& crack) {
+            if (at.so_far.dimension == 1)
+              at.refuse("there are no cracks in dimension 1; subtract a box instead");
+            if (at.so_far.dimension == 3) crack = CrackPolygon();
+          },
+          [](auto& at, auto& crack) { check_crack(crack, at.so_far.dimension, at.from.path()); }};
+}
+
+// ---- The material
+
+Table<Case> quadrature_keys() {
+  using K = Key<Case>;
+  const auto of_bond = [](auto&, const Case& from) { return !is_cpd(from); };
+  return {"quadrature",
+          {K("volume_correction", &Case::volume_correction,
+             choice<VolumeCorrection>(
+                 {{"none", VolumeCorrection::none}, {"linear", VolumeCorrection::linear}}),
+             "share of a neighbour's volume that counts near the edge of the horizon: all, or "
+             "linear over half a spacing to either side")
+               .written_if(of_bond),
+           K("surface_correction", &Case::surface_correction,
+             choice<SurfaceCorrection>({{"none", SurfaceCorrection::none},
+                                        {"volume", SurfaceCorrection::volume},
+                                        {"energy", SurfaceCorrection::energy}}),
+             "factor that restores the stiffness of points whose neighbourhood is cut by a "
+             "surface: none, by the volume of the neighbourhood, or by the energy of simple "
+             "deformations")
+               .written_if(of_bond),
+           K("weights", &Case::weights,
+             choice<InteractionWeights>(
+                 {{"mean", InteractionWeights::mean}, {"bulk", InteractionWeights::bulk}}),
+             "model `cpd`: weights of interactions near surfaces, by the mean of their points' "
+             "effective volumes, or as in the bulk everywhere")
+               .written_if([](auto&, const Case& from) { return is_cpd(from); })}};
+}
+
+/// The quadrature is read before the material, whose model tells which of its keys apply.
+void check_quadrature(const Entry& at, const Case& result) {
+  if (!at.from.has("quadrature")) return;
+  const TomlTable quadrature = at.from.table("quadrature");
+  const std::vector<std::string> of_bond{"volume_correction", "surface_correction"};
+  for (const auto& key : is_cpd(result) ? of_bond : std::vector<std::string>{"weights"}) {
+    if (!quadrature.has(key) || quadrature.string(key) == "none") continue;
+    quadrature.refuse(key, is_cpd(result)
+                               ? "is for model \"bond\"; the effective volumes of cpd need none"
+                               : "is for model \"cpd\"");
+  }
+}
+
+Table<DamageSpecification> damage_keys() {
+  using Spec = DamageSpecification;
+  using K = Key<Spec>;
+  const auto is_whole = [](auto& damage, auto&) { return damage.law == DamageLaw::none; };
+  const auto is_sudden = [](auto& damage, auto&) {
+    return damage.law == DamageLaw::critical_stretch;
+  };
+  return {"material.damage",
+          {K("law", &Spec::law,
+             choice<DamageLaw>({{"none", DamageLaw::none},
+                                {"critical_stretch", DamageLaw::critical_stretch},
+                                {"tanh", DamageLaw::tanh},
+                                {"tanh_continuous", DamageLaw::tanh_continuous}}),
+             "no damage; whole up to `critical` and then broken; softening from `onset` to "
+             "`critical` as published in [ADAPT], which jumps by (1 − tanh `rate`)/2 at both ends; "
+             "the same law rescaled so that it does not jump")
+               .early(),
+           K("critical", &Spec::critical, between(1e-9, 1e3, "1"),
+             "stretch $s_c$ from which on a bond is broken")
+               .unless(is_whole, "")
+               .required("required with a law"),
+           K("onset", &Spec::onset, between(1e-9, 1e3, "1"),
+             "tanh laws: stretch $s_m$ beyond which a bond loses stiffness")
+               .unless(is_whole, "")
+               .unless(is_sudden, "is for the tanh laws")
+               .then([](auto& at, auto& damage) {
+                 if (!(damage.onset < damage.critical * (1.0 - 1e-9)))
+                   at.refuse("must be smaller than critical");
+               })
+               .moreover("below `critical`")
+               .required("required with a tanh law"),
+           K("rate", &Spec::rate, between(0.1, 50.0, "1"),
+             "tanh laws: $\\beta$, how much of the softening falls on the middle between the two "
+             "stretches")
+               .unless(is_whole, "")
+               .unless(is_sudden, "is for the tanh laws"),
+           K("no_fail", &Spec::no_fail, known_sets(),
+             "sets whose points' bonds stay elastic at any stretch, also those to points outside "
+             "the sets")
+               .written_if([](auto& damage, auto&) { return damage.law != DamageLaw::none; })
+               .early()}};
+}
+
+/// A stiffness may be negative (auxetic bodies have such), but not remotely large.
+Kind<double> stiffness(const std::string& unit) {
+  return number({-1e200, 1e200, "must be a finite number of " + unit}, "any number", unit);
+}
+
+Table<MaterialSpecification> material_keys() {
+  using Spec = MaterialSpecification;
+  using K = Key<Spec>;
+  const auto of_cpd = [](auto& material, auto&) { return material.model == MaterialModel::cpd; };
+  const auto of_bond = [](auto& material, auto&) { return material.model == MaterialModel::bond; };
+  const auto has_moduli = [](auto& material, auto&) { return material.youngs_modulus.has_value(); };
+  const auto has_constants = [](auto& material, auto&) { return material.c1.has_value(); };
+  const std::string for_bond = "is for model \"bond\"", for_cpd = "is for model \"cpd\"",
+                    with_moduli = "goes with youngs_modulus, not with c1";
+  return {
+      "material",
+      {K("model", &Spec::model,
+         choice<MaterialModel>({{"bond", MaterialModel::bond}, {"cpd", MaterialModel::cpd}}),
+         "bond-based peridynamics, whose Poisson ratio is 1/4 (3D and plane strain) or 1/3 (plane "
+         "stress); or continuum-kinematics-inspired peridynamics with one-, two- and "
+         "three-neighbour interactions, dimension 2 and 3")
+           .then([](auto& at, auto& material) {
+             if (material.model == MaterialModel::cpd && at.so_far.dimension == 1)
+               at.refuse("cpd needs dimension 2 or 3; in 1D it is the bond model");
+           })
+           .early(),
+       K("plane", &Spec::plane,
+         choice<PlaneState>({{"stress", PlaneState::stress}, {"strain", PlaneState::strain}}),
+         "`bond`: state of a plane body, dimension 2 only (`cpd` in 2D is purely two-dimensional, "
+         "neither)")
+           .unless(of_cpd, for_bond)
+           .unless(in_dimension<1>, "is for dimension 2 only")
+           .unless(in_dimension<3>, "is for dimension 2 only"),
+       K("youngs_modulus", &Spec::youngs_modulus, positive("Pa"), "in both models").one_of(),
+       K("micromodulus", &Spec::micromodulus, positive("N/m6", 1e150),
+         "`bond`: bond constant c of the pairwise force c·stretch")
+           .unless(of_cpd, for_bond)
+           .one_of(),
+       K("poisson_ratio", &Spec::poisson_ratio, between(-1.0, 1.0), "`cpd`, with `youngs_modulus`")
+           .unless(of_bond, for_cpd)
+           .unless(has_constants, with_moduli)
+           .moreover("in 3D to 0.5, both excluded; with damage from 1/3 (2D) or 1/4 (3D) on")
+           .required("required with `youngs_modulus`"),
+       K("c1", &Spec::c1, positive("N/m6", 1e200), "`cpd`: one-neighbour constant")
+           .unless(of_bond, for_cpd)
+           .one_of(),
+       K("c2", &Spec::c2, stiffness("N/m10"),
+         "`cpd`: two-neighbour constant; in 3D also beside `youngs_modulus`, in 2D it then follows")
+           .unless(of_bond, for_cpd)
+           .unless(
+               [](auto& material, const Case& so_far) {
+                 return material.youngs_modulus && so_far.dimension == 2;
+               },
+               "follows from youngs_modulus and poisson_ratio in 2D; give c1 for a free c2")
+           .moreover("a negative one is refused with damage, and where it makes the body "
+                     "[unstable at rest](theory.md#stability-at-rest)"),
+       K("c3", &Spec::c3, stiffness("N/m14"),
+         "`cpd`: three-neighbour constant, 3D; follows from `youngs_modulus`")
+           .unless(of_bond, for_cpd)
+           .unless(has_moduli,
+                   "follows from youngs_modulus and poisson_ratio; give c1 for a free c3")
+           .then([](auto& at, auto& material) {
+             if (at.so_far.dimension == 2 && material.c3 != 0.0)
+               at.refuse("must be 0 in 2D: three neighbours of a point in a plane span no volume");
+           })
+           .moreover("a negative one as of `c2`"),
+       K("calibration", &Spec::calibration,
+         choice<Calibration>(
+             {{"lattice", Calibration::lattice}, {"continuum", Calibration::continuum}}),
+         "`cpd`, with `youngs_modulus`: what the constants reproduce the moduli on, this lattice's "
+         "sums or integrals")
+           .unless(of_bond, for_cpd)
+           .unless(has_constants, with_moduli),
+       K("density", &Spec::density, positive("kg/m3"),
+         "for dynamics only: dynamic relaxation has a density of its own"),
+       K("damage", &Spec::damage, damage_keys(), "table `[material.damage]`")
+           .default_words("no damage")}};
+}
+
+// ---- Supports and loads
+
+Table<SupportSpecification> support_keys() {
+  using Spec = SupportSpecification;
+  using K = Key<Spec>;
+  return {"support",
+          {K("set", &Spec::set, known_set(), "that is held or moved").required(),
+           K("displacement", &Spec::displacement, prescribed_components(), "per component")
+               .required()}};
+}
+
+Table<LoadSpecification> load_keys() {
+  using Spec = LoadSpecification;
+  using K = Key<Spec>;
+  return {"load",
+          {K("set", &Spec::set, known_set(), "that is loaded").required().early(),
+           K("body_force", &Spec::value, force_components(false), "force density per component")
+               .written_if([](auto& load, auto&) { return load.kind == Spec::Kind::body_force; })
+               .one_of(),
+           K("total_force", &Spec::value, force_components(true),
+             "force on the whole set per component, spread in proportion to the volume")
+               .then([](auto&, auto& load) { load.kind = Spec::Kind::total_force; })
+               .written_if([](auto& load, auto&) { return load.kind == Spec::Kind::total_force; })
+               .one_of()}};
+}
+
+// ---- The search for equilibrium
+
+Table<LoadingSpecification> loading_keys() {
+  using Spec = LoadingSpecification;
+  using K = Key<Spec>;
+  return {"loading",
+          {K("steps", &Spec::steps, integer(1, 1'000'000),
+             "number of equal steps; 1/steps is the first one"),
+           K("adaptive", &Spec::adaptive, boolean(),
+             "cut a step that does not converge, and grow again; otherwise such a step ends the "
+             "run"),
+           K("smallest_step", &Spec::smallest_step, between(1e-12, 1.0),
+             "of the load factor; needing a smaller one ends the run")
+               .moreover("at most 1/steps"),
+           K("largest_step", &Spec::largest_step, between(1e-12, 1.0),
+             "of the load factor, to which steps may grow")
+               .otherwise([](auto& loading, auto&) { loading.largest_step = 1.0 / loading.steps; },
+                          "1/steps")
+               .then([](auto& at, auto& loading) {
+                 const double step = 1.0 / loading.steps;
+                 if (loading.smallest_step > step)
+                   at.from.refuse("smallest_step",
+                                  "must not be larger than the first step, 1 / steps");
+                 if (loading.largest_step < step)
+                   at.refuse("must not be smaller than the first step, 1 / steps");
+               })
+               .moreover("at least 1/steps"),
+           K("max_broken_bonds", &Spec::max_broken_bonds, count_from(0, "bonds"),
+             "mode `newton`: bonds that may break in one step; a step with more is cut. 0 is no "
+             "limit")}};
+}
+
+void check_preconditioner(const Entry& at, SolverSpecification& solver) {
+  if (solver.preconditioner == PreconditionerKind::automatic) return;
+  if (solver.linear == LinearMethod::cholesky)
+    at.refuse("is for iterative solvers, not for solver.linear = \"cholesky\"");
+  // Who names a preconditioner wants it used.
+  if (solver.linear == LinearMethod::automatic) solver.linear = LinearMethod::conjugate_gradients;
+}
+
+void check_tangent(const Entry& at, const SolverSpecification& solver) {
+  if (solver.tangent != TangentStorage::matrix_free) return;
+  if (!can_be_matrix_free({solver.linear, solver.preconditioner}))
+    at.refuse(
+        "does not go with this solver.linear or solver.preconditioner, which need the stored "
+        "tangent");
+  if (is_cpd(at.so_far)) at.refuse("is for material.model = \"bond\"");
+}
+
+void check_stand_in(const Entry& at, const SolverSpecification& solver) {
+  if (solver.elastic_horizon_ratio > 0.0 && at.so_far.material.damage.law == DamageLaw::none)
+    at.refuse(
+        "is for bodies with damage: the stand-in takes the place of the body until damage begins, "
+        "and without damage it would do so to the end");
+}
+
+Choices<Mode> modes() {
+  Choices<Mode> all;
+  for (const DriverEntry& driver : all_drivers()) all.emplace_back(driver.mode.name, driver.mode);
+  return all;
+}
+
+Table<SolverSpecification> solver_keys() {
+  using Spec = SolverSpecification;
+  using K = Key<Spec>;
+  return {
+      "solver",
+      {K("mode", &Spec::mode, choice(modes()),
+         "implicit throughout; by dynamic relaxation throughout; implicit while no damage grows "
+         "and by relaxation while it does"),
+       K("linear", &Spec::linear,
+         choice<LinearMethod>({{"auto", LinearMethod::automatic},
+                               {"cholesky", LinearMethod::cholesky},
+                               {"pcg", LinearMethod::conjugate_gradients},
+                               {"minres", LinearMethod::minres},
+                               {"gmres", LinearMethod::gmres}}),
+         "solver of the linear systems ([linear-solvers.md](linear-solvers.md)); `\"auto\"` "
+         "chooses, says why, and falls back where it fails"),
+       K("preconditioner", &Spec::preconditioner,
+         choice<PreconditionerKind>({{"auto", PreconditionerKind::automatic},
+                                     {"jacobi", PreconditionerKind::jacobi},
+                                     {"block_jacobi", PreconditionerKind::block_jacobi},
+                                     {"rigid_pieces", PreconditionerKind::rigid_pieces},
+                                     {"surrogate", PreconditionerKind::surrogate},
+                                     {"riluk", PreconditionerKind::riluk},
+                                     {"chebyshev", PreconditionerKind::chebyshev},
+                                     {"multigrid", PreconditionerKind::multigrid}}),
+         "of the last three, not for `\"cholesky\"`; with `linear = \"auto\"` it means `\"pcg\"`; "
+         "`\"auto\"` is `\"rigid_pieces\"`")
+           .then(check_preconditioner),
+       K("tangent", &Spec::tangent,
+         choice<TangentStorage>({{"auto", TangentStorage::automatic},
+                                 {"stored", TangentStorage::stored},
+                                 {"matrix_free", TangentStorage::matrix_free}}),
+         "the tangent's blocks are stored, or computed anew in each product, which takes a third "
+         "of the memory in 3D; for `material.model = \"bond\"` without `\"cholesky\"`, "
+         "`\"riluk\"`, `\"chebyshev\"` and `\"multigrid\"`. `\"auto\"` stores for direct solvers")
+           .then(check_tangent),
+       K("predictor", &Spec::predictor,
+         choice<Predictor>({{"consistent", Predictor::consistent}, {"none", Predictor::none}}),
+         "the first iteration of a step linearises about the old state and spreads the jump of the "
+         "supports, or, as in [CPD], about the state after the jump"),
+       K("projection", &Spec::projection,
+         choice<Projection>({{"auto", Projection::automatic},
+                             {"never", Projection::never},
+                             {"always", Projection::always}}),
+         "of interactions to their positive semidefinite part: when the exact tangent has negative "
+         "pivots or leads nowhere, never, always"),
+       K("relative_tolerance", &Spec::relative_tolerance, between(1e-14, 1e-2), "of the residual"),
+       K("linear_tolerance", &Spec::linear_tolerance, between(1e-14, 1e-1),
+         "largest relative residual that the linear system of a Newton iteration is left with"),
+       K("max_iterations", &Spec::max_iterations, integer(1, 1000), "of Newton in one step"),
+       K("fragments", &Spec::fragments,
+         choice<FragmentRemedy>({{"hold", FragmentRemedy::hold},
+                                 {"remove", FragmentRemedy::remove},
+                                 {"stop", FragmentRemedy::stop}}),
+         "what becomes of pieces that come off: just enough of their degrees of freedom are pinned "
+         "that they cannot move freely; they leave the equations and stay where they are; the run "
+         "ends with outcome `fragmented`"),
+       K("elastic_horizon_ratio", &Spec::elastic_horizon_ratio, between(1.0, 1e3),
+         "mode `adaptive`: horizon / spacing of an elastic body that stands in for the real one "
+         "until damage begins; with model `bond`, `youngs_modulus` and a damage law")
+           .then(check_stand_in)
+           .written_if([](auto& solver, auto&) { return solver.elastic_horizon_ratio > 0.0; })
+           .moreover("in 3D to 100")
+           .default_words("no stand-in")}};
+}
+
+/// Damage grows in steps that are smaller than elastic ones.
+int default_relaxation_steps(const Case& from) {
+  constexpr int steps_of_damage = 50;
+  const bool hands_over =
+      from.solver.mode == Mode::adaptive && from.material.damage.law != DamageLaw::none;
+  return hands_over ? std::max(from.loading.steps, steps_of_damage) : from.loading.steps;
+}
+
+void check_iterations(const Entry& at, const RelaxationSpecification& relaxation) {
+  if (relaxation.iterations < relaxation.steps)
+    at.refuse("must not be fewer than relaxation.steps");
+  if (relaxation.iterations % relaxation.steps != 0)
+    at.refuse("must be a multiple of relaxation.steps, " + std::to_string(relaxation.steps));
+}
+
+Table<RelaxationSpecification> relaxation_keys() {
+  using Spec = RelaxationSpecification;
+  using Options = RelaxationOptions;
+  using K = Key<Spec>;
+  const auto options = &Spec::options;
+  const auto moves = [](auto& relaxation, auto&) { return relaxation.moving; };
+  const auto rests = [](auto& relaxation, auto&) { return !relaxation.moving; };
+  return {
+      "relaxation",
+      {K("steps", &Spec::steps, count_from(1),
+         "number of equal steps of the *whole* load; 1/steps is the first one, whatever the "
+         "implicit steps have left")
+           .otherwise([](auto& relaxation,
+                         auto& from) { relaxation.steps = default_relaxation_steps(from); },
+                      "`loading.steps`; in mode `adaptive` with damage no fewer than 50"),
+       K("load", &Spec::moving, choice<bool>({{"fixed", false}, {"moving", true}}),
+         "rests after the ramp until the body is in equilibrium, or never rests")
+           .early(),
+       K("iterations", &Spec::iterations, count_from(1),
+         "load `moving`: iterations over the whole load, shared out equally to the steps")
+           .unless(rests, "is for load = \"moving\"")
+           .then(check_iterations)
+           .moreover("a multiple of `steps`"),
+       K("ramp", in(options, &Options::ramp), count_from(1),
+         "load `fixed`: iterations over which supports and loads move to their new values")
+           .unless(moves, "is for load = \"fixed\""),
+       K("quiet_iterations", in(options, &Options::quiet_iterations), count_from(0),
+         "load `fixed`: iterations without a further bond breaking before a state may be accepted")
+           .unless(moves, "is for load = \"fixed\""),
+       K("breaking", in(options, &Options::breaking),
+         choice<Breaking>(
+             {{"at_equilibrium", Breaking::at_equilibrium}, {"transient", Breaking::transient}}),
+         "when damage is for good: in accepted states alone, so that overshoot breaks nothing; or "
+         "in every iteration, as published")
+           .otherwise(
+               [](auto& relaxation, auto&) {
+                 if (relaxation.moving) relaxation.options.breaking = Breaking::transient;
+               },
+               "`\"at_equilibrium\"`; `\"transient\"` if the load is `moving`"),
+       K("damping", in(options, &Options::damping),
+         choice<Damping>({{"adaptive", Damping::adaptive}, {"kinetic", Damping::kinetic}}),
+         "as published, a coefficient from the Rayleigh quotient of the present motion; or none, "
+         "and all motion stops whenever the kinetic energy has passed a peak")
+           .otherwise(
+               [](auto& relaxation, auto&) {
+                 if (relaxation.moving) relaxation.options.damping = Damping::adaptive;
+               },
+               "`\"kinetic\"`; `\"adaptive\"` if the load is `moving`"),
+       K("mass_factor", in(options, &Options::mass_factor), between(1.0, 1e6),
+         "pseudo density over the least stable one: larger is slower and safer")
+           .otherwise(
+               [](auto& relaxation, auto&) {
+                 if (relaxation.options.damping == Damping::adaptive)
+                   relaxation.options.mass_factor = 1.0;
+               },
+               "2; 1 with adaptive damping"),
+       K("max_iterations", in(options, &Options::max_iterations), count_from(1),
+         "load `fixed`: after the ramp; a step with more fails and is cut"),
+       K("displacement_tolerance", in(options, &Options::displacement_tolerance), between(0.0, 1.0),
+         "load `fixed`: also accepts a state whose displacements changed by less than this in an "
+         "iteration, ‖Δu‖/‖u‖, as published (10⁻⁹). 0: never")},
+      {},
+      [](auto& at, auto& relaxation) {
+        relaxation.options.holds = !relaxation.moving;
+        if (relaxation.moving) relaxation.options.ramp = relaxation.iterations / relaxation.steps;
+        relaxation.options.relative_tolerance = at.so_far.solver.relative_tolerance;
+      }};
+}
+
+// ---- Results
+
+/// results/FOLDER_STEM, so that shipped cases of one name in several folders don't collide.
+std::filesystem::path default_directory(const std::filesystem::path& case_file) {
+  const auto absolute = std::filesystem::absolute(case_file).lexically_normal();
+  const std::string folder = absolute.parent_path().filename().string();
+  const std::string stem = absolute.stem().string();
+  return std::filesystem::path("results") / (folder.empty() ? stem : folder + "_" + stem);
+}
+
+Table<OutputSpecification> output_keys() {
+  using Spec = OutputSpecification;
+  using K = Key<Spec>;
+  return {"output",
+          {K("directory", &Spec::directory, text(),
+             "results folder, relative to the current folder; `--output` on the command line is "
+             "the same")
+               .otherwise([](auto& output,
+                             auto& from) { output.directory = default_directory(from.file); },
+                          "`results/FOLDER_NAME` of the case file: `results/bar_tension` for "
+                          "`cases/bar/tension.toml`")
+               .then([](auto& at, auto& output) {
+                 if (output.directory.empty()) at.refuse("is empty");
+               }),
+           K("every", &Spec::every, count_from(1, "steps"),
+             "fields are written at every n-th accepted step and at the last one"),
+           K("count_cracks", &Spec::count_cracks, boolean(),
+             "whether bonds that a `[[crack]]` has cut count as lost in `damage` and `max_damage`, "
+             "so that the crack shows in the pictures from the start")}};
+}
+
+Table<ProbeSpecification> probe_keys() {
+  using Spec = ProbeSpecification;
+  using K = Key<Spec>;
+  const auto has_no_axis = [](auto& probe, auto&) {
+    return probe.field != "poisson_ratio" && probe.field != "crack_length";
+  };
+  const auto has_no_other = [](auto& probe, auto&) { return probe.field != "opening"; };
+  return {
+      "probe",
+      {K("name", &Spec::name, name(), "of the column")
+           .then([](auto& at, auto& probe) {
+             for (const auto& other : at.so_far.probes)
+               if (other.name == probe.name) at.refuse("another probe has this name");
+           })
+           .moreover("no other probe has it")
+           .required()
+           .early(),
+       K("set", &Spec::set, known_set(), "over whose points").required().early(),
+       K("field", &Spec::field,
+         one_of({"displacement", "force", "damage", "stretch", "energy_density", "poisson_ratio",
+                 "opening", "crack_length"}),
+         "displacement, opening and length in m, force in N, energy density in J/m³")
+           .then([](auto& at, auto& probe) {
+             if (probe.field == "poisson_ratio" && at.so_far.dimension == 1)
+               at.refuse("there is no Poisson's ratio in dimension 1");
+           })
+           .early(),
+       K("axis", &Spec::axis, axis(),
+         "`poisson_ratio`: direction of the pull; `crack_length`: direction in which the crack "
+         "runs")
+           .unless(has_no_axis, "is for fields \"poisson_ratio\" and \"crack_length\""),
+       K("other", &Spec::other, known_set(), "`opening`: the set on the other side of the crack")
+           .unless(has_no_other, "is for field \"opening\"")
+           .required("required with it")}};
+}
+
+// ---- The document
+
+Table<Case> all_keys() {
+  using K = Key<Case>;
+  return {
+      "",
+      {K("title", &Case::title, text(), "one line for people")
+           .moreover("any text")
+           .otherwise(
+               [](auto& result, auto&) {
+                 result.title = std::filesystem::path(result.file).stem().string();
+               },
+               "name of the file without its ending")
+           .early(),
+       K("dimension", &Case::dimension, integer(1, 3), "of the space the body lives in")
+           .required()
+           .early(),
+       K("lattice", itself, lattice_keys(), "table: points on a lattice")
+           .written_if(body_is<Lattice>)
+           .one_of(),
+       K("points", itself, points_keys(), "table: points from a file")
+           .written_if(body_is<PointSource>)
+           .one_of(),
+       K("set", &Case::sets, set_keys(), "tables: named sets of points"),
+       K("crack", &Case::cracks, crack_keys(), "tables: cracks that are there from the start"),
+       K("quadrature", itself, quadrature_keys(), "table: corrections of the weights"),
+       K("material", &Case::material, material_keys(), "table: model, constants, damage")
+           .then(check_quadrature)
+           .required(),
+       K("support", &Case::supports, support_keys(), "tables: prescribed displacements"),
+       K("load", &Case::loads, load_keys(), "tables: forces"),
+       K("loading", &Case::loading, loading_keys(), "table: steps of the load factor"),
+       K("solver", &Case::solver, solver_keys(), "table: search for equilibrium"),
+       K("relaxation", &Case::relaxation, relaxation_keys(), "table: steps by dynamic relaxation"),
+       K("output", &Case::output, output_keys(), "table: results folder"),
+       K("probe", &Case::probes, probe_keys(), "tables: values that enter the history")}};
+}
+
+}  // namespace
+
+const Table<Case>& document_keys() {
+  static const Table<Case> keys = all_keys();
+  return keys;
+}
+
+const std::vector<TableDescription>& table_descriptions() {
+  static const auto tables = [] {
+    std::vector<TableDescription> all;
+    document_keys().describe(all);
+    for (auto& table : all)
+      if (table.name == "lattice.shape") add_shapes(all, table);
+    return all;
+  }();
+  return tables;
+}
+
+const std::map<std::string, std::vector<std::string>>& case_keys() {
+  static const auto keys = [] {
+    std::map<std::string, std::vector<std::string>> by_table;
+    for (const auto& table : table_descriptions()) by_table[table.name] = table.listed;
+    return by_table;
+  }();
+  return keys;
+}
+
+}  // namespace peristat

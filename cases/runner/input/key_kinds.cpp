@@ -1,0 +1,255 @@
+#include "cases/runner/input/key_kinds.hpp"
+
+#include <map>
+#include <utility>
+#include <variant>
+
+#include "src/core/expression.hpp"
+#include "src/core/input_error.hpp"
+#include "src/core/number_text.hpp"
+
+namespace peristat {
+namespace {
+
+std::size_t dimension_of(const Case& from) { return std::size_t(from.dimension); }
+
+/// The first of the items, as many as the dimension.
+template <class Item>
+std::vector<Item> components_of(const std::array<Item, 3>& items, const Case& from) {
+  return {items.begin(), items.begin() + from.dimension};
+}
+
+/// Of the lattice; stands for any positive number if points come from a file.
+double spacing_of(const Case& from) {
+  const auto* lattice = std::get_if<Lattice>(&from.body);
+  return lattice != nullptr ? lattice->spacing : 1.0;
+}
+
+/// Sets and layers that were read so far, and the keys that gave them their names.
+std::map<std::string, std::string> set_names(const Case& from) {
+  std::map<std::string, std::string> names;
+  const auto add = [&](const auto& sets, const std::string& table) {
+    for (std::size_t k = 0; k < sets.size(); ++k)
+      names[sets[k].name] = table + "[" + std::to_string(k) + "].name";
+  };
+  if (const auto* lattice = std::get_if<Lattice>(&from.body)) add(lattice->layers, "lattice.layer");
+  add(from.sets, "set");
+  return names;
+}
+
+/// Whether names of sets are not all known before a file of points is read.
+bool has_sets_from_file(const Case& from) { return std::holds_alternative<PointSource>(from.body); }
+
+/// Refuses a component that is no expression of load and, in `dimension` > 0, of place.
+void check_component(const Entry& at, std::size_t component, const std::string& text,
+                     int dimension) {
+  try {
+    Expression(text, dimension, spacing_of(at.so_far), Expression::LoadFactor::allowed);
+  } catch (const InputError& error) {
+    at.from.refuse(at.key, component, error.allowed());
+  }
+}
+
+std::string string_text(const std::string& value, const Case&) { return toml_string(value); }
+
+template <std::size_t count>
+std::string tuples_text(const std::vector<std::array<double, count>>& tuples, const Case&) {
+  return array_text(tuples, [](const auto& tuple) { return array_text(tuple, toml_number); });
+}
+
+}  // namespace
+
+Kind<double> number(const Range& range, std::string allowed, std::string unit) {
+  return {[=](const Entry& at) { return at.from.number(at.key, range); },
+          [](double value, const Case&) { return toml_number(value); }, std::move(allowed),
+          std::move(unit)};
+}
+
+Kind<double> positive(const std::string& unit, double high) {
+  return number(Range::positive(unit, high), "positive", unit == "-" ? "" : unit);
+}
+
+Kind<double> between(double low, double high, std::string unit) {
+  return number(Range::between(low, high), number_text(low) + " to " + number_text(high),
+                std::move(unit));
+}
+
+Kind<std::int64_t> integer(std::int64_t low, std::int64_t high, std::string unit) {
+  return {[=](const Entry& at) { return at.from.integer(at.key, low, high); },
+          [](std::int64_t value, const Case&) { return std::to_string(value); },
+          std::to_string(low) + " to " + std::to_string(high), std::move(unit)};
+}
+
+Kind<std::int64_t> count_from(std::int64_t low, std::string unit, std::int64_t high) {
+  Kind<std::int64_t> kind = integer(low, high, std::move(unit));
+  kind.allowed = "whole number from " + std::to_string(low);
+  return kind;
+}
+
+Kind<bool> boolean() {
+  return {[](const Entry& at) { return at.from.boolean(at.key); },
+          [](bool value, const Case&) { return std::string(value ? "true" : "false"); },
+          "true, false"};
+}
+
+Kind<std::string> text() {
+  return {[](const Entry& at) { return at.from.string(at.key); }, string_text, ""};
+}
+
+Kind<std::string> one_of(const std::vector<std::string>& names) {
+  std::string allowed;
+  for (const auto& known : names) allowed += (allowed.empty() ? "`\"" : ", `\"") + known + "\"`";
+  return {[=](const Entry& at) { return at.from.one_of(at.key, names); }, string_text, allowed};
+}
+
+Kind<std::string> name() {
+  const auto read = [](const Entry& at) {
+    const std::string given = at.from.string(at.key);
+    const auto allowed = [](char c) {
+      return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
+             c == '_' || c == '-';
+    };
+    if (given.empty()) at.refuse("is empty");
+    for (const char c : given)
+      if (!allowed(c)) at.refuse("may only have letters, digits, _ and -");
+    return given;
+  };
+  return {read, string_text, "letters, digits, `_`, `-`"};
+}
+
+Kind<std::string> set_name() {
+  Kind<std::string> kind = name();
+  kind.read = [read = kind.read](const Entry& at) {
+    const std::string given = read(at);
+    const auto names = set_names(at.so_far);
+    if (const auto taken = names.find(given); taken != names.end())
+      at.refuse("this name is taken by " + taken->second +
+                "; sets and layers need different names");
+    return given;
+  };
+  kind.allowed += "; no other set or layer has it";
+  return kind;
+}
+
+Kind<std::string> known_set() {
+  const auto read = [](const Entry& at) {
+    const std::string asked = at.from.string(at.key);
+    const auto known = set_names(at.so_far);
+    if (known.count(asked) > 0 || has_sets_from_file(at.so_far)) return asked;
+    std::vector<std::string> names;
+    for (const auto& [set, path] : known) names.push_back(set);
+    at.refuse("no set or layer of this name" + did_you_mean(asked, names) +
+              (names.empty() ? "; the case has none" : "  (there: " + listed(names) + ")"));
+  };
+  return {read, string_text, "name of a set or layer"};
+}
+
+Kind<std::vector<std::string>> known_sets() {
+  const auto read = [](const Entry& at) {
+    const auto known = set_names(at.so_far);
+    const std::vector<std::string> sets = at.from.strings(at.key);
+    for (const std::string& set : sets)
+      if (known.count(set) == 0 && !has_sets_from_file(at.so_far))
+        at.refuse("there is no set or layer \"" + set + "\"");
+    return sets;
+  };
+  return {read,
+          [](const auto& sets, const Case&) {
+            return sets.empty() ? std::string() : array_text(sets, toml_string);
+          },
+          "list of names of sets and layers"};
+}
+
+Kind<Coordinates> coordinates(std::string unit) {
+  const auto read = [](const Entry& at) {
+    Coordinates place{};
+    const auto numbers = at.from.numbers(at.key, dimension_of(at.so_far), Range{});
+    std::copy(numbers.begin(), numbers.end(), place.begin());
+    return place;
+  };
+  return {read,
+          [](const Coordinates& place, const Case& from) {
+            return array_text(components_of(place, from), toml_number);
+          },
+          "a number per dimension", std::move(unit)};
+}
+
+Kind<std::vector<std::array<double, 2>>> pairs() {
+  return {[](const Entry& at) { return at.from.pairs(at.key); }, tuples_text<2>,
+          "3 or more pairs `[x, y]`", "m"};
+}
+
+Kind<std::vector<std::array<double, 3>>> triples() {
+  return {[](const Entry& at) { return at.from.triples(at.key); }, tuples_text<3>,
+          "3 or more `[x, y, z]`", "m"};
+}
+
+Kind<int> axis() {
+  const auto read = [](const Entry& at) {
+    const std::vector<std::string> axes{"x", "y", "z"};
+    return at.from.one_of(at.key, {axes.begin(), axes.begin() + at.so_far.dimension})[0] - 'x';
+  };
+  return {read, [](int axis, const Case&) { return toml_string(std::string(1, "xyz"[axis])); },
+          "`\"x\"`, `\"y\"`, `\"z\"` of the dimension"};
+}
+
+Kind<std::string> condition() {
+  const auto read = [](const Entry& at) {
+    const std::string selection = at.from.string(at.key);
+    try {
+      Expression(selection, at.so_far.dimension, spacing_of(at.so_far),
+                 Expression::LoadFactor::not_allowed);
+    } catch (const InputError& error) {
+      at.refuse(error.allowed());
+    }
+    return selection;
+  };
+  return {read, string_text, "an expression of place"};
+}
+
+Kind<std::array<std::optional<std::string>, 3>> prescribed_components() {
+  const auto read = [](const Entry& at) {
+    std::array<std::optional<std::string>, 3> prescribed;
+    const auto components = at.from.components(at.key, dimension_of(at.so_far));
+    bool all_free = true;
+    for (std::size_t c = 0; c < components.size(); ++c) {
+      if (components[c] == "free") continue;
+      all_free = false;
+      check_component(at, c, components[c], at.so_far.dimension);
+      prescribed[c] = components[c];
+    }
+    if (all_free) at.refuse("every component is free, so this supports nothing");
+    return prescribed;
+  };
+  return {read,
+          [](const auto& prescribed, const Case& from) {
+            return array_text(components_of(prescribed, from), [](const auto& component) {
+              return toml_string(component.value_or("free"));
+            });
+          },
+          "number, expression of place and `load`, or `\"free\"`", "m"};
+}
+
+Kind<std::array<std::string, 3>> force_components(bool is_total) {
+  const auto read = [=](const Entry& at) {
+    std::array<std::string, 3> force = LoadSpecification().value;
+    const auto components = at.from.components(at.key, dimension_of(at.so_far));
+    for (std::size_t c = 0; c < components.size(); ++c) {
+      if (components[c] == "free")
+        at.from.refuse(at.key, c,
+                       "only displacements of supports can be free; write 0 for no force");
+      check_component(at, c, components[c], is_total ? 0 : at.so_far.dimension);
+      force[c] = components[c];
+    }
+    return force;
+  };
+  return {read,
+          [](const auto& force, const Case& from) {
+            return array_text(components_of(force, from), toml_string);
+          },
+          is_total ? "number or expression of `load` alone"
+                   : "number or expression of place and `load`",
+          is_total ? "N" : "N/m3"};
+}
+
+}  // namespace peristat

@@ -1,0 +1,84 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "cases/runner/input/key_table.hpp"
+#include "cases/runner/input/toml_text.hpp"
+#include "src/core/types.hpp"
+
+namespace peristat {
+
+/// A finite number within the range.
+[[nodiscard]] Kind<double> number(const Range& range, std::string allowed, std::string unit = {});
+[[nodiscard]] Kind<double> positive(const std::string& unit, double high = 1e30);
+[[nodiscard]] Kind<double> between(double low, double high, std::string unit = {});
+[[nodiscard]] Kind<std::int64_t> integer(std::int64_t low, std::int64_t high,
+                                         std::string unit = {});
+/// An integer that counts something and is limited for the machine's sake alone.
+[[nodiscard]] Kind<std::int64_t> count_from(std::int64_t low, std::string unit = {},
+                                            std::int64_t high = 1'000'000'000);
+[[nodiscard]] Kind<bool> boolean();
+[[nodiscard]] Kind<std::string> text();
+/// A string out of a list.
+[[nodiscard]] Kind<std::string> one_of(const std::vector<std::string>& names);
+
+/// Names of the values of an enumeration.
+template <class Value>
+using Choices = std::vector<std::pair<std::string, Value>>;
+
+/// A value of an enumeration by its name.
+template <class Value>
+[[nodiscard]] Kind<Value> choice(const Choices<Value>& choices) {
+  std::vector<std::string> names;
+  for (const auto& [name, value] : choices) names.push_back(name);
+  const Kind<std::string> name_kind = one_of(names);
+  return {[=](const Entry& at) {
+            const std::string chosen = name_kind.read(at);
+            return std::find_if(choices.begin(), choices.end(),
+                                [&](const auto& choice) { return choice.first == chosen; })
+                ->second;
+          },
+          [=](const Value& value, const Case&) {
+            for (const auto& [name, choice] : choices)
+              if (choice == value) return toml_string(name);
+            return std::string();
+          },
+          name_kind.allowed};
+}
+
+/// A name that is given: letters, digits, _ and -.
+[[nodiscard]] Kind<std::string> name();
+/// A name of a set or layer, which is a set too; no other one has it.
+[[nodiscard]] Kind<std::string> set_name();
+/// Name of a set or layer that is there.
+[[nodiscard]] Kind<std::string> known_set();
+[[nodiscard]] Kind<std::vector<std::string>> known_sets();
+
+/// A component per dimension.
+[[nodiscard]] Kind<Coordinates> coordinates(std::string unit = "m");
+[[nodiscard]] Kind<std::vector<std::array<double, 2>>> pairs();
+[[nodiscard]] Kind<std::vector<std::array<double, 3>>> triples();
+/// A direction of the dimension, by its number.
+[[nodiscard]] Kind<int> axis();
+
+/// An expression that selects points.
+[[nodiscard]] Kind<std::string> condition();
+/// Per component an expression of place and load, or "free".
+[[nodiscard]] Kind<std::array<std::optional<std::string>, 3>> prescribed_components();
+/// Per component an expression of load, and of place unless it is a total.
+[[nodiscard]] Kind<std::array<std::string, 3>> force_components(bool is_total);
+
+/// "[a, b]"
+template <class Items, class Text>
+[[nodiscard]] std::string array_text(const Items& items, Text text) {
+  std::string array;
+  for (const auto& item : items) array += (array.empty() ? "" : ", ") + text(item);
+  return "[" + array + "]";
+}
+
+}  // namespace peristat

@@ -1,0 +1,177 @@
+#include "cases/runner/input/shape_keys.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <tuple>
+#include <variant>
+
+namespace peristat {
+namespace {
+
+const Table<Box>& keys_of(const Box&) {
+  using K = Key<Box>;
+  static const Table<Box> table{
+      "set.shape.box",
+      {K("min", &Box::min, coordinates(), "box: lower corner").moreover("below `max`").required(),
+       K("max", &Box::max, coordinates(), "box: upper corner").required()}};
+  return table;
+}
+
+template <class Round>
+Key<Round> centre() {
+  return Key<Round>("centre", &Round::centre, coordinates(), "disk, cylinder, sphere").required();
+}
+
+template <class Round>
+Key<Round> radius() {
+  return Key<Round>("radius", &Round::radius, positive("m"), "disk, cylinder, sphere").required();
+}
+
+const Table<Disk>& keys_of(const Disk&) {
+  static const Table<Disk> table{"set.shape.disk", {centre<Disk>(), radius<Disk>()}};
+  return table;
+}
+
+const Table<Cylinder>& keys_of(const Cylinder&) {
+  using K = Key<Cylinder>;
+  static const Table<Cylinder> table{
+      "set.shape.cylinder",
+      {centre<Cylinder>(),
+       K("axis", &Cylinder::axis, coordinates(""), "cylinder: direction")
+           .moreover("not zero")
+           .default_words("`[0, 0, 1]`"),
+       radius<Cylinder>(),
+       K("length", &Cylinder::length, positive("m", std::numeric_limits<double>::infinity()),
+         "cylinder: along its axis, half of it to each side of the centre")
+           .moreover("finite if it is added")
+           .default_words("infinite")}};
+  return table;
+}
+
+const Table<Sphere>& keys_of(const Sphere&) {
+  static const Table<Sphere> table{"set.shape.sphere", {centre<Sphere>(), radius<Sphere>()}};
+  return table;
+}
+
+const Table<Polygon>& keys_of(const Polygon&) {
+  using K = Key<Polygon>;
+  static const Table<Polygon> table{"set.shape.polygon",
+                                    {K("vertices", &Polygon::vertices, pairs(),
+                                       "polygon: corners in order, the last is joined to the first")
+                                         .moreover("around an area")
+                                         .required()}};
+  return table;
+}
+
+/// Does something with one shape of every kind.
+template <class Action>
+void for_each_shape(const Action& action) {
+  std::apply([&](const auto&... shape) { (action(shape), ...); },
+             std::tuple<Box, Disk, Cylinder, Sphere, Polygon>());
+}
+
+/// "box" of the table "set.shape.box".
+template <class OneShape>
+std::string kind_name(const OneShape& shape) {
+  const std::string& table = keys_of(shape).name;
+  return table.substr(table.rfind('.') + 1);
+}
+
+std::vector<std::string> shape_kinds() {
+  std::vector<std::string> kinds;
+  for_each_shape([&](const auto& shape) { kinds.push_back(kind_name(shape)); });
+  return kinds;
+}
+
+/// Kinds of shapes that a body of this dimension can have.
+std::vector<std::string> shape_kinds(int dimension) {
+  if (dimension == 1) return {"box"};
+  if (dimension == 2) return {"box", "disk", "polygon"};
+  return {"box", "cylinder", "sphere", "polygon"};
+}
+
+void refuse_other_dimension(const Entry& at, const std::string& kind) {
+  const auto all = shape_kinds(), allowed = shape_kinds(at.so_far.dimension);
+  if (std::count(all.begin(), all.end(), kind) == 0 ||
+      std::count(allowed.begin(), allowed.end(), kind) > 0)
+    return;
+  at.refuse("there is no " + kind + " in dimension " + std::to_string(at.so_far.dimension) +
+            "  (allowed: " + listed(allowed) + ")");
+}
+
+/// Reads the shape whose keys stand in the table.
+Shape read_shape(const Entry& table, const std::string& kind) {
+  Shape result;
+  for_each_shape([&](auto shape) {
+    if (kind_name(shape) != kind) return;
+    keys_of(shape).read(table, shape);
+    result = shape;
+  });
+  check_shape(result, table.so_far.dimension, table.from.path(), table.from.path());
+  return result;
+}
+
+std::string shape_lines(const Shape& shape, const Case& from) {
+  return std::visit([&](const auto& kind) { return keys_of(kind).lines(kind, from); }, shape);
+}
+
+/// What a table of a shape is called: "box".
+std::string kind_of(const Shape& shape) {
+  return std::visit([](const auto& kind) { return kind_name(kind); }, shape);
+}
+
+}  // namespace
+
+Kind<Shape> shape_beside() {
+  const auto read = [](const Entry& at) {
+    refuse_other_dimension(at, at.from.string(at.key));
+    const std::string kind = at.from.one_of(at.key, shape_kinds(at.so_far.dimension));
+    std::vector<std::string> keys = case_keys().at("set.shape." + kind);
+    keys.insert(keys.begin(), at.key);
+    at.from.allow_only(keys, "is no key of a " + kind);
+    return read_shape(at, kind);
+  };
+  const auto text = [](const Shape& shape, const Case& from) {
+    const std::string lines = shape_lines(shape, from);
+    return toml_string(kind_of(shape)) + "\n" + lines.substr(0, lines.size() - 1);
+  };
+  return {read, text,
+          "`\"box\"` (1D, 2D, 3D), `\"disk\"` (2D), `\"polygon\"` (2D; in 3D, where it has no end "
+          "in z, only to subtract), `\"cylinder\"`, `\"sphere\"` (3D)"};
+}
+
+Kind<Shape> shape_inside() {
+  const auto read = [](const Entry& at) {
+    const TomlTable shape = at.from.table(at.key);
+    const std::string kind = shape.exactly_one(shape_kinds());
+    refuse_other_dimension({shape, kind, at.so_far}, kind);
+    return read_shape({shape.table(kind), "", at.so_far}, kind);
+  };
+  const auto text = [](const Shape& shape, const Case& from) {
+    std::string inside = shape_lines(shape, from);
+    inside.pop_back();
+    for (std::size_t end; (end = inside.find('\n')) != std::string::npos;)
+      inside.replace(end, 1, ", ");
+    return "{ " + kind_of(shape) + " = { " + inside + " } }";
+  };
+  return {read, text, one_of(shape_kinds()).allowed};
+}
+
+void describe_shapes(std::vector<TableDescription>& all) {
+  all.push_back({"set.shape", false, {}, shape_kinds()});
+  for_each_shape([&](const auto& shape) { keys_of(shape).describe(all); });
+}
+
+void add_shapes(const std::vector<TableDescription>& all, TableDescription& to) {
+  for (const auto& table : all) {
+    if (!table.name.starts_with("set.shape.")) continue;
+    for (const auto& key : table.listed) {
+      if (std::count(to.listed.begin(), to.listed.end(), key) > 0) continue;
+      to.listed.push_back(key);
+      to.keys.push_back(*std::find_if(table.keys.begin(), table.keys.end(),
+                                      [&](const auto& k) { return k.name == key; }));
+    }
+  }
+}
+
+}  // namespace peristat

@@ -1,0 +1,45 @@
+#include "cases/runner/process/failure.hpp"
+
+#include <exception>
+#include <new>
+#include <system_error>
+
+#include <sys/resource.h>
+
+#include "cases/runner/process/available_memory.hpp"
+#include "solvers/linear/memory_estimate.hpp"
+#include "src/core/input_error.hpp"
+#include "src/core/machine_error.hpp"
+
+namespace peristat {
+namespace {
+
+/// What the shell allows, where it sets a limit.
+std::string shell_limit() {
+  rlimit limit{};
+  if (getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return "";
+  return " (the shell allows " + bytes_text(double(limit.rlim_cur)) +
+         " of address space, see \"ulimit -v\")";
+}
+
+}  // namespace
+
+Failure current_failure() {
+  try {
+    throw;
+  } catch (const InputError& error) {
+    return {Exit::wrong_input, error.what()};
+  } catch (const MemoryError& error) {
+    return {Exit::out_of_memory, error.what()};
+  } catch (const std::bad_alloc&) {
+    return {Exit::out_of_memory, "out of memory" + shell_limit()};
+  } catch (const MachineError& error) {
+    return {Exit::machine_failed, error.what()};
+  } catch (const std::system_error& error) {
+    return {Exit::machine_failed, error.what()};
+  } catch (const std::exception& error) {
+    return {Exit::bug, error.what()};
+  }
+}
+
+}  // namespace peristat

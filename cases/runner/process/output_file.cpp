@@ -1,0 +1,98 @@
+#include "cases/runner/process/output_file.hpp"
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <string>
+
+#include <fcntl.h>
+#include <unistd.h>
+
+namespace peristat {
+namespace {
+
+[[noreturn]] void fail(const std::filesystem::path& file, int error) {
+  throw OutputError(file.string() + ": can't be written: " + std::strerror(error), error);
+}
+
+/// Writes the contents, which are then the whole file, and closes it.
+/// @return the system's error, 0 for none
+int write_and_close(int descriptor, std::string_view contents) {
+  const auto size = static_cast<off_t>(contents.size());
+  int error = 0;
+  while (!contents.empty() && error == 0) {
+    const ssize_t written = ::write(descriptor, contents.data(), contents.size());
+    if (written > 0) {
+      contents.remove_prefix(static_cast<std::size_t>(written));
+    } else if (written == 0 || errno != EINTR) {
+      error = written == 0 ? ENOSPC : errno;
+    }
+  }
+  if (error == 0 && ::ftruncate(descriptor, size) != 0) error = errno;
+  // Network file systems report a full disk only here.
+  if (::close(descriptor) != 0 && errno != EINTR && error == 0) error = errno;
+  return error;
+}
+
+}  // namespace
+
+bool is_about_means(int error) {
+  switch (error) {
+    case ENOSPC:
+    case EDQUOT:
+    case EFBIG:
+    case EMFILE:
+    case ENFILE:
+    case EIO:
+    case ENOMEM:
+      return true;
+    default:
+      return false;
+  }
+}
+
+std::filesystem::path temporary(const std::filesystem::path& file) {
+  std::filesystem::path path = file;
+  return path += ".tmp";
+}
+
+void write_file(const std::filesystem::path& file, std::string_view contents) {
+  if (::unlink(file.c_str()) != 0 && errno != ENOENT) fail(file, errno);
+  const int descriptor =
+      ::open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
+  if (descriptor < 0) fail(file, errno);
+  if (const int error = write_and_close(descriptor, contents)) {
+    ::unlink(file.c_str());
+    fail(file, error);
+  }
+}
+
+void publish_file(const std::filesystem::path& file, std::string_view contents) {
+  write_file(temporary(file), contents);
+  rename_file(temporary(file), file);
+}
+
+void publish_reserved_file(const std::filesystem::path& file, std::string_view contents) {
+  const std::filesystem::path reserved = temporary(file);
+  const int descriptor = ::open(reserved.c_str(), O_WRONLY | O_NOFOLLOW | O_CLOEXEC);
+  if (descriptor < 0) return publish_file(file, contents);
+  if (const int error = write_and_close(descriptor, contents)) fail(file, error);
+  rename_file(reserved, file);
+}
+
+void reserve_file(const std::filesystem::path& file, std::uint64_t bytes) {
+  const int descriptor = ::open(file.c_str(), O_WRONLY | O_NOFOLLOW | O_CLOEXEC);
+  if (descriptor < 0) fail(file, errno);
+  int error = 0;
+  do {
+    error = ::posix_fallocate(descriptor, 0, static_cast<off_t>(bytes));
+  } while (error == EINTR);
+  ::close(descriptor);
+  if (error != 0) fail(file, error);
+}
+
+void rename_file(const std::filesystem::path& from, const std::filesystem::path& to) {
+  if (std::rename(from.c_str(), to.c_str()) != 0) fail(to, errno);
+}
+
+}  // namespace peristat

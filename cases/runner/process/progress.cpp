@@ -1,0 +1,150 @@
+#include "cases/runner/process/progress.hpp"
+
+#include <cerrno>
+#include <cstring>
+#include <utility>
+
+#include <fmt/format.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+#include "cases/runner/process/folded_text.hpp"
+#include "cases/runner/process/output_file.hpp"
+#include "src/core/input_error.hpp"
+
+namespace peristat {
+namespace {
+
+/// @return the system's error, 0 for none
+int write_now(std::FILE* file, const std::string& text) {
+  errno = 0;
+  const bool is_written =
+      std::fwrite(text.data(), 1, text.size(), file) == text.size() && std::fflush(file) == 0;
+  return is_written ? 0 : (errno != 0 ? errno : EIO);
+}
+
+/// Standard error is the last place to tell anything: what it does not take is lost.
+void tell_standard_error(const std::string& line) { write_now(stderr, "peristat: " + line + "\n"); }
+
+/// Width of a terminal; 80 if it does not tell.
+std::size_t columns(int descriptor) {
+  winsize size{};
+  const bool told = ioctl(descriptor, TIOCGWINSZ, &size) == 0 && size.ws_col > 20;
+  return told ? size.ws_col : 80;
+}
+
+}  // namespace
+
+Progress::Progress(bool quiet, const std::string& log_file)
+    : quiet_(quiet),
+      live_(!quiet && isatty(STDOUT_FILENO) == 1),
+      start_(std::chrono::steady_clock::now()) {
+  if (log_file.empty()) return;
+  log_ = std::fopen(log_file.c_str(), "w");
+  if (!log_) {
+    const int error = errno;
+    const std::string why = std::string("can't be written: ") + std::strerror(error);
+    if (is_about_means(error)) throw OutputError(log_file + ": " + why, error);
+    throw InputError("--log", log_file, why);
+  }
+}
+
+Progress::~Progress() {
+  erase_live_line();
+  if (log_) std::fclose(log_);
+}
+
+void Progress::tell_person(const std::string& text) {
+  if (quiet_) return;
+  const int error = write_now(stdout, text);
+  if (error == 0) return;
+  quiet_ = true;
+  live_ = false;
+  tell_standard_error(std::string("standard output can't be written (") + std::strerror(error) +
+                      "): the run goes on in silence");
+}
+
+void Progress::tell_log(const std::string& line) {
+  if (!log_) return;
+  const int error = write_now(log_, line + "\n");
+  if (error == 0) return;
+  std::fclose(std::exchange(log_, nullptr));
+  tell_standard_error(std::string("the log can't be written (") + std::strerror(error) +
+                      "): the run goes on without it");
+}
+
+void Progress::erase_live_line() {
+  if (!live_line_shown_) return;
+  tell_person("\r\033[K");
+  live_line_shown_ = false;
+}
+
+void Progress::say(const std::string& line) {
+  erase_live_line();
+  tell_person((live_ ? folded(line, columns(STDOUT_FILENO)) : line) + "\n");
+  tell_log(line);
+}
+
+void Progress::problem(const std::string& line) {
+  erase_live_line();
+  tell_standard_error(line);
+  tell_log(line);
+}
+
+std::string Progress::time_left() const {
+  const double left = time_left_.seconds().value_or(0.0);
+  if (left < 1.0) return "";
+  if (left < 120.0) return fmt::format("  about {:.0f} s left", left);
+  if (left < 7200.0) return fmt::format("  about {:.0f} min left", left / 60.0);
+  return fmt::format("  about {:.1f} h left", left / 3600.0);
+}
+
+void Progress::iteration(const IterationRecord& record) {
+  if (log_) {
+    tell_log(fmt::format(
+        "  step {} iteration {}: residual {:.3e} N, relative {:.3e}, step length {:g}", record.step,
+        record.iteration, record.residual, record.relative_residual, record.step_length));
+  }
+  if (!live_) return;
+  erase_live_line();
+  const std::string line =
+      fmt::format("step {}  load {:.4g}  iteration {}  residual {:.1e}{}", record.step,
+                  load_factor_, record.iteration, record.relative_residual, time_left());
+  tell_person(cut_to(line, columns(STDOUT_FILENO) - 1));
+  live_line_shown_ = true;
+}
+
+void Progress::decision(const DecisionRecord& record) {
+  if (record.action == Decision::accept) return;
+  if (record.action == Decision::accept_and_grow) {
+    say(fmt::format("  next step of the load factor grows to {:.4g}", record.next_increment));
+    return;
+  }
+  const std::string what = record.action == Decision::cut
+                               ? fmt::format("step cut to {:.4g}", record.next_increment)
+                               : name(record.action);
+  // Where a search has converged, what follows from its state is told, not that it has.
+  const std::string why = record.outcome == "converged"
+                              ? record.reason
+                              : fmt::format("{} ({})", record.outcome, record.reason);
+  say(fmt::format("  load {:.6g}: {}; {}", record.load_factor, why, what));
+}
+
+void Progress::accepted(const StepRecord& record, double relative_residual) {
+  load_factor_ = record.load_factor;
+  const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start_;
+  const bool relaxed_or_damaged = record.relaxation_iterations > 0 || record.max_damage > 0.0;
+  time_left_.accepted(elapsed.count(), load_factor_, relaxed_or_damaged);
+  const std::string relaxed =
+      record.relaxation_iterations > 0
+          ? fmt::format("  after {} of relaxation", record.relaxation_iterations)
+          : std::string();
+  const std::string broken = record.broken_bonds > 0
+                                 ? fmt::format(", {} bonds broken", record.broken_bonds)
+                                 : std::string();
+  say(fmt::format("step {:4}  load {:<8.6g}  {:2} iterations{}  residual {:.1e}  damage {:.3g}{}{}",
+                  record.step, record.load_factor, record.newton_iterations, relaxed,
+                  relative_residual, record.max_damage, broken, time_left()));
+}
+
+}  // namespace peristat

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <chrono>
+#include <cstdio>
+#include <string>
+
+#include "cases/runner/process/time_left.hpp"
+#include "solvers/problem/records.hpp"
+
+namespace peristat {
+
+/// What a run tells while it goes: one line per accepted step and decision; on a terminal a line
+/// that follows the iterations too, with the time that is left; lines are folded to its width.
+/// Everything also goes to the log file. Where standard output or the log can't be written any more
+/// (nobody reads the pipe, the disk is full), that is told once on standard error, and the run goes
+/// on.
+class Progress {
+ public:
+  /// @param quiet nothing on the terminal, except what `problem` tells
+  /// @param log_file empty for none
+  /// @throws InputError (key "--log") if the log file can't be written
+  Progress(bool quiet, const std::string& log_file);
+  ~Progress();
+  Progress(const Progress&) = delete;
+  Progress& operator=(const Progress&) = delete;
+
+  void say(const std::string& line);
+  /// To standard error, quiet or not.
+  void problem(const std::string& line);
+  void iteration(const IterationRecord& record);
+  void decision(const DecisionRecord& record);
+  void accepted(const StepRecord& record, double relative_residual);
+
+ private:
+  void tell_person(const std::string& text);
+  void tell_log(const std::string& line);
+  void erase_live_line();
+  [[nodiscard]] std::string time_left() const;
+
+  bool quiet_, live_;
+  bool live_line_shown_ = false;
+  double load_factor_ = 0.0;  // accepted
+  TimeLeft time_left_;
+  std::chrono::steady_clock::time_point start_;
+  std::FILE* log_ = nullptr;
+};
+
+}  // namespace peristat

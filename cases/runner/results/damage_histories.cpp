@@ -1,0 +1,30 @@
+#include "cases/runner/results/damage_histories.hpp"
+
+namespace peristat {
+
+std::optional<BondHistories> DamageHistories::changes(const Bonds& bonds,
+                                                      std::span<const double> history) const {
+  if (history.empty()) return std::nullopt;
+  BondHistories changed;
+  auto known = told_.begin();
+  for (Index i = 0; i < bonds.points(); ++i) {
+    for (Offset bond = bonds.offset[i]; bond < bonds.offset[i + 1]; ++bond) {
+      const bool is_known = known != told_.end() && known->first == bond;
+      const double before = is_known ? (known++)->second : 0.0;
+      if (history[bond] == before) continue;
+      changed.first_point.push_back(i);
+      changed.second_point.push_back(bonds.partner[bond]);
+      changed.largest_stretch.push_back(history[bond]);
+    }
+  }
+  return changed;
+}
+
+void DamageHistories::tell(std::span<const double> history) {
+  told_.clear();
+  for (std::size_t bond = 0; bond < history.size(); ++bond) {
+    if (history[bond] != 0.0) told_.emplace_back(Offset(bond), history[bond]);
+  }
+}
+
+}  // namespace peristat

@@ -1,0 +1,94 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "cases/runner/results/table.hpp"
+
+namespace peristat {
+
+/// Unit and meaning of a dataset, written as its attributes `unit` and `description`.
+struct DatasetLabel {
+  std::string unit, description;
+};
+
+/// An open HDF5 file; closed by the destructor. Paths of objects are absolute ("/steps/000001").
+/// Every error of the library is thrown as std::runtime_error with the library's own message.
+class Hdf5File {
+ public:
+  using Shape = std::vector<std::uint64_t>;
+
+  /// A new file that lives in memory and never touches the disk; see image().
+  /// @param name  unique among the open files
+  /// @param growth bytes by which the memory grows
+  [[nodiscard]] static Hdf5File in_memory(const std::string& name, std::size_t growth);
+  /// A new file on the disk, in place of an existing one. HDF5 1.10 may crash when the disk runs
+  /// full under it, so the room is set aside first; closing the file gives back what is not used.
+  /// @param room bytes that the file may need
+  /// @throws OutputError if the disk has less room
+  [[nodiscard]] static Hdf5File create(const std::filesystem::path& file, std::uint64_t room);
+  /// The same for a file with the contents that image() gave; `room` counts them as well.
+  [[nodiscard]] static Hdf5File create(const std::filesystem::path& file, std::uint64_t room,
+                                       std::string_view image);
+  [[nodiscard]] static Hdf5File open_for_reading(const std::filesystem::path& file);
+
+  Hdf5File(Hdf5File&& other) noexcept;
+  Hdf5File& operator=(Hdf5File&&) = delete;
+  ~Hdf5File();
+  /// Closes the file now, so that an error on the way to the disk is thrown.
+  void close();
+
+  void make_group(const std::string& path);
+
+  void write(const std::string& path, const std::vector<double>& values, const Shape& shape,
+             const DatasetLabel& label);
+  void write(const std::string& path, const std::vector<std::int32_t>& values, const Shape& shape,
+             const DatasetLabel& label);
+  void write(const std::string& path, const std::vector<std::uint8_t>& values, const Shape& shape,
+             const DatasetLabel& label);
+  /// A single text.
+  void write(const std::string& path, const std::string& text, const DatasetLabel& label);
+  /// A virtual dataset, count x 3, that shows the dataset `source` (count x dimension) of this file
+  /// with zeros in the further columns; takes no space.
+  void write_padded_view(const std::string& path, const std::string& source, std::uint64_t count,
+                         std::uint64_t dimension, const DatasetLabel& label);
+
+  void set_attribute(const std::string& path, const std::string& name, double value);
+  void set_attribute(const std::string& path, const std::string& name, std::int64_t value);
+  void set_attribute(const std::string& path, const std::string& name, const std::string& text);
+  void set_attribute(const std::string& path, const std::string& name,
+                     const std::vector<std::string>& texts);
+
+  [[nodiscard]] bool has_attribute(const std::string& path, const std::string& name) const;
+
+  /// A group with one growing dataset per column, without rows; a '/' in a column's name becomes
+  /// '|'.
+  void make_table(const std::string& group, const std::vector<Column>& columns);
+  void append(const std::string& group, const std::vector<Column>& columns,
+              const std::vector<Row>& rows);
+
+  /// A link to an object of another file, whose path is relative to this file's folder.
+  void link(const std::string& path, const std::string& file, const std::string& object);
+  void unlink(const std::string& path);
+  void copy(const Hdf5File& from, const std::string& source, const std::string& path);
+
+  /// The bytes of the file as it is now; valid until the next call.
+  [[nodiscard]] std::string_view image();
+
+  /// "1.10.8"
+  [[nodiscard]] static std::string library_version();
+
+ private:
+  explicit Hdf5File(std::int64_t id) : id_(id) {}
+  void close_columns();
+
+  std::int64_t id_;
+  std::map<std::string, std::int64_t> columns_;  // datasets of the tables, open, by path
+  std::string image_;  // kept, so that its memory is not cleared again for every image
+};
+
+}  // namespace peristat

@@ -1,0 +1,108 @@
+#include "cases/runner/results/probe.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <Eigen/QR>
+
+namespace peristat {
+namespace {
+
+struct ProbedField {
+  const std::vector<double>* StepFields::*field;
+  bool is_vector;
+  const char* unit;
+};
+
+ProbedField field_of(const std::string& name) {
+  if (name == "displacement") return {&StepFields::displacement, true, "m"};
+  if (name == "force") return {&StepFields::force, true, "N"};
+  if (name == "damage") return {&StepFields::damage, false, "1"};
+  if (name == "stretch") return {&StepFields::stretch, false, "1"};
+  return {&StepFields::energy_density, false, "J/m3"};
+}
+
+/// Poisson's ratio of the homogeneous deformation that fits the displacements of a set best (least
+/// squares), -(mean lateral strain) / (strain along the axis); 0 while there is no strain along it.
+double fitted_poisson_ratio(const ProbeSpecification& probe, const Points& points,
+                            const std::vector<double>& displacement) {
+  const std::vector<Index>& members = points.sets.at(probe.set);
+  const int d = points.dimension;
+  Eigen::MatrixXd positions(members.size(), d + 1), displacements(members.size(), d);
+  for (std::size_t k = 0; k < members.size(); ++k) {
+    for (int c = 0; c < d; ++c) {
+      positions(k, c) = points.reference[std::size_t(members[k]) * d + c];
+      displacements(k, c) = displacement[std::size_t(members[k]) * d + c];
+    }
+    positions(k, d) = 1.0;
+  }
+  // Of full rank for any set of two or more points in every direction, by the smallest solution for
+  // others.
+  const Eigen::MatrixXd gradient = positions.completeOrthogonalDecomposition().solve(displacements);
+  double lateral = 0.0;
+  for (int c = 0; c < d; ++c) {
+    if (c != probe.axis) lateral += gradient(c, c) / (d - 1);
+  }
+  const double axial = gradient(probe.axis, probe.axis);
+  return axial == 0.0 ? 0.0 : -lateral / axial;
+}
+
+std::vector<double> mean_of(const std::vector<double>& values, const std::vector<Index>& members,
+                            int components) {
+  std::vector<double> mean(components, 0.0);
+  for (const Index point : members) {
+    for (int c = 0; c < components; ++c) mean[c] += values[std::size_t(point) * components + c];
+  }
+  for (double& value : mean) value /= double(members.size());
+  return mean;
+}
+
+/// Extent along the axis of the middles of the separated bonds that run across it and have an end
+/// in the set; each stands for a strip of one spacing. Only bonds across the axis, because where
+/// along an inclined one the crack passes is not known.
+double crack_length(const ProbeSpecification& probe, const Points& points,
+                    std::span<const BondEnds> separated) {
+  const std::vector<Index>& members = points.sets.at(probe.set);
+  const auto is_member = [&](Index point) {
+    return std::binary_search(members.begin(), members.end(), point);
+  };
+  double least = std::numeric_limits<double>::infinity(), most = -least;
+  for (const auto& [i, j] : separated) {
+    const double a = points.position(i)[probe.axis], b = points.position(j)[probe.axis];
+    if (std::abs(b - a) > 0.5 * points.spacing || !(is_member(i) || is_member(j))) continue;
+    least = std::min(least, 0.5 * (a + b));
+    most = std::max(most, 0.5 * (a + b));
+  }
+  return most < least ? 0.0 : most - least + points.spacing;
+}
+
+}  // namespace
+
+ProbeColumns columns_of(const ProbeSpecification& probe, int dimension) {
+  if (probe.field == "poisson_ratio") return {probe.name, 1, "1"};
+  if (probe.field == "crack_length") return {probe.name, 1, "m"};
+  if (probe.field == "opening") return {probe.name, dimension, "m"};
+  const ProbedField field = field_of(probe.field);
+  return {probe.name, field.is_vector ? dimension : 1, field.unit};
+}
+
+std::vector<double> probe_values(const ProbeSpecification& probe, const Points& points,
+                                 const StepFields& fields, std::span<const BondEnds> separated) {
+  if (probe.field == "poisson_ratio") {
+    return {fitted_poisson_ratio(probe, points, *fields.displacement)};
+  }
+  if (probe.field == "crack_length") return {crack_length(probe, points, separated)};
+  const std::vector<Index>& members = points.sets.at(probe.set);
+  if (probe.field == "opening") {
+    std::vector<double> opening = mean_of(*fields.displacement, members, points.dimension);
+    const std::vector<double> other =
+        mean_of(*fields.displacement, points.sets.at(probe.other), points.dimension);
+    for (std::size_t c = 0; c < opening.size(); ++c) opening[c] -= other[c];
+    return opening;
+  }
+  const ProbedField field = field_of(probe.field);
+  return mean_of(*(fields.*(field.field)), members, field.is_vector ? points.dimension : 1);
+}
+
+}  // namespace peristat

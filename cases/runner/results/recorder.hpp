@@ -1,0 +1,68 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cases/runner/build/body.hpp"
+#include "cases/runner/input/case.hpp"
+#include "cases/runner/process/progress.hpp"
+#include "cases/runner/results/damage_histories.hpp"
+#include "cases/runner/results/probe.hpp"
+#include "cases/runner/results/results.hpp"
+#include "solvers/drivers/load_stepping.hpp"
+
+namespace peristat {
+
+/// Turns accepted equilibria into rows, fields and probes of the results folder, and tells what
+/// happens.
+class Recorder {
+ public:
+  Recorder(const Case& from, const Body& body, Assembler& assembler, Results& results,
+           Progress& progress)
+      : case_(from),
+        points_(body.points),
+        assembler_(assembler),
+        results_(results),
+        progress_(progress),
+        body_(body),
+        separated_(body.cut_bonds) {}
+
+  void iteration(const IterationRecord& record);
+  void accepted(StepRecord record, const AcceptedState& state);
+  void decided(const DecisionRecord& record);
+  /// A linear solver has given way to the next one.
+  void changed_solver(const std::string& reason);
+
+  /// Writes the fields of the last accepted state, whatever output.every says.
+  void finish();
+
+  [[nodiscard]] const std::optional<StepRecord>& last() const { return last_; }
+  [[nodiscard]] const std::vector<DecisionRecord>& decisions() const { return decisions_; }
+
+ private:
+  struct Fields {
+    std::vector<double> displacement, force, damage, energy_density, stretch, fragment;
+    std::optional<BondHistories> histories;
+    [[nodiscard]] StepFields view() const;
+  };
+
+  /// Adds the bonds that have broken since the last step to the results.
+  void tell_broken_bonds(const StepRecord& record, const History& history);
+
+  const Case& case_;
+  const Points& points_;
+  Assembler& assembler_;
+  Results& results_;
+  Progress& progress_;
+  const Body& body_;
+  std::optional<Fields> unwritten_;  // of the last step, if it only entered the history
+  std::vector<char> broken_;         // per bond, in the last accepted state
+  DamageHistories told_histories_;   // in the last state that was written with fields
+  std::vector<BondEnds> separated_;  // by pre-cracks, and broken until the last accepted state
+  double relative_residual_ = 0.0;
+  std::optional<StepRecord> last_;
+  std::vector<DecisionRecord> decisions_;
+};
+
+}  // namespace peristat

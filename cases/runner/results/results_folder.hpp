@@ -1,0 +1,53 @@
+#pragma once
+
+#include <filesystem>
+
+#include "cases/runner/results/results_marker.hpp"
+
+namespace peristat {
+
+/// Paths of a results folder's files (docs/results.md).
+struct ResultsFolder {
+  std::filesystem::path directory;  ///< absolute
+
+  [[nodiscard]] std::filesystem::path results() const { return directory / "results.h5"; }
+  [[nodiscard]] std::filesystem::path xdmf() const { return directory / "results.xdmf"; }
+  [[nodiscard]] std::filesystem::path history() const { return directory / "history.csv"; }
+  [[nodiscard]] std::filesystem::path iterations() const { return directory / "iterations.csv"; }
+  [[nodiscard]] std::filesystem::path decisions() const { return directory / "decisions.csv"; }
+  [[nodiscard]] std::filesystem::path broken_bonds() const {
+    return directory / "broken_bonds.csv";
+  }
+  [[nodiscard]] std::filesystem::path convergence() const { return directory / "convergence.csv"; }
+  [[nodiscard]] std::filesystem::path dossier() const { return directory / "dossier.txt"; }
+  [[nodiscard]] std::filesystem::path summary() const { return directory / "summary.json"; }
+  [[nodiscard]] std::filesystem::path parts() const { return directory / "parts"; }
+  [[nodiscard]] std::filesystem::path plots() const { return directory / "plots"; }
+
+  /// In plots/: names of the pictures that the plot command has drawn there, one per line.
+  static constexpr const char* picture_list = ".pictures";
+};
+
+/// A results folder that this run alone writes, as long as the marker lives.
+struct ClaimedFolder {
+  ResultsFolder paths;
+  ResultsMarker marker;
+};
+
+/// Makes the folder ready for a new run: creates it, or removes the files of an earlier run of the
+/// same case from it, and creates parts/. The marker's list says what the earlier run's files are,
+/// plots/.pictures which pictures; nothing else is removed, and no link is followed below the
+/// folder.
+/// @param run   its list of files is filled in
+/// @param overwrite also an earlier run of another case, or of version 1, which left no marker
+/// @throws InputError ("directory") before anything is changed: the folder can't be
+///         written, holds files but no earlier run (it may be somebody's home folder), an earlier
+///         run of another case, or links in place of our folders, or another run is writing it
+/// @throws OutputError if the disk is full, or the like
+[[nodiscard]] ClaimedFolder claim_results_folder(const std::filesystem::path& directory,
+                                                 RunIdentity run, bool overwrite);
+
+/// Removes the files of parts/, and parts/ itself if nothing else is in it.
+void remove_parts(const ResultsFolder& folder);
+
+}  // namespace peristat

@@ -1,0 +1,161 @@
+#include "solvers/linear/memory_estimate.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+namespace peristat {
+namespace {
+
+/// Program, libraries and files; Trilinos, which is loaded where it is used; what its multigrid, of
+/// more libraries, takes beside that [bytes].
+constexpr double base_bytes = 26e6, trilinos_bytes = 44e6, multigrid_bytes = 11e6;
+
+/// CHOLMOD's workspace beside the factor, as measured: 460 MB for the beam of
+/// cases/cantilever, 1.56 GB for the plate with a hole at 120 000 points.
+constexpr double factor_overhead = 1.2;
+
+/// Of a run without its tangent and linear solver: the bonds, and vectors of the search for
+/// equilibrium. Everything is stored once, in doubles unless told otherwise.
+double body_bytes(const BodySize& size) {
+  const double d = size.dimension;
+  // Reference, last and present displacement, present and last gradient, loads, what does work,
+  // right-hand side, solution, and equations as pairs of integers.
+  const double vectors = 11.5 * d;
+  // Rows gathered and sums of the workspace: see row_width and block_width.
+  const double workspace = size.dimension == 3 ? 8.0 + 6.0 : 4.0 + 4.0;
+  const double scalars = 4.0;
+  // Largest stretches, a copy of them for the way back, and flags.
+  const double per_bond = size.bytes_per_bond + (size.has_history ? 19.0 : 0.0);
+  const double run = per_bond * size.bonds + 8.0 * size.points * (vectors + workspace + scalars);
+  // The neighbour search gathers the bonds of its parts.
+  const double search =
+      2.0 * size.bytes_per_bond * size.bonds + 8.0 * size.points * (2.0 * d + 5.0);
+  return base_bytes + std::max(run, search);
+}
+
+/// Krylov vectors and block Jacobi.
+double krylov_bytes(const BodySize& size, bool is_gmres) {
+  const double d = size.dimension;
+  // GMRES keeps a vector per iteration, some 25 of them where its preconditioner is good.
+  const double vectors = is_gmres ? 31.0 : 6.0;
+  return 8.0 * size.points * (vectors * d + d + 0.5 * d * (d + 1.0));
+}
+
+/// What rigid pieces add to that.
+double rigid_pieces_bytes(const BodySize& size) {
+  const double d = size.dimension, points = size.points;
+  const double motions = 0.5 * d * (d + 1.0);
+  // Boxes of 5/3 horizons; in 3D larger ones where their factor would take 100 bytes per point.
+  double pieces = points / std::pow(5.0 / 3.0 * size.horizon_ratio, d);
+  if (size.dimension == 3) pieces = std::min(pieces, std::pow(0.0434 * points, 0.75));
+  const double coarse = motions * pieces;
+  const double factor =
+      size.dimension == 3 ? std::min(8.0 * 36.0 * 8.0 * std::pow(pieces, 4.0 / 3.0), 100.0 * points)
+                          : 8.0 * 3.2 * coarse * std::log2(std::max(coarse, 2.0));
+  // Blocks with the neighbours of a piece, 26 in 3D, half of them stored: with their keys, and as
+  // entries of which CHOLMOD makes two copies. Then there are no Krylov vectors yet.
+  const double gathered = 72.0 * motions * motions * pieces * 0.5 * (std::pow(3.0, d) + 1.0);
+  return points * (4.0 * d + 16.0) + factor_overhead * factor +
+         std::max(0.0, gathered - 8.0 * 6.0 * d * points);
+}
+
+/// What the surrogate adds: its springs, as a tangent and as a matrix, and their factor.
+double surrogate_bytes(const BodySize& size) {
+  const double d = size.dimension, points = std::max(size.points, 2.0);
+  const std::array<double, 3> springs{1.0, 4.0, 9.0};
+  const double blocks = (springs[std::size_t(size.dimension) - 1] + 1.0) * points;
+  double factor = 2.0 * blocks;  // of blocks
+  if (size.dimension == 2) factor = 3.2 * points * std::log2(points);
+  if (size.dimension == 3) {
+    // Nested dissection of the cubes that a slender body is as long as.
+    const double cubes = std::max(1.0, size.longest / std::sqrt(points / size.longest));
+    factor = 8.0 * std::pow(points, 4.0 / 3.0) / std::sqrt(cubes);
+  }
+  return 8.0 * d * d * (3.0 * blocks + factor);
+}
+
+/// Bytes per entry of the whole matrix that a preconditioner of Trilinos takes, as measured: two
+/// copies of the compressed rows, and in RILUK the factors, in multigrid the coarser levels.
+double trilinos_bytes_per_entry(PreconditionerKind kind) {
+  return kind == PreconditionerKind::chebyshev ? 24.0
+         : kind == PreconditionerKind::riluk   ? 36.0
+                                               : 33.0;
+}
+
+}  // namespace
+
+double bonds_per_point(int dimension, double horizon_ratio) {
+  const double m = horizon_ratio;
+  switch (dimension) {
+    case 1:
+      return m;
+    case 2:
+      return 0.5 * std::numbers::pi * m * m;
+    default:
+      return 2.0 / 3.0 * std::numbers::pi * m * m * m;
+  }
+}
+
+MemoryEstimate estimate_memory(const BodySize& size) {
+  const int dimension = size.dimension;
+  const double horizon_ratio = size.horizon_ratio;
+  MemoryEstimate estimate;
+  estimate.size = size;
+  const double d = dimension;
+  const double n = std::max(size.free_dofs, 2.0);
+
+  // A row of the natural order couples to the points of about 1.15 horizons along the body.
+  const double section = size.points / std::max(size.longest, 1.0);
+  const double band = std::min(n, d * section * (1.15 * horizon_ratio));
+  const double natural_entries = n * band;
+  const double natural_flops = 0.75 * n * band * band;
+  // Separators of nested dissection are one horizon thick.
+  const double thick = horizon_ratio / 3.015 * (horizon_ratio / 3.015);
+  const double dissection_entries =
+      dimension == 3 ? 98.0 * thick * std::pow(n, 4.0 / 3.0) : 29.0 * thick * n * std::log2(n);
+  const double dissection_flops =
+      dimension == 3 ? 297.0 * thick * thick * n * n : 1010.0 * thick * thick * std::pow(n, 1.5);
+  estimate.factor_entries = std::min(natural_entries, dissection_entries);
+  estimate.factor_flops = std::min(natural_flops, dissection_flops);
+
+  const double block = size.has_symmetric_blocks ? 0.5 * d * (d + 1.0) : d * d;
+  estimate.body_bytes = body_bytes(size) + 8.0 * size.points * d * (d + 1.0);
+  estimate.tangent_bytes = 8.0 * size.bonds * block;
+  estimate.matrix_bytes = 16.0 * (size.bonds + size.points) * d * d;
+  // Conjugate gradients with an old factor are worth their while from here: see Cholesky.
+  if (estimate.factor_flops > 96.0 * estimate.factor_entries) {
+    estimate.matrix_bytes += trilinos_bytes;
+  }
+  return estimate;
+}
+
+double MemoryEstimate::iterative_bytes(const LinearSolverOptions& options) const {
+  double bytes = trilinos_bytes + krylov_bytes(size, options.method == LinearMethod::gmres);
+  const double d = size.dimension;
+  switch (options.preconditioner) {
+    case PreconditionerKind::jacobi:
+    case PreconditionerKind::block_jacobi:
+      return bytes;
+    case PreconditionerKind::automatic:
+    case PreconditionerKind::rigid_pieces:
+      return bytes + rigid_pieces_bytes(size);
+    case PreconditionerKind::surrogate:
+      return bytes + surrogate_bytes(size);
+    case PreconditionerKind::multigrid:
+      bytes += multigrid_bytes;
+      [[fallthrough]];
+    case PreconditionerKind::riluk:
+    case PreconditionerKind::chebyshev:
+      return bytes + trilinos_bytes_per_entry(options.preconditioner) * d * d *
+                         (2.0 * size.bonds + size.points);
+  }
+  return bytes;
+}
+
+double MemoryEstimate::direct_bytes() const {
+  return matrix_bytes + 8.0 * factor_overhead * factor_entries;
+}
+
+}  // namespace peristat

@@ -1,0 +1,50 @@
+#pragma once
+
+#include "solvers/linear/make_linear_solver.hpp"
+
+namespace peristat {
+
+/// What the memory of a run depends on.
+struct BodySize {
+  int dimension = 0;
+  double points = 0.0;
+  double longest = 1.0;  ///< points along the longest direction
+  double horizon_ratio = 0.0;
+  double bonds = 0.0;
+  double bytes_per_bond = 6.0;       ///< partner and kind, see BondKinds
+  bool has_history = false;          ///< bonds may be damaged
+  bool has_symmetric_blocks = true;  ///< off-diagonal blocks of the tangent are
+  double free_dofs = 0.0;
+};
+
+/// What a run needs, estimated from counts alone.
+struct MemoryEstimate {
+  BodySize size;
+  double factor_entries = 0.0;  ///< of the Cholesky factor
+  double factor_flops = 0.0;    ///< of one factorisation
+  double body_bytes = 0.0;      ///< of the run without its tangent and linear solver
+  double tangent_bytes = 0.0;   ///< of a stored tangent
+  double matrix_bytes = 0.0;    ///< of a direct solver without its factor
+
+  [[nodiscard]] double direct_bytes() const;
+  /// Of an iterative solver with its preconditioner, rigid pieces where none is named.
+  [[nodiscard]] double iterative_bytes(const LinearSolverOptions& options) const;
+  /// Of the whole run by a direct or an iterative solver, with or without a stored tangent.
+  [[nodiscard]] double bytes(bool is_direct, bool is_stored,
+                             const LinearSolverOptions& options) const {
+    return body_bytes + (is_stored ? tangent_bytes : 0.0) +
+           (is_direct ? direct_bytes() : iterative_bytes(options));
+  }
+  /// By whatever takes least.
+  [[nodiscard]] double least_bytes() const { return bytes(false, false, {}); }
+};
+
+/// Bonds of a point, each counted at one of its ends: half the volume of the horizon in cells.
+[[nodiscard]] double bonds_per_point(int dimension, double horizon_ratio);
+
+/// The factor's size is the smaller of what nested dissection and what the natural order along the
+/// longest direction leave; their constants are fitted to the measured table in
+/// docs/performance.md and hold within a factor of 1.5.
+[[nodiscard]] MemoryEstimate estimate_memory(const BodySize& size);
+
+}  // namespace peristat

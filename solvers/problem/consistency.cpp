@@ -1,0 +1,150 @@
+#include "solvers/problem/consistency.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "assembly/assembler.hpp"
+#include "solvers/linear/vector_verbs.hpp"
+#include "src/core/number_text.hpp"
+
+namespace peristat {
+namespace {
+
+/// Relative error of sums of work over a step in which bonds break.
+constexpr double work_error = 0.05;
+
+/// Of sums over all interactions, in units of round-off times the sum of the absolute terms.
+constexpr double safety = 1e3;
+
+/// Energies near the smallest number have lost their digits [J].
+constexpr double smallest_energy = 1e-250;
+
+Coordinates centre_of(const Points& points) {
+  Coordinates centre{};
+  for (std::size_t k = 0; k < points.reference.size(); ++k) {
+    centre[k % std::size_t(points.dimension)] += points.reference[k];
+  }
+  for (double& component : centre) component /= std::max(1.0, double(points.count()));
+  return centre;
+}
+
+struct Resultants {
+  Coordinates force{}, moment{};
+  double reach = 0.0;  ///< largest distance of a point from the centre [m]
+};
+
+/// Sums of the internal forces and of their moments about the body's centre.
+Resultants resultants_of(const Points& points, const Trial& trial) {
+  const Coordinates centre = centre_of(points);
+  const std::size_t d = std::size_t(points.dimension);
+  Resultants sums;
+  for (Index i = 0; i < points.count(); ++i) {
+    Coordinates arm{}, force{};
+    for (std::size_t c = 0; c < d; ++c) {
+      const std::size_t dof = std::size_t(i) * d + c;
+      arm[c] = points.reference[dof] - centre[c] + trial.displacement[dof];
+      force[c] = trial.gradient[dof];
+    }
+    const Coordinates moment{arm[1] * force[2] - arm[2] * force[1],
+                             arm[2] * force[0] - arm[0] * force[2],
+                             arm[0] * force[1] - arm[1] * force[0]};
+    for (std::size_t c = 0; c < 3; ++c) {
+      sums.force[c] += force[c];
+      sums.moment[c] += moment[c];
+    }
+    sums.reach = std::max(sums.reach, std::hypot(arm[0], arm[1], arm[2]));
+  }
+  return sums;
+}
+
+std::string check_equilibrium(const EquilibriumProblem& problem, const FoundState& found) {
+  if (found.largest_residual < 0.0) return {};
+  Trial again;
+  again.displacement = found.trial.displacement;
+  again.history = found.trial.history;
+  evaluate(problem, found.external_force, again);
+  // The committed histories may change the last digits of forces that were summed before.
+  const double allowed = 2.0 * found.largest_residual;
+  if (!again.degenerate && again.residual_norm <= allowed) return {};
+  return "evaluated anew the residual is " + number_text(again.residual_norm) +
+         " N, accepted was " + number_text(found.largest_residual) + " N";
+}
+
+std::string check_strength(Assembler& damaged, const FoundState& found) {
+  const DamageGrowth growth = damaged.growth(found.trial.at());
+  if (growth.degrading == 0) return {};
+  return std::to_string(growth.degrading) +
+         " unbroken bonds are stretched beyond what they bear, to " +
+         number_text(growth.utilisation) + " of it";
+}
+
+std::string check_resultants(const Assembler& assembler, const TangentOperator& tangent,
+                             const FoundState& found) {
+  const Balances owed = assembler.model().balances();
+  const std::size_t d = std::size_t(tangent.dimension);
+  double trace = 0.0;
+  for (std::size_t i = 0; i < tangent.diagonal.size(); i += d * d) {
+    for (std::size_t c = 0; c < d; ++c) trace += std::abs(tangent.diagonal[i + c * (d + 1)]);
+  }
+  const double forces = std::sqrt(2.0 * std::abs(found.after.stored) * trace);
+  const double round_off = safety * std::numeric_limits<double>::epsilon() * forces;
+  const Resultants sums = resultants_of(assembler.points(), found.trial);
+  const double force = std::hypot(sums.force[0], sums.force[1], sums.force[2]);
+  const double moment = std::hypot(sums.moment[0], sums.moment[1], sums.moment[2]);
+  if (owed.force_sum && !(force <= round_off)) {
+    return "the internal forces add up to " + number_text(force) + " N where round-off leaves " +
+           number_text(round_off) + " N";
+  }
+  if (owed.moment_sum && !(moment <= round_off * sums.reach)) {
+    return "the moments of the internal forces add up to " + number_text(moment) +
+           " N m where round-off leaves " + number_text(round_off * sums.reach) + " N m";
+  }
+  return {};
+}
+
+std::string check_energies(const Balances& owed, const FoundState& found) {
+  constexpr double round_off = 1e-12;
+  const auto& [before, after] = std::pair(found.before, found.after);
+  if (owed.positive_energy && after.stored < -round_off * after.dissipated) {
+    return "the stored energy is " + number_text(after.stored) + " J";
+  }
+  const double dissipated = after.dissipated - before.dissipated;
+  if (dissipated < -round_off * std::abs(before.dissipated)) {
+    return "the dissipated energy falls by " + number_text(-dissipated) + " J";
+  }
+  const bool is_elastic = dissipated == 0.0 && !found.sums_all_work;
+  const bool may_move = found.largest_residual < 0.0;  // and then holds energy of the step before
+  if (is_elastic || may_move) return {};
+  const double stored = after.stored - before.stored;
+  const double work =
+      after.external_work + after.numerical_work - before.external_work - before.numerical_work;
+  const double drained =
+      found.sums_all_work ? after.drained - before.drained : work - stored - dissipated;
+  const double turned_over = std::abs(stored) + dissipated + std::abs(work);
+  if (drained >= -work_error * turned_over) return {};
+  return number_text(-drained) + " J come from nothing: " + number_text(work) + " J of work for " +
+         number_text(stored) + " J stored and " + number_text(dissipated) + " J dissipated";
+}
+
+std::string check_magnitude(const FoundState& found) {
+  const double forces = norm(found.trial.gradient), moved = norm(found.trial.displacement);
+  if (forces == 0.0 || moved == 0.0 || forces * moved >= smallest_energy) return {};
+  return "forces and displacements are so small that their products vanish in double precision; "
+         "use units of the body's own size";
+}
+
+}  // namespace
+
+std::string find_inconsistency(const EquilibriumProblem& problem, Assembler& damaged,
+                               const TangentOperator& tangent, const FoundState& found) {
+  std::string fault = check_magnitude(found);
+  if (fault.empty()) fault = check_equilibrium(problem, found);
+  if (fault.empty()) fault = check_strength(damaged, found);
+  if (fault.empty()) fault = check_resultants(problem.assembler, tangent, found);
+  if (fault.empty()) fault = check_energies(problem.assembler.model().balances(), found);
+  return fault;
+}
+
+}  // namespace peristat

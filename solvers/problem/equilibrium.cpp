@@ -1,0 +1,125 @@
+#include "solvers/problem/equilibrium.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "solvers/linear/vector_verbs.hpp"
+
+namespace peristat {
+
+std::string name(Outcome outcome) {
+  switch (outcome) {
+    case Outcome::converged:
+      return "converged";
+    case Outcome::iteration_limit:
+      return "iteration_limit";
+    case Outcome::not_positive_definite:
+      return "not_positive_definite";
+    case Outcome::singular_tangent:
+      return "singular_tangent";
+    case Outcome::no_descent:
+      return "no_descent";
+    case Outcome::line_search_failed:
+      return "line_search_failed";
+    case Outcome::degenerate:
+      return "degenerate";
+    case Outcome::out_of_memory:
+      return "out_of_memory";
+    case Outcome::linear_solver_inaccurate:
+      return "linear_solver_inaccurate";
+    case Outcome::limit_point:
+      return "limit_point";
+    case Outcome::damage_limit:
+      return "damage_limit";
+    case Outcome::fragmented:
+      return "fragmented";
+    case Outcome::undefined_condition:
+      return "undefined_condition";
+    case Outcome::inconsistent:
+      return "inconsistent";
+    case Outcome::interrupted:
+      return "interrupted";
+  }
+  return "";
+}
+
+std::string explanation(Outcome outcome) {
+  switch (outcome) {
+    case Outcome::converged:
+      return "equilibrium found";
+    case Outcome::iteration_limit:
+      return "the residual is still above the tolerance after the largest number of iterations "
+             "(solver.max_iterations, relaxation.max_iterations)";
+    case Outcome::not_positive_definite:
+      return "the tangent has negative pivots: the body buckles, or another limit point is passed";
+    case Outcome::singular_tangent:
+      return "the tangent is singular: some points can move without resistance (too few bonds, "
+             "bonds in one line only, or too few supports)";
+    case Outcome::no_descent:
+      return "the Newton direction does not lower the energy";
+    case Outcome::line_search_failed:
+      return "no step along the Newton direction lowers the energy";
+    case Outcome::degenerate:
+      return "bonds collapse to zero length, or values are not finite";
+    case Outcome::out_of_memory:
+      return "the factorisation does not fit in memory";
+    case Outcome::linear_solver_inaccurate:
+      return "the linear solution is inaccurate: the tangent is close to singular";
+    case Outcome::limit_point:
+      return "a limit point: softening bonds give the tangent negative pivots, and however small "
+             "the step of the load, no equilibrium near the last one is found";
+    case Outcome::damage_limit:
+      return "more bonds break at one load than loading.max_broken_bonds allows, however small the "
+             "step: a limit point, from which the crack runs by itself";
+    case Outcome::fragmented:
+      return "a piece has come off (solver.fragments = \"stop\")";
+    case Outcome::undefined_condition:
+      return "supports or loads have no value at this load factor, or contradict each other";
+    case Outcome::inconsistent:
+      return "the state that was found contradicts a balance that it owes";
+    case Outcome::interrupted:
+      return "interrupted";
+  }
+  return "";
+}
+
+void evaluate(const EquilibriumProblem& problem, std::span<const double> external_force,
+              Trial& trial, Damage damage) {
+  trial.gradient.resize(trial.displacement.size());
+  const Stored stored = problem.assembler.gradient(trial.at(damage), trial.gradient);
+  trial.stored_energy = stored.energy;
+  trial.total_energy = stored.energy - dot(external_force, trial.displacement);
+  trial.residual_norm = norm_of(problem.free.dof.size(), [&](std::size_t e) {
+    const Index dof = problem.free.dof[e];
+    return external_force[dof] - trial.gradient[dof];
+  });
+  trial.degenerate = stored.degenerate || !std::isfinite(trial.residual_norm);
+}
+
+double residual_scale(const EquilibriumProblem& problem, std::span<const double> external_force,
+                      std::span<const double> old_gradient, const Trial& after_jump) {
+  const double reactions = norm_of(external_force.size(), [&](std::size_t dof) {
+    const bool is_free = problem.free.equation[dof] != FreeDofs::none;
+    return is_free ? 0.0 : old_gradient[dof] - external_force[dof];
+  });
+  return std::max({norm(external_force), reactions, after_jump.residual_norm});
+}
+
+double residual_round_off(const FreeDofs& free, const TangentOperator& tangent,
+                          std::span<const double> displacement) {
+  std::vector<double> sums(displacement.size());
+  tangent.absolute_row_sums(sums);
+  const std::size_t d = std::size_t(free.dimension);
+  constexpr double unit_round_off = 0.5 * std::numeric_limits<double>::epsilon();
+  return unit_round_off * norm_of(free.dof.size(), [&](std::size_t e) {
+           const std::size_t dof = std::size_t(free.dof[e]), first = dof - dof % d;
+           double largest = 0.0;
+           for (std::size_t c = 0; c < d; ++c) {
+             largest = std::max(largest, std::abs(displacement[first + c]));
+           }
+           return sums[dof] * largest;
+         });
+}
+
+}  // namespace peristat

@@ -1,0 +1,111 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "src/core/types.hpp"
+
+namespace peristat {
+
+/// One iteration of the equilibrium search (a row of iterations.csv). Iteration 0 is the state
+/// right after the load step's jump of prescribed displacements and loads.
+struct IterationRecord {
+  int step = 0;
+  int iteration = 0;
+  double residual = 0.0;  ///< 2-norm over free degrees of freedom [N]
+  double relative_residual = 0.0;
+  double energy = 0.0;        ///< stored energy minus work of the present dead loads [J]
+  double step_length = 0.0;   ///< of the line search
+  int linear_iterations = 0;  ///< of the linear solver; 0 for a direct solve
+  Index changed_bonds = 0;    ///< of transient relaxation: damaged since it began, each as often as
+                              ///< it was
+  double projection = 0.0;    ///< share by which the tangent's interactions were projected to their
+                              ///< positive semidefinite part: 0 is the exact tangent
+  /// Of the exact tangent; 0 also where it was solved without a factorisation of its own, -1 where
+  /// there are some but counting them was too expensive.
+  std::int64_t negative_pivots = 0;
+  int rejected_trials = 0;        ///< of the line search: the energy was too high
+  int degenerate_trials = 0;      ///< of the line search: a measure had no gradient
+  double linear_tolerance = 0.0;  ///< relative residual that the linear iterations were to reach; 0
+                                  ///< for a direct solve
+};
+
+/// One accepted step (a row of history.csv).
+struct StepRecord {
+  int step = 0;
+  double load_factor = 0.0;
+  std::string mode;  ///< "newton", "relaxation"
+  int newton_iterations = 0;
+  int relaxation_iterations = 0;
+  double stored_energy = 0.0;      ///< [J]
+  double dissipated_energy = 0.0;  ///< [J]
+  double drained_energy = 0.0;     ///< [J]
+  double external_work = 0.0;      ///< of supports and loads over the accepted steps, int P du [J]
+  double numerical_work = 0.0;     ///< what relaxation has spent beyond it [J]
+  double balance_error = 0.0;  ///< external + numerical work - stored - dissipated - drained [J]
+  Index broken_bonds = 0;
+  double max_damage = 0.0;
+  double max_stretch = 0.0;
+  double pin_force = 0.0;  ///< on what has come off and is pinned: 2-norm, 0 if nothing pulls [N]
+  bool settled = false;    ///< no equilibrium was asked for: see RelaxationResult
+  std::map<std::string, Coordinates> reactions;       ///< by support set [N]
+  std::map<std::string, std::vector<double>> probes;  ///< by probe name: components, or one scalar
+};
+
+/// What load stepping did next.
+enum class Decision {
+  accept,
+  accept_and_grow,
+  accept_at_round_off,
+  cut,
+  stop,
+  hand_over,  ///< to relaxation
+  hand_back,  ///< to Newton's method
+  hold_fragments,
+  remove_fragments,
+  change_linear_solver,
+};
+
+/// As decisions.csv spells it.
+[[nodiscard]] std::string name(Decision decision);
+
+/// One decision of the load stepping (a row of decisions.csv).
+struct DecisionRecord {
+  int step = 0;              ///< number that the step has, or would have had
+  double load_factor = 0.0;  ///< that was attempted
+  double increment = 0.0;    ///< of the load factor that was attempted
+  std::string outcome;       ///< name of the equilibrium search's outcome
+  Decision action = Decision::accept;
+  double next_increment = 0.0;
+  std::string reason;
+};
+
+/// Histories of bonds: the largest stretch that has damaged a bond, -1 for a bond that never fails.
+/// A bond that is not named has the history that was told last, 0 if none was.
+struct BondHistories {
+  std::vector<Index> first_point, second_point;
+  std::vector<double> largest_stretch;
+};
+
+/// State that an accepted step writes; arrays are views and count x dimension (row major) or count.
+struct StepFields {
+  const std::vector<double>* displacement = nullptr;    ///< [m]
+  const std::vector<double>* force = nullptr;           ///< internal force -dE/dx [N]
+  const std::vector<double>* damage = nullptr;          ///< per point, 0 intact to 1
+  const std::vector<double>* energy_density = nullptr;  ///< per point [J/m3]
+  const std::vector<double>* stretch = nullptr;   ///< per point, largest of its unbroken bonds
+  const std::vector<double>* fragment = nullptr;  ///< per point, number of its floating piece or 0
+  /// Those that have changed since the last step that was written; null without damage.
+  const BondHistories* histories = nullptr;
+};
+
+/// A bond that has broken (a row of broken_bonds.csv).
+struct BrokenBondRecord {
+  int step = 0;
+  double load_factor = 0.0;
+  Index first_point = 0, second_point = 0;
+};
+
+}  // namespace peristat

@@ -1,0 +1,367 @@
+#include "solvers/search/dynamic_relaxation.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "assembly/terms/damage.hpp"
+#include "solvers/linear/vector_verbs.hpp"
+#include "src/core/threads.hpp"
+
+namespace peristat {
+namespace {
+
+constexpr double largest_damping = 1.9;
+
+/// Velocity, relative to the mean square of all, below which a component stands still: round-off
+/// would decide its share of c_n.
+constexpr double standing = 1e-8;
+constexpr int iterations_per_record = 100;
+
+/// Iterations between two looks at which bonds a state would break.
+constexpr int iterations_per_look = 10;
+
+/// Supports and loads on the straight way from one load factor to another.
+class Way {
+ public:
+  Way(const EquilibriumProblem& problem, const State& from, double load_factor)
+      : displacement0_(from.displacement),
+        displacement1_(from.displacement),
+        force0_(from.displacement.size()),
+        force1_(from.displacement.size()) {
+    problem.conditions.prescribe(load_factor, displacement1_);
+    problem.conditions.external_force(from.load_factor, force0_);
+    problem.conditions.external_force(load_factor, force1_);
+    for (std::size_t dof = 0; dof < displacement0_.size(); ++dof) {
+      if (problem.free.equation[dof] == FreeDofs::none) prescribed_.push_back(Index(dof));
+      has_loads_ |= force0_[dof] != 0.0 || force1_[dof] != 0.0;
+    }
+  }
+
+  [[nodiscard]] const std::vector<Index>& prescribed() const { return prescribed_; }
+  [[nodiscard]] bool has_loads() const { return has_loads_; }
+  [[nodiscard]] const std::vector<double>& end_displacement() const { return displacement1_; }
+  [[nodiscard]] const std::vector<double>& end_force() const { return force1_; }
+
+  [[nodiscard]] double displacement(Index dof, double share) const {
+    return displacement0_[dof] + share * (displacement1_[dof] - displacement0_[dof]);
+  }
+  void load(double share, std::vector<double>& force) const {
+    for (std::size_t dof = 0; dof < force.size(); ++dof) {
+      force[dof] = force0_[dof] + share * (force1_[dof] - force0_[dof]);
+    }
+  }
+
+ private:
+  std::vector<double> displacement0_, displacement1_, force0_, force1_;
+  std::vector<Index> prescribed_;
+  bool has_loads_ = false;
+};
+
+/// Sums over the equations, threads added up in order.
+using Sums = std::array<double, 4>;
+
+class Relaxation {
+ public:
+  Relaxation(const EquilibriumProblem& problem, const Way& way, const RelaxationOptions& options,
+             std::vector<double>& velocity, RelaxationResult& result)
+      : problem_(problem),
+        way_(way),
+        options_(options),
+        dofs_(problem.free.dof),
+        velocity_(velocity),
+        result_(result),
+        at_(result.state),
+        partial_(std::size_t(problem.assembler.threads())),
+        inverse_density_(dofs_.size()),
+        residual_(dofs_.size()),
+        last_residual_(dofs_.size()) {
+    for (const Index dof : way.prescribed()) last_reaction_.push_back(at_.gradient[dof]);
+  }
+
+  void find_density(TangentOperator& tangent) {
+    tangent.linearise(problem_.assembler, at_.at(), 0.0);
+    std::vector<double> sums(at_.displacement.size());
+    tangent.absolute_row_sums(sums);
+    for (std::size_t e = 0; e < dofs_.size(); ++e) {
+      const double density = 0.25 * options_.mass_factor * sums[dofs_[e]];
+      // A point without a whole bond stays where it is.
+      inverse_density_[e] = density > 0.0 ? 1.0 / density : 0.0;
+    }
+  }
+
+  /// Forces, residual and damage at the present displacement.
+  void evaluate() {
+    Assembler& assembler = problem_.assembler;
+    const Stored stored = options_.breaking == Breaking::transient
+                              ? assembler.commit(at_.displacement, at_.history, at_.gradient)
+                              : assembler.gradient(at_.at(), at_.gradient);
+    result_.growth.degrading += stored.growth.degrading;
+    result_.growth.breaking += stored.growth.breaking;
+    result_.released_energy += stored.released;
+    at_.stored_energy = stored.energy;
+    residual_.swap(last_residual_);
+    const std::vector<double>& force = result_.external_force;
+    // [0] F.F, [1] U.K1 U, [2] U.U
+    const Sums sums = sum([&](std::size_t e, Sums& s) {
+      const double residual = force[dofs_[e]] - at_.gradient[dofs_[e]];
+      residual_[e] = residual;
+      s[0] += residual * residual;
+      const double squared = at_.displacement[dofs_[e]] * at_.displacement[dofs_[e]];
+      s[2] += squared;
+      if (std::abs(velocity_[e]) <= standing * mean_speed_) return;
+      s[1] -= squared * (residual - last_residual_[e]) * inverse_density_[e] / velocity_[e];
+    });
+    at_.residual_norm = std::sqrt(sums[0]);
+    at_.degenerate = stored.degenerate || !std::isfinite(sums[0]);
+    quotient_ = sums[2] > 0.0 ? sums[1] / sums[2] : 0.0;
+  }
+
+  /// V^(1/2), from rest.
+  void set_off() {
+    const Sums sums = sum([&](std::size_t e, Sums& s) {
+      velocity_[e] = 0.5 * residual_[e] * inverse_density_[e];
+      s[0] += 0.25 * residual_[e] * velocity_[e];
+    });
+    kinetic_energy_ = sums[0];
+    result_.damped_energy += sums[0];
+  }
+
+  /// V^(n+1/2) from V^(n-1/2).
+  void accelerate() {
+    const double c = damping_coefficient();
+    const double keep = (2.0 - c) / (2.0 + c), gain = 2.0 / (2.0 + c);
+    // [0] damping, [1] kinetic energy
+    const Sums sums = sum([&](std::size_t e, Sums& s) {
+      if (inverse_density_[e] == 0.0) return;
+      const double before = velocity_[e];
+      const double after = keep * before + gain * residual_[e] * inverse_density_[e];
+      const double mean = 0.5 * (before + after), density = 1.0 / inverse_density_[e];
+      velocity_[e] = after;
+      s[0] += c * density * mean * mean;
+      s[1] += 0.5 * density * after * after;
+    });
+    if (options_.damping == Damping::kinetic && sums[1] < kinetic_energy_) {
+      // The peak is passed: the motion before this acceleration stops, and a new one sets off.
+      for (std::size_t e = 0; e < dofs_.size(); ++e) {
+        velocity_[e] -= residual_[e] * inverse_density_[e];
+      }
+      result_.damped_energy += energy_of_motion();
+      set_off();
+      return;
+    }
+    result_.damped_energy += sums[0];
+    kinetic_energy_ = sums[1];
+  }
+
+  /// What the motion that has led here holds: 1/2 V.lambda V + 1/2 F.V at V^(n-1/2).
+  double energy_of_motion() {
+    return sum([&](std::size_t e, Sums& s) {
+      if (inverse_density_[e] == 0.0) return;
+      s[0] += 0.5 * velocity_[e] * (velocity_[e] / inverse_density_[e] + residual_[e]);
+    })[0];
+  }
+
+  /// U^(n+1), with supports and loads at a share of their way. The work of the step is complete
+  /// once `complete_work` is called after the next evaluation.
+  void move(double share) {
+    const Sums sums = sum([&](std::size_t e, Sums& s) {
+      double& displacement = at_.displacement[dofs_[e]];
+      displacement += velocity_[e];
+      s[0] += velocity_[e] * velocity_[e];
+      s[1] += displacement * displacement;
+    });
+    mean_speed_ = std::sqrt(sums[0] / std::max(1.0, double(dofs_.size())));
+    relative_change_ = sums[1] > 0.0 ? std::sqrt(sums[0] / sums[1]) : 1.0;
+    add_half_work_of_loads();
+    if (share != share_) {
+      way_.load(share, result_.external_force);
+      share_change_ = share - share_;
+      share_ = share;
+      for (const Index dof : way_.prescribed()) {
+        at_.displacement[dof] = way_.displacement(dof, share);
+      }
+    } else {
+      share_change_ = 0.0;
+    }
+    add_half_work_of_loads();
+  }
+
+  void complete_work() {
+    for (std::size_t k = 0; k < last_reaction_.size(); ++k) {
+      const Index dof = way_.prescribed()[k];
+      const double now = at_.gradient[dof];
+      if (share_change_ != 0.0) {
+        const double moved =
+            share_change_ * (way_.displacement(dof, 1.0) - way_.displacement(dof, 0.0));
+        result_.external_work += 0.5 * (last_reaction_[k] + now) * moved;
+      }
+      last_reaction_[k] = now;
+    }
+  }
+
+  [[nodiscard]] bool is_in_equilibrium() const {
+    return at_.residual_norm <= options_.relative_tolerance * result_.scale;
+  }
+  [[nodiscard]] bool stands_still() const {
+    return relative_change_ < options_.displacement_tolerance;
+  }
+
+  [[nodiscard]] IterationRecord record() const {
+    IterationRecord row;
+    row.iteration = result_.iterations;
+    row.residual = at_.residual_norm;
+    row.relative_residual = result_.scale > 0.0 ? at_.residual_norm / result_.scale : 0.0;
+    row.energy = at_.stored_energy - dot(result_.external_force, at_.displacement);
+    row.step_length = 1.0;
+    row.changed_bonds = result_.growth.degrading;
+    return row;
+  }
+
+ private:
+  template <class Body>
+  Sums sum(const Body& body) {
+    const auto count = static_cast<Index>(dofs_.size());
+    run_on_threads(problem_.assembler.threads(), [&](int thread) {
+      Sums own{};
+#pragma omp for schedule(static) nowait
+      for (Index e = 0; e < count; ++e) body(std::size_t(e), own);
+      partial_[std::size_t(thread)] = own;
+    });
+    Sums total{};
+    for (const Sums& part : partial_) {
+      for (std::size_t k = 0; k < total.size(); ++k) total[k] += part[k];
+    }
+    return total;
+  }
+
+  [[nodiscard]] double damping_coefficient() const {
+    if (options_.damping == Damping::kinetic || !(quotient_ > 0.0)) return 0.0;
+    const double c = 2.0 * std::sqrt(quotient_);
+    return c > 2.0 ? largest_damping : c;
+  }
+
+  void add_half_work_of_loads() {
+    if (!way_.has_loads()) return;
+    const std::vector<double>& force = result_.external_force;
+    result_.external_work +=
+        0.5 * sum([&](std::size_t e, Sums& s) { s[0] += force[dofs_[e]] * velocity_[e]; })[0];
+  }
+
+  const EquilibriumProblem& problem_;
+  const Way& way_;
+  const RelaxationOptions& options_;
+  const std::vector<Index>& dofs_;
+  std::vector<double>& velocity_;  // V^(n-1/2), and after `accelerate` V^(n+1/2)
+  RelaxationResult& result_;
+  Trial& at_;
+  std::vector<Sums> partial_;                     // per thread
+  std::vector<double> inverse_density_;           // 1/lambda; 0 where nothing resists
+  std::vector<double> residual_, last_residual_;  // F^n, F^(n-1)
+  std::vector<double> last_reaction_;             // dE/dx on prescribed degrees of freedom
+  double quotient_ = 0.0;                         // U.K1 U / U.U
+  double kinetic_energy_ = 0.0, relative_change_ = 1.0;
+  double mean_speed_ = 0.0;  // root mean square of the velocities of the last move
+  double share_ = 0.0, share_change_ = 0.0;
+};
+
+double scale_of_step(const EquilibriumProblem& problem, const Way& way, const Trial& start,
+                     bool holds) {
+  if (!holds) return residual_scale(problem, way.end_force(), start.gradient, start);
+  Trial after_jump = start;
+  for (const Index dof : way.prescribed()) {
+    after_jump.displacement[dof] = way.end_displacement()[dof];
+  }
+  // A jump that tears bonds would leave no residual to measure against.
+  evaluate(problem, way.end_force(), after_jump, Damage::held);
+  if (after_jump.degenerate) after_jump.residual_norm = 0.0;  // a jump onto a neighbour
+  return residual_scale(problem, way.end_force(), start.gradient, after_jump);
+}
+
+/// Energy that the bonds have taken up, stored or dissipated, since the history they began with
+/// [J].
+double taken_up(const EquilibriumProblem& problem, const RelaxationOptions& options,
+                const Trial& at) {
+  if (options.breaking == Breaking::at_equilibrium) return at.stored_energy;
+  std::vector<double> damage(std::size_t(problem.assembler.points().count()));
+  return at.stored_energy +
+         assess_damage(problem.assembler.model(), at.history, {}, damage).dissipated_energy;
+}
+
+}  // namespace
+
+RelaxationResult relax(const EquilibriumProblem& problem, TangentOperator& tangent,
+                       const State& from, double load_factor, const RelaxationOptions& options,
+                       RelaxationMotion& motion, const RelaxationObserver& observer) {
+  RelaxationResult result;
+  result.state.displacement = from.displacement;
+  result.state.history = from.history;
+  result.external_force.resize(from.displacement.size());
+  const Way way(problem, from, load_factor);
+  way.load(0.0, result.external_force);
+  evaluate(problem, result.external_force, result.state);
+  result.scale = options.scale > 0.0 ? options.scale
+                                     : scale_of_step(problem, way, result.state, options.holds);
+
+  const double taken_up_at_start = taken_up(problem, options, result.state);
+
+  const bool goes_on = motion.velocity.size() == std::size_t(problem.free.count());
+  if (!goes_on) motion.velocity.assign(std::size_t(problem.free.count()), 0.0);
+  Relaxation relaxation(problem, way, options, motion.velocity, result);
+  relaxation.find_density(tangent);
+  relaxation.evaluate();
+  if (!goes_on) relaxation.set_off();
+
+  const int ramp = std::max(options.ramp, 1);
+  const int last = options.holds ? ramp + options.max_iterations : ramp;
+  const auto would_break = [&] { return problem.assembler.growth(result.state.at()).breaking; };
+  Index breaking = 0;
+  int quiet = 0;
+  result.outcome = options.holds ? Outcome::iteration_limit : Outcome::converged;
+  result.largest_residual = -1.0;
+  for (int n = 1; n <= last; ++n) {
+    relaxation.move(std::min(double(n) / ramp, 1.0));
+    relaxation.evaluate();
+    relaxation.complete_work();
+    result.iterations = n;
+    if (result.state.degenerate) {
+      result.outcome = Outcome::degenerate;
+      break;
+    }
+    ++quiet;
+    if (options.breaking == Breaking::transient || n % iterations_per_look == 0) {
+      const Index now =
+          options.breaking == Breaking::transient ? result.growth.breaking : would_break();
+      if (now != breaking) quiet = 0;
+      breaking = now;
+    }
+    const bool balanced = relaxation.is_in_equilibrium();
+    const bool still = balanced || relaxation.stands_still();
+    if (n >= ramp && options.holds && still && quiet >= options.quiet_iterations) {
+      result.outcome = Outcome::converged;
+      if (balanced) result.largest_residual = options.relative_tolerance * result.scale;
+      break;
+    }
+    if (n % iterations_per_record == 0 && observer && observer(relaxation.record())) {
+      result.outcome = Outcome::interrupted;
+      break;
+    }
+    if (n < last) relaxation.accelerate();
+  }
+  Trial& state = result.state;
+  state.total_energy = state.stored_energy - dot(result.external_force, state.displacement);
+  const double moving = relaxation.energy_of_motion();
+  if (options.holds) {
+    result.damped_energy += moving;
+    motion.velocity.clear();
+  } else {
+    relaxation.accelerate();
+  }
+  result.drained_energy = result.external_work - result.released_energy -
+                          (taken_up(problem, options, state) - taken_up_at_start);
+  if (observer && !state.degenerate) static_cast<void>(observer(relaxation.record()));
+  return result;
+}
+
+}  // namespace peristat

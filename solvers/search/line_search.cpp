@@ -1,0 +1,55 @@
+#include "solvers/search/line_search.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "solvers/linear/vector_verbs.hpp"
+
+namespace peristat {
+namespace {
+
+/// Derivative of the total energy along the direction [J].
+double slope_along(std::span<const double> direction, const Trial& trial,
+                   std::span<const double> external_force) {
+  return dot(direction, trial.gradient) - dot(direction, external_force);
+}
+
+}  // namespace
+
+LineSearchResult line_search(const EquilibriumProblem& problem,
+                             std::span<const double> external_force, const Trial& from,
+                             std::span<const double> direction, const LineSearchOptions& options,
+                             Trial& trial, Damage damage) {
+  const double slope = slope_along(direction, from, external_force);
+  LineSearchResult result;
+  if (!std::isfinite(slope)) result.outcome = Outcome::degenerate;
+  if (slope > 0.0) result.outcome = Outcome::no_descent;
+  if (result.outcome != Outcome::converged) return result;
+
+  const double work = dot(external_force, from.displacement);
+  const double round_off = 64.0 * std::numeric_limits<double>::epsilon() *
+                           std::max(std::abs(from.stored_energy), std::abs(work));
+  trial.history = from.history;
+  double length = 1.0;
+  for (int count = 0; count < options.max_trials; ++count, length *= options.shrink) {
+    trial.displacement = from.displacement;
+    add_scaled(trial.displacement, length, direction);
+    evaluate(problem, external_force, trial, damage);
+    if (trial.degenerate) {
+      ++result.degenerate;
+      continue;
+    }
+    result.step_length = length;
+    const double change = trial.total_energy - from.total_energy;
+    if (change <= options.sufficient_decrease * length * slope) return result;
+    const bool flatter = std::abs(slope_along(direction, trial, external_force)) <= std::abs(slope);
+    if (std::abs(change) <= round_off && flatter) return result;
+    ++result.rejected;
+  }
+  result.outcome = trial.degenerate ? Outcome::degenerate : Outcome::line_search_failed;
+  result.step_length = 0.0;
+  return result;
+}
+
+}  // namespace peristat

@@ -1,0 +1,66 @@
+#include "solvers/search/linearisation.hpp"
+
+#include <algorithm>
+
+#include "solvers/linear/vector_verbs.hpp"
+
+namespace peristat {
+
+LinearOutcome Linearisation::solve(const StateView& at, std::span<const double> gradient,
+                                   double projection, FactorUse use,
+                                   std::span<const double> after_jump, double tolerance,
+                                   std::vector<double>& direction) {
+  direction = std::vector<double>();
+  assemble(at, projection);
+  std::vector<double> right_hand_side(std::size_t(problem_.free.count()));
+  for (std::size_t e = 0; e < right_hand_side.size(); ++e) {
+    const Index dof = problem_.free.dof[e];
+    right_hand_side[e] = external_force_[dof] - gradient[dof];
+  }
+  if (!after_jump.empty()) {
+    std::vector<double> jump(after_jump.begin(), after_jump.end()), force(jump.size());
+    add_scaled(jump, -1.0, at.displacement);
+    tangent_.multiply(jump, force);
+    for (std::size_t e = 0; e < right_hand_side.size(); ++e) {
+      right_hand_side[e] -= force[problem_.free.dof[e]];
+    }
+  }
+  LinearOutcome outcome = solver_.factorize(tangent_, use);
+  std::vector<double> solution(right_hand_side.size());
+  if (outcome == LinearOutcome::solved) {
+    outcome = solver_.solve(right_hand_side, solution, tolerance);
+  }
+  direction.resize(at.displacement.size());
+  problem_.free.extend_by_zero(solution, direction);
+  return outcome;
+}
+
+void Linearisation::assemble(const StateView& at, double projection) {
+  Tangent* const stored = tangent_.stored();
+  if (projection == 0.0 || !exact_is_known_ || !stored) {
+    tangent_.linearise(problem_.assembler, at, projection);
+    exact_is_known_ = projection == 0.0;
+    to_projected_.reset();
+    projection_ = projection;
+    return;
+  }
+  // Linear in the share: the projection of every interaction, which is what costs, is done once.
+  if (!to_projected_) {
+    to_projected_.emplace(stored->pattern, stored->dimension, stored->threads(), stored->blocks);
+    problem_.assembler.tangent(at, *to_projected_, 1.0);
+    add_scaled(to_projected_->diagonal, -1.0, stored->diagonal);
+    add_scaled(to_projected_->off_diagonal, -1.0, stored->off_diagonal);
+  }
+  add_scaled(stored->diagonal, projection - projection_, to_projected_->diagonal);
+  add_scaled(stored->off_diagonal, projection - projection_, to_projected_->off_diagonal);
+  projection_ = projection;
+}
+
+double forcing_term(double residual, double last, double target) {
+  constexpr double largest = 1e-3, share_of_target = 0.1;
+  const double gain = last > 0.0 ? residual / last : 1.0;
+  const double enough = residual > 0.0 ? share_of_target * target / residual : largest;
+  return std::min(largest, std::max(gain * gain, enough));
+}
+
+}  // namespace peristat

@@ -1,0 +1,235 @@
+#include "solvers/search/newton.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <utility>
+
+#include "solvers/linear/vector_verbs.hpp"
+#include "solvers/search/linearisation.hpp"
+
+namespace peristat {
+namespace {
+
+Outcome outcome_of(LinearOutcome linear) {
+  switch (linear) {
+    case LinearOutcome::solved:
+      return Outcome::converged;
+    case LinearOutcome::not_positive_definite:
+      return Outcome::not_positive_definite;
+    case LinearOutcome::singular:
+      return Outcome::singular_tangent;
+    case LinearOutcome::out_of_memory:
+      return Outcome::out_of_memory;
+    case LinearOutcome::inaccurate:
+      return Outcome::linear_solver_inaccurate;
+  }
+  return Outcome::singular_tangent;
+}
+
+/// An iteration that leaves more than this share of the residual has stagnated.
+constexpr double stagnation = 0.5;
+
+/// Largest relative residual that counts as converged because round-off leaves no less.
+constexpr double coarsest_round_off = 1e-6;
+
+/// Negative pivots for the history.
+std::int64_t told_negative_pivots(LinearOutcome linear, const std::optional<Inertia>& inertia) {
+  if (inertia) return inertia->negative;
+  return linear == LinearOutcome::not_positive_definite ? -1 : 0;
+}
+
+/// Whether a search along a projected tangent's direction may succeed where the exact one's failed.
+bool projection_may_help(Outcome outcome) {
+  return outcome == Outcome::not_positive_definite || outcome == Outcome::no_descent ||
+         outcome == Outcome::line_search_failed || outcome == Outcome::degenerate;
+}
+
+/// One search, from the jump of supports and loads on.
+class NewtonSearch {
+ public:
+  NewtonSearch(const EquilibriumProblem& problem, LinearSolver& solver, TangentOperator& tangent,
+               const State& from, double load_factor, const NewtonOptions& options,
+               const IterationObserver& observer)
+      : problem_(problem),
+        solver_(solver),
+        tangent_(tangent),
+        from_(from),
+        options_(options),
+        observer_(observer),
+        damage_(load_factor == from.load_factor ? options.damage : Damage::held),
+        external_force_(from.displacement.size()),
+        linearisation_(problem, solver, tangent, external_force_) {
+    problem.conditions.external_force(load_factor, external_force_);
+    current_.displacement = from.displacement;
+    current_.history = from.history;
+    evaluate(problem, external_force_, current_, options.damage);
+    old_gradient_ = current_.gradient;
+    // Right after the jump bonds beside the supports are stretched as no equilibrium will ask for.
+    // Where they may break, nothing would be left to measure the residual against, and the search
+    // would begin in a torn body: damage is held until the predictor has spread the jump.
+    problem.conditions.prescribe(load_factor, current_.displacement);
+    evaluate(problem, external_force_, current_, damage_);
+    result_.scale = options.scale > 0.0
+                        ? options.scale
+                        : residual_scale(problem, external_force_, old_gradient_, current_);
+  }
+
+  [[nodiscard]] NewtonResult run() {
+    result_.outcome = search();
+    if (result_.unstable_start && result_.outcome != Outcome::converged &&
+        result_.outcome != Outcome::interrupted) {
+      result_.outcome = Outcome::not_positive_definite;
+      result_.inertia = start_inertia_;
+    }
+    result_.state = std::move(current_);
+    result_.external_force = std::move(external_force_);
+    return std::move(result_);
+  }
+
+ private:
+  Outcome search() {
+    // A state right after the jump may be degenerate (a support driven onto a neighbour); the
+    // predictor is what moves the neighbours away, so only its result is judged.
+    if (!current_.degenerate && interrupts({})) return Outcome::interrupted;
+    if (has_converged()) {  // all that moves is prescribed
+      release_damage();
+      if (has_converged()) return Outcome::converged;
+    }
+    for (int iteration = 1; iteration <= options_.max_iterations; ++iteration) {
+      IterationRecord row;
+      row.iteration = iteration;
+      const Outcome outcome = advance(row);
+      if (outcome != Outcome::converged) return outcome;
+      result_.iterations = iteration;
+      if (interrupts(row)) return Outcome::interrupted;
+      if (has_converged()) return Outcome::converged;
+    }
+    return Outcome::iteration_limit;
+  }
+
+  /// To the next state, along the direction of the exact tangent or, where that leads nowhere, of
+  /// one that is projected as little as will do.
+  Outcome advance(IterationRecord& row) {
+    const double target = options_.relative_tolerance * result_.scale;
+    const double tolerance = std::min(forcing_term(current_.residual_norm, last_residual_, target),
+                                      options_.linear_tolerance);
+    last_residual_ = current_.residual_norm;
+    // Those of the old state tell whether it is stable; on the way counting would cost more than
+    // solving.
+    solver_.count_pivots(options_.counts_pivots && row.iteration == 1);
+    row.projection = options_.projection == Projection::always ? 1.0 : 0.0;
+    Outcome outcome = try_direction(row, tolerance);
+    while (options_.projection != Projection::never && row.projection < 1.0 &&
+           projection_may_help(outcome)) {
+      row.projection = row.projection == 0.0
+                           ? std::max(last_projection_ / 4.0, options_.least_projection)
+                           : std::min(4.0 * row.projection, 1.0);
+      outcome = try_direction(row, tolerance);
+    }
+    if (outcome != Outcome::converged) return outcome;
+    current_ = std::exchange(next_, {});
+    release_damage();
+    if (row.projection > 0.0) last_projection_ = row.projection;
+    return outcome;
+  }
+
+  /// Leaves the state that the direction leads to in next_.
+  Outcome try_direction(IterationRecord& row, double tolerance) {
+    const bool is_predictor = row.iteration == 1 && options_.predictor == Predictor::consistent;
+    const LinearOutcome linear = find_direction(row, is_predictor, tolerance);
+    if (linear != LinearOutcome::solved) return outcome_of(linear);
+    const LineSearchResult found = line_search(problem_, external_force_, current_, direction_,
+                                               options_.line_search, next_, damage_);
+    row.rejected_trials += found.rejected;
+    row.degenerate_trials += found.degenerate;
+    row.step_length = found.step_length;
+    if (!is_predictor || found.outcome == Outcome::converged) return found.outcome;
+    // The jump can leave a state in which the energy tells nothing (collapsed or overstretched
+    // bonds beside the supports): the predictor is then taken in full, and the next iteration
+    // judges it.
+    next_.displacement = current_.displacement;
+    next_.history = current_.history;
+    add_scaled(next_.displacement, 1.0, direction_);
+    evaluate(problem_, external_force_, next_, damage_);
+    row.step_length = 1.0;
+    return next_.degenerate ? Outcome::degenerate : Outcome::converged;
+  }
+
+  LinearOutcome find_direction(IterationRecord& row, bool is_predictor, double tolerance) {
+    const bool is_exact = row.projection == 0.0;
+    const FactorUse use = (row.iteration == 1 && options_.factorizes_first) || !is_exact
+                              ? FactorUse::factorize_now
+                              : FactorUse::may_reuse;
+    const LinearOutcome linear =
+        is_predictor ? linearisation_.solve({from_, damage_}, old_gradient_, row.projection, use,
+                                            current_.displacement, tolerance, direction_)
+                     : linearisation_.solve(current_.at(damage_), current_.gradient, row.projection,
+                                            use, {}, tolerance, direction_);
+    row.linear_iterations = solver_.last_iterations();
+    row.linear_tolerance = row.linear_iterations > 0 ? tolerance : 0.0;
+    if (!is_exact) return linear;
+    result_.inertia = solver_.inertia();
+    row.negative_pivots = told_negative_pivots(linear, result_.inertia);
+    result_.has_negative_pivots = row.negative_pivots != 0;
+    if (is_predictor) {
+      result_.unstable_start = linear == LinearOutcome::not_positive_definite;
+      start_inertia_ = result_.inertia;
+    }
+    return linear;
+  }
+
+  void release_damage() {
+    if (damage_ == options_.damage) return;
+    damage_ = options_.damage;
+    evaluate(problem_, external_force_, current_, damage_);
+  }
+
+  [[nodiscard]] bool has_converged() {
+    if (current_.degenerate) return false;
+    result_.largest_residual = options_.relative_tolerance * result_.scale;
+    if (current_.residual_norm <= result_.largest_residual) return true;
+    if (result_.iterations < 2 || current_.residual_norm < stagnation * last_residual_ ||
+        current_.residual_norm > coarsest_round_off * result_.scale) {
+      return false;
+    }
+    const double round_off = residual_round_off(problem_.free, tangent_, current_.displacement);
+    result_.is_at_round_off = current_.residual_norm <= round_off;
+    if (result_.is_at_round_off) result_.largest_residual = round_off;
+    return result_.is_at_round_off;
+  }
+
+  /// Tells the observer where the search is.
+  [[nodiscard]] bool interrupts(IterationRecord row) const {
+    row.residual = current_.residual_norm;
+    row.relative_residual = result_.scale > 0.0 ? current_.residual_norm / result_.scale : 0.0;
+    row.energy = current_.total_energy;
+    return observer_ && observer_(row);
+  }
+
+  const EquilibriumProblem& problem_;
+  LinearSolver& solver_;
+  TangentOperator& tangent_;
+  const State& from_;
+  const NewtonOptions& options_;
+  const IterationObserver& observer_;
+  Damage damage_;
+  std::vector<double> external_force_;
+  Linearisation linearisation_;
+  Trial current_, next_;
+  std::vector<double> old_gradient_;  // of the state that the search began with
+  std::vector<double> direction_;
+  std::optional<Inertia> start_inertia_;
+  double last_residual_ = 0.0, last_projection_ = 0.0;
+  NewtonResult result_;
+};
+
+}  // namespace
+
+NewtonResult newton(const EquilibriumProblem& problem, LinearSolver& solver,
+                    TangentOperator& tangent, const State& from, double load_factor,
+                    const NewtonOptions& options, const IterationObserver& observer) {
+  return NewtonSearch(problem, solver, tangent, from, load_factor, options, observer).run();
+}
+
+}  // namespace peristat

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "src/core/types.hpp"
+#include "src/geometry/points.hpp"
+#include "src/neighbourhood/bonds.hpp"
+
+namespace peristat {
+
+/// Straight crack in the x-y plane (2D) [m].
+struct CrackSegment {
+  Coordinates from{}, to{};
+};
+
+/// Plane crack (3D): a simple polygon, convex or not; the last vertex is joined to the first [m].
+struct CrackPolygon {
+  std::vector<Coordinates> vertices;
+};
+
+/// A crack that is there from the start. It is closed: its ends or edges belong to it.
+using Crack = std::variant<CrackSegment, CrackPolygon>;
+
+/// Distance from a crack, relative to the bond's length, up to which a bond touches the crack: far
+/// above the round-off of coordinates, far below a spacing.
+inline constexpr double touching_tolerance = 1e-9;
+
+/// Distance, relative to the polygon's extent, up to which a vertex lies in the plane of a polygon
+/// and up to which its edges touch each other; its square bounds the area from below.
+inline constexpr double polygon_tolerance = 1e-9;
+
+/// Refuses a crack that does not fit the dimension (segment: 2; polygon: 3; in 1D there is none),
+/// has components that are not finite or is degenerate: a segment without length, a polygon with
+/// fewer than three vertices, without area, out of plane, or with edges that cross or touch.
+/// @param table what holds the crack ("crack[0]"); the errors name its "from",
+///              "to" or "vertices"
+/// @throws InputError
+void check_crack(const Crack& crack, int dimension, const std::string& table);
+
+/// Whether the bond from a to b, its ends included, meets the crack:
+///
+///   min |x - y| <= touching_tolerance |b - a|   over x on the bond and y on the crack
+///
+/// Touching is enough, and so a point on the crack loses all its bonds. The crack must have passed
+/// check_crack.
+[[nodiscard]] bool cuts(const Crack& crack, const Coordinates& a, const Coordinates& b);
+
+/// Bonds that cracks have cut.
+struct CutBonds {
+  std::vector<double> weight;  ///< per point, sum over its cut bonds [m6]
+  std::vector<BondEnds> ends;  ///< of each
+};
+
+/// Removes the bonds that any of the cracks cuts; the others keep their order, length and weight.
+[[nodiscard]] CutBonds cut_bonds(Bonds& bonds, const Points& points,
+                                 const std::vector<Crack>& cracks);
+
+}  // namespace peristat

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "src/geometry/points.hpp"
+#include "src/neighbourhood/bonds.hpp"
+
+namespace peristat {
+
+/// Connected components of the bond graph.
+struct Components {
+  std::vector<Index> of_point;  ///< number of the component that a point belongs to
+  std::vector<Index> size;      ///< points of each component
+
+  /// Points of each component, ascending.
+  [[nodiscard]] std::vector<std::vector<Index>> members() const;
+};
+
+/// Numbered by their lowest points.
+/// @param broken one flag per bond; flagged bonds do not connect. Empty: all bonds do.
+[[nodiscard]] Components connected_components(const Bonds& bonds,
+                                              std::span<const char> broken = {});
+
+/// Rigid motions that the supports leave to one connected component of the bond graph.
+struct FreeMotion {
+  Index points = 0;                  ///< of the component
+  Index example = 0;                 ///< its lowest point
+  std::vector<std::string> motions;  ///< "move along x", "rotate about z", …
+};
+
+/// All components that may move as rigid bodies, largest first; empty if everything is held.
+/// Decided by the rank of the prescribed components on the rigid motions of each component.
+[[nodiscard]] std::vector<FreeMotion> free_motions(const Points& points, const Bonds& bonds,
+                                                   const std::vector<char>& prescribed);
+
+}  // namespace peristat

@@ -1,0 +1,179 @@
+#include "src/connectivity/rigid_motions.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include <Eigen/Dense>
+
+namespace peristat {
+namespace {
+
+/// Eigenvalues below this fraction of the largest count as zero: motions of the size of round-off.
+constexpr double rank_tolerance = 1e-10;
+
+/// Motions of one point: at most 3 x 6, without a heap.
+using PointMotions = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 3, 6>;
+
+Eigen::Vector3d vector_of(std::span<const double> positions, Index point, int dimension) {
+  Eigen::Vector3d at = Eigen::Vector3d::Zero();
+  for (int c = 0; c < dimension; ++c) at(c) = positions[std::size_t(point) * dimension + c];
+  return at;
+}
+
+/// Columns: the rigid motions of a point at `arm` from the centre, translations first, then
+/// rotations about x, y, z (2D: about z), scaled by 1 / size so that all entries are of order one.
+PointMotions rigid_motions(const Eigen::Vector3d& arm, int dimension, double size) {
+  if (dimension == 1) return PointMotions::Identity(1, 1);
+  const Eigen::Vector3d a = arm / size;
+  if (dimension == 2) {
+    PointMotions motion(2, 3);
+    motion << 1, 0, -a.y(), 0, 1, a.x();
+    return motion;
+  }
+  PointMotions motion(3, 6);
+  motion << 1, 0, 0, 0, a.z(), -a.y(),  //
+      0, 1, 0, -a.z(), 0, a.x(),        //
+      0, 0, 1, a.y(), -a.x(), 0;
+  return motion;
+}
+
+/// Orthonormal basis of the vectors that a positive semi-definite matrix maps to zero (or, with
+/// `complement`, of the others).
+Eigen::MatrixXd null_space(const Eigen::MatrixXd& matrix, double scale, bool complement = false) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(matrix);
+  std::vector<Eigen::Index> columns;
+  for (Eigen::Index k = 0; k < matrix.cols(); ++k) {
+    const bool zero = solver.eigenvalues()(k) <= rank_tolerance * scale;
+    if (zero != complement) columns.push_back(k);
+  }
+  return solver.eigenvectors()(Eigen::all, columns);
+}
+
+std::string direction_name(const Eigen::VectorXd& direction) {
+  for (Eigen::Index c = 0; c < direction.size(); ++c) {
+    if (std::abs(std::abs(direction(c)) - 1.0) < 1e-6) return std::string(1, "xyz"[c]);
+  }
+  char text[80];
+  std::snprintf(text, sizeof text, "(%.2g, %.2g, %.2g)", direction(0), direction(1),
+                direction.size() > 2 ? direction(2) : 0.0);
+  return text;
+}
+
+/// Directions spanning the columns, along the axes where possible.
+std::vector<std::string> direction_names(const Eigen::MatrixXd& span) {
+  std::vector<std::string> names;
+  const Eigen::MatrixXd projector = span * span.transpose();
+  Eigen::MatrixXd rest = projector;
+  for (Eigen::Index c = 0; c < span.rows(); ++c) {
+    if (std::abs(projector(c, c) - 1.0) > 1e-6) continue;
+    names.push_back(std::string(1, "xyz"[c]));
+    rest(c, c) -= 1.0;
+  }
+  const Eigen::MatrixXd others = null_space(rest, 1.0, true);
+  for (Eigen::Index k = 0; k < others.cols(); ++k) names.push_back(direction_name(others.col(k)));
+  return names;
+}
+
+Eigen::Map<const Eigen::MatrixXd> basis_of(const RigidMotions& motions) {
+  const int d = motions.dimension;
+  return {motions.basis.data(), d * (d + 1) / 2, motions.count};
+}
+
+}  // namespace
+
+RigidMotions free_rigid_motions(int dimension, std::span<const double> positions,
+                                std::span<const Index> members, const std::vector<char>& prescribed,
+                                double smallest_size) {
+  const int d = dimension;
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();
+  for (Index i : members) centre += vector_of(positions, i, d);
+  centre /= double(members.size());
+  double size = smallest_size;
+  for (Index i : members) size = std::max(size, (vector_of(positions, i, d) - centre).norm());
+  const Eigen::Index modes = d * (d + 1) / 2;
+  Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(modes, modes);
+  Eigen::MatrixXd held = Eigen::MatrixXd::Zero(modes, modes);
+  for (Index i : members) {
+    const PointMotions motion = rigid_motions(vector_of(positions, i, d) - centre, d, size);
+    gram.noalias() += motion.transpose() * motion;
+    for (int c = 0; c < d; ++c) {
+      if (prescribed[std::size_t(i) * d + c]) held += motion.row(c).transpose() * motion.row(c);
+    }
+  }
+  // A straight row of points does not move when it turns about itself: such motions do not count.
+  const Eigen::MatrixXd moving = null_space(gram, double(members.size()), true);
+  const Eigen::MatrixXd free = moving * null_space(moving.transpose() * held * moving, 1.0);
+  return {d,
+          {centre.x(), centre.y(), centre.z()},
+          size,
+          static_cast<int>(free.cols()),
+          std::vector<double>(free.data(), free.data() + free.size())};
+}
+
+std::vector<std::string> motion_names(const RigidMotions& motions) {
+  const int dimension = motions.dimension;
+  const Eigen::MatrixXd free = basis_of(motions);
+  std::vector<std::string> names;
+  const Eigen::MatrixXd rotation = free.bottomRows(free.rows() - dimension);
+  // Combinations of free motions without rotation are free translations.
+  Eigen::MatrixXd still = Eigen::MatrixXd::Identity(free.cols(), free.cols());
+  if (rotation.rows() > 0) still = null_space(rotation.transpose() * rotation, 1.0);
+  if (still.cols() > 0) {
+    Eigen::MatrixXd translation = free.topRows(dimension) * still;
+    for (const std::string& name : direction_names(translation)) {
+      names.push_back("move along " + name);
+    }
+  }
+  if (rotation.rows() == 1) {
+    if (rotation.norm() > 1e-6) names.push_back("rotate about z");
+  } else if (rotation.rows() == 3) {
+    const Eigen::MatrixXd axes = null_space(rotation * rotation.transpose(), 1.0, true);
+    if (axes.cols() > 0) {
+      for (const std::string& name : direction_names(axes)) {
+        names.push_back("rotate about " + name);
+      }
+    }
+  }
+  return names;
+}
+
+std::vector<std::size_t> determinate_pins(const RigidMotions& motions,
+                                          std::span<const double> positions,
+                                          std::span<const Index> members,
+                                          const std::vector<char>& prescribed) {
+  // Displacements that differ by less than this fraction are alike: round-off must not choose.
+  constexpr double alike = 1e-9;
+  if (motions.count == 0) return {};
+  const int d = motions.dimension;
+  const Eigen::Vector3d centre(motions.centre[0], motions.centre[1], motions.centre[2]);
+  std::vector<std::size_t> dofs;
+  for (Index i : members) {
+    for (int c = 0; c < d; ++c) {
+      const std::size_t dof = std::size_t(i) * d + c;
+      if (!prescribed[dof]) dofs.push_back(dof);
+    }
+  }
+  // Rows: how the free motions move each degree of freedom.
+  Eigen::MatrixXd rows(static_cast<Eigen::Index>(dofs.size()), motions.count);
+  for (Eigen::Index k = 0; k < rows.rows(); ++k) {
+    const std::size_t dof = dofs[std::size_t(k)];
+    const Eigen::Vector3d arm = vector_of(positions, static_cast<Index>(dof / d), d) - centre;
+    rows.row(k) =
+        rigid_motions(arm, d, motions.size).row(Eigen::Index(dof % d)) * basis_of(motions);
+  }
+  // Gram-Schmidt with pivots: a pinned row is taken out of all rows.
+  std::vector<std::size_t> pins;
+  for (int pin = 0; pin < motions.count; ++pin) {
+    Eigen::Index most = 0;
+    for (Eigen::Index k = 1; k < rows.rows(); ++k) {
+      if (rows.row(k).norm() > (1.0 + alike) * rows.row(most).norm()) most = k;
+    }
+    pins.push_back(dofs[std::size_t(most)]);
+    const Eigen::RowVectorXd direction = rows.row(most).normalized();
+    rows -= ((rows * direction.transpose()) * direction).eval();
+  }
+  return pins;
+}
+
+}  // namespace peristat

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "src/core/types.hpp"
+
+namespace peristat {
+
+/// Rigid motions that prescribed degrees of freedom leave to a set of points, taken as one rigid
+/// body. A rigid motion m moves the point at x by
+///
+///   u(x) = t + r x (x - centre) / size
+///
+/// with m = (t, r): translations along the axes, then rotations about x, y, z (2D: about z; 1D:
+/// none). Divided by the size, all entries are of order one.
+struct RigidMotions {
+  int dimension = 0;
+  Coordinates centre{};       ///< of the points [m]
+  double size = 0.0;          ///< largest distance of a point from the centre [m]
+  int count = 0;              ///< independent free motions
+  std::vector<double> basis;  ///< orthonormal m that span them, one after the other
+};
+
+/// @param positions where the points are, points x dimension, row major [m]
+/// @param members the points of the set
+/// @param prescribed per degree of freedom
+/// @param smallest_size lower bound of the size, that of a set of one point [m]
+[[nodiscard]] RigidMotions free_rigid_motions(int dimension, std::span<const double> positions,
+                                              std::span<const Index> members,
+                                              const std::vector<char>& prescribed,
+                                              double smallest_size);
+
+/// "move along x", "rotate about z", …
+[[nodiscard]] std::vector<std::string> motion_names(const RigidMotions& motions);
+
+/// As many degrees of freedom as there are free motions, none of them prescribed, that suppress all
+/// of them when they are pinned: statically determinate. Chosen one by one where the motions that
+/// the former ones leave move most, so that they lie far apart and do so at right angles; where
+/// several move alike, the lowest. Parameters as in free_rigid_motions, which gave the motions.
+[[nodiscard]] std::vector<std::size_t> determinate_pins(const RigidMotions& motions,
+                                                        std::span<const double> positions,
+                                                        std::span<const Index> members,
+                                                        const std::vector<char>& prescribed);
+
+}  // namespace peristat

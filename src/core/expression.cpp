@@ -1,0 +1,192 @@
+#include "src/core/expression.hpp"
+
+#include <cmath>
+#include <numbers>
+#include <optional>
+
+#include <muParser.h>
+
+#include "src/core/input_error.hpp"
+#include "src/core/nearest_name.hpp"
+#include "src/core/number_text.hpp"
+
+namespace peristat {
+
+struct Expression::Parser {
+  std::string text;
+  int dimension = 3;
+  bool knows_load = false;
+  std::optional<double> constant;
+  mu::Parser parser;
+  // What the parser's variables point at; this struct therefore never moves.
+  Coordinates place{};
+  double load_factor = 0.0;
+
+  [[noreturn]] void refuse(const std::string& what) const {
+    throw InputError("", '"' + text + '"', what);
+  }
+
+  [[noreturn]] void refuse_parse(const mu::ParserError& error) const {
+    const std::string where =
+        error.GetPos() >= 0 ? " (character " + std::to_string(error.GetPos() + 1) + ")" : "";
+    refuse("not a valid expression" + where + ": " + error.GetMsg());
+  }
+
+  void define(double spacing) {
+    parser.ClearConst();  // _pi and _e
+    parser.DefineConst("pi", std::numbers::pi);
+    parser.DefineConst("spacing", spacing);
+    for (int c = 0; c < dimension; ++c) parser.DefineVar(std::string(1, "xyz"[c]), &place[c]);
+    if (knows_load) parser.DefineVar("load", &load_factor);
+  }
+
+  [[noreturn]] void refuse_word(const std::string& word, bool is_called) const {
+    std::vector<std::string> variables{"x", "y", "z"}, functions;
+    variables.resize(dimension);
+    if (knows_load) variables.push_back("load");
+    variables.insert(variables.end(), {"pi", "spacing"});
+    for (const auto& [name, callback] : parser.GetFunDef()) functions.push_back(name);
+
+    std::vector<std::string> allowed = is_called ? functions : variables;
+    std::string what = (is_called ? "unknown function " : "unknown variable ") + word + "; allowed";
+    for (const std::string& name : allowed) what += (name == allowed[0] ? " are " : ", ") + name;
+    // Well spelt, but not of this dimension or not here.
+    for (const char* known : {"x", "y", "z", "load"}) {
+      if (word == known) refuse(what);
+    }
+    // The parentheses of a function may have been forgotten.
+    if (!is_called) allowed.insert(allowed.end(), functions.begin(), functions.end());
+    const std::string nearest = nearest_name(word, allowed);
+    refuse(what + (nearest.empty() ? "" : "; did you mean " + nearest + "?"));
+  }
+
+  /// Reads the text once for what muParser does not tell or takes in silence: unknown words, a
+  /// single '=', and a second comparison beside another one.
+  /// @return whether a variable occurs
+  bool scan() const {
+    const auto is_digit = [](char c) { return c >= '0' && c <= '9'; };
+    const auto is_word = [&](char c) {
+      return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_' || is_digit(c);
+    };
+    const auto at = [&](std::size_t i) { return i < text.size() ? text[i] : '\0'; };
+    bool varies = false;
+    std::vector<bool> compared{false};  // per open parenthesis: a comparison stands to the left
+    for (std::size_t i = 0; i < text.size();) {
+      const char c = text[i];
+      if (is_digit(c) || c == '.') {
+        while (is_digit(at(i)) || at(i) == '.') ++i;
+        const bool is_signed = at(i + 1) == '+' || at(i + 1) == '-';
+        if ((at(i) == 'e' || at(i) == 'E') && is_digit(at(i + 1 + is_signed))) {
+          for (i += 1 + is_signed; is_digit(at(i));) ++i;
+        }
+      } else if (is_word(c)) {
+        std::size_t end = i, next;
+        while (is_word(at(end))) ++end;
+        for (next = end; at(next) == ' ';) ++next;
+        const std::string word = text.substr(i, end - i);
+        const bool is_variable = parser.GetVar().count(word) > 0;
+        if (!is_variable && !parser.GetConst().count(word) && !parser.GetFunDef().count(word)) {
+          refuse_word(word, at(next) == '(');
+        }
+        varies = varies || is_variable;
+        i = end;
+      } else if (c == '<' || c == '>' || c == '=' || (c == '!' && at(i + 1) == '=')) {
+        const bool two_characters = at(i + 1) == '=';
+        if (c == '=' && !two_characters) {
+          refuse("'=' at character " + std::to_string(i + 1) + " assigns; == compares");
+        }
+        if (compared.back()) {
+          refuse("the comparison at character " + std::to_string(i + 1) +
+                 " would compare the truth value of the one before; join the two with &&");
+        }
+        compared.back() = true;
+        i += two_characters ? 2 : 1;
+      } else {
+        if (c == '(') compared.push_back(false);
+        if (c == ')' && compared.size() > 1) compared.pop_back();
+        if (c == '&' || c == '|' || c == '?' || c == ':' || c == ',') compared.back() = false;
+        ++i;
+      }
+    }
+    return varies;
+  }
+
+  void compile() {
+    // A multi-line string of the case file is one line here; muParser refuses line breaks.
+    for (char& c : text) {
+      if (c == '\n' || c == '\r' || c == '\t') c = ' ';
+    }
+    if (text.find_first_not_of(' ') == std::string::npos) {
+      refuse("an expression must not be empty; allowed is a number or an expression");
+    }
+    // muParser stops at a zero character in silence.
+    if (text.find('\0') != std::string::npos)
+      refuse("an expression must not hold a zero character");
+    const bool varies = scan();
+    try {
+      parser.SetExpr(text);
+      int values = 0;
+      const double first = *parser.Eval(values);
+      if (values != 1) refuse("an expression has one value; a decimal point is '.', not ','");
+      if (!varies) constant = first;
+    } catch (const mu::ParserError& error) {
+      refuse_parse(error);
+    }
+    if (constant && !std::isfinite(*constant)) {
+      refuse("the value is " + number_text(*constant) + "; it must be finite");
+    }
+  }
+
+  double value() {
+    double result = 0.0;
+    try {
+      result = parser.Eval();
+    } catch (const mu::ParserError& error) {
+      refuse_parse(error);
+    }
+    if (!std::isfinite(result)) {
+      // Without a dimension (total forces) only the load factor tells where.
+      static constexpr const char* names[] = {"", "(x) = ", "(x, y) = ", "(x, y, z) = "};
+      std::string where = names[dimension];
+      if (dimension > 0) where += place_text(place, dimension);
+      if (knows_load) {
+        where += (where.empty() ? "load = " : ", load = ") + number_text(load_factor);
+      }
+      refuse("the value at " + where + " is " + number_text(result) + "; it must be finite");
+    }
+    return result;
+  }
+};
+
+Expression::Expression(const std::string& text, int dimension, double spacing,
+                       LoadFactor load_factor)
+    : parser_(std::make_unique<Parser>()) {
+  parser_->text = text;
+  parser_->dimension = dimension;
+  parser_->knows_load = load_factor == LoadFactor::allowed;
+  parser_->define(spacing);
+  parser_->compile();
+}
+
+Expression::Expression(double value) : parser_(std::make_unique<Parser>()) {
+  parser_->text = number_text(value);
+  parser_->constant = value;
+  if (!std::isfinite(value)) parser_->refuse("the value must be finite");
+}
+
+Expression::Expression(Expression&&) noexcept = default;
+Expression& Expression::operator=(Expression&&) noexcept = default;
+Expression::~Expression() = default;
+
+double Expression::operator()(const Coordinates& place, double load_factor) const {
+  if (parser_->constant) return *parser_->constant;
+  parser_->place = place;
+  parser_->load_factor = load_factor;
+  return parser_->value();
+}
+
+bool Expression::is_constant() const { return parser_->constant.has_value(); }
+
+const std::string& Expression::text() const { return parser_->text; }
+
+}  // namespace peristat

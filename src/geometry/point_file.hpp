@@ -1,0 +1,22 @@
+#pragma once
+
+#include <filesystem>
+
+#include "src/geometry/points.hpp"
+
+namespace peristat {
+
+/// Reads points from a CSV or blank-separated text file.
+///
+/// The first line that is neither empty nor a comment (#) names the columns: `x`, `y`, `z` as the
+/// dimension asks, `volume` [m3] and optionally `set` (names joined by `|`, or empty). Separator is
+/// the comma if the header has one, otherwise blanks; in a blank-separated file the last column may
+/// be left empty if it is `set`. Decimals have a point, whatever the locale. Points are renumbered
+/// with locality; the spacing is the (mean volume / cross_section)^(1/dimension).
+/// @throws InputError with "FILE:LINE" as its place for a missing or unknown column, a value that
+///         is not a number or not finite, a volume that is not positive, and two points at one
+///         place; with "file" for a file that can't be read or has no points
+[[nodiscard]] Points read_points(const std::filesystem::path& file, int dimension,
+                                 double cross_section);
+
+}  // namespace peristat

@@ -1,0 +1,76 @@
+#include "src/materials/effective_volumes.hpp"
+
+#include <cmath>
+
+namespace peristat {
+namespace {
+
+/// Ordered neighbour sets per unique interaction of a point: 2 pairs, 6 triplets.
+template <class Measure>
+constexpr double orders = Measure::arms == 2 ? 2.0 : 6.0;
+
+/// The count n that effective volumes are divided by: from n = 1 on it is n itself, so that they
+/// sum up to the neighbourhood's. Below, where the last interactions of a point are nearly flat, (1
+/// + n^2)/2: their weights vanish with them instead of sharing what is left.
+double divisor(double count) { return count >= 1.0 ? count : 0.5 * (1.0 + count * count); }
+
+}  // namespace
+
+std::vector<std::int32_t> neighbour_counts(const Bonds& bonds) {
+  std::vector<std::int32_t> count(std::size_t(bonds.points()), 0);
+  for (Index i = 0; i < bonds.points(); ++i) {
+    count[i] += static_cast<std::int32_t>(bonds.offset[i + 1] - bonds.offset[i]);
+    for (Offset bond = bonds.offset[i]; bond < bonds.offset[i + 1]; ++bond) {
+      ++count[bonds.partner[bond]];
+    }
+  }
+  return count;
+}
+
+double effective_neighbour_volume(const BulkNeighbourhood& bulk) {
+  return bulk.volume / double(bulk.neighbours);
+}
+
+void set_one_neighbour_weights(Bonds& bonds, const Points& points, const BulkNeighbourhood& bulk) {
+  const double v1 = effective_neighbour_volume(bulk);
+  bonds.set_weights([&](Index i, Offset bond) {
+    return 0.5 * (points.volume[i] + points.volume[bonds.partner[bond]]) * v1;
+  });
+}
+
+template <class Measure>
+std::vector<double> effective_volumes(const Interactions<Measure>& interactions,
+                                      const std::vector<std::int32_t>& neighbours,
+                                      const BulkNeighbourhood& bulk, InteractionWeights weights) {
+  const std::vector<double>& count = interactions.effective_counts();
+  const double in_bulk = double(Measure::arms == 2 ? bulk.pairs : bulk.triplets);
+  std::vector<double> volume(count.size(), 0.0);
+  for (std::size_t a = 0; a < volume.size(); ++a) {
+    if (weights == InteractionWeights::bulk) {
+      volume[a] = std::pow(bulk.volume, Measure::arms) / in_bulk;
+    } else {
+      const double neighbourhood = effective_neighbour_volume(bulk) * neighbours[a];
+      volume[a] = std::pow(neighbourhood, Measure::arms) / (orders<Measure> * divisor(count[a]));
+    }
+  }
+  return volume;
+}
+
+template <class Measure>
+std::vector<double> weight_shares(const Points& points,
+                                  const std::vector<double>& effective_volume) {
+  std::vector<double> shares(effective_volume.size());
+  for (std::size_t a = 0; a < shares.size(); ++a) {
+    shares[a] = orders<Measure> / (Measure::arms + 1) * points.volume[a] * effective_volume[a];
+  }
+  return shares;
+}
+
+template std::vector<double> effective_volumes(const Triangles&, const std::vector<std::int32_t>&,
+                                               const BulkNeighbourhood&, InteractionWeights);
+template std::vector<double> effective_volumes(const Tetrahedra&, const std::vector<std::int32_t>&,
+                                               const BulkNeighbourhood&, InteractionWeights);
+template std::vector<double> weight_shares<Area>(const Points&, const std::vector<double>&);
+template std::vector<double> weight_shares<Volume>(const Points&, const std::vector<double>&);
+
+}  // namespace peristat

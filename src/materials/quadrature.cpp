@@ -1,0 +1,174 @@
+#include "src/materials/quadrature.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "src/neighbourhood/horizon.hpp"
+#include "src/neighbourhood/search.hpp"
+
+namespace peristat {
+namespace {
+
+/// Edge of the cell that a point's volume fills [m].
+double cell_size(const Points& points, Index point, double cross_section) {
+  return std::pow(points.volume[point] / cross_section, 1.0 / points.dimension);
+}
+
+/// Squares of a bond's direction cosines, n_a^2.
+std::array<double, 3> squared_direction(const Points& points, const Bonds& bonds, Index i,
+                                        Offset bond) {
+  std::array<double, 3> result{};
+  const Coordinates from = points.position(i), to = points.position(bonds.partner[bond]);
+  for (int a = 0; a < points.dimension; ++a) {
+    const double n = (to[a] - from[a]) * bonds.inverse_length(bond);
+    result[a] = n * n;
+  }
+  return result;
+}
+
+template <class Visit>
+void for_each_bond(const Bonds& bonds, const Visit& visit) {
+  for (Index i = 0; i < bonds.points(); ++i) {
+    for (Offset bond = bonds.offset[i]; bond < bonds.offset[i + 1]; ++bond) visit(i, bond);
+  }
+}
+
+void apply_volume_correction(Bonds& bonds, const Points& points, const Quadrature& quadrature,
+                             const BondSetting& setting) {
+  bonds.set_weights([&](Index i, Offset bond) {
+    const Index j = bonds.partner[bond];
+    double share = 1.0;
+    if (quadrature.volume == VolumeCorrection::linear) {
+      const double size_i = cell_size(points, i, setting.cross_section);
+      const double size_j = cell_size(points, j, setting.cross_section);
+      share = 0.5 * (linear_partial_volume(bonds.length(bond), setting.horizon, size_i) +
+                     linear_partial_volume(bonds.length(bond), setting.horizon, size_j));
+    }
+    return share * points.volume[i] * points.volume[j];
+  });
+}
+
+void drop_weightless(Bonds& bonds) {
+  bonds.remove_if([&](Index, Offset bond) { return bonds.weight(bond) == 0.0; });
+}
+
+/// Volume of the neighbourhood of a point far from surfaces, without its own: summed over the
+/// lattice. For a cloud of points the same sum over a lattice of its mean spacing serves.
+double bulk_neighbourhood_volume(const Points& points, const Quadrature& quadrature,
+                                 const BondSetting& setting) {
+  const double spacing = points.spacing;
+  const int width = static_cast<int>(std::ceil(setting.horizon / spacing)) + 1;
+  const double cell = std::pow(spacing, setting.dimension) * setting.cross_section;
+  double volume = 0.0;
+  const int width_y = setting.dimension > 1 ? width : 0;
+  const int width_z = setting.dimension > 2 ? width : 0;
+  for (int x = -width; x <= width; ++x) {
+    for (int y = -width_y; y <= width_y; ++y) {
+      for (int z = -width_z; z <= width_z; ++z) {
+        const double distance = spacing * std::sqrt(double(x * x + y * y + z * z));
+        if (distance == 0.0) continue;
+        if (quadrature.volume == VolumeCorrection::linear) {
+          volume += cell * linear_partial_volume(distance, setting.horizon, spacing);
+        } else if (distance <= reach(setting.horizon)) {
+          volume += cell;
+        }
+      }
+    }
+  }
+  return volume;
+}
+
+void apply_volume_method(Bonds& bonds, const Points& points, const Quadrature& quadrature,
+                         const BondSetting& setting) {
+  std::vector<double> neighbourhood(points.volume.size(), 0.0);
+  for_each_bond(bonds, [&](Index i, Offset bond) {
+    const Index j = bonds.partner[bond];
+    neighbourhood[i] += bonds.weight(bond) / points.volume[i];
+    neighbourhood[j] += bonds.weight(bond) / points.volume[j];
+  });
+  const double bulk = bulk_neighbourhood_volume(points, quadrature, setting);
+  bonds.set_weights([&](Index i, Offset bond) {
+    const double both = neighbourhood[i] + neighbourhood[bonds.partner[bond]];
+    return bonds.weight(bond) * 2.0 * bulk / both;
+  });
+}
+
+/// Ratio of the discrete to the classical energy density of every point, per axis, under a confined
+/// unit strain along the axis: a bond stores w c L s^2 / 2 with s = n_a^2, half at each of its
+/// points.
+std::vector<std::array<double, 3>> confined_energy_ratio(const Points& points, const Bonds& bonds,
+                                                         const BondSetting& setting) {
+  const double classical = confined_energy_per_modulus(setting);
+  const double factor = 0.25 * micromodulus(1.0, setting) / classical;
+  std::vector<std::array<double, 3>> ratio(points.volume.size(), {0.0, 0.0, 0.0});
+  for_each_bond(bonds, [&](Index i, Offset bond) {
+    const Index j = bonds.partner[bond];
+    const std::array<double, 3> squared = squared_direction(points, bonds, i, bond);
+    for (int a = 0; a < points.dimension; ++a) {
+      const double energy =
+          factor * bonds.weight(bond) * bonds.length(bond) * squared[a] * squared[a];
+      ratio[i][a] += energy / points.volume[i];
+      ratio[j][a] += energy / points.volume[j];
+    }
+  });
+  return ratio;
+}
+
+void apply_energy_method(Bonds& bonds, const Points& points, const BondSetting& setting) {
+  std::vector<std::array<double, 3>> factor = confined_energy_ratio(points, bonds, setting);
+  for (auto& of_point : factor) {
+    // An axis along which no bond of the point stretches has no energy to correct.
+    for (double& axis : of_point) axis = axis > 0.0 ? 1.0 / axis : 1.0;
+  }
+  bonds.set_weights([&](Index i, Offset bond) {
+    const Index j = bonds.partner[bond];
+    const std::array<double, 3> squared = squared_direction(points, bonds, i, bond);
+    double sum = 0.0;
+    for (int a = 0; a < points.dimension; ++a) {
+      const double mean = 0.5 * (factor[i][a] + factor[j][a]);
+      sum += squared[a] / (mean * mean);
+    }
+    return bonds.weight(bond) / std::sqrt(sum);
+  });
+}
+
+}  // namespace
+
+double linear_partial_volume(double distance, double horizon, double size) {
+  const double share = std::clamp((horizon + 0.5 * size - distance) / size, 0.0, 1.0);
+  return share < horizon_tolerance ? 0.0 : share;  // round-off at the far end is no bond
+}
+
+double search_radius(const Points& points, const Quadrature& quadrature,
+                     const BondSetting& setting) {
+  if (quadrature.volume == VolumeCorrection::none) return setting.horizon;
+  double largest = 0.0;
+  for (Index i = 0; i < points.count(); ++i) {
+    largest = std::max(largest, cell_size(points, i, setting.cross_section));
+  }
+  return setting.horizon + 0.5 * largest;
+}
+
+Bonds make_bonds(const Points& points, const Quadrature& quadrature, const BondSetting& setting,
+                 int threads) {
+  Bonds bonds = search_bonds(points, search_radius(points, quadrature, setting), threads);
+  apply_volume_correction(bonds, points, quadrature, setting);
+  if (quadrature.volume == VolumeCorrection::linear) drop_weightless(bonds);
+  if (quadrature.surface == SurfaceCorrection::volume) {
+    apply_volume_method(bonds, points, quadrature, setting);
+  } else if (quadrature.surface == SurfaceCorrection::energy) {
+    apply_energy_method(bonds, points, setting);
+  }
+  return bonds;
+}
+
+double confined_energy_error(const Points& points, const Bonds& bonds, const BondSetting& setting) {
+  double error = 0.0;
+  for (const auto& ratio : confined_energy_ratio(points, bonds, setting)) {
+    for (int a = 0; a < points.dimension; ++a) error = std::max(error, std::abs(ratio[a] - 1.0));
+  }
+  return error;
+}
+
+}  // namespace peristat

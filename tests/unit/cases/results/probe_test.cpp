@@ -1,0 +1,97 @@
+#include "cases/runner/results/probe.hpp"
+
+#include <cmath>
+#include <numeric>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "src/connectivity/crack.hpp"
+#include "tests/bodies.hpp"
+
+namespace peristat {
+namespace {
+
+using tests::BoxBody;
+
+constexpr double spacing = 0.1;
+
+/// 40 x 12 points, and in 3D 3 layers of them, all in a set.
+BoxBody plate(int dimension, double horizon_ratio, double perturbation = 0.0) {
+  tests::BoxSetting box = tests::small_box(dimension);
+  box.extent = {40, 12, dimension == 3 ? 3 : 0};
+  box.spacing = spacing;
+  box.horizon_ratio = horizon_ratio;
+  box.perturbation = perturbation;
+  Points points = tests::box_points(box);
+  points.sets["all"].resize(points.volume.size());
+  std::iota(points.sets["all"].begin(), points.sets["all"].end(), 0);
+  return BoxBody(std::move(points), box);
+}
+
+/// A straight crack at y = 0.6 from x = low to high, through all of z.
+Crack crack(int dimension, double low, double high) {
+  if (dimension == 2) return CrackSegment{{low, 0.6, 0}, {high, 0.6, 0}};
+  return CrackPolygon{{{low, 0.6, -1}, {high, 0.6, -1}, {high, 0.6, 1}, {low, 0.6, 1}}};
+}
+
+double length_of(const std::vector<BondEnds>& separated, const Points& points, int axis = 0) {
+  ProbeSpecification probe;
+  probe.set = "all";
+  probe.field = "crack_length";
+  probe.axis = axis;
+  return probe_values(probe, points, {}, separated).at(0);
+}
+
+TEST(CrackLength, IsThatOfAStraightCrackWhateverTheHorizon) {
+  for (const int dimension : {2, 3}) {
+    for (const double horizon_ratio : {1.5, 2.015, 3.015, 4.5}) {
+      const BoxBody body = plate(dimension, horizon_ratio);
+      // From the edge, inside, and from edge to edge; the body is 4 m long.
+      for (const auto& [low, high] : {std::pair(-1.0, 1.23), {0.77, 2.52}, {-1.0, 5.0}}) {
+        Bonds bonds = body.model.bonds();
+        const CutBonds cut = cut_bonds(bonds, body.points, {crack(dimension, low, high)});
+        const double inside = std::min(high, 4.0) - std::max(low, 0.0);
+        // A tip lies anywhere between two columns of points: half a spacing each.
+        EXPECT_NEAR(length_of(cut.ends, body.points), inside, spacing) << dimension;
+        EXPECT_EQ(length_of(cut.ends, body.points, 1), 0.0);  // no bond along x is cut
+      }
+    }
+  }
+}
+
+TEST(CrackLength, CountsCutAndBrokenBondsAlike) {
+  const BoxBody body = plate(2, 3.015);
+  const auto separated_by = [&](double low, double high) {
+    Bonds bonds = body.model.bonds();
+    return cut_bonds(bonds, body.points, {crack(2, low, high)}).ends;
+  };
+  std::vector<BondEnds> separated = separated_by(-1.0, 1.0);  // the pre-crack
+  const double before = length_of(separated, body.points);
+  for (const BondEnds& broken : separated_by(1.0, 2.5)) separated.push_back(broken);  // it grows
+  EXPECT_NEAR(length_of(separated, body.points) - before, 1.5, spacing);
+  EXPECT_NEAR(length_of(separated, body.points), length_of(separated_by(-1.0, 2.5), body.points),
+              1e-14);
+  EXPECT_EQ(length_of({}, body.points), 0.0);
+}
+
+TEST(CrackLength, IsFoundOnAPerturbedLattice) {
+  const BoxBody body = plate(2, 3.015, 0.2);
+  Bonds bonds = body.model.bonds();
+  const CutBonds cut = cut_bonds(bonds, body.points, {crack(2, -1.0, 2.0)});
+  // Bonds up to half a spacing out of the normal count: their middles move by half of that.
+  EXPECT_NEAR(length_of(cut.ends, body.points), 2.0, 1.5 * spacing);
+}
+
+TEST(CrackLength, LeavesOtherSetsAlone) {
+  BoxBody body = plate(2, 3.015);
+  Bonds bonds = body.model.bonds();
+  const CutBonds cut = cut_bonds(bonds, body.points, {crack(2, -1.0, 2.0)});
+  auto& members = body.points.sets["all"];
+  std::erase_if(members, [&](Index i) { return body.points.position(i)[0] > 1.0; });
+  EXPECT_NEAR(length_of(cut.ends, body.points), 1.0, spacing);
+}
+
+}  // namespace
+}  // namespace peristat

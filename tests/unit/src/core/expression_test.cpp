@@ -1,0 +1,167 @@
+#include "src/core/expression.hpp"
+
+#include <cmath>
+#include <locale>
+#include <numbers>
+
+#include <gtest/gtest.h>
+
+#include "src/core/input_error.hpp"
+
+namespace peristat {
+namespace {
+
+constexpr auto with_load = Expression::LoadFactor::allowed;
+constexpr auto without_load = Expression::LoadFactor::not_allowed;
+
+double value(const std::string& text, const Coordinates& place = {}, double load_factor = 0.0) {
+  return Expression(text, 3, 0.01, with_load)(place, load_factor);
+}
+
+/// What is said about a text that is refused, when it is read or when it is evaluated.
+std::string refusal(const std::string& text, int dimension = 2,
+                    Expression::LoadFactor load = with_load, const Coordinates& place = {}) {
+  try {
+    (void)Expression(text, dimension, 0.01, load)(place, 0.5);
+  } catch (const InputError& error) {
+    EXPECT_EQ(error.key(), "");
+    EXPECT_EQ(error.value(), '"' + text + '"');
+    return error.allowed();
+  }
+  return "accepted";
+}
+
+TEST(Expression, KnowsPlaceLoadFactorAndConstants) {
+  EXPECT_EQ(value("x + 10*y + 100*z + 1000*load", {1, 2, 3}, 4), 4321);
+  EXPECT_EQ(value("pi"), std::numbers::pi);
+  EXPECT_EQ(value("3*spacing"), 3 * 0.01);
+}
+
+TEST(Expression, FollowsPlaceAndLoadFactorFromCallToCall) {
+  const Expression expression("x*load", 1, 1.0, with_load);
+  EXPECT_EQ(expression({2, 0, 0}, 3), 6);
+  EXPECT_EQ(expression({5, 0, 0}, 7), 35);
+  EXPECT_EQ(expression({5, 0, 0}), 0);
+}
+
+TEST(Expression, HasTheUsualOperatorsAndFunctions) {
+  EXPECT_EQ(value("-x^2", {3, 0, 0}), -9);
+  EXPECT_EQ(value("2^3^2"), 512);
+  EXPECT_EQ(value("2^-1"), 0.5);
+  EXPECT_EQ(value("6/2*3 - 4 - 1"), 4);
+  EXPECT_EQ(value("min(3, max(1, 2)) + abs(-4)"), 6);
+  EXPECT_EQ(value("atan2(1, 0)"), std::numbers::pi / 2);
+  EXPECT_EQ(value("log(10)"), std::log(10.0));  // natural
+  EXPECT_EQ(value("1.5e-3 + .5 + 2."), 1.5e-3 + 0.5 + 2.0);
+}
+
+TEST(Expression, ComparesAndCombinesTruthValues) {
+  EXPECT_EQ(value("x > 0 && x < 1", {0.5, 0, 0}), 1);
+  EXPECT_EQ(value("x > 0 && x < 1", {1.5, 0, 0}), 0);
+  EXPECT_EQ(value("x < 0 || x >= 1", {1, 0, 0}), 1);
+  EXPECT_EQ(value("x == 0.1", {0.1, 0, 0}), 1);
+  EXPECT_EQ(value("x != 0.1", {0.1, 0, 0}), 0);
+  EXPECT_EQ(value("(x < 1) == (y < 1)", {2, 2, 0}), 1);
+  EXPECT_EQ(value("x > 1 ? x > 3 ? 10 : 20 : 30", {2, 0, 0}), 20);
+  EXPECT_EQ(value("x > 1 ? x > 3 ? 10 : 20 : 30", {0, 0, 0}), 30);
+}
+
+TEST(Expression, AgreesWithCompiledArithmeticWhereTheParserOptimises) {
+  const Coordinates at{1.3, -0.7, 2.1};
+  const auto [x, y, z] = at;
+  const auto near = [](double expected) { return 4e-16 * (1.0 + std::abs(expected)); };
+  const std::vector<std::pair<std::string, double>> forms{
+      {"2*x + 3*x - x*4", x},
+      {"x^2 + x^3 + x^4", x * x + x * x * x + x * x * x * x},
+      {"(x + 2)*3 - 1", (x + 2) * 3 - 1},
+      {"5 - 2*x - 1", 5 - 2 * x - 1},
+      {"x/4/y + y*2*z", x / 4 / y + y * 2 * z},
+      {"x - (y - (z - 1))", x - (y - (z - 1))}};
+  for (const auto& [text, expected] : forms) {
+    EXPECT_NEAR(value(text, at), expected, 8 * near(expected)) << text;  // some round-offs
+  }
+}
+
+TEST(Expression, MayRunOverLines) { EXPECT_EQ(value("1\n+\t2\r\n"), 3); }
+
+TEST(Expression, IsConstantWithoutAVariable) {
+  EXPECT_TRUE(Expression("2*pi*spacing", 2, 0.01, with_load).is_constant());
+  EXPECT_TRUE(Expression(2.75e-4).is_constant());
+  EXPECT_EQ(Expression(2.75e-4)({1, 2, 3}, 4), 2.75e-4);
+  EXPECT_EQ(Expression(2.75e-4).text(), "0.000275");
+  EXPECT_FALSE(Expression("0*load", 2, 0.01, with_load).is_constant());
+  EXPECT_FALSE(Expression("max(1, x)", 2, 0.01, with_load).is_constant());
+}
+
+TEST(Expression, CanBeMoved) {
+  Expression first("x + load", 1, 1.0, with_load);
+  const Expression second = std::move(first);
+  EXPECT_EQ(second({1, 0, 0}, 2), 3);
+}
+
+struct CommaAsDecimalPoint : std::numpunct<char> {
+  char do_decimal_point() const override { return ','; }
+};
+
+TEST(Expression, ReadsAPointWhateverTheLocale) {
+  const std::locale before =
+      std::locale::global(std::locale(std::locale::classic(), new CommaAsDecimalPoint));
+  const double read = value("1.5 + x", {1, 0, 0});
+  const std::string text = Expression(1.5).text();
+  std::locale::global(before);
+  EXPECT_EQ(read, 2.5);
+  EXPECT_EQ(text, "1.5");
+}
+
+TEST(Expression, NamesAnUnknownVariableTheAllowedAndTheNearest) {
+  EXPECT_EQ(refusal("2*laod"),
+            "unknown variable laod; allowed are x, y, load, pi, spacing; did you mean load?");
+  EXPECT_EQ(refusal("z", 2), "unknown variable z; allowed are x, y, load, pi, spacing");
+  EXPECT_EQ(refusal("load*x", 1, without_load),
+            "unknown variable load; allowed are x, pi, spacing");
+  EXPECT_NE(refusal("sqr(x)").find("unknown function sqr; allowed are abs, "), std::string::npos);
+  EXPECT_NE(refusal("sqr(x)").find("did you mean sqrt?"), std::string::npos);
+  EXPECT_NE(refusal("x and y").find("unknown variable and"), std::string::npos);
+  EXPECT_NE(refusal("_pi").find("did you mean pi?"), std::string::npos);
+}
+
+TEST(Expression, RefusesWhatTheParserWouldTakeInSilence) {
+  EXPECT_NE(refusal("x = 1").find("character 3 assigns"), std::string::npos);
+  EXPECT_NE(refusal("0 < x < 1").find("character 7"), std::string::npos);
+  EXPECT_NE(refusal("1, 5").find("one value"), std::string::npos);
+  EXPECT_NE(refusal("max(1, 2), x").find("one value"), std::string::npos);
+  EXPECT_NE(refusal(std::string("x\0y", 3)).find("zero character"), std::string::npos);
+  EXPECT_EQ(refusal("max(0 < x, x < 1)"), "accepted");
+  EXPECT_EQ(refusal("0 < x && x < 1 ? x > 2 : y > 2"), "accepted");
+}
+
+TEST(Expression, RefusesTextThatIsNoExpression) {
+  for (const char* text :
+       {"x >",      "(x", "x)",       "2x",    "x y",   "1..2",   "-",    "min()",
+        "atan2(1)", "!x", "sin",      "\"x\"", "x ? 1", "1e400",  "0x10", "x & y",
+        "()",       ",",  "\xc3\xa9", "x(1)",  "1e",    "x ** 2", "@"}) {
+    EXPECT_NE(refusal(text), "accepted") << text;
+  }
+  EXPECT_NE(refusal("x + * y").find("character"), std::string::npos);
+  for (const char* text : {"", " ", "\n"}) {
+    EXPECT_THROW(Expression(text, 2, 0.01, with_load), InputError);
+  }
+}
+
+TEST(Expression, NamesThePlaceWhereItIsNotFinite) {
+  EXPECT_EQ(refusal("1/x", 2, with_load, {0, 2, 0}),
+            "the value at (x, y) = (0, 2), load = 0.5 is inf; it must be finite");
+  EXPECT_NE(refusal("sqrt(x - 1)", 1, without_load).find("at (x) = (0) is"), std::string::npos);
+  EXPECT_EQ(refusal("1/x", 2, with_load, {4, 0, 0}), "accepted");
+  // Without a dimension there is no place, only the load factor.
+  EXPECT_EQ(refusal("1/(load - 0.5)", 0), "the value at load = 0.5 is inf; it must be finite");
+}
+
+TEST(Expression, RefusesAConstantThatIsNotFiniteAtOnce) {
+  EXPECT_THROW(Expression("1/0", 2, 0.01, with_load), InputError);
+  EXPECT_THROW(Expression("log(-pi)", 2, 0.01, with_load), InputError);
+  EXPECT_THROW(Expression(std::nan("")), InputError);
+}
+
+}  // namespace
+}  // namespace peristat
