@@ -47,31 +47,31 @@ History Assembler::history_of(std::span<const double> bond_stretches) const {
   return history;
 }
 
-Stored Assembler::energy(const StateView& at) { return gradient(at, {}); }
+Evaluation Assembler::energy(const StateView& at) { return gradient(at, {}); }
 
-Stored Assembler::gradient(const StateView& at, std::span<double> gradient) {
-  Stored stored;
-  for_each_term([&](TermPasses& term, Write how) { stored += term.gradient(at, gradient, how); });
-  return stored;
+Evaluation Assembler::gradient(const StateView& at, std::span<double> gradient) {
+  Evaluation found;
+  for_each_term([&](TermPasses& term, Write how) { found += term.gradient(at, gradient, how); });
+  return found;
 }
 
-Stored Assembler::commit(std::span<const double> displacement, History& history,
-                         std::span<double> gradient) {
-  Stored stored;
+Evaluation Assembler::commit(std::span<const double> displacement, History& history,
+                             std::span<double> gradient) {
+  Evaluation found;
   for_each_term([&](TermPasses& term, Write how) {
-    stored += term.commit(displacement, history, gradient, how);
+    found += term.commit(displacement, history, gradient, how);
   });
-  return stored;
+  return found;
 }
 
 DamageGrowth Assembler::growth(const StateView& at) {
-  Stored stored;
+  Evaluation found;
   for_each_term([&](TermPasses& term, Write) {
-    Stored of_term;
+    Evaluation of_term;
     of_term.growth = term.growth(at);
-    stored += of_term;
+    found += of_term;
   });
-  return stored.growth;
+  return found.growth;
 }
 
 void Assembler::tangent(const StateView& at, Tangent& tangent, double projection) {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "assembly/energy/energy.hpp"
-#include "assembly/energy/stored.hpp"
+#include "assembly/energy/evaluation.hpp"
 #include "assembly/operators/tangent.hpp"
 #include "assembly/terms/model.hpp"
 #include "assembly/terms/workspace.hpp"
@@ -33,17 +33,17 @@ class Assembler : public Energy {
   [[nodiscard]] History history_of(std::span<const double> bond_stretches) const;
 
   /// E [J]
-  [[nodiscard]] Stored energy(const StateView& at);
+  [[nodiscard]] Evaluation energy(const StateView& at);
 
   /// E [J] and dE/dx [N] (minus the internal force).
-  [[nodiscard]] Stored gradient(const StateView& at, std::span<double> gradient);
+  [[nodiscard]] Evaluation gradient(const StateView& at, std::span<double> gradient);
 
   /// Commits a state: moves the history of every bond that it damages to it. E is then what is
   /// stored after that. dE/dx, unless it is left out, is the bonds' as before and that of terms
   /// that stand on bonds after their loss. Only accepted states are committed, and in relaxation
   /// that breaks bonds on the way, every iteration.
-  Stored commit(std::span<const double> displacement, History& history,
-                std::span<double> gradient = {});
+  Evaluation commit(std::span<const double> displacement, History& history,
+                    std::span<double> gradient = {});
 
   /// What committing a state would damage.
   [[nodiscard]] DamageGrowth growth(const StateView& at);

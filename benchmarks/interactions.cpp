@@ -21,7 +21,8 @@ void assembly(benchmark::State& state) {
   BondSetting setting = benchmark_bodies::setting(3);
   setting.horizon = 1e-3 * double(state.range(0));
   const int threads = omp_get_max_threads();
-  Model model(make_bonds(points, {}, setting, 1), Harmonic{micromodulus(1.0, setting)});
+  Model model(make_bonds(points, SurfaceCorrection::none, setting, 1),
+              Harmonic{micromodulus(1.0, setting)});
   Interactions<Measure> interactions(points, model.bonds(), setting.cross_section, threads);
   interactions.set_shares(std::vector<double>(points.volume.size(), 1.0));
   if (state.range(1)) interactions.store(points, model.bonds(), threads);

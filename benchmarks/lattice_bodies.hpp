@@ -21,14 +21,13 @@ inline constexpr double horizon = 3.015;
   return make_points(lattice);
 }
 
-[[nodiscard]] inline BondSetting setting(int dimension) {
-  return {dimension, PlaneState::stress, horizon, 1.0};
-}
+[[nodiscard]] inline BondSetting setting(int dimension) { return {{dimension, horizon}}; }
 
 /// Bonds with the micromodulus of a unit Young's modulus.
 [[nodiscard]] inline Model model(const Points& points) {
   const BondSetting bond = setting(points.dimension);
-  return Model(make_bonds(points, {}, bond, 1), Harmonic{micromodulus(1.0, bond)});
+  return Model(make_bonds(points, SurfaceCorrection::none, bond, 1),
+               Harmonic{micromodulus(1.0, bond)});
 }
 
 }  // namespace peristat::benchmark_bodies

@@ -19,6 +19,7 @@
 #include "src/geometry/lattice.hpp"
 #include "src/materials/effective_volumes.hpp"
 #include "src/materials/quadrature.hpp"
+#include "src/neighbourhood/neighbour_counts.hpp"
 
 namespace peristat::tests {
 
@@ -59,6 +60,11 @@ class Random {
   for (double entry : a) result = std::max(result, std::abs(entry));
   return result;
 }
+
+struct Quadrature {
+  VolumeCorrection volume = VolumeCorrection::none;
+  SurfaceCorrection surface = SurfaceCorrection::none;
+};
 
 /// What a box of lattice points with its bonds is made of; the defaults of each dimension give a
 /// few hundred bonds.
@@ -104,8 +110,9 @@ struct BoxSetting {
 }
 
 [[nodiscard]] inline BondSetting bond_setting(const BoxSetting& setting) {
-  return {setting.dimension, setting.plane, setting.horizon_ratio * setting.spacing,
-          setting.cross_section};
+  return {{setting.dimension, setting.horizon_ratio * setting.spacing, setting.cross_section,
+           setting.quadrature.volume},
+          setting.plane};
 }
 
 [[nodiscard]] inline BondPotential bond_potential(const BoxSetting& box,
@@ -125,7 +132,8 @@ struct BoxBody {
   BoxBody(Points from, const BoxSetting& box, int threads = 1)
       : points(std::move(from)),
         setting(bond_setting(box)),
-        model(make_bonds(points, box.quadrature, setting, threads), bond_potential(box, setting)) {
+        model(make_bonds(points, box.quadrature.surface, setting, threads),
+              bond_potential(box, setting)) {
     auto triangles = simplices<Area>(box.triangles, box, threads);
     auto tetrahedra = simplices<Volume>(box.tetrahedra, box, threads);
     if (triangles || tetrahedra) {

@@ -53,12 +53,12 @@ class BlockPattern : public Couplings {
   std::shared_ptr<const Rows> own_;  // nothing: a view
 };
 
-/// Rows [first, last) of one thread. Its interactions also touch rows up to `reach`, exclusive,
+/// Rows [first, last) of one thread. Its interactions also touch rows up to `touched_end`,
 /// which belong to later threads: what it adds there goes to a buffer of its own and is summed
 /// afterwards in the order of the threads, so that a given number of threads always gives the same
 /// result.
 struct RowRange {
-  Index first = 0, last = 0, reach = 0;
+  Index first = 0, last = 0, touched_end = 0;
 };
 
 /// Ranges of rows with nearly equal numbers of blocks.

@@ -50,12 +50,12 @@ void dispatch(const Tangent& tangent, const Body& body) {
 /// rows; these are added in the order of the threads.
 template <int D, Tangent::Blocks stored_as>
 void multiply_rows(const Tangent& tangent, std::span<const double> v, std::span<double> result) {
-  std::vector<std::vector<double>> spilled(tangent.ranges.size());
+  std::vector<std::vector<double>>& spilled = tangent.spilled;
   run_on_threads(tangent.threads(), [&](int thread) {
     const RowRange range = tangent.ranges[thread];
     std::fill(result.begin() + std::ptrdiff_t(range.first) * D,
               result.begin() + std::ptrdiff_t(range.last) * D, 0.0);
-    spilled[thread].assign(std::size_t(range.reach - range.last) * D, 0.0);
+    std::fill(spilled[thread].begin(), spilled[thread].end(), 0.0);
     double* const beyond = spilled[thread].data();
     for (Index i = range.first; i < range.last; ++i) {
       const double* own = &v[std::size_t(i) * D];
@@ -87,7 +87,7 @@ void multiply_rows(const Tangent& tangent, std::span<const double> v, std::span<
     for (int earlier = 0; earlier < thread; ++earlier) {
       const RowRange other = tangent.ranges[earlier];
       const Index first = std::max(range.first, other.last),
-                  last = std::min(range.last, other.reach);
+                  last = std::min(range.last, other.touched_end);
       for (std::ptrdiff_t k = std::ptrdiff_t(first) * D; k < std::ptrdiff_t(last) * D; ++k) {
         result[k] += spilled[earlier][k - std::ptrdiff_t(other.last) * D];
       }
@@ -101,7 +101,11 @@ Tangent::Tangent(const BlockPattern& of, int dimension_of_points, int threads, B
     : TangentOperator(of, dimension_of_points, threads),
       blocks(stored_as),
       off_diagonal(std::size_t(of.blocks()) * block_size()),
-      position(std::size_t(of.points()) * dimension) {}
+      position(std::size_t(of.points()) * dimension) {
+  for (const RowRange& range : ranges) {
+    spilled.emplace_back(std::size_t(range.touched_end - range.last) * std::size_t(dimension));
+  }
+}
 
 Tangent::Tangent(const Energy& energy)
     : Tangent(energy.pattern(), energy.points().dimension, energy.threads(),

@@ -40,11 +40,14 @@ struct Tangent : TangentOperator {
   void linearise(Energy& energy, const StateView& at, double projection) override;
   void multiply(std::span<const double> v, std::span<double> result) const override;
   void for_each_row(const RowVisitor& visit) const override;
-  [[nodiscard]] const Tangent* stored() const override { return this; }
-  [[nodiscard]] Tangent* stored() override { return this; }
+  [[nodiscard]] const Tangent* as_tangent() const override { return this; }
+  [[nodiscard]] Tangent* as_tangent() override { return this; }
 
   /// sqrt of the sum of squares of all entries, both halves counted [N/m].
   [[nodiscard]] double frobenius_norm() const;
+
+  /// Per thread, what a product adds to the rows of later threads; overwritten by each.
+  mutable std::vector<std::vector<double>> spilled;
 };
 
 }  // namespace peristat

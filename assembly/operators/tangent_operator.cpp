@@ -15,7 +15,7 @@ void TangentOperator::absolute_row_sums(std::span<double> sums) const {
   const std::size_t d = std::size_t(dimension), entries = d * d;
   std::vector<std::vector<double>> parts;  // rows first..reach of each thread
   for (const RowRange& range : ranges)
-    parts.emplace_back(std::size_t(range.reach - range.first) * d);
+    parts.emplace_back(std::size_t(range.touched_end - range.first) * d);
   for_each_row([&](int thread, Index i, std::span<const double> blocks) {
     double* const part = parts[std::size_t(thread)].data();
     const Index first = ranges[std::size_t(thread)].first;

@@ -43,8 +43,8 @@ struct TangentOperator {
   void absolute_row_sums(std::span<double> sums) const;
 
   /// Itself with its stored blocks, or nothing if they are computed anew each time.
-  [[nodiscard]] virtual const Tangent* stored() const { return nullptr; }
-  [[nodiscard]] virtual Tangent* stored() { return nullptr; }
+  [[nodiscard]] virtual const Tangent* as_tangent() const { return nullptr; }
+  [[nodiscard]] virtual Tangent* as_tangent() { return nullptr; }
 };
 
 }  // namespace peristat

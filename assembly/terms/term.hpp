@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "assembly/energy/evaluation.hpp"
 #include "assembly/energy/state.hpp"
-#include "assembly/energy/stored.hpp"
 #include "assembly/operators/block_pattern.hpp"
 #include "assembly/operators/tangent.hpp"
 #include "assembly/terms/balances.hpp"
@@ -28,12 +28,12 @@ class TermPasses {
 
   /// E [J] and dE/dx [N]; a pass that needs a value per point first finds it here, too.
   /// @param gradient left out if empty
-  virtual Stored gradient(const StateView& at, std::span<double> gradient, Write how) = 0;
+  virtual Evaluation gradient(const StateView& at, std::span<double> gradient, Write how) = 0;
 
   /// As `gradient`, and moves the term's history to the state: E is what is stored after that.
   /// Terms before it have committed already.
-  virtual Stored commit(std::span<const double> displacement, History& history,
-                        std::span<double> gradient, Write how) {
+  virtual Evaluation commit(std::span<const double> displacement, History& history,
+                            std::span<double> gradient, Write how) {
     return this->gradient({displacement, history}, gradient, how);
   }
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <vector>
 
-#include "assembly/energy/stored.hpp"
+#include "assembly/energy/evaluation.hpp"
 #include "assembly/operators/block_pattern.hpp"
 #include "src/core/aligned_vector.hpp"
 #include "src/core/threads.hpp"
@@ -22,7 +22,7 @@ struct Workspace {
 
   std::vector<RowRange> ranges;
   std::vector<AlignedVector<double>> sums;  ///< per thread, rows first..reach of what it adds up
-  std::vector<Stored> stored;               ///< per thread
+  std::vector<Evaluation> evaluations;      ///< per thread
 
   [[nodiscard]] int threads() const { return static_cast<int>(ranges.size()); }
 
@@ -33,7 +33,7 @@ struct Workspace {
     run_on_threads(threads(), [&](int thread) {
       const RowRange range = ranges[thread];
       double* own = sums[thread].data();
-      std::fill_n(own, std::size_t(range.reach - range.first) * width, 0.0);
+      std::fill_n(own, std::size_t(range.touched_end - range.first) * width, 0.0);
       if (range.last > range.first) body(thread, range, own - std::ptrdiff_t(range.first) * width);
 #pragma omp barrier
       finish(thread, range);
@@ -41,7 +41,7 @@ struct Workspace {
         double* total = own + std::size_t(i - range.first) * width;
         for (int earlier = 0; earlier < thread; ++earlier) {
           const RowRange other = ranges[earlier];
-          if (i >= other.reach) continue;
+          if (i >= other.touched_end) continue;
           const double* spilled = &sums[earlier][std::size_t(i - other.first) * width];
           for (int c = 0; c < width; ++c) total[c] += spilled[c];
         }
@@ -56,9 +56,9 @@ struct Workspace {
   }
 
   /// What the threads found, together.
-  [[nodiscard]] Stored total_stored() const {
-    Stored total;
-    for (const Stored& part : stored) total += part;
+  [[nodiscard]] Evaluation total_evaluation() const {
+    Evaluation total;
+    for (const Evaluation& part : evaluations) total += part;
     total.degenerate |= !std::isfinite(total.energy);
     return total;
   }

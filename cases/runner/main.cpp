@@ -125,7 +125,7 @@ void require_told() {
 }
 
 /// Tells the exception that is being handled.
-int tell_failure() {
+int report_failure() {
   const Failure failure = current_failure();
   std::fflush(stdout);
   std::fputs(fmt::format("peristat: {}\n", failure.message).c_str(), stderr);
@@ -184,5 +184,5 @@ int main(int count, char** arguments) try {
   if (exit == Exit::done && !program.got_subcommand("run")) require_told();
   return static_cast<int>(exit);
 } catch (...) {
-  return tell_failure();
+  return report_failure();
 }

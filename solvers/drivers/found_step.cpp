@@ -52,7 +52,8 @@ void commit(Path& path, Attempt& attempt, FoundStep& found,
             const std::function<Outcome()>& equilibrate) {
   Assembler& assembler = path.body().assembler;
   for (int pass = 0; pass < most_commits; ++pass) {
-    const Stored committed = assembler.commit(attempt.state.displacement, attempt.state.history);
+    const Evaluation committed =
+        assembler.commit(attempt.state.displacement, attempt.state.history);
     found.growth.degrading += committed.growth.degrading;
     found.growth.breaking += committed.growth.breaking;
     found.energies.released += committed.released;

@@ -11,7 +11,7 @@ namespace peristat {
 
 /// What a step has turned over, beside what follows from the states before and after it [J].
 struct StepEnergies {
-  double released = 0.0;  ///< see Stored::released
+  double released = 0.0;  ///< see Evaluation::released
   struct Relaxed {
     double work = 0.0;     ///< of supports and loads
     double drained = 0.0;  ///< see RelaxationResult

@@ -7,9 +7,9 @@
 namespace peristat {
 
 LinearOutcome AssembledPreconditioner::build(const TangentOperator& tangent) {
-  if (!tangent.stored()) throw std::logic_error("this preconditioner needs a stored tangent");
+  if (!tangent.as_tangent()) throw std::logic_error("this preconditioner needs a stored tangent");
   const bool built =
-      preconditioner_.build(compressed_rows(*tangent.stored(), *free_), equation_blocks(*free_),
+      preconditioner_.build(compressed_rows(*tangent.as_tangent(), *free_), equation_blocks(*free_),
                             rigid_motions(tangent.positions(), *free_));
   description_ = built ? preconditioner_.describe() : preconditioner_.failure();
   if (built) return LinearOutcome::solved;

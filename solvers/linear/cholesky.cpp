@@ -10,6 +10,7 @@
 #include <suitesparse/cholmod.h>
 
 #include "assembly/operators/tangent.hpp"
+#include "solvers/linear/speeds.hpp"
 #include "solvers/linear/trilinos/krylov.hpp"
 #include "solvers/linear/vector_verbs.hpp"
 #include "src/core/stopwatch.hpp"
@@ -24,10 +25,6 @@ constexpr std::array<int, 3> orderings{CHOLMOD_NATURAL, CHOLMOD_AMD, CHOLMOD_MET
 
 /// Below this number of points METIS gains nothing over AMD and costs more to find.
 constexpr Index smallest_for_metis = 5000;
-
-/// Speeds of a plain machine, one thread, that decide how many iterations pay against a
-/// factorisation: factorisation [flop/s], and reading the factor in triangular solves [bytes/s].
-constexpr double factorisation_speed = 3e10, solve_speed = 1e10;
 
 /// Largest relative residual of a direct solve; backward-stable factorisations stay far below.
 constexpr double accepted_residual = 1e-6;
@@ -194,12 +191,9 @@ struct Cholesky::Cholmod {
     return common.status < CHOLMOD_OK ? LinearOutcome::singular : LinearOutcome::solved;
   }
 
-  /// Iterations of conjugate gradients, each reading the factor twice, that half a factorisation
-  /// buys.
-  int affordable_iterations() const {
-    const double factorisation = estimate.flops / factorisation_speed;
-    const double iteration = 2.0 * estimate.bytes() / solve_speed;
-    return std::min(reuse.max_iterations, static_cast<int>(0.5 * factorisation / iteration));
+  int most_iterations() const {
+    const double affordable = affordable_iterations(estimate.flops, estimate.entries);
+    return static_cast<int>(std::min(double(reuse.max_iterations), affordable));
   }
 
   bool tangent_is_finite() const {
@@ -362,11 +356,11 @@ void Cholesky::count_pivots(bool counts) { cholmod_->counts_pivots = counts; }
 LinearOutcome Cholesky::factorize(const TangentOperator& tangent, FactorUse use) {
   Cholmod& c = *cholmod_;
   const Stopwatch watch(c.statistics.seconds);
-  c.tangent = tangent.stored();
+  c.tangent = tangent.as_tangent();
   if (!c.tangent) throw std::logic_error("a direct solver needs a stored tangent");
   c.factor_current = false;
   if (c.free->count() == 0) return LinearOutcome::solved;
-  if (use == FactorUse::may_reuse && c.factor_valid && c.affordable_iterations() > 0) {
+  if (use == FactorUse::may_reuse && c.factor_valid && c.most_iterations() > 0) {
     return c.tangent_is_finite() ? LinearOutcome::solved : LinearOutcome::singular;
   }
   return c.factorize();
@@ -381,7 +375,7 @@ LinearOutcome Cholesky::solve(std::span<const double> b, std::span<double> x, do
   const std::size_t size = b.size();
   KrylovOptions options;
   options.tolerance = std::min(tolerance, c.reuse.tolerance);
-  options.max_iterations = c.affordable_iterations();
+  options.max_iterations = c.most_iterations();
   const KrylovResult result = solve_krylov(
       int(size),
       [&](const double* v, double* product) {

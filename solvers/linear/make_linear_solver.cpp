@@ -9,14 +9,11 @@
 #include "solvers/linear/cholesky.hpp"
 #include "solvers/linear/iterative_solver.hpp"
 #include "solvers/linear/rigid_pieces.hpp"
+#include "solvers/linear/speeds.hpp"
 #include "solvers/linear/surrogate.hpp"
 
 namespace peristat {
 namespace {
-
-/// Speeds of a plain machine on one thread, as in benchmarks/RESULTS.md: of factorisations
-/// [flop/s], of what a small one mostly takes, fresh memory [bytes/s], and of products [bonds/s].
-constexpr double factorisation_speed = 3e10, memory_speed = 1e9, product_speed = 1.5e8;
 
 /// Products that a load step takes by conjugate gradients with rigid pieces: some four solves of
 /// 15 iterations, and builds of the preconditioner, each worth 30.
@@ -65,12 +62,13 @@ KrylovMethod krylov_method(LinearMethod method) {
 struct Seconds {
   double direct, product, iterative;
   explicit Seconds(const LinearProblem& problem)
-      : direct(problem.factor_flops / factorisation_speed + problem.factor_bytes / memory_speed),
-        product(problem.bonds / product_speed),
+      : direct(problem.factor_flops / speeds::factorisation +
+               problem.factor_bytes / speeds::fresh_memory),
+        product(problem.bonds / speeds::product),
         iterative(products_of_a_step * product) {}
 };
 
-ChosenSolver choose(const LinearProblem& problem, SolverLadder::Teller tell) {
+ChosenSolver choose(const LinearProblem& problem, SolverLadder::Reporter tell) {
   const auto [direct, product, iterative] = Seconds(problem);
   // A solve by iterations may take three times what factorising is estimated at.
   const int patience =
@@ -126,7 +124,7 @@ bool can_be_matrix_free(const LinearSolverOptions& options) {
 }
 
 ChosenSolver make_linear_solver(const LinearSolverOptions& options, const LinearProblem& problem,
-                                SolverLadder::Teller tell) {
+                                SolverLadder::Reporter tell) {
   switch (options.method) {
     case LinearMethod::cholesky:
       return {std::make_unique<Cholesky>(FactorReuse{}, problem.available_bytes), true,

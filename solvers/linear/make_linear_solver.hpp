@@ -57,6 +57,6 @@ struct ChosenSolver {
 /// @param tell of a ladder's falls; may be empty
 [[nodiscard]] ChosenSolver make_linear_solver(const LinearSolverOptions& options,
                                               const LinearProblem& problem,
-                                              SolverLadder::Teller tell);
+                                              SolverLadder::Reporter tell);
 
 }  // namespace peristat

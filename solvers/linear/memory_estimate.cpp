@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "solvers/linear/speeds.hpp"
+
 namespace peristat {
 namespace {
 
@@ -124,8 +126,8 @@ MemoryEstimate estimate_memory(const BodySize& size) {
   estimate.body_bytes = body_bytes(size) + 8.0 * size.points * d * (d + 1.0);
   estimate.tangent_bytes = 8.0 * size.bonds * block;
   estimate.matrix_bytes = 16.0 * (size.bonds + size.points) * d * d;
-  // Conjugate gradients with an old factor are worth their while from here: see Cholesky.
-  if (estimate.factor_flops > 96.0 * estimate.factor_entries) {
+  // Then the direct solver takes conjugate gradients with an old factor, too.
+  if (affordable_iterations(estimate.factor_flops, estimate.factor_entries) > 1.0) {
     estimate.matrix_bytes += trilinos_bytes;
   }
   return estimate;

@@ -12,8 +12,8 @@ bool is_the_solvers_own(LinearOutcome outcome) {
 
 }  // namespace
 
-SolverLadder::SolverLadder(std::vector<Rung> rungs, Teller tell)
-    : rungs_(std::move(rungs)), tell_(std::move(tell)) {}
+SolverLadder::SolverLadder(std::vector<Rung> rungs, Reporter tell)
+    : rungs_(std::move(rungs)), report_(std::move(tell)) {}
 
 LinearOutcome SolverLadder::stand_on(std::size_t rung) {
   if (solver_) before_ = statistics();
@@ -27,8 +27,8 @@ LinearOutcome SolverLadder::climb_down(LinearOutcome why) {
   while (is_the_solvers_own(why) && rung_ + 1 < rungs_.size()) {
     const std::string from = rungs_[rung_].name, ended = name(why);
     why = stand_on(rung_ + 1);
-    if (tell_)
-      tell_(fmt::format("{} ended with {}: {} from now on", from, ended, rungs_[rung_].name));
+    if (report_)
+      report_(fmt::format("{} ended with {}: {} from now on", from, ended, rungs_[rung_].name));
   }
   return why;
 }

@@ -20,9 +20,9 @@ class SolverLadder : public LinearSolver {
     std::function<std::unique_ptr<LinearSolver>()> make;
   };
   /// Told of every fall, in words.
-  using Teller = std::function<void(const std::string& reason)>;
+  using Reporter = std::function<void(const std::string& reason)>;
 
-  SolverLadder(std::vector<Rung> rungs, Teller tell);
+  SolverLadder(std::vector<Rung> rungs, Reporter tell);
 
   LinearOutcome analyze(const BlockPattern& pattern, const FreeDofs& free) override;
   void count_pivots(bool counts) override;
@@ -41,7 +41,7 @@ class SolverLadder : public LinearSolver {
   LinearOutcome stand_on(std::size_t rung);
 
   std::vector<Rung> rungs_;
-  Teller tell_;
+  Reporter report_;
   std::size_t rung_ = 0;
   std::unique_ptr<LinearSolver> solver_;
   std::optional<BlockPattern> pattern_;

@@ -87,14 +87,14 @@ std::string explanation(Outcome outcome) {
 void evaluate(const EquilibriumProblem& problem, std::span<const double> external_force,
               Trial& trial, Damage damage) {
   trial.gradient.resize(trial.displacement.size());
-  const Stored stored = problem.assembler.gradient(trial.at(damage), trial.gradient);
-  trial.stored_energy = stored.energy;
-  trial.total_energy = stored.energy - dot(external_force, trial.displacement);
+  const Evaluation found = problem.assembler.gradient(trial.at(damage), trial.gradient);
+  trial.stored_energy = found.energy;
+  trial.total_energy = found.energy - dot(external_force, trial.displacement);
   trial.residual_norm = norm_of(problem.free.dof.size(), [&](std::size_t e) {
     const Index dof = problem.free.dof[e];
     return external_force[dof] - trial.gradient[dof];
   });
-  trial.degenerate = stored.degenerate || !std::isfinite(trial.residual_norm);
+  trial.degenerate = found.degenerate || !std::isfinite(trial.residual_norm);
 }
 
 double residual_scale(const EquilibriumProblem& problem, std::span<const double> external_force,

@@ -94,13 +94,13 @@ class Relaxation {
   /// Forces, residual and damage at the present displacement.
   void evaluate() {
     Assembler& assembler = problem_.assembler;
-    const Stored stored = options_.breaking == Breaking::transient
-                              ? assembler.commit(at_.displacement, at_.history, at_.gradient)
-                              : assembler.gradient(at_.at(), at_.gradient);
-    result_.growth.degrading += stored.growth.degrading;
-    result_.growth.breaking += stored.growth.breaking;
-    result_.released_energy += stored.released;
-    at_.stored_energy = stored.energy;
+    const Evaluation found = options_.breaking == Breaking::transient
+                                 ? assembler.commit(at_.displacement, at_.history, at_.gradient)
+                                 : assembler.gradient(at_.at(), at_.gradient);
+    result_.growth.degrading += found.growth.degrading;
+    result_.growth.breaking += found.growth.breaking;
+    result_.released_energy += found.released;
+    at_.stored_energy = found.energy;
     residual_.swap(last_residual_);
     const std::vector<double>& force = result_.external_force;
     // [0] F.F, [1] U.K1 U, [2] U.U
@@ -114,7 +114,7 @@ class Relaxation {
       s[1] -= squared * (residual - last_residual_[e]) * inverse_density_[e] / velocity_[e];
     });
     at_.residual_norm = std::sqrt(sums[0]);
-    at_.degenerate = stored.degenerate || !std::isfinite(sums[0]);
+    at_.degenerate = found.degenerate || !std::isfinite(sums[0]);
     quotient_ = sums[2] > 0.0 ? sums[1] / sums[2] : 0.0;
   }
 

@@ -54,7 +54,7 @@ struct RelaxationResult {
   double drained_energy = 0.0;   ///< external work minus what the bonds have taken up [J]
   double damped_energy = 0.0;    ///< by damping, and by stopping motion: see relax [J]
   DamageGrowth growth;           ///< of transient breaking
-  double released_energy = 0.0;  ///< of transient breaking, see Stored::released [J]
+  double released_energy = 0.0;  ///< of transient breaking, see Evaluation::released [J]
 };
 
 /// Motion of the pseudo dynamics that lasts from one step to the next where a step does not hold.

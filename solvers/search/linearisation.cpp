@@ -36,7 +36,7 @@ LinearOutcome Linearisation::solve(const StateView& at, std::span<const double> 
 }
 
 void Linearisation::assemble(const StateView& at, double projection) {
-  Tangent* const stored = tangent_.stored();
+  Tangent* const stored = tangent_.as_tangent();
   if (projection == 0.0 || !exact_is_known_ || !stored) {
     tangent_.linearise(problem_.assembler, at, projection);
     exact_is_known_ = projection == 0.0;

@@ -6,31 +6,45 @@
 namespace peristat {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+/// Means over all directions n in 1D, 2D and 3D.
+constexpr double mean_of_fourth_power[] = {1.0, 3.0 / 8.0, 1.0 / 5.0};            // n_x^4
+constexpr double mean_of_magnitude[] = {1.0, 2.0 / std::numbers::pi, 1.0 / 2.0};  // |n_x|
 
-/// Micromodulus per Young's modulus [1/m4].
-double micromodulus_per_modulus(const BondSetting& setting) {
-  const double horizon = setting.horizon;
-  const double section = setting.cross_section;
-  switch (setting.dimension) {
-    case 1:
-      return 2.0 / (section * horizon * horizon);
-    case 2:
-      return (setting.plane == PlaneState::stress ? 9.0 : 48.0 / 5.0) /
-             (pi * std::pow(horizon, 3) * section);
-    default:
-      return 12.0 / (pi * std::pow(horizon, 4));
-  }
+double micromodulus_of_moment(double youngs_modulus, const BondSetting& setting,
+                              double first_moment) {
+  const double mean = mean_of_fourth_power[setting.dimension - 1];
+  return 4.0 * confined_energy_per_modulus(setting) * youngs_modulus / (mean * first_moment);
+}
+
+double critical_stretch_of_moment(double fracture_energy, double micromodulus, int dimension,
+                                  double second_moment) {
+  const double mean = mean_of_magnitude[dimension - 1];
+  return std::sqrt(4.0 * fracture_energy / (micromodulus * mean * second_moment));
 }
 
 }  // namespace
 
 double micromodulus(double youngs_modulus, const BondSetting& setting) {
-  return youngs_modulus * micromodulus_per_modulus(setting);
+  return micromodulus_of_moment(youngs_modulus, setting, setting.moment(1));
+}
+
+double lattice_micromodulus(double youngs_modulus, const BondSetting& setting, double spacing) {
+  return micromodulus_of_moment(youngs_modulus, setting, setting.lattice_moment(1, spacing));
 }
 
 double youngs_modulus_of(double micromodulus, const BondSetting& setting) {
-  return micromodulus / micromodulus_per_modulus(setting);
+  return micromodulus / micromodulus_of_moment(1.0, setting, setting.moment(1));
+}
+
+double critical_stretch(double fracture_energy, double micromodulus, const Kernel& kernel) {
+  return critical_stretch_of_moment(fracture_energy, micromodulus, kernel.dimension,
+                                    kernel.moment(2));
+}
+
+double lattice_critical_stretch(double fracture_energy, double micromodulus, const Kernel& kernel,
+                                double spacing) {
+  return critical_stretch_of_moment(fracture_energy, micromodulus, kernel.dimension,
+                                    kernel.lattice_moment(2, spacing));
 }
 
 double poisson_ratio(const BondSetting& setting) {

@@ -1,19 +1,24 @@
 #pragma once
 
+#include "src/neighbourhood/kernel.hpp"
+
 namespace peristat {
 
 /// State of a plane (2D) bond model.
 enum class PlaneState { stress, strain };
 
 /// What the constants of a bond-based model depend on besides the modulus.
-struct BondSetting {
-  int dimension = 2;
+struct BondSetting : Kernel {
   PlaneState plane = PlaneState::stress;  ///< 2D only
-  double horizon = 0.0;                   ///< delta [m]
-  double cross_section = 1.0;             ///< 1D: area A [m2]; 2D: thickness h [m]; 3D: 1
 };
 
-/// Micromodulus c [N/m6] of the bond force density c s for Young's modulus E [Pa]:
+/// Micromodulus c [N/m6] of the bond force density c omega s for Young's modulus E [Pa], from the
+/// kernel's first moment: under a confined unit strain along an axis a bond of direction n stores c
+/// omega r n_x^4 / 2, half of it at each end, so that the classical energy e E per volume needs
+///
+///   c = 4 e E / (<n_x^4> m_1),   <n_x^4> = 1 | 3/8 | 1/5   in 1D | 2D | 3D.
+///
+/// With omega = 1 that is
 ///
 ///   1D 2E/(A d^2) | plane stress 9E/(pi d^3 h) | plane strain 48E/(5 pi d^3 h) | 3D 12E/(pi d^4)
 ///
@@ -21,8 +26,27 @@ struct BondSetting {
 /// strain, c A d^2 / 4 per volume, must be E/2.)
 [[nodiscard]] double micromodulus(double youngs_modulus, const BondSetting& setting);
 
-/// Young's modulus that belongs to a micromodulus: the inverse of the above.
+/// The same with the moment of a lattice: right in the mean over all directions of its axes.
+[[nodiscard]] double lattice_micromodulus(double youngs_modulus, const BondSetting& setting,
+                                          double spacing);
+
+/// Young's modulus that belongs to a micromodulus: the inverse of `micromodulus`.
 [[nodiscard]] double youngs_modulus_of(double micromodulus, const BondSetting& setting);
+
+/// Stretch at which brittle harmonic bonds break so that a plane crack takes the fracture energy
+/// G [J/m2], from the kernel's second moment: the bonds over a unit of area hold
+/// G = c s^2 / 2 * <|n_x|> m_2 / 2, so that
+///
+///   s_c = sqrt(4 G / (c <|n_x|> m_2)),   <|n_x|> = 1 | 2/pi | 1/2   in 1D | 2D | 3D.
+///
+/// With omega = 1 that is sqrt(10 G / (pi c d^5)) in 3D ([GPMB] eq. 10) and sqrt(4 G / (c h d^4))
+/// in 2D.
+[[nodiscard]] double critical_stretch(double fracture_energy, double micromodulus,
+                                      const Kernel& kernel);
+
+/// The same with the moment of a lattice: the mean over all directions of the crack.
+[[nodiscard]] double lattice_critical_stretch(double fracture_energy, double micromodulus,
+                                              const Kernel& kernel, double spacing);
 
 /// Poisson's ratio that central forces impose: 1/3 in plane stress, 1/4 in plane strain and 3D,
 /// 0 in 1D.

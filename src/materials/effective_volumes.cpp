@@ -16,17 +16,6 @@ double divisor(double count) { return count >= 1.0 ? count : 0.5 * (1.0 + count 
 
 }  // namespace
 
-std::vector<std::int32_t> neighbour_counts(const Bonds& bonds) {
-  std::vector<std::int32_t> count(std::size_t(bonds.points()), 0);
-  for (Index i = 0; i < bonds.points(); ++i) {
-    count[i] += static_cast<std::int32_t>(bonds.offset[i + 1] - bonds.offset[i]);
-    for (Offset bond = bonds.offset[i]; bond < bonds.offset[i + 1]; ++bond) {
-      ++count[bonds.partner[bond]];
-    }
-  }
-  return count;
-}
-
 double effective_neighbour_volume(const BulkNeighbourhood& bulk) {
   return bulk.volume / double(bulk.neighbours);
 }

@@ -15,9 +15,6 @@ enum class InteractionWeights {
   bulk,  ///< every point counts as if it were far from all surfaces
 };
 
-/// Neighbours of every point, #N1.
-[[nodiscard]] std::vector<std::int32_t> neighbour_counts(const Bonds& bonds);
-
 /// Effective volume of one neighbour, V1 = V_H / #N1 [m3] (eq. 29 of [CPD]). The volume of a
 /// point's neighbourhood is V_H = V_H,bulk #N1 / #N1,bulk, truncated at surfaces as the neighbours
 /// are, so that V1 is the same for all points.

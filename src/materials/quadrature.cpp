@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 
-#include "src/neighbourhood/horizon.hpp"
 #include "src/neighbourhood/search.hpp"
 
 namespace peristat {
@@ -34,60 +33,42 @@ void for_each_bond(const Bonds& bonds, const Visit& visit) {
   }
 }
 
-void apply_volume_correction(Bonds& bonds, const Points& points, const Quadrature& quadrature,
-                             const BondSetting& setting) {
+void weigh_volumes(Bonds& bonds, const Points& points, const Kernel& kernel) {
   bonds.set_weights([&](Index i, Offset bond) {
     const Index j = bonds.partner[bond];
     double share = 1.0;
-    if (quadrature.volume == VolumeCorrection::linear) {
-      const double size_i = cell_size(points, i, setting.cross_section);
-      const double size_j = cell_size(points, j, setting.cross_section);
-      share = 0.5 * (linear_partial_volume(bonds.length(bond), setting.horizon, size_i) +
-                     linear_partial_volume(bonds.length(bond), setting.horizon, size_j));
+    if (kernel.volume_correction != VolumeCorrection::none) {
+      const double size_i = cell_size(points, i, kernel.cross_section);
+      const double size_j = cell_size(points, j, kernel.cross_section);
+      share = 0.5 * (kernel.partial_volume(bonds.length(bond), size_i) +
+                     kernel.partial_volume(bonds.length(bond), size_j));
     }
-    return share * points.volume[i] * points.volume[j];
+    return share * points.volume[i] * points.volume[j] * kernel.influence_at(bonds.length(bond));
   });
+}
+
+/// Radius that the neighbour search needs [m].
+double search_radius(const Points& points, const Kernel& kernel) {
+  double largest = 0.0;
+  for (Index i = 0; i < points.count(); ++i) {
+    largest = std::max(largest, cell_size(points, i, kernel.cross_section));
+  }
+  return kernel.search_radius(largest);
 }
 
 void drop_weightless(Bonds& bonds) {
   bonds.remove_if([&](Index, Offset bond) { return bonds.weight(bond) == 0.0; });
 }
 
-/// Volume of the neighbourhood of a point far from surfaces, without its own: summed over the
-/// lattice. For a cloud of points the same sum over a lattice of its mean spacing serves.
-double bulk_neighbourhood_volume(const Points& points, const Quadrature& quadrature,
-                                 const BondSetting& setting) {
-  const double spacing = points.spacing;
-  const int width = static_cast<int>(std::ceil(setting.horizon / spacing)) + 1;
-  const double cell = std::pow(spacing, setting.dimension) * setting.cross_section;
-  double volume = 0.0;
-  const int width_y = setting.dimension > 1 ? width : 0;
-  const int width_z = setting.dimension > 2 ? width : 0;
-  for (int x = -width; x <= width; ++x) {
-    for (int y = -width_y; y <= width_y; ++y) {
-      for (int z = -width_z; z <= width_z; ++z) {
-        const double distance = spacing * std::sqrt(double(x * x + y * y + z * z));
-        if (distance == 0.0) continue;
-        if (quadrature.volume == VolumeCorrection::linear) {
-          volume += cell * linear_partial_volume(distance, setting.horizon, spacing);
-        } else if (distance <= reach(setting.horizon)) {
-          volume += cell;
-        }
-      }
-    }
-  }
-  return volume;
-}
-
-void apply_volume_method(Bonds& bonds, const Points& points, const Quadrature& quadrature,
-                         const BondSetting& setting) {
+void apply_volume_method(Bonds& bonds, const Points& points, const Kernel& kernel) {
   std::vector<double> neighbourhood(points.volume.size(), 0.0);
   for_each_bond(bonds, [&](Index i, Offset bond) {
     const Index j = bonds.partner[bond];
     neighbourhood[i] += bonds.weight(bond) / points.volume[i];
     neighbourhood[j] += bonds.weight(bond) / points.volume[j];
   });
-  const double bulk = bulk_neighbourhood_volume(points, quadrature, setting);
+  // For a cloud of points a lattice of its mean spacing serves.
+  const double bulk = kernel.lattice_moment(0, points.spacing);
   bonds.set_weights([&](Index i, Offset bond) {
     const double both = neighbourhood[i] + neighbourhood[bonds.partner[bond]];
     return bonds.weight(bond) * 2.0 * bulk / both;
@@ -135,29 +116,14 @@ void apply_energy_method(Bonds& bonds, const Points& points, const BondSetting& 
 
 }  // namespace
 
-double linear_partial_volume(double distance, double horizon, double size) {
-  const double share = std::clamp((horizon + 0.5 * size - distance) / size, 0.0, 1.0);
-  return share < horizon_tolerance ? 0.0 : share;  // round-off at the far end is no bond
-}
-
-double search_radius(const Points& points, const Quadrature& quadrature,
-                     const BondSetting& setting) {
-  if (quadrature.volume == VolumeCorrection::none) return setting.horizon;
-  double largest = 0.0;
-  for (Index i = 0; i < points.count(); ++i) {
-    largest = std::max(largest, cell_size(points, i, setting.cross_section));
-  }
-  return setting.horizon + 0.5 * largest;
-}
-
-Bonds make_bonds(const Points& points, const Quadrature& quadrature, const BondSetting& setting,
+Bonds make_bonds(const Points& points, SurfaceCorrection surface, const BondSetting& setting,
                  int threads) {
-  Bonds bonds = search_bonds(points, search_radius(points, quadrature, setting), threads);
-  apply_volume_correction(bonds, points, quadrature, setting);
-  if (quadrature.volume == VolumeCorrection::linear) drop_weightless(bonds);
-  if (quadrature.surface == SurfaceCorrection::volume) {
-    apply_volume_method(bonds, points, quadrature, setting);
-  } else if (quadrature.surface == SurfaceCorrection::energy) {
+  Bonds bonds = search_bonds(points, search_radius(points, setting), threads);
+  weigh_volumes(bonds, points, setting);
+  if (setting.volume_correction == VolumeCorrection::linear) drop_weightless(bonds);
+  if (surface == SurfaceCorrection::volume) {
+    apply_volume_method(bonds, points, setting);
+  } else if (surface == SurfaceCorrection::energy) {
     apply_energy_method(bonds, points, setting);
   }
   return bonds;

@@ -7,6 +7,8 @@ namespace peristat {
 inline constexpr double horizon_tolerance = 1e-8;
 
 /// Largest distance that counts as inside a radius [m].
-[[nodiscard]] constexpr double reach(double radius) { return radius * (1.0 + horizon_tolerance); }
+[[nodiscard]] constexpr double inclusive_radius(double radius) {
+  return radius * (1.0 + horizon_tolerance);
+}
 
 }  // namespace peristat

@@ -14,14 +14,15 @@ class LatticeBall {
  public:
   LatticeBall(int dimension, double spacing, double horizon)
       : dimension_(dimension), spacing_(spacing), horizon_(horizon) {
-    const int width = static_cast<int>(std::floor(reach(horizon) / spacing));
+    const int width = static_cast<int>(std::floor(inclusive_radius(horizon) / spacing));
     const int width_y = dimension > 1 ? width : 0, width_z = dimension > 2 ? width : 0;
     for (int x = -width; x <= width; ++x) {
       for (int y = -width_y; y <= width_y; ++y) {
         for (int z = -width_z; z <= width_z; ++z) {
           const Coordinates arm{spacing * x, spacing * y, spacing * z};
           const double squared = dot(arm, arm);
-          if (squared > 0.0 && squared <= reach(horizon) * reach(horizon)) arms_.push_back(arm);
+          if (squared > 0.0 && squared <= inclusive_radius(horizon) * inclusive_radius(horizon))
+            arms_.push_back(arm);
         }
       }
     }
@@ -80,7 +81,7 @@ class LatticeBall {
       const double difference = arms_[j][c] - arms_[k][c];
       squared += difference * difference;
     }
-    return squared <= reach(horizon_) * reach(horizon_);
+    return squared <= inclusive_radius(horizon_) * inclusive_radius(horizon_);
   }
 
   int dimension_;

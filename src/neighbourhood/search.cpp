@@ -44,7 +44,8 @@ struct CellList {
     const double most_cells = 8.0 * count + 64.0;
     std::array<double, D> wanted;
     for (int c = 0; c < D; ++c) {
-      const double cells_along = (upper[c] - lower[c]) * cells_per_radius / reach(radius);
+      const double cells_along =
+          (upper[c] - lower[c]) * cells_per_radius / inclusive_radius(radius);
       wanted[c] = std::clamp(std::floor(cells_along), 1.0, most_cells);
     }
     const auto total = [&] {
@@ -132,7 +133,7 @@ template <int D>
 Bonds search(const Points& points, double radius, int threads) {
   const CellList<D> cells(points, radius);
   const Index count = points.count();
-  const double longest = reach(radius);
+  const double longest = inclusive_radius(radius);
   const double squared_longest = longest * longest;
   Bonds bonds;
   bonds.offset.assign(std::size_t(count) + 1, 0);

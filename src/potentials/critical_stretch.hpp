@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+
 namespace peristat {
 
 /// Brittle bond: whole below the critical stretch s_c, broken from it on ([GPMB] eq. 9). The force
@@ -11,8 +13,8 @@ struct CriticalStretch {
   [[nodiscard]] double critical() const { return critical_stretch; }
   [[nodiscard]] double integrity(double s) const { return s < critical_stretch ? 1.0 : 0.0; }
   [[nodiscard]] double slope(double) const { return 0.0; }
-  [[nodiscard]] double moment(double s) const {
-    return s < critical_stretch ? 0.5 * s * s : 0.5 * critical_stretch * critical_stretch;
+  [[nodiscard]] double work(const auto& whole, double s) const {
+    return whole(std::min(s, critical_stretch)).value;
   }
 };
 

@@ -12,6 +12,7 @@ namespace peristat {
 /// For bonds C is the micromodulus c [N/m6], and dpsi/dm = c s the pairwise force density of eq. 3
 /// of [ADAPT] with the stretch s.
 struct Harmonic {
+  static constexpr const char* name = "harmonic";
   double modulus = 0.0;  ///< C [N/m6] for length
 
   /// @param e relative change of the measure

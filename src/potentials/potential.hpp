@@ -1,6 +1,7 @@
 #pragma once
 
 #include <concepts>
+#include <string_view>
 #include <type_traits>
 #include <variant>
 
@@ -13,10 +14,12 @@
 namespace peristat {
 
 /// A scalar law: the density of a potential from the relative change of its measure, over double
-/// and over Lanes.
+/// and over Lanes; linear in its modulus.
 template <class P>
 concept Potential = std::is_aggregate_v<P> &&
     requires(const P potential, double number, Lanes lanes) {
+  { potential.modulus } -> std::convertible_to<double>;
+  { P::name } -> std::convertible_to<std::string_view>;
   { potential(number) } -> std::same_as<PotentialDensity<double>>;
   { potential(lanes) } -> std::same_as<PotentialDensity<Lanes>>;
 };
@@ -29,8 +32,24 @@ concept PotentialWithHistory = requires(const P potential, double number, Lanes 
   { potential.is_loading(number, number) } -> std::same_as<bool>;
 };
 
+/// Potentials of whole bonds, and each of them with every law of damage.
+template <Potential... Whole>
+struct BondPotentials {
+  using Any = std::variant<Whole..., Degraded<CriticalStretch, Whole>...,
+                           Degraded<TanhDegradation, Whole>...>;
+
+  /// Calls visit(potential) for each of them, with the modulus 1.
+  template <class Visit>
+  static void for_each(const Visit& visit) {
+    (visit(Whole{1.0}), ...);
+  }
+};
+
+/// The list of potentials that a whole bond can have; a case file chooses by their names.
+using WholeBondPotentials = BondPotentials<Harmonic>;
+
 /// Every potential that a bond can have; the choice is made once, outside the loop over bonds.
-using BondPotential = std::variant<Harmonic, Degraded<CriticalStretch>, Degraded<TanhDegradation>>;
+using BondPotential = WholeBondPotentials::Any;
 
 /// Every potential that a triangle or tetrahedron can have.
 using HigherPotential = std::variant<Harmonic>;

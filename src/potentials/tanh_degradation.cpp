@@ -62,7 +62,7 @@ double TanhDegradation::primitive(double y) const {
   return a * middle * first_primitive(y) + a * a * second_primitive(y);
 }
 
-double TanhDegradation::moment(double s) const {
+double TanhDegradation::work(const Harmonic&, double s) const {
   const double elastic = 0.5 * onset_stretch * onset_stretch;
   if (s <= onset_stretch) return 0.5 * s * s;
   const double end = s < critical_stretch ? s : critical_stretch;

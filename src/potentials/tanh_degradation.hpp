@@ -1,5 +1,7 @@
 #pragma once
 
+#include "src/potentials/harmonic.hpp"
+
 namespace peristat {
 
 /// Bond that softens between the stretches s_m and s_c (eq. 12 of [ADAPT]):
@@ -26,10 +28,10 @@ struct TanhDegradation {
   [[nodiscard]] double integrity(double s) const;
   [[nodiscard]] double slope(double s) const;
 
-  /// In closed form: with a = (s_c - s_m)/(4 beta) and s = s_mid + a y,
+  /// For the modulus 1, in closed form: with a = (s_c - s_m)/(4 beta) and s = s_mid + a y,
   ///   int s/(1 + exp y) ds = a s_mid F_1(y) + a^2 F_2(y),
   ///   F_1 = -ln(1 + exp(-y)),  F_2 = -y ln(1 + exp(-y)) + Li_2(-exp(-y)).
-  [[nodiscard]] double moment(double s) const;
+  [[nodiscard]] double work(const Harmonic& whole, double s) const;
 
  private:
   [[nodiscard]] double exponent(double s) const;

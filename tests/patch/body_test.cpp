@@ -23,7 +23,7 @@ constexpr double epsilon = std::numeric_limits<double>::epsilon();
 
 struct Setting {
   int dimension;
-  Quadrature quadrature;
+  tests::Quadrature quadrature;
   double perturbation;
   double triangles = 0.0, tetrahedra = 0.0;  ///< stiffness, see BoxSetting
 };

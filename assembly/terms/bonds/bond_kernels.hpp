@@ -235,11 +235,11 @@ struct BondKernels {
 
   /// @tparam commits whether histories follow: the energy is then what is stored after that
   template <bool commits, class P>
-  static Stored gradient(BondWorkspace& a, const P& potential, Span displacement,
-                         std::conditional_t<commits, double*, const double*> largest_stretch,
-                         std::span<double> result, Write how) {
+  static Evaluation gradient(BondWorkspace& a, const P& potential, Span displacement,
+                             std::conditional_t<commits, double*, const double*> largest_stretch,
+                             std::span<double> result, Write how) {
     a.pack<D>(a.points.reference, displacement);
-    std::vector<Stored>& parts = a.threads.stored;
+    std::vector<Evaluation>& parts = a.threads.evaluations;
     const Bonds& bonds = a.bonds;
     const bool energy_only = result.empty();
     constexpr int width = vector_width(D);
@@ -275,7 +275,7 @@ struct BondKernels {
     a.threads.sum_rows<width>(body, [&](Index i, const double* total) {
       if (!energy_only) put<D>(how, total, &result[std::size_t(i) * D]);
     });
-    return a.threads.total_stored();
+    return a.threads.total_evaluation();
   }
 
   template <class P>
@@ -291,10 +291,10 @@ struct BondKernels {
           look_at<D>(potential, batch, measure.relative_change, largest_stretch, found);
         });
       }
-      a.threads.stored[thread] = {0.0, false, found};
+      a.threads.evaluations[thread] = {0.0, false, found};
     };
     a.threads.sum_rows<1>(body, [](Index, const double*) {});
-    return a.threads.total_stored().growth;
+    return a.threads.total_evaluation().growth;
   }
 
   /// @param blocks_of(thread, i) where the off-diagonal blocks of row i go

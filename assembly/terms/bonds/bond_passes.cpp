@@ -45,15 +45,15 @@ auto BondPasses::dispatch(const StateView& at, const Body& body) const {
       term_.potential());
 }
 
-Stored BondPasses::gradient(const StateView& at, std::span<double> gradient, Write how) {
+Evaluation BondPasses::gradient(const StateView& at, std::span<double> gradient, Write how) {
   return dispatch(at, [&](auto d, const auto& law, const double* largest_stretch) {
     return BondKernels<decltype(d)::value>::template gradient<false>(
         workspace_, law, at.displacement, largest_stretch, gradient, how);
   });
 }
 
-Stored BondPasses::commit(std::span<const double> displacement, History& history,
-                          std::span<double> gradient, Write how) {
+Evaluation BondPasses::commit(std::span<const double> displacement, History& history,
+                              std::span<double> gradient, Write how) {
   if (!term_.can_fail()) return this->gradient({displacement, history}, gradient, how);
   double* const largest_stretch = history.change(slot_).data();
   return dispatch({displacement, history}, [&]<class P>(auto d, const P& law, const double*) {
@@ -61,7 +61,7 @@ Stored BondPasses::commit(std::span<const double> displacement, History& history
       return BondKernels<decltype(d)::value>::template gradient<true>(
           workspace_, law, displacement, largest_stretch, gradient, how);
     } else {
-      return Stored{};
+      return Evaluation{};
     }
   });
 }

@@ -12,9 +12,9 @@ class BondPasses : public TermPasses {
  public:
   BondPasses(const BondTerm& term, const TermSetting& setting);
 
-  Stored gradient(const StateView& at, std::span<double> gradient, Write how) override;
-  Stored commit(std::span<const double> displacement, History& history, std::span<double> gradient,
-                Write how) override;
+  Evaluation gradient(const StateView& at, std::span<double> gradient, Write how) override;
+  Evaluation commit(std::span<const double> displacement, History& history,
+                    std::span<double> gradient, Write how) override;
   DamageGrowth growth(const StateView& at) override;
   void tangent(const StateView& at, double projection, Tangent& tangent, Write how) override;
   void visit_tangent(const StateView& at, double projection, const RowVisitor& visit,

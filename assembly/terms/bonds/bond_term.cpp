@@ -5,7 +5,7 @@
 
 #include "assembly/terms/bonds/bond_passes.hpp"
 #include "src/core/lanes.hpp"
-#include "src/materials/effective_volumes.hpp"
+#include "src/neighbourhood/neighbour_counts.hpp"
 
 namespace peristat {
 namespace {

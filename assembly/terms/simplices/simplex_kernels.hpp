@@ -121,8 +121,8 @@ struct SimplexKernels {
     for (int c = 0; c < width; ++c) row[c] += own[c];
   }
 
-  static Stored gradient(SimplexWorkspace<D>& a, Span displacement, const Integrity& integrity,
-                         std::span<double> result) {
+  static Evaluation gradient(SimplexWorkspace<D>& a, Span displacement, const Integrity& integrity,
+                             std::span<double> result) {
     const bool energy_only = result.empty();
     const bool find_pairs = must_find(a.term);
     constexpr int stride = vector_width(D);
@@ -161,13 +161,13 @@ struct SimplexKernels {
         energy += sum(row_energy);
         if (!energy_only) add_to_rows<D, stride>(w, sums);
       }
-      a.threads.stored[thread] = {energy, !(smallest(smallest_measure) > 0.0)};
+      a.threads.evaluations[thread] = {energy, !(smallest(smallest_measure) > 0.0)};
     };
     a.threads.template sum_rows<stride>(body, [&](Index i, const double* total) {
       if (energy_only) return;
       for (int c = 0; c < D; ++c) result[std::size_t(i) * D + c] += total[c];
     });
-    return a.threads.total_stored();
+    return a.threads.total_evaluation();
   }
 
   static void product(SimplexWorkspace<D>& a, Span displacement, const Integrity& integrity, Span v,
@@ -428,7 +428,7 @@ struct SimplexKernels {
     const auto add_spilled_blocks = [&](int thread, RowRange range) {
       for (int earlier = 0; earlier < thread; ++earlier) {
         const RowRange other = a.threads.ranges[earlier];
-        const Index last = std::min(range.last, other.reach);
+        const Index last = std::min(range.last, other.touched_end);
         if (last <= range.first) continue;
         const std::size_t from = std::size_t(a.pattern.offset[range.first]) * entries;
         const std::size_t count = std::size_t(a.pattern.offset[last]) * entries - from;

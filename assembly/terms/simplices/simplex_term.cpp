@@ -21,23 +21,23 @@ class SimplexPasses : public TermPasses {
         slot_(setting.model.slot_of(term)),
         workspace_(term, setting) {}
 
-  Stored gradient(const StateView& at, std::span<double> gradient, Write how) override {
+  Evaluation gradient(const StateView& at, std::span<double> gradient, Write how) override {
     if (how == Write::over) clear(gradient);
     return Kernels::gradient(workspace_, at.displacement, integrity_after(at.history), gradient);
   }
 
-  Stored commit(std::span<const double> displacement, History& history, std::span<double> gradient,
-                Write how) override {
+  Evaluation commit(std::span<const double> displacement, History& history,
+                    std::span<double> gradient, Write how) override {
     const History before = history;
     term_.follow(model_, history);
-    Stored stored = this->gradient({displacement, history}, gradient, how);
-    stored.moves_equilibrium = !std::ranges::equal(before.of(slot_), history.of(slot_));
-    if (stored.moves_equilibrium) {
+    Evaluation found = this->gradient({displacement, history}, gradient, how);
+    found.moves_equilibrium = !std::ranges::equal(before.of(slot_), history.of(slot_));
+    if (found.moves_equilibrium) {
       const double energy = this->gradient({displacement, before}, {}, how).energy;
       // No integrity rises in a commit, but for the last digit of an exponential.
-      stored.released = std::max(energy - stored.energy, 0.0);
+      found.released = std::max(energy - found.energy, 0.0);
     }
-    return stored;
+    return found;
   }
 
   void tangent(const StateView& at, double projection, Tangent& tangent, Write how) override {

@@ -17,7 +17,7 @@ struct SimplexWorkspace {
         places(setting.pattern.places_of(of.couplings())),
         threads(setting.workspace) {
     for (const RowRange& range : threads.ranges) {
-      const Offset beyond = pattern.offset[range.reach] - pattern.offset[range.last];
+      const Offset beyond = pattern.offset[range.touched_end] - pattern.offset[range.last];
       blocks.emplace_back(std::size_t(beyond) * D * D);
       local.push_back(std::make_unique<LocalWorkspace<D>>(setting.points, of.bonds()));
     }

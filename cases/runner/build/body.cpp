@@ -39,7 +39,7 @@ void require_summable(const Case& from, const std::string& key, double value, do
   const double largest = counts_pairs          ? largest_ratio_with_pairs(from.dimension)
                          : from.dimension == 3 ? 100.0
                                                : 1000.0;
-  if (ratio <= reach(largest)) return;
+  if (ratio <= inclusive_radius(largest)) return;
   throw InputError(key, number_text(value),
                    "the horizon is " + number_text(ratio) + " spacings; at most " +
                        number_text(largest) + (counts_pairs ? " with model \"cpd\"" : "") + " in " +
@@ -50,6 +50,7 @@ BondSetting setting_of(const Case& from, const Points& points) {
   BondSetting setting;
   setting.dimension = from.dimension;
   setting.plane = from.material.plane;
+  setting.volume_correction = from.volume_correction;
   if (const Lattice* lattice = lattice_of(from)) {
     setting.horizon = from.horizon_ratio * lattice->spacing;
     require_summable(from, "lattice.horizon_ratio", from.horizon_ratio, from.horizon_ratio);
@@ -188,8 +189,7 @@ std::unique_ptr<const Body> make_body(const Case& from, int threads) {
                    "the case with " + std::to_string(body.points.count()) + " points");
     {
       const Stopwatch watch(body.seconds_neighbourhood);
-      Bonds bonds = make_bonds(body.points, {from.volume_correction, from.surface_correction},
-                               body.setting, threads);
+      Bonds bonds = make_bonds(body.points, from.surface_correction, body.setting, threads);
       CutBonds cut;
       if (from.material.model == MaterialModel::cpd) {
         body.model =
@@ -198,10 +198,9 @@ std::unique_ptr<const Body> make_body(const Case& from, int threads) {
         // Corrections near surfaces are those of the whole body: a crack is no surface.
         cut = cut_bonds(bonds, body.points, from.cracks);
         std::vector<char> never_fails = never_failing_bonds(from, body.points, bonds);
-        body.model =
-            Model(std::move(bonds),
-                  bond_potential(from.material.damage, micromodulus_of(from, body.setting)),
-                  std::move(never_fails));
+        body.model = Model(std::move(bonds),
+                           bond_potential(from.material, micromodulus_of(from, body.setting)),
+                           std::move(never_fails));
       }
       body.cut_weight = std::move(cut.weight);
       body.cut_bonds = std::move(cut.ends);
@@ -225,8 +224,7 @@ std::optional<Model> make_elastic_stand_in(const Case& from, const Body& body, i
                      from.solver.elastic_horizon_ratio);
     BondSetting setting = body.setting;
     setting.horizon = from.solver.elastic_horizon_ratio * body.points.spacing;
-    Bonds bonds = make_bonds(body.points, {from.volume_correction, from.surface_correction},
-                             setting, threads);
+    Bonds bonds = make_bonds(body.points, from.surface_correction, setting, threads);
     static_cast<void>(cut_bonds(bonds, body.points, from.cracks));
     if (!free_motions(body.points, bonds, body.conditions->prescribed()).empty())
       throw InputError(key, number_text(from.solver.elastic_horizon_ratio),
@@ -272,8 +270,8 @@ std::string describe_free_motions(const Body& body) {
   const std::vector<FreeMotion> parts =
       free_motions(body.points, body.model.bonds(), body.conditions->prescribed());
   std::string text;
-  constexpr std::size_t most_told = 5;
-  for (std::size_t k = 0; k < std::min(parts.size(), most_told); ++k) {
+  constexpr std::size_t most_listed = 5;
+  for (std::size_t k = 0; k < std::min(parts.size(), most_listed); ++k) {
     const FreeMotion& part = parts[k];
     const std::string place = place_text(body.points.position(part.example), body.points.dimension);
     if (part.points == body.points.count()) {
@@ -289,8 +287,8 @@ std::string describe_free_motions(const Body& body) {
     }
     text += "; ";
   }
-  if (parts.size() > most_told) {
-    text += "so may " + std::to_string(parts.size() - most_told) + " more parts; ";
+  if (parts.size() > most_listed) {
+    text += "so may " + std::to_string(parts.size() - most_listed) + " more parts; ";
   }
   if (!text.empty()) text.resize(text.size() - 2);
   return text;

@@ -1,22 +1,40 @@
 #include "cases/runner/build/bond_potential.hpp"
 
+#include <tuple>
+
 #include "src/core/input_error.hpp"
 
 namespace peristat {
 
-BondPotential bond_potential(const DamageSpecification& damage, double micromodulus) {
+namespace {
+
+template <class Whole>
+BondPotential with_damage(const Whole& whole, const DamageSpecification& damage) {
+  const auto [onset, critical, rate] = std::tuple(damage.onset, damage.critical, damage.rate);
   switch (damage.law) {
     case DamageLaw::none:
-      return Harmonic{micromodulus};
+      return whole;
     case DamageLaw::critical_stretch:
-      return Degraded<CriticalStretch>{micromodulus, {damage.critical}};
+      return Degraded<CriticalStretch, Whole>{whole.modulus, {critical}};
     case DamageLaw::tanh:
-      return Degraded<TanhDegradation>{micromodulus, {damage.onset, damage.critical, damage.rate}};
+      return Degraded<TanhDegradation, Whole>{whole.modulus, {onset, critical, rate}};
     case DamageLaw::tanh_continuous:
       break;
   }
-  return Degraded<TanhDegradation>{
-      micromodulus, TanhDegradation::continuous(damage.onset, damage.critical, damage.rate)};
+  return Degraded<TanhDegradation, Whole>{whole.modulus,
+                                          TanhDegradation::continuous(onset, critical, rate)};
+}
+
+}  // namespace
+
+BondPotential bond_potential(const MaterialSpecification& material, double micromodulus) {
+  BondPotential result;
+  WholeBondPotentials::for_each([&](auto whole) {
+    if (material.potential != whole.name) return;
+    whole.modulus = micromodulus;
+    result = with_damage(whole, material.damage);
+  });
+  return result;
 }
 
 double micromodulus_of(const Case& from, const BondSetting& setting) {

@@ -12,7 +12,8 @@ namespace peristat {
 
 /// Potential of the bonds of a case.
 /// @param micromodulus c, or C1 of cpd [N/m6]
-[[nodiscard]] BondPotential bond_potential(const DamageSpecification& damage, double micromodulus);
+[[nodiscard]] BondPotential bond_potential(const MaterialSpecification& material,
+                                           double micromodulus);
 
 /// Micromodulus of the bonds of a case of model "bond" [N/m6].
 [[nodiscard]] double micromodulus_of(const Case& from, const BondSetting& setting);

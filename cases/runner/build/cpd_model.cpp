@@ -6,6 +6,7 @@
 #include "cases/runner/build/bond_potential.hpp"
 #include "src/core/input_error.hpp"
 #include "src/core/number_text.hpp"
+#include "src/neighbourhood/neighbour_counts.hpp"
 
 namespace peristat {
 namespace {
@@ -92,8 +93,7 @@ Model make_cpd_model(const Case& from, const Points& points, const BondSetting& 
   Bonds left = bonds;
   cut = cut_bonds(left, points, from.cracks);
   std::vector<char> never_fails = never_failing_bonds(from, points, left);
-  Model model(std::move(left), bond_potential(from.material.damage, constants.c1),
-              std::move(never_fails));
+  Model model(std::move(left), bond_potential(from.material, constants.c1), std::move(never_fails));
   std::optional<Simplices<Area>> triangles;
   std::optional<Simplices<Volume>> tetrahedra;
   if (constants.c2 != 0.0) {

@@ -14,7 +14,7 @@ LinearSolverOptions linear_solver_options(const Case& from) {
 }
 
 LinearSystems choose_linear_systems(const Case& from, const MemoryEstimate& estimate,
-                                    SolverLadder::Teller tell) {
+                                    SolverLadder::Reporter tell) {
   const LinearSolverOptions options = linear_solver_options(from);
   LinearProblem problem;
   problem.bonds = estimate.size.bonds;

@@ -21,7 +21,7 @@ struct LinearSystems {
 /// @param estimate what the body is estimated to need
 /// @param tell see make_linear_solver
 [[nodiscard]] LinearSystems choose_linear_systems(const Case& from, const MemoryEstimate& estimate,
-                                                  SolverLadder::Teller tell);
+                                                  SolverLadder::Reporter tell);
 
 /// Options of the load stepping as a case gives them.
 [[nodiscard]] LoadSteppingOptions load_stepping_options(const Case& from);

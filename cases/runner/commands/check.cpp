@@ -11,6 +11,7 @@
 #include "cases/runner/build/solver_options.hpp"
 #include "cases/runner/process/available_memory.hpp"
 #include "solvers/linear/make_linear_solver.hpp"
+#include "src/neighbourhood/neighbour_counts.hpp"
 
 namespace peristat {
 namespace {
@@ -21,13 +22,7 @@ struct NeighbourCounts {
 };
 
 NeighbourCounts count_neighbours(const Bonds& bonds) {
-  std::vector<Index> neighbours(bonds.points(), 0);
-  for (Index i = 0; i < bonds.points(); ++i) {
-    for (Offset bond = bonds.offset[i]; bond < bonds.offset[i + 1]; ++bond) {
-      ++neighbours[i];
-      ++neighbours[bonds.partner[bond]];
-    }
-  }
+  const std::vector<std::int32_t> neighbours = neighbour_counts(bonds);
   NeighbourCounts counts;
   const auto [least, most] = std::minmax_element(neighbours.begin(), neighbours.end());
   counts.least = *least;

@@ -275,8 +275,8 @@ Exit check_tangent(const Case& from, const std::string& deformation, int threads
   const std::size_t dofs = displacement.size();
   std::vector<double> gradient(dofs), image(dofs), shifted(dofs), forward(dofs), backward(dofs);
   const History history = assembler.initial_history();
-  const Stored stored = assembler.gradient({displacement, history}, gradient);
-  if (stored.degenerate) {
+  const Evaluation found = assembler.gradient({displacement, history}, gradient);
+  if (found.degenerate) {
     throw InputError("--deformation", '"' + text + '"', "collapses a bond to zero length");
   }
   Tangent tangent(assembler);
@@ -335,7 +335,7 @@ Exit check_tangent(const Case& from, const std::string& deformation, int threads
       "  \"residual_order\": {},\n"
       "  \"tangent_order\": {}\n"
       "}}\n",
-      text, stored.energy, norm(gradient), tangent.frobenius_norm(), asymmetry,
+      text, found.energy, norm(gradient), tangent.frobenius_norm(), asymmetry,
       relative_force_sum(points, gradient), relative_moment_sum(points, displacement, gradient),
       of_residual.error, of_tangent.error, of_residual.order_text(), of_tangent.order_text());
   return Exit::done;

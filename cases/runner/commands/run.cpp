@@ -135,7 +135,7 @@ std::string status_of(Outcome outcome) {
   return outcome == Outcome::inconsistent ? "inconsistent" : "not_converged";
 }
 
-void tell_result(const Recorder& recorder, Progress& progress) {
+void report_result(const Recorder& recorder, Progress& progress) {
   if (!recorder.last()) return;
   const StepRecord& last = *recorder.last();
   for (const auto& [set, force] : last.reactions) {
@@ -271,7 +271,7 @@ class CaseRun {
   Exit tell(const LoadSteppingResult& result) {
     const std::string folder = from_.output.directory.string();
     if (result.outcome == Outcome::converged) {
-      tell_result(*recorder_, progress_);
+      report_result(*recorder_, progress_);
       progress_.say(fmt::format("completed in {:.2f} s: {} steps, {} factorisations; results in {}",
                                 summary_.seconds.total, result.steps, summary_.factorisations,
                                 folder));

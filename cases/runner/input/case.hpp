@@ -20,6 +20,7 @@
 #include "src/materials/bond_constants.hpp"
 #include "src/materials/effective_volumes.hpp"
 #include "src/materials/quadrature.hpp"
+#include "src/potentials/potential.hpp"
 
 namespace peristat {
 
@@ -49,6 +50,7 @@ struct DamageSpecification {
 
 struct MaterialSpecification {
   MaterialModel model = MaterialModel::bond;
+  std::string potential = Harmonic::name;  ///< of whole bonds
   PlaneState plane = PlaneState::stress;
   std::optional<double> youngs_modulus;  ///< [Pa]; exactly one of this, micromodulus and c1 is set
   std::optional<double> micromodulus;    ///< c [N/m6]

@@ -287,6 +287,13 @@ Kind<double> stiffness(const std::string& unit) {
   return number({-1e200, 1e200, "must be a finite number of " + unit}, "any number", unit);
 }
 
+Choices<std::string> bond_potentials() {
+  Choices<std::string> names;
+  WholeBondPotentials::for_each(
+      [&](const auto& whole) { names.emplace_back(whole.name, whole.name); });
+  return names;
+}
+
 Table<MaterialSpecification> material_keys() {
   using Spec = MaterialSpecification;
   using K = Key<Spec>;
@@ -308,6 +315,8 @@ Table<MaterialSpecification> material_keys() {
                at.refuse("cpd needs dimension 2 or 3; in 1D it is the bond model");
            })
            .early(),
+       K("potential", &Spec::potential, choice(bond_potentials()),
+         "of whole bonds, a function of their stretch, and below its onset of a damage law"),
        K("plane", &Spec::plane,
          choice<PlaneState>({{"stress", PlaneState::stress}, {"strain", PlaneState::strain}}),
          "`bond`: state of a plane body, dimension 2 only (`cpd` in 2D is purely two-dimensional, "

@@ -36,8 +36,8 @@ std::string suggestion(const std::string& key, const std::vector<std::string>& k
   std::vector<std::string> elsewhere;
   for (const auto& [table, keys] : case_keys())
     if (contains(keys, key)) elsewhere.push_back(table.empty() ? key : table + "." + key);
-  constexpr std::size_t most_told = 2;
-  if (elsewhere.empty() || elsewhere.size() > most_told) return "";
+  constexpr std::size_t most_listed = 2;
+  if (elsewhere.empty() || elsewhere.size() > most_listed) return "";
   for (const auto& place : elsewhere) text += (text.empty() ? "" : " or ") + place;
   return "; did you mean " + text + "?";
 }

@@ -24,7 +24,9 @@ int write_now(std::FILE* file, const std::string& text) {
 }
 
 /// Standard error is the last place to tell anything: what it does not take is lost.
-void tell_standard_error(const std::string& line) { write_now(stderr, "peristat: " + line + "\n"); }
+void write_to_standard_error(const std::string& line) {
+  write_now(stderr, "peristat: " + line + "\n");
+}
 
 /// Width of a terminal; 80 if it does not tell.
 std::size_t columns(int descriptor) {
@@ -54,41 +56,41 @@ Progress::~Progress() {
   if (log_) std::fclose(log_);
 }
 
-void Progress::tell_person(const std::string& text) {
+void Progress::write_to_person(const std::string& text) {
   if (quiet_) return;
   const int error = write_now(stdout, text);
   if (error == 0) return;
   quiet_ = true;
   live_ = false;
-  tell_standard_error(std::string("standard output can't be written (") + std::strerror(error) +
-                      "): the run goes on in silence");
+  write_to_standard_error(std::string("standard output can't be written (") + std::strerror(error) +
+                          "): the run goes on in silence");
 }
 
-void Progress::tell_log(const std::string& line) {
+void Progress::write_to_log(const std::string& line) {
   if (!log_) return;
   const int error = write_now(log_, line + "\n");
   if (error == 0) return;
   std::fclose(std::exchange(log_, nullptr));
-  tell_standard_error(std::string("the log can't be written (") + std::strerror(error) +
-                      "): the run goes on without it");
+  write_to_standard_error(std::string("the log can't be written (") + std::strerror(error) +
+                          "): the run goes on without it");
 }
 
 void Progress::erase_live_line() {
   if (!live_line_shown_) return;
-  tell_person("\r\033[K");
+  write_to_person("\r\033[K");
   live_line_shown_ = false;
 }
 
 void Progress::say(const std::string& line) {
   erase_live_line();
-  tell_person((live_ ? folded(line, columns(STDOUT_FILENO)) : line) + "\n");
-  tell_log(line);
+  write_to_person((live_ ? folded(line, columns(STDOUT_FILENO)) : line) + "\n");
+  write_to_log(line);
 }
 
 void Progress::problem(const std::string& line) {
   erase_live_line();
-  tell_standard_error(line);
-  tell_log(line);
+  write_to_standard_error(line);
+  write_to_log(line);
 }
 
 std::string Progress::time_left() const {
@@ -101,7 +103,7 @@ std::string Progress::time_left() const {
 
 void Progress::iteration(const IterationRecord& record) {
   if (log_) {
-    tell_log(fmt::format(
+    write_to_log(fmt::format(
         "  step {} iteration {}: residual {:.3e} N, relative {:.3e}, step length {:g}", record.step,
         record.iteration, record.residual, record.relative_residual, record.step_length));
   }
@@ -110,7 +112,7 @@ void Progress::iteration(const IterationRecord& record) {
   const std::string line =
       fmt::format("step {}  load {:.4g}  iteration {}  residual {:.1e}{}", record.step,
                   load_factor_, record.iteration, record.relative_residual, time_left());
-  tell_person(cut_to(line, columns(STDOUT_FILENO) - 1));
+  write_to_person(cut_to(line, columns(STDOUT_FILENO) - 1));
   live_line_shown_ = true;
 }
 

@@ -32,8 +32,8 @@ class Progress {
   void accepted(const StepRecord& record, double relative_residual);
 
  private:
-  void tell_person(const std::string& text);
-  void tell_log(const std::string& line);
+  void write_to_person(const std::string& text);
+  void write_to_log(const std::string& line);
   void erase_live_line();
   [[nodiscard]] std::string time_left() const;
 

@@ -6,10 +6,10 @@ std::optional<BondHistories> DamageHistories::changes(const Bonds& bonds,
                                                       std::span<const double> history) const {
   if (history.empty()) return std::nullopt;
   BondHistories changed;
-  auto known = told_.begin();
+  auto known = known_.begin();
   for (Index i = 0; i < bonds.points(); ++i) {
     for (Offset bond = bonds.offset[i]; bond < bonds.offset[i + 1]; ++bond) {
-      const bool is_known = known != told_.end() && known->first == bond;
+      const bool is_known = known != known_.end() && known->first == bond;
       const double before = is_known ? (known++)->second : 0.0;
       if (history[bond] == before) continue;
       changed.first_point.push_back(i);
@@ -21,9 +21,9 @@ std::optional<BondHistories> DamageHistories::changes(const Bonds& bonds,
 }
 
 void DamageHistories::tell(std::span<const double> history) {
-  told_.clear();
+  known_.clear();
   for (std::size_t bond = 0; bond < history.size(); ++bond) {
-    if (history[bond] != 0.0) told_.emplace_back(Offset(bond), history[bond]);
+    if (history[bond] != 0.0) known_.emplace_back(Offset(bond), history[bond]);
   }
 }
 

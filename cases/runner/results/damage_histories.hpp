@@ -22,7 +22,7 @@ class DamageHistories {
   void tell(std::span<const double> history);
 
  private:
-  std::vector<std::pair<Offset, double>> told_;  // bond and largest stretch, ascending
+  std::vector<std::pair<Offset, double>> known_;  // bond and largest stretch, ascending
 };
 
 }  // namespace peristat

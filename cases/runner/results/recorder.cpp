@@ -35,7 +35,7 @@ void Recorder::accepted(StepRecord record, const AcceptedState& state) {
               std::vector<double>(points),
               std::vector<double>(points),
               std::vector<double>(points, 0.0),
-              told_histories_.changes(body_.model.bonds(), stretches)};
+              written_histories_.changes(body_.model.bonds(), stretches)};
   for (double& force : made.force) force = -force;
   assembler_.point_energies(at, made.energy_density);
   point_stretches(points_, body_.model, at, made.stretch);
@@ -44,7 +44,7 @@ void Recorder::accepted(StepRecord record, const AcceptedState& state) {
       case_.output.count_cracks ? std::span(body_.cut_weight) : std::span<const double>();
   record.max_damage = assess_damage(body_.model, at.history, cut_weight, made.damage).max_damage;
   std::copy(state.piece.begin(), state.piece.end(), made.fragment.begin());
-  tell_broken_bonds(record, at.history);
+  record_broken_bonds(record, at.history);
   for (std::size_t i = 0; i < points; ++i) made.energy_density[i] /= points_.volume[i];
   const StepFields fields = made.view();
   for (const ProbeSpecification& probe : case_.probes) {
@@ -52,7 +52,7 @@ void Recorder::accepted(StepRecord record, const AcceptedState& state) {
   }
   const bool write_fields = record.step % case_.output.every == 0;
   results_.add(record, write_fields ? std::optional(fields) : std::nullopt);
-  if (write_fields) told_histories_.tell(stretches);
+  if (write_fields) written_histories_.tell(stretches);
   progress_.accepted(record, relative_residual_);
   last_ = std::move(record);
   unwritten_.reset();
@@ -78,7 +78,7 @@ void Recorder::finish() {
   if (unwritten_) results_.add_fields(*last_, unwritten_->view());
 }
 
-void Recorder::tell_broken_bonds(const StepRecord& record, const History& history) {
+void Recorder::record_broken_bonds(const StepRecord& record, const History& history) {
   std::vector<char> broken = broken_bonds(body_.model, history);
   if (broken.empty()) return;
   broken_.resize(broken.size(), 0);

@@ -48,7 +48,7 @@ class Recorder {
   };
 
   /// Adds the bonds that have broken since the last step to the results.
-  void tell_broken_bonds(const StepRecord& record, const History& history);
+  void record_broken_bonds(const StepRecord& record, const History& history);
 
   const Case& case_;
   const Points& points_;
@@ -56,10 +56,10 @@ class Recorder {
   Results& results_;
   Progress& progress_;
   const Body& body_;
-  std::optional<Fields> unwritten_;  // of the last step, if it only entered the history
-  std::vector<char> broken_;         // per bond, in the last accepted state
-  DamageHistories told_histories_;   // in the last state that was written with fields
-  std::vector<BondEnds> separated_;  // by pre-cracks, and broken until the last accepted state
+  std::optional<Fields> unwritten_;    // of the last step, if it only entered the history
+  std::vector<char> broken_;           // per bond, in the last accepted state
+  DamageHistories written_histories_;  // in the last state that was written with fields
+  std::vector<BondEnds> separated_;    // by pre-cracks, and broken until the last accepted state
   double relative_residual_ = 0.0;
   std::optional<StepRecord> last_;
   std::vector<DecisionRecord> decisions_;

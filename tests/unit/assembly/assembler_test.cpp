@@ -38,9 +38,10 @@ std::vector<tests::BoxSetting> uneven_boxes() {
     boxes.push_back(box);
   }
   for (int dimension = 1; dimension <= 3; ++dimension) {
-    for (const Quadrature& quadrature :
-         {Quadrature{}, Quadrature{VolumeCorrection::linear, SurfaceCorrection::volume},
-          Quadrature{VolumeCorrection::linear, SurfaceCorrection::energy}}) {
+    for (const tests::Quadrature& quadrature :
+         {tests::Quadrature{},
+          tests::Quadrature{VolumeCorrection::linear, SurfaceCorrection::volume},
+          tests::Quadrature{VolumeCorrection::linear, SurfaceCorrection::energy}}) {
       tests::BoxSetting box = tests::small_box(dimension);
       box.quadrature = quadrature;
       box.perturbation = 0.2;
@@ -165,10 +166,10 @@ TEST(Assembler, EnergyIsTheDoubleSumOverOrderedPairs) {
       energy += of_point[i];
     }
     Assembler assembler(body.points, body.model, 2);
-    const Stored stored = assembler.energy(state);
+    const Evaluation found = assembler.energy(state);
     ASSERT_GT(energy, 0.0);
-    EXPECT_FALSE(stored.degenerate);
-    EXPECT_NEAR(stored.energy / energy, 1.0, 1e-13);
+    EXPECT_FALSE(found.degenerate);
+    EXPECT_NEAR(found.energy / energy, 1.0, 1e-13);
     std::vector<double> energies(points.volume.size());
     assembler.point_energies(state, energies);
     std::vector<double> longest(points.volume.size());
@@ -335,7 +336,7 @@ TEST(Assembler, EnergyAndGradientTellTheSameEnergy) {
   const BoxBody body(tests::small_box(3));
   Assembler assembler(body.points, body.model, 2);
   std::vector<double> gradient(body.dofs(), 1e300);
-  const Stored both = assembler.gradient(body.random_state(1), gradient);
+  const Evaluation both = assembler.gradient(body.random_state(1), gradient);
   EXPECT_EQ(assembler.energy(body.random_state(1)).energy, both.energy);
   EXPECT_LT(tests::largest(gradient), 1e300);  // overwritten, not added to
 }

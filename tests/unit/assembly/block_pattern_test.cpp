@@ -24,7 +24,7 @@ void expect_partition(const Bonds& bonds, int threads) {
         reach = std::max(reach, bonds.partner[bond] + 1);
       }
     }
-    EXPECT_EQ(range.reach, reach);
+    EXPECT_EQ(range.touched_end, reach);
     next = range.last;
   }
   EXPECT_EQ(next, pattern.points());

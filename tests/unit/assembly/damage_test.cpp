@@ -104,7 +104,7 @@ void follow_one_bond(const BondPotential& potential, const T& integrity, int dam
     std::vector<double> gradient(2), committed(2);
     const double taken_up = assembler.gradient({state, history}, gradient).energy;
     const DamageGrowth would = assembler.growth({state, history});
-    const Stored result = assembler.commit(state, history, committed);
+    const Evaluation result = assembler.commit(state, history, committed);
     // The stretch is a difference of numbers of size one: 1e-16 over 0.01.
     const double tolerance = 1e-12 * OneBond::weight * modulus * critical;
     EXPECT_NEAR(gradient[1], force, tolerance);
@@ -466,9 +466,9 @@ TEST(Damage, BondsThatNeverFailStayHarmonic) {
       History history = assembler.initial_history();
       EXPECT_EQ(assembler.growth({far, history}).degrading, 0);
       EXPECT_EQ(assembler.growth({far, history}).utilisation, 0.0);
-      const Stored stored = assembler.commit(far, history, gradient);
-      EXPECT_EQ(stored.growth.degrading, 0);
-      EXPECT_NEAR(stored.energy / harmonic.energy(far).energy, 1.0, 1e-14);
+      const Evaluation found = assembler.commit(far, history, gradient);
+      EXPECT_EQ(found.growth.degrading, 0);
+      EXPECT_NEAR(found.energy / harmonic.energy(far).energy, 1.0, 1e-14);
       EXPECT_LE(distance(gradient, expected), 1e-14 * norm(expected));
       std::vector<double> damage(body.points.volume.size());
       const DamageState state = assess_damage(body.model, history, {}, damage);
@@ -621,13 +621,13 @@ TEST(Damage, EnergyTakenUpIsStoredOrDissipated) {
         const std::vector<double> state = pulled_state(body, 30, strain);
         std::vector<double> before(body.dofs()), after(body.dofs());
         const double taken_up = assembler.gradient({state, history}, before).energy;
-        const Stored stored = assembler.commit(state, history, after);
+        const Evaluation found = assembler.commit(state, history, after);
         const double now = assess_damage(body.model, history, {}, damage).dissipated_energy;
         // Sums of some hundred terms.
-        EXPECT_NEAR(stored.energy + now - dissipated, taken_up, 1e-13 * (taken_up + now));
+        EXPECT_NEAR(found.energy + now - dissipated, taken_up, 1e-13 * (taken_up + now));
         EXPECT_LE(distance(before, after), 1e-14 * norm(before));
-        EXPECT_EQ(assembler.energy({state, history}).energy, stored.energy);
-        EXPECT_EQ(stored.released, 0.0);
+        EXPECT_EQ(assembler.energy({state, history}).energy, found.energy);
+        EXPECT_EQ(found.released, 0.0);
         EXPECT_GE(now, dissipated);
         grew += now > dissipated;
         dissipated = now;
@@ -654,12 +654,11 @@ TEST(Damage, IsTheSameOnAnyNumberOfThreads) {
       for (const double strain : {0.05, 0.2, 0.0, 0.6}) {
         const std::vector<double> state = pulled_state(body, 40, strain);
         const DamageGrowth growth = assembler.growth({state, history});
-        const Stored stored = assembler.commit(state, history, result.gradient);
+        const Evaluation found = assembler.commit(state, history, result.gradient);
         result.energies.insert(result.energies.end(),
-                               {stored.energy, stored.released, growth.utilisation});
-        result.counts.insert(
-            result.counts.end(),
-            {growth.degrading, growth.breaking, stored.growth.degrading, stored.growth.breaking});
+                               {found.energy, found.released, growth.utilisation});
+        result.counts.insert(result.counts.end(), {growth.degrading, growth.breaking,
+                                                   found.growth.degrading, found.growth.breaking});
       }
       const std::span<const double> kappas = bond_stretches(body.model, history);
       result.history.assign(kappas.begin(), kappas.end());
@@ -746,7 +745,7 @@ TEST(DamageOfTriangles, TakesTheProductOfTheirBondsIntegrities) {
       const std::vector<double> state =
           strain == 0.1 ? damaging_state(body) : pulled_state(body, 50, strain);
       const double before = of_triangles(state);
-      const Stored committed = assembler.commit(state, history);
+      const Evaluation committed = assembler.commit(state, history);
       (void)of_bonds.commit(state, history_of_bonds);
       const std::span<const double> kappas = bond_stretches(body.model, history);
       const std::span<const double> kappas_of_bonds =
@@ -783,11 +782,11 @@ TEST(DamageOfTriangles, LedgerOfACommitClosesInEveryBody) {
     for (const double strain : {0.05, 0.15, 0.1, 0.5}) {
       const std::vector<double> state = pulled_state(body, 60, strain);
       const double taken_up = assembler.energy({state, history}).energy;
-      const Stored stored = assembler.commit(state, history);
+      const Evaluation found = assembler.commit(state, history);
       const double now = assess_damage(body.model, history, {}, damage).dissipated_energy;
-      EXPECT_NEAR(stored.energy + (now - dissipated) + stored.released, taken_up, 1e-12 * taken_up);
-      EXPECT_GE(stored.released, 0.0);
-      released += stored.released > 1e-3 * taken_up;
+      EXPECT_NEAR(found.energy + (now - dissipated) + found.released, taken_up, 1e-12 * taken_up);
+      EXPECT_GE(found.released, 0.0);
+      released += found.released > 1e-3 * taken_up;
       dissipated = now;
     }
     EXPECT_GE(released, 2);
@@ -804,10 +803,10 @@ TEST(DamageOfTriangles, NeverReleasesLessThanNothing) {
     History history = assembler.initial_history();
     int damaging = 0;
     for (double strain = 0.05; strain < 0.4; strain *= damaging % 3 == 2 ? 1.2 : 1.0 + 1e-12) {
-      const Stored stored = assembler.commit(pulled_state(body, 70, strain), history);
-      ASSERT_GE(stored.released, 0.0) << strain;
-      damaging += stored.growth.degrading > 0;
-      if (stored.growth.degrading == 0) strain *= 1.1;
+      const Evaluation found = assembler.commit(pulled_state(body, 70, strain), history);
+      ASSERT_GE(found.released, 0.0) << strain;
+      damaging += found.growth.degrading > 0;
+      if (found.growth.degrading == 0) strain *= 1.1;
     }
     EXPECT_GT(damaging, 5);
   }

@@ -42,14 +42,14 @@ class FoundationPasses : public TermPasses {
  public:
   FoundationPasses(double stiffness, int dimension) : k_(stiffness), d_(dimension) {}
 
-  Stored gradient(const StateView& at, std::span<double> gradient, Write how) override {
+  Evaluation gradient(const StateView& at, std::span<double> gradient, Write how) override {
     begin(how, gradient);
-    Stored stored;
+    Evaluation found;
     for (std::size_t i = 0; i < at.displacement.size(); ++i) {
-      stored.energy += 0.5 * k_ * at.displacement[i] * at.displacement[i];
+      found.energy += 0.5 * k_ * at.displacement[i] * at.displacement[i];
       if (!gradient.empty()) gradient[i] += k_ * at.displacement[i];
     }
-    return stored;
+    return found;
   }
   void tangent(const StateView&, double, Tangent& tangent, Write how) override {
     if (how == Write::over) tangent.clear();
@@ -127,12 +127,12 @@ class PointStatePasses : public TermPasses {
         d_(std::size_t(setting.points.dimension)),
         theta_(term.near().size()) {}
 
-  Stored gradient(const StateView& at, std::span<double> gradient, Write how) override {
+  Evaluation gradient(const StateView& at, std::span<double> gradient, Write how) override {
     begin(how, gradient);
-    Stored stored;
+    Evaluation found;
     find_states(at);
     for (std::size_t i = 0; i < theta_.size(); ++i) {
-      stored.energy += 0.5 * term_.stiffness() * theta_[i] * theta_[i];
+      found.energy += 0.5 * term_.stiffness() * theta_[i] * theta_[i];
       if (gradient.empty()) continue;
       for (const Index j : term_.near()[i]) {
         for (std::size_t c = 0; c < d_; ++c) {
@@ -142,7 +142,7 @@ class PointStatePasses : public TermPasses {
         }
       }
     }
-    return stored;
+    return found;
   }
 
   void tangent(const StateView& at, double, Tangent& tangent, Write how) override {

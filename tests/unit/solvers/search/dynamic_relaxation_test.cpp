@@ -106,9 +106,10 @@ TEST(DynamicRelaxation, ReachesTheEquilibriumThatNewtonFinds) {
 
         // What it tells of its last state is true.
         std::vector<double> gradient(problem.body.dofs()), external(problem.body.dofs());
-        const Stored stored = problem.assembler.gradient(run.result.state.displacement, gradient);
+        const Evaluation found =
+            problem.assembler.gradient(run.result.state.displacement, gradient);
         problem.conditions.external_force(1.0, external);
-        EXPECT_EQ(stored.energy, run.result.state.stored_energy);
+        EXPECT_EQ(found.energy, run.result.state.stored_energy);
         EXPECT_EQ(gradient, run.result.state.gradient);
         EXPECT_EQ(external, run.result.external_force);
         double squared = 0.0;

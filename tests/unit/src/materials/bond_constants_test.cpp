@@ -7,6 +7,9 @@
 
 #include <gtest/gtest.h>
 
+#include "assembly/assembler.hpp"
+#include "tests/bodies.hpp"
+
 namespace peristat {
 namespace {
 
@@ -74,10 +77,10 @@ double classical_energy(const BondSetting& setting, const Strain& e) {
   return 0.5 * lambda * trace * trace + shear * squares;
 }
 
-const BondSetting settings[] = {{1, PlaneState::stress, 0.3, 0.02},
-                                {2, PlaneState::stress, 0.3, 0.02},
-                                {2, PlaneState::strain, 0.3, 0.02},
-                                {3, PlaneState::stress, 0.3, 1.0}};
+const BondSetting settings[] = {{{1, 0.3, 0.02}, PlaneState::stress},
+                                {{2, 0.3, 0.02}, PlaneState::stress},
+                                {{2, 0.3, 0.02}, PlaneState::strain},
+                                {{3, 0.3, 1.0}, PlaneState::stress}};
 
 /// Strains of a dimension: stretch along each axis, shear, and everything at once.
 std::vector<Strain> strains(int dimension) {
@@ -133,6 +136,77 @@ TEST(BondConstants, PoissonRatioLeavesTheTransverseStressFree) {
     ASSERT_GT(energy(0.0), 0.1);
     EXPECT_NEAR((energy(0.5) - energy(-0.5)) / energy(0.0), 0.0, quadrature_error);
     EXPECT_GT(energy(0.5) / energy(0.0), 1.05);
+  }
+}
+
+/// Energy of the bonds over a unit of area, c s^2 |xi| / 2 each: for a bond vector xi the points
+/// whose bonds pass it stand in a layer as thick as xi is across the area.
+double energy_over_area(const BondSetting& setting, double modulus, double stretch) {
+  constexpr int shells = 2000;
+  double radial = 0.0;
+  for (int k = 0; k < shells; ++k) {
+    const double r = (k + 0.5) * setting.horizon / shells;
+    radial += r * r * std::pow(r, setting.dimension - 1) * setting.horizon / shells;
+  }
+  double across = 0.0;
+  for (const auto& [n, angle] : directions(setting.dimension)) {
+    across += angle * std::max(n[2 * (setting.dimension == 3)], 0.0);
+  }
+  const double section = setting.dimension == 3 ? 1.0 : setting.cross_section;
+  return 0.5 * modulus * stretch * stretch * radial * across * section;
+}
+
+TEST(BondConstants, BrittleBondsTakeTheFractureEnergy) {
+  for (const BondSetting& setting : settings) {
+    const double c = micromodulus(youngs_modulus, setting), energy = 3.7;
+    const double s = critical_stretch(energy, c, setting);
+    // Sixteen directions around a circle leave 1.3 % of |n_x|, two thousand over a sphere 1e-7.
+    const double tolerance = setting.dimension == 2 ? 0.014 : quadrature_error;
+    EXPECT_NEAR(energy_over_area(setting, c, s) / energy, 1.0, tolerance);
+  }
+  // [GPMB] eq. 10 and its plane counterpart.
+  const double delta = 0.3, h = 0.02, c = 2.5e9, energy = 3.7;
+  EXPECT_NEAR(critical_stretch(energy, c, {3, delta, 1.0}),
+              std::sqrt(10.0 * energy / (pi * c * std::pow(delta, 5))), 1e-14);
+  EXPECT_NEAR(critical_stretch(energy, c, {2, delta, h}),
+              std::sqrt(4.0 * energy / (c * h * std::pow(delta, 4))), 1e-14);
+}
+
+TEST(BondConstants, AreThoseOfTheBooks) {
+  const double e = youngs_modulus, d = 0.3, h = 0.02;
+  const double books[] = {2.0 * e / (h * d * d), 9.0 * e / (pi * d * d * d * h),
+                          48.0 * e / (5.0 * pi * d * d * d * h), 12.0 * e / (pi * d * d * d * d)};
+  for (int k = 0; k < 4; ++k) EXPECT_NEAR(micromodulus(e, settings[k]) / books[k], 1.0, 1e-14);
+}
+
+// Under the same stretch of all bonds the mean over directions is every direction's: with the
+// moment of the lattice its energy is classical to round-off, whatever the influence function.
+TEST(BondConstants, OfALatticeGiveItTheClassicalEnergyOfADilation) {
+  for (const int dimension : {2, 3}) {
+    for (const bool conical : {false, true}) {
+      tests::BoxSetting box = tests::small_box(dimension);
+      box.extent = {9, 9, dimension == 3 ? 9 : 0};
+      box.quadrature.volume = VolumeCorrection::linear;
+      const Points points = tests::box_points(box);
+      BondSetting setting = tests::bond_setting(box);
+      if (conical) setting.influence = [](double ratio) { return 1.0 - 0.7 * ratio; };
+      const double c = lattice_micromodulus(youngs_modulus, setting, box.spacing);
+      EXPECT_GT(std::abs(c / micromodulus(youngs_modulus, setting) - 1.0), 1e-3);
+      const Model model(make_bonds(points, SurfaceCorrection::none, setting, 1), Harmonic{c});
+      constexpr double strain = 1e-3;
+      std::vector<double> displacement = points.reference, energies(points.volume.size());
+      for (double& entry : displacement) entry *= strain;
+      Assembler(points, model, 1).point_energies(displacement, energies);
+      const double classical =
+          classical_energy(setting, {strain, strain, dimension == 3 ? strain : 0.0, 0, 0, 0});
+      int inside = 0;
+      for (Index i = 0; i < points.count(); ++i) {
+        if (!tests::is_inside(points, i, box, setting.horizon + box.spacing)) continue;
+        EXPECT_NEAR(energies[i] / points.volume[i] / classical, 1.0, 1e-11);
+        ++inside;
+      }
+      EXPECT_GT(inside, 0);
+    }
   }
 }
 

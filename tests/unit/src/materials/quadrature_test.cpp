@@ -19,15 +19,15 @@ using tests::for_each_bond;
 
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
 
-const Quadrature all_quadratures[] = {{VolumeCorrection::none, SurfaceCorrection::none},
-                                      {VolumeCorrection::linear, SurfaceCorrection::none},
-                                      {VolumeCorrection::none, SurfaceCorrection::volume},
-                                      {VolumeCorrection::linear, SurfaceCorrection::volume},
-                                      {VolumeCorrection::none, SurfaceCorrection::energy},
-                                      {VolumeCorrection::linear, SurfaceCorrection::energy}};
+const tests::Quadrature all_quadratures[] = {{VolumeCorrection::none, SurfaceCorrection::none},
+                                             {VolumeCorrection::linear, SurfaceCorrection::none},
+                                             {VolumeCorrection::none, SurfaceCorrection::volume},
+                                             {VolumeCorrection::linear, SurfaceCorrection::volume},
+                                             {VolumeCorrection::none, SurfaceCorrection::energy},
+                                             {VolumeCorrection::linear, SurfaceCorrection::energy}};
 
 /// A box that has points whose neighbours' neighbours are all present.
-BoxSetting deep_box(int dimension, const Quadrature& quadrature) {
+BoxSetting deep_box(int dimension, const tests::Quadrature& quadrature) {
   BoxSetting box = tests::small_box(dimension);
   box.extent = dimension == 1   ? std::array<int, 3>{30, 0, 0}
                : dimension == 2 ? std::array<int, 3>{14, 13, 0}
@@ -115,7 +115,7 @@ TEST(MakeBonds, AveragesTheLinearPartialVolumesOfBothPoints) {
 
 TEST(MakeBonds, IsSymmetricInTheTwoPoints) {
   for (int dimension = 1; dimension <= 3; ++dimension) {
-    for (const Quadrature& quadrature : all_quadratures) {
+    for (const tests::Quadrature& quadrature : all_quadratures) {
       BoxSetting box = tests::small_box(dimension);
       box.quadrature = quadrature;
       Points points = tests::box_points(box);
@@ -147,7 +147,7 @@ TEST(MakeBonds, IsSymmetricInTheTwoPoints) {
 
 TEST(MakeBonds, HasOnlyPositiveWeights) {
   for (int dimension = 1; dimension <= 3; ++dimension) {
-    for (const Quadrature& quadrature : all_quadratures) {
+    for (const tests::Quadrature& quadrature : all_quadratures) {
       const tests::BoxBody body(deep_box(dimension, quadrature));
       ASSERT_GT(body.model.bonds().count(), 0);
       for (const BondKind& kind : tests::kinds(body.model.bonds())) EXPECT_GT(kind.weight, 0.0);
@@ -156,7 +156,7 @@ TEST(MakeBonds, HasOnlyPositiveWeights) {
 }
 
 TEST(MakeBonds, GivesTheSameForAnyNumberOfThreads) {
-  for (const Quadrature& quadrature : all_quadratures) {
+  for (const tests::Quadrature& quadrature : all_quadratures) {
     BoxSetting box = tests::small_box(3);
     box.quadrature = quadrature;
     const tests::BoxBody one(box, 1), three(box, 3);

@@ -81,8 +81,8 @@ TEST(BondKinds, AreCopiedAndTruncated) {
 }
 
 TEST(BondKinds, OfALatticeAreFew) {
-  for (const Quadrature& quadrature :
-       {Quadrature{}, {VolumeCorrection::linear, SurfaceCorrection::energy}}) {
+  for (const tests::Quadrature& quadrature :
+       {tests::Quadrature{}, {VolumeCorrection::linear, SurfaceCorrection::energy}}) {
     tests::BoxSetting box = tests::small_box(3);
     box.extent = {25, 24, 23};
     box.spacing = 0.1 / 3.0;

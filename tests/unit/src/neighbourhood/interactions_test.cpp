@@ -11,6 +11,7 @@
 
 #include "assembly/assembler.hpp"
 #include "src/materials/effective_volumes.hpp"
+#include "src/neighbourhood/neighbour_counts.hpp"
 #include "tests/bodies.hpp"
 
 namespace peristat {
@@ -220,7 +221,7 @@ void expect_consistent(double perturbation) {
     EXPECT_GT(negative, 0);
   }
 
-  // Stored, and counted with any number of threads, they are the same.
+  // Evaluation, and counted with any number of threads, they are the same.
   const double bytes = interactions.stored_bytes();
   for (int threads : {1, 3}) {
     Interactions<Measure> other(body.points, body.model.bonds(), body.setting.cross_section,

@@ -14,6 +14,18 @@ namespace {
 
 constexpr double onset = 0.016, critical = 0.02;
 
+/// A potential of whole bonds that no law of damage knows: phi = C (e^2/2 + 10 e^3).
+struct Stiffening {
+  static constexpr const char* name = "stiffening";
+  double modulus = 0.0;
+  template <class Real>
+  [[nodiscard]] PotentialDensity<Real> operator()(const Real& e) const {
+    return {modulus * e * e * (0.5 + 10.0 * e), modulus * e * (1.0 + 30.0 * e),
+            modulus * (1.0 + 60.0 * e)};
+  }
+};
+static_assert(Potential<Stiffening>);
+
 template <class Law>
 Law example();
 template <>
@@ -25,31 +37,37 @@ TanhDegradation example<TanhDegradation>() {
   return {onset, critical, 3.0};
 }
 
-/// Numerical integral of r T(r) from a to b by the composite midpoint rule with Richardson's
+/// Numerical integral of T phi_0' from a to b by the composite midpoint rule with Richardson's
 /// extrapolation; neither end nor the points meet a jump of T.
-template <class Law>
-double integral(const Law& law, double a, double b) {
+template <class Law, class Whole = Harmonic>
+double work_between(const Law& law, double a, double b, const Whole& whole = {1.0}) {
   const auto midpoint = [&](int cells) {
     double sum = 0.0;
     for (int k = 0; k < cells; ++k) {
       const double r = a + (b - a) * (k + 0.5) / cells;
-      sum += r * law.integrity(r);
+      sum += whole(r).first * law.integrity(r);
     }
     return sum * (b - a) / cells;
   };
   return (4.0 * midpoint(40000) - midpoint(20000)) / 3.0;
 }
 
-template <class Law>
-class EveryDegradation : public ::testing::Test {
+template <class Potential>
+class EveryDegradation;
+
+template <class Law, class Whole>
+class EveryDegradation<Degraded<Law, Whole>> : public ::testing::Test {
  protected:
-  const Degraded<Law> potential_{2.5e3, example<Law>()};
+  const Degraded<Law, Whole> potential_{2.5e3, example<Law>()};
+  const Whole whole_{2.5e3};
   /// Histories without, with some and with complete damage, and a bond that never fails.
   const std::vector<double> histories_{
       0.0, 0.5 * onset, 0.0175, 0.999 * critical, 1.1 * critical, Degraded<Law>::never_fails};
 };
-using Laws = ::testing::Types<CriticalStretch, TanhDegradation>;
-TYPED_TEST_SUITE(EveryDegradation, Laws);
+using Degradations =
+    ::testing::Types<Degraded<CriticalStretch>, Degraded<TanhDegradation>,
+                     Degraded<CriticalStretch, Stiffening>, Degraded<TanhDegradation, Stiffening>>;
+TYPED_TEST_SUITE(EveryDegradation, Degradations);
 
 TYPED_TEST(EveryDegradation, FirstIsDerivativeOfValueInLoadingAndUnloading) {
   int checked = 0;
@@ -103,7 +121,7 @@ TYPED_TEST(EveryDegradation, EnergyIsTheWorkOfTheForce) {
   for (const double e : {0.004, 0.0165, 0.0183, 0.0199}) {
     const double elastic = std::min(e, law.onset());
     const double expected =
-        this->potential_.modulus * (0.5 * elastic * elastic + integral(law, elastic, e));
+        this->whole_(elastic).value + work_between(law, elastic, e, this->whole_);
     // 1e-12: what Richardson's rule leaves with these cells.
     EXPECT_NEAR(this->potential_(e, 0.0).value / expected, 1.0, 1e-12) << e;
   }
@@ -122,12 +140,12 @@ TYPED_TEST(EveryDegradation, WhatIsStoredAndDissipatedIsWhatWasTakenUp) {
 
 TYPED_TEST(EveryDegradation, UnloadsAlongTheSecantAndReloadsAlongIt) {
   const double kappa = 0.0183;
-  const double secant = this->potential_.modulus * this->potential_.law.integrity(kappa);
+  const double integrity = this->potential_.law.integrity(kappa);
   for (const double e : {-0.01, 1e-5, 0.01, kappa}) {
-    const auto at = this->potential_(e, kappa);
-    EXPECT_DOUBLE_EQ(at.first, secant * e);
-    EXPECT_DOUBLE_EQ(at.second, secant);
-    EXPECT_DOUBLE_EQ(at.value, 0.5 * secant * e * e);
+    const auto at = this->potential_(e, kappa), whole = this->whole_(e);
+    EXPECT_DOUBLE_EQ(at.first, integrity * whole.first);
+    EXPECT_DOUBLE_EQ(at.second, integrity * whole.second);
+    EXPECT_DOUBLE_EQ(at.value, integrity * whole.value);
   }
 }
 
@@ -143,10 +161,10 @@ TYPED_TEST(EveryDegradation, BrokenStaysBroken) {
   EXPECT_FALSE(this->potential_.is_broken(std::nextafter(critical, 0.0)));
 }
 
-TYPED_TEST(EveryDegradation, ABondThatNeverFailsIsHarmonic) {
-  const double kappa = Degraded<TypeParam>::never_fails;
+TYPED_TEST(EveryDegradation, ABondThatNeverFailsStaysWhole) {
+  const double kappa = TypeParam::never_fails;
   for (const double e : {-0.1, 0.01, 0.018, 0.5}) {
-    EXPECT_DOUBLE_EQ(this->potential_(e, kappa).first, this->potential_.modulus * e);
+    EXPECT_DOUBLE_EQ(this->potential_(e, kappa).first, this->whole_(e).first);
     EXPECT_FALSE(this->potential_.is_loading(e, kappa));
   }
   EXPECT_EQ(this->potential_.dissipated(kappa), 0.0);
@@ -168,14 +186,16 @@ TEST(TanhDegradation, JumpsAsPublishedAndNotInItsContinuousForm) {
   }
 }
 
-TEST(TanhDegradation, MomentIsTheIntegralAtEveryRate) {
+TEST(TanhDegradation, WorkIsTheIntegralAtEveryRate) {
   for (const double rate : {0.1, 1.0, 3.0, 20.0}) {
     for (const TanhDegradation& law : {TanhDegradation{onset, critical, rate},
                                        TanhDegradation::continuous(onset, critical, rate)}) {
       for (const double s : {0.0161, 0.018, 0.01999}) {
-        const double beyond = integral(law, onset, s);
+        const double beyond = work_between(law, onset, s);
         // 1e-10: midpoint cells resolve the steepest law to that.
-        EXPECT_NEAR((law.moment(s) - law.moment(onset)) / beyond, 1.0, 1e-10) << rate << ", " << s;
+        EXPECT_NEAR((law.work(Harmonic{1.0}, s) - law.work(Harmonic{1.0}, onset)) / beyond, 1.0,
+                    1e-10)
+            << rate << ", " << s;
       }
     }
   }

@@ -16,7 +16,7 @@ struct DamageGrowth {
 };
 
 /// What a pass over the interactions finds besides what it adds up.
-struct Stored {
+struct Evaluation {
   double energy = 0.0;      ///< [J]
   bool degenerate = false;  ///< a measure without gradient at zero has reached it, or a value is
                             ///< not finite: reject the state
@@ -29,7 +29,7 @@ struct Stored {
   bool moves_equilibrium = false;
 
   /// Adds what another term has found.
-  void operator+=(const Stored& other) {
+  void operator+=(const Evaluation& other) {
     energy += other.energy;
     degenerate |= other.degenerate;
     growth.degrading += other.growth.degrading;

@@ -1,0 +1,23 @@
+#pragma once
+
+namespace peristat {
+
+/// Speeds of a plain machine on one thread, as in benchmarks/RESULTS.md, that choices of linear
+/// solvers go by: they are constants, so that choices don't depend on how fast a machine happens to
+/// be.
+namespace speeds {
+inline constexpr double factorisation = 3e10;  ///< [flop/s]
+inline constexpr double solve = 1e10;          ///< reading a factor in triangular solves [bytes/s]
+inline constexpr double fresh_memory = 1e9;  ///< which a small factorisation mostly takes [bytes/s]
+inline constexpr double product = 1.5e8;     ///< matrix-free [bonds/s]
+}  // namespace speeds
+
+/// Iterations of conjugate gradients, each reading the factor twice, that half a factorisation
+/// buys.
+[[nodiscard]] constexpr double affordable_iterations(double factor_flops, double factor_entries) {
+  const double factorisation = factor_flops / speeds::factorisation;
+  const double iteration = 2.0 * 8.0 * factor_entries / speeds::solve;
+  return 0.5 * factorisation / iteration;
+}
+
+}  // namespace peristat

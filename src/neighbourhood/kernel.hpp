@@ -1,0 +1,42 @@
+#pragma once
+
+#include <functional>
+
+namespace peristat {
+
+/// Part of a neighbour's volume that counts: all of it, or a share that falls linearly from 1 to 0
+/// while the distance runs over one spacing about the horizon.
+enum class VolumeCorrection { none, linear };
+
+/// Share nu of a point's volume inside another's horizon, for the linear correction:
+/// (delta + D/2 - r) / D between delta - D/2 and delta + D/2, 1 below, 0 above
+/// (r distance, D size of the volume).
+[[nodiscard]] double linear_partial_volume(double distance, double horizon, double size);
+
+/// What a point sees, and how much of it counts: horizon, influence function and partial volumes.
+struct Kernel {
+  int dimension = 2;
+  double horizon = 0.0;        ///< delta [m]
+  double cross_section = 1.0;  ///< 1D: area A [m2]; 2D: thickness h [m]; 3D: 1
+  VolumeCorrection volume_correction = VolumeCorrection::none;
+  /// omega(r / delta), by which the weight of a bond is multiplied, smooth from 0 to 1; empty: 1
+  std::function<double(double relative_distance)> influence{};
+
+  [[nodiscard]] double influence_at(double distance) const {
+    return influence ? influence(distance / horizon) : 1.0;
+  }
+
+  /// Share of a volume of some size at a distance that counts.
+  [[nodiscard]] double partial_volume(double distance, double size) const;
+
+  /// Farthest distance at which volumes up to a size count [m].
+  [[nodiscard]] double search_radius(double largest_size) const;
+
+  /// m_k = int omega r^k dV over the ball of the horizon [m^(k+3)]; m_0 is V_H where omega is 1.
+  [[nodiscard]] double moment(int k) const;
+
+  /// The same sum over the neighbours of a point inside a lattice, with their partial volumes.
+  [[nodiscard]] double lattice_moment(int k, double spacing) const;
+};
+
+}  // namespace peristat

@@ -1,0 +1,16 @@
+#include "src/neighbourhood/neighbour_counts.hpp"
+
+namespace peristat {
+
+std::vector<std::int32_t> neighbour_counts(const Bonds& bonds) {
+  std::vector<std::int32_t> count(std::size_t(bonds.points()), 0);
+  for (Index i = 0; i < bonds.points(); ++i) {
+    count[i] += static_cast<std::int32_t>(bonds.offset[i + 1] - bonds.offset[i]);
+    for (Offset bond = bonds.offset[i]; bond < bonds.offset[i + 1]; ++bond) {
+      ++count[bonds.partner[bond]];
+    }
+  }
+  return count;
+}
+
+}  // namespace peristat

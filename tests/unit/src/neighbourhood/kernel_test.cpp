@@ -1,0 +1,65 @@
+#include "src/neighbourhood/kernel.hpp"
+
+#include <cmath>
+#include <numbers>
+
+#include <gtest/gtest.h>
+
+namespace peristat {
+namespace {
+
+constexpr double pi = std::numbers::pi, delta = 0.3, h = 0.02;
+
+TEST(Kernel, HasTheMomentsOfBalls) {
+  EXPECT_DOUBLE_EQ((Kernel{1, delta, h}.moment(0)), 2.0 * delta * h);
+  EXPECT_DOUBLE_EQ((Kernel{2, delta, h}.moment(0)), pi * delta * delta * h);
+  EXPECT_DOUBLE_EQ((Kernel{3, delta, 1.0}.moment(0)), 4.0 / 3.0 * pi * std::pow(delta, 3));
+  EXPECT_DOUBLE_EQ((Kernel{3, delta, 1.0}.moment(2)), 4.0 / 5.0 * pi * std::pow(delta, 5));
+}
+
+TEST(Kernel, WeighsMomentsWithItsInfluence) {
+  for (const int dimension : {1, 2, 3}) {
+    Kernel kernel{dimension, delta, h};
+    for (const int k : {0, 1, 2}) {
+      kernel.influence = {};
+      const double uniform = kernel.moment(k);
+      kernel.influence = [](double ratio) { return 1.0 - ratio; };
+      // int (1 - t) t^(n-1) over int t^(n-1), n = k + dimension
+      EXPECT_NEAR(kernel.moment(k) / uniform, 1.0 / (k + dimension + 1), 1e-14);
+      kernel.influence = [](double ratio) { return std::exp(-ratio * ratio); };
+      EXPECT_LT(kernel.moment(k), uniform);
+      EXPECT_GT(kernel.moment(k), std::exp(-1.0) * uniform);
+    }
+  }
+}
+
+// Cells that lie across the sphere count by their part: without that the sum over a lattice jumps
+// wherever neighbours come in.
+TEST(Kernel, HasMomentsOnALatticeThatComeNearThoseOfTheContinuum) {
+  for (const int dimension : {1, 2, 3}) {
+    Kernel kernel{dimension, delta, h};
+    kernel.volume_correction = VolumeCorrection::linear;
+    kernel.influence = [](double ratio) { return 1.0 - 0.5 * ratio; };
+    for (const int k : {1, 2}) {
+      const auto error = [&](double ratio) {
+        return std::abs(kernel.lattice_moment(k, delta / ratio) / kernel.moment(k) - 1.0);
+      };
+      EXPECT_LT(error(3.015), 0.08);
+      EXPECT_LT(error(20.0), 2e-3);
+    }
+  }
+}
+
+TEST(Kernel, CountsCellsUpToItsHorizon) {
+  Kernel kernel{2, 3.0};
+  EXPECT_EQ(kernel.partial_volume(3.0 * (1.0 + 1e-12), 1.0), 1.0);  // at the horizon is inside
+  EXPECT_EQ(kernel.partial_volume(3.1, 1.0), 0.0);
+  EXPECT_EQ(kernel.search_radius(1.0), 3.0);
+  EXPECT_NEAR(kernel.lattice_moment(0, 1.0), 28.0, 1e-12);  // points within 3 of (0, 0), without it
+  kernel.volume_correction = VolumeCorrection::linear;
+  EXPECT_EQ(kernel.partial_volume(3.0, 1.0), 0.5);
+  EXPECT_EQ(kernel.search_radius(1.0), 3.5);
+}
+
+}  // namespace
+}  // namespace peristat
