@@ -1,4 +1,4 @@
-#include "cases/runner/build/bond_potential.hpp"
+#include "solvers/study/bond_potential.hpp"
 
 #include "src/core/input_error.hpp"
 
@@ -19,13 +19,14 @@ BondPotential bond_potential(const DamageSpecification& damage, double micromodu
       micromodulus, TanhDegradation::continuous(damage.onset, damage.critical, damage.rate)};
 }
 
-double micromodulus_of(const Case& from, const BondSetting& setting) {
+double micromodulus_of(const BodySpecification& from, const BondSetting& setting) {
   const MaterialSpecification& material = from.material;
   return material.micromodulus ? *material.micromodulus
                                : micromodulus(*material.youngs_modulus, setting);
 }
 
-std::vector<char> never_failing_bonds(const Case& from, const Points& points, const Bonds& bonds) {
+std::vector<char> never_failing_bonds(const BodySpecification& from, const Points& points,
+                                      const Bonds& bonds) {
   const std::vector<std::string>& sets = from.material.damage.no_fail;
   if (sets.empty()) return {};
   std::vector<char> of_point(std::size_t(points.count())), of_bond(std::size_t(bonds.count()));
