@@ -6,6 +6,7 @@
 #include <omp.h>
 
 #include "assembly/assembler.hpp"
+#include "assembly/terms/simplices/simplex_term.hpp"
 #include "benchmarks/lattice_bodies.hpp"
 
 namespace {

@@ -29,6 +29,7 @@ ROOMS = [
     "solvers/problem",
     "solvers/search",
     "solvers/drivers",
+    "solvers/study",
     "cases/runner/process",
     "cases/runner/input",
     "cases/runner/build",

@@ -49,7 +49,7 @@ class Launcher(unittest.TestCase):
         self.addCleanup(folder.cleanup)
         self.folder = pathlib.Path(folder.name).resolve()
         root = self.folder / "house"
-        for part in ["src", "assembly", "solvers", "cases/runner/plots", "cases/runner/sweep", "build/release"]:
+        for part in ["src", "assembly", "solvers", "cases/runner/plots", "cases/runner/sweep", "cmake", "build/release"]:
             (root / part).mkdir(parents=True)
         for name in ["peristat", "CMakeLists.txt", "CMakePresets.json"]:
             shutil.copy(ROOT / name, root)

@@ -9,7 +9,7 @@
 
 #include <gtest/gtest.h>
 
-#include "cases/runner/build/cpd_model.hpp"
+#include "solvers/study/cpd_model.hpp"
 #include "cases/runner/results/probe.hpp"
 #include "src/core/number_text.hpp"
 #include "tests/verification/solved_case.hpp"

@@ -5,12 +5,13 @@
 #include <fmt/format.h>
 
 #include "cases/runner/build/body.hpp"
-#include "cases/runner/build/bond_potential.hpp"
-#include "cases/runner/build/cpd_model.hpp"
-#include "cases/runner/build/rest_stability.hpp"
 #include "cases/runner/build/solver_options.hpp"
-#include "cases/runner/process/available_memory.hpp"
+#include "solvers/linear/available_memory.hpp"
 #include "solvers/linear/make_linear_solver.hpp"
+#include "solvers/study/bond_potential.hpp"
+#include "solvers/study/cpd_model.hpp"
+#include "solvers/study/linear_systems.hpp"
+#include "solvers/study/rest_stability.hpp"
 #include "src/neighbourhood/neighbour_counts.hpp"
 
 namespace peristat {
@@ -102,8 +103,9 @@ Exit check(const Case& from, int threads) {
   const FreeDofs free(prescribed, points.dimension);
   const BlockPattern pattern = body.model.pattern();
   std::string reason;
-  const LinearSystems systems =
-      choose_linear_systems(from, estimate, [&](const std::string& told) { reason = told; });
+  const StudyOptions options = study_options(from, threads);
+  const LinearSystems systems = choose_linear_systems(
+      options, body.model, estimate, [&](const std::string& told) { reason = told; });
   const ChosenSolver& chosen = systems.chosen;
   require_memory(systems.bytes, fmt::format("the case with {} points", points.count()));
   if (chosen.solver->analyze(pattern, free) == LinearOutcome::solved) {
@@ -114,8 +116,10 @@ Exit check(const Case& from, int threads) {
              bytes_text(available_memory()));
   fmt::print("time        {} for {} load steps, if none has to be cut\n",
              seconds_text(chosen.seconds * from.loading.steps / threads), from.loading.steps);
-  refuse_unheld_bodies(from, body);
-  refuse_unstable_rest(from, body, threads);
+  located_errors(from, [&] {
+    refuse_unheld_bodies(body);
+    refuse_unstable_rest(body, options);
+  });
   return Exit::done;
 }
 

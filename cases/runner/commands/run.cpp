@@ -10,17 +10,15 @@
 #include <fmt/format.h>
 
 #include "cases/runner/build/body.hpp"
-#include "cases/runner/build/rest_stability.hpp"
 #include "cases/runner/build/solver_options.hpp"
-#include "cases/runner/process/available_memory.hpp"
 #include "cases/runner/process/failure.hpp"
 #include "cases/runner/process/interruption.hpp"
 #include "cases/runner/results/dossier.hpp"
 #include "cases/runner/results/probe.hpp"
 #include "cases/runner/results/recorder.hpp"
 #include "cases/runner/results/results.hpp"
-#include "solvers/drivers/load_stepping.hpp"
 #include "solvers/linear/cholesky.hpp"
+#include "solvers/study/study.hpp"
 #include "src/core/input_error.hpp"
 #include "src/core/stopwatch.hpp"
 
@@ -93,27 +91,25 @@ void add_costs(const Assembler& assembler, const LinearSolver& solver, Summary& 
   summary.seconds.assembly += assembler.seconds_spent();
 }
 
-LoadSteppingResult follow_with_stand_in(const Case& from, const Body& body,
-                                        const SolvedBody& solved, const Model& stand_in,
-                                        const FreeDofs& free, const LoadSteppingObserver& observer,
-                                        Summary& summary) {
-  Assembler assembler(body.points, stand_in, solved.assembler.threads());
-  BodySize size = size_of(body.points);
+LoadSteppingResult follow_with_stand_in(const Case& from, Study& study, const Model& stand_in,
+                                        const LoadSteppingObserver& observer, Summary& summary) {
+  const Points& points = study.body().points;
+  BodySize size = size_of(points);
   size.horizon_ratio = from.solver.elastic_horizon_ratio;
   size.bonds = double(stand_in.bonds().count());
-  size.free_dofs = double(free.count());
-  const LinearSystems systems = choose_linear_systems(from, estimate_memory(size), {});
-  LinearSolver& solver = *systems.chosen.solver;
-  const std::unique_ptr<TangentOperator> tangent = systems.make_tangent(assembler);
-  if (solver.analyze(assembler.pattern(), free) != LinearOutcome::solved) {
+  size.free_dofs = double(study.free().count());
+  SolvedModel standing_in(
+      points, stand_in, study.free(),
+      choose_linear_systems(study.options(), stand_in, estimate_memory(size), {}),
+      study.options().threads);
+  if (standing_in.analyze() != LinearOutcome::solved) {
     LoadSteppingResult result;
     result.outcome = Outcome::out_of_memory;
     return result;
   }
-  const SolvedBody standing_in{assembler, solver, *tangent, free};
-  LoadSteppingResult result = follow_loading(solved, *body.conditions, load_stepping_options(from),
-                                             newton_options(from), observer, &standing_in);
-  add_costs(assembler, solver, summary);
+  const SolvedBody solved = standing_in.solved();
+  LoadSteppingResult result = study.follow(observer, &solved);
+  add_costs(standing_in.assembler(), standing_in.solver(), summary);
   return result;
 }
 
@@ -186,18 +182,14 @@ class CaseRun {
   /// Body, equations and their solver; refuses what can't be run.
   void make() {
     body_ = make_body(from_, options_.threads);
-    refuse_unheld_bodies(from_, *body_);
-    refuse_unstable_rest(from_, *body_, options_.threads);
-    systems_ = choose_linear_systems(
-        from_, estimate_memory(*body_),
-        [this](const std::string& reason) { recorder_->changed_solver(reason); });
+    study_.emplace(*body_, study_options(from_, options_.threads),
+                   [this](const std::string& reason) { recorder_->changed_solver(reason); });
     const Index points = body_->points.count();
-    require_memory(systems_.bytes, fmt::format("the case with {} points", points));
-    free_.emplace(body_->conditions->prescribed(), from_.dimension);
+    const FreeDofs& free = study_->free();
     progress_.say(fmt::format("{} points, {} bonds, {} free degrees of freedom, {} threads", points,
-                              body_->model.bonds().count(), free_->count(), options_.threads));
+                              body_->model.bonds().count(), free.count(), options_.threads));
     for (const std::string& line : describe_interactions(*body_)) progress_.say(line);
-    count(*body_, *free_, options_, summary_);
+    count(*body_, free, options_, summary_);
   }
 
   void open_results() {
@@ -211,32 +203,18 @@ class CaseRun {
   }
 
   LoadSteppingResult follow() {
-    assembler_.emplace(body_->points, body_->model, options_.threads);
-    tangent_ = systems_.make_tangent(*assembler_);
-    recorder_.emplace(from_, *body_, *assembler_, *results_, progress_);
-    LinearSolver& solver = *systems_.chosen.solver;
-    const LinearOutcome analysis = solver.analyze(assembler_->pattern(), *free_);
-    progress_.say(fmt::format("linear solver: {}{} ({})", solver.describe(),
-                              systems_.is_stored ? "" : ", tangent matrix-free",
-                              systems_.chosen.reason));
-    LoadSteppingResult result;
-    if (analysis == LinearOutcome::solved) {
-      result = follow({*assembler_, solver, *tangent_, *free_});
-    } else {
-      result.outcome = Outcome::out_of_memory;
-    }
-    add_costs(*assembler_, solver, summary_);
+    SolvedModel& equations = study_->equations();
+    recorder_.emplace(from_, *body_, equations.assembler(), *results_, progress_);
+    study_->analyze();
+    progress_.say(fmt::format("linear solver: {}{} ({})", equations.solver().describe(),
+                              equations.systems().is_stored ? "" : ", tangent matrix-free",
+                              equations.systems().chosen.reason));
+    const std::optional<Model> stand_in = make_elastic_stand_in(from_, *body_, options_.threads);
+    LoadSteppingResult result =
+        stand_in ? follow_with_stand_in(from_, *study_, *stand_in, observer(), summary_)
+                 : study_->follow(observer());
+    add_costs(equations.assembler(), equations.solver(), summary_);
     return result;
-  }
-
-  LoadSteppingResult follow(const SolvedBody& solved) {
-    const LoadSteppingObserver told = observer();
-    if (const std::optional<Model> stand_in =
-            make_elastic_stand_in(from_, *body_, options_.threads)) {
-      return follow_with_stand_in(from_, *body_, solved, *stand_in, *free_, told, summary_);
-    }
-    return follow_loading(solved, *body_->conditions, load_stepping_options(from_),
-                          newton_options(from_), told);
   }
 
   LoadSteppingObserver observer() {
@@ -290,10 +268,7 @@ class CaseRun {
   Summary& summary_;
   std::optional<Results>& results_;
   std::unique_ptr<const Body> body_;
-  LinearSystems systems_;
-  std::optional<FreeDofs> free_;
-  std::optional<Assembler> assembler_;
-  std::unique_ptr<TangentOperator> tangent_;
+  std::optional<Study> study_;
   std::optional<Recorder> recorder_;
 };
 

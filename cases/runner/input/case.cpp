@@ -6,6 +6,7 @@
 #include "cases/runner/input/key_table.hpp"
 #include "cases/runner/input/toml_table.hpp"
 #include "src/core/input_error.hpp"
+#include "src/core/number_text.hpp"
 
 namespace peristat {
 namespace {
@@ -30,12 +31,25 @@ CaseLocation location_of(const Case& from, const std::string& key) {
   return {};
 }
 
+/// Horizon and cross-section of whichever body it is.
+void resolve_size(Case& result) {
+  if (const auto* lattice = std::get_if<Lattice>(&result.body)) {
+    result.horizon = result.horizon_ratio * lattice->spacing;
+    result.cross_section = lattice->cross_section;
+  } else {
+    const auto& source = std::get<PointSource>(result.body);
+    result.horizon = source.horizon;
+    result.cross_section = source.cross_section;
+  }
+}
+
 /// Keys by the names that lower floors have for what they are given.
 const std::map<std::string, std::string>& keys_of_members() {
   static const std::map<std::string, std::string> keys{{"spacing", "lattice.spacing"},
                                                        {"perturbation", "lattice.perturbation"},
                                                        {"shapes", "lattice.shape"},
                                                        {"layers", "lattice.layer"},
+                                                       {"cracks", "crack"},
                                                        {"file", "points.file"},
                                                        {"supports", "support"},
                                                        {"loads", "load"},
@@ -49,6 +63,9 @@ std::string key_of(const Case& from, std::string member) {
   if (member == "cross_section")
     return std::string(lattice != nullptr ? "lattice." : "points.") +
            (from.dimension == 1 ? "area" : "thickness");
+  if (member == "horizon") return lattice != nullptr ? "lattice.horizon_ratio" : "points.horizon";
+  if (member.starts_with("points") && lattice != nullptr) return "lattice.shape";
+  if (member == "points.reference") return "points.file";
   const std::size_t end = std::min(member.find_first_of("[."), member.size());
   const auto known = keys_of_members().find(member.substr(0, end));
   if (known == keys_of_members().end()) return member;
@@ -84,6 +101,7 @@ Case read_case(const std::filesystem::path& file,
   } catch (const InputError& error) {
     throw located(result, error);
   }
+  resolve_size(result);
   result.as_resolved = document_keys().lines(result, result);
   return result;
 }
@@ -95,7 +113,10 @@ std::string located(const Case& from, const std::string& key, const std::string&
 InputError located(const Case& from, const InputError& error) {
   if (!error.place().empty()) return error;
   const std::string key = key_of(from, error.key());
-  return InputError(key, error.value(), error.allowed(), location_of(from, key).text(from.file));
+  // A lattice's horizon is given in spacings.
+  const std::string value =
+      key == "lattice.horizon_ratio" ? number_text(from.horizon_ratio) : error.value();
+  return InputError(key, value, error.allowed(), location_of(from, key).text(from.file));
 }
 
 }  // namespace peristat

@@ -12,15 +12,10 @@
 #include "cases/runner/input/case_location.hpp"
 #include "solvers/drivers/load_stepping.hpp"
 #include "solvers/linear/make_linear_solver.hpp"
-#include "src/conditions/specification.hpp"
-#include "src/connectivity/crack.hpp"
+#include "solvers/study/body_specification.hpp"
 #include "src/core/input_error.hpp"
 #include "src/geometry/lattice.hpp"
 #include "src/geometry/point_set.hpp"
-#include "src/materials/bond_constants.hpp"
-#include "src/materials/effective_volumes.hpp"
-#include "src/materials/quadrature.hpp"
-#include "src/potentials/potential.hpp"
 
 namespace peristat {
 
@@ -29,38 +24,6 @@ struct PointSource {
   std::filesystem::path file;  ///< absolute; in the case file relative to the case file's folder
   double cross_section = 1.0;  ///< 1D: area [m2]; 2D: thickness [m]
   double horizon = 0.0;        ///< [m]
-};
-
-/// Bonds alone, or continuum-kinematics-inspired peridynamics.
-enum class MaterialModel { bond, cpd };
-
-/// What constants from E and nu are to be right on.
-enum class Calibration { lattice, continuum };
-
-/// How bonds fail.
-enum class DamageLaw { none, critical_stretch, tanh, tanh_continuous };
-
-struct DamageSpecification {
-  DamageLaw law = DamageLaw::none;
-  double onset = 0.0;                ///< s_m, of the tanh laws
-  double critical = 0.0;             ///< s_c
-  double rate = 3.0;                 ///< beta, of the tanh laws
-  std::vector<std::string> no_fail;  ///< sets whose points' bonds never fail
-};
-
-struct MaterialSpecification {
-  MaterialModel model = MaterialModel::bond;
-  std::string potential = Harmonic::name;  ///< of whole bonds
-  PlaneState plane = PlaneState::stress;
-  std::optional<double> youngs_modulus;  ///< [Pa]; exactly one of this, micromodulus and c1 is set
-  std::optional<double> micromodulus;    ///< c [N/m6]
-  std::optional<double> poisson_ratio;   ///< cpd, with youngs_modulus
-  std::optional<double> c1;              ///< C1 [N/m6]
-  double c2 = 0.0;                       ///< C2 [N/m10]; in 2D not with youngs_modulus
-  double c3 = 0.0;                       ///< C3 [N/m14]; with c1 only
-  Calibration calibration = Calibration::lattice;
-  std::optional<double> density;  ///< [kg/m3], for dynamics only
-  DamageSpecification damage;
 };
 
 struct LoadingSpecification {
@@ -110,20 +73,14 @@ struct ProbeSpecification {
   std::string other;  ///< opening: set whose mean displacement is taken off
 };
 
-/// A case as read and checked once; constant from then on.
-struct Case {
+/// A case as read and checked once; constant from then on: what the body is made of, which knows
+/// no file, and all the rest.
+struct Case : BodySpecification {
   std::string title;
   int dimension = 2;
   std::variant<Lattice, PointSource> body;
   double horizon_ratio = 3.015;  ///< horizon / spacing, for a lattice
   std::vector<SetRule> sets;
-  VolumeCorrection volume_correction = VolumeCorrection::none;
-  std::vector<Crack> cracks;
-  SurfaceCorrection surface_correction = SurfaceCorrection::none;
-  InteractionWeights weights = InteractionWeights::mean;
-  MaterialSpecification material;
-  std::vector<SupportSpecification> supports;
-  std::vector<LoadSpecification> loads;
   LoadingSpecification loading;
   SolverSpecification solver;
   RelaxationSpecification relaxation;

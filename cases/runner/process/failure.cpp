@@ -6,7 +6,7 @@
 
 #include <sys/resource.h>
 
-#include "cases/runner/process/available_memory.hpp"
+#include "solvers/linear/available_memory.hpp"
 #include "solvers/linear/memory_estimate.hpp"
 #include "src/core/input_error.hpp"
 #include "src/core/machine_error.hpp"

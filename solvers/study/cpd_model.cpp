@@ -1,9 +1,9 @@
-#include "cases/runner/build/cpd_model.hpp"
+#include "solvers/study/cpd_model.hpp"
 
 #include <optional>
 
 #include "assembly/terms/simplices/simplex_term.hpp"
-#include "cases/runner/build/bond_potential.hpp"
+#include "solvers/study/bond_potential.hpp"
 #include "src/core/input_error.hpp"
 #include "src/core/number_text.hpp"
 #include "src/neighbourhood/neighbour_counts.hpp"
@@ -14,9 +14,10 @@ namespace {
 /// @param bonds of the whole body, which the effective volumes belong to: a crack is no surface
 /// @param left those that pre-cracks have not cut; an interaction with a cut bond is lost
 template <class Measure>
-Simplices<Measure> make_simplices(const Case& from, const Points& points, const Bonds& bonds,
-                                  const Bonds& left, const BulkNeighbourhood& bulk,
-                                  double cross_section, double constant, int threads) {
+Simplices<Measure> make_simplices(const BodySpecification& from, const Points& points,
+                                  const Bonds& bonds, const Bonds& left,
+                                  const BulkNeighbourhood& bulk, double cross_section,
+                                  double constant, int threads) {
   Interactions<Measure> interactions(points, bonds, cross_section, threads);
   if (interactions.count() == 0) {
     constexpr bool is_triangle = Measure::arms == 2;
@@ -36,14 +37,15 @@ Simplices<Measure> make_simplices(const Case& from, const Points& points, const 
   return {std::move(interactions), Harmonic{constant}};
 }
 
-CpdStiffness stiffness_of(const Case& from, const Points& points, const BondSetting& setting) {
+CpdStiffness stiffness_of(const BodySpecification& from, const Points& points,
+                          const BondSetting& setting) {
   return from.material.calibration == Calibration::lattice
-             ? lattice_stiffness(from.dimension, points.spacing, setting.horizon,
+             ? lattice_stiffness(points.dimension, points.spacing, setting.horizon,
                                  setting.cross_section)
-             : continuum_stiffness(from.dimension, setting.horizon, setting.cross_section);
+             : continuum_stiffness(points.dimension, setting.horizon, setting.cross_section);
 }
 
-void refuse_damage_of_negative_constants(const Case& from, const Points& points,
+void refuse_damage_of_negative_constants(const BodySpecification& from, const Points& points,
                                          const BondSetting& setting,
                                          const CpdConstants& constants) {
   const std::string negative = negative_constant(constants);
@@ -52,9 +54,9 @@ void refuse_damage_of_negative_constants(const Case& from, const Points& points,
   std::string advice = "give " + negative + " = 0 or more";
   if (from.material.poisson_ratio) {
     const CpdStiffness stiffness = stiffness_of(from, points, setting);
-    const double least = poisson_ratio_of(stiffness.moduli({1.0, 0.0, 0.0}), from.dimension);
+    const double least = poisson_ratio_of(stiffness.moduli({1.0, 0.0, 0.0}), points.dimension);
     advice = "it is for a poisson_ratio below " + number_text(least) +
-             (from.dimension == 3 ? " (with c2 = 0; a positive c2 needs a larger one)" : "") +
+             (points.dimension == 3 ? " (with c2 = 0; a positive c2 needs a larger one)" : "") +
              ". Give a larger poisson_ratio, or model = \"bond\"";
   }
   throw InputError("material.damage.law", "",
@@ -71,24 +73,25 @@ std::string negative_constant(const CpdConstants& constants) {
   return constants.c2 < 0.0 ? "c2" : constants.c3 < 0.0 ? "c3" : "";
 }
 
-CpdConstants cpd_constants_of(const Case& from, const Points& points, const BondSetting& setting) {
+CpdConstants cpd_constants_of(const BodySpecification& from, const Points& points,
+                              const BondSetting& setting) {
   const MaterialSpecification& material = from.material;
   if (material.c1) return {*material.c1, material.c2, material.c3};
   try {
     return stiffness_of(from, points, setting)
-        .constants(lame_moduli(*material.youngs_modulus, *material.poisson_ratio, from.dimension),
+        .constants(lame_moduli(*material.youngs_modulus, *material.poisson_ratio, points.dimension),
                    material.c2);
   } catch (const InputError& error) {
     throw InputError("material." + error.key(), error.value(), error.allowed());
   }
 }
 
-Model make_cpd_model(const Case& from, const Points& points, const BondSetting& setting,
-                     Bonds bonds, CutBonds& cut, int threads) {
+Model make_cpd_model(const BodySpecification& from, const Points& points,
+                     const BondSetting& setting, Bonds bonds, CutBonds& cut, int threads) {
   const CpdConstants constants = cpd_constants_of(from, points, setting);
   refuse_damage_of_negative_constants(from, points, setting, constants);
   const BulkNeighbourhood bulk =
-      bulk_neighbourhood(from.dimension, points.spacing, setting.horizon, setting.cross_section);
+      bulk_neighbourhood(points.dimension, points.spacing, setting.horizon, setting.cross_section);
   set_one_neighbour_weights(bonds, points, bulk);
   Bonds left = bonds;
   cut = cut_bonds(left, points, from.cracks);

@@ -1,4 +1,4 @@
-#include "cases/runner/process/available_memory.hpp"
+#include "solvers/linear/available_memory.hpp"
 
 #include <algorithm>
 #include <fstream>
@@ -72,8 +72,8 @@ void require_memory(double bytes, const std::string& for_what) {
   if (bytes <= available) return;
   throw MemoryError(for_what + " needs about " + bytes_text(bytes) + ", and " +
                     bytes_text(available) +
-                    " are available: use a larger lattice.spacing, a smaller "
-                    "lattice.horizon_ratio or a machine with more memory");
+                    " are available: use a larger spacing, a smaller horizon "
+                    "or a machine with more memory");
 }
 
 }  // namespace peristat

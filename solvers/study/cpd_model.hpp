@@ -4,29 +4,29 @@
 #include <vector>
 
 #include "assembly/terms/model.hpp"
-#include "cases/runner/input/case.hpp"
+#include "solvers/study/body_specification.hpp"
 #include "src/connectivity/crack.hpp"
 #include "src/materials/cpd_constants.hpp"
 #include "src/neighbourhood/bulk_neighbourhood.hpp"
 
 namespace peristat {
 
-/// Constants of a case of model "cpd": as given, or from E and nu on the lattice's bulk sums or in
+/// Constants of a body of model "cpd": as given, or from E and nu on the lattice's bulk sums or in
 /// the continuum.
 /// @throws InputError with keys of table [material]
-[[nodiscard]] CpdConstants cpd_constants_of(const Case& from, const Points& points,
+[[nodiscard]] CpdConstants cpd_constants_of(const BodySpecification& from, const Points& points,
                                             const BondSetting& setting);
 
 /// Key of a constant below zero, "c2" or "c3", whose interactions store negative energy; empty if
 /// there is none.
 [[nodiscard]] std::string negative_constant(const CpdConstants& constants);
 
-/// Model of a case of model "cpd".
+/// Model of a body of model "cpd".
 /// @throws InputError for damage together with a negative constant: the triangles and tetrahedra
 ///         that a broken bond takes along would release energy that nobody has put in
 /// @param bonds whose weights are to be set
 /// @param cut gets the bonds that pre-cracks have cut
-[[nodiscard]] Model make_cpd_model(const Case& from, const Points& points,
+[[nodiscard]] Model make_cpd_model(const BodySpecification& from, const Points& points,
                                    const BondSetting& setting, Bonds bonds, CutBonds& cut,
                                    int threads);
 

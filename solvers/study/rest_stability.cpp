@@ -1,4 +1,4 @@
-#include "cases/runner/build/rest_stability.hpp"
+#include "solvers/study/rest_stability.hpp"
 
 #include <cmath>
 #include <memory>
@@ -8,12 +8,12 @@
 
 #include <fmt/format.h>
 
-#include "cases/runner/build/cpd_model.hpp"
-#include "cases/runner/build/solver_options.hpp"
-#include "cases/runner/process/available_memory.hpp"
+#include "solvers/linear/available_memory.hpp"
 #include "solvers/linear/cholesky.hpp"
 #include "solvers/linear/iterative_solver.hpp"
 #include "solvers/linear/rigid_pieces.hpp"
+#include "solvers/study/cpd_model.hpp"
+#include "solvers/study/linear_systems.hpp"
 #include "src/core/input_error.hpp"
 #include "src/core/number_text.hpp"
 
@@ -46,17 +46,18 @@ Stability at_rest(LinearSolver& solver, const Tangent& tangent, const FreeDofs& 
 
 }  // namespace
 
-void refuse_unstable_rest(const Case& from, const Body& body, int threads) {
-  const MaterialSpecification& material = from.material;
+void refuse_unstable_rest(const Body& body, const StudyOptions& options) {
+  const MaterialSpecification& material = body.specification.material;
   if (material.model != MaterialModel::cpd) return;
-  const std::string negative = negative_constant(cpd_constants_of(from, body.points, body.setting));
-  const FreeDofs free(body.conditions->prescribed(), from.dimension);
+  const std::string negative =
+      negative_constant(cpd_constants_of(body.specification, body.points, body.setting));
+  const FreeDofs free(body.conditions->prescribed(), body.points.dimension);
   if (negative.empty() || free.count() == 0) return;
 
   const MemoryEstimate estimate = estimate_memory(body);
-  const LinearSystems systems = choose_linear_systems(from, estimate, {});
-  require_memory(systems.bytes, fmt::format("the case with {} points", body.points.count()));
-  Assembler assembler(body.points, body.model, threads);
+  const LinearSystems systems = choose_linear_systems(options, body.model, estimate, {});
+  require_memory(systems.bytes, fmt::format("the body with {} points", body.points.count()));
+  Assembler assembler(body.points, body.model, usable_threads(options.threads));
   Tangent tangent(assembler);
   const std::vector<double> reference(body.points.reference.size(), 0.0);
   assembler.tangent({reference, assembler.initial_history()}, tangent);
@@ -71,18 +72,15 @@ void refuse_unstable_rest(const Case& from, const Body& body, int threads) {
   if (outcome != LinearOutcome::not_positive_definite) return;
   const std::string pivots =
       inertia ? fmt::format(" (its tangent has {} negative pivots)", inertia->negative) : "";
-  throw located(
-      from,
-      InputError(
-          "material." + (material.poisson_ratio ? "poisson_ratio" : negative),
-          number_text(material.poisson_ratio ? *material.poisson_ratio
-                      : negative == "c2"     ? material.c2
-                                             : material.c3),
-          fmt::format("the body is unstable before anything is loaded{}: its {} is negative, and "
-                      "some of its interactions store less energy the more they deform. Give it a "
-                      "larger Poisson's ratio (constant), a smaller lattice.perturbation or a "
-                      "larger horizon",
-                      pivots, negative)));
+  throw InputError(
+      "material." + (material.poisson_ratio ? "poisson_ratio" : negative),
+      number_text(material.poisson_ratio ? *material.poisson_ratio
+                  : negative == "c2"     ? material.c2
+                                         : material.c3),
+      fmt::format("the body is unstable before anything is loaded{}: its {} is negative, and some "
+                  "of its interactions store less energy the more they deform. Give it a larger "
+                  "Poisson's ratio (constant), a smaller lattice.perturbation or a larger horizon",
+                  pivots, negative));
 }
 
 }  // namespace peristat

@@ -1,5 +1,6 @@
-#include "cases/runner/build/bond_potential.hpp"
+#include "solvers/study/bond_potential.hpp"
 
+#include <optional>
 #include <tuple>
 
 #include "src/core/input_error.hpp"
@@ -28,22 +29,27 @@ BondPotential with_damage(const Whole& whole, const DamageSpecification& damage)
 }  // namespace
 
 BondPotential bond_potential(const MaterialSpecification& material, double micromodulus) {
-  BondPotential result;
+  std::optional<BondPotential> result;
   WholeBondPotentials::for_each([&](auto whole) {
     if (material.potential != whole.name) return;
     whole.modulus = micromodulus;
     result = with_damage(whole, material.damage);
   });
-  return result;
+  if (!result) {
+    throw InputError("material.potential", '"' + material.potential + '"',
+                     "bonds have no potential of this name");
+  }
+  return *result;
 }
 
-double micromodulus_of(const Case& from, const BondSetting& setting) {
+double micromodulus_of(const BodySpecification& from, const BondSetting& setting) {
   const MaterialSpecification& material = from.material;
   return material.micromodulus ? *material.micromodulus
                                : micromodulus(*material.youngs_modulus, setting);
 }
 
-std::vector<char> never_failing_bonds(const Case& from, const Points& points, const Bonds& bonds) {
+std::vector<char> never_failing_bonds(const BodySpecification& from, const Points& points,
+                                      const Bonds& bonds) {
   const std::vector<std::string>& sets = from.material.damage.no_fail;
   if (sets.empty()) return {};
   std::vector<char> of_point(std::size_t(points.count())), of_bond(std::size_t(bonds.count()));

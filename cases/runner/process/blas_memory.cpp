@@ -1,4 +1,4 @@
-#include "solvers/linear/blas_memory.hpp"
+#include "cases/runner/process/blas_memory.hpp"
 
 #include <algorithm>
 #include <cstdint>

@@ -1,0 +1,47 @@
+# The library libperistat.so of all floors below the cases, and what is installed: the library with
+# its headers and its CMake package, the program, and the module that both load.
+include(GNUInstallDirs)
+include(CMakePackageConfigHelpers)
+
+# What uses it is linked with nothing else: other libraries are private to it.
+add_library(peristat_library SHARED
+  $<TARGET_OBJECTS:peristat_mechanics>
+  $<TARGET_OBJECTS:peristat_assembly>
+  $<TARGET_OBJECTS:peristat_solvers>)
+add_library(peristat::peristat ALIAS peristat_library)
+add_dependencies(peristat_library peristat_trilinos)
+set_target_properties(peristat_library PROPERTIES
+  OUTPUT_NAME peristat EXPORT_NAME peristat LINKER_LANGUAGE CXX
+  VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
+target_compile_features(peristat_library INTERFACE cxx_std_20)
+target_include_directories(peristat_library INTERFACE
+  $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+target_link_libraries(peristat_library
+  PRIVATE peristat_cholmod peristat_muparser fmt::fmt ${CMAKE_DL_LIBS}
+  PUBLIC OpenMP::OpenMP_CXX)
+
+# Where each finds the module; and OpenBLAS in the folder of its flavour.
+set(module_folder ${CMAKE_INSTALL_LIBDIR}/peristat)
+file(RELATIVE_PATH module_from_program
+     /${CMAKE_INSTALL_BINDIR} /${module_folder})
+set_target_properties(peristat_library PROPERTIES
+  INSTALL_RPATH "$ORIGIN/peristat" INSTALL_RPATH_USE_LINK_PATH ON)
+set_target_properties(peristat PROPERTIES
+  INSTALL_RPATH "$ORIGIN/${module_from_program}" INSTALL_RPATH_USE_LINK_PATH ON)
+
+install(TARGETS peristat RUNTIME)
+install(TARGETS peristat_trilinos LIBRARY DESTINATION ${module_folder})
+install(TARGETS peristat_library EXPORT peristatTargets LIBRARY)
+set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/peristat)
+install(EXPORT peristatTargets NAMESPACE peristat:: DESTINATION ${package_folder})
+configure_package_config_file(cmake/peristatConfig.cmake.in peristatConfig.cmake
+                              INSTALL_DESTINATION ${package_folder})
+write_basic_package_version_file(peristatConfigVersion.cmake COMPATIBILITY SameMinorVersion)
+install(FILES ${PROJECT_BINARY_DIR}/peristatConfig.cmake
+              ${PROJECT_BINARY_DIR}/peristatConfigVersion.cmake
+        DESTINATION ${package_folder})
+install(CODE "set(SOURCE \"${PROJECT_SOURCE_DIR}\")
+set(STAGE \"${PROJECT_BINARY_DIR}/installed_headers/peristat\")
+include(\"${PROJECT_SOURCE_DIR}/cmake/stage_headers.cmake\")")
+install(DIRECTORY ${PROJECT_BINARY_DIR}/installed_headers/peristat
+        DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})

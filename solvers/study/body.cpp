@@ -1,0 +1,242 @@
+#include "solvers/study/body.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include <fmt/format.h>
+#include <omp.h>
+
+#include "solvers/linear/available_memory.hpp"
+#include "solvers/study/bond_potential.hpp"
+#include "solvers/study/cpd_model.hpp"
+#include "src/connectivity/fragments.hpp"
+#include "src/connectivity/free_motion.hpp"
+#include "src/core/input_error.hpp"
+#include "src/core/number_text.hpp"
+#include "src/core/stopwatch.hpp"
+#include "src/core/threads.hpp"
+#include "src/neighbourhood/horizon.hpp"
+
+namespace peristat {
+namespace {
+
+/// Cross-section that the points have: mean volume / spacing^dimension.
+double cross_section_of(const Points& points) {
+  double volume = 0.0;
+  for (const double of_point : points.volume) volume += of_point;
+  return volume / points.count() / std::pow(points.spacing, points.dimension);
+}
+
+BondSetting setting_of(const BodySpecification& of, const Points& points) {
+  BondSetting setting;
+  setting.dimension = points.dimension;
+  setting.plane = of.material.plane;
+  setting.volume_correction = of.volume_correction;
+  setting.horizon = of.horizon;
+  setting.cross_section = points.dimension == 3     ? 1.0
+                          : of.cross_section == 0.0 ? cross_section_of(points)
+                                                    : of.cross_section;
+  return setting;
+}
+
+/// Refuses places whose digits don't tell neighbours from points beyond the horizon.
+void require_resolved(const Points& points, double horizon) {
+  double farthest = 0.0;
+  for (const double at : points.reference) farthest = std::max(farthest, std::abs(at));
+  if (farthest * std::numeric_limits<double>::epsilon() <= horizon_tolerance * horizon) return;
+  throw InputError("points.reference", "",
+                   "a point stands at " + number_text(farthest) +
+                       " m, so far from the origin that round-off of its place is more than " +
+                       number_text(horizon_tolerance) + " of the horizon, " + number_text(horizon) +
+                       " m; move the body to the origin");
+}
+
+/// Refuses two points at one place: their bond has no length.
+void refuse_coincident_points(const Points& points, const Bonds& bonds) {
+  for (Index i = 0; i < bonds.points(); ++i) {
+    for (Offset bond = bonds.offset[i]; bond < bonds.offset[i + 1]; ++bond) {
+      if (std::isfinite(bonds.inverse_length(bond))) continue;
+      throw InputError(
+          "points.reference", "",
+          "two points stand at " + place_text(points.position(i), points.dimension) + " m");
+    }
+  }
+}
+
+/// Model of a body, and what its pre-cracks have cut.
+void make_model(Body& body, int threads) {
+  const BodySpecification& of = body.specification;
+  const Stopwatch watch(body.seconds_neighbourhood);
+  Bonds bonds = make_bonds(body.points, of.surface_correction, body.setting, threads);
+  refuse_coincident_points(body.points, bonds);
+  CutBonds cut;
+  if (of.material.model == MaterialModel::cpd) {
+    body.model = make_cpd_model(of, body.points, body.setting, std::move(bonds), cut, threads);
+  } else {
+    // Corrections near surfaces are those of the whole body: a crack is no surface.
+    cut = cut_bonds(bonds, body.points, of.cracks);
+    std::vector<char> never_fails = never_failing_bonds(of, body.points, bonds);
+    body.model =
+        Model(std::move(bonds), bond_potential(of.material, micromodulus_of(of, body.setting)),
+              std::move(never_fails));
+  }
+  body.cut_weight = std::move(cut.weight);
+  body.cut_bonds = std::move(cut.ends);
+}
+
+/// Stores interactions that can be stored if they fit into half of what everything else leaves.
+void store_interactions(Body& body, int threads) {
+  InteractionStorage& storage = body.interaction_storage;
+  for (const auto& term : body.model.terms()) storage.needed += term->bytes_to_store();
+  storage.room = std::max(0.5 * (available_memory() - estimate_memory(body).least_bytes()), 0.0);
+  if (!storage.fits()) return;
+  for (const auto& term : body.model.terms()) term->store(body.points, threads);
+}
+
+}  // namespace
+
+double expected_bonds(double points, int dimension, double horizon_ratio) {
+  // No more than there are pairs of points.
+  return points * std::min(bonds_per_point(dimension, horizon_ratio), 0.5 * points);
+}
+
+int usable_threads(int asked_for) {
+  if (asked_for < 0) {
+    throw InputError("threads", std::to_string(asked_for), "must be at least 1, or 0 for all");
+  }
+  const int threads = asked_for == 0 ? omp_get_max_threads() : asked_for;
+  run_on_threads(threads, [](int) {});
+  return threads;
+}
+
+std::unique_ptr<const Body> make_body(Points points, const BodySpecification& of, int threads) {
+  threads = usable_threads(threads);
+  check_points(points);
+  check_specification(of, points);
+  auto owned = std::make_unique<Body>();
+  Body& body = *owned;
+  body.specification = of;
+  body.points = std::move(points);
+  body.setting = setting_of(of, body.points);
+  require_resolved(body.points, body.setting.horizon);
+  BodySize expected = size_of(body.points);
+  expected.horizon_ratio = body.horizon_ratio();
+  expected.bonds = expected_bonds(expected.points, body.points.dimension, body.horizon_ratio());
+  require_memory(estimate_memory(expected).least_bytes(),
+                 fmt::format("the body with {} points", body.points.count()));
+  make_model(body, threads);
+  body.conditions = std::make_unique<Conditions>(body.points, of.supports, of.loads);
+  const Stopwatch watch(body.seconds_neighbourhood);
+  store_interactions(body, threads);
+  return owned;
+}
+
+BodySize size_of(const Points& points) {
+  BodySize size;
+  size.dimension = points.dimension;
+  size.points = double(points.count());
+  size.free_dofs = double(points.reference.size());
+  for (int c = 0; c < points.dimension; ++c) {
+    double least = std::numeric_limits<double>::infinity(), most = -least;
+    for (Index i = 0; i < points.count(); ++i) {
+      const double at = points.reference[std::size_t(i) * points.dimension + c];
+      least = std::min(least, at);
+      most = std::max(most, at);
+    }
+    size.longest = std::max(size.longest, (most - least) / points.spacing + 1.0);
+  }
+  return size;
+}
+
+MemoryEstimate estimate_memory(const Body& body) {
+  const auto& prescribed = body.conditions->prescribed();
+  BodySize size = size_of(body.points);
+  size.horizon_ratio = body.horizon_ratio();
+  size.bonds = double(body.model.bonds().count());
+  size.bytes_per_bond = double(sizeof(Index) + body.model.bonds().kind.bytes_per_bond());
+  size.has_history = body.model.has_history();
+  size.has_symmetric_blocks = body.model.has_symmetric_blocks();
+  size.free_dofs = double(std::count(prescribed.begin(), prescribed.end(), 0));
+  MemoryEstimate estimate = estimate_memory(size);
+  for (const auto& term : body.model.terms()) estimate.body_bytes += term->stored_bytes();
+  return estimate;
+}
+
+std::vector<std::string> describe_interactions(const Body& body) {
+  std::vector<std::string> lines;
+  for (const auto& term : body.model.terms()) {
+    if (term.get() == body.model.bond_term().get()) continue;  // told apart
+    for (const InteractionCount& kind : term->counts()) {
+      const auto [least, most] = std::minmax_element(kind.per_point.begin(), kind.per_point.end());
+      lines.push_back(
+          fmt::format("{} {}; per point {} to {}", kind.count, kind.name, *least, *most));
+    }
+  }
+  const InteractionStorage& storage = body.interaction_storage;
+  if (storage.needed > 0.0) {
+    lines.push_back(fmt::format("{}: storing them takes {} of {} that are free for it",
+                                storage.fits() ? "stored" : "found anew in every pass",
+                                bytes_text(storage.needed), bytes_text(storage.room)));
+  }
+  return lines;
+}
+
+std::string describe_free_motions(const Body& body) {
+  const std::vector<FreeMotion> parts =
+      free_motions(body.points, body.model.bonds(), body.conditions->prescribed());
+  std::string text;
+  constexpr std::size_t most_listed = 5;
+  for (std::size_t k = 0; k < std::min(parts.size(), most_listed); ++k) {
+    const FreeMotion& part = parts[k];
+    const std::string place = place_text(body.points.position(part.example), body.points.dimension);
+    if (part.points == body.points.count()) {
+      text += "the whole body may ";
+    } else if (part.points == 1) {
+      text += "the isolated point at " + place + " m may ";
+    } else {
+      text +=
+          "a part of " + std::to_string(part.points) + " points, with one at " + place + " m, may ";
+    }
+    for (std::size_t m = 0; m < part.motions.size(); ++m) {
+      text += (m == 0 ? "" : m + 1 == part.motions.size() ? " and " : ", ") + part.motions[m];
+    }
+    text += "; ";
+  }
+  if (parts.size() > most_listed) {
+    text += "so may " + std::to_string(parts.size() - most_listed) + " more parts; ";
+  }
+  if (!text.empty()) text.resize(text.size() - 2);
+  return text;
+}
+
+std::string describe_loose_points(const Body& body) {
+  const std::vector<double> at_rest(body.points.reference.size(), 0.0);
+  const Fragments fragments =
+      find_fragments(body.points, body.model.bonds(), {}, body.conditions->prescribed(), at_rest);
+  if (fragments.loose.empty()) return {};
+  const std::size_t count = fragments.loose.size();
+  return fmt::format(
+      "{} {} on too few bonds to be held by them, {}at {} m", count,
+      count == 1 ? "point hangs" : "points hang", count == 1 ? "" : "one of them ",
+      place_text(body.points.position(fragments.loose.front()), body.points.dimension));
+}
+
+void refuse_unheld_bodies(const Body& body) {
+  const std::string motions = describe_free_motions(body);
+  if (!motions.empty()) {
+    throw InputError("supports", "",
+                     "the supports do not hold the body: " + motions +
+                         ". Prescribe displacements that prevent this");
+  }
+  const std::string loose = describe_loose_points(body);
+  if (!loose.empty()) {
+    throw InputError(body.specification.cracks.empty() ? "points" : "cracks", "",
+                     loose +
+                         ". Take such points away, move what cuts them off, or give them more "
+                         "bonds (a larger horizon)");
+  }
+}
+
+}  // namespace peristat

@@ -1,0 +1,79 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "assembly/terms/model.hpp"
+#include "solvers/linear/memory_estimate.hpp"
+#include "solvers/study/body_specification.hpp"
+#include "src/conditions/conditions.hpp"
+
+namespace peristat {
+
+/// What storing all triangles and tetrahedra takes, and what may be taken [bytes]. They are stored
+/// if it fits, and found anew in every pass otherwise.
+struct InteractionStorage {
+  double needed = 0.0, room = 0.0;
+  [[nodiscard]] bool fits() const { return needed <= room; }
+};
+
+/// Points, model and conditions: everything that is made before anything is solved, and constant
+/// from then on.
+struct Body {
+  Body() = default;
+  Body(const Body&) = delete;  // its members refer to its points: it stays where it is made
+  Body& operator=(const Body&) = delete;
+
+  BodySpecification specification;
+  Points points;
+  BondSetting setting;
+  Model model;
+  std::unique_ptr<Conditions> conditions;  // refers to points
+  InteractionStorage interaction_storage;
+  std::vector<double> cut_weight;   ///< per point, of the bonds that pre-cracks have cut [m6]
+  std::vector<BondEnds> cut_bonds;  ///< by pre-cracks
+  double seconds_neighbourhood = 0.0;
+
+  [[nodiscard]] double horizon_ratio() const { return setting.horizon / points.spacing; }
+};
+
+/// A body of points. It may still move freely: that is refused where it is solved.
+/// @param points with the sets that supports and loads name
+/// @param threads 0: as many as OpenMP takes by itself
+/// @throws InputError with the member that is wrong ("horizon", "material.youngs_modulus",
+///         "supports[0].set", "points.volume", …)
+/// @throws MemoryError if the estimate exceeds the memory available
+[[nodiscard]] std::unique_ptr<const Body> make_body(Points points, const BodySpecification& of,
+                                                    int threads = 0);
+
+/// Number of threads to run on.
+/// @param asked_for 0: as many as OpenMP takes by itself
+/// @throws InputError ("threads") for a number below 0
+/// @throws ThreadError if the system does not run so many
+[[nodiscard]] int usable_threads(int asked_for);
+
+/// Body size for the memory estimate.
+[[nodiscard]] BodySize size_of(const Points& points);
+
+/// Bonds of so many points, as far as horizon and dimension tell.
+[[nodiscard]] double expected_bonds(double points, int dimension, double horizon_ratio);
+
+/// The estimate from the counts that the body has.
+[[nodiscard]] MemoryEstimate estimate_memory(const Body& body);
+
+/// Lines that tell the triangles and tetrahedra, and whether they are stored; empty for bonds
+/// alone.
+[[nodiscard]] std::vector<std::string> describe_interactions(const Body& body);
+
+/// Sentence that tells which parts of the body may move freely; empty if none.
+[[nodiscard]] std::string describe_free_motions(const Body& body);
+
+/// Sentence that tells points that swing on too few bonds from the start; empty if none.
+[[nodiscard]] std::string describe_loose_points(const Body& body);
+
+/// @throws InputError ("supports", "cracks" or "points") if a part of the body may move freely, or
+///         points swing
+void refuse_unheld_bodies(const Body& body);
+
+}  // namespace peristat

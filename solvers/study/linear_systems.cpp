@@ -1,0 +1,48 @@
+#include "solvers/study/linear_systems.hpp"
+
+#include <utility>
+
+#include "assembly/operators/matrix_free_tangent.hpp"
+#include "assembly/operators/tangent.hpp"
+#include "solvers/linear/available_memory.hpp"
+#include "src/core/input_error.hpp"
+
+namespace peristat {
+
+LinearSystems choose_linear_systems(const StudyOptions& options, const Model& model,
+                                    const MemoryEstimate& estimate, SolverLadder::Reporter tell) {
+  LinearSolverOptions linear = options.linear;
+  // Who names a preconditioner wants it used.
+  if (linear.method == LinearMethod::automatic &&
+      linear.preconditioner != PreconditionerKind::automatic)
+    linear.method = LinearMethod::conjugate_gradients;
+  if (options.tangent == TangentStorage::matrix_free && !model.visits_rows())
+    throw InputError("tangent", "matrix_free", "is for bonds alone");
+  LinearProblem problem;
+  problem.bonds = estimate.size.bonds;
+  problem.factor_flops = estimate.factor_flops;
+  problem.factor_bytes = estimate.direct_bytes();
+  problem.available_bytes = available_memory() - estimate.body_bytes - estimate.tangent_bytes;
+  // Elsewhere damage grows in relaxation, which finds stable states alone.
+  problem.may_soften = model.has_history() && options.loading.mode == Mode::newton;
+  problem.is_stored = options.tangent != TangentStorage::matrix_free;
+  LinearSystems systems;
+  systems.chosen = make_linear_solver(linear, problem, tell);
+  // Products computed anew take less memory; in 3D they are faster than stored ones, in 2D a sixth
+  // slower.
+  if (options.tangent == TangentStorage::automatic && !systems.chosen.is_direct &&
+      model.visits_rows() && can_be_matrix_free(linear)) {
+    problem.is_stored = false;
+    systems.chosen = make_linear_solver(linear, problem, std::move(tell));
+  }
+  systems.is_stored = problem.is_stored;
+  systems.bytes = estimate.bytes(systems.chosen.is_direct, systems.is_stored, linear);
+  return systems;
+}
+
+std::unique_ptr<TangentOperator> LinearSystems::make_tangent(Assembler& assembler) const {
+  if (!is_stored) return std::make_unique<MatrixFreeTangent>(assembler);
+  return std::make_unique<Tangent>(assembler);
+}
+
+}  // namespace peristat

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <memory>
+
+#include "assembly/assembler.hpp"
+#include "solvers/linear/memory_estimate.hpp"
+#include "solvers/study/study_options.hpp"
+
+namespace peristat {
+
+/// How the linear systems of a body are solved.
+struct LinearSystems {
+  ChosenSolver chosen;
+  bool is_stored = true;  ///< the tangent
+  double bytes = 0.0;     ///< estimated for the whole run
+
+  [[nodiscard]] std::unique_ptr<TangentOperator> make_tangent(Assembler& assembler) const;
+};
+
+/// @param estimate what the body is estimated to need
+/// @param tell see make_linear_solver
+/// @throws InputError ("tangent") if the model's can't do without being stored
+[[nodiscard]] LinearSystems choose_linear_systems(const StudyOptions& options, const Model& model,
+                                                  const MemoryEstimate& estimate,
+                                                  SolverLadder::Reporter tell);
+
+}  // namespace peristat

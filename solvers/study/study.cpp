@@ -1,0 +1,82 @@
+#include "solvers/study/study.hpp"
+
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "solvers/linear/available_memory.hpp"
+#include "solvers/study/rest_stability.hpp"
+
+namespace peristat {
+
+SolvedModel::SolvedModel(const Points& points, const Model& model, const FreeDofs& free,
+                         LinearSystems systems, int threads)
+    : systems_(std::move(systems)),
+      free_(free),
+      assembler_(points, model, threads),
+      tangent_(systems_.make_tangent(assembler_)) {}
+
+LinearOutcome SolvedModel::analyze() { return solver().analyze(assembler_.pattern(), free_); }
+
+Study::Study(const Body& body, StudyOptions options, SolverLadder::Reporter tell)
+    : body_(body),
+      options_(std::move(options)),
+      free_(body.conditions->prescribed(), body.points.dimension) {
+  check_options(options_);
+  options_.threads = usable_threads(options_.threads);
+  refuse_unheld_bodies(body);
+  refuse_unstable_rest(body, options_);
+  LinearSystems systems =
+      choose_linear_systems(options_, body.model, estimate_memory(body), std::move(tell));
+  require_memory(systems.bytes, fmt::format("the body with {} points", body.points.count()));
+  equations_ = std::make_unique<SolvedModel>(body.points, body.model, free_, std::move(systems),
+                                             options_.threads);
+}
+
+LinearOutcome Study::analyze() {
+  if (!analysis_) analysis_ = equations_->analyze();
+  return *analysis_;
+}
+
+LoadSteppingResult Study::follow(const LoadSteppingObserver& observer, const SolvedBody* stand_in) {
+  if (analyze() != LinearOutcome::solved) {
+    LoadSteppingResult result;
+    result.outcome = Outcome::out_of_memory;
+    return result;
+  }
+  return follow_loading(equations_->solved(), *body_.conditions, options_.loading, options_.newton,
+                        observer, stand_in);
+}
+
+StudyResult solve(const Body& body, const StudyOptions& options,
+                  const LoadSteppingObserver& observer) {
+  StudyResult result;
+  LoadSteppingObserver told = observer;
+  told.decision = [&](const DecisionRecord& record) {
+    result.decisions.push_back(record);
+    if (observer.decision) observer.decision(record);
+  };
+  told.accepted = [&](const StepRecord& record, const AcceptedState& state) {
+    result.steps.push_back(record);
+    if (observer.accepted) observer.accepted(record, state);
+  };
+  LoadSteppingResult reached = Study(body, options).follow(told);
+  result.outcome = reached.outcome;
+  result.state = std::move(reached.state);
+  result.last_attempt = std::move(reached.last_attempt);
+  return result;
+}
+
+Coordinates mean_displacement(const Points& points, const State& state, const std::string& set) {
+  const auto found = points.sets.find(set);
+  if (found == points.sets.end()) throw InputError("set", '"' + set + '"', "no set of this name");
+  Coordinates mean{};
+  for (const Index point : found->second) {
+    for (int c = 0; c < points.dimension; ++c)
+      mean[c] += state.displacement[std::size_t(point) * points.dimension + c];
+  }
+  for (double& component : mean) component /= double(found->second.size());
+  return mean;
+}
+
+}  // namespace peristat

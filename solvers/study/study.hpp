@@ -1,0 +1,89 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "solvers/drivers/load_stepping.hpp"
+#include "solvers/study/body.hpp"
+#include "solvers/study/linear_systems.hpp"
+
+namespace peristat {
+
+/// A model's equations with what solves them; owns what a SolvedBody refers to.
+class SolvedModel {
+ public:
+  /// Points, model and `free` must outlive it.
+  SolvedModel(const Points& points, const Model& model, const FreeDofs& free, LinearSystems systems,
+              int threads);
+
+  /// Prepares the solver.
+  [[nodiscard]] LinearOutcome analyze();
+
+  /// For a driver; after `analyze`.
+  [[nodiscard]] SolvedBody solved() { return {assembler_, solver(), *tangent_, free_}; }
+
+  [[nodiscard]] Assembler& assembler() { return assembler_; }
+  [[nodiscard]] LinearSolver& solver() { return *systems_.chosen.solver; }
+  [[nodiscard]] const LinearSystems& systems() const { return systems_; }
+
+ private:
+  LinearSystems systems_;
+  const FreeDofs& free_;
+  Assembler assembler_;
+  std::unique_ptr<TangentOperator> tangent_;
+};
+
+/// A body that is held, and everything that follows it along its load path.
+class Study {
+ public:
+  /// The body must outlive the study.
+  /// @param tell of linear solvers that give way to others; may be empty
+  /// @throws InputError for options that can't be used, a body that the supports do not hold, loose
+  ///         points, and a body that is unstable at rest
+  /// @throws MemoryError if it would not fit
+  Study(const Body& body, StudyOptions options, SolverLadder::Reporter tell = {});
+
+  /// From load factor 0 to 1; once. What was not enough memory is outcome out_of_memory.
+  [[nodiscard]] LoadSteppingResult follow(const LoadSteppingObserver& observer,
+                                          const SolvedBody* stand_in = nullptr);
+
+  /// Prepares the solver; `follow` does if nobody has.
+  LinearOutcome analyze();
+
+  [[nodiscard]] const Body& body() const { return body_; }
+  [[nodiscard]] const StudyOptions& options() const { return options_; }
+  [[nodiscard]] const FreeDofs& free() const { return free_; }
+  [[nodiscard]] SolvedModel& equations() { return *equations_; }
+
+ private:
+  const Body& body_;
+  StudyOptions options_;
+  FreeDofs free_;
+  std::unique_ptr<SolvedModel> equations_;
+  std::optional<LinearOutcome> analysis_;
+};
+
+/// What has become of a study.
+struct StudyResult {
+  Outcome outcome = Outcome::converged;
+  State state;                            ///< last accepted: displacement [m], load factor, …
+  std::vector<StepRecord> steps;          ///< accepted: energies, reactions, damage
+  std::vector<DecisionRecord> decisions;  ///< with their reasons
+  Attempt last_attempt;                   ///< that failed
+};
+
+/// Follows a body from load factor 0 to 1.
+///
+/// @param observer told of everything on the way; may interrupt
+/// @throws InputError, MemoryError as Study does. Not converging is an outcome.
+[[nodiscard]] StudyResult solve(const Body& body, const StudyOptions& options = {},
+                                const LoadSteppingObserver& observer = {});
+
+/// Mean displacement of a set [m], zero beyond the dimension.
+/// @throws InputError ("set") if there is no such set
+[[nodiscard]] Coordinates mean_displacement(const Points& points, const State& state,
+                                            const std::string& set);
+
+}  // namespace peristat

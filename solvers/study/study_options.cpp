@@ -1,0 +1,49 @@
+#include "solvers/study/study_options.hpp"
+
+#include <algorithm>
+#include <string>
+
+#include "solvers/drivers/drivers.hpp"
+#include "src/core/input_error.hpp"
+#include "src/core/number_text.hpp"
+
+namespace peristat {
+namespace {
+
+void require_within(double value, double least, double most, const std::string& key) {
+  if (value >= least && value <= most) return;  // not-a-number is in no range
+  throw InputError(key, number_text(value),
+                   "must be from " + number_text(least) + " to " + number_text(most));
+}
+
+}  // namespace
+
+void check_options(const StudyOptions& options) {
+  const LoadSteppingOptions& loading = options.loading;
+  const auto& drivers = all_drivers();
+  if (std::none_of(drivers.begin(), drivers.end(),
+                   [&](const DriverEntry& driver) { return driver.mode == loading.mode; })) {
+    throw InputError("loading.mode", '"' + std::string(loading.mode.name) + '"',
+                     "no driver of this name");
+  }
+  require_within(loading.steps, 1, 1'000'000, "loading.steps");
+  require_within(loading.relaxation_steps, 1, 1e9, "loading.relaxation_steps");
+  const double step = 1.0 / loading.steps;
+  require_within(loading.smallest_step, 1e-12, step, "loading.smallest_step");
+  if (loading.largest_step != 0.0)
+    require_within(loading.largest_step, step, 1.0, "loading.largest_step");
+  require_within(options.newton.relative_tolerance, 1e-14, 1e-2, "newton.relative_tolerance");
+  require_within(options.newton.linear_tolerance, 1e-14, 1e-1, "newton.linear_tolerance");
+  require_within(options.newton.max_iterations, 1, 1000, "newton.max_iterations");
+  require_within(loading.relaxation.relative_tolerance, 1e-14, 1e-2,
+                 "loading.relaxation.relative_tolerance");
+  const LinearSolverOptions& linear = options.linear;
+  if (linear.method == LinearMethod::cholesky &&
+      linear.preconditioner != PreconditionerKind::automatic)
+    throw InputError("linear.preconditioner", "", "is for iterative solvers");
+  if (options.tangent == TangentStorage::matrix_free && !can_be_matrix_free(linear))
+    throw InputError("tangent", "matrix_free",
+                     "does not go with this linear.method or linear.preconditioner");
+}
+
+}  // namespace peristat

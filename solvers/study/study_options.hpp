@@ -1,0 +1,22 @@
+#pragma once
+
+#include "solvers/drivers/load_stepping_options.hpp"
+#include "solvers/linear/make_linear_solver.hpp"
+#include "solvers/search/newton.hpp"
+
+namespace peristat {
+
+/// How a body is followed along its load path.
+struct StudyOptions {
+  LoadSteppingOptions loading;
+  NewtonOptions newton;
+  /// A preconditioner that is named is used: `automatic` then means conjugate gradients.
+  LinearSolverOptions linear;
+  TangentStorage tangent = TangentStorage::automatic;
+  int threads = 0;  ///< 0: as many as OpenMP takes by itself
+};
+
+/// @throws InputError ("loading.steps", "newton.relative_tolerance", …)
+void check_options(const StudyOptions& options);
+
+}  // namespace peristat

@@ -1,0 +1,129 @@
+"""The library: the page quotes the example, which is built against an installed peristat, and gives
+what the same case gives."""
+
+import csv
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import tempfile
+import unittest
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+EXAMPLES = ROOT / "docs/examples"
+PROGRAM = pathlib.Path(os.environ.get("PERISTAT_PROGRAM", ROOT / "build/developer/peristat"))
+THE_SAME_CASE = """
+dimension = 2
+[lattice]
+spacing = 1e-3
+horizon_ratio = 3.015
+thickness = 1e-3
+[[lattice.shape]]
+add = "box"
+min = [-0.075, -0.025]
+max = [0.075, 0.025]
+[[lattice.shape]]
+subtract = "disk"
+centre = [0.0, 0.0]
+radius = 5e-3
+[[lattice.layer]]
+name = "left"
+side = "x-"
+[[lattice.layer]]
+name = "right"
+side = "x+"
+[material]
+model = "bond"
+youngs_modulus = 192e9
+[[support]]
+set = "left"
+displacement = [0.0, 0.0]
+[[load]]
+set = "right"
+total_force = ["12.8e3*load", "0"]
+[loading]
+steps = 2
+[[probe]]
+name = "end"
+set = "right"
+field = "displacement"
+"""
+# Another program with a src/ of its own, and a header in it that ours has, too.
+OTHERS_POINTS = "#error the program's own header was taken for peristat's\n"
+
+
+def run(*command, **options):
+    result = subprocess.run([str(word) for word in command], capture_output=True, text=True, **options)
+    if result.returncode != 0:
+        raise AssertionError(f"{command} ends with {result.returncode}:\n{result.stdout}{result.stderr}")
+    return result.stdout
+
+
+class Library(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = pathlib.Path(tempfile.mkdtemp(prefix="peristat_library_"))
+        cls.addClassCleanup(shutil.rmtree, cls.folder, ignore_errors=True)
+        cls.prefix = cls.folder / "prefix"
+        run("cmake", "--install", PROGRAM.parent, "--prefix", cls.prefix)
+        cls.environment = {**os.environ, "OMP_NUM_THREADS": "2", "OMP_WAIT_POLICY": "passive"}
+
+    def build(self, source, build):
+        compiler = os.environ.get("PERISTAT_CXX", "c++")
+        run("cmake", "-S", source, "-B", build, f"-DCMAKE_PREFIX_PATH={self.prefix}",
+            f"-DCMAKE_CXX_COMPILER={compiler}")  # fmt: skip
+        run("cmake", "--build", build)
+
+    def test_the_page_quotes_the_example(self):
+        page = (ROOT / "docs/library.md").read_text("utf-8")
+        for language, file in (("cpp", "plate.cpp"), ("cmake", "CMakeLists.txt")):
+            quoted = re.findall(rf"```{language}\n(.*?)```", page, re.DOTALL)
+            self.assertEqual(quoted, [(EXAMPLES / file).read_text("utf-8")])
+
+    def test_the_example_gives_what_the_case_gives(self):
+        self.build(EXAMPLES, self.folder / "build")
+        told = run(self.folder / "build/plate", env=self.environment)
+        displacement, reaction = (float(value) for value in re.findall(r"(\S+) (?:m|N)\n", told))
+
+        case, results = self.folder / "plate.toml", self.folder / "results"
+        case.write_text(THE_SAME_CASE)
+        # The installed program, which finds its module in the same prefix.
+        run(self.prefix / "bin/peristat", "run", case, "--output", results, "--threads", "2")
+        with open(results / "history.csv", encoding="utf-8") as file:
+            last = list(csv.DictReader(file))[-1]
+        # The same computation: what differs is the number of digits that are printed.
+        self.assertAlmostEqual(displacement / float(last["end_x"]), 1.0, delta=1e-12)
+        self.assertAlmostEqual(reaction / float(last["reaction_x:left"]), 1.0, delta=1e-12)
+        # F L / (E w h) of the plate without its hole, which lets it give way by a tenth or so, as do
+        # the ends that are pulled across three rows.
+        whole = 12.8e3 * 0.15 / (192e9 * 0.05 * 1e-3)
+        self.assertAlmostEqual(displacement / whole, 1.1, delta=0.1)
+
+    def test_headers_do_not_collide_with_a_program_s_own(self):
+        source = self.folder / "other"
+        (source / "src/geometry").mkdir(parents=True)
+        (source / "src/geometry/points.hpp").write_text(OTHERS_POINTS)
+        shutil.copy(EXAMPLES / "CMakeLists.txt", source)
+        with open(source / "CMakeLists.txt", "a", encoding="utf-8") as file:
+            file.write("target_include_directories(plate BEFORE PRIVATE ${CMAKE_SOURCE_DIR})\n")
+        (source / "plate.cpp").write_text(
+            "#include <peristat/src/geometry/points.hpp>\nint main() { return peristat::Points().count(); }\n"
+        )
+        self.build(source, self.folder / "other_build")
+        run(self.folder / "other_build/plate")
+
+    def test_a_wrong_value_is_told_in_words(self):
+        source = self.folder / "wrong"
+        shutil.copytree(EXAMPLES, source)
+        text = (source / "plate.cpp").read_text("utf-8").replace("horizon = 3.015e-3", "horizon = 3.015e-4")
+        (source / "plate.cpp").write_text(text, "utf-8")
+        self.build(source, self.folder / "wrong_build")
+        result = subprocess.run([self.folder / "wrong_build/plate"], capture_output=True, text=True)
+        self.assertEqual(result.returncode, 2)
+        self.assertEqual(result.stdout, "")
+        self.assertIn("horizon = 0.0003015: horizon smaller than the mean spacing", result.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()
