@@ -22,7 +22,8 @@ namespace {
 
 // Of OpenBLAS on x86-64: 32 MB << 2; measured as the growth of the address space per thread.
 constexpr std::size_t buffer_bytes = std::size_t(128) << 20;
-// What else is allocated while libraries are loaded.
+// What else is allocated while libraries are loaded, and between a look at what is left and the
+// buffer's own allocation, which OpenBLAS tries again for ever where it fails.
 constexpr std::size_t loading_bytes = std::size_t(16) << 20;
 constexpr int most_buffers = 128;  // OpenBLAS of Debian takes no more threads
 
@@ -81,7 +82,9 @@ void try_threads(int count) {
 void claim_blas_memory(int threads) {
   const int buffers = std::min(threads, most_buffers) + 1;
   const int taken = std::min({threads, processors(), most_buffers});
-  if (!has_address_space(std::size_t(buffers - taken) * buffer_bytes)) throw std::bad_alloc();
+  if (!has_address_space(std::size_t(buffers - taken) * buffer_bytes + loading_bytes)) {
+    throw std::bad_alloc();
+  }
   openblas_set_num_threads(threads);
   // The caller's own buffer is taken by its first product that is not a tiny one.
   constexpr int size = 64;
