@@ -18,7 +18,7 @@ struct LoadSteppingOptions {
   /// Bonds that may break in one implicit step; a step with more is cut. 0: no limit.
   int max_broken_bonds = 0;
   int relaxation_steps = 1;  ///< equal steps of the load factor in relaxation
-  RelaxationOptions relaxation;
+  RelaxationOptions relaxation{};
   /// Relative residual of a relaxed step at which Newton's method takes its last iterations over,
   /// in adaptive mode.
   double newton_takes_over_at = 1e-5;

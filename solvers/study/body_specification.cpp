@@ -98,8 +98,9 @@ void check_cross_section(const BodySpecification& of, const Points& points) {
   for (const double of_point : points.volume) volume += of_point;
   const double has = volume / points.count() / std::pow(points.spacing, points.dimension);
   const double given = points.dimension == 3 ? 1.0 : of.cross_section;
-  if (of.cross_section != 0.0 && points.dimension < 3)
-    require_positive(of.cross_section, "cross_section");
+  if (of.cross_section != 0.0) require_positive(of.cross_section, "cross_section");
+  require(points.dimension < 3 || of.cross_section == 0.0 || of.cross_section == 1.0,
+          "cross_section", number_text(of.cross_section), "must be 1 in 3D");
   if (given == 0.0) return;
   // The volumes' sum has round-off; a wrong thickness or spacing is off by far more.
   require(std::abs(has / given - 1.0) < 1e-6, "cross_section", number_text(given),

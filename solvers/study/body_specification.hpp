@@ -25,25 +25,26 @@ enum class DamageLaw { none, critical_stretch, tanh, tanh_continuous };
 
 struct DamageSpecification {
   DamageLaw law = DamageLaw::none;
-  double onset = 0.0;                ///< s_m, of the tanh laws
-  double critical = 0.0;             ///< s_c
-  double rate = 3.0;                 ///< beta, of the tanh laws
-  std::vector<std::string> no_fail;  ///< sets whose points' bonds never fail
+  double onset = 0.0;                  ///< s_m, of the tanh laws
+  double critical = 0.0;               ///< s_c
+  double rate = 3.0;                   ///< beta, of the tanh laws
+  std::vector<std::string> no_fail{};  ///< sets whose points' bonds never fail
 };
 
 struct MaterialSpecification {
   MaterialModel model = MaterialModel::bond;
   std::string potential = Harmonic::name;  ///< of whole bonds, see WholeBondPotentials
   PlaneState plane = PlaneState::stress;
-  std::optional<double> youngs_modulus;  ///< [Pa]; exactly one of this, micromodulus and c1 is set
-  std::optional<double> micromodulus;    ///< c [N/m6]
-  std::optional<double> poisson_ratio;   ///< cpd, with youngs_modulus
-  std::optional<double> c1;              ///< C1 [N/m6]
-  double c2 = 0.0;                       ///< C2 [N/m10]; in 2D not with youngs_modulus
-  double c3 = 0.0;                       ///< C3 [N/m14]; with c1 only
+  std::optional<double>
+      youngs_modulus{};                   ///< [Pa]; exactly one of this, micromodulus and c1 is set
+  std::optional<double> micromodulus{};   ///< c [N/m6]
+  std::optional<double> poisson_ratio{};  ///< cpd, with youngs_modulus
+  std::optional<double> c1{};             ///< C1 [N/m6]
+  double c2 = 0.0;                        ///< C2 [N/m10]; in 2D not with youngs_modulus
+  double c3 = 0.0;                        ///< C3 [N/m14]; with c1 only
   Calibration calibration = Calibration::lattice;
-  std::optional<double> density;  ///< [kg/m3], for dynamics only
-  DamageSpecification damage;
+  std::optional<double> density{};  ///< [kg/m3], for dynamics only
+  DamageSpecification damage{};
 };
 
 /// What makes a body of points.
@@ -54,10 +55,10 @@ struct BodySpecification {
   VolumeCorrection volume_correction = VolumeCorrection::none;
   SurfaceCorrection surface_correction = SurfaceCorrection::none;
   InteractionWeights weights = InteractionWeights::mean;  ///< of cpd
-  std::vector<Crack> cracks;
-  MaterialSpecification material;
-  std::vector<SupportSpecification> supports;
-  std::vector<LoadSpecification> loads;
+  std::vector<Crack> cracks{};
+  MaterialSpecification material{};
+  std::vector<SupportSpecification> supports{};
+  std::vector<LoadSpecification> loads{};
 };
 
 /// Refuses points that are no body: arrays that don't fit together, places and volumes that are not

@@ -8,10 +8,10 @@ namespace peristat {
 
 /// How a body is followed along its load path.
 struct StudyOptions {
-  LoadSteppingOptions loading;
-  NewtonOptions newton;
+  LoadSteppingOptions loading{};
+  NewtonOptions newton{};
   /// A preconditioner that is named is used: `automatic` then means conjugate gradients.
-  LinearSolverOptions linear;
+  LinearSolverOptions linear{};
   TangentStorage tangent = TangentStorage::automatic;
   int threads = 0;  ///< 0: as many as OpenMP takes by itself
 };

@@ -17,7 +17,7 @@ enum class LatticeOrigin { cell_centres, nodes };
 /// adds.
 struct ShapeStep {
   enum class Action { add, subtract } action = Action::add;
-  Shape shape;
+  Shape shape{};
 };
 
 /// A direction along an axis: "x-", "x+", "y-", "y+", "z-", "z+".
@@ -30,10 +30,10 @@ struct Side {
 /// plane on one side, shifted outwards by one to `thickness` spacings. The layer is also a set;
 /// layers of one name make one set, and a place in two layers holds one point that is in both sets.
 struct Layer {
-  std::string name;
-  Side side;
-  int thickness = 3;  ///< in spacings
-  std::string where;  ///< optional expression of x, y, z that keeps a part of the layer
+  std::string name{};
+  Side side{};
+  int thickness = 3;    ///< in spacings
+  std::string where{};  ///< optional expression of x, y, z that keeps a part of the layer
 };
 
 struct Lattice {
@@ -41,8 +41,8 @@ struct Lattice {
   double spacing = 0.0;        ///< [m]
   double cross_section = 1.0;  ///< 1D: area [m2]; 2D: thickness [m]; 3D: 1
   LatticeOrigin origin = LatticeOrigin::cell_centres;
-  std::vector<ShapeStep> shapes;
-  std::vector<Layer> layers;
+  std::vector<ShapeStep> shapes{};
+  std::vector<Layer> layers{};
   double perturbation = 0.0;  ///< largest random shift per component, in spacings, below 0.5
   std::uint64_t seed = 1;
 };

@@ -12,9 +12,9 @@ namespace peristat {
 /// Rule that selects points for a named set: an expression of x, y, z (true where not zero) or a
 /// shape; a point must satisfy all that are given. Points of fictitious layers are candidates too.
 struct SetRule {
-  std::string name;
-  std::string where;
-  std::optional<Shape> shape;
+  std::string name{};
+  std::string where{};
+  std::optional<Shape> shape{};
 };
 
 /// Ascending numbers of the points that satisfy the rule; may be empty. The expression is evaluated

@@ -72,7 +72,7 @@ class Library(unittest.TestCase):
     def build(self, source, build):
         compiler = os.environ.get("PERISTAT_CXX", "c++")
         run("cmake", "-S", source, "-B", build, f"-DCMAKE_PREFIX_PATH={self.prefix}",
-            f"-DCMAKE_CXX_COMPILER={compiler}")  # fmt: skip
+            f"-DCMAKE_CXX_COMPILER={compiler}", "-DCMAKE_CXX_FLAGS=-Wall -Wextra -Werror")  # fmt: skip
         run("cmake", "--build", build)
 
     def test_the_page_quotes_the_example(self):

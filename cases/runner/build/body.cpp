@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "solvers/linear/available_memory.hpp"
+#include "solvers/study/bond_potential.hpp"
 #include "src/connectivity/free_motion.hpp"
 #include "src/core/input_error.hpp"
 #include "src/core/number_text.hpp"
@@ -104,7 +105,10 @@ std::optional<Model> make_elastic_stand_in(const Case& from, const Body& body, i
     if (!free_motions(body.points, bonds, body.conditions->prescribed()).empty())
       throw InputError(key, number_text(from.solver.elastic_horizon_ratio),
                        "leaves points that may move freely");
-    return Model(std::move(bonds), Harmonic{micromodulus(*from.material.youngs_modulus, setting)});
+    MaterialSpecification elastic = from.material;
+    elastic.damage = {};
+    return Model(std::move(bonds),
+                 bond_potential(elastic, micromodulus(*elastic.youngs_modulus, setting)));
   });
 }
 

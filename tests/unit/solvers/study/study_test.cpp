@@ -72,6 +72,15 @@ INSTANTIATE_TEST_SUITE_P(
                   of.cross_section = 0.5;
                   points.spacing = 0.11;
                 }},
+        Refusal{"ThicknessIn3d", "cross_section", "must be 1 in 3D",
+                [](auto& points, auto& of) {
+                  Lattice block = strip_lattice();
+                  block.dimension = 3;
+                  block.cross_section = 1.0;
+                  block.shapes = {{ShapeStep::Action::add, Box{{0, 0, 0}, {0.4, 0.4, 0.4}}}};
+                  points = make_points(block);
+                  of.cross_section = 0.5;
+                }},
         Refusal{"NoPoints", "points", "there are none",
                 [](auto& points, auto&) { points.volume.clear(), points.reference.clear(); }},
         Refusal{"TooFewPlaces", "points.reference", "dimension entries",
@@ -101,6 +110,8 @@ INSTANTIATE_TEST_SUITE_P(
                 [](auto&, auto& of) { of.material.youngs_modulus.reset(); }},
         Refusal{"NegativeStiffness", "material.youngs_modulus", "must be positive",
                 [](auto&, auto& of) { of.material.youngs_modulus = -1.0; }},
+        Refusal{"UnknownPotential", "material.potential", "no potential of this name",
+                [](auto&, auto& of) { of.material.potential = "harmonik"; }},
         Refusal{"PoissonRatioOfBonds", "material.poisson_ratio", "is for the model cpd",
                 [](auto&, auto& of) { of.material.poisson_ratio = 0.3; }},
         Refusal{"CpdWithoutPoissonRatio", "material.poisson_ratio", "goes with youngs_modulus",
