@@ -34,13 +34,13 @@ struct Area {
   /// cancellation: with the area vectors a = b x c and A = B x C,
   ///   a - A = beta x c + B x gamma =: d,   |a|/|A| - 1 = d.(a + A) / |A|^2 / (1 + |a|/|A|).
   template <int D, class Real>
-  [[nodiscard]] static At<D, Real> at(const Real& inverse_reference,
-                                      const Arms<2, D, Real>& reference,
-                                      const Arms<2, D, Real>& relative_displacement);
+  [[nodiscard, gnu::always_inline]] static At<D, Real> at(
+      const Real& inverse_reference, const Arms<2, D, Real>& reference,
+      const Arms<2, D, Real>& relative_displacement);
 
   /// Its value alone: signed in 2D.
   template <int D, class Real>
-  [[nodiscard]] static Real value(const Arms<2, D, Real>& arm);
+  [[nodiscard, gnu::always_inline]] static Real value(const Arms<2, D, Real>& arm);
 };
 
 template <class Real>
@@ -53,7 +53,7 @@ struct Area::At<2, Real> {
   Arms<2, 2, Real> gradient;  ///< da/db = (c2, -c1), da/dc = (-b2, b1)
 
   template <int P, int Q>
-  void add_hessian(const Real& factor, Matrix<2, Real>& block) const {
+  [[gnu::always_inline]] void add_hessian(const Real& factor, Matrix<2, Real>& block) const {
     if constexpr (P < Q) {
       block[0][1] += factor;
       block[1][0] -= factor;
@@ -63,7 +63,8 @@ struct Area::At<2, Real> {
     }
   }
 
-  [[nodiscard]] Arms<2, 2, Real> hessian_times(const Arms<2, 2, Real>& v) const {
+  [[nodiscard, gnu::always_inline]] Arms<2, 2, Real> hessian_times(
+      const Arms<2, 2, Real>& v) const {
     return {{{v[1][1], -v[1][0]}, {-v[0][1], v[0][0]}}};
   }
 };
@@ -81,7 +82,7 @@ struct Area::At<3, Real> {
   Real inverse;            ///< 1/a [1/m2]
 
   template <int P, int Q>
-  void add_hessian(const Real& factor, Matrix<3, Real>& block) const {
+  [[gnu::always_inline]] void add_hessian(const Real& factor, Matrix<3, Real>& block) const {
     // |other arm|^2 on the diagonal, -b.c beside it.
     if constexpr (P == Q) {
       add_outer_square<3, Real>(factor * inverse * dot<3>(arm[1 - P], arm[1 - P]), normal, block);
@@ -91,7 +92,8 @@ struct Area::At<3, Real> {
     }
   }
 
-  [[nodiscard]] Arms<2, 3, Real> hessian_times(const Arms<2, 3, Real>& v) const {
+  [[nodiscard, gnu::always_inline]] Arms<2, 3, Real> hessian_times(
+      const Arms<2, 3, Real>& v) const {
     const Real mixed = dot<3>(arm[0], arm[1]);
     const Real out0 = dot<3>(normal, v[0]) * inverse, out1 = dot<3>(normal, v[1]) * inverse;
     const Real along0 = dot<3>(arm[1], arm[1]) * out0 - mixed * out1;

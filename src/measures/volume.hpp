@@ -36,14 +36,15 @@ struct Volume {
     Arms<3, 3, Real> arm;  ///< b, c, d
 
     template <int P, int Q>
-    void add_hessian(const Real& factor, Matrix<3, Real>& block) const {
+    [[gnu::always_inline]] void add_hessian(const Real& factor, Matrix<3, Real>& block) const {
       if constexpr (P != Q) {
         constexpr bool cyclic = (P + 1) % 3 == Q;
         add_skew<Real>(cyclic ? -factor : factor, arm[3 - P - Q], block);
       }
     }
 
-    [[nodiscard]] Arms<3, 3, Real> hessian_times(const Arms<3, 3, Real>& v) const {
+    [[nodiscard, gnu::always_inline]] Arms<3, 3, Real> hessian_times(
+        const Arms<3, 3, Real>& v) const {
       // Of each gradient the change with the two arms that it depends on.
       return {plus<3>(cross(v[1], arm[2]), cross(arm[1], v[2])),
               plus<3>(cross(v[2], arm[0]), cross(arm[2], v[0])),
@@ -54,9 +55,9 @@ struct Volume {
   /// The measure from 1/V, the reference arms and the relative displacements [m], free of
   /// cancellation: v - V = beta.(c x d) + B.(gamma x d) + B.(C x delta).
   template <int D, class Real>
-  [[nodiscard]] static At<D, Real> at(const Real& inverse_reference,
-                                      const Arms<3, D, Real>& reference,
-                                      const Arms<3, D, Real>& relative_displacement) {
+  [[nodiscard, gnu::always_inline]] static At<D, Real> at(
+      const Real& inverse_reference, const Arms<3, D, Real>& reference,
+      const Arms<3, D, Real>& relative_displacement) {
     At<D, Real> result;
     result.inverse_reference = inverse_reference;
     for (int p = 0; p < 3; ++p) {
@@ -76,7 +77,7 @@ struct Volume {
 
   /// Its value alone.
   template <int D, class Real>
-  [[nodiscard]] static Real value(const Arms<3, D, Real>& arm) {
+  [[nodiscard, gnu::always_inline]] static Real value(const Arms<3, D, Real>& arm) {
     return dot<3>(cross(arm[0], arm[1]), arm[2]);
   }
 };

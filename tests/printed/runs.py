@@ -1,23 +1,13 @@
 """Runs whose results are compared with what pages print; each command runs once in a process."""
 
-import atexit
 import csv
 import functools
 import json
-import pathlib
-import shutil
-import tempfile
 
 import h5py
 
 from tests.reference.program import ROOT, peristat
-
-
-@functools.cache
-def _folder():
-    folder = tempfile.mkdtemp(prefix="peristat_printed_")
-    atexit.register(shutil.rmtree, folder, ignore_errors=True)
-    return folder
+from tests.shipped_runs import shipped_run
 
 
 def rows(path):
@@ -80,12 +70,9 @@ class Run:
 @functools.cache
 def run(case, *changes, code=0, threads=1):
     """Runs cases/CASE.toml with overrides `key=value` and expects an exit code."""
-    folder = pathlib.Path(tempfile.mkdtemp(dir=_folder()))
-    words = [word for change in changes for word in ("--set", change)]
-    ended = peristat("run", ROOT / "cases" / f"{case}.toml", "--output", folder / "out", "--threads", threads,
-                     *words, seconds=900, limited=False)  # fmt: skip
-    assert ended.code == code, f"{' '.join(ended.command)}: exit code {ended.code}\n{ended.said}"
-    return Run(folder / "out", ended.output)
+    ended = shipped_run(case, *changes, threads=threads)
+    assert ended.code == code, f"{case} {changes}: exit code {ended.code}\n{ended.output}{ended.errors}"
+    return Run(ended.folder, ended.output)
 
 
 @functools.cache

@@ -4,13 +4,12 @@ Twice each: with damage in accepted states alone, so that the histories of the b
 states themselves, and as shipped, where transient breaking makes histories that the results tell.
 """
 
-import pathlib
-import tempfile
 import unittest
 
 from tests.reference.case import Case
-from tests.reference.program import ROOT, peristat
+from tests.reference.program import ROOT
 from tests.reference.verify import Verification
+from tests.shipped_runs import shipped_run
 
 # Bonds that break at least: a run that breaks nothing would prove nothing.
 CASES = {
@@ -22,19 +21,13 @@ CASES = {
 
 
 class FractureStates(unittest.TestCase):
-    def setUp(self):
-        folder = tempfile.TemporaryDirectory(prefix="peristat_states_")
-        self.addCleanup(folder.cleanup)
-        self.folder = pathlib.Path(folder.name)
-
     def verified(self, name, **relaxation):
         path = ROOT / "cases" / f"{name}.toml"
         case = Case(path.read_text(), path.parent)
         case["relaxation"].update(relaxation)
-        changes = [word for key, value in relaxation.items() for word in ("--set", f"relaxation.{key}={value}")]
-        run = peristat("run", path, "--quiet", "--output", self.folder / "out", *changes, seconds=600, limited=False)
-        self.assertEqual(run.code, 0, run.said)
-        verification = Verification(self.folder / "out", case)
+        run = shipped_run(name, *(f"relaxation.{key}={value}" for key, value in relaxation.items()))
+        self.assertEqual(run.code, 0, run.output + run.errors)
+        verification = Verification(run.folder, case)
         self.assertTrue(verification.histories_are_known, "the results tell no histories of the bonds")
         self.assertEqual(verification.run(), [])
         self.assertGreater(len(verification.results.steps), 9)
