@@ -12,6 +12,8 @@ namespace peristat {
 /// changes it, so that keeping a history costs nothing, and giving up a step is dropping it.
 class History {
  public:
+  [[nodiscard]] std::size_t terms() const { return terms_.size(); }
+
   /// Of a term; empty if it remembers nothing.
   [[nodiscard]] std::span<const double> of(std::size_t term) const {
     if (term >= terms_.size() || !terms_[term]) return {};

@@ -5,16 +5,33 @@
 #include "solvers/drivers/drivers.hpp"
 
 namespace peristat {
+namespace {
+
+void follow_to_end(Path& path) {
+  const std::unique_ptr<Driver> driver = make_driver(path.options().mode, path);
+  const auto& reached = path.setting().observer.reached;
+  for (Advance advance = Advance::goes_on; advance == Advance::goes_on;) {
+    const int before = path.state().steps;
+    advance = driver->advance();
+    // What ended the path right after an accepted step is found again from the step before.
+    const bool can_go_on = advance == Advance::goes_on || path.outcome() == Outcome::converged;
+    if (reached && can_go_on && path.state().steps > before) reached(path.state());
+  }
+}
+
+}  // namespace
 
 LoadSteppingResult follow_loading(const SolvedBody& body, const Conditions& conditions,
                                   const LoadSteppingOptions& options,
                                   const NewtonOptions& newton_options,
-                                  const LoadSteppingObserver& observer,
-                                  const SolvedBody* stand_in) {
-  Path path({body, conditions, options, newton_options, observer, stand_in});
-  const std::unique_ptr<Driver> driver = make_driver(options.mode, path);
-  while (driver->advance() == Advance::goes_on) {
+                                  const LoadSteppingObserver& observer, const SolvedBody* stand_in,
+                                  const PathState* from) {
+  const PathSetting setting{body, conditions, options, newton_options, observer, stand_in};
+  Path path = from ? Path(setting, *from) : Path(setting);
+  if (from && path.prepare_solvers() != LinearOutcome::solved) {
+    return {Outcome::out_of_memory, from->steps, from->accepted, from->relaxation_seconds, {}};
   }
+  follow_to_end(path);
   PathState& reached = path.state();
   return {path.outcome(), reached.steps, std::move(reached.accepted), reached.relaxation_seconds,
           std::move(path.last_attempt())};

@@ -12,6 +12,8 @@
 
 namespace peristat {
 
+struct PathState;
+
 /// What an accepted state is made of besides its record.
 struct AcceptedState {
   const Trial& trial;  ///< with its damage committed
@@ -25,6 +27,9 @@ struct LoadSteppingObserver {
   std::function<void(const DecisionRecord&)> decision;
   /// An accepted state. The record's energies, damage and reactions are set.
   std::function<void(const StepRecord&, const AcceptedState&)> accepted;
+  /// What the path can go on from: after an accepted step, once its driver has decided what is
+  /// next.
+  std::function<void(PathState&)> reached;
   std::function<bool()> interrupted;
   /// A sentence about an error of supports or loads that shows only at some load factor.
   std::function<std::string(const InputError&)> describe;

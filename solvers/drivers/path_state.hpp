@@ -10,11 +10,8 @@ namespace peristat {
 /// Everything that a path needs to go on from where a driver has left it. Bodies, conditions and
 /// options are constant and not in it; searches keep nothing from one step to the next, and draw
 /// no random numbers. A value: a copy goes on by itself.
-///
-/// One thing a solver keeps is not in it: the factor, or preconditioner, that is at hand. Newton's
-/// last iterations of a relaxed step take it as it is (NewtonOptions::factorizes_first), so that
-/// with a fresh solver they agree within the tolerance of the linear systems instead of to the last
-/// bit, where the solver finds that reuse pays.
+/// Nor do solvers: every step factorises a tangent of its own before it takes up one that is at
+/// hand.
 struct PathState {
   State accepted;  ///< the last one: displacement, load factor, histories
   int steps = 0;   ///< accepted

@@ -13,9 +13,9 @@ namespace {
 constexpr int most_finishing_iterations = 8;
 
 /// Only a stable equilibrium close by is taken; anything else is left to relaxation.
-NewtonOptions finishing_options(NewtonOptions options) {
+NewtonOptions finishing_options(NewtonOptions options, bool has_factor) {
   options.projection = Projection::never;
-  options.factorizes_first = false;
+  options.factorizes_first = !has_factor;
   options.counts_pivots = false;
   options.max_iterations = std::min(options.max_iterations, most_finishing_iterations);
   return options;
@@ -27,6 +27,7 @@ bool finish(Path& path, RelaxedStep& step, NewtonOptions options) {
   options.scale = step.scale;
   const State near = state_of(step.attempt);
   Attempt finished = path.search(near, near.load_factor, options);
+  step.has_factor |= finished.iterations > 0;
   if (!finished.has_converged() && worth_relaxing(finished)) return false;
   step.found.record.newton_iterations += finished.iterations;
   if (finished.has_converged()) {
@@ -83,7 +84,7 @@ void relax_and_finish(Path& path, RelaxedStep& step, double target) {
       return;
     }
     const bool goes_on = step.attempt.has_converged() && tolerance > last;
-    if (!goes_on || finish(path, step, finishing_options(newton_options))) return;
+    if (!goes_on || finish(path, step, finishing_options(newton_options, step.has_factor))) return;
   }
 }
 

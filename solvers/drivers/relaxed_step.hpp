@@ -11,7 +11,8 @@ struct RelaxedStep {
 
   Attempt attempt;
   FoundStep found;
-  double scale = 0.0;  ///< norm that the residual is measured against [N]
+  double scale = 0.0;       ///< norm that the residual is measured against [N]
+  bool has_factor = false;  ///< a tangent of this step is factorised
 };
 
 /// By dynamic relaxation.

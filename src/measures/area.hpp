@@ -105,7 +105,7 @@ struct Area::At<3, Real> {
 };
 
 template <int D, class Real>
-Real Area::value(const Arms<2, D, Real>& arm) {
+inline Real Area::value(const Arms<2, D, Real>& arm) {
   if constexpr (D == 2) {
     return arm[0][0] * arm[1][1] - arm[0][1] * arm[1][0];
   } else {
@@ -115,8 +115,8 @@ Real Area::value(const Arms<2, D, Real>& arm) {
 }
 
 template <int D, class Real>
-Area::At<D, Real> Area::at(const Real& inverse_reference, const Arms<2, D, Real>& reference,
-                           const Arms<2, D, Real>& relative_displacement) {
+inline Area::At<D, Real> Area::at(const Real& inverse_reference, const Arms<2, D, Real>& reference,
+                                  const Arms<2, D, Real>& relative_displacement) {
   const Vector<D, Real> b = plus<D>(reference[0], relative_displacement[0]);
   const Vector<D, Real> c = plus<D>(reference[1], relative_displacement[1]);
   At<D, Real> result;

@@ -1,7 +1,9 @@
 #include "solvers/drivers/path_state.hpp"
 
 #include <algorithm>
+#include <any>
 #include <functional>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -9,6 +11,7 @@
 
 #include "cases/runner/results/record_tables.hpp"
 #include "solvers/drivers/drivers.hpp"
+#include "solvers/drivers/state_archive.hpp"
 #include "solvers/linear/solver_ladder.hpp"
 #include "tests/softening_strip.hpp"
 
@@ -123,6 +126,46 @@ Followed follow(const Setting& setting, const PathState* from = nullptr) {
   return followed;
 }
 
+/// Keeps what it is given, or gives it back.
+class Memory : public StateArchive {
+ public:
+  void give_back() { gives_ = true; }
+
+  void transfer(const std::string& name, bool& value) override { keep(name, value); }
+  void transfer(const std::string& name, int& value) override { keep(name, value); }
+  void transfer(const std::string& name, double& value) override { keep(name, value); }
+  void transfer(const std::string& name, std::vector<char>& values) override { keep(name, values); }
+  void transfer(const std::string& name, std::vector<Index>& values) override {
+    keep(name, values);
+  }
+  void transfer(const std::string& name, std::vector<double>& values) override {
+    keep(name, values);
+  }
+
+ private:
+  template <class Value>
+  void keep(const std::string& name, Value& value) {
+    if (gives_) {
+      value = std::any_cast<Value>(values_.at(name));
+    } else {
+      EXPECT_TRUE(values_.emplace(name, value).second) << name;
+    }
+  }
+
+  bool gives_ = false;
+  std::map<std::string, std::any> values_;
+};
+
+/// A copy by way of an archive.
+PathState written_and_read(PathState state) {
+  Memory memory;
+  transfer(memory, state);
+  memory.give_back();
+  PathState read;
+  transfer(memory, read);
+  return read;
+}
+
 /// From copies of its first states and some ten others, other paths go on as this one did, to the
 /// last bit.
 /// @return the path
@@ -133,7 +176,7 @@ Followed expect_to_go_on_from_copies(const Setting& setting) {
   EXPECT_GT(whole.told.size(), 1u);
   for (std::size_t k = 1; k < count; k += k < 3 ? 1 : 1 + count / 10) {
     SCOPED_TRACE(k);
-    const PathState copy = whole.states[k];
+    const PathState copy = written_and_read(whole.states[k]);
     const Followed rest = follow(setting, &copy);
     EXPECT_EQ(rest.outcome, whole.outcome);
     const auto begin = whole.rows.begin() + std::ptrdiff_t(whole.rows_before[k]);
