@@ -11,8 +11,10 @@ import subprocess
 import sys
 import tempfile
 import time
+import tomllib
 import unittest
 
+import h5py
 import matplotlib.image
 
 from tests.acceptance.strip import PULLED
@@ -213,6 +215,50 @@ class Sweep(unittest.TestCase):
         self.write("points.csv", "x, y, volume, set\n" + "\n".join(rows[:-1]) + "\n")
         self.assert_ends(self.sweep("--vary", "loading.steps=1"), 0, "done")
 
+    # ---- keys that vary together, and refinement --------------------------------------------------
+
+    def test_linked_and_computed_keys(self):
+        run = self.sweep("--vary", "lattice.spacing=1e-3,2e-3", "--with", "material.youngs_modulus=100e9,200e9",
+                         "--with", "loading.steps:=round(4e-3/lattice.spacing)",
+                         "--set", "lattice.horizon_ratio:=1 + 4*1e-3/lattice.spacing")  # fmt: skip
+        self.assert_ends(run, 0, "done", "done")
+        for row, values in zip(self.rows(), (("1e-3", "100e9", "4"), ("2e-3", "200e9", "2"))):
+            self.assertEqual((row["lattice.spacing"], row["material.youngs_modulus"], row["loading.steps"]), values)
+            self.assertEqual(row["steps"], values[2])
+        with h5py.File(self.out / "lattice.spacing=2e-3,material.youngs_modulus=200e9/results.h5") as file:
+            case = tomllib.loads(file["case/as_resolved"][()].decode())
+        self.assertEqual(case["lattice"]["horizon_ratio"], 3.0)
+
+    def test_a_refinement_is_extrapolated(self):
+        # A bar whose surface effect falls with the spacing: to F L / (E A), by theory of first order.
+        case = ROOT / "cases/bar/tension.toml"
+        run = self.sweep("--set", "lattice.spacing=4e-3", "--refine", "4", case=case)
+        self.assert_ends(run, 0, *4 * ["done"])
+        self.assertIn("probe:tip: order 1.0", run.stdout)
+        with open(self.out / "refinement.csv", newline="") as table:
+            rows = {row["quantity"]: row for row in csv.DictReader(table)}
+        tip = rows["probe:tip"]
+        self.assertEqual(tip["behaviour"], "monotone")
+        self.assertAlmostEqual(float(tip["observed_order"]), 1.0, delta=0.01)
+        self.assertAlmostEqual(float(tip["extrapolated"]) / 1e-3, 1.0, delta=1e-5)
+        self.assertEqual([float(tip[f"spacing_{k}"]) for k in (1, 2, 3, 4)], [4e-3, 2e-3, 1e-3, 5e-4])
+        self.assertEqual([row["probe:tip"] for row in self.rows()], [tip[f"value_{k}"] for k in (1, 2, 3, 4)])
+        error = abs(float(tip["value_4"]) - 1e-3)
+        self.assertLess(error, float(tip["uncertainty"]))
+        self.assertLess(float(tip["uncertainty"]), 1.3 * error)
+        self.assertEqual(rows["peak_reaction:left"]["behaviour"], "constant")
+        self.assertGreater(matplotlib.image.imread(self.out / "refinement.png").std(), 0.01)
+        # What is made of a table goes with it.
+        self.assert_ends(self.sweep("--vary", "loading.steps=1", case=case), 0, "done")
+        self.assertFalse((self.out / "refinement.csv").exists())
+
+    def test_a_refinement_in_which_a_run_fails_extrapolates_nothing(self):
+        run = self.sweep("--refine", "3", "--vary", "solver.max_iterations=1,20", "--set", "loading.smallest_step=0.5")
+        self.assertEqual(run.returncode, 3, run.stdout + run.stderr)
+        self.assertIn("nothing is extrapolated of 1: a lattice has no completed run", run.stdout)
+        with open(self.out / "refinement.csv", newline="") as table:
+            self.assertEqual({row["solver.max_iterations"] for row in csv.DictReader(table)}, {"20"})
+
     # ---- other endings ----------------------------------------------------------------------------
 
     def test_wrong_arguments_are_refused(self):
@@ -224,6 +270,16 @@ class Sweep(unittest.TestCase):
             ("--vary", "loading.steps=1,,2"): "a value is empty",
             ("--vary", "loading.steps=1,2,1"): "stands twice",
             ("--vary", "load[0].body_force=[0, 1"): "] is missing",
+            ("--with", "loading.steps=1"): "needs a --vary before it",
+            ("--vary", "loading.steps=1,2", "--with", "solver.max_iterations=1"): "has 1 values and loading.steps has 2",
+            ("--vary", "loading.steps=1", "--with", "loading.steps=2"): "varied twice",
+            ("--vary", "loading.steps=1", "--with", "solver.max_iterations:=1/0"): "no value",
+            ("--vary", "loading.steps=1", "--with", "loading.smallest_step:=lattice.spaceing"): "stands neither",
+            ("--refine", "2"): "from 3 to 20",
+            ("--refine", "many"): "from 3 to 20",
+            ("--refine", "3", "--refine", "3"): "given twice",
+            ("--refine", "3", "--ratio", "1"): "from 1.05 to 10",
+            ("--refine", "3", "--vary", "lattice.spacing=1e-3"): "varied twice",
             ("--vary", "loading.steps=1", "--vary", "loading.steps=2"): "varied twice",
             ("--vary", "loading.steps=1", "--set", "loading.steps=2"): "both varied and set",
             ("--vary", "output.directory=a,b"): "output.directory",

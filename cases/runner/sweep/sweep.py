@@ -13,16 +13,20 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "plots"))
 
+from computed import Keys, compute, split_computed
 from program import Ending, Program
 from record import is_done, record_done
-from table import figures, is_own_table, write_table
-from variations import WrongInput, combinations, folder_name, read_variations
+from refinement import Refinement, refine, write_refinements
+from table import figures, is_own_table, quantities, write_table
+from variations import Axis, WrongInput, check_keys, combinations, folder_name, vary, vary_with
 
 DONE, BUG, WRONG_INPUT, NOT_CONVERGED, OUT_OF_MEMORY, MACHINE_FAILED, INTERRUPTED = 0, 1, 2, 3, 4, 5, 130
 STATUS = {DONE: "completed", NOT_CONVERGED: "not_converged", OUT_OF_MEMORY: "out_of_memory",
           INTERRUPTED: "interrupted"}  # fmt: skip
 WORDS = {NOT_CONVERGED: "did not converge", OUT_OF_MEMORY: "out of memory", INTERRUPTED: "interrupted",
          WRONG_INPUT: "refused", MACHINE_FAILED: "the machine failed"}  # fmt: skip
+MADE_OF_THE_TABLE = ["sweep.png", "refinement.csv", "refinement.png"]
+REFINED = "lattice.spacing"
 # Of what can't be written: the disk is full or failing, or a limit of the shell is met.
 FAULTS = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EMFILE, errno.ENFILE, errno.EIO, errno.ENOMEM}
 
@@ -45,6 +49,8 @@ class Sweep:
     directory: Path
     threads: int | None
     overwrite: bool  # also runs of another case in the folders
+    refined: int | None = None  # number of the key that --refine varies
+    linked: frozenset[int] = frozenset()  # numbers of that key, of those that vary with it, and of computed ones
 
 
 # ----------------------------------------------------------------------------------------- running
@@ -79,6 +85,8 @@ def run_all(sweep: Sweep, program: Program) -> int:
         codes.add(ending.code)
     _save(sweep, rows)
     say(f"sweep: {sweep.directory / 'sweep.csv'}")
+    if sweep.refined is not None:
+        _tell_refinements(sweep, [rows[number] for number in range(len(rows))])
     _draw(sweep, [rows[number]["status"] for number in range(len(rows))])
     return _worst(codes)
 
@@ -143,10 +151,47 @@ def _worst(codes: set[int]) -> int:
 
 
 def _save(sweep: Sweep, rows: dict[int, dict]) -> None:
-    """The table of what is done; a picture of an earlier table is removed."""
+    """The table of what is done; what was made of an earlier table is removed."""
     sweep.directory.mkdir(parents=True, exist_ok=True)  # no run has made it if none had the memory
     write_table(sweep.directory / "sweep.csv", sweep.keys, [rows[number] for number in sorted(rows)])
-    (sweep.directory / "sweep.png").unlink(missing_ok=True)
+    for name in MADE_OF_THE_TABLE:
+        (sweep.directory / name).unlink(missing_ok=True)
+
+
+def _refinements(sweep: Sweep, rows: list[dict]) -> list[tuple[tuple[str, ...], Refinement]]:
+    """Of every quantity, for each combination of the other keys whose lattices have all been run."""
+    groups: dict[tuple[str, ...], list[dict]] = {}
+    for combination, row in zip(sweep.combinations, rows):
+        others = tuple(value for place, value in enumerate(combination.values) if place not in sweep.linked)
+        groups.setdefault(others, []).append(row)
+    found = []
+    for others, lattices in groups.items():
+        if any(row["status"] != "completed" for row in lattices):
+            told = f" of {', '.join(others)}" if others else ""
+            say(f"sweep: nothing is extrapolated{told}: a lattice has no completed run")
+            continue
+        spacings = [float(row[sweep.keys[sweep.refined]]) for row in lattices]
+        found += [(others, refine(name, spacings, values)) for name, values in quantities(lattices).items()]
+    return found
+
+
+def _tell_refinements(sweep: Sweep, rows: list[dict]) -> None:
+    found = _refinements(sweep, rows)
+    if not found:
+        return
+    keys = [key for place, key in enumerate(sweep.keys) if place not in sweep.linked]
+    write_refinements(sweep.directory / "refinement.csv", keys, found)
+    for others, refinement in found:
+        say("  " + ", ".join([*others, f"{refinement.quantity}: {refinement.told()}"]))
+    say(f"sweep: {sweep.directory / 'refinement.csv'}")
+    path = sweep.directory / "refinement.png"
+    try:
+        from refinement_picture import draw_refinements
+
+        draw_refinements(str(sweep.case), found, Keys(sweep.case_text, []).probe_units()).savefig(path, pil_kwargs={"compress_level": 4})
+        say(f"sweep: {path}")
+    except Exception as error:
+        print(f"sweep: {path} could not be drawn ({error}); the table is complete", file=sys.stderr)
 
 
 def _draw(sweep: Sweep, statuses: list[str]) -> None:
@@ -170,6 +215,13 @@ def _draw(sweep: Sweep, statuses: list[str]) -> None:
 # ------------------------------------------------------------------------------------ command line
 
 
+class _Varied(argparse.Action):
+    """Keeps --vary, --with and --refine in the order in which they are given."""
+
+    def __call__(self, parser, namespace, values, option_string=None):
+        namespace.varied = [*(getattr(namespace, "varied", None) or []), (self.option_strings[0], values)]
+
+
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
         prog="peristat sweep", allow_abbrev=False,
@@ -179,11 +231,20 @@ def _parser() -> argparse.ArgumentParser:
         "out of memory, 5 the machine failed (disk full, a limit of the shell), 130 interrupted, 1 a bug.",
     )  # fmt: skip
     parser.add_argument("case", metavar="CASE", help="case file (docs/case-file.md)")
-    parser.add_argument("--vary", metavar="KEY=V1,V2,...", action="append", default=[],
+    parser.add_argument("--vary", metavar="KEY=V1,V2,...", action=_Varied,
                         help="values of a key of the case file, e.g. loading.steps=10,20; may be repeated. "
                         "Commas in brackets and quotes separate nothing")  # fmt: skip
+    parser.add_argument("--with", metavar="KEY=V1,V2,...", action=_Varied,
+                        help="values of another key, one for each of the --vary or --refine before it, with "
+                        "which it varies; or KEY:=EXPRESSION of other keys, e.g. "
+                        "loading.steps:=round(0.02/lattice.spacing)")  # fmt: skip
+    parser.add_argument("--refine", metavar="N", action=_Varied,
+                        help=f"{REFINED} of the case, or as it is set, on N lattices, each finer by the ratio: observed "
+                        "orders, extrapolated values and grid convergence indices of all quantities")  # fmt: skip
+    parser.add_argument("--ratio", metavar="R", type=float, default=2.0, help="of --refine (default: 2)")
     parser.add_argument("--set", metavar="KEY=VALUE", action="append", default=[], dest="settings",
-                        help="override a key of the case file in all runs; may be repeated")  # fmt: skip
+                        help="override a key of the case file in all runs, also by KEY:=EXPRESSION; may be "
+                        "repeated")  # fmt: skip
     parser.add_argument("--output", metavar="DIR", type=Path,
                         help="folder of the sweep (default: results/FOLDER_STEM_sweep)")  # fmt: skip
     parser.add_argument("--overwrite", action="store_true", help="replace results of another case in DIR")
@@ -198,7 +259,6 @@ def _default_directory(case: Path) -> Path:
 
 
 def read_sweep(arguments: argparse.Namespace) -> Sweep:
-    variations = read_variations(arguments.vary, arguments.settings)
     case = Path(arguments.case)
     try:
         text = case.read_bytes()
@@ -207,18 +267,80 @@ def read_sweep(arguments: argparse.Namespace) -> Sweep:
     directory = arguments.output or _default_directory(case)
     if directory.exists() and not directory.is_dir():
         raise WrongInput(f"--output {directory}: is no folder")
-    table, picture = directory / "sweep.csv", directory / "sweep.png"
+    table = directory / "sweep.csv"
     foreign = table if table.exists() and not is_own_table(table) else None
-    foreign = picture if picture.exists() and not table.exists() else foreign
+    for name in MADE_OF_THE_TABLE:
+        foreign = directory / name if (directory / name).exists() and not table.exists() else foreign
     if foreign:
         raise WrongInput(f"{foreign} is of no sweep and would be replaced: name another folder (--output)")
     if set('"\\') & set(str(directory)):
         raise WrongInput(f"--output {directory}: must have no quotes and no backslashes")
-    found = []
-    for values in combinations(variations):
-        varied = [f"{key}={value}" for key, value in zip(variations, values)]
-        found.append(Combination(values, [*arguments.settings, *varied], directory / folder_name(varied)))
-    return Sweep(case, text, list(variations), found, directory, arguments.threads, arguments.overwrite)
+    sweep = Sweep(case, text, [], [], directory, arguments.threads, arguments.overwrite)
+    _find_combinations(sweep, arguments)
+    return sweep
+
+
+def _find_combinations(sweep: Sweep, arguments: argparse.Namespace) -> None:
+    axes, computed = _read_axes(sweep, arguments)
+    keys = [key for axis in axes for key in axis.keys]
+    given = arguments.settings
+    if sweep.refined is not None:  # what is set is the spacing of the coarsest lattice
+        given = [setting for setting in given if setting.partition("=")[0].strip() != REFINED]
+    set_as_given = [setting for setting in given if not split_computed(setting)]
+    computed_by_set = [found for setting in given if (found := split_computed(setting))]
+    sweep.keys = [*keys, *(key for key, _ in computed)]
+    check_keys(sweep.keys, given)
+    for values in combinations(axes):
+        varied = [f"{key}={value}" for key, value in zip(keys, values)]
+        settings = [*set_as_given, *varied]
+        for key, expression in [*computed_by_set, *computed]:
+            try:
+                value = compute(expression, Keys(sweep.case_text, settings))
+            except WrongInput as error:
+                raise WrongInput(f"{key}:={expression}: {error}") from None
+            settings.append(f"{key}={value}")
+            if (key, expression) in computed:
+                values = (*values, value)
+        folder = sweep.directory / folder_name(varied)
+        sweep.combinations.append(Combination(values, settings, folder))
+
+
+def _read_axes(sweep: Sweep, arguments: argparse.Namespace) -> tuple[list[Axis], list[tuple[str, str]]]:
+    """What is varied, and keys with the expressions that they are computed from."""
+    axes, computed, refined = [], [], None
+    for option, text in getattr(arguments, "varied", None) or []:
+        if option == "--refine":
+            if refined is not None:
+                raise WrongInput(f"--refine {text}: is given twice")
+            axes.append(_lattices(text, arguments.ratio, Keys(sweep.case_text, arguments.settings)))
+            refined = axes[-1]
+        elif option == "--vary":
+            axes.append(vary(text))
+        elif found := split_computed(text):
+            computed.append(found)
+        else:
+            vary_with(axes, text)
+    if not axes:
+        raise WrongInput("nothing is varied: give --vary key=value1,value2,... or --refine N")
+    if refined:
+        count = sum(len(axis.keys) for axis in axes)
+        sweep.refined = sum(len(axis.keys) for axis in axes[: axes.index(refined)])
+        with_it = range(sweep.refined, sweep.refined + len(refined.keys))
+        sweep.linked = frozenset([*with_it, *range(count, count + len(computed))])
+    return axes, computed
+
+
+def _lattices(text: str, ratio: float, keys: Keys) -> Axis:
+    """Of --refine: spacings from that of the case on."""
+    if not text.isdecimal() or not 3 <= int(text) <= 20:
+        raise WrongInput(f"--refine {text}: must be a number of lattices from 3 to 20: an order needs three")
+    if not 1.05 <= ratio <= 10.0:
+        raise WrongInput(f"--ratio {ratio}: must be from 1.05 to 10")
+    try:
+        spacing = keys.number(REFINED)
+    except WrongInput as error:
+        raise WrongInput(f"--refine {text}: {error}") from None
+    return Axis([REFINED], [[repr(spacing / ratio**level) for level in range(int(text))]])
 
 
 def main(words: list[str]) -> int:

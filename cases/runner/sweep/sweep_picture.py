@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
+from computed import FIELD_UNITS
 from matplotlib import colormaps
 from matplotlib.ticker import MaxNLocator
 from results_folder import NotAResultsFolder, ResultsFolder, read_results_folder
@@ -15,7 +16,6 @@ MOST_LABELS = 24  # entries of the legend
 LONGEST_LABEL = 30  # characters
 MOST_QUANTITIES = 4  # panels of what came out
 UNITS = {"m": LENGTHS, "N": FORCES, "J/m³": ENERGY_DENSITIES}  # that are scaled
-FIELD_UNITS = {"displacement": "m", "opening": "m", "crack_length": "m", "force": "N", "energy_density": "J/m³"}
 
 
 @dataclass

@@ -58,6 +58,24 @@ def _peak_reactions(folder: Path) -> dict[str, float]:
     return peaks
 
 
+def quantities(rows: list[dict]) -> dict[str, list[float]]:
+    """What rows of a refinement tell of the body, by column: reactions, probes, energies, displacement.
+
+    Components of a vector that are round-off of its others are left out, and what is always zero.
+    """
+    names = [name for name in rows[0] if name.partition(":")[0] in ("peak_reaction", "final_reaction", "probe")]
+    names += ["energy_stored", "energy_dissipated", "max_displacement"]
+    found = {}
+    for name in names:
+        values = [row.get(name, "") for row in rows]
+        if all(isinstance(value, (int, float)) and math.isfinite(value) for value in values):
+            found[name] = [float(value) for value in values]
+    size = {name: max(map(abs, values)) for name, values in found.items()}
+    vector = lambda name: name[:-2] if name[-2:] in ("_x", "_y", "_z") else name
+    largest = {name: max(size[other] for other in found if vector(other) == vector(name)) for name in found}
+    return {name: values for name, values in found.items() if size[name] > 1e-6 * largest[name]}
+
+
 def write_table(path: Path, keys: list[str], rows: list[dict]) -> None:
     """Replaces the table by a complete new one in one rename.
 

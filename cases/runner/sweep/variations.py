@@ -1,8 +1,9 @@
-"""What is varied: reads --vary and --set, and names the folders of the combinations."""
+"""What is varied: reads --vary and --with, and names the folders of the combinations."""
 
 import hashlib
 import os
 import re
+from dataclasses import dataclass
 from itertools import product
 
 CLOSING = {"[": "]", "{": "}", "(": ")"}
@@ -39,46 +40,68 @@ def split_values(text: str) -> list[str]:
     return [part.strip() for part in [*parts, text[begin:]]]
 
 
-def read_variation(text: str) -> tuple[str, list[str]]:
+@dataclass
+class Axis:
+    """Keys that vary together: in the k-th of its places each has its k-th value."""
+
+    keys: list[str]
+    values: list[list[str]]  # per key
+
+    def __len__(self) -> int:
+        return len(self.values[0])
+
+
+def read_variation(option: str, text: str) -> tuple[str, list[str]]:
     """Key and values of "key=v1,v2,…"."""
     key, equals, values = text.partition("=")
     key = key.strip()
     if not equals or not key:
-        raise WrongInput(f"--vary {text}: needs the form key=value1,value2,... e.g. loading.steps=10,20")
+        raise WrongInput(f"{option} {text}: needs the form key=value1,value2,... e.g. loading.steps=10,20")
     try:
         parts = split_values(values)
     except WrongInput as error:
-        raise WrongInput(f"--vary {text}: {error}") from error
+        raise WrongInput(f"{option} {text}: {error}") from error
     if "" in parts:
-        raise WrongInput(f"--vary {text}: a value is empty (an empty text is written '{key}=\"\"')")
-    twice = [value for number, value in enumerate(parts) if value in parts[:number]]
-    if twice:
-        raise WrongInput(f"--vary {text}: the value {twice[0]} stands twice")
+        raise WrongInput(f"{option} {text}: a value is empty (an empty text is written '{key}=\"\"')")
     return key, parts
 
 
-def read_variations(texts: list[str], settings: list[str]) -> dict[str, list[str]]:
-    """Values by key, in the order given; refuses a key that is given twice, also by --set."""
-    if not texts:
-        raise WrongInput("nothing is varied: give --vary key=value1,value2,... at least once")
-    variations = {}
-    for text in texts:
-        key, values = read_variation(text)
-        if key in variations:
-            raise WrongInput(f"--vary {text}: {key} is varied twice; give all its values at once")
-        variations[key] = values
-    set_keys = [setting.partition("=")[0].strip() for setting in settings]
-    for key in variations:
+def vary(text: str) -> Axis:
+    """Of --vary."""
+    key, parts = read_variation("--vary", text)
+    twice = [value for number, value in enumerate(parts) if value in parts[:number]]
+    if twice:
+        raise WrongInput(f"--vary {text}: the value {twice[0]} stands twice")
+    return Axis([key], [parts])
+
+
+def vary_with(axes: list[Axis], text: str) -> None:
+    """Of --with: another key of the last axis."""
+    key, parts = read_variation("--with", text)
+    if not axes:
+        raise WrongInput(f"--with {text}: needs a --vary before it, with which {key} varies")
+    if len(parts) != len(axes[-1]):
+        raise WrongInput(f"--with {text}: has {len(parts)} values and {axes[-1].keys[0]} has {len(axes[-1])}")
+    axes[-1].keys.append(key)
+    axes[-1].values.append(parts)
+
+
+def check_keys(varied: list[str], settings: list[str]) -> None:
+    """Refuses a key that is given twice, also by --set, and folders of results."""
+    set_keys = [setting.partition("=")[0].strip().removesuffix(":").strip() for setting in settings]
+    for place, key in enumerate(varied):
+        if key in varied[:place]:
+            raise WrongInput(f"{key} is varied twice; give all its values at once")
         if key in set_keys:
             raise WrongInput(f"{key} is both varied and set; leave one out")
-    if "output.directory" in [*variations, *set_keys]:
+    if "output.directory" in [*varied, *set_keys]:
         raise WrongInput("output.directory: the combinations have folders of their own, below --output")
-    return variations
 
 
-def combinations(variations: dict[str, list[str]]) -> list[tuple[str, ...]]:
-    """Every combination of the values; those of the last key change fastest."""
-    return list(product(*variations.values()))
+def combinations(axes: list[Axis]) -> list[tuple[str, ...]]:
+    """Every combination of the axes' places, as values of all keys; the last axis changes fastest."""
+    places = product(*(range(len(axis)) for axis in axes))
+    return [tuple(values[k] for axis, k in zip(axes, place) for values in axis.values) for place in places]
 
 
 def folder_name(settings: list[str]) -> str:

@@ -1,5 +1,7 @@
-"""Pieces of a sweep: how values are split, folders named, curves taken from fields and told apart."""
+"""Pieces of a sweep: how values are split and computed, folders named, curves taken from fields and told
+apart, refinements extrapolated."""
 
+import math
 import sys
 import tempfile
 import unittest
@@ -11,9 +13,11 @@ RUNNER = Path(__file__).resolve().parents[3] / "cases" / "runner"
 sys.path[:0] = [str(RUNNER / "sweep"), str(RUNNER / "plots"), str(Path(__file__).parent)]
 
 import plot_test  # noqa: E402
+from computed import Keys, compute, split_computed  # noqa: E402
+from refinement import observed_order, refine  # noqa: E402
 from results_folder import ResultsFolder  # noqa: E402
 from sweep_picture import DASHES, draw_sweep, labels, line_looks, midline  # noqa: E402
-from variations import WrongInput, combinations, folder_name, split_values  # noqa: E402
+from variations import Axis, WrongInput, combinations, folder_name, split_values  # noqa: E402
 
 
 def body(reference, layers=None) -> ResultsFolder:
@@ -48,8 +52,12 @@ class Variations(unittest.TestCase):
                 split_values(text)
 
     def test_the_last_key_changes_fastest(self):
-        self.assertEqual(combinations({"a": ["1", "2"], "b": ["x", "y"]}),
+        self.assertEqual(combinations([Axis(["a"], [["1", "2"]]), Axis(["b"], [["x", "y"]])]),
                          [("1", "x"), ("1", "y"), ("2", "x"), ("2", "y")])  # fmt: skip
+
+    def test_linked_keys_vary_together(self):
+        self.assertEqual(combinations([Axis(["a", "c"], [["1", "2"], ["p", "q"]]), Axis(["b"], [["x", "y"]])]),
+                         [("1", "p", "x"), ("1", "p", "y"), ("2", "q", "x"), ("2", "q", "y")])  # fmt: skip
 
     def test_folder_names_are_safe_and_different(self):
         self.assertEqual(folder_name(["loading.steps=10", "load[0].x=1e-3"]), "loading.steps=10,load[0].x=1e-3")
@@ -60,6 +68,91 @@ class Variations(unittest.TestCase):
         for name in names:
             self.assertRegex(name, r"^a=[A-Za-z0-9._+\[\]-]+$")
             self.assertLess(len(name), 200)
+
+
+class Computed(unittest.TestCase):
+    CASE = b'dimension = 2\n[lattice]\nspacing = 1e-3\n[[lattice.shape]]\nmax = [0.02, 0.01]\n[material]\nmodel = "bond"'
+
+    def value(self, expression, *settings):
+        return compute(expression, Keys(self.CASE, list(settings)))
+
+    def test_expressions_of_keys(self):
+        for expression, value in {
+            "0.02/lattice.spacing": repr(0.02 / 1e-3),
+            "round(0.02/lattice.spacing)": "20",
+            "2*lattice.shape[0].max[1]": "0.02",
+            "max(1, floor(2.7), -3)": "2",
+            "2^3": "8",
+            "-dimension + 2*pi": repr(-2 + 2 * math.pi),
+            "sqrt(material.e)": "2.0",
+        }.items():
+            self.assertEqual(self.value(expression, "material.e=4"), value)
+        self.assertEqual(self.value("0.02/lattice.spacing", "lattice.spacing=5e-3"), "4.0")
+
+    def test_what_has_no_value_is_refused(self):
+        for expression, why in {
+            "0.02/lattice.spaceing": "stands neither",
+            "lattice.shape[1].max[0]": "stands neither",
+            "material.model": "no number",
+            "lattice": "no number",
+            "1/0": "no value",
+            "(-1)^0.5": "no finite value",
+            "9^9^9": "no value",
+            "((9^900)^900)^900": "no value",
+            "exp(1000)": "no value",
+            "open('x')": "no function open",
+            "__import__('os')": "no function",
+            "'a'*3": "may only hold",
+            "[1][0]": "may only hold",
+            "1 +": "no expression",
+            "(" * 500: "no expression",
+            "": "no expression",
+            "max()": "no value",
+        }.items():
+            with self.assertRaisesRegex(WrongInput, why, msg=expression):
+                self.value(expression)
+
+    def test_a_computed_key_is_told_by_its_colon(self):
+        self.assertEqual(split_computed("a.b := 2*c=d"), ("a.b", "2*c=d"))
+        self.assertIsNone(split_computed("a=1:=2"))
+        self.assertIsNone(split_computed("a"))
+
+
+class Refinements(unittest.TestCase):
+    def test_a_power_law_is_found_whatever_the_ratios(self):
+        for order in (0.5, 1.0, 2.0, 3.3):
+            for spacings in ([4.0, 2.0, 1.0], [3.0, 2.0, 1.7]):
+                values = [5.0 - 0.3 * h**order for h in spacings]
+                self.assertAlmostEqual(observed_order(spacings, values), order, delta=1e-9)
+                found = refine("x", spacings, values)
+                self.assertEqual(found.behaviour, "monotone")
+                self.assertAlmostEqual(found.extrapolated, 5.0, delta=1e-9)
+                self.assertAlmostEqual(found.uncertainty, 1.25 * 0.3 * spacings[-1] ** order, delta=1e-9)
+                self.assertAlmostEqual(found.index, found.uncertainty / values[-1], delta=1e-12)
+
+    def test_what_does_not_converge_is_told(self):
+        spacings = [4.0, 2.0, 1.0]
+        for values, behaviour in {
+            (1.0, 2.0, 1.5): "oscillating",
+            (1.0, 2.0, 3.0): "not converging",
+            (1.0, 1.1, 1.3): "not converging",
+            (2.0, 2.0, 2.0): "constant",
+            (0.0, 0.0, 0.0): "constant",
+            (1.0, 1.0, 2.0): "not converging",
+        }.items():
+            found = refine("x", spacings, list(values))
+            self.assertEqual((found.behaviour, found.order), (behaviour, None))
+            self.assertTrue(found.told())
+        self.assertAlmostEqual(refine("x", spacings, [1.0, 2.0, 1.5]).uncertainty, 1.5)
+
+    def test_orders_that_disagree_call_for_caution(self):
+        spacings = [8.0, 4.0, 2.0, 1.0]
+        settled = refine("x", spacings, [1.0 + h**2 for h in spacings])
+        self.assertAlmostEqual(settled.order_before, 2.0)
+        self.assertAlmostEqual(settled.uncertainty, 1.25)
+        unsettled = refine("x", spacings, [1.0, 1.0 + 4.0**2, 1.0 + 2.0**2, 1.0 + 1.0])
+        self.assertAlmostEqual(unsettled.order, 2.0)
+        self.assertAlmostEqual(unsettled.uncertainty, 3.0)
 
 
 class Picture(unittest.TestCase):

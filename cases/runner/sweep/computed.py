@@ -1,0 +1,112 @@
+"""Values that are computed from those of other keys: "loading.steps:=round(0.02/lattice.spacing)"."""
+
+import ast
+import math
+import operator
+import re
+import tomllib
+
+from variations import WrongInput
+
+FUNCTIONS = {"abs": abs, "min": min, "max": max, "round": round, "floor": math.floor, "ceil": math.ceil,
+             "sqrt": math.sqrt, "exp": math.exp, "log": math.log, "sin": math.sin, "cos": math.cos,
+             "tan": math.tan}  # fmt: skip
+OPERATORS = {ast.Add: operator.add, ast.Sub: operator.sub, ast.Mult: operator.mul, ast.Div: operator.truediv,
+             ast.Pow: operator.pow, ast.USub: operator.neg, ast.UAdd: operator.pos}  # fmt: skip
+FIELD_UNITS = {"displacement": "m", "opening": "m", "crack_length": "m", "force": "N", "energy_density": "J/m³"}
+LARGEST_OF_POWER = 1000
+
+
+def split_computed(text: str) -> tuple[str, str] | None:
+    """Key and expression of "key:=expression"; none for anything else."""
+    key, equals, expression = text.partition("=")
+    if not equals or not key.rstrip().endswith(":"):
+        return None
+    return key.rstrip()[:-1].strip(), expression.strip()
+
+
+class Keys:
+    """The values of a combination's keys: what it sets, and what stands in the case file."""
+
+    def __init__(self, case_text: bytes, settings: list[str]):
+        try:
+            self._case = tomllib.loads(case_text.decode())
+        except (UnicodeDecodeError, tomllib.TOMLDecodeError):
+            self._case = {}  # the program tells what is wrong with it
+        self._set = {key.strip(): value for key, _, value in (setting.partition("=") for setting in settings)}
+
+    def number(self, key: str) -> float | int:
+        """@raises WrongInput where there is none"""
+        if key in self._set:
+            value = _toml_value(self._set[key])
+        else:
+            value = self._case
+            for part in re.findall(r"[^.\[\]]+", key):
+                try:
+                    value = value[int(part) if isinstance(value, list) else part]
+                except (KeyError, IndexError, ValueError, TypeError):
+                    raise WrongInput(f"{key} stands neither in the case file nor on the command line") from None
+        if isinstance(value, bool) or not isinstance(value, (int, float)):
+            raise WrongInput(f"{key} is no number")
+        return value
+
+    def probe_units(self) -> dict[str, str]:
+        """Of the case's probes, by name."""
+        probes = self._case.get("probe", [])
+        return {probe.get("name"): FIELD_UNITS.get(probe.get("field", "displacement"), "") for probe in probes}
+
+
+def _toml_value(text: str):
+    try:
+        return tomllib.loads(f"value = {text}")["value"]
+    except tomllib.TOMLDecodeError:
+        return text
+
+
+def compute(expression: str, keys: Keys) -> str:
+    """Its value as a case file takes it: an integer where it is one by its operations, as round gives.
+
+    @raises WrongInput that says what is wrong with it
+    """
+    try:
+        tree = ast.parse(expression.replace("^", "**"), mode="eval")
+        value = _value(tree.body, keys)
+        is_finite = not isinstance(value, complex) and math.isfinite(value)
+    except (SyntaxError, ValueError, RecursionError, MemoryError):
+        raise WrongInput("is no expression of numbers and keys") from None
+    except (ArithmeticError, TypeError) as error:
+        raise WrongInput(f"has no value ({error})") from None
+    if not is_finite:
+        raise WrongInput("has no finite value")
+    return repr(value)
+
+
+def _value(node: ast.expr, keys: Keys):
+    if isinstance(node, ast.Constant) and type(node.value) in (int, float):
+        return node.value
+    if isinstance(node, (ast.BinOp, ast.UnaryOp)) and type(node.op) in OPERATORS:
+        apply = OPERATORS[type(node.op)]
+        if isinstance(node, ast.UnaryOp):
+            return apply(_value(node.operand, keys))
+        left, right = _value(node.left, keys), _value(node.right, keys)
+        if isinstance(node.op, ast.Pow) and max(abs(left), abs(right)) > LARGEST_OF_POWER:
+            left = float(left)  # powers of integers would take for ever
+        return apply(left, right)
+    if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and not node.keywords:
+        if node.func.id not in FUNCTIONS:
+            raise WrongInput(f"has no function {node.func.id}; there are {', '.join(FUNCTIONS)}")
+        return FUNCTIONS[node.func.id](*(_value(argument, keys) for argument in node.args))
+    if isinstance(node, ast.Name) and node.id == "pi":
+        return math.pi
+    return keys.number(_key(node))
+
+
+def _key(node: ast.expr) -> str:
+    """Text of a key: a.b[0].c"""
+    if isinstance(node, ast.Name):
+        return node.id
+    if isinstance(node, ast.Attribute):
+        return f"{_key(node.value)}.{node.attr}"
+    if isinstance(node, ast.Subscript) and isinstance(node.slice, ast.Constant) and type(node.slice.value) is int:
+        return f"{_key(node.value)}[{node.slice.value}]"
+    raise WrongInput("may only hold numbers, keys, pi, + - * / ^, brackets and functions")
