@@ -13,7 +13,7 @@ TangentOperator::TangentOperator(const BlockPattern& of, int dimension_of_points
 
 void TangentOperator::absolute_row_sums(std::span<double> sums) const {
   const std::size_t d = std::size_t(dimension), entries = d * d;
-  std::vector<std::vector<double>> parts;  // rows first..reach of each thread
+  std::vector<std::vector<double>> parts;  // rows first..touched_end of each thread
   for (const RowRange& range : ranges)
     parts.emplace_back(std::size_t(range.touched_end - range.first) * d);
   for_each_row([&](int thread, Index i, std::span<const double> blocks) {

@@ -29,7 +29,7 @@ struct LoadSteppingObserver {
   std::function<void(const StepRecord&, const AcceptedState&)> accepted;
   /// What the path can go on from: after an accepted step, once its driver has decided what is
   /// next.
-  std::function<void(PathState&)> reached;
+  std::function<void(const PathState&)> reached;
   std::function<bool()> interrupted;
   /// A sentence about an error of supports or loads that shows only at some load factor.
   std::function<std::string(const InputError&)> describe;

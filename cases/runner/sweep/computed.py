@@ -13,7 +13,6 @@ FUNCTIONS = {"abs": abs, "min": min, "max": max, "round": round, "floor": math.f
              "tan": math.tan}  # fmt: skip
 OPERATORS = {ast.Add: operator.add, ast.Sub: operator.sub, ast.Mult: operator.mul, ast.Div: operator.truediv,
              ast.Pow: operator.pow, ast.USub: operator.neg, ast.UAdd: operator.pos}  # fmt: skip
-FIELD_UNITS = {"displacement": "m", "opening": "m", "crack_length": "m", "force": "N", "energy_density": "J/m³"}
 LARGEST_OF_POWER = 1000
 
 
@@ -26,34 +25,49 @@ def split_computed(text: str) -> tuple[str, str] | None:
 
 
 class Keys:
-    """The values of a combination's keys: what it sets, and what stands in the case file."""
+    """The values of a combination's keys: those of the case file, and in their places what it sets."""
 
-    def __init__(self, case_text: bytes, settings: list[str]):
+    def __init__(self, case_text: bytes, settings: list[str], later: set[str] = frozenset()):
+        """later: keys that are yet to be computed, whose values in the case file will not be used"""
+        self._later = later
         try:
             self._case = tomllib.loads(case_text.decode())
         except (UnicodeDecodeError, tomllib.TOMLDecodeError):
             self._case = {}  # the program tells what is wrong with it
-        self._set = {key.strip(): value for key, _, value in (setting.partition("=") for setting in settings)}
+        for setting in settings:
+            key, _, value = setting.partition("=")
+            self._put(_parts(key), _toml_value(value))
 
     def number(self, key: str) -> float | int:
         """@raises WrongInput where there is none"""
-        if key in self._set:
-            value = _toml_value(self._set[key])
-        else:
-            value = self._case
-            for part in re.findall(r"[^.\[\]]+", key):
-                try:
-                    value = value[int(part) if isinstance(value, list) else part]
-                except (KeyError, IndexError, ValueError, TypeError):
-                    raise WrongInput(f"{key} stands neither in the case file nor on the command line") from None
+        if key in self._later:
+            raise WrongInput(f"{key} is computed later, or from itself: give what it needs before it")
+        value = self._case
+        for part in _parts(key):
+            try:
+                value = value[part]
+            except (KeyError, IndexError, TypeError):
+                raise WrongInput(f"{key} stands neither in the case file nor on the command line") from None
         if isinstance(value, bool) or not isinstance(value, (int, float)):
             raise WrongInput(f"{key} is no number")
         return value
 
-    def probe_units(self) -> dict[str, str]:
-        """Of the case's probes, by name."""
-        probes = self._case.get("probe", [])
-        return {probe.get("name"): FIELD_UNITS.get(probe.get("field", "displacement"), "") for probe in probes}
+    def _put(self, parts: list[str | int], value) -> None:
+        table = self._case
+        for part, following in zip(parts, parts[1:]):
+            if isinstance(table, dict) and part not in table:
+                table[part] = [] if isinstance(following, int) else {}
+            try:
+                table = table[part]
+            except (IndexError, TypeError):
+                return  # the program refuses it
+        if isinstance(table, dict) or (isinstance(table, list) and parts[-1] in range(len(table))):
+            table[parts[-1]] = value
+
+
+def _parts(key: str) -> list[str | int]:
+    """"a.b[0].c" as its names and places."""
+    return [int(part[1:-1]) if part[0] == "[" else part.strip() for part in re.findall(r"\[\d+\]|[^.\[\]]+", key)]
 
 
 def _toml_value(text: str):
@@ -70,11 +84,12 @@ def compute(expression: str, keys: Keys) -> str:
     """
     try:
         tree = ast.parse(expression.replace("^", "**"), mode="eval")
-        value = _value(tree.body, keys)
-        is_finite = not isinstance(value, complex) and math.isfinite(value)
     except (SyntaxError, ValueError, RecursionError, MemoryError):
         raise WrongInput("is no expression of numbers and keys") from None
-    except (ArithmeticError, TypeError) as error:
+    try:
+        value = _value(tree.body, keys)
+        is_finite = not isinstance(value, complex) and math.isfinite(value)
+    except (ArithmeticError, TypeError, ValueError, RecursionError) as error:
         raise WrongInput(f"has no value ({error})") from None
     if not is_finite:
         raise WrongInput("has no finite value")

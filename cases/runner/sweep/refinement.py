@@ -66,12 +66,15 @@ def refine(quantity: str, spacings: list[float], values: list[float]) -> Refinem
     """Of at least three lattices, from the coarsest to the finest."""
     found = Refinement(quantity, spacings, values, "not converging")
     last = values[-1]
-    if all(abs(value - last) <= TOLERANCE * abs(last) for value in values[-3:]):
-        found.behaviour, found.extrapolated, found.uncertainty = "constant", last, 0.0
+    change, before = values[-2] - last, values[-3] - values[-2]
+    if abs(change) <= TOLERANCE * abs(last):
+        # No order can be told. That both are the same may be by chance: the change before it counts.
+        is_still = abs(before) <= TOLERANCE * abs(last)
+        found.behaviour, found.extrapolated = "constant", last
+        found.uncertainty = 0.0 if is_still else abs(before)
         return found
     if len(values) > 3:
         found.order_before = observed_order(spacings[-4:-1], values[-4:-1])
-    change, before = values[-2] - last, values[-3] - values[-2]
     if change * before < 0.0:
         # No order can be told; the values swing within this range.
         found.behaviour = "oscillating"

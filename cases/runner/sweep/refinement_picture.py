@@ -1,21 +1,23 @@
 """The picture of a refinement: quantities over the spacing, and where they go as it goes to zero."""
 
+import tomllib
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 from refinement import Refinement
 from style import ENERGIES, FORCES, GHOST, LENGTHS, LINES, WARNING, heading, new_figure, number, unit_for
+from table import FIELD_UNITS
 
 MOST_PANELS = 6
 COLUMNS = 3
 UNITS = {"m": LENGTHS, "N": FORCES, "J": ENERGIES}  # that are scaled
 
 
-def draw_refinements(title: str, rows: list[tuple[tuple[str, ...], Refinement]], units: dict[str, str]):
-    """A panel per quantity, with a line for each combination of the other keys; probes come first.
-
-    units: of probes, by their names
-    """
+def draw_refinements(case: Path, rows: list[tuple[tuple[str, ...], Refinement]]):
+    """A panel per quantity, with a line for each combination of the other keys; probes come first."""
+    text = tomllib.loads(case.read_text("utf-8"))
+    units = {probe["name"]: FIELD_UNITS.get(probe.get("field", "displacement"), "") for probe in text.get("probe", [])}
     names = list(dict.fromkeys(of.quantity for _, of in rows))
     shown = _most_telling(rows, names)
     lines = -(-len(shown) // COLUMNS)
@@ -30,7 +32,7 @@ def draw_refinements(title: str, rows: list[tuple[tuple[str, ...], Refinement]],
     words = [f"{len(rows[0][1].spacings)} lattices"]
     if len(shown) < len(names):
         words.append(f"{number(len(shown))} of {number(len(names))} quantities (all are in refinement.csv)")
-    heading(figure, _Heading(title), words)
+    heading(figure, _Heading(text.get("title") or case.stem), words)
     return figure
 
 
@@ -48,9 +50,10 @@ def _most_telling(rows: list[tuple[tuple[str, ...], Refinement]], names: list[st
     return (shown or names)[:MOST_PANELS]
 
 
+@dataclass
 class _Heading:
-    def __init__(self, title: str):
-        self.title, self.status = Path(title).stem, "completed"
+    title: str
+    status: str = "completed"
 
 
 def _unit(name: str, of_probes: dict[str, str]) -> str:

@@ -188,7 +188,7 @@ def _tell_refinements(sweep: Sweep, rows: list[dict]) -> None:
     try:
         from refinement_picture import draw_refinements
 
-        draw_refinements(str(sweep.case), found, Keys(sweep.case_text, []).probe_units()).savefig(path, pil_kwargs={"compress_level": 4})
+        draw_refinements(sweep.case, found).savefig(path, pil_kwargs={"compress_level": 4})
         say(f"sweep: {path}")
     except Exception as error:
         print(f"sweep: {path} could not be drawn ({error}); the table is complete", file=sys.stderr)
@@ -293,9 +293,11 @@ def _find_combinations(sweep: Sweep, arguments: argparse.Namespace) -> None:
     for values in combinations(axes):
         varied = [f"{key}={value}" for key, value in zip(keys, values)]
         settings = [*set_as_given, *varied]
-        for key, expression in [*computed_by_set, *computed]:
+        expressions = [*computed_by_set, *computed]
+        for place, (key, expression) in enumerate(expressions):
             try:
-                value = compute(expression, Keys(sweep.case_text, settings))
+                later = {key for key, _ in expressions[place:]}
+                value = compute(expression, Keys(sweep.case_text, settings, later))
             except WrongInput as error:
                 raise WrongInput(f"{key}:={expression}: {error}") from None
             settings.append(f"{key}={value}")

@@ -5,11 +5,11 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
-from computed import FIELD_UNITS
 from matplotlib import colormaps
 from matplotlib.ticker import MaxNLocator
 from results_folder import NotAResultsFolder, ResultsFolder, read_results_folder
 from style import ENERGY_DENSITIES, FORCES, GHOST, LENGTHS, LINES, WARNING, heading, new_figure, number, unit_for
+from table import FIELD_UNITS
 
 DASHES = ["-", (0, (5, 2)), (0, (1.2, 1.5)), (0, (7, 2, 1.5, 2))]
 MOST_LABELS = 24  # entries of the legend

@@ -14,6 +14,7 @@ ENERGIES = {
     "energy_stored": "stored", "energy_dissipated": "dissipated", "energy_drained": "drained",
     "external_work": "external_work", "balance_error": "balance_error",
 }  # fmt: skip
+FIELD_UNITS = {"displacement": "m", "opening": "m", "crack_length": "m", "force": "N", "energy_density": "J/m³"}
 COSTS = ["seconds_total", "peak_memory_bytes"]
 
 

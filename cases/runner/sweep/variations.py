@@ -55,6 +55,8 @@ def read_variation(option: str, text: str) -> tuple[str, list[str]]:
     """Key and values of "key=v1,v2,…"."""
     key, equals, values = text.partition("=")
     key = key.strip()
+    if key.endswith(":"):
+        raise WrongInput(f"{option} {text}: takes values; a key is computed by --with {key}=EXPRESSION")
     if not equals or not key:
         raise WrongInput(f"{option} {text}: needs the form key=value1,value2,... e.g. loading.steps=10,20")
     try:

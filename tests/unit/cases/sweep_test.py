@@ -89,6 +89,19 @@ class Computed(unittest.TestCase):
             self.assertEqual(self.value(expression, "material.e=4"), value)
         self.assertEqual(self.value("0.02/lattice.spacing", "lattice.spacing=5e-3"), "4.0")
 
+    def test_what_is_set_counts_and_not_what_stands_in_the_file(self):
+        self.assertEqual(self.value("lattice.spacing", "lattice={spacing=0.5}"), "0.5")
+        self.assertEqual(self.value("lattice.shape[0].max[1]", "lattice.shape[0].max=[1, 7]"), "7")
+        self.assertEqual(self.value("lattice.shape[0].max[1]", "lattice.shape[0].max[1]=8"), "8")
+        self.assertEqual(self.value("a.b", "a.b=3"), "3")
+        self.assertEqual(self.value("dimension", "lattice.shape[9].x=1", "dimension.of=2", "a[0].b=1"), "2")
+
+    def test_what_is_computed_later_is_no_value_yet(self):
+        keys = Keys(self.CASE, [], {"lattice.spacing"})
+        with self.assertRaisesRegex(WrongInput, "computed later"):
+            compute("2*lattice.spacing", keys)
+        self.assertEqual(compute("dimension", keys), "2")
+
     def test_what_has_no_value_is_refused(self):
         for expression, why in {
             "0.02/lattice.spaceing": "stands neither",
@@ -100,6 +113,8 @@ class Computed(unittest.TestCase):
             "9^9^9": "no value",
             "((9^900)^900)^900": "no value",
             "exp(1000)": "no value",
+            "sqrt(-1)": "no value",
+            "1" + "+1" * 5000: "no",
             "open('x')": "no function open",
             "__import__('os')": "no function",
             "'a'*3": "may only hold",
@@ -139,11 +154,14 @@ class Refinements(unittest.TestCase):
             (2.0, 2.0, 2.0): "constant",
             (0.0, 0.0, 0.0): "constant",
             (1.0, 1.0, 2.0): "not converging",
+            (1.0, 2.0, 2.0): "constant",
         }.items():
             found = refine("x", spacings, list(values))
             self.assertEqual((found.behaviour, found.order), (behaviour, None))
             self.assertTrue(found.told())
         self.assertAlmostEqual(refine("x", spacings, [1.0, 2.0, 1.5]).uncertainty, 1.5)
+        self.assertEqual(refine("x", spacings, [1.0, 2.0, 2.0]).uncertainty, 1.0)
+        self.assertEqual(refine("x", spacings, [2.0, 2.0, 2.0]).uncertainty, 0.0)
 
     def test_orders_that_disagree_call_for_caution(self):
         spacings = [8.0, 4.0, 2.0, 1.0]

@@ -11,6 +11,7 @@
 
 #include "cases/runner/results/record_tables.hpp"
 #include "solvers/drivers/drivers.hpp"
+#include "solvers/drivers/load_stepping.hpp"
 #include "solvers/drivers/state_archive.hpp"
 #include "solvers/linear/solver_ladder.hpp"
 #include "tests/softening_strip.hpp"
@@ -31,6 +32,20 @@ class ShortOfMemory : public Cholesky {
 
  private:
   int systems_ = 0;
+};
+
+/// Notes whether the first system of every step may reuse a factor of the step before.
+class Observed : public Cholesky {
+ public:
+  explicit Observed(std::vector<FactorUse>& uses) : uses_(uses) {}
+
+  LinearOutcome factorize(const TangentOperator& tangent, FactorUse use) override {
+    uses_.push_back(use);
+    return Cholesky::factorize(tangent, use);
+  }
+
+ private:
+  std::vector<FactorUse>& uses_;
 };
 
 /// What a path is followed with. All else is made anew for every path.
@@ -277,6 +292,58 @@ TEST(PathState, GoesOnOnTheRungOfItsSolver) {
   EXPECT_EQ(whole.outcome, Outcome::converged);
   EXPECT_EQ(whole.states.front().rungs.body, 0);
   EXPECT_EQ(whole.states.back().rungs.body, 1);
+}
+
+TEST(PathState, IsToldWhereAPathCanGoOn) {
+  const Setting setting{drawn("0.045*min(load, 1.2 - load)"), options_of(Mode::adaptive, 10, 50)};
+  Followed followed;
+  std::vector<PathState> reached;
+  const auto follow_from = [&](const PathState* from) {
+    Solved solved(setting, followed);
+    EXPECT_EQ(solved.strip.analyze(solved.solver), LinearOutcome::solved);
+    LoadSteppingObserver observer;
+    if (from == nullptr)
+      observer.reached = [&](const PathState& state) { reached.push_back(state); };
+    return follow_loading(solved.body(), solved.strip.conditions, setting.options,
+                          setting.newton_options, observer, nullptr, from);
+  };
+  const LoadSteppingResult whole = follow_from(nullptr);
+  ASSERT_EQ(whole.outcome, Outcome::converged);
+  ASSERT_EQ(int(reached.size()), whole.steps);
+  for (std::size_t k = 0; k < reached.size(); k += 5) {
+    SCOPED_TRACE(k);
+    EXPECT_EQ(reached[k].steps, int(k) + 1);
+    const LoadSteppingResult rest = follow_from(&reached[k]);
+    EXPECT_EQ(rest.outcome, whole.outcome);
+    EXPECT_EQ(rest.steps, whole.steps);
+    EXPECT_EQ(rest.state.displacement, whole.state.displacement);
+  }
+}
+
+TEST(PathState, KeepsNoFactorForTheNextStep) {
+  for (const Mode& mode : {Mode::newton, Mode::relaxation, Mode::adaptive}) {
+    SCOPED_TRACE(mode.name);
+    const Setting setting{drawn("0.03*load"), options_of(mode, 10, 20)};
+    Followed followed;
+    std::vector<FactorUse> uses;
+    Solved solved(setting, followed);
+    Observed solver(uses);
+    EXPECT_EQ(solved.strip.analyze(solver), LinearOutcome::solved);
+    std::vector<std::size_t> first_of_step{0};
+    LoadSteppingObserver observer;
+    observer.accepted = [&](const StepRecord&, const AcceptedState&) {
+      first_of_step.push_back(uses.size());
+    };
+    const LoadSteppingResult result =
+        follow_loading({solved.strip.assembler, solver, solved.strip.tangent, solved.strip.free},
+                       solved.strip.conditions, setting.options, setting.newton_options, observer);
+    EXPECT_GT(result.steps, 5);
+    first_of_step.pop_back();
+    for (const std::size_t first : first_of_step) {
+      if (first < uses.size()) EXPECT_EQ(uses[first], FactorUse::factorize_now) << first;
+    }
+    EXPECT_NE(std::count(uses.begin(), uses.end(), FactorUse::may_reuse), 0);
+  }
 }
 
 TEST(Drivers, EachModeHasOne) {
