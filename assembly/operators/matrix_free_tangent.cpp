@@ -18,6 +18,7 @@ std::vector<double> MatrixFreeTangent::positions() const {
 
 void MatrixFreeTangent::linearise(Energy& energy, const StateView& at, double projection) {
   energy_ = &energy;
+  reference = energy.points().reference;
   displacement_.assign(at.displacement.begin(), at.displacement.end());
   history_ = at.history;
   damage_ = at.damage;

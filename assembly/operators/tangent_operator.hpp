@@ -17,8 +17,9 @@ struct TangentOperator {
 
   BlockPattern pattern;
   int dimension;
-  std::vector<RowRange> ranges;  ///< rows of each thread
-  std::vector<double> diagonal;  ///< points x d x d
+  std::vector<RowRange> ranges;       ///< rows of each thread
+  std::vector<double> diagonal;       ///< points x d x d
+  std::span<const double> reference;  ///< positions of the undeformed body, which outlives it
 
   [[nodiscard]] Offset dofs() const { return Offset(pattern.points()) * dimension; }
   [[nodiscard]] int threads() const { return static_cast<int>(ranges.size()); }

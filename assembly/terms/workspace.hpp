@@ -21,8 +21,9 @@ struct Workspace {
   Workspace(const BlockPattern& pattern, int dimension, int threads);
 
   std::vector<RowRange> ranges;
-  std::vector<AlignedVector<double>> sums;  ///< per thread, rows first..touched_end of what it adds up
-  std::vector<Evaluation> evaluations;      ///< per thread
+  std::vector<AlignedVector<double>>
+      sums;                             ///< per thread, rows first..touched_end of what it adds up
+  std::vector<Evaluation> evaluations;  ///< per thread
 
   [[nodiscard]] int threads() const { return static_cast<int>(ranges.size()); }
 

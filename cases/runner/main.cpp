@@ -3,7 +3,6 @@
 #include <cstring>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include <CLI/CLI.hpp>
@@ -13,6 +12,7 @@
 #include "cases/runner/commands/check.hpp"
 #include "cases/runner/commands/check_tangent.hpp"
 #include "cases/runner/commands/key_reference.hpp"
+#include "cases/runner/commands/resume.hpp"
 #include "cases/runner/commands/run.hpp"
 #include "cases/runner/commands/unknown_option.hpp"
 #include "cases/runner/input/case.hpp"
@@ -29,17 +29,17 @@ namespace {
 using namespace peristat;
 
 struct CommandLine {
-  std::string case_file, output, log_file, deformation, table;
+  std::string case_file, results, output, log_file, deformation, table;
   std::vector<std::string> settings;
-  int threads = 0;
+  int threads = 0, steps = 0;
   bool quiet = false, overwrite = false;
   bool no_plots = false;  // taken by the launcher, which draws
   CalibrationQuestion calibration;
 };
 
 /// "key=value" taken apart.
-std::vector<std::pair<std::string, std::string>> overrides(const CommandLine& line) {
-  std::vector<std::pair<std::string, std::string>> result;
+Settings overrides(const CommandLine& line) {
+  Settings result;
   for (const std::string& setting : line.settings) {
     const auto equals = setting.find('=');
     if (equals == std::string::npos || equals == 0) {
@@ -61,11 +61,28 @@ void add_settings(CLI::App& command, CommandLine& line) {
       ->allow_extra_args(false);
 }
 
+void add_threads(CLI::App& command, CommandLine& line) {
+  command.add_option("--threads", line.threads, "number of threads (default: all processors)")
+      ->check(CLI::PositiveNumber);
+}
+
 void add_case_options(CLI::App& command, CommandLine& line) {
   command.add_option("case", line.case_file, "case file (docs/case-file.md)")->required();
   add_settings(command, line);
-  command.add_option("--threads", line.threads, "number of threads (default: all processors)")
+  add_threads(command, line);
+}
+
+/// Of the commands that run a case.
+void add_run_options(CLI::App& command, CommandLine& line) {
+  command
+      .add_option("--stop-after", line.steps,
+                  "stop after so many accepted steps as if interrupted; resume goes on")
+      ->type_name("STEPS")
       ->check(CLI::PositiveNumber);
+  command.add_flag("--no-plots", line.no_plots,
+                   "draw no pictures at the end (./peristat draws them)");
+  command.add_flag("--quiet", line.quiet, "print nothing but problems");
+  command.add_option("--log", line.log_file, "write all that is said, and every iteration, here");
 }
 
 void add_calibration(CLI::App& command, CommandLine& line) {
@@ -89,8 +106,15 @@ void add_calibration(CLI::App& command, CommandLine& line) {
   add("--c3", asked.c3, "[N/m14], three-neighbour constant, 3D");
 }
 
+RunOptions run_options(const CommandLine& line, int threads) {
+  return {threads, line.quiet, line.log_file, line.overwrite, line.steps};
+}
+
 Exit execute(const CLI::App& program, const CommandLine& line, int threads) {
   if (program.got_subcommand("keys")) return print_keys(line.table);
+  if (program.got_subcommand("resume")) {
+    return resume(line.results, overrides(line), run_options(line, threads));
+  }
   const bool is_calibration = program.got_subcommand("calibrate");
   if (is_calibration && line.case_file.empty()) return calibrate(line.calibration);
   const Case from = read_case(line.case_file, overrides(line));
@@ -99,7 +123,7 @@ Exit execute(const CLI::App& program, const CommandLine& line, int threads) {
   if (program.got_subcommand("check-tangent")) {
     return check_tangent(from, line.deformation, threads);
   }
-  return run(from, {threads, line.quiet, line.log_file, line.overwrite});
+  return run(from, run_options(line, threads));
 }
 
 /// Sentence about what stands on the command line without being expected.
@@ -145,11 +169,13 @@ int main(int count, char** arguments) try {
   run_command->add_option("--output", line.output, "results folder (default: the case's)");
   run_command->add_flag("--overwrite", line.overwrite,
                         "replace the results of another case, or of version 1, in the folder");
-  run_command->add_flag("--no-plots", line.no_plots,
-                        "draw no pictures at the end (./peristat draws them)");
-  run_command->add_flag("--quiet", line.quiet, "print nothing but problems");
-  run_command->add_option("--log", line.log_file,
-                          "write all that is said, and every iteration, here");
+  add_run_options(*run_command, line);
+  CLI::App* resume_command =
+      program.add_subcommand("resume", "go on with a run that has not come to its end");
+  resume_command->add_option("results", line.results, "its results folder")->required();
+  add_settings(*resume_command, line);
+  add_threads(*resume_command, line);
+  add_run_options(*resume_command, line);
   add_case_options(*program.add_subcommand("check", "read and build a case, without solving"),
                    line);
   CLI::App* tangent_command = program.add_subcommand(
@@ -181,7 +207,8 @@ int main(int count, char** arguments) try {
   require_threads(threads);
   claim_blas_memory(threads);
   const Exit exit = execute(program, line, threads);
-  if (exit == Exit::done && !program.got_subcommand("run")) require_told();
+  if (exit == Exit::done && !program.got_subcommand("run") && !program.got_subcommand("resume"))
+    require_told();
   return static_cast<int>(exit);
 } catch (...) {
   return report_failure();

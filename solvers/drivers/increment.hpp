@@ -14,6 +14,11 @@ struct IncrementOptions {
 /// A remainder of the load factor below this is round-off of the sum of steps.
 inline constexpr double load_factor_tolerance = 1e-9;
 
+/// Whether a path has not come to its end.
+[[nodiscard]] inline bool is_load_left(double load_factor) {
+  return 1.0 - load_factor > load_factor_tolerance;
+}
+
 /// What is left of the load, and how large a step of it is taken next.
 class Increment {
  public:
@@ -26,7 +31,8 @@ class Increment {
         first_(std::min(1.0 / steps, largest_)),
         next_(next) {}
 
-  [[nodiscard]] double value() const { return next_ > 0.0 ? next_ : first_; }
+  /// A path may go on with a smaller limit than it had.
+  [[nodiscard]] double value() const { return next_ > 0.0 ? std::min(next_, largest_) : first_; }
 
   /// Target of the next step; the last one is not left a remainder of round-off.
   [[nodiscard]] double target(double load_factor) const {

@@ -27,6 +27,7 @@ Path::Path(const PathSetting& setting, PathState from)
 
 LinearOutcome Path::prepare_solvers() {
   const auto prepare = [&](const SolvedBody& solved, int rung) {
+    if (rung == solved.solver.rung() && !own_free_) return LinearOutcome::solved;
     solved.solver.start_at(rung);
     return solved.solver.analyze(solved.tangent.pattern, free());
   };
@@ -40,9 +41,7 @@ void Path::note_rungs() {
   if (setting_.stand_in) state_.rungs.stand_in = setting_.stand_in->solver.rung();
 }
 
-bool Path::has_load_left() const {
-  return 1.0 - state_.accepted.load_factor > load_factor_tolerance;
-}
+bool Path::has_load_left() const { return is_load_left(state_.accepted.load_factor); }
 
 const SolvedBody& Path::body() const {
   return state_.stands_in ? *setting_.stand_in : setting_.body;

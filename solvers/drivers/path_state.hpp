@@ -1,5 +1,6 @@
 #pragma once
 
+#include "assembly/assembler.hpp"
 #include "assembly/energy/state.hpp"
 #include "solvers/drivers/fragment_pins.hpp"
 #include "solvers/drivers/path_ledger.hpp"
@@ -35,5 +36,10 @@ struct PathState {
     bool is_near_onset = false;  ///< an implicit step was cut to end just before damage begins
   } hand_over;
 };
+
+/// Whether the sizes of its arrays are those of a body's.
+/// @param prescribed per degree of freedom
+[[nodiscard]] bool is_of_body(const PathState& state, const Assembler& body,
+                              const std::vector<char>& prescribed);
 
 }  // namespace peristat

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,7 @@ class StateArchive {
 
   virtual void transfer(const std::string& name, bool& value) = 0;
   virtual void transfer(const std::string& name, int& value) = 0;
+  virtual void transfer(const std::string& name, std::int64_t& value) = 0;
   virtual void transfer(const std::string& name, double& value) = 0;
   virtual void transfer(const std::string& name, std::vector<char>& values) = 0;
   virtual void transfer(const std::string& name, std::vector<Index>& values) = 0;

@@ -107,7 +107,7 @@ struct RigidPieces::Levels {
   double length_unit = 1.0;  // of the arms [m]: keeps them within what single precision holds
   int dimension = 0, threads = 1;
 
-  /// Boxes in the configuration of the first tangent.
+  /// Boxes in the reference configuration: they don't depend on when the solver was made.
   void find_boxes(const TangentOperator& tangent, std::span<const double> position) {
     const int d = dimension;
     const Index points = tangent.pattern.points();
@@ -481,7 +481,7 @@ LinearOutcome RigidPieces::build(const TangentOperator& tangent) {
   levels.first.assign(1, 0);
   const LinearOutcome outcome = levels.fine.build(tangent);
   if (outcome != LinearOutcome::solved) return outcome;
-  if (levels.box.empty()) levels.find_boxes(tangent, tangent.positions());
+  if (levels.box.empty()) levels.find_boxes(tangent, tangent.reference);
   levels.find_pieces(tangent);
   if (tangent.dimension == 1) return levels.build_coarse<1>(tangent);
   if (tangent.dimension == 2) return levels.build_coarse<2>(tangent);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <functional>
 #include <memory>
 #include <string>
@@ -33,7 +34,7 @@ class SolverLadder : public LinearSolver {
   [[nodiscard]] int last_iterations() const override;
   [[nodiscard]] std::string describe() const override;
   [[nodiscard]] int rung() const override { return int(rung_); }
-  void start_at(int rung) override { rung_ = std::size_t(rung); }
+  void start_at(int rung) override { rung_ = std::min(std::size_t(rung), rungs_.size() - 1); }
 
  private:
   /// Takes the next rung that can be analysed.

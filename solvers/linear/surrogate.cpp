@@ -43,7 +43,7 @@ struct Surrogate::StandIn {
   std::optional<MatrixPreconditioner> multigrid;  // instead of the factor, if it holds one
   std::vector<double> correction;
 
-  /// Chooses the short bonds, in the configuration of the first tangent.
+  /// Chooses the short bonds, in the reference configuration.
   LinearOutcome choose_bonds(const TangentOperator& tangent, std::span<const double> position) {
     const BlockPattern& pattern = tangent.pattern;
     const Index points = pattern.points();
@@ -181,7 +181,7 @@ LinearOutcome Surrogate::build(const TangentOperator& tangent) {
   if (outcome != LinearOutcome::solved) return outcome;
   const std::vector<double> position = tangent.positions();
   if (s.is_short.empty()) {
-    const LinearOutcome analysis = s.choose_bonds(tangent, position);
+    const LinearOutcome analysis = s.choose_bonds(tangent, tangent.reference);
     if (analysis != LinearOutcome::solved) return analysis;
   }
   s.find_springs(tangent, position);

@@ -1,31 +1,35 @@
 #include "solvers/problem/records.hpp"
 
-namespace peristat {
+#include <map>
+#include <stdexcept>
 
-std::string name(Decision decision) {
-  switch (decision) {
-    case Decision::accept:
-      return "accept";
-    case Decision::accept_and_grow:
-      return "accept and grow";
-    case Decision::accept_at_round_off:
-      return "accept at round-off";
-    case Decision::cut:
-      return "cut";
-    case Decision::stop:
-      return "stop";
-    case Decision::hand_over:
-      return "hand over to relaxation";
-    case Decision::hand_back:
-      return "hand back to newton";
-    case Decision::hold_fragments:
-      return "hold fragments";
-    case Decision::remove_fragments:
-      return "remove fragments";
-    case Decision::change_linear_solver:
-      return "change linear solver";
+namespace peristat {
+namespace {
+
+const std::map<Decision, std::string>& decision_names() {
+  static const std::map<Decision, std::string> names{
+      {Decision::accept, "accept"},
+      {Decision::accept_and_grow, "accept and grow"},
+      {Decision::accept_at_round_off, "accept at round-off"},
+      {Decision::cut, "cut"},
+      {Decision::stop, "stop"},
+      {Decision::hand_over, "hand over to relaxation"},
+      {Decision::hand_back, "hand back to newton"},
+      {Decision::hold_fragments, "hold fragments"},
+      {Decision::remove_fragments, "remove fragments"},
+      {Decision::change_linear_solver, "change linear solver"}};
+  return names;
+}
+
+}  // namespace
+
+std::string name(Decision decision) { return decision_names().at(decision); }
+
+Decision decision_named(const std::string& name) {
+  for (const auto& [decision, spelt] : decision_names()) {
+    if (spelt == name) return decision;
   }
-  return "";
+  throw std::out_of_range("no decision is named \"" + name + "\"");
 }
 
 }  // namespace peristat

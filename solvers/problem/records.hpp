@@ -70,6 +70,8 @@ enum class Decision {
 
 /// As decisions.csv spells it.
 [[nodiscard]] std::string name(Decision decision);
+/// @throws std::out_of_range if there is none of this name
+[[nodiscard]] Decision decision_named(const std::string& name);
 
 /// One decision of the load stepping (a row of decisions.csv).
 struct DecisionRecord {

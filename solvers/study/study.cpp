@@ -38,14 +38,15 @@ LinearOutcome Study::analyze() {
   return *analysis_;
 }
 
-LoadSteppingResult Study::follow(const LoadSteppingObserver& observer, const SolvedBody* stand_in) {
+LoadSteppingResult Study::follow(const LoadSteppingObserver& observer, const SolvedBody* stand_in,
+                                 const PathState* from) {
   if (analyze() != LinearOutcome::solved) {
     LoadSteppingResult result;
     result.outcome = Outcome::out_of_memory;
     return result;
   }
   return follow_loading(equations_->solved(), *body_.conditions, options_.loading, options_.newton,
-                        observer, stand_in);
+                        observer, stand_in, from);
 }
 
 StudyResult solve(const Body& body, const StudyOptions& options,

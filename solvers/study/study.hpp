@@ -46,8 +46,10 @@ class Study {
   Study(const Body& body, StudyOptions options, SolverLadder::Reporter tell = {});
 
   /// From load factor 0 to 1; once. What was not enough memory is outcome out_of_memory.
+  /// @param from a state that has been told as `reached`, to go on from; null: from rest
   [[nodiscard]] LoadSteppingResult follow(const LoadSteppingObserver& observer,
-                                          const SolvedBody* stand_in = nullptr);
+                                          const SolvedBody* stand_in = nullptr,
+                                          const PathState* from = nullptr);
 
   /// Prepares the solver; `follow` does if nobody has.
   LinearOutcome analyze();

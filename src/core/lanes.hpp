@@ -31,33 +31,33 @@ inline double sum(double a) { return a; }
 
 namespace lanes_detail {
 
-using Row = double __attribute__((vector_size(4 * sizeof(double))));
+using Quad = double __attribute__((vector_size(4 * sizeof(double))));
 using Pair = double __attribute__((vector_size(2 * sizeof(double))));
 using Order = long long __attribute__((vector_size(4 * sizeof(long long))));
 
-inline Row load(const double* from) {
-  Row row;
+inline Quad load(const double* from) {
+  Quad row;
   std::memcpy(&row, from, sizeof row);
   return row;
 }
 
-inline void transpose(Row& a, Row& b, Row& c, Row& d) {
-  const Row ab_even = __builtin_shuffle(a, b, Order{0, 4, 2, 6});
-  const Row ab_odd = __builtin_shuffle(a, b, Order{1, 5, 3, 7});
-  const Row cd_even = __builtin_shuffle(c, d, Order{0, 4, 2, 6});
-  const Row cd_odd = __builtin_shuffle(c, d, Order{1, 5, 3, 7});
+inline void transpose(Quad& a, Quad& b, Quad& c, Quad& d) {
+  const Quad ab_even = __builtin_shuffle(a, b, Order{0, 4, 2, 6});
+  const Quad ab_odd = __builtin_shuffle(a, b, Order{1, 5, 3, 7});
+  const Quad cd_even = __builtin_shuffle(c, d, Order{0, 4, 2, 6});
+  const Quad cd_odd = __builtin_shuffle(c, d, Order{1, 5, 3, 7});
   a = __builtin_shuffle(ab_even, cd_even, Order{0, 1, 4, 5});
   b = __builtin_shuffle(ab_odd, cd_odd, Order{0, 1, 4, 5});
   c = __builtin_shuffle(ab_even, cd_even, Order{2, 3, 6, 7});
   d = __builtin_shuffle(ab_odd, cd_odd, Order{2, 3, 6, 7});
 }
 
-inline Lanes to_lanes(const Row& row) {
+inline Lanes to_lanes(const Quad& row) {
   return Lanes(reinterpret_cast<const double*>(&row), std::experimental::element_aligned);
 }
 
-inline Row to_row(const Lanes& lanes) {
-  Row row;
+inline Quad to_row(const Lanes& lanes) {
+  Quad row;
   lanes.copy_to(reinterpret_cast<double*>(&row), std::experimental::element_aligned);
   return row;
 }
@@ -69,7 +69,7 @@ inline Row to_row(const Lanes& lanes) {
 inline void load_transposed(const double* row0, const double* row1, const double* row2,
                             const double* row3, Lanes columns[4]) {
   using namespace lanes_detail;
-  Row a = load(row0), b = load(row1), c = load(row2), d = load(row3);
+  Quad a = load(row0), b = load(row1), c = load(row2), d = load(row3);
   transpose(a, b, c, d);
   columns[0] = to_lanes(a);
   columns[1] = to_lanes(b);
@@ -81,15 +81,15 @@ inline void load_transposed(const double* row0, const double* row1, const double
 inline void load_transposed_pairs(const std::array<const double*, 4>& row, Lanes& column0,
                                   Lanes& column1) {
   using namespace lanes_detail;
-  const Row even{row[0][0], row[0][1], row[2][0], row[2][1]};
-  const Row odd{row[1][0], row[1][1], row[3][0], row[3][1]};
+  const Quad even{row[0][0], row[0][1], row[2][0], row[2][1]};
+  const Quad odd{row[1][0], row[1][1], row[3][0], row[3][1]};
   column0 = to_lanes(__builtin_shuffle(even, odd, Order{0, 4, 2, 6}));
   column1 = to_lanes(__builtin_shuffle(even, odd, Order{1, 5, 3, 7}));
 }
 
 /// The reverse: row l of `rows` gets lane l of the four columns.
 inline void store_transposed(const Lanes& column0, const Lanes& column1, const Lanes& column2,
-                             const Lanes& column3, lanes_detail::Row rows[4]) {
+                             const Lanes& column3, lanes_detail::Quad rows[4]) {
   using namespace lanes_detail;
   rows[0] = to_row(column0);
   rows[1] = to_row(column1);
@@ -102,9 +102,9 @@ inline void store_transposed(const Lanes& column0, const Lanes& column1, const L
 inline void store_transposed(const Lanes& column0, const Lanes& column1,
                              lanes_detail::Pair pairs[4]) {
   using namespace lanes_detail;
-  const Row a = to_row(column0), b = to_row(column1);
-  const Row even = __builtin_shuffle(a, b, Order{0, 4, 2, 6});
-  const Row odd = __builtin_shuffle(a, b, Order{1, 5, 3, 7});
+  const Quad a = to_row(column0), b = to_row(column1);
+  const Quad even = __builtin_shuffle(a, b, Order{0, 4, 2, 6});
+  const Quad odd = __builtin_shuffle(a, b, Order{1, 5, 3, 7});
   pairs[0] = Pair{even[0], even[1]};
   pairs[1] = Pair{odd[0], odd[1]};
   pairs[2] = Pair{even[2], even[3]};
@@ -121,7 +121,7 @@ inline void add_row(double* to, const Row& row) {
 }
 
 /// Writes a row of four doubles to memory.
-inline void store_row(double* to, const lanes_detail::Row& row) {
+inline void store_row(double* to, const lanes_detail::Quad& row) {
   std::memcpy(to, &row, sizeof row);
 }
 

@@ -73,7 +73,7 @@ template <int D>
 inline void add_to_partners(double* sums, const std::array<Index, lane_count>& partner,
                             const Vector<D, Lanes>& vector) {
   if constexpr (D == 3) {
-    lanes_detail::Row rows[4];
+    lanes_detail::Quad rows[4];
     store_transposed(vector[0], vector[1], vector[2], Lanes(0.0), rows);
     for (int l = 0; l < lane_count; ++l) add_row(sums + std::ptrdiff_t(partner[l]) * 4, rows[l]);
   } else if constexpr (D == 2) {
@@ -101,7 +101,7 @@ template <int D>
 inline void add_to_partners(double* sums, const std::array<Index, lane_count>& partner,
                             const std::array<Lanes, block_width(D)>& half) {
   constexpr int width = block_width(D);
-  lanes_detail::Row head[4];
+  lanes_detail::Quad head[4];
   store_transposed(half[0], half[1], half[2], half[3], head);
   for (int l = 0; l < lane_count; ++l) {
     add_row(sums + std::ptrdiff_t(partner[l]) * width, head[l]);
@@ -121,11 +121,11 @@ inline void store_blocks(double* blocks, int count, const Matrix<D, Lanes>& bloc
   if constexpr (D == 1) {
     for (int l = 0; l < count; ++l) blocks[l] = -block[0][0][l];
   } else if constexpr (D == 2) {
-    lanes_detail::Row rows[4];
+    lanes_detail::Quad rows[4];
     store_transposed(-block[0][0], -block[0][1], -block[1][0], -block[1][1], rows);
     for (int l = 0; l < count; ++l) store_row(blocks + l * 4, rows[l]);
   } else {
-    lanes_detail::Row head[4], tail[4];
+    lanes_detail::Quad head[4], tail[4];
     store_transposed(-block[0][0], -block[0][1], -block[0][2], -block[1][0], head);
     store_transposed(-block[1][1], -block[1][2], -block[2][0], -block[2][1], tail);
     const Lanes last = -block[2][2];
@@ -144,7 +144,7 @@ inline void store_upper_halves(double* blocks, int count,
   if constexpr (D == 1) {
     for (int l = 0; l < count; ++l) blocks[l] = -half[0][l];
   } else {
-    lanes_detail::Row head[4];
+    lanes_detail::Quad head[4];
     store_transposed(-half[0], -half[1], -half[2], -half[3], head);
     if constexpr (D == 2) {
       for (int l = 0; l < count; ++l) std::memcpy(blocks + l * 3, &head[l], 3 * sizeof(double));

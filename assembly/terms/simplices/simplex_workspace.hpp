@@ -28,7 +28,8 @@ struct SimplexWorkspace {
   std::vector<Offset> places;  ///< of the bonds' blocks in the pattern; empty: in its order
   Workspace& threads;
   std::vector<std::unique_ptr<LocalWorkspace<D>>> local;  ///< per thread
-  std::vector<std::vector<double>> blocks;  ///< per thread, off-diagonal blocks of rows last..touched_end
+  std::vector<std::vector<double>>
+      blocks;  ///< per thread, off-diagonal blocks of rows last..touched_end
 
   /// Where the block of a bond is in the pattern.
   [[nodiscard]] Offset place(Offset bond) const {

@@ -1,6 +1,7 @@
 #include "cases/runner/commands/run.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -20,7 +21,6 @@
 #include "solvers/linear/cholesky.hpp"
 #include "solvers/study/study.hpp"
 #include "src/core/input_error.hpp"
-#include "src/core/stopwatch.hpp"
 
 namespace peristat {
 namespace {
@@ -78,39 +78,30 @@ void count(const Body& body, const FreeDofs& free, const RunOptions& options, Su
   for (const auto& term : body.model.terms()) {
     for (const InteractionCount& kind : term->counts()) summary.count(kind.name, kind.count);
   }
-  summary.seconds.neighbourhood = body.seconds_neighbourhood;
+  summary.costs.seconds.neighbourhood += body.seconds_neighbourhood;
   summary.threads = options.threads;
 }
 
-/// Adds what assembly and linear solver have cost to the summary.
-void add_costs(const Assembler& assembler, const LinearSolver& solver, Summary& summary) {
-  const LinearStatistics statistics = solver.statistics();
-  summary.factorisations += statistics.factorisations;
-  summary.linear_iterations += statistics.iterations;
-  summary.seconds.linear += statistics.seconds;
-  summary.seconds.assembly += assembler.seconds_spent();
+/// Adds what assembly and linear solver have cost.
+void add_costs(SolvedModel& solved, RunCosts& costs) {
+  const LinearStatistics statistics = solved.solver().statistics();
+  costs.factorisations += statistics.factorisations;
+  costs.linear_iterations += statistics.iterations;
+  costs.seconds.linear += statistics.seconds;
+  costs.seconds.assembly += solved.assembler().seconds_spent();
 }
 
-LoadSteppingResult follow_with_stand_in(const Case& from, Study& study, const Model& stand_in,
-                                        const LoadSteppingObserver& observer, Summary& summary) {
+std::unique_ptr<SolvedModel> solved_stand_in(const Case& from, const Study& study,
+                                             const Model& stand_in) {
   const Points& points = study.body().points;
   BodySize size = size_of(points);
   size.horizon_ratio = from.solver.elastic_horizon_ratio;
   size.bonds = double(stand_in.bonds().count());
   size.free_dofs = double(study.free().count());
-  SolvedModel standing_in(
+  return std::make_unique<SolvedModel>(
       points, stand_in, study.free(),
       choose_linear_systems(study.options(), stand_in, estimate_memory(size), {}),
       study.options().threads);
-  if (standing_in.analyze() != LinearOutcome::solved) {
-    LoadSteppingResult result;
-    result.outcome = Outcome::out_of_memory;
-    return result;
-  }
-  const SolvedBody solved = standing_in.solved();
-  LoadSteppingResult result = study.follow(observer, &solved);
-  add_costs(standing_in.assembler(), standing_in.solver(), summary);
-  return result;
 }
 
 std::string failure_reason(const LoadSteppingResult& result) {
@@ -123,6 +114,12 @@ std::string failure_reason(const LoadSteppingResult& result) {
   }
   return fmt::format("{} after load factor {:.6g}: {}", name(result.outcome),
                      result.state.load_factor, reason);
+}
+
+LoadSteppingResult out_of_memory() {
+  LoadSteppingResult result;
+  result.outcome = Outcome::out_of_memory;
+  return result;
 }
 
 std::string status_of(Outcome outcome) {
@@ -159,21 +156,29 @@ namespace {
 /// A run of a case, step by step.
 class CaseRun {
  public:
+  /// @param earlier run to go on from; null: from rest
   /// @param results is made as soon as the case is known to be right
-  CaseRun(const Case& from, const RunOptions& options, Progress& progress, Summary& summary,
-          std::optional<Results>& results)
-      : from_(from), options_(options), progress_(progress), summary_(summary), results_(results) {}
+  CaseRun(const Case& from, const RunOptions& options, EarlierRun* earlier, Progress& progress,
+          Summary& summary, std::optional<Results>& results)
+      : from_(from),
+        options_(options),
+        earlier_(earlier),
+        progress_(progress),
+        summary_(summary),
+        results_(results),
+        support_sets_(support_sets(from)) {
+    for (const auto& probe : from.probes) probes_.push_back(columns_of(probe, from.dimension));
+  }
 
   Exit run() {
-    std::optional<Stopwatch> total(std::in_place, summary_.seconds.total);
     progress_.say(from_.title.empty() ? from_.file
                                       : fmt::format("{} ({})", from_.title, from_.file));
+    if (earlier_) summary_.costs = earlier_->checkpoint().costs;
     make();
     heed_interruptions();
     open_results();
     const LoadSteppingResult result = follow();
     conclude(result);
-    total.reset();
     results_->close(summary_);
     return tell(result);
   }
@@ -184,6 +189,10 @@ class CaseRun {
     body_ = make_body(from_, options_.threads);
     study_.emplace(*body_, study_options(from_, options_.threads),
                    [this](const std::string& reason) { recorder_->changed_solver(reason); });
+    if (earlier_) {
+      earlier_results_ = earlier_->results(support_sets_, probes_);
+      require_body_of(*earlier_);
+    }
     const Index points = body_->points.count();
     const FreeDofs& free = study_->free();
     progress_.say(fmt::format("{} points, {} bonds, {} free degrees of freedom, {} threads", points,
@@ -192,29 +201,58 @@ class CaseRun {
     count(*body_, free, options_, summary_);
   }
 
+  /// @throws InputError if the body is another one
+  void require_body_of(const EarlierRun& earlier) {
+    const auto refuse = [&](const std::string& why) {
+      throw InputError("", "", why, earlier.directory().string());
+    };
+    if (!earlier.has_points(body_->points)) {
+      refuse("its points are not those of the run that the case makes now");
+    }
+    if (!is_of_body(earlier.checkpoint().path, study_->equations().assembler(),
+                    body_->conditions->prescribed())) {
+      refuse("its checkpoint is of another body");
+    }
+  }
+
   void open_results() {
-    std::vector<ProbeColumns> probes;
-    for (const auto& probe : from_.probes) probes.push_back(columns_of(probe, from_.dimension));
-    results_.emplace(
-        from_.output.directory, body_->points,
-        CaseText{from_.as_read, from_.as_resolved, from_.title, versions(), identity(from_.file)},
-        support_sets(from_), probes, neighbour_counts_of(*body_), options_.overwrite);
+    Assembler& assembler = study_->equations().assembler();
+    const CaseText text{from_.as_read, from_.as_resolved,    from_.title,
+                        versions(),    identity(from_.file), from_.settings};
+    if (earlier_) {
+      results_.emplace(*earlier_, earlier_results_, body_->points, text, support_sets_, probes_);
+      recorder_.emplace(from_, *body_, assembler, *results_, progress_);
+      recorder_->go_on(earlier_->checkpoint(), earlier_results_, support_sets_, probes_);
+      earlier_results_ = {};
+      tell_beginning();
+    } else {
+      results_.emplace(from_.output.directory, body_->points, text, support_sets_, probes_,
+                       neighbour_counts_of(*body_), options_.overwrite);
+      recorder_.emplace(from_, *body_, assembler, *results_, progress_);
+    }
     leave_note(from_.output.directory);
+  }
+
+  void tell_beginning() {
+    if (!earlier_->remark().empty()) progress_.problem(earlier_->remark());
+    const PathState& path = earlier_->checkpoint().path;
+    progress_.say(fmt::format("going on after step {}, load factor {:.6g}", path.steps,
+                              path.accepted.load_factor));
   }
 
   LoadSteppingResult follow() {
     SolvedModel& equations = study_->equations();
-    recorder_.emplace(from_, *body_, equations.assembler(), *results_, progress_);
     study_->analyze();
     progress_.say(fmt::format("linear solver: {}{} ({})", equations.solver().describe(),
                               equations.systems().is_stored ? "" : ", tangent matrix-free",
                               equations.systems().chosen.reason));
-    const std::optional<Model> stand_in = make_elastic_stand_in(from_, *body_, options_.threads);
-    LoadSteppingResult result =
-        stand_in ? follow_with_stand_in(from_, *study_, *stand_in, observer(), summary_)
-                 : study_->follow(observer());
-    add_costs(equations.assembler(), equations.solver(), summary_);
-    return result;
+    const PathState* path = earlier_ ? &earlier_->checkpoint().path : nullptr;
+    stand_in_ = make_elastic_stand_in(from_, *body_, options_.threads);
+    if (!stand_in_) return study_->follow(observer(), nullptr, path);
+    standing_in_ = solved_stand_in(from_, *study_, *stand_in_);
+    if (standing_in_->analyze() != LinearOutcome::solved) return out_of_memory();
+    const SolvedBody solved = standing_in_->solved();
+    return study_->follow(observer(), &solved, path);
   }
 
   LoadSteppingObserver observer() {
@@ -224,12 +262,31 @@ class CaseRun {
     told.accepted = [this](const StepRecord& record, const AcceptedState& state) {
       recorder_->accepted(record, state);
       summary_.max_displacement = largest_displacement(state.trial.displacement, from_.dimension);
+      ++steps_here_;
+    };
+    told.reached = [this](const PathState& state) {
+      Checkpoint checkpoint = recorder_->checkpoint(state);
+      checkpoint.costs = costs(state.relaxation_seconds);
+      results_->add_checkpoint(std::move(checkpoint));
     };
     told.describe = [this](const InputError& error) {
       return std::string(located(from_, error).what());
     };
-    told.interrupted = interruption_requested;
+    told.interrupted = [this] {
+      return interruption_requested() || (options_.steps > 0 && steps_here_ >= options_.steps);
+    };
     return told;
+  }
+
+  /// Of this session and those before.
+  RunCosts costs(double relaxation_seconds) {
+    RunCosts costs = summary_.costs;
+    add_costs(study_->equations(), costs);
+    if (standing_in_) add_costs(*standing_in_, costs);
+    costs.seconds.total += std::chrono::duration<double>(Clock::now() - start_).count();
+    costs.seconds.relaxation = relaxation_seconds;
+    costs.seconds.output = results_->seconds_spent();
+    return costs;
   }
 
   /// What is known of a run after its last step.
@@ -237,9 +294,8 @@ class CaseRun {
     summary_.status = status_of(result.outcome);
     if (result.outcome != Outcome::converged) summary_.reason = failure_reason(result);
     summary_.max_displacement = largest_displacement(result.state.displacement, from_.dimension);
-    summary_.seconds.relaxation = result.relaxation_seconds;
-    summary_.seconds.output = results_->seconds_spent();
     recorder_->finish();
+    summary_.costs = costs(result.relaxation_seconds);
     if (result.outcome == Outcome::converged || result.outcome == Outcome::interrupted) return;
     const Dossier dossier =
         make_dossier(from_, *body_, result, recorder_->last(), recorder_->decisions());
@@ -251,8 +307,8 @@ class CaseRun {
     if (result.outcome == Outcome::converged) {
       report_result(*recorder_, progress_);
       progress_.say(fmt::format("completed in {:.2f} s: {} steps, {} factorisations; results in {}",
-                                summary_.seconds.total, result.steps, summary_.factorisations,
-                                folder));
+                                summary_.costs.seconds.total, result.steps,
+                                summary_.costs.factorisations, folder));
       return Exit::done;
     }
     progress_.problem(summary_.reason);
@@ -262,26 +318,36 @@ class CaseRun {
     return result.outcome == Outcome::out_of_memory ? Exit::out_of_memory : Exit::not_converged;
   }
 
+  using Clock = std::chrono::steady_clock;
+
   const Case& from_;
   const RunOptions& options_;
+  EarlierRun* const earlier_;
   Progress& progress_;
   Summary& summary_;
   std::optional<Results>& results_;
+  const std::vector<std::string> support_sets_;
+  std::vector<ProbeColumns> probes_;
+  const Clock::time_point start_ = Clock::now();
+  EarlierResults earlier_results_;  // until they are taken up
+  int steps_here_ = 0;              // accepted in this session
   std::unique_ptr<const Body> body_;
   std::optional<Study> study_;
+  std::optional<Model> stand_in_;
+  std::unique_ptr<SolvedModel> standing_in_;
   std::optional<Recorder> recorder_;
 };
 
 }  // namespace
 
-Exit run(const Case& from, const RunOptions& options) {
+Exit run(const Case& from, const RunOptions& options, EarlierRun* earlier) {
   make_write_faults_errors();
   Progress progress(options.quiet, options.log_file);
   Summary summary;
   std::optional<Results> results;
   try {
-    return located_errors(from,
-                          [&] { return CaseRun(from, options, progress, summary, results).run(); });
+    return located_errors(
+        from, [&] { return CaseRun(from, options, earlier, progress, summary, results).run(); });
   } catch (...) {
     if (!results) throw;
     const Failure failure = current_failure();

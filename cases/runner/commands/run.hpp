@@ -5,6 +5,7 @@
 
 #include "cases/runner/input/case.hpp"
 #include "cases/runner/process/exit.hpp"
+#include "cases/runner/results/earlier_run.hpp"
 
 namespace peristat {
 
@@ -13,6 +14,7 @@ struct RunOptions {
   bool quiet = false;
   std::string log_file;
   bool overwrite = false;  ///< an earlier run of another case in the folder, too
+  int steps = 0;           ///< to accept before the run is interrupted; 0: all
 };
 
 /// Versions of the program and of its libraries, for the results file and the version command.
@@ -21,10 +23,11 @@ struct RunOptions {
 /// Runs a case and writes its results folder; follows SIGINT, SIGTERM and SIGHUP by closing the
 /// results and returning `interrupted`. The folder's absolute path is written to the file that the
 /// environment variable PERISTAT_NOTE names, for the launcher.
+/// @param earlier run that is gone on from: of the same case, or of one that this one extends
 /// @throws InputError, MemoryError before anything is written
 /// @throws MachineError if the machine fails, std::bad_alloc if the memory does: every accepted
 /// step
 ///         is kept, and the summary says "failed" if it can be written
-[[nodiscard]] Exit run(const Case& from, const RunOptions& options);
+[[nodiscard]] Exit run(const Case& from, const RunOptions& options, EarlierRun* earlier = nullptr);
 
 }  // namespace peristat

@@ -87,11 +87,16 @@ std::string key_of(const Case& from, std::string member) {
 
 }  // namespace
 
-Case read_case(const std::filesystem::path& file,
-               const std::vector<std::pair<std::string, std::string>>& overrides) {
+Case read_case(const std::filesystem::path& file, const Settings& overrides) {
+  return read_case(file, read_case_text(file), overrides);
+}
+
+Case read_case(const std::filesystem::path& file, const std::string& text,
+               const Settings& overrides) {
   Case result;
   result.file = file.string();
-  result.as_read = read_case_text(file);
+  result.as_read = text;
+  result.settings = overrides;
 
   TomlValue document = parse_toml(result.as_read, result.file);
   for (const auto& [key, value] : overrides) apply_override(document, key, value);

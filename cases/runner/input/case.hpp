@@ -5,11 +5,11 @@
 #include <map>
 #include <optional>
 #include <string>
-#include <utility>
 #include <variant>
 #include <vector>
 
 #include "cases/runner/input/case_location.hpp"
+#include "cases/runner/input/settings.hpp"
 #include "solvers/drivers/load_stepping.hpp"
 #include "solvers/linear/make_linear_solver.hpp"
 #include "solvers/study/body_specification.hpp"
@@ -90,18 +90,20 @@ struct Case : BodySpecification {
   std::string file;         ///< as given by the person
   std::string as_read;      ///< text of the file
   std::string as_resolved;  ///< TOML with overrides and defaults in place
+  Settings settings;        ///< the overrides
   /// Places of every key, table and array element by dotted key, e.g. "support[1].displacement[0]".
   std::map<std::string, CaseLocation> locations;
 };
 
 /// Reads and checks a case file.
-/// @param overrides dotted key and TOML value ("loading.steps", "50"); a value that is no TOML is
-///        taken as a string
+/// @param overrides a value that is no TOML is taken as a string
 /// @throws InputError whose place is "FILE:LINE:COLUMN", "--set KEY=VALUE" or, if the file can't be
 ///         read at all, empty
-[[nodiscard]] Case read_case(
-    const std::filesystem::path& file,
-    const std::vector<std::pair<std::string, std::string>>& overrides = {});
+[[nodiscard]] Case read_case(const std::filesystem::path& file, const Settings& overrides = {});
+
+/// The same with the text that the file has, or had.
+[[nodiscard]] Case read_case(const std::filesystem::path& file, const std::string& text,
+                             const Settings& overrides);
 
 /// The error's message with file, line and column of its key in front; of the longest part of the
 /// key that the case file has, or of the file alone.

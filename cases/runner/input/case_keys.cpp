@@ -403,15 +403,19 @@ Table<LoadingSpecification> loading_keys() {
   using K = Key<Spec>;
   return {"loading",
           {K("steps", &Spec::steps, integer(1, 1'000'000),
-             "number of equal steps; 1/steps is the first one"),
+             "number of equal steps; 1/steps is the first one")
+               .extends(),
            K("adaptive", &Spec::adaptive, boolean(),
              "cut a step that does not converge, and grow again; otherwise such a step ends the "
-             "run"),
+             "run")
+               .extends(),
            K("smallest_step", &Spec::smallest_step, between(1e-12, 1.0),
              "of the load factor; needing a smaller one ends the run")
+               .extends()
                .moreover("at most 1/steps"),
            K("largest_step", &Spec::largest_step, between(1e-12, 1.0),
              "of the load factor, to which steps may grow")
+               .extends()
                .otherwise([](auto& loading, auto&) { loading.largest_step = 1.0 / loading.steps; },
                           "1/steps")
                .then([](auto& at, auto& loading) {
@@ -425,7 +429,8 @@ Table<LoadingSpecification> loading_keys() {
                .moreover("at least 1/steps"),
            K("max_broken_bonds", &Spec::max_broken_bonds, count_from(0, "bonds"),
              "mode `newton`: bonds that may break in one step; a step with more is cut. 0 is no "
-             "limit")}};
+             "limit")
+               .extends()}};
 }
 
 void check_preconditioner(const Entry& at, SolverSpecification& solver) {
@@ -465,7 +470,8 @@ Table<SolverSpecification> solver_keys() {
       "solver",
       {K("mode", &Spec::mode, choice(modes()),
          "implicit throughout; by dynamic relaxation throughout; implicit while no damage grows "
-         "and by relaxation while it does"),
+         "and by relaxation while it does")
+           .extends(),
        K("linear", &Spec::linear,
          choice<LinearMethod>({{"auto", LinearMethod::automatic},
                                {"cholesky", LinearMethod::cholesky},
@@ -473,7 +479,8 @@ Table<SolverSpecification> solver_keys() {
                                {"minres", LinearMethod::minres},
                                {"gmres", LinearMethod::gmres}}),
          "solver of the linear systems ([linear-solvers.md](linear-solvers.md)); `\"auto\"` "
-         "chooses, says why, and falls back where it fails"),
+         "chooses, says why, and falls back where it fails")
+           .extends(),
        K("preconditioner", &Spec::preconditioner,
          choice<PreconditionerKind>({{"auto", PreconditionerKind::automatic},
                                      {"jacobi", PreconditionerKind::jacobi},
@@ -485,6 +492,7 @@ Table<SolverSpecification> solver_keys() {
                                      {"multigrid", PreconditionerKind::multigrid}}),
          "of the last three, not for `\"cholesky\"`; with `linear = \"auto\"` it means `\"pcg\"`; "
          "`\"auto\"` is `\"rigid_pieces\"`")
+           .extends()
            .then(check_preconditioner),
        K("tangent", &Spec::tangent,
          choice<TangentStorage>({{"auto", TangentStorage::automatic},
@@ -507,7 +515,8 @@ Table<SolverSpecification> solver_keys() {
        K("relative_tolerance", &Spec::relative_tolerance, between(1e-14, 1e-2), "of the residual"),
        K("linear_tolerance", &Spec::linear_tolerance, between(1e-14, 1e-1),
          "largest relative residual that the linear system of a Newton iteration is left with"),
-       K("max_iterations", &Spec::max_iterations, integer(1, 1000), "of Newton in one step"),
+       K("max_iterations", &Spec::max_iterations, integer(1, 1000), "of Newton in one step")
+           .extends(),
        K("fragments", &Spec::fragments,
          choice<FragmentRemedy>({{"hold", FragmentRemedy::hold},
                                  {"remove", FragmentRemedy::remove},
@@ -551,6 +560,7 @@ Table<RelaxationSpecification> relaxation_keys() {
       {K("steps", &Spec::steps, count_from(1),
          "number of equal steps of the *whole* load; 1/steps is the first one, whatever the "
          "implicit steps have left")
+           .extends()
            .otherwise([](auto& relaxation,
                          auto& from) { relaxation.steps = default_relaxation_steps(from); },
                       "`loading.steps`; in mode `adaptive` with damage no fewer than 50"),
@@ -596,7 +606,8 @@ Table<RelaxationSpecification> relaxation_keys() {
                },
                "2; 1 with adaptive damping"),
        K("max_iterations", in(options, &Options::max_iterations), count_from(1),
-         "load `fixed`: after the ramp; a step with more fails and is cut"),
+         "load `fixed`: after the ramp; a step with more fails and is cut")
+           .extends(),
        K("displacement_tolerance", in(options, &Options::displacement_tolerance), between(0.0, 1.0),
          "load `fixed`: also accepts a state whose displacements changed by less than this in an "
          "iteration, ‖Δu‖/‖u‖, as published (10⁻⁹). 0: never")},
@@ -633,7 +644,8 @@ Table<OutputSpecification> output_keys() {
                  if (output.directory.empty()) at.refuse("is empty");
                }),
            K("every", &Spec::every, count_from(1, "steps"),
-             "fields are written at every n-th accepted step and at the last one"),
+             "fields are written at every n-th accepted step and at the last one")
+               .extends(),
            K("count_cracks", &Spec::count_cracks, boolean(),
              "whether bonds that a `[[crack]]` has cut count as lost in `damage` and `max_damage`, "
              "so that the crack shows in the pictures from the start")}};
@@ -736,6 +748,17 @@ const std::map<std::string, std::vector<std::string>>& case_keys() {
     std::map<std::string, std::vector<std::string>> by_table;
     for (const auto& table : table_descriptions()) by_table[table.name] = table.listed;
     return by_table;
+  }();
+  return keys;
+}
+
+const std::vector<std::string>& extending_keys() {
+  static const auto keys = [] {
+    std::vector<std::string> extending;
+    for (const auto& table : table_descriptions())
+      for (const auto& key : table.keys)
+        if (key.extends) extending.push_back(table.name + "." + key.name);
+    return extending;
   }();
   return keys;
 }

@@ -13,6 +13,7 @@ struct Table;
 /// What the reference tells of a key, in markdown.
 struct KeyDescription {
   std::string name, meaning, unit, fallback, allowed;
+  bool extends = false;  ///< may change when a run goes on
 };
 
 /// What the reference tells of a table, and its keys in the order in which messages list them.
@@ -35,5 +36,9 @@ struct TableDescription {
 
 /// Every key that a table of a case file may have, by the table's dotted name.
 [[nodiscard]] const std::map<std::string, std::vector<std::string>>& case_keys();
+
+/// Dotted names of the keys that may change when a run goes on: they say how far it goes, how it
+/// is searched and told from then on, and not what is searched.
+[[nodiscard]] const std::vector<std::string>& extending_keys();
 
 }  // namespace peristat

@@ -49,7 +49,7 @@ class Key {
   /// @param meaning a sentence for the reference, as are the words below
   template <class Member, class Value>
   Key(std::string name, Member member, Kind<Value> kind, std::string meaning)
-      : description_{name, std::move(meaning), kind.unit, {}, kind.allowed} {
+      : description_{name, std::move(meaning), kind.unit, {}, kind.allowed, false} {
     using Held = std::remove_cvref_t<std::invoke_result_t<Member, Spec&>>;
     read_ = [=](const Entry& at, Spec& spec) {
       std::invoke(member, spec) = static_cast<Held>(kind.read(at));
@@ -65,7 +65,7 @@ class Key {
   /// A table of its own, or an array of tables if the member is a vector.
   template <class Member, class Inner>
   Key(std::string name, Member member, const Table<Inner>& inner, std::string meaning)
-      : description_{name, std::move(meaning), {}, "all defaults", {}} {
+      : description_{name, std::move(meaning), {}, "all defaults", {}, false} {
     using Held = std::remove_cvref_t<std::invoke_result_t<Member, Spec&>>;
     constexpr bool is_array = requires(Held stored) { stored.push_back(Inner()); };
     if (is_array) description_.fallback = "none";
@@ -130,6 +130,11 @@ class Key {
   /// Read first: which other keys apply may depend on it.
   Key& early() {
     is_early_ = true;
+    return *this;
+  }
+  /// May change when a run goes on: see extending_keys.
+  Key& extends() {
+    description_.extends = true;
     return *this;
   }
   /// What follows from the key, there or not: checks together with what was read before.

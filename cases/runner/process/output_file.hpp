@@ -51,6 +51,11 @@ void reserve_file(const std::filesystem::path& file, std::uint64_t bytes);
 /// @throws OutputError
 void rename_file(const std::filesystem::path& from, const std::filesystem::path& to);
 
+/// Waits until a file, or the names in a folder, have reached the disk, where the file system knows
+/// such a thing.
+/// @throws OutputError
+void sync_file(const std::filesystem::path& file);
+
 /// The path with ".tmp" appended.
 [[nodiscard]] std::filesystem::path temporary(const std::filesystem::path& file);
 

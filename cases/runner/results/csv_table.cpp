@@ -41,13 +41,15 @@ std::string csv_line(const Row& row) {
   return line;
 }
 
-CsvTable::CsvTable(std::filesystem::path file, const std::vector<Column>& columns)
+CsvTable::CsvTable(std::filesystem::path file, const std::vector<Column>& columns,
+                   const std::vector<Row>& rows)
     : file_(std::move(file)) {
   Row names;
   for (const Column& column : columns) names.emplace_back(column.name);
-  const std::string header = csv_line(names);
-  publish_file(file_, header);
-  size_ = header.size();
+  std::string text = csv_line(names);
+  for (const Row& row : rows) text += csv_line(row);
+  publish_file(file_, text);
+  size_ = text.size();
   open();
 }
 

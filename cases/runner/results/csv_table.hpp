@@ -17,9 +17,10 @@ namespace peristat {
 /// written by copying the file and renaming the copy instead.
 class CsvTable {
  public:
-  /// Creates the file with its header, in place of an existing one.
+  /// Creates the file with its header and first rows, in place of an existing one.
   /// @throws OutputError
-  CsvTable(std::filesystem::path file, const std::vector<Column>& columns);
+  CsvTable(std::filesystem::path file, const std::vector<Column>& columns,
+           const std::vector<Row>& rows = {});
   ~CsvTable();
   CsvTable(const CsvTable&) = delete;
   CsvTable& operator=(const CsvTable&) = delete;

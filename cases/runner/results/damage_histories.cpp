@@ -20,6 +20,12 @@ std::optional<BondHistories> DamageHistories::changes(const Bonds& bonds,
   return changed;
 }
 
+std::vector<double> DamageHistories::told(Offset bonds) const {
+  std::vector<double> history(static_cast<std::size_t>(bonds));
+  for (const auto& [bond, stretch] : known_) history[static_cast<std::size_t>(bond)] = stretch;
+  return history;
+}
+
 void DamageHistories::tell(std::span<const double> history) {
   known_.clear();
   for (std::size_t bond = 0; bond < history.size(); ++bond) {

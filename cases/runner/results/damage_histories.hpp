@@ -18,6 +18,9 @@ class DamageHistories {
   [[nodiscard]] std::optional<BondHistories> changes(const Bonds& bonds,
                                                      std::span<const double> history) const;
 
+  /// What the reader knows, of all bonds.
+  [[nodiscard]] std::vector<double> told(Offset bonds) const;
+
   /// The reader knows this history now.
   void tell(std::span<const double> history);
 

@@ -123,6 +123,38 @@ void append_values(hid_t dataset, const std::string& path, hid_t type, const voi
   checked(H5Dwrite(dataset, type, dataspace({count}), space, transfer, values), "write " + path);
 }
 
+template <class Value>
+std::vector<Value> read_dataset(hid_t file, const std::string& path, hid_t type) {
+  const Handle dataset(H5Dopen2(file, path.c_str(), H5P_DEFAULT), H5Dclose, "open " + path);
+  const Handle space(H5Dget_space(dataset), H5Sclose, "size " + path);
+  const auto count = checked(H5Sget_simple_extent_npoints(space), "size " + path);
+  std::vector<Value> values(static_cast<std::size_t>(count));
+  checked(H5Dread(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()), "read " + path);
+  return values;
+}
+
+std::vector<std::string> read_texts(hid_t file, const std::string& path) {
+  const Handle type = text_type();
+  const std::vector<char*> pointers = read_dataset<char*>(file, path, type);
+  std::vector<std::string> texts;
+  for (char* const pointer : pointers) {
+    texts.emplace_back(pointer ? pointer : "");
+    checked(H5free_memory(pointer), "free what was read from " + path);
+  }
+  return texts;
+}
+
+template <class Value>
+Value read_attribute(hid_t file, const std::string& path, const std::string& name, hid_t type) {
+  const std::string what = "attribute " + name + " of " + path;
+  const Handle attribute(
+      H5Aopen_by_name(file, path.c_str(), name.c_str(), H5P_DEFAULT, H5P_DEFAULT), H5Aclose,
+      "open " + what);
+  Value value{};
+  checked(H5Aread(attribute, type, &value), "read " + what);
+  return value;
+}
+
 template <class Value, class Entry>
 std::vector<Value> column_values(const std::vector<Row>& rows, std::size_t column, Entry entry) {
   std::vector<Value> values;
@@ -254,6 +286,77 @@ bool Hdf5File::has_attribute(const std::string& path, const std::string& name) c
                  "look for attribute " + name) > 0;
 }
 
+bool Hdf5File::has(const std::string& path) const {
+  // Every group on the way is asked for: the library fails below one that is missing.
+  for (std::size_t slash = path.find('/', 1);; slash = path.find('/', slash + 1)) {
+    const std::string part = path.substr(0, slash);
+    if (H5Lexists(id_, part.c_str(), H5P_DEFAULT) <= 0 ||
+        H5Oexists_by_name(id_, part.c_str(), H5P_DEFAULT) <= 0) {
+      return false;
+    }
+    if (slash == std::string::npos) return true;
+  }
+}
+
+bool Hdf5File::has_link(const std::string& path) const {
+  return checked(H5Lexists(id_, path.c_str(), H5P_DEFAULT), "look for " + path) > 0;
+}
+
+std::string Hdf5File::text_attribute(const std::string& path, const std::string& name) const {
+  const Handle type = text_type();
+  char* const read = read_attribute<char*>(id_, path, name, type);
+  const std::string text = read ? read : "";
+  checked(H5free_memory(read), "free what was read from " + path);
+  return text;
+}
+
+std::vector<double> Hdf5File::numbers(const std::string& path) const {
+  return read_dataset<double>(id_, path, H5T_NATIVE_DOUBLE);
+}
+
+std::vector<std::int64_t> Hdf5File::integers(const std::string& path) const {
+  return read_dataset<std::int64_t>(id_, path, H5T_NATIVE_INT64);
+}
+
+std::vector<std::uint8_t> Hdf5File::bytes(const std::string& path) const {
+  return read_dataset<std::uint8_t>(id_, path, H5T_NATIVE_UINT8);
+}
+
+std::string Hdf5File::text(const std::string& path) const { return read_texts(id_, path).at(0); }
+
+std::vector<Row> Hdf5File::rows(const std::string& group,
+                                const std::vector<Column>& columns) const {
+  std::vector<Row> rows;
+  const auto take = [&rows](std::size_t column, const auto& values) {
+    if (column == 0) rows.resize(values.size());
+    if (rows.size() != values.size()) throw std::runtime_error("columns of different lengths");
+    for (std::size_t k = 0; k < values.size(); ++k) rows[k].emplace_back(values[k]);
+  };
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    const std::string path = column_path(group, columns[i]);
+    if (columns[i].kind == Column::Kind::integer) {
+      take(i, integers(path));
+    } else if (columns[i].kind == Column::Kind::number) {
+      take(i, numbers(path));
+    } else {
+      take(i, read_texts(id_, path));
+    }
+  }
+  return rows;
+}
+
+std::vector<std::string> Hdf5File::names(const std::string& group) const {
+  std::vector<std::string> names;
+  const auto add = [](hid_t, const char* name, const H5L_info_t*, void* to) -> herr_t {
+    static_cast<std::vector<std::string>*>(to)->emplace_back(name);
+    return 0;
+  };
+  checked(H5Literate_by_name(id_, group.c_str(), H5_INDEX_NAME, H5_ITER_INC, nullptr, add, &names,
+                             H5P_DEFAULT),
+          "list " + group);
+  return names;
+}
+
 void Hdf5File::make_table(const std::string& group, const std::vector<Column>& columns) {
   make_group(group);
   // Small chunks keep the file of a short run small.
@@ -307,6 +410,21 @@ void Hdf5File::link(const std::string& path, const std::string& file, const std:
 
 void Hdf5File::unlink(const std::string& path) {
   checked(H5Ldelete(id_, path.c_str(), H5P_DEFAULT), "remove " + path);
+}
+
+std::optional<ObjectInFile> Hdf5File::link_target(const std::string& path) const {
+  H5L_info_t link{};
+  checked(H5Lget_info(id_, path.c_str(), &link, H5P_DEFAULT), "look at the link " + path);
+  if (link.type != H5L_TYPE_EXTERNAL) return std::nullopt;
+  std::vector<char> value(link.u.val_size);
+  checked(H5Lget_val(id_, path.c_str(), value.data(), value.size(), H5P_DEFAULT),
+          "read the link " + path);
+  unsigned flags = 0;
+  const char* file = nullptr;
+  const char* object = nullptr;
+  checked(H5Lunpack_elink_val(value.data(), value.size(), &flags, &file, &object),
+          "read the link " + path);
+  return ObjectInFile{file, object};
 }
 
 void Hdf5File::copy(const Hdf5File& from, const std::string& source, const std::string& path) {

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -14,6 +15,11 @@ namespace peristat {
 /// Unit and meaning of a dataset, written as its attributes `unit` and `description`.
 struct DatasetLabel {
   std::string unit, description;
+};
+
+/// An object of a file, which is relative to the folder of who links to it.
+struct ObjectInFile {
+  std::string file, object;
 };
 
 /// An open HDF5 file; closed by the destructor. Paths of objects are absolute ("/steps/000001").
@@ -63,7 +69,23 @@ class Hdf5File {
   void set_attribute(const std::string& path, const std::string& name,
                      const std::vector<std::string>& texts);
 
+  /// Whether there is an object; a link to what can't be opened counts as none.
+  [[nodiscard]] bool has(const std::string& path) const;
+  /// Whether there is an object or a link, wherever it leads.
+  [[nodiscard]] bool has_link(const std::string& path) const;
   [[nodiscard]] bool has_attribute(const std::string& path, const std::string& name) const;
+  [[nodiscard]] std::string text_attribute(const std::string& path, const std::string& name) const;
+
+  /// Values of a dataset, in the order of its rows; of another type they are converted.
+  [[nodiscard]] std::vector<double> numbers(const std::string& path) const;
+  [[nodiscard]] std::vector<std::int64_t> integers(const std::string& path) const;
+  [[nodiscard]] std::vector<std::uint8_t> bytes(const std::string& path) const;
+  [[nodiscard]] std::string text(const std::string& path) const;
+  /// Rows of a table, see make_table.
+  [[nodiscard]] std::vector<Row> rows(const std::string& group,
+                                      const std::vector<Column>& columns) const;
+  /// Names of the objects in a group, ascending.
+  [[nodiscard]] std::vector<std::string> names(const std::string& group) const;
 
   /// A group with one growing dataset per column, without rows; a '/' in a column's name becomes
   /// '|'.
@@ -74,6 +96,8 @@ class Hdf5File {
   /// A link to an object of another file, whose path is relative to this file's folder.
   void link(const std::string& path, const std::string& file, const std::string& object);
   void unlink(const std::string& path);
+  /// Where a link leads; none if the object is in this file.
+  [[nodiscard]] std::optional<ObjectInFile> link_target(const std::string& path) const;
   void copy(const Hdf5File& from, const std::string& source, const std::string& path);
 
   /// The bytes of the file as it is now; valid until the next call.

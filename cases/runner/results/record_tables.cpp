@@ -1,6 +1,7 @@
 #include "cases/runner/results/record_tables.hpp"
 
 #include <cmath>
+#include <concepts>
 #include <set>
 #include <stdexcept>
 
@@ -24,6 +25,30 @@ Row checked(const std::vector<Column>& columns, Row row) {
   }
   return row;
 }
+
+/// The cells of a row, one after the other.
+class Cells {
+ public:
+  explicit Cells(const Row& row) : row_(row) {}
+
+  Cells& operator>>(double& value) {
+    value = std::get<double>(row_.at(next_++));
+    return *this;
+  }
+  Cells& operator>>(std::string& words) {
+    words = std::get<std::string>(row_.at(next_++));
+    return *this;
+  }
+  template <std::integral Integer>
+  Cells& operator>>(Integer& value) {
+    value = static_cast<Integer>(std::get<std::int64_t>(row_.at(next_++)));
+    return *this;
+  }
+
+ private:
+  const Row& row_;
+  std::size_t next_ = 0;
+};
 
 /// The fixed columns of the history; reactions and probes follow.
 const std::vector<Column>& step_columns() {
@@ -191,6 +216,53 @@ Row make_row(const StepRecord& record, const std::vector<std::string>& support_s
   append("pin_force", record.pin_force);
   row.emplace_back(std::int64_t{record.settled});
   return row;
+}
+
+IterationRecord read_iteration(const Row& row) {
+  Cells cells(row);
+  IterationRecord record;
+  cells >> record.step >> record.iteration >> record.residual >> record.relative_residual >>
+      record.energy >> record.step_length >> record.linear_iterations >> record.changed_bonds >>
+      record.projection >> record.negative_pivots >> record.rejected_trials >>
+      record.degenerate_trials >> record.linear_tolerance;
+  return record;
+}
+
+DecisionRecord read_decision(const Row& row) {
+  Cells cells(row);
+  DecisionRecord record;
+  std::string action;
+  cells >> record.step >> record.load_factor >> record.increment >> record.outcome >> action >>
+      record.next_increment >> record.reason;
+  record.action = decision_named(action);
+  return record;
+}
+
+BrokenBondRecord read_broken_bond(const Row& row) {
+  Cells cells(row);
+  BrokenBondRecord record;
+  cells >> record.step >> record.load_factor >> record.first_point >> record.second_point;
+  return record;
+}
+
+StepRecord read_step(const Row& row, const std::vector<std::string>& support_sets,
+                     const std::vector<ProbeColumns>& probes) {
+  Cells cells(row);
+  StepRecord record;
+  cells >> record.step >> record.load_factor >> record.mode >> record.newton_iterations >>
+      record.relaxation_iterations >> record.stored_energy >> record.dissipated_energy >>
+      record.drained_energy >> record.external_work >> record.balance_error >>
+      record.broken_bonds >> record.max_damage >> record.max_stretch;
+  for (const std::string& set : support_sets) {
+    for (double& component : record.reactions[set]) cells >> component;
+  }
+  for (const ProbeColumns& probe : probes) {
+    std::vector<double>& values = record.probes[probe.name];
+    values.resize(std::size_t(probe.components));
+    for (double& value : values) cells >> value;
+  }
+  cells >> record.numerical_work >> record.pin_force >> record.settled;
+  return record;
 }
 
 }  // namespace peristat

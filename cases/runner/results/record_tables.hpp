@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "cases/runner/results/results.hpp"
+#include "cases/runner/results/probe_columns.hpp"
 #include "cases/runner/results/table.hpp"
 #include "solvers/problem/records.hpp"
 
@@ -27,5 +27,13 @@ namespace peristat {
 [[nodiscard]] Row make_row(const BrokenBondRecord& record);
 [[nodiscard]] Row make_row(const StepRecord& record, const std::vector<std::string>& support_sets,
                            const std::vector<ProbeColumns>& probes);
+
+/// The records that rows were made of.
+/// @throws std::exception if a row is none of these columns
+[[nodiscard]] IterationRecord read_iteration(const Row& row);
+[[nodiscard]] DecisionRecord read_decision(const Row& row);
+[[nodiscard]] BrokenBondRecord read_broken_bond(const Row& row);
+[[nodiscard]] StepRecord read_step(const Row& row, const std::vector<std::string>& support_sets,
+                                   const std::vector<ProbeColumns>& probes);
 
 }  // namespace peristat

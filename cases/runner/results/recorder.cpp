@@ -6,6 +6,7 @@
 
 #include "assembly/terms/bonds/point_stretches.hpp"
 #include "assembly/terms/damage.hpp"
+#include "cases/runner/results/record_tables.hpp"
 
 namespace peristat {
 
@@ -25,38 +26,77 @@ void Recorder::iteration(const IterationRecord& record) {
   progress_.iteration(record);
 }
 
-void Recorder::accepted(StepRecord record, const AcceptedState& state) {
+Recorder::Fields Recorder::fields(const StateView& at, std::vector<double> force,
+                                  std::span<const std::int32_t> piece) const {
   const std::size_t points = points_.volume.size();
-  const StateView at = state.trial.at();
-  const std::span<const double> stretches = bond_stretches(body_.model, at.history);
-  Fields made{state.trial.displacement,
-              state.trial.gradient,
-              std::vector<double>(points),
-              std::vector<double>(points),
-              std::vector<double>(points),
-              std::vector<double>(points, 0.0),
-              written_histories_.changes(body_.model.bonds(), stretches)};
-  for (double& force : made.force) force = -force;
+  Fields made{
+      {at.displacement.begin(), at.displacement.end()},
+      std::move(force),
+      std::vector<double>(points),
+      std::vector<double>(points),
+      std::vector<double>(points),
+      std::vector<double>(points, 0.0),
+      0.0,
+      written_histories_.changes(body_.model.bonds(), bond_stretches(body_.model, at.history))};
   assembler_.point_energies(at, made.energy_density);
+  for (std::size_t i = 0; i < points; ++i) made.energy_density[i] /= points_.volume[i];
   point_stretches(points_, body_.model, at, made.stretch);
-  record.max_stretch = *std::max_element(made.stretch.begin(), made.stretch.end());
   const auto cut_weight =
       case_.output.count_cracks ? std::span(body_.cut_weight) : std::span<const double>();
-  record.max_damage = assess_damage(body_.model, at.history, cut_weight, made.damage).max_damage;
-  std::copy(state.piece.begin(), state.piece.end(), made.fragment.begin());
+  made.max_damage = assess_damage(body_.model, at.history, cut_weight, made.damage).max_damage;
+  std::copy(piece.begin(), piece.end(), made.fragment.begin());
+  return made;
+}
+
+void Recorder::accepted(StepRecord record, const AcceptedState& state) {
+  const StateView at = state.trial.at();
+  std::vector<double> force = state.trial.gradient;
+  for (double& component : force) component = -component;
+  Fields made = fields(at, std::move(force), state.piece);
+  record.max_stretch = *std::max_element(made.stretch.begin(), made.stretch.end());
+  record.max_damage = made.max_damage;
   record_broken_bonds(record, at.history);
-  for (std::size_t i = 0; i < points; ++i) made.energy_density[i] /= points_.volume[i];
-  const StepFields fields = made.view();
+  const StepFields view = made.view();
   for (const ProbeSpecification& probe : case_.probes) {
-    record.probes[probe.name] = probe_values(probe, points_, fields, separated_);
+    record.probes[probe.name] = probe_values(probe, points_, view, separated_);
   }
   const bool write_fields = record.step % case_.output.every == 0;
-  results_.add(record, write_fields ? std::optional(fields) : std::nullopt);
-  if (write_fields) written_histories_.tell(stretches);
+  results_.add(record, write_fields ? std::optional(view) : std::nullopt);
+  if (write_fields) written_histories_.tell(bond_stretches(body_.model, at.history));
   progress_.accepted(record, relative_residual_);
   last_ = std::move(record);
   unwritten_.reset();
   if (!write_fields) unwritten_ = std::move(made);
+}
+
+Checkpoint Recorder::checkpoint(const PathState& path) const {
+  Checkpoint made{path, {}, 0, {}, {}};
+  if (!unwritten_) return made;
+  made.unwritten.force = unwritten_->force;
+  if (unwritten_->histories) {
+    made.unwritten.told_stretches = written_histories_.told(body_.model.bonds().count());
+  }
+  return made;
+}
+
+void Recorder::go_on(const Checkpoint& checkpoint, const EarlierResults& earlier,
+                     const std::vector<std::string>& support_sets,
+                     const std::vector<ProbeColumns>& probes) {
+  const PathState& path = checkpoint.path;
+  for (const Row& row : earlier.broken_bonds) {
+    const BrokenBondRecord broken = read_broken_bond(row);
+    separated_.push_back({broken.first_point, broken.second_point});
+  }
+  for (const Row& row : earlier.decisions) decisions_.push_back(read_decision(row));
+  if (!earlier.history.empty()) last_ = read_step(earlier.history.back(), support_sets, probes);
+  broken_ = broken_bonds(body_.model, path.accepted.history);
+  const bool is_unwritten = !checkpoint.unwritten.force.empty();
+  written_histories_.tell(is_unwritten ? std::span(checkpoint.unwritten.told_stretches)
+                                       : bond_stretches(body_.model, path.accepted.history));
+  if (is_unwritten) {
+    unwritten_ =
+        fields(StateView(path.accepted), checkpoint.unwritten.force, path.pins.found.piece);
+  }
 }
 
 void Recorder::decided(const DecisionRecord& record) {

@@ -28,11 +28,18 @@ class Recorder {
         body_(body),
         separated_(body.cut_bonds) {}
 
+  /// Knows what it knew when the checkpoint was made.
+  void go_on(const Checkpoint& checkpoint, const EarlierResults& earlier,
+             const std::vector<std::string>& support_sets, const std::vector<ProbeColumns>& probes);
+
   void iteration(const IterationRecord& record);
   void accepted(StepRecord record, const AcceptedState& state);
   void decided(const DecisionRecord& record);
   /// A linear solver has given way to the next one.
   void changed_solver(const std::string& reason);
+
+  /// What the run can go on from: all but its costs.
+  [[nodiscard]] Checkpoint checkpoint(const PathState& path) const;
 
   /// Writes the fields of the last accepted state, whatever output.every says.
   void finish();
@@ -43,10 +50,15 @@ class Recorder {
  private:
   struct Fields {
     std::vector<double> displacement, force, damage, energy_density, stretch, fragment;
+    double max_damage = 0.0;
     std::optional<BondHistories> histories;
     [[nodiscard]] StepFields view() const;
   };
 
+  /// Fields of a state.
+  /// @param force minus its gradient [N]
+  [[nodiscard]] Fields fields(const StateView& at, std::vector<double> force,
+                              std::span<const std::int32_t> piece) const;
   /// Adds the bonds that have broken since the last step to the results.
   void record_broken_bonds(const StepRecord& record, const History& history);
 

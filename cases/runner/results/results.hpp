@@ -8,29 +8,15 @@
 #include <string>
 #include <vector>
 
+#include "cases/runner/input/settings.hpp"
+#include "cases/runner/results/earlier_run.hpp"
+#include "cases/runner/results/points_part.hpp"
+#include "cases/runner/results/probe_columns.hpp"
+#include "cases/runner/results/summary.hpp"
 #include "solvers/problem/records.hpp"
 #include "src/geometry/points.hpp"
 
 namespace peristat {
-
-/// Everything of summary.json that the step records do not hold.
-struct Summary {
-  std::string status;  ///< "completed", "not_converged", "inconsistent", "interrupted", "failed"
-  std::string reason;  ///< sentence for a person when the status is not "completed"
-  Index points = 0;
-  std::int64_t free_dofs = 0;
-  /// How many interactions of each kind there are; readers find these three in every run.
-  std::vector<std::pair<std::string, std::int64_t>> interactions{
-      {"bonds", 0}, {"triangles", 0}, {"tetrahedra", 0}};
-  std::int64_t factorisations = 0, linear_iterations = 0;
-  double max_displacement = 0.0;
-  struct Seconds {
-    double total = 0, neighbourhood = 0, assembly = 0, linear = 0, relaxation = 0, output = 0;
-  } seconds;
-  int threads = 1, ranks = 1;
-
-  void count(const std::string& kind, std::int64_t interactions_of_kind);
-};
 
 /// Text that describes the run: the case under /case, title and versions as attributes of the file.
 struct CaseText {
@@ -38,21 +24,7 @@ struct CaseText {
   std::string title{};
   std::map<std::string, std::string> versions{};  ///< "peristat", "hdf5", ... -> "1.0.0"
   std::filesystem::path file{};  ///< absolute; a later run of the same file may replace this one
-};
-
-/// Numbers of every point that do not change, e.g. counts of neighbours.
-struct PointCounts {
-  std::string name;  ///< of the dataset in /points
-  std::string description;
-  std::vector<std::int32_t> values;
-};
-
-/// Columns that a probe adds to the history: NAME for one component, NAME_x, NAME_y, NAME_z for
-/// more.
-struct ProbeColumns {
-  std::string name;
-  int components = 1;
-  std::string unit = "1";  ///< of the probed field
+  Settings settings{};           ///< what `--set` has given
 };
 
 /// Writer of a results folder (docs/results.md): results.h5, results.xdmf, history.csv,
@@ -80,6 +52,12 @@ class Results {
   Results(const std::filesystem::path& directory, const Points& points, const CaseText& text,
           const std::vector<std::string>& support_sets, const std::vector<ProbeColumns>& probes,
           const std::vector<PointCounts>& counts = {}, bool overwrite = false);
+  /// Goes on with the results of an earlier run from its checkpoint. What it holds beyond that, and
+  /// what tells how it ended, is dropped.
+  /// @param earlier what it holds up to there; its files are named anew where they move
+  /// @throws OutputError
+  Results(EarlierRun& run, EarlierResults& earlier, const Points& points, const CaseText& text,
+          const std::vector<std::string>& support_sets, const std::vector<ProbeColumns>& probes);
   ~Results();
   Results(const Results&) = delete;
   Results& operator=(const Results&) = delete;
@@ -92,6 +70,11 @@ class Results {
   /// `fields` is empty for steps that only enter the history. Step numbers ascend; the record holds
   /// a reaction of every support set and every probe.
   void add(const StepRecord& record, const std::optional<StepFields>& fields);
+
+  /// Publishes what a run can go on from, once it has added the path's last step; its rows are
+  /// counted here. Now and then it sees to it that all this has reached the disk, as seldom as that
+  /// takes a hundredth of the time.
+  void add_checkpoint(Checkpoint checkpoint);
 
   /// Publishes the fields of the step added last, unless they were added with it: for the end of a
   /// run whose last step was one that only enters the history.

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "cases/runner/process/output_file.hpp"
+#include "cases/runner/results/checkpoint_files.hpp"
 #include "cases/runner/results/hdf5_file.hpp"
 #include "src/core/input_error.hpp"
 
@@ -32,7 +33,10 @@ bool is_part(const fs::path& file) {
   const std::string name = file.filename().string();
   const std::size_t digits = name.find_first_not_of("0123456789");
   const std::string rest = name.substr(std::min(digits, name.size()));
-  if (name == "points.h5" || name == "points.h5.tmp") return true;
+  for (const char* part : {"points.h5", "earlier.h5", "safe_results.h5", "safe_checkpoint",
+                           CheckpointFiles::names[0], CheckpointFiles::names[1]}) {
+    if (name == part || name == part + std::string(".tmp")) return true;
+  }
   return digits >= 6 && (rest == ".h5" || rest == ".h5.tmp");
 }
 
@@ -144,6 +148,15 @@ ClaimedFolder claim(const fs::path& directory, RunIdentity run, bool overwrite) 
 }
 
 }  // namespace
+
+void go_on_in_results_folder(const ResultsFolder& folder, ResultsMarker& marker, RunIdentity run) {
+  run.files = own_files;
+  marker.write(run);
+  std::error_code ignored;  // what can't be removed is written anew at the end
+  for (const fs::path& file : {folder.summary(), folder.dossier(), folder.convergence()}) {
+    fs::remove(file, ignored);
+  }
+}
 
 void remove_parts(const ResultsFolder& folder) {
   if (!is_real_folder(folder.parts())) return;

@@ -22,6 +22,14 @@ struct ResultsFolder {
   [[nodiscard]] std::filesystem::path dossier() const { return directory / "dossier.txt"; }
   [[nodiscard]] std::filesystem::path summary() const { return directory / "summary.json"; }
   [[nodiscard]] std::filesystem::path parts() const { return directory / "parts"; }
+  [[nodiscard]] std::filesystem::path points() const { return parts() / "points.h5"; }
+  /// results.h5 of an earlier session of the run.
+  [[nodiscard]] std::filesystem::path earlier() const { return parts() / "earlier.h5"; }
+  /// results.h5 and checkpoint as they last were known to be on the disk.
+  [[nodiscard]] std::filesystem::path safe_results() const { return parts() / "safe_results.h5"; }
+  [[nodiscard]] std::filesystem::path safe_checkpoint() const {
+    return parts() / "safe_checkpoint";
+  }
   [[nodiscard]] std::filesystem::path plots() const { return directory / "plots"; }
 
   /// In plots/: names of the pictures that the plot command has drawn there, one per line.
@@ -46,6 +54,12 @@ struct ClaimedFolder {
 /// @throws OutputError if the disk is full, or the like
 [[nodiscard]] ClaimedFolder claim_results_folder(const std::filesystem::path& directory,
                                                  RunIdentity run, bool overwrite);
+
+/// Makes the folder of an earlier run ready for a run that goes on from it: its tables, fields and
+/// pictures stay; what tells how it ended is removed.
+/// @param marker of the folder
+/// @throws OutputError
+void go_on_in_results_folder(const ResultsFolder& folder, ResultsMarker& marker, RunIdentity run);
 
 /// Removes the files of parts/, and parts/ itself if nothing else is in it.
 void remove_parts(const ResultsFolder& folder);

@@ -104,12 +104,12 @@ std::string summary_json(const Summary& summary, const StepTotals& totals,
     }
   }
   Members seconds(1);
-  seconds.add("total", summary.seconds.total);
-  seconds.add("neighbourhood", summary.seconds.neighbourhood);
-  seconds.add("assembly", summary.seconds.assembly);
-  seconds.add("linear", summary.seconds.linear);
-  seconds.add("relaxation", summary.seconds.relaxation);
-  seconds.add("output", summary.seconds.output);
+  seconds.add("total", summary.costs.seconds.total);
+  seconds.add("neighbourhood", summary.costs.seconds.neighbourhood);
+  seconds.add("assembly", summary.costs.seconds.assembly);
+  seconds.add("linear", summary.costs.seconds.linear);
+  seconds.add("relaxation", summary.costs.seconds.relaxation);
+  seconds.add("output", summary.costs.seconds.output);
 
   Members all(0);
   all.add("status", summary.status);
@@ -120,8 +120,8 @@ std::string summary_json(const Summary& summary, const StepTotals& totals,
   all.add("steps", totals.steps);
   all.add("newton_iterations", totals.newton_iterations);
   all.add("relaxation_iterations", totals.relaxation_iterations);
-  all.add("factorisations", summary.factorisations);
-  all.add("linear_iterations", summary.linear_iterations);
+  all.add("factorisations", summary.costs.factorisations);
+  all.add("linear_iterations", summary.costs.linear_iterations);
   all.add("broken_bonds", last.broken_bonds);
   all.add("max_damage", last.max_damage);
   all.add("max_displacement", summary.max_displacement);

@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "cases/runner/results/results.hpp"
+#include "cases/runner/results/summary.hpp"
 #include "solvers/problem/records.hpp"
 
 namespace peristat {

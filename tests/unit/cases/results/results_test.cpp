@@ -474,10 +474,10 @@ TEST_F(ResultsTest, SummaryTakesSumsFromAllStepsAndTheRestFromTheLast) {
   summary.count("bonds", 11);
   summary.count("triangles", 12);
   summary.count("tetrahedra", 13);
-  summary.factorisations = 14;
-  summary.linear_iterations = 15;
+  summary.costs.factorisations = 14;
+  summary.costs.linear_iterations = 15;
   summary.max_displacement = 0.1;
-  summary.seconds = {1, 2, 3, 4, 5, 6.5};
+  summary.costs.seconds = {1, 2, 3, 4, 5, 6.5};
   summary.threads = 2;
   results.close(summary);
   const std::string json =

@@ -148,6 +148,7 @@ class Memory : public StateArchive {
 
   void transfer(const std::string& name, bool& value) override { keep(name, value); }
   void transfer(const std::string& name, int& value) override { keep(name, value); }
+  void transfer(const std::string& name, std::int64_t& value) override { keep(name, value); }
   void transfer(const std::string& name, double& value) override { keep(name, value); }
   void transfer(const std::string& name, std::vector<char>& values) override { keep(name, values); }
   void transfer(const std::string& name, std::vector<Index>& values) override {
@@ -321,7 +322,7 @@ TEST(PathState, IsToldWhereAPathCanGoOn) {
 }
 
 TEST(PathState, KeepsNoFactorForTheNextStep) {
-  for (const Mode& mode : {Mode::newton, Mode::relaxation, Mode::adaptive}) {
+  for (const Mode& mode : {Mode::newton, Mode::adaptive}) {
     SCOPED_TRACE(mode.name);
     const Setting setting{drawn("0.03*load"), options_of(mode, 10, 20)};
     Followed followed;
@@ -340,7 +341,8 @@ TEST(PathState, KeepsNoFactorForTheNextStep) {
     EXPECT_GT(result.steps, 5);
     first_of_step.pop_back();
     for (const std::size_t first : first_of_step) {
-      if (first < uses.size()) EXPECT_EQ(uses[first], FactorUse::factorize_now) << first;
+      if (first == uses.size()) break;
+      EXPECT_EQ(uses[first], FactorUse::factorize_now) << first;
     }
     EXPECT_NE(std::count(uses.begin(), uses.end(), FactorUse::may_reuse), 0);
   }

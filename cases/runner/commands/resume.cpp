@@ -1,0 +1,81 @@
+#include "cases/runner/commands/resume.hpp"
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "cases/runner/input/case.hpp"
+#include "cases/runner/input/case_difference.hpp"
+#include "cases/runner/input/case_keys.hpp"
+#include "cases/runner/input/toml_text.hpp"
+#include "cases/runner/process/progress.hpp"
+#include "cases/runner/results/earlier_run.hpp"
+#include "solvers/drivers/increment.hpp"
+#include "src/core/input_error.hpp"
+
+namespace peristat {
+namespace {
+
+void require_extending(const Settings& settings) {
+  const std::vector<std::string>& allowed = extending_keys();
+  for (const auto& [key, value] : settings) {
+    if (std::find(allowed.begin(), allowed.end(), key) != allowed.end()) continue;
+    throw InputError("--set", key + "=" + value,
+                     fmt::format("would make it another case; when a run goes on, --set may change "
+                                 "{}",
+                                 fmt::join(allowed, ", ")));
+  }
+}
+
+/// Settings that a run was begun with, for the folder that it is found in.
+Settings settings_in(const EarlierRun& earlier) {
+  Settings settings = earlier.settings();
+  std::erase_if(settings, [](const auto& setting) { return setting.first == "output.directory"; });
+  settings.emplace_back("output.directory", toml_string(earlier.directory().string()));
+  return settings;
+}
+
+/// The text of the case: of its file, or of the run where the file is gone.
+/// @throws InputError if the file says something else than it did
+std::string case_text(const EarlierRun& earlier, const Settings& settings) {
+  if (!std::filesystem::exists(earlier.case_file())) return earlier.case_text();
+  const Case then = read_case(earlier.case_file(), earlier.case_text(), settings);
+  const Case now = read_case(earlier.case_file(), settings);
+  const std::vector<std::string> changes = case_differences(then.as_resolved, now.as_resolved);
+  if (changes.empty()) return now.as_read;
+  throw InputError(
+      "", "",
+      fmt::format("has changed since the run began: {}. Undo that to go on, or begin anew with "
+                  "`run`; what only extends a run is given with --set",
+                  fmt::join(changes, "; ")),
+      earlier.case_file().string());
+}
+
+bool is_finished(const EarlierRun& earlier) {
+  return earlier.has_summary() && !is_load_left(earlier.checkpoint().path.accepted.load_factor);
+}
+
+}  // namespace
+
+Exit resume(const std::filesystem::path& directory, const Settings& settings,
+            const RunOptions& options) {
+  require_extending(settings);
+  EarlierRun earlier(directory, PERISTAT_VERSION);
+  Settings all = settings_in(earlier);
+  const std::string text = case_text(earlier, all);
+  all.insert(all.end(), settings.begin(), settings.end());
+  const Case from = read_case(earlier.case_file(), text, all);
+  if (is_finished(earlier)) {
+    Progress(options.quiet, options.log_file)
+        .say(fmt::format("the run in {} has come to its end: {} steps, load factor {:.6g}",
+                         directory.string(), earlier.checkpoint().path.steps,
+                         earlier.checkpoint().path.accepted.load_factor));
+    return Exit::done;
+  }
+  return run(from, options, &earlier);
+}
+
+}  // namespace peristat

@@ -1,0 +1,187 @@
+#include "cases/runner/results/earlier_run.hpp"
+
+#include <algorithm>
+#include <system_error>
+
+#include "cases/runner/process/fault_aside.hpp"
+#include "cases/runner/process/output_file.hpp"
+#include "cases/runner/results/checkpoint_files.hpp"
+#include "cases/runner/results/points_part.hpp"
+#include "cases/runner/results/record_tables.hpp"
+#include "cases/runner/results/settings_table.hpp"
+
+namespace peristat {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The first `count` rows of a table.
+std::vector<Row> first_rows(const Hdf5File& file, const std::string& group,
+                            const std::vector<Column>& columns, int count) {
+  std::vector<Row> rows = file.rows(group, columns);
+  if (count < 0 || std::size_t(count) > rows.size()) {
+    throw BadCheckpoint("is ahead of the table " + group);
+  }
+  rows.resize(std::size_t(count));
+  return rows;
+}
+
+/// Where an object of a results file is.
+ObjectInFile place_of(const Hdf5File& file, const fs::path& name, const std::string& path) {
+  return file.link_target(path).value_or(ObjectInFile{name.filename().string(), path});
+}
+
+bool has_checkpoints(const ResultsFolder& folder) {
+  return std::any_of(CheckpointFiles::names.begin(), CheckpointFiles::names.end(),
+                     [&](const char* name) { return fs::exists(folder.parts() / name); });
+}
+
+/// Of a run that has ended.
+Checkpoint checkpoint_in(const Hdf5File& file, const std::string& program) {
+  const std::vector<std::uint8_t> bytes = file.bytes("/checkpoint");
+  return decode({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, program);
+}
+
+ResultsMarker claim(const fs::path& directory) {
+  if (!fs::is_directory(directory)) throw RefusedFolder("is no results folder of a run");
+  std::optional<ResultsMarker> marker = ResultsMarker::find(directory);
+  if (!marker || marker->is_blank()) throw RefusedFolder("holds no run");
+  return std::move(*marker);
+}
+
+/// Copies everything to where nobody looks, as it will be copied when the run ends.
+void try_to_copy(const ResultsFolder& folder, const EarlierResults& earlier) {
+  const auto copy = [&](const std::string& file, const std::string& object) {
+    Hdf5File::in_memory("trial (in memory)", std::size_t(1) << 20)
+        .copy(Hdf5File::open_for_reading(folder.directory / file), object, "/copy");
+  };
+  copy(earlier.points.file, earlier.points.object);
+  for (const WrittenStep& step : earlier.steps) copy(step.file, step.group);
+}
+
+/// Gives a file a second name, or copies it where the file system can't.
+void put_beside(const fs::path& file, const fs::path& name) {
+  const fs::path unfinished = temporary(name);
+  std::error_code error;
+  fs::remove(unfinished, error);
+  fs::create_hard_link(file, unfinished, error);
+  if (error) fs::copy_file(file, unfinished, fs::copy_options::overwrite_existing, error);
+  if (error) throw OutputError(name.string() + ": " + error.message(), error.value());
+  rename_file(unfinished, name);
+}
+
+}  // namespace
+
+EarlierRun::EarlierRun(const fs::path& directory, const std::string& program)
+    : folder_{fs::absolute(directory).lexically_normal()} {
+  try {
+    marker_.emplace(claim(folder_.directory));
+  } catch (const RefusedFolder& error) {
+    throw refusal(error.what());
+  } catch (const fs::filesystem_error& error) {
+    throw refusal(error.code().message());
+  }
+  const auto fault_of = [&](Generation which) {
+    return fault_aside([&] { read(which, program); });
+  };
+  const auto fault = fault_of(Generation::newest);
+  if (!fault) {
+    read(Generation::newest, program);
+    return;
+  }
+  const std::string loss = "the run can't be gone on with: " + *fault;
+  if (!fs::exists(folder_.safe_results()) || fault_of(Generation::safe)) throw refusal(loss);
+  read(Generation::safe, program);
+  remark_ = loss + "; an older state, which had reached the disk, is taken instead";
+}
+
+InputError EarlierRun::refusal(const std::string& reason) const {
+  return {"", "", reason, folder_.directory.string()};
+}
+
+void EarlierRun::read(Generation which, const std::string& program) {
+  results_ = which == Generation::newest ? folder_.results() : folder_.safe_results();
+  const auto file = Hdf5File::open_for_reading(results_);
+  is_gathered_ = !file.link_target("/points");
+  const bool has_checkpoint = is_gathered_ ? file.has("/checkpoint") : has_checkpoints(folder_);
+  if (!has_checkpoint) {
+    throw BadCheckpoint(
+        "it has no accepted step, or is of an older peristat, which left no "
+        "checkpoint; run the case again");
+  }
+  try {
+    checkpoint_ = is_gathered_                ? checkpoint_in(file, program)
+                  : which == Generation::safe ? read_checkpoint(folder_.safe_checkpoint(), program)
+                                              : newest_checkpoint(folder_.parts(), program);
+  } catch (const BadCheckpoint& error) {
+    throw BadCheckpoint(std::string("its checkpoint ") + error.what());
+  }
+  case_file_ = file.text_attribute("/case", "file");
+  case_text_ = file.text("/case/as_read");
+  settings_ = read_settings(file);
+  // Whatever a run writes, it writes the step before its checkpoint.
+  static_cast<void>(
+      first_rows(file, "/iterations", iteration_columns(), checkpoint_.rows.iterations));
+}
+
+bool EarlierRun::has_summary() const { return fs::exists(folder_.summary()); }
+
+EarlierResults EarlierRun::results(const std::vector<std::string>& support_sets,
+                                   const std::vector<ProbeColumns>& probes) const {
+  const auto fault = fault_aside([&] { try_to_copy(folder_, read_results(support_sets, probes)); });
+  if (fault) throw refusal("its results are damaged: " + *fault);
+  return read_results(support_sets, probes);
+}
+
+EarlierResults EarlierRun::read_results(const std::vector<std::string>& support_sets,
+                                        const std::vector<ProbeColumns>& probes) const {
+  const auto file = Hdf5File::open_for_reading(results_);
+  const TableRows& rows = checkpoint_.rows;
+  EarlierResults earlier{
+      first_rows(file, "/history", history_columns(support_sets, probes), rows.history),
+      first_rows(file, "/iterations", iteration_columns(), rows.iterations),
+      first_rows(file, "/decisions", decision_columns(), rows.decisions),
+      first_rows(file, "/broken_bonds", broken_bond_columns(), rows.broken_bonds),
+      place_of(file, results_, "/points"),
+      {}};
+  const bool has_views = file.has("/xdmf");
+  for (const Row& row : earlier.history) {
+    const StepRecord record = read_step(row, support_sets, probes);
+    WrittenStep step{record.step, record.load_factor, record.mode, {}, {}, {}, {}};
+    const std::string path = "/steps/" + step.name();
+    if (record.step > checkpoint_.last_with_fields || !file.has_link(path)) continue;
+    const ObjectInFile place = place_of(file, results_, path);
+    step.file = place.file;
+    step.group = place.object;
+    if (has_views) step.views = place_of(file, results_, "/xdmf/" + step.name()).object;
+    step.fields =
+        is_gathered_
+            ? field_names(file, step.group)
+            : field_names(Hdf5File::open_for_reading(folder_.directory / step.file), step.group);
+    earlier.steps.push_back(std::move(step));
+  }
+  return earlier;
+}
+
+bool EarlierRun::has_points(const Points& points) const {
+  const auto file = Hdf5File::open_for_reading(results_);
+  const ObjectInFile place = place_of(file, results_, "/points");
+  return holds_points(Hdf5File::open_for_reading(folder_.directory / place.file), place.object,
+                      points);
+}
+
+ClaimedFolder EarlierRun::take_over(const RunIdentity& run, EarlierResults& earlier) {
+  if (is_gathered_) {
+    std::error_code error;
+    fs::create_directory(folder_.parts(), error);
+    if (error) throw OutputError(folder_.parts().string() + ": " + error.message(), error.value());
+    put_beside(results_, folder_.earlier());
+    const std::string moved = "parts/" + folder_.earlier().filename().string();
+    earlier.points.file = moved;
+    for (WrittenStep& step : earlier.steps) step.file = moved;
+  }
+  go_on_in_results_folder(folder_, *marker_, run);
+  return {folder_, std::move(*marker_)};
+}
+
+}  // namespace peristat

@@ -1,0 +1,75 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cases/runner/input/settings.hpp"
+#include "cases/runner/results/checkpoint.hpp"
+#include "cases/runner/results/probe_columns.hpp"
+#include "cases/runner/results/results_folder.hpp"
+#include "cases/runner/results/step_part.hpp"
+#include "cases/runner/results/table.hpp"
+#include "src/core/input_error.hpp"
+#include "src/geometry/points.hpp"
+
+namespace peristat {
+
+/// What results.h5 of a run holds up to its checkpoint.
+struct EarlierResults {
+  std::vector<Row> history, iterations, decisions, broken_bonds;
+  ObjectInFile points;
+  std::vector<WrittenStep> steps;
+};
+
+/// A run that has left its results and a checkpoint in a folder, which nobody else writes as long
+/// as this lives.
+class EarlierRun {
+ public:
+  /// @param program version of this program
+  /// @throws InputError if the folder holds no run, or none that can be gone on from:
+  ///         says why. HDF5 may crash on a damaged file, so all is tried in a process of its own
+  EarlierRun(const std::filesystem::path& directory, const std::string& program);
+
+  [[nodiscard]] const std::filesystem::path& directory() const { return folder_.directory; }
+  [[nodiscard]] const std::filesystem::path& case_file() const { return case_file_; }
+  [[nodiscard]] const std::string& case_text() const { return case_text_; }
+  [[nodiscard]] const Settings& settings() const { return settings_; }
+  [[nodiscard]] const Checkpoint& checkpoint() const { return checkpoint_; }
+  /// Whether the run has ended by itself and said so.
+  [[nodiscard]] bool has_summary() const;
+  /// A sentence if the newest checkpoint was lost and an older one is taken.
+  [[nodiscard]] const std::string& remark() const { return remark_; }
+
+  /// @throws InputError if something of it is damaged
+  [[nodiscard]] EarlierResults results(const std::vector<std::string>& support_sets,
+                                       const std::vector<ProbeColumns>& probes) const;
+  /// Whether the run was one of these points.
+  [[nodiscard]] bool has_points(const Points& points) const;
+
+  /// Makes the folder ready for results that link to those there are.
+  /// @param earlier their files are named anew where they move
+  /// @throws OutputError
+  [[nodiscard]] ClaimedFolder take_over(const RunIdentity& run, EarlierResults& earlier);
+
+ private:
+  /// The state that was written last, or the one that is sure to have reached the disk.
+  enum class Generation { newest, safe };
+
+  void read(Generation which, const std::string& program);
+  [[nodiscard]] EarlierResults read_results(const std::vector<std::string>& support_sets,
+                                            const std::vector<ProbeColumns>& probes) const;
+  [[nodiscard]] InputError refusal(const std::string& reason) const;
+
+  ResultsFolder folder_;
+  std::optional<ResultsMarker> marker_;
+  std::filesystem::path results_;  // the file that is gone on from
+  bool is_gathered_ = false;       // it has no parts
+  std::filesystem::path case_file_;
+  std::string case_text_, remark_;
+  Settings settings_;
+  Checkpoint checkpoint_;
+};
+
+}  // namespace peristat

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+
+#include "cases/runner/results/hdf5_file.hpp"
+
+namespace peristat {
+
+/// Publishes a small HDF5 file of a results folder whole: readers find the one before or this one.
+/// @param bytes of the values that `write` writes
+/// @throws OutputError
+void publish_part(const std::filesystem::path& path, std::uint64_t bytes,
+                  const std::function<void(Hdf5File&)>& write);
+
+}  // namespace peristat

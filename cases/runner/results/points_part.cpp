@@ -1,0 +1,88 @@
+#include "cases/runner/results/points_part.hpp"
+
+#include <algorithm>
+#include <bit>
+
+namespace peristat {
+namespace {
+
+/// The point sets as a matrix: 1 where the point of the row is in the set of the column.
+std::vector<std::uint8_t> membership(const Points& points) {
+  std::vector<std::uint8_t> matrix(std::size_t(points.count()) * points.sets.size());
+  std::size_t column = 0;
+  for (const auto& [name, members] : points.sets) {
+    for (const Index point : members) matrix[point * points.sets.size() + column] = 1;
+    ++column;
+  }
+  return matrix;
+}
+
+/// Whether all numbers are the same to the last bit.
+bool are_same(const std::vector<double>& some, const std::vector<double>& others) {
+  return std::equal(some.begin(), some.end(), others.begin(), others.end(), [](double a, double b) {
+    return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b);
+  });
+}
+
+}  // namespace
+
+std::string flags_of(const std::string& set) {
+  std::string name = set;
+  std::replace(name.begin(), name.end(), '/', '|');
+  return "/points/sets/" + name;
+}
+
+void write_points(Hdf5File& file, const Points& points, const std::vector<PointCounts>& counts) {
+  const auto count = static_cast<std::uint64_t>(points.count());
+  const auto dimension = static_cast<std::uint64_t>(points.dimension);
+  file.make_group("/points");
+  file.set_attribute("/points", "dimension", std::int64_t{points.dimension});
+  file.set_attribute("/points", "spacing", points.spacing);
+  file.write("/points/reference", points.reference, {count, dimension},
+             {"m", "reference position of each point"});
+  file.write("/points/volume", points.volume, {count}, {"m3", "volume of each point"});
+
+  file.write(
+      "/points/set_ids", membership(points), {count, points.sets.size()},
+      {"1", "1 where the point (row) is in the set (column); attribute sets names the columns"});
+  std::vector<std::string> names;
+  for (const auto& [name, members] : points.sets) names.push_back(name);
+  file.set_attribute("/points/set_ids", "sets", names);
+
+  file.make_group("/points/sets");
+  for (const auto& [name, members] : points.sets) {
+    std::vector<std::uint8_t> flags(points.volume.size());
+    for (const Index point : members) flags[point] = 1;
+    file.write(flags_of(name), flags, {count}, {"1", "1 where the point is in set " + name});
+  }
+
+  for (const PointCounts& of_points : counts) {
+    file.write("/points/" + of_points.name, of_points.values, {count},
+               {"1", of_points.description});
+  }
+
+  std::vector<double> geometry;
+  std::vector<std::int32_t> numbers;
+  for (Index point = 0; point < points.count(); ++point) {
+    const Coordinates at = points.position(point);
+    geometry.insert(geometry.end(), at.begin(), at.end());
+    numbers.push_back(point);
+  }
+  file.write("/points/geometry", geometry, {count, 3},
+             {"m", "reference position with zeros beyond the dimension, for results.xdmf"});
+  file.write("/points/number", numbers, {count}, {"1", "number of each point, for results.xdmf"});
+}
+
+std::uint64_t bytes_of(const Points& points, const std::vector<PointCounts>& counts) {
+  const std::uint64_t bytes_per_point = counts.size() * sizeof(std::int32_t) +
+                                        (std::uint64_t(points.dimension) + 4) * sizeof(double) +
+                                        sizeof(std::int32_t) + 2 * points.sets.size();
+  return points.volume.size() * bytes_per_point;
+}
+
+bool holds_points(const Hdf5File& file, const std::string& group, const Points& points) {
+  return are_same(file.numbers(group + "/reference"), points.reference) &&
+         are_same(file.numbers(group + "/volume"), points.volume);
+}
+
+}  // namespace peristat

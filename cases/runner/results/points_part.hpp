@@ -1,0 +1,32 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "cases/runner/results/hdf5_file.hpp"
+#include "src/geometry/points.hpp"
+
+namespace peristat {
+
+/// Numbers of every point that do not change, e.g. counts of neighbours.
+struct PointCounts {
+  std::string name;  ///< of the dataset in /points
+  std::string description;
+  std::vector<std::int32_t> values;
+};
+
+/// Path of a set's flags, one per point.
+[[nodiscard]] std::string flags_of(const std::string& set);
+
+/// Writes the group /points.
+void write_points(Hdf5File& file, const Points& points, const std::vector<PointCounts>& counts);
+
+/// Bytes of what it writes.
+[[nodiscard]] std::uint64_t bytes_of(const Points& points, const std::vector<PointCounts>& counts);
+
+/// Whether a group that write_points has written is of these points, to the last bit.
+[[nodiscard]] bool holds_points(const Hdf5File& file, const std::string& group,
+                                const Points& points);
+
+}  // namespace peristat

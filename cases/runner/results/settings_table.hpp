@@ -1,0 +1,13 @@
+#pragma once
+
+#include "cases/runner/input/settings.hpp"
+#include "cases/runner/results/hdf5_file.hpp"
+
+namespace peristat {
+
+/// Writes what `--set` has given as the table /case/settings.
+void write_settings(Hdf5File& file, const Settings& settings);
+
+[[nodiscard]] Settings read_settings(const Hdf5File& file);
+
+}  // namespace peristat

@@ -1,0 +1,66 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "cases/runner/results/hdf5_file.hpp"
+#include "cases/runner/results/xdmf_series.hpp"
+#include "solvers/problem/records.hpp"
+
+namespace peristat {
+
+/// How the fields of all steps are shaped.
+struct StepShape {
+  Index points = 0;
+  int dimension = 0;
+
+  /// Whether vectors need views of three components (see XdmfSeries).
+  [[nodiscard]] bool has_views() const { return dimension < 3; }
+};
+
+/// A step whose fields are written, and where.
+struct WrittenStep {
+  int step = 0;
+  double load_factor = 0.0;
+  std::string mode;
+  std::string file;                 ///< relative to the results folder
+  std::string group, views;         ///< in it; `views` may be missing in 3D
+  std::vector<std::string> fields;  ///< names
+
+  /// "000001"
+  [[nodiscard]] std::string name() const;
+};
+
+/// Fields of a step that are ready to be written.
+class StepPart {
+ public:
+  /// @param fields outlive it
+  /// @throws std::logic_error that names a field of the wrong size, or with values that are not
+  ///         finite
+  StepPart(StepShape shape, const StepFields& fields);
+
+  [[nodiscard]] bool is_empty() const { return names_.empty(); }
+  [[nodiscard]] const std::vector<std::string>& names() const { return names_; }
+  /// Of the values that are written.
+  [[nodiscard]] std::uint64_t bytes() const;
+  /// Writes the groups `step.group` and, where there are views, `step.views`.
+  void write(Hdf5File& file, const WrittenStep& step) const;
+
+ private:
+  StepShape shape_;
+  const StepFields& fields_;
+  std::vector<std::string> names_;
+};
+
+/// Names of the fields that a step's group holds.
+[[nodiscard]] std::vector<std::string> field_names(const Hdf5File& file, const std::string& group);
+
+/// Writes views of the vectors of the step in `group` as the group `views`.
+void write_views(Hdf5File& file, const std::string& views, const std::string& group,
+                 const std::vector<std::string>& fields, StepShape shape);
+
+/// What results.xdmf shows of a step.
+[[nodiscard]] std::vector<XdmfSeries::Field> shown_fields(const WrittenStep& step, StepShape shape);
+
+}  // namespace peristat

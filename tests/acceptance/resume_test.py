@@ -1,0 +1,387 @@
+"""A run that was split is the run that was not: to the last bit on one thread."""
+
+import contextlib
+import csv
+import pathlib
+import random
+import shutil
+import signal
+import subprocess
+import tempfile
+import time
+import unittest
+
+import h5py
+import numpy
+
+from tests.acceptance.strip import LATTICE, PULLED
+from tests.reference.program import PROGRAM, peristat
+from tests.same_results import differences
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+# Pulled in two.
+TORN = LATTICE + """\
+[material]
+youngs_modulus = 200e9
+[material.damage]
+law = "tanh_continuous"
+onset = 0.006
+critical = 0.01
+[[crack]]
+from = [0.01, 0.006]
+to = [0.01, 0.011]
+[[support]]
+set = "left"
+displacement = [0, 0]
+[[support]]
+set = "right"
+displacement = ["3e-4*load", 0]
+[[probe]]
+name = "pulled"
+set = "right"
+[[set]]
+name = "middle"
+where = "abs(x - 0.01) < 3e-3"
+[[probe]]
+name = "crack"
+set = "middle"
+field = "crack_length"
+axis = "y"
+[loading]
+steps = 10
+[solver]
+mode = "adaptive"
+"""  # fmt: skip
+MODES = {
+    "elastic": (PULLED, 0, ["loading.steps=6"]),
+    "softening in implicit steps": (TORN, 3, ['solver.mode="newton"', "loading.smallest_step=1e-2",
+                                              'material.damage={law="tanh",onset=0.002,critical=0.02}']),
+    "relaxed steps": (TORN, 0, ['solver.mode="relaxation"']),
+    "a load that moves": (TORN, 0, ['solver.mode="relaxation"', 'relaxation.load="moving"',
+                                    "relaxation.iterations=2000"]),
+    "hand-overs": (TORN, 0, []),
+    "a stand-in": (TORN, 0, ["solver.elastic_horizon_ratio=2.015"]),
+    "fragments that are held": (TORN, 0, ['support[1].displacement=["6e-4*load","free"]']),
+    "fragments that are removed": (TORN, 0, ['support[1].displacement=["6e-4*load","free"]',
+                                             'solver.fragments="remove"']),
+    "continuum kinematics": (TORN, 0, ['material.model="cpd"', "material.poisson_ratio=0.35"]),
+    "fields now and then": (TORN, 0, ["output.every=4"]),
+    "an iterative solver": (TORN, 0, ['solver.preconditioner="rigid_pieces"']),
+    "a surrogate": (TORN, 0, ['solver.preconditioner="surrogate"']),
+}  # fmt: skip
+
+
+class Resumed(unittest.TestCase):
+    def setUp(self):
+        self.folder = pathlib.Path(self.enterContext(tempfile.TemporaryDirectory(prefix="peristat_resume_"))).resolve()
+        self.out = self.folder / "split"
+
+    def case(self, text=TORN):
+        path = self.folder / "strip.toml"
+        path.write_text('title = "Strip"\n' + text)
+        return path
+
+    def run_case(self, *words, text=TORN, out=None, settings=(), threads=1, expected=0):
+        words += tuple(word for setting in settings for word in ("--set", setting))
+        ended = peristat("run", self.case(text), "--output", out or self.out, "--threads", threads, *words)
+        self.assertEqual(ended.code, expected, ended.said)
+        return ended
+
+    def resume(self, *words, threads=1, expected=0, out=None):
+        ended = peristat("resume", out or self.out, "--threads", threads, *words)
+        self.assertEqual(ended.code, expected, ended.said)
+        return ended
+
+    def steps(self, out=None):
+        with open((out or self.out) / "history.csv", newline="") as table:
+            return len(list(csv.DictReader(table)))
+
+    def is_as(self, whole):
+        self.assertEqual(differences(whole, self.out), [])
+
+
+class Split(Resumed):
+    def test_every_mode_goes_on_as_if_nothing_had_been(self):
+        for name, (text, code, settings) in MODES.items():
+            with self.subTest(name):
+                shutil.rmtree(self.out, ignore_errors=True)
+                whole = self.folder / "whole"
+                self.run_case("--overwrite", text=text, settings=settings, out=whole, expected=code)
+                self.assertGreater(self.steps(whole), 4)
+                self.run_case("--stop-after", 2, text=text, settings=settings, expected=130)
+                sessions = 1
+                while self.resume_once(3) == 130:
+                    sessions += 1
+                self.assertGreaterEqual(sessions, -(-(self.steps(whole) - 2) // 3))
+                self.is_as(whole)
+
+    def resume_once(self, steps):
+        ended = peristat("resume", self.out, "--threads", 1, "--stop-after", steps)
+        self.assertIn(ended.code, (0, 3, 130), ended.said)
+        return ended.code
+
+    def test_from_every_accepted_step(self):
+        whole = self.folder / "whole"
+        self.run_case(out=whole)
+        for steps in range(1, self.steps(whole)):
+            with self.subTest(steps):
+                shutil.rmtree(self.out, ignore_errors=True)
+                self.run_case("--stop-after", steps, expected=130)
+                self.assertEqual(self.steps(), steps)
+                self.resume()
+                self.is_as(whole)
+
+    def test_killed_at_random_moments(self):
+        """Between any two system calls, once the folder can be gone on from."""
+        whole = self.folder / "whole"
+        started = time.monotonic()
+        self.run_case(out=whole)
+        duration = time.monotonic() - started
+        chance = random.Random(13)
+        command = [PROGRAM, "run", self.case(), "--output", self.out, "--threads", "1", "--quiet"]
+        kills = 0
+        for _ in range(40):
+            process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
+            with contextlib.suppress(subprocess.TimeoutExpired):
+                process.wait(chance.uniform(0.05, 0.4 * duration))
+            ended = process.poll()
+            process.kill()
+            errors = process.communicate()[1].decode()
+            if ended is not None:
+                self.assertEqual(ended, 0, errors)
+                break
+            kills += 1
+            if (self.out / "parts/checkpoint.0").exists() or "checkpoint" in self.members():
+                command = [PROGRAM, "resume", self.out, "--threads", "1", "--quiet"]
+        self.assertGreater(kills, 2)
+        if ended is None:
+            self.resume()
+        self.is_as(whole)
+
+    def members(self):
+        try:
+            with h5py.File(self.out / "results.h5") as file:
+                return set(file)
+        except OSError:
+            return set()
+
+    def test_signals_leave_a_checkpoint(self):
+        whole = self.folder / "whole"
+        self.run_case("--set", "loading.steps=400", text=PULLED, out=whole)
+        for code in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+            with self.subTest(code):
+                shutil.rmtree(self.out, ignore_errors=True)
+                process = subprocess.Popen([PROGRAM, "run", self.case(PULLED), "--output", self.out, "--threads", "1",
+                                            "--set", "loading.steps=400"], stdout=subprocess.PIPE,
+                                           stderr=subprocess.STDOUT)  # fmt: skip
+                while not (self.out / "parts/checkpoint.0").exists():
+                    self.assertIsNone(process.poll())
+                    time.sleep(0.01)
+                process.send_signal(code)
+                said = process.communicate(timeout=60)[0].decode()
+                self.assertEqual(process.returncode, 130, said)
+                self.resume()
+                self.is_as(whole)
+
+    def test_other_numbers_of_threads_change_round_off_alone(self):
+        """Until damage begins: from then on round-off decides which of two like bonds breaks first."""
+        whole = self.folder / "whole"
+        self.run_case(out=whole, text=PULLED, settings=["loading.steps=6"])
+        self.run_case("--stop-after", 3, text=PULLED, settings=["loading.steps=6"], expected=130, threads=2)
+        self.resume(threads=3)
+        with h5py.File(whole / "results.h5") as one, h5py.File(self.out / "results.h5") as two:
+            for step in one["steps"]:
+                expected = one["steps"][step]["displacement"][...]
+                error = abs(two["steps"][step]["displacement"][...] - expected).max()
+                self.assertLess(error, 1e-11 * abs(expected).max())
+
+
+class Extended(Resumed):
+    def test_smaller_steps_lead_beyond_where_they_were_too_large(self):
+        settings = ['solver.mode="newton"', "loading.smallest_step=0.1"]
+        self.run_case(settings=settings, expected=3)
+        before = self.steps()
+        self.resume(expected=3)  # the same attempt fails again
+        self.assertEqual(self.steps(), before)
+        self.resume("--set", "loading.smallest_step=1e-4", expected=3)
+        self.assertGreater(self.steps(), before)
+
+    def test_another_mode_goes_on_where_one_has_ended(self):
+        self.run_case(settings=['solver.mode="newton"', "loading.smallest_step=1e-2"], expected=3)
+        before = (self.out / "history.csv").read_text()
+        self.assertTrue((self.out / "dossier.txt").exists())
+        self.resume("--set", 'solver.mode="adaptive"')
+        self.assertTrue((self.out / "history.csv").read_text().startswith(before))
+        self.assertFalse((self.out / "dossier.txt").exists())
+        with h5py.File(self.out / "results.h5") as file:
+            self.assertNotIn("dossier", file)
+            self.assertIn('mode = "adaptive"', file["case/as_resolved"][()].decode())
+
+    def test_settings_of_all_sessions_hold(self):
+        self.run_case("--stop-after", 2, settings=["loading.steps=5", "output.every=2"], expected=130)
+        self.resume("--stop-after", 2, "--set", "loading.steps=8", expected=130)
+        self.resume()
+        with h5py.File(self.out / "results.h5") as file:
+            resolved = file["case/as_resolved"][()].decode()
+            self.assertIn("steps = 8", resolved)
+            self.assertIn("every = 2", resolved)
+
+    def test_a_finished_run_says_so(self):
+        self.run_case("--set", "loading.steps=2", text=PULLED)
+        before = {path.name: path.read_bytes() for path in self.out.iterdir() if path.is_file()}
+        self.assertIn("has come to its end: 2 steps, load factor 1", self.resume().output)
+        self.assertEqual(before, {path.name: path.read_bytes() for path in self.out.iterdir() if path.is_file()})
+
+
+class Refused(Resumed):
+    def setUp(self):
+        super().setUp()
+        self.run_case("--stop-after", 3, expected=130)
+
+    def refuses(self, words, *arguments, out=None, expected=2):
+        before = {path: path.read_bytes() for path in self.folder.rglob("*") if path.is_file()}
+        ended = self.resume(*arguments, expected=expected, out=out)
+        for word in [words] if isinstance(words, str) else words:
+            self.assertIn(word, ended.errors)
+        self.assertEqual(before, {path: path.read_bytes() for path in self.folder.rglob("*") if path.is_file()})
+
+    def test_a_case_that_has_changed(self):
+        self.case(TORN.replace("steps = 10", "steps = 12").replace("[loading]", "[loading]\nadaptive = false"))
+        self.refuses(["strip.toml: has changed since the run began", "loading.steps is 12, was 10",
+                      "loading.adaptive is false, was true"])  # fmt: skip
+
+    def test_a_remark_in_the_case_changes_nothing(self):
+        self.case("# a remark\n" + TORN)
+        self.resume()
+
+    def test_a_case_file_that_is_gone_is_taken_from_the_results(self):
+        whole = self.folder / "whole"
+        self.run_case(out=whole)
+        (self.folder / "strip.toml").unlink()
+        self.resume()
+        self.is_as(whole)
+
+    def test_a_folder_that_was_moved(self):
+        whole = self.folder / "whole"
+        self.run_case(out=whole)
+        self.out = self.out.rename(self.folder / "elsewhere")
+        self.resume()
+        self.is_as(whole)
+
+    def test_settings_that_make_another_case(self):
+        self.refuses(["--set = material.youngs_modulus=1e9: would make it another case", "loading.steps"],
+                     "--set", "material.youngs_modulus=1e9")  # fmt: skip
+        self.refuses("output.directory=x: would make it another case", "--set", "output.directory=x")
+
+    def test_settings_that_are_wrong(self):
+        self.refuses("loading.steps = 0", "--set", "loading.steps=0")
+
+    def test_what_is_no_results_folder(self):
+        (self.folder / "empty").mkdir()
+        self.refuses("holds no run", out=self.folder / "empty")
+        self.refuses("is no results folder", out=self.folder / "none")
+        self.refuses("is no results folder", out=self.folder / "strip.toml")
+
+    def test_a_folder_that_another_run_writes(self):
+        other = self.folder / "other"
+        process = subprocess.Popen([PROGRAM, "run", self.case(PULLED), "--output", other, "--set",
+                                    "loading.steps=20000"], stdout=subprocess.DEVNULL)  # fmt: skip
+        while not (other / "parts/checkpoint.0").exists():
+            time.sleep(0.01)
+        ended = self.resume(out=other, expected=2)
+        self.assertIn(f"another run is writing it (process {process.pid})", ended.errors)
+        process.kill()
+        process.wait()
+
+    def test_a_run_without_an_accepted_step(self):
+        other = self.folder / "other"
+        self.run_case("--set", "solver.max_iterations=1", "--set", "loading.adaptive=false", text=PULLED, out=other,
+                      expected=3)  # fmt: skip
+        self.case()
+        self.refuses("it has no accepted step", out=other)
+
+    def change_checkpoint(self, change):
+        with h5py.File(self.out / "results.h5", "r+") as file:
+            data = change(bytearray(file["checkpoint"][...]))
+            del file["checkpoint"]
+            file["checkpoint"] = numpy.frombuffer(data, numpy.uint8)
+
+    def test_an_older_layout(self):
+        version = peristat("--version").output.split()[1]
+        self.change_checkpoint(lambda data: data.replace(f"checkpoint 1 {version}".encode(), b"checkpoint 0 0.0.7"))
+        self.refuses(["layout 0 of peristat 0.0.7", f"this is peristat {version}, which goes on from layout 1"])
+
+    def test_points_that_are_others(self):
+        with h5py.File(self.out / "results.h5", "r+") as file:
+            file["points/reference"][3, 1] += 1e-12
+        self.refuses("its points are not those of the run")
+
+    def test_a_checkpoint_that_is_damaged(self):
+        self.change_checkpoint(lambda data: data[:-1])
+        self.refuses("its checkpoint is damaged: it is not whole")
+        self.change_checkpoint(lambda data: data + bytes([data[-1]]))
+        self.change_checkpoint(lambda data: data[:-100] + bytes([data[-100] ^ 1]) + data[-99:])
+        self.refuses("its checkpoint is damaged: its checksum is wrong")
+        self.change_checkpoint(lambda data: data[:0])
+        self.refuses("its checkpoint is damaged")
+
+    def test_a_checkpoint_of_another_body(self):
+        other = self.folder / "other"
+        self.run_case("--stop-after", 3, out=other, settings=["lattice.spacing=2e-3"], expected=130)
+        with h5py.File(self.out / "results.h5", "r+") as file, h5py.File(other / "results.h5") as source:
+            del file["checkpoint"]
+            source.copy("checkpoint", file)
+        self.refuses("its checkpoint is of another body")
+
+    def test_files_that_are_cut_or_changed_anywhere(self):
+        """Whatever a disk has made of results.h5, the run goes on as it would have, or says that it can't."""
+        whole = self.folder / "whole"
+        self.run_case(out=whole)
+        kept = self.folder / "kept"
+        shutil.copytree(self.out, kept)
+        chance = random.Random(7)
+        intact = (kept / "results.h5").read_bytes()
+        outcomes = set()
+        for trial in range(40):
+            with self.subTest(trial):
+                shutil.rmtree(self.out)
+                shutil.copytree(kept, self.out)
+                data = bytearray(intact)
+                if trial % 4 == 0:
+                    del data[chance.randrange(len(data)) :]
+                else:
+                    for _ in range(chance.choice([1, 1, 50])):
+                        data[chance.randrange(len(data))] = chance.randrange(256)
+                (self.out / "results.h5").write_bytes(data)
+                ended = peristat("resume", self.out, "--threads", 1)
+                self.assertIn(ended.code, (0, 2), ended.said)
+                outcomes.add(ended.code)
+                if ended.code == 0:  # the fields of earlier steps have no checksums; what follows is right
+                    for name in ("history.csv", "decisions.csv", "broken_bonds.csv"):
+                        rows = (self.out / name).read_text().splitlines()[4:]
+                        self.assertEqual(rows, (whole / name).read_text().splitlines()[4:])
+        self.assertEqual(outcomes, {0, 2})
+
+
+class LossOfPower(Resumed):
+    def test_an_older_state_that_had_reached_the_disk_is_taken(self):
+        whole = self.folder / "whole"
+        settings = ["loading.steps=80", "lattice.spacing=2e-4"]  # some seconds
+        self.run_case(out=whole, text=PULLED, settings=settings)
+        words = [word for setting in settings for word in ("--set", setting)]
+        process = subprocess.Popen([PROGRAM, "run", self.case(PULLED), "--output", self.out, "--threads", "1", "--quiet",
+                                    *words])  # fmt: skip
+        while not (self.out / "parts/safe_checkpoint").exists():
+            self.assertIsNone(process.poll(), "it has ended before anything was sure to be on the disk")
+            time.sleep(0.01)
+        process.kill()
+        process.wait()
+        for name in ("results.h5", "parts/checkpoint.0", "parts/checkpoint.1", "history.csv"):
+            (self.out / name).unlink()  # a file of the last moments, not the one that was safe
+            (self.out / name).touch()
+        self.assertIn("an older state, which had reached the disk, is taken instead", self.resume().errors)
+        self.is_as(whole)
+
+
+if __name__ == "__main__":
+    unittest.main()
