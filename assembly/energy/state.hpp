@@ -11,7 +11,7 @@ namespace peristat {
 /// What changes along a path of equilibria.
 struct State {
   std::vector<double> displacement;  ///< points x dimension, row major [m]
-  double load_factor = 0.0;
+  double stage = 0.0;
   History history{};
 };
 

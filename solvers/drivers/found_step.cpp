@@ -14,7 +14,8 @@ constexpr int most_commits = 1000;
 void complete_record(const Path& path, const Attempt& attempt, FoundStep& found) {
   StepRecord& record = found.record;
   record.step = path.state().steps;
-  record.load_factor = attempt.load_factor;
+  record.stage = attempt.stage;
+  record.load_factor = path.setting().conditions.load_factor(attempt.stage);
   record.stored_energy = found.ledger.stored;
   record.dissipated_energy = found.ledger.dissipated;
   record.drained_energy = found.ledger.drained;
@@ -36,7 +37,7 @@ Advance resolve_fragments(Path& path, double next) {
     attempt.outcome = Outcome::fragmented;
     return path.stop(std::move(attempt), 0.0, state.pins.described());
   }
-  path.tell({.load_factor = state.accepted.load_factor,
+  path.tell({.stage = state.accepted.stage,
              .outcome = name(Outcome::converged),
              .action = remedy == FragmentRemedy::remove ? Decision::remove_fragments
                                                         : Decision::hold_fragments,

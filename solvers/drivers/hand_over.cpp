@@ -43,7 +43,7 @@ Advance HandOver::approach_damage(const ImplicitStep& step) {
   if (near || !implicit_.increment().can_cut_to(rest)) return hand_over(step, why);
   state.hand_over.is_near_onset = true;
   implicit_.increment().cut_to(rest);
-  path_.tell({.load_factor = step.attempt.load_factor,
+  path_.tell({.stage = step.attempt.stage,
               .increment = step.attempted,
               .outcome = name(Outcome::converged),
               .action = Decision::cut,
@@ -60,7 +60,7 @@ Advance HandOver::hand_over(const ImplicitStep& step, std::string reason) {
   }
   state.hand_over = {.relaxes = true, .is_near_onset = false};
   state.relaxed.motion = {};
-  path_.tell({.load_factor = step.attempt.load_factor,
+  path_.tell({.stage = step.attempt.stage,
               .increment = step.attempted,
               .outcome = name(step.attempt.outcome),
               .action = Decision::hand_over,
@@ -76,7 +76,7 @@ Advance HandOver::take_up_body() {
     return Advance::ended;
   }
   Attempt attempt =
-      path_.search(state.accepted, state.accepted.load_factor, path_.setting().newton_options);
+      path_.search(state.accepted, state.accepted.stage, path_.setting().newton_options);
   if (!attempt.has_converged()) {
     const std::string reason = explanation(attempt.outcome);
     return path_.stop(std::move(attempt), 0.0, reason);
@@ -99,7 +99,7 @@ Advance HandOver::relaxed_step() {
 void HandOver::hand_back() {
   path_.state().hand_over.relaxes = false;
   implicit_.increment().start_again();
-  path_.tell({.load_factor = path_.state().accepted.load_factor,
+  path_.tell({.stage = path_.state().accepted.stage,
               .outcome = name(Outcome::converged),
               .action = Decision::hand_back,
               .next_increment = implicit_.increment().value(),

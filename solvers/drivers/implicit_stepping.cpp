@@ -32,9 +32,9 @@ Advance ImplicitStepping::next() {
 
 ImplicitStep ImplicitStepping::search(Damage damage) {
   const State& from = path_.state().accepted;
-  const double target = increment_.target(from.load_factor);
+  const double target = increment_.target(from.stage);
   ImplicitStep step;
-  step.attempted = target - from.load_factor;
+  step.attempted = target - from.stage;
   if (const auto refusal = path_.refusal_of_conditions(target)) {
     step.attempt = undefined_attempt(from, target);
     step.fault = *refusal;
@@ -62,7 +62,7 @@ void ImplicitStepping::establish(ImplicitStep& step) {
       NewtonOptions again = path_.setting().newton_options;
       again.scale = attempt.scale;
       const int before = attempt.iterations;
-      attempt = path_.search(from, from.load_factor, again);
+      attempt = path_.search(from, from.stage, again);
       attempt.iterations += before;
       return attempt.outcome;
     });
@@ -76,7 +76,7 @@ Advance ImplicitStepping::accept(ImplicitStep step) {
   const bool grows = attempt.iterations <= path_.options().easy_iterations && increment_.grow();
   const bool is_exact = attempt.note.empty();
   path_.tell(
-      {.load_factor = attempt.load_factor,
+      {.stage = attempt.stage,
        .increment = step.attempted,
        .outcome = name(attempt.outcome),
        .action = !is_exact ? Decision::accept_at_round_off
@@ -94,7 +94,7 @@ Advance ImplicitStepping::fail(ImplicitStep step) {
   const double next = step.attempted * path_.options().cut;
   if (worth_cutting(attempt) && increment_.can_cut_to(next)) {
     increment_.cut_to(next);
-    path_.tell({.load_factor = attempt.load_factor,
+    path_.tell({.stage = attempt.stage,
                 .increment = step.attempted,
                 .outcome = name(attempt.outcome),
                 .action = Decision::cut,

@@ -2,27 +2,22 @@
 
 #include <algorithm>
 
+#include "src/conditions/loading_programme.hpp"
+
 namespace peristat {
 
-/// How the step of the load factor is cut and grows.
+/// How the step of the stage is cut and grows.
 struct IncrementOptions {
   bool adaptive = true;  ///< cut after a failure and grow again; otherwise a failure ends the run
-  double smallest_step = 1e-6;  ///< of the load factor; a cut below it ends the run
+  double smallest_step = 1e-6;  ///< of the stage; a cut below it ends the run
   double growth = 2.0;          ///< factor of the step after an easy success
 };
 
-/// A remainder of the load factor below this is round-off of the sum of steps.
-inline constexpr double load_factor_tolerance = 1e-9;
-
-/// Whether a path has not come to its end.
-[[nodiscard]] inline bool is_load_left(double load_factor) {
-  return 1.0 - load_factor > load_factor_tolerance;
-}
-
-/// What is left of the load, and how large a step of it is taken next.
+/// How large a step of the stage is taken next. A step ends at the next entry of the programme's
+/// tables at the latest: every entry is reached.
 class Increment {
  public:
-  /// @param steps equal ones, from 0 to 1, of which the first is tried
+  /// @param steps equal ones from one entry to the next, of which the first is tried
   /// @param largest that it may grow to; 0 means 1 / steps
   /// @param next size of the next step, kept by the path's state; 0: that of the first
   Increment(int steps, double largest, const IncrementOptions& options, double& next)
@@ -34,10 +29,10 @@ class Increment {
   /// A path may go on with a smaller limit than it had.
   [[nodiscard]] double value() const { return next_ > 0.0 ? std::min(next_, largest_) : first_; }
 
-  /// Target of the next step; the last one is not left a remainder of round-off.
-  [[nodiscard]] double target(double load_factor) const {
-    const double rest = 1.0 - load_factor;
-    return rest - value() > load_factor_tolerance ? load_factor + value() : 1.0;
+  /// Target of the next step; the last one to an entry is not left a remainder of round-off.
+  [[nodiscard]] double target(double stage) const {
+    const double entry = LoadingProgramme::next_entry(stage);
+    return entry - stage - value() > LoadingProgramme::tolerance ? stage + value() : entry;
   }
 
   [[nodiscard]] bool can_cut_to(double increment) const {

@@ -41,7 +41,9 @@ void Path::note_rungs() {
   if (setting_.stand_in) state_.rungs.stand_in = setting_.stand_in->solver.rung();
 }
 
-bool Path::has_load_left() const { return is_load_left(state_.accepted.load_factor); }
+bool Path::has_load_left() const {
+  return setting_.conditions.programme().has_rest(state_.accepted.stage);
+}
 
 const SolvedBody& Path::body() const {
   return state_.stands_in ? *setting_.stand_in : setting_.body;
@@ -56,11 +58,11 @@ std::vector<double> Path::working_force(const Trial& state,
   return peristat::working_force(setting_.conditions.prescribed(), state, external_force);
 }
 
-std::optional<std::string> Path::refusal_of_conditions(double load_factor) const {
+std::optional<std::string> Path::refusal_of_conditions(double stage) const {
   std::vector<double> values(setting_.conditions.prescribed().size());
   try {
-    setting_.conditions.prescribe(load_factor, values);
-    setting_.conditions.external_force(load_factor, values);
+    setting_.conditions.prescribe(stage, values);
+    setting_.conditions.external_force(stage, values);
   } catch (const InputError& error) {
     return setting_.observer.describe ? setting_.observer.describe(error) : error.what();
   }
@@ -104,6 +106,7 @@ bool Path::iterated(IterationRecord row) const {
 void Path::tell(DecisionRecord decision) const {
   if (!setting_.observer.decision) return;
   decision.step = next_step();
+  decision.load_factor = setting_.conditions.load_factor(decision.stage);
   setting_.observer.decision(decision);
 }
 
@@ -117,7 +120,7 @@ void Path::count_pivots(Attempt& attempt) const {
 
 Advance Path::stop(Attempt attempt, double attempted, const std::string& reason) {
   if (!attempt.inertia && attempt.has_negative_pivots) count_pivots(attempt);
-  tell({.load_factor = attempt.load_factor,
+  tell({.stage = attempt.stage,
         .increment = attempted,
         .outcome = name(attempt.outcome),
         .action = Decision::stop,

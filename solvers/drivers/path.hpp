@@ -66,7 +66,7 @@ class Path {
                                                   std::span<const double> external_force) const;
 
   /// Whether supports and loads have a value at a load factor; otherwise why not.
-  [[nodiscard]] std::optional<std::string> refusal_of_conditions(double load_factor) const;
+  [[nodiscard]] std::optional<std::string> refusal_of_conditions(double stage) const;
 
   /// By Newton's method.
   [[nodiscard]] Attempt search(const State& from, double target, const NewtonOptions& options);

@@ -26,7 +26,7 @@ NewtonOptions finishing_options(NewtonOptions options, bool has_factor) {
 bool finish(Path& path, RelaxedStep& step, NewtonOptions options) {
   options.scale = step.scale;
   const State near = state_of(step.attempt);
-  Attempt finished = path.search(near, near.load_factor, options);
+  Attempt finished = path.search(near, near.stage, options);
   step.has_factor |= finished.iterations > 0;
   if (!finished.has_converged() && worth_relaxing(finished)) return false;
   step.found.record.newton_iterations += finished.iterations;
@@ -48,12 +48,12 @@ RelaxedStep::RelaxedStep(const State& accepted) {
   found.energies.relaxed.emplace();
   attempt.state.displacement = accepted.displacement;
   attempt.state.history = accepted.history;
-  attempt.load_factor = accepted.load_factor;
+  attempt.stage = accepted.stage;
 }
 
 void relax_towards(Path& path, RelaxedStep& step, double target, RelaxationOptions options) {
   const State from = state_of(step.attempt);
-  if (from.load_factor == target && options.holds) options.ramp = 1;
+  if (from.stage == target && options.holds) options.ramp = 1;
   options.scale = step.scale;
   const Stopwatch watch(path.state().relaxation_seconds);
   RelaxationResult relaxed =

@@ -19,8 +19,8 @@ Advance RelaxedStepping::next() {
 
 RelaxedStepping::Found RelaxedStepping::search() {
   const State& from = path_.state().accepted;
-  const double target = increment_.target(from.load_factor);
-  Found found{RelaxedStep(from), target - from.load_factor, {}};
+  const double target = increment_.target(from.stage);
+  Found found{RelaxedStep(from), target - from.stage, {}};
   RelaxedStep& step = found.step;
   if (const auto refusal = path_.refusal_of_conditions(target)) {
     step.attempt = undefined_attempt(from, target);
@@ -47,7 +47,7 @@ RelaxedStepping::Found RelaxedStepping::search() {
 Advance RelaxedStepping::accept(Found found) {
   const bool grew = increment_.grow();
   const Attempt& attempt = found.step.attempt;
-  path_.tell({.load_factor = attempt.load_factor,
+  path_.tell({.stage = attempt.stage,
               .increment = found.attempted,
               .outcome = name(attempt.outcome),
               .action = grew ? Decision::accept_and_grow : Decision::accept,
@@ -64,7 +64,7 @@ Advance RelaxedStepping::fail(Found found) {
   const std::string reason = reason_of(attempt, found.fault);
   if (worth_cutting(attempt) && increment_.can_cut_to(next)) {
     increment_.cut_to(next);
-    path_.tell({.load_factor = attempt.load_factor,
+    path_.tell({.stage = attempt.stage,
                 .increment = found.attempted,
                 .outcome = name(attempt.outcome),
                 .action = Decision::cut,

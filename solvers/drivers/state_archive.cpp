@@ -44,9 +44,9 @@ void transfer_pins(StateArchive& archive, FragmentPins& pins) {
 void transfer(StateArchive& archive, PathState& state) {
   auto& [accepted, steps, ledger, pins, stands_in, rungs, relaxation_seconds, implicit, relaxed,
          hand_over] = state;
-  auto& [displacement, load_factor, history] = accepted;
+  auto& [displacement, stage, history] = accepted;
   archive.transfer("accepted/displacement", displacement);
-  archive.transfer("accepted/load_factor", load_factor);
+  archive.transfer("accepted/stage", stage);
   transfer_history(archive, history);
   archive.transfer("steps", steps);
   transfer_ledger(archive, ledger);

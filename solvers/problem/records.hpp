@@ -35,6 +35,7 @@ struct IterationRecord {
 /// One accepted step (a row of history.csv).
 struct StepRecord {
   int step = 0;
+  double stage = 0.0;  ///< of the loading programme
   double load_factor = 0.0;
   std::string mode;  ///< "newton", "relaxation"
   int newton_iterations = 0;
@@ -76,8 +77,9 @@ enum class Decision {
 /// One decision of the load stepping (a row of decisions.csv).
 struct DecisionRecord {
   int step = 0;              ///< number that the step has, or would have had
-  double load_factor = 0.0;  ///< that was attempted
-  double increment = 0.0;    ///< of the load factor that was attempted
+  double stage = 0.0;        ///< that was attempted
+  double load_factor = 0.0;  ///< there
+  double increment = 0.0;    ///< of the stage that was attempted
   std::string outcome;       ///< name of the equilibrium search's outcome
   Decision action = Decision::accept;
   double next_increment = 0.0;

@@ -25,14 +25,14 @@ constexpr int iterations_per_look = 10;
 /// Supports and loads on the straight way from one load factor to another.
 class Way {
  public:
-  Way(const EquilibriumProblem& problem, const State& from, double load_factor)
+  Way(const EquilibriumProblem& problem, const State& from, double stage)
       : displacement0_(from.displacement),
         displacement1_(from.displacement),
         force0_(from.displacement.size()),
         force1_(from.displacement.size()) {
-    problem.conditions.prescribe(load_factor, displacement1_);
-    problem.conditions.external_force(from.load_factor, force0_);
-    problem.conditions.external_force(load_factor, force1_);
+    problem.conditions.prescribe(stage, displacement1_);
+    problem.conditions.external_force(from.stage, force0_);
+    problem.conditions.external_force(stage, force1_);
     for (std::size_t dof = 0; dof < displacement0_.size(); ++dof) {
       if (problem.free.equation[dof] == FreeDofs::none) prescribed_.push_back(Index(dof));
       has_loads_ |= force0_[dof] != 0.0 || force1_[dof] != 0.0;
@@ -292,13 +292,13 @@ double taken_up(const EquilibriumProblem& problem, const RelaxationOptions& opti
 }  // namespace
 
 RelaxationResult relax(const EquilibriumProblem& problem, TangentOperator& tangent,
-                       const State& from, double load_factor, const RelaxationOptions& options,
+                       const State& from, double stage, const RelaxationOptions& options,
                        RelaxationMotion& motion, const RelaxationObserver& observer) {
   RelaxationResult result;
   result.state.displacement = from.displacement;
   result.state.history = from.history;
   result.external_force.resize(from.displacement.size());
-  const Way way(problem, from, load_factor);
+  const Way way(problem, from, stage);
   way.load(0.0, result.external_force);
   evaluate(problem, result.external_force, result.state);
   result.scale = options.scale > 0.0 ? options.scale

@@ -89,7 +89,7 @@ using RelaxationObserver = std::function<bool(const IterationRecord&)>;
 /// @param tangent room for the tangent that the density is made from
 /// @param motion at the start, and at the end if the relaxation does not hold
 [[nodiscard]] RelaxationResult relax(const EquilibriumProblem& problem, TangentOperator& tangent,
-                                     const State& from, double load_factor,
+                                     const State& from, double stage,
                                      const RelaxationOptions& options, RelaxationMotion& motion,
                                      const RelaxationObserver& observer);
 

@@ -49,7 +49,7 @@ bool projection_may_help(Outcome outcome) {
 class NewtonSearch {
  public:
   NewtonSearch(const EquilibriumProblem& problem, LinearSolver& solver, TangentOperator& tangent,
-               const State& from, double load_factor, const NewtonOptions& options,
+               const State& from, double stage, const NewtonOptions& options,
                const IterationObserver& observer)
       : problem_(problem),
         solver_(solver),
@@ -57,10 +57,10 @@ class NewtonSearch {
         from_(from),
         options_(options),
         observer_(observer),
-        damage_(load_factor == from.load_factor ? options.damage : Damage::held),
+        damage_(stage == from.stage ? options.damage : Damage::held),
         external_force_(from.displacement.size()),
         linearisation_(problem, solver, tangent, external_force_) {
-    problem.conditions.external_force(load_factor, external_force_);
+    problem.conditions.external_force(stage, external_force_);
     current_.displacement = from.displacement;
     current_.history = from.history;
     evaluate(problem, external_force_, current_, options.damage);
@@ -68,7 +68,7 @@ class NewtonSearch {
     // Right after the jump bonds beside the supports are stretched as no equilibrium will ask for.
     // Where they may break, nothing would be left to measure the residual against, and the search
     // would begin in a torn body: damage is held until the predictor has spread the jump.
-    problem.conditions.prescribe(load_factor, current_.displacement);
+    problem.conditions.prescribe(stage, current_.displacement);
     evaluate(problem, external_force_, current_, damage_);
     result_.scale = options.scale > 0.0
                         ? options.scale
@@ -227,9 +227,9 @@ class NewtonSearch {
 }  // namespace
 
 NewtonResult newton(const EquilibriumProblem& problem, LinearSolver& solver,
-                    TangentOperator& tangent, const State& from, double load_factor,
+                    TangentOperator& tangent, const State& from, double stage,
                     const NewtonOptions& options, const IterationObserver& observer) {
-  return NewtonSearch(problem, solver, tangent, from, load_factor, options, observer).run();
+  return NewtonSearch(problem, solver, tangent, from, stage, options, observer).run();
 }
 
 }  // namespace peristat

@@ -127,7 +127,9 @@ std::unique_ptr<const Body> make_body(Points points, const BodySpecification& of
   require_memory(estimate_memory(expected).least_bytes(),
                  fmt::format("the body with {} points", body.points.count()));
   make_model(body, threads);
-  body.conditions = std::make_unique<Conditions>(body.points, of.supports, of.loads);
+  body.conditions = std::make_unique<Conditions>(
+      body.points, of.supports, of.loads,
+      of.programme.empty() ? LoadingProgramme() : LoadingProgramme(of.programme));
   const Stopwatch watch(body.seconds_neighbourhood);
   store_interactions(body, threads);
   return owned;

@@ -59,6 +59,9 @@ struct BodySpecification {
   MaterialSpecification material{};
   std::vector<SupportSpecification> supports{};
   std::vector<LoadSpecification> loads{};
+  /// Tables of the load parameters `load`, `load2`, …, see LoadingProgramme; none: `load` from 0 to
+  /// 1.
+  std::vector<std::vector<double>> programme{};
 };
 
 /// Refuses points that are no body: arrays that don't fit together, places and volumes that are not

@@ -40,8 +40,9 @@ std::string indexed(const std::string& table, std::size_t number) {
 }  // namespace
 
 Conditions::Conditions(const Points& points, const std::vector<SupportSpecification>& supports,
-                       const std::vector<LoadSpecification>& loads)
-    : points_(points), prescribed_(points.reference.size(), 0) {
+                       const std::vector<LoadSpecification>& loads, LoadingProgramme programme)
+    : points_(points), programme_(std::move(programme)), prescribed_(points.reference.size(), 0) {
+  const std::vector<std::string> parameters = LoadingProgramme::names(programme_.parameters());
   for (std::size_t k = 0; k < supports.size(); ++k) {
     const std::string table = indexed("supports", k);
     const std::vector<Index>& members = points_of(points, supports[k].set, table + ".set");
@@ -51,7 +52,7 @@ Conditions::Conditions(const Points& points, const std::vector<SupportSpecificat
       const std::string key = indexed(table + ".displacement", std::size_t(c));
       prescriptions_.push_back({key, supports[k].set, &members, c, with_key(key, [&] {
                                   return Expression(*text, points.dimension, points.spacing,
-                                                    Expression::LoadFactor::allowed);
+                                                    parameters);
                                 })});
       for (Index point : members) prescribed_[std::size_t(point) * points.dimension + c] = 1;
     }
@@ -72,13 +73,13 @@ Conditions::Conditions(const Points& points, const std::vector<SupportSpecificat
                                  [&] {
                                    return Expression(loads[k].value[c],
                                                      total ? 0 : points.dimension, points.spacing,
-                                                     Expression::LoadFactor::allowed);
+                                                     parameters);
                                  }),
                         volume});
     }
   }
   find_shared();
-  try_load_factors();
+  try_stages();
 }
 
 void Conditions::find_shared() {
@@ -94,23 +95,23 @@ void Conditions::find_shared() {
   if (is_shared) first_ = std::move(first);
 }
 
-void Conditions::try_load_factors() {
+void Conditions::try_stages() {
   std::vector<double> values(prescribed_.size(), 0.0);
-  const auto try_at = [&](double load_factor) {
-    prescribe(load_factor, values);
+  const auto try_at = [&](double stage) {
+    prescribe(stage, values);
     for (const double value : values) largest_ = std::max(largest_, std::abs(value));
   };
-  // The ends first: they tell how large displacements are.
-  for (const double load_factor : {1.0, 0.0, 0.5}) try_at(load_factor);
+  // The end first: it tells how large displacements are.
+  for (const double share : {1.0, 0.0, 0.5}) try_at(share * programme_.end());
   if (first_.empty()) return;
-  // Load factors at which hardly any two different expressions agree.
-  for (const double load_factor : {0.0737, 0.1831, 0.2946, 0.3819, 0.6093, 0.7548, 0.8862}) {
-    try_at(load_factor);
+  // Shares at which hardly any two different expressions agree.
+  for (const double share : {0.0737, 0.1831, 0.2946, 0.3819, 0.6093, 0.7548, 0.8862}) {
+    try_at(share * programme_.end());
   }
 }
 
 void Conditions::refuse_contradiction(const Prescription& second, Index point, double first_value,
-                                      double second_value, double load_factor) const {
+                                      double second_value, double stage) const {
   const Prescription& first = *first_[dof_of(second, point)];
   throw InputError(second.key, '"' + second.displacement.text() + '"',
                    "the supports of sets " + first.set + " and " + second.set +
@@ -118,36 +119,37 @@ void Conditions::refuse_contradiction(const Prescription& second, Index point, d
                        place_text(points_.position(point), points_.dimension) +
                        " m the displacement in " + "xyz"[second.component] + " is " +
                        number_text(first_value) + " m by one and " + number_text(second_value) +
-                       " m by the other at load factor " + number_text(load_factor));
+                       " m by the other at load factor " + number_text(load_factor(stage)));
 }
 
-void Conditions::prescribe(double load_factor, std::span<double> displacement) const {
+void Conditions::prescribe(double stage, std::span<double> displacement) const {
   // Two expressions of one value may differ in their last digits: 1e-5*load*3 and 3e-5*load.
   constexpr double same = 1e-12;
+  const std::vector<double> loads = programme_.at(stage);
   for (const Prescription& prescription : prescriptions_) {
     with_key(prescription.key, [&] {
       for (Index point : *prescription.points) {
-        const double value = prescription.displacement(points_.position(point), load_factor);
+        const double value = prescription.displacement(points_.position(point), loads);
         double& at = displacement[dof_of(prescription, point)];
         if (first_.empty() || first_[dof_of(prescription, point)] == &prescription) {
           at = value;
         } else if (std::abs(value - at) >
                    same * std::max({std::abs(value), std::abs(at), largest_})) {
-          refuse_contradiction(prescription, point, at, value, load_factor);
+          refuse_contradiction(prescription, point, at, value, stage);
         }
       }
     });
   }
 }
 
-void Conditions::external_force(double load_factor, std::span<double> force) const {
+void Conditions::external_force(double stage, std::span<double> force) const {
+  const std::vector<double> loads = programme_.at(stage);
   std::fill(force.begin(), force.end(), 0.0);
   for (const Load& load : loads_) {
     with_key(load.key, [&] {
       for (Index point : *load.points) {
         force[std::size_t(point) * points_.dimension + load.component] +=
-            load.value(points_.position(point), load_factor) * points_.volume[point] /
-            load.spread_over;
+            load.value(points_.position(point), loads) * points_.volume[point] / load.spread_over;
       }
     });
   }

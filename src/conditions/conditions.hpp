@@ -5,32 +5,37 @@
 #include <string>
 #include <vector>
 
+#include "src/conditions/loading_programme.hpp"
 #include "src/conditions/specification.hpp"
 #include "src/core/expression.hpp"
 #include "src/geometry/points.hpp"
 
 namespace peristat {
 
-/// Supports and loads of a body, as functions of the load factor. Arrays have one entry per degree
+/// Supports and loads of a body along its loading programme. Arrays have one entry per degree
 /// of freedom (point x dimension + component).
 class Conditions {
  public:
   /// @throws InputError ("supports[k].…", "loads[k].…", k from 0) for a set that is unknown or
   ///         empty, a bad expression, or two supports that prescribe different displacements to one
-  ///         point and component (compared at some load factors, and whenever they are used)
+  ///         point and component (compared at some stages, and whenever they are used)
   Conditions(const Points& points, const std::vector<SupportSpecification>& supports,
-             const std::vector<LoadSpecification>& loads);
+             const std::vector<LoadSpecification>& loads, LoadingProgramme programme = {});
+
+  [[nodiscard]] const LoadingProgramme& programme() const { return programme_; }
+  /// The first load parameter.
+  [[nodiscard]] double load_factor(double stage) const { return programme_.at(stage).front(); }
 
   /// Whether a degree of freedom is prescribed.
   [[nodiscard]] const std::vector<char>& prescribed() const { return prescribed_; }
 
-  /// Overwrites the prescribed entries with their displacement [m] at the load factor.
+  /// Overwrites the prescribed entries with their displacement [m] at the stage.
   /// @throws InputError if one is not finite, or two supports contradict each other there
-  void prescribe(double load_factor, std::span<double> displacement) const;
+  void prescribe(double stage, std::span<double> displacement) const;
 
-  /// External force of the loads [N] at the load factor, every entry overwritten.
+  /// External force of the loads [N] at the stage, every entry overwritten.
   /// @throws InputError if one is not finite
-  void external_force(double load_factor, std::span<double> force) const;
+  void external_force(double stage, std::span<double> force) const;
 
   /// Reaction of each support's set [N]: the sum over its prescribed degrees of freedom of what the
   /// supports add to hold them, dE/dx - external force. Points of two sets count in both.
@@ -53,21 +58,22 @@ class Conditions {
   };
 
   void find_shared();
-  void try_load_factors();
+  void try_stages();
   [[nodiscard]] std::size_t dof_of(const Prescription& prescription, Index point) const {
     return std::size_t(point) * points_.dimension + prescription.component;
   }
   [[noreturn]] void refuse_contradiction(const Prescription& second, Index point,
                                          double first_value, double second_value,
-                                         double load_factor) const;
+                                         double stage) const;
 
   const Points& points_;
+  LoadingProgramme programme_;
   std::vector<Prescription> prescriptions_;
   std::vector<Load> loads_;
   std::vector<char> prescribed_;
   /// First of the prescriptions of each degree of freedom; empty if none has more than one.
   std::vector<const Prescription*> first_;
-  double largest_ = 0.0;  ///< displacement at the load factors that were tried [m]
+  double largest_ = 0.0;  ///< displacement at the stages that were tried [m]
 };
 
 }  // namespace peristat

@@ -1,8 +1,10 @@
 #include "src/core/expression.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <optional>
+#include <utility>
 
 #include <muParser.h>
 
@@ -15,12 +17,13 @@ namespace peristat {
 struct Expression::Parser {
   std::string text;
   int dimension = 3;
-  bool knows_load = false;
+  bool has_spacing = false;
+  std::vector<std::string> parameters;
   std::optional<double> constant;
   mu::Parser parser;
   // What the parser's variables point at; this struct therefore never moves.
   Coordinates place{};
-  double load_factor = 0.0;
+  std::vector<double> values;  // of the parameters
 
   [[noreturn]] void refuse(const std::string& what) const {
     throw InputError("", '"' + text + '"', what);
@@ -35,16 +38,19 @@ struct Expression::Parser {
   void define(double spacing) {
     parser.ClearConst();  // _pi and _e
     parser.DefineConst("pi", std::numbers::pi);
-    parser.DefineConst("spacing", spacing);
+    has_spacing = spacing > 0.0;
+    if (has_spacing) parser.DefineConst("spacing", spacing);
     for (int c = 0; c < dimension; ++c) parser.DefineVar(std::string(1, "xyz"[c]), &place[c]);
-    if (knows_load) parser.DefineVar("load", &load_factor);
+    values.resize(parameters.size());
+    for (std::size_t k = 0; k < values.size(); ++k) parser.DefineVar(parameters[k], &values[k]);
   }
 
   [[noreturn]] void refuse_word(const std::string& word, bool is_called) const {
     std::vector<std::string> variables{"x", "y", "z"}, functions;
     variables.resize(dimension);
-    if (knows_load) variables.push_back("load");
-    variables.insert(variables.end(), {"pi", "spacing"});
+    variables.insert(variables.end(), parameters.begin(), parameters.end());
+    variables.emplace_back("pi");
+    if (has_spacing) variables.emplace_back("spacing");
     for (const auto& [name, callback] : parser.GetFunDef()) functions.push_back(name);
 
     std::vector<std::string> allowed = is_called ? functions : variables;
@@ -125,9 +131,9 @@ struct Expression::Parser {
     const bool varies = scan();
     try {
       parser.SetExpr(text);
-      int values = 0;
-      const double first = *parser.Eval(values);
-      if (values != 1) refuse("an expression has one value; a decimal point is '.', not ','");
+      int count = 0;
+      const double first = *parser.Eval(count);
+      if (count != 1) refuse("an expression has one value; a decimal point is '.', not ','");
       if (!varies) constant = first;
     } catch (const mu::ParserError& error) {
       refuse_parse(error);
@@ -145,12 +151,12 @@ struct Expression::Parser {
       refuse_parse(error);
     }
     if (!std::isfinite(result)) {
-      // Without a dimension (total forces) only the load factor tells where.
+      // Without a dimension (total forces) only the parameters tell where.
       static constexpr const char* names[] = {"", "(x) = ", "(x, y) = ", "(x, y, z) = "};
       std::string where = names[dimension];
       if (dimension > 0) where += place_text(place, dimension);
-      if (knows_load) {
-        where += (where.empty() ? "load = " : ", load = ") + number_text(load_factor);
+      for (std::size_t k = 0; k < values.size(); ++k) {
+        where += (where.empty() ? "" : ", ") + parameters[k] + " = " + number_text(values[k]);
       }
       refuse("the value at " + where + " is " + number_text(result) + "; it must be finite");
     }
@@ -159,11 +165,11 @@ struct Expression::Parser {
 };
 
 Expression::Expression(const std::string& text, int dimension, double spacing,
-                       LoadFactor load_factor)
+                       std::vector<std::string> parameters)
     : parser_(std::make_unique<Parser>()) {
   parser_->text = text;
   parser_->dimension = dimension;
-  parser_->knows_load = load_factor == LoadFactor::allowed;
+  parser_->parameters = std::move(parameters);
   parser_->define(spacing);
   parser_->compile();
 }
@@ -178,10 +184,11 @@ Expression::Expression(Expression&&) noexcept = default;
 Expression& Expression::operator=(Expression&&) noexcept = default;
 Expression::~Expression() = default;
 
-double Expression::operator()(const Coordinates& place, double load_factor) const {
+double Expression::operator()(const Coordinates& place, std::span<const double> parameters) const {
   if (parser_->constant) return *parser_->constant;
   parser_->place = place;
-  parser_->load_factor = load_factor;
+  std::copy_n(parameters.begin(), std::min(parameters.size(), parser_->values.size()),
+              parser_->values.begin());
   return parser_->value();
 }
 

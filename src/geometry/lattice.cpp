@@ -178,8 +178,7 @@ void keep_where(const Lattice& lattice, const Grid& grid, const Layer& layer,
                 const std::string& key, std::vector<Cell>& cells) {
   if (layer.where.empty()) return;
   try {
-    const Expression where(layer.where, lattice.dimension, lattice.spacing,
-                           Expression::LoadFactor::not_allowed);
+    const Expression where(layer.where, lattice.dimension, lattice.spacing);
     std::erase_if(cells,
                   [&](const Cell& cell) { return where(position(lattice, grid, cell)) == 0.0; });
   } catch (const InputError& error) {

@@ -15,8 +15,7 @@ std::vector<Index> select(const Points& points, const SetRule& rule) {
   try {
     const Expression where = rule.where.empty()
                                  ? Expression(1.0)
-                                 : Expression(rule.where, points.dimension, points.spacing,
-                                              Expression::LoadFactor::not_allowed);
+                                 : Expression(rule.where, points.dimension, points.spacing);
     for (Index point = 0; point < points.count(); ++point) {
       const Coordinates place = points.position(point);
       if (rule.shape && !contains(*rule.shape, place)) continue;

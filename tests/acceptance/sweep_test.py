@@ -1,5 +1,6 @@
 """Sweeps as an analyst types them: the table, the picture, what is skipped, and every ending."""
 
+import contextlib
 import csv
 import json
 import math
@@ -353,6 +354,76 @@ class Sweep(unittest.TestCase):
             summary = json.loads((self.out / "loading.steps=100000" / "summary.json").read_text())
             self.assertEqual(summary["status"], "interrupted")  # it was told once, and saved
 
+    def test_what_was_interrupted_or_killed_is_gone_on_with(self):
+        steps = "--vary", "loading.steps=400"
+        folder = self.out / "loading.steps=400"
+        self.assert_ends(self.sweep(*steps, output=("--output", "whole")), 0, "done")
+        for interrupt in (lambda process: process.send_signal(signal.SIGINT), lambda process: process.kill()):
+            shutil.rmtree(self.out, ignore_errors=True)
+            process = subprocess.Popen(self.command("strip.toml", *steps, "--output", "out"), cwd=self.folder,
+                                       stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL)  # fmt: skip
+            while not ((folder / "history.csv").exists() and (folder / "history.csv").read_text().count("\n") > 3):
+                self.assertIsNone(process.poll())
+                time.sleep(0.02)
+            interrupt(process)
+            process.wait(timeout=60)
+            time.sleep(0.3)  # until the kernel has ended a run whose sweep was killed
+            first = next(path for path in (folder / "parts/000001.h5", folder / "results.h5") if path.exists())
+            with h5py.File(first, "r+") as file:  # a run from the start would write this anew
+                fields = file["step"] if "step" in file else file["steps/000001"]
+                fields["damage"][0] = 0.5
+            self.assert_ends(self.sweep(*steps), 0, "done")
+            with h5py.File(folder / "results.h5") as file, h5py.File(self.folder / "whole" / folder.name / "results.h5") as whole:
+                self.assertEqual(file["steps/000001/damage"][0], 0.5)
+                last = file["steps/000400/displacement"][...]
+                self.assertLess(abs(last - whole["steps/000400/displacement"][...]).max(), 1e-12 * abs(last).max())
+            self.assert_ends(self.sweep(*steps), 0, "skipped (done before)")
+
+    def test_what_was_interrupted_with_other_settings_is_run_anew(self):
+        words = "--vary", "loading.steps=400"
+        subprocess.run([os.environ["PERISTAT_PROGRAM"], "run", "strip.toml", "--set", "loading.steps=400", "--set",
+                        "material.youngs_modulus=1e9", "--stop-after", "3", "--output", "out/loading.steps=400"],
+                       cwd=self.folder, capture_output=True)  # fmt: skip
+        self.assert_ends(self.sweep(*words), 0, "done")
+        with h5py.File(self.out / "loading.steps=400" / "results.h5") as file:
+            self.assertIn("youngs_modulus = 2e+11", file["case/as_resolved"][()].decode())
+            self.assertEqual(len(file["history/step"]), 400)
+
+    # ---- side by side -----------------------------------------------------------------------------
+
+    def test_runs_side_by_side_fill_the_same_table(self):
+        self.assert_ends(self.sweep(*STIFFNESS_AND_STEPS), 0, "done", "done", "done", "done")
+        one_by_one = self.rows()
+        shutil.rmtree(self.out)
+        run = self.sweep(*STIFFNESS_AND_STEPS, "--jobs", "2", "--threads", "1")
+        self.assert_ends(run, 0, "done", "done", "done", "done")
+        side_by_side = self.rows()
+        for row in one_by_one + side_by_side:
+            del row["seconds_total"], row["peak_memory_bytes"]
+            for column, value in row.items():  # threads differ
+                with contextlib.suppress(ValueError):
+                    row[column] = float(f"{float(value):.6g}") if abs(float(value)) > 1e-9 else 0.0
+        self.assertEqual(side_by_side, one_by_one)
+
+    def test_two_sweeps_share_a_folder(self):
+        words = "--vary", "loading.steps=60,61,62,63"
+        both = [subprocess.Popen(self.command("strip.toml", *words, "--output", "out", "--jobs", "2"), cwd=self.folder,
+                                 text=True, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+                for _ in range(2)]  # fmt: skip
+        told = [process.communicate(timeout=300) for process in both]
+        self.assertEqual([process.returncode for process in both], [0, 0], told)
+        output = "".join(output for output, _ in told)
+        self.assertEqual(output.count(": done"), 4, output)
+        self.assertEqual(output.count("skipped (done "), 4, output)
+        self.assertEqual([row["steps"] for row in self.rows()], ["60", "61", "62", "63"])
+        self.assertEqual([path.name for path in self.out.iterdir() if path.name.endswith(".tmp")], [])
+
+    def test_more_jobs_than_processors_are_not_begun(self):
+        run = self.sweep("--vary", "loading.steps=1,2", "--jobs", "1000")
+        self.assert_ends(run, 0, "done", "done")
+        self.assertIn(f"{len(os.sched_getaffinity(0))} at a time, not 1000", run.stdout)
+        self.assert_ends(self.sweep("--vary", "loading.steps=1", "--jobs", "0"), 2)
+
     def test_a_killed_sweep_leaves_no_run_behind(self):
         code, _ = self.interrupted(lambda process: process.kill())
         self.assertEqual(code, -signal.SIGKILL)
@@ -365,7 +436,7 @@ class Sweep(unittest.TestCase):
     def test_help_tells_the_options(self):
         run = subprocess.run(self.command("--help"), text=True, capture_output=True)
         self.assertEqual(run.returncode, 0, run.stderr)
-        for word in ("usage: peristat sweep", "--vary", "--set", "--output", "--threads"):
+        for word in ("usage: peristat sweep", "--vary", "--set", "--output", "--threads", "--jobs"):
             self.assertIn(word, run.stdout)
 
 

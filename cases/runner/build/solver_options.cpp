@@ -16,7 +16,7 @@ StudyOptions study_options(const Case& from, int threads) {
 LoadSteppingOptions load_stepping_options(const Case& from) {
   LoadSteppingOptions options;
   options.mode = from.solver.mode;
-  options.steps = from.loading.steps;
+  options.steps = from.loading.steps_to_entry();
   options.adaptive = from.loading.adaptive;
   options.smallest_step = from.loading.smallest_step;
   options.largest_step = from.loading.largest_step;

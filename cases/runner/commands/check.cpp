@@ -114,8 +114,9 @@ Exit check(const Case& from, int threads) {
   }
   fmt::print("memory      about {} of {} available\n", bytes_text(systems.bytes),
              bytes_text(available_memory()));
+  const int steps = from.loading.steps_to_entry() * int(body.conditions->programme().end());
   fmt::print("time        {} for {} load steps, if none has to be cut\n",
-             seconds_text(chosen.seconds * from.loading.steps / threads), from.loading.steps);
+             seconds_text(chosen.seconds * steps / threads), steps);
   located_errors(from, [&] {
     refuse_unheld_bodies(body);
     refuse_unstable_rest(body, options);

@@ -37,8 +37,7 @@ std::vector<double> displacement_of(const std::string& deformation, const Points
   std::vector<Expression> component;
   std::istringstream parts(deformation);
   for (std::string part; std::getline(parts, part, ';');) {
-    component.emplace_back(part, points.dimension, points.spacing,
-                           Expression::LoadFactor::not_allowed);
+    component.emplace_back(part, points.dimension, points.spacing);
   }
   if (component.size() != std::size_t(points.dimension)) {
     throw InputError("", '"' + deformation + '"',

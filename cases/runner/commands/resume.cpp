@@ -1,6 +1,7 @@
 #include "cases/runner/commands/resume.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -13,7 +14,7 @@
 #include "cases/runner/input/toml_text.hpp"
 #include "cases/runner/process/progress.hpp"
 #include "cases/runner/results/earlier_run.hpp"
-#include "solvers/drivers/increment.hpp"
+#include "src/conditions/loading_programme.hpp"
 #include "src/core/input_error.hpp"
 
 namespace peristat {
@@ -54,8 +55,33 @@ std::string case_text(const EarlierRun& earlier, const Settings& settings) {
       earlier.case_file().string());
 }
 
-bool is_finished(const EarlierRun& earlier) {
-  return earlier.has_summary() && !is_load_left(earlier.checkpoint().path.accepted.load_factor);
+LoadingProgramme programme_of(const Case& from) {
+  return from.programme.empty() ? LoadingProgramme() : LoadingProgramme(from.programme);
+}
+
+/// Refuses tables that lead to where the run is by another way than it has gone.
+void require_same_beginning(const LoadingProgramme& then, const LoadingProgramme& now,
+                            const PathState& path) {
+  const double stage = path.accepted.stage, reached = std::ceil(stage);
+  const bool is_long_enough = reached <= now.end() && then.parameters() == now.parameters();
+  for (double entry = 0.0; is_long_enough && entry <= reached; ++entry) {
+    if (then.at(entry) == now.at(entry)) continue;
+    throw InputError("--set", "loading.table",
+                     fmt::format("entry {} is another one than it was, and the run has gone to "
+                                 "stage {:.6g} by it; a run goes on with tables that begin as they "
+                                 "did",
+                                 entry, stage));
+  }
+  if (is_long_enough) return;
+  throw InputError(
+      "--set", "loading.table",
+      fmt::format("the run has come to stage {:.6g} of {} load parameters, which these "
+                  "tables don't reach",
+                  stage, then.parameters()));
+}
+
+bool is_finished(const EarlierRun& earlier, const LoadingProgramme& way) {
+  return earlier.has_summary() && !way.has_rest(earlier.checkpoint().path.accepted.stage);
 }
 
 }  // namespace
@@ -66,13 +92,15 @@ Exit resume(const std::filesystem::path& directory, const Settings& settings,
   EarlierRun earlier(directory, PERISTAT_VERSION);
   Settings all = settings_in(earlier);
   const std::string text = case_text(earlier, all);
+  const Case then = read_case(earlier.case_file(), text, all);
   all.insert(all.end(), settings.begin(), settings.end());
   const Case from = read_case(earlier.case_file(), text, all);
-  if (is_finished(earlier)) {
+  require_same_beginning(programme_of(then), programme_of(from), earlier.checkpoint().path);
+  if (is_finished(earlier, programme_of(from))) {
     Progress(options.quiet, options.log_file)
         .say(fmt::format("the run in {} has come to its end: {} steps, load factor {:.6g}",
                          directory.string(), earlier.checkpoint().path.steps,
-                         earlier.checkpoint().path.accepted.load_factor));
+                         programme_of(from).at(earlier.checkpoint().path.accepted.stage)[0]));
     return Exit::done;
   }
   return run(from, options, &earlier);

@@ -21,6 +21,7 @@
 #include "solvers/linear/cholesky.hpp"
 #include "solvers/study/study.hpp"
 #include "src/core/input_error.hpp"
+#include "src/core/stopwatch.hpp"
 
 namespace peristat {
 namespace {
@@ -104,16 +105,16 @@ std::unique_ptr<SolvedModel> solved_stand_in(const Case& from, const Study& stud
       study.options().threads);
 }
 
-std::string failure_reason(const LoadSteppingResult& result) {
+/// @param load_factor that was reached
+std::string failure_reason(const LoadSteppingResult& result, double load_factor) {
   if (result.outcome == Outcome::interrupted)
-    return fmt::format("interrupted after load factor {:.6g}", result.state.load_factor);
+    return fmt::format("interrupted after load factor {:.6g}", load_factor);
   std::string reason = explanation(result.outcome);
   const auto& inertia = result.last_attempt.inertia;
   if (inertia && (inertia->negative > 0 || inertia->zero > 0)) {
     reason += fmt::format(" ({} negative and {} zero pivots)", inertia->negative, inertia->zero);
   }
-  return fmt::format("{} after load factor {:.6g}: {}", name(result.outcome),
-                     result.state.load_factor, reason);
+  return fmt::format("{} after load factor {:.6g}: {}", name(result.outcome), load_factor, reason);
 }
 
 LoadSteppingResult out_of_memory() {
@@ -199,6 +200,7 @@ class CaseRun {
                               body_->model.bonds().count(), free.count(), options_.threads));
     for (const std::string& line : describe_interactions(*body_)) progress_.say(line);
     count(*body_, free, options_, summary_);
+    progress_.follow_to(body_->conditions->programme().end());
   }
 
   /// @throws InputError if the body is another one
@@ -237,7 +239,7 @@ class CaseRun {
     if (!earlier_->remark().empty()) progress_.problem(earlier_->remark());
     const PathState& path = earlier_->checkpoint().path;
     progress_.say(fmt::format("going on after step {}, load factor {:.6g}", path.steps,
-                              path.accepted.load_factor));
+                              body_->conditions->load_factor(path.accepted.stage)));
   }
 
   LoadSteppingResult follow() {
@@ -265,6 +267,7 @@ class CaseRun {
       ++steps_here_;
     };
     told.reached = [this](const PathState& state) {
+      const Stopwatch watch(seconds_of_checkpoints_);
       Checkpoint checkpoint = recorder_->checkpoint(state);
       checkpoint.costs = costs(state.relaxation_seconds);
       results_->add_checkpoint(std::move(checkpoint));
@@ -286,13 +289,17 @@ class CaseRun {
     costs.seconds.total += std::chrono::duration<double>(Clock::now() - start_).count();
     costs.seconds.relaxation = relaxation_seconds;
     costs.seconds.output = results_->seconds_spent();
+    costs.seconds.checkpoints += seconds_of_checkpoints_;
     return costs;
   }
 
   /// What is known of a run after its last step.
   void conclude(const LoadSteppingResult& result) {
     summary_.status = status_of(result.outcome);
-    if (result.outcome != Outcome::converged) summary_.reason = failure_reason(result);
+    if (result.outcome != Outcome::converged) {
+      const double reached = body_->conditions->load_factor(result.state.stage);
+      summary_.reason = failure_reason(result, reached);
+    }
     summary_.max_displacement = largest_displacement(result.state.displacement, from_.dimension);
     recorder_->finish();
     summary_.costs = costs(result.relaxation_seconds);
@@ -330,7 +337,8 @@ class CaseRun {
   std::vector<ProbeColumns> probes_;
   const Clock::time_point start_ = Clock::now();
   EarlierResults earlier_results_;  // until they are taken up
-  int steps_here_ = 0;              // accepted in this session
+  double seconds_of_checkpoints_ = 0.0;
+  int steps_here_ = 0;  // accepted in this session
   std::unique_ptr<const Body> body_;
   std::optional<Study> study_;
   std::optional<Model> stand_in_;

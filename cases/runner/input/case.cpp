@@ -5,6 +5,7 @@
 #include "cases/runner/input/case_file.hpp"
 #include "cases/runner/input/key_table.hpp"
 #include "cases/runner/input/toml_table.hpp"
+#include "src/conditions/loading_programme.hpp"
 #include "src/core/input_error.hpp"
 #include "src/core/number_text.hpp"
 
@@ -87,6 +88,17 @@ std::string key_of(const Case& from, std::string member) {
 
 }  // namespace
 
+int LoadingSpecification::steps_to_entry() const {
+  const bool is_of_step = std::any_of(tables.begin(), tables.end(), [](const LoadTable& table) {
+    return !table.expression.empty();
+  });
+  return is_of_step ? 1 : steps;
+}
+
+std::vector<std::string> LoadingSpecification::parameters() const {
+  return LoadingProgramme::names(std::max<std::size_t>(tables.size(), 1));
+}
+
 Case read_case(const std::filesystem::path& file, const Settings& overrides) {
   return read_case(file, read_case_text(file), overrides);
 }
@@ -107,6 +119,7 @@ Case read_case(const std::filesystem::path& file, const std::string& text,
     throw located(result, error);
   }
   resolve_size(result);
+  for (const LoadTable& table : result.loading.tables) result.programme.push_back(table.entries);
   result.as_resolved = document_keys().lines(result, result);
   return result;
 }

@@ -26,12 +26,24 @@ struct PointSource {
   double horizon = 0.0;        ///< [m]
 };
 
+/// Values of a load parameter: given one by one, or as an expression of the step.
+struct LoadTable {
+  std::vector<double> entries;
+  std::string expression;
+};
+
 struct LoadingSpecification {
-  int steps = 1;                ///< equal steps of the load factor from 0 to 1
-  bool adaptive = true;         ///< cut and grow; otherwise a failed step ends the run
-  double smallest_step = 1e-6;  ///< of the load factor
-  double largest_step = 0.0;  ///< of the load factor; 0 means 1 / steps (the reader writes it out)
-  int max_broken_bonds = 0;   ///< in one implicit step; 0: no limit
+  std::vector<LoadTable> tables;  ///< of load, load2, …; none: load from 0 to 1
+  int steps = 1;                  ///< from one entry to the next, or of the expressions
+  bool adaptive = true;           ///< cut and grow; otherwise a failed step ends the run
+  double smallest_step = 1e-6;    ///< of the stage
+  double largest_step = 0.0;      ///< of the stage; 0: the first step (the reader writes it out)
+  int max_broken_bonds = 0;       ///< in one implicit step; 0: no limit
+
+  /// Equal steps from one entry to the next: an expression has an entry for each step.
+  [[nodiscard]] int steps_to_entry() const;
+  /// Load parameters that expressions may use.
+  [[nodiscard]] std::vector<std::string> parameters() const;
 };
 
 struct SolverSpecification {

@@ -1,13 +1,17 @@
 #include "cases/runner/input/case_keys.hpp"
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <limits>
+#include <type_traits>
 #include <variant>
 
 #include "cases/runner/input/key_kinds.hpp"
 #include "cases/runner/input/shape_keys.hpp"
 #include "solvers/drivers/drivers.hpp"
+#include "src/conditions/loading_programme.hpp"
+#include "src/core/expression.hpp"
 
 namespace peristat {
 namespace {
@@ -398,39 +402,110 @@ Table<LoadSpecification> load_keys() {
 
 // ---- The search for equilibrium
 
+/// "table", "table2", …
+std::string load_table_key(std::size_t k) {
+  std::string key = "table";
+  if (k > 0) key += std::to_string(k + 1);
+  return key;
+}
+
+/// Entries of a table that is an expression: one for each step, and 0 before the first.
+std::vector<double> entries_of(const Entry& at, const std::string& expression, int steps) {
+  try {
+    const Expression of_step(expression, 0, 0.0, {"step"});
+    std::vector<double> entries;
+    for (int step = 0; step <= steps; ++step) {
+      const std::array<double, 1> value{double(step)};
+      entries.push_back(of_step({}, value));
+    }
+    return entries;
+  } catch (const InputError& error) {
+    at.refuse(error.allowed());
+  }
+}
+
+/// Finds the entries of all tables, and refuses tables that don't go together.
+void resolve_tables(const Entry& at, LoadingSpecification& loading) {
+  auto& tables = loading.tables;
+  if (tables.empty()) return;
+  if (tables.front().entries.empty() && tables.front().expression.empty()) {
+    tables.front().entries = {0.0, 1.0};
+  }
+  std::vector<std::vector<double>> entries;
+  for (std::size_t k = 0; k < tables.size(); ++k) {
+    const Entry table{at.from, load_table_key(k), at.so_far};
+    if (!tables[k].expression.empty()) {
+      tables[k].entries = entries_of(table, tables[k].expression, loading.steps);
+    }
+    if (tables[k].entries.empty()) table.refuse("is needed for the tables that follow it");
+    entries.push_back(tables[k].entries);
+    try {
+      static_cast<void>(LoadingProgramme(entries));
+    } catch (const InputError& error) {
+      table.refuse(error.allowed());
+    }
+  }
+}
+
 Table<LoadingSpecification> loading_keys() {
   using Spec = LoadingSpecification;
   using K = Key<Spec>;
-  return {"loading",
-          {K("steps", &Spec::steps, integer(1, 1'000'000),
-             "number of equal steps; 1/steps is the first one")
-               .extends(),
-           K("adaptive", &Spec::adaptive, boolean(),
-             "cut a step that does not converge, and grow again; otherwise such a step ends the "
-             "run")
-               .extends(),
-           K("smallest_step", &Spec::smallest_step, between(1e-12, 1.0),
-             "of the load factor; needing a smaller one ends the run")
-               .extends()
-               .moreover("at most 1/steps"),
-           K("largest_step", &Spec::largest_step, between(1e-12, 1.0),
-             "of the load factor, to which steps may grow")
-               .extends()
-               .otherwise([](auto& loading, auto&) { loading.largest_step = 1.0 / loading.steps; },
-                          "1/steps")
-               .then([](auto& at, auto& loading) {
-                 const double step = 1.0 / loading.steps;
-                 if (loading.smallest_step > step)
-                   at.from.refuse("smallest_step",
-                                  "must not be larger than the first step, 1 / steps");
-                 if (loading.largest_step < step)
-                   at.refuse("must not be smaller than the first step, 1 / steps");
-               })
-               .moreover("at least 1/steps"),
-           K("max_broken_bonds", &Spec::max_broken_bonds, count_from(0, "bonds"),
-             "mode `newton`: bonds that may break in one step; a step with more is cut. 0 is no "
-             "limit")
-               .extends()}};
+  Table<Spec> keys{"loading", {}};
+  keys.keys.push_back(
+      K("steps", &Spec::steps, integer(1, 1'000'000),
+        "number of equal steps from one entry of the tables to the next, or of an expression; "
+        "without a table from 0 to 1")
+          .extends());
+  for (std::size_t k = 0; k < LoadingProgramme::most_parameters; ++k) {
+    const std::string parameter = LoadingProgramme::names(k + 1).back();
+    const auto member = [k](auto& loading) -> auto& {
+      if constexpr (!std::is_const_v<std::remove_reference_t<decltype(loading)>>) {
+        if (loading.tables.size() <= k) loading.tables.resize(k + 1);
+        return loading.tables[k];
+      } else {
+        static const LoadTable none;
+        return loading.tables.size() > k ? loading.tables[k] : none;
+      }
+    };
+    K key(load_table_key(k), member, load_table(),
+          k == 0 ? "values of `load` that the path goes through, linearly from one to the next: "
+                   "up, down, and rests"
+                 : "likewise of a further load parameter, `" + parameter + "`");
+    key.written_if([k](auto& loading, auto&) { return loading.tables.size() > k; })
+        .default_words(k == 0 ? "`[0, 1]`" : "no `" + parameter + "`")
+        .extends();
+    keys.keys.push_back(std::move(key));
+  }
+  keys.keys.back().then(resolve_tables);
+  const std::vector<K> others{
+      K("adaptive", &Spec::adaptive, boolean(),
+        "cut a step that does not converge, and grow again; otherwise such a step ends the "
+        "run")
+          .extends(),
+      K("smallest_step", &Spec::smallest_step, between(1e-12, 1.0),
+        "of the stage (the load factor, without a table); needing a smaller one ends the run")
+          .extends()
+          .moreover("at most the first step"),
+      K("largest_step", &Spec::largest_step, between(1e-12, 1.0),
+        "of the stage, to which steps may grow")
+          .extends()
+          .otherwise(
+              [](auto& loading, auto&) { loading.largest_step = 1.0 / loading.steps_to_entry(); },
+              "the first step")
+          .then([](auto& at, auto& loading) {
+            const double step = 1.0 / loading.steps_to_entry();
+            if (loading.smallest_step > step)
+              at.from.refuse("smallest_step", "must not be larger than the first step, 1 / steps");
+            if (loading.largest_step < step)
+              at.refuse("must not be smaller than the first step, 1 / steps");
+          })
+          .moreover("at least the first step"),
+      K("max_broken_bonds", &Spec::max_broken_bonds, count_from(0, "bonds"),
+        "mode `newton`: bonds that may break in one step; a step with more is cut. 0 is no "
+        "limit")
+          .extends()};
+  keys.keys.insert(keys.keys.end(), others.begin(), others.end());
+  return keys;
 }
 
 void check_preconditioner(const Entry& at, SolverSpecification& solver) {
@@ -538,7 +613,8 @@ int default_relaxation_steps(const Case& from) {
   constexpr int steps_of_damage = 50;
   const bool hands_over =
       from.solver.mode == Mode::adaptive && from.material.damage.law != DamageLaw::none;
-  return hands_over ? std::max(from.loading.steps, steps_of_damage) : from.loading.steps;
+  const int steps = from.loading.steps_to_entry();
+  return hands_over ? std::max(steps, steps_of_damage) : steps;
 }
 
 void check_iterations(const Entry& at, const RelaxationSpecification& relaxation) {
@@ -718,7 +794,8 @@ Table<Case> all_keys() {
            .required(),
        K("support", &Case::supports, support_keys(), "tables: prescribed displacements"),
        K("load", &Case::loads, load_keys(), "tables: forces"),
-       K("loading", &Case::loading, loading_keys(), "table: steps of the load factor"),
+       K("loading", &Case::loading, loading_keys(), "table: the way of the loads, and its steps")
+           .early(),
        K("solver", &Case::solver, solver_keys(), "table: search for equilibrium"),
        K("relaxation", &Case::relaxation, relaxation_keys(), "table: steps by dynamic relaxation"),
        K("output", &Case::output, output_keys(), "table: results folder"),

@@ -44,7 +44,7 @@ bool has_sets_from_file(const Case& from) { return std::holds_alternative<PointS
 void check_component(const Entry& at, std::size_t component, const std::string& text,
                      int dimension) {
   try {
-    Expression(text, dimension, spacing_of(at.so_far), Expression::LoadFactor::allowed);
+    Expression(text, dimension, spacing_of(at.so_far), at.so_far.loading.parameters());
   } catch (const InputError& error) {
     at.from.refuse(at.key, component, error.allowed());
   }
@@ -197,14 +197,25 @@ Kind<std::string> condition() {
   const auto read = [](const Entry& at) {
     const std::string selection = at.from.string(at.key);
     try {
-      Expression(selection, at.so_far.dimension, spacing_of(at.so_far),
-                 Expression::LoadFactor::not_allowed);
+      Expression(selection, at.so_far.dimension, spacing_of(at.so_far));
     } catch (const InputError& error) {
       at.refuse(error.allowed());
     }
     return selection;
   };
   return {read, string_text, "an expression of place"};
+}
+
+Kind<LoadTable> load_table() {
+  const auto read = [](const Entry& at) {
+    return at.from.is_string(at.key) ? LoadTable{{}, at.from.string(at.key)}
+                                     : LoadTable{at.from.numbers(at.key, Range()), {}};
+  };
+  const auto text = [](const LoadTable& table, const Case&) {
+    return table.expression.empty() ? array_text(table.entries, toml_number)
+                                    : toml_string(table.expression);
+  };
+  return {read, text, "two numbers or more, or an expression of `step`; 0 at first"};
 }
 
 Kind<std::array<std::optional<std::string>, 3>> prescribed_components() {

@@ -53,6 +53,8 @@ template <class Value>
 
 /// A name that is given: letters, digits, _ and -.
 [[nodiscard]] Kind<std::string> name();
+/// Numbers, or an expression of the step.
+[[nodiscard]] Kind<LoadTable> load_table();
 /// A name of a set or layer, which is a set too; no other one has it.
 [[nodiscard]] Kind<std::string> set_name();
 /// Name of a set or layer that is there.

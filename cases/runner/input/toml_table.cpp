@@ -206,6 +206,15 @@ std::vector<double> TomlTable::numbers(const std::string& key, std::size_t count
   return numbers;
 }
 
+std::vector<double> TomlTable::numbers(const std::string& key, const Range& range) const {
+  return numbers(key, 0, range);
+}
+
+bool TomlTable::is_string(const std::string& key) const {
+  const TomlValue* const value = find(key);
+  return value != nullptr && value->kind == TomlValue::Kind::string;
+}
+
 template <std::size_t count>
 std::vector<std::array<double, count>> TomlTable::tuples(const std::string& key,
                                                          const std::string& what) const {

@@ -58,6 +58,10 @@ class TomlTable {
   /// An array of numbers.
   [[nodiscard]] std::vector<double> numbers(const std::string& key, std::size_t count,
                                             const Range& range) const;
+  /// An array of two numbers or more.
+  [[nodiscard]] std::vector<double> numbers(const std::string& key, const Range& range) const;
+  /// Whether the key has a string.
+  [[nodiscard]] bool is_string(const std::string& key) const;
   /// An array of pairs of numbers.
   [[nodiscard]] std::vector<std::array<double, 2>> pairs(const std::string& key) const;
   /// An array of triples of numbers.

@@ -136,7 +136,7 @@ void Progress::accepted(const StepRecord& record, double relative_residual) {
   load_factor_ = record.load_factor;
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start_;
   const bool relaxed_or_damaged = record.relaxation_iterations > 0 || record.max_damage > 0.0;
-  time_left_.accepted(elapsed.count(), load_factor_, relaxed_or_damaged);
+  time_left_.accepted(elapsed.count(), record.stage / last_stage_, relaxed_or_damaged);
   const std::string relaxed =
       record.relaxation_iterations > 0
           ? fmt::format("  after {} of relaxation", record.relaxation_iterations)

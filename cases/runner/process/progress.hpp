@@ -24,6 +24,9 @@ class Progress {
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
+  /// The stage of the loading programme at which the run ends; without this 1.
+  void follow_to(double last_stage) { last_stage_ = last_stage; }
+
   void say(const std::string& line);
   /// To standard error, quiet or not.
   void problem(const std::string& line);
@@ -40,6 +43,7 @@ class Progress {
   bool quiet_, live_;
   bool live_line_shown_ = false;
   double load_factor_ = 0.0;  // accepted
+  double last_stage_ = 1.0;
   TimeLeft time_left_;
   std::chrono::steady_clock::time_point start_;
   std::FILE* log_ = nullptr;

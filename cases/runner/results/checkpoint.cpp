@@ -205,13 +205,14 @@ void transfer(StateArchive& archive, Checkpoint& checkpoint) {
   auto& [factorisations, linear_iterations, seconds] = costs;
   archive.transfer("costs/factorisations", factorisations);
   archive.transfer("costs/linear_iterations", linear_iterations);
-  auto& [total, neighbourhood, assembly, linear, relaxation, output] = seconds;
+  auto& [total, neighbourhood, assembly, linear, relaxation, output, checkpoints] = seconds;
   archive.transfer("costs/seconds/total", total);
   archive.transfer("costs/seconds/neighbourhood", neighbourhood);
   archive.transfer("costs/seconds/assembly", assembly);
   archive.transfer("costs/seconds/linear", linear);
   archive.transfer("costs/seconds/relaxation", relaxation);
   archive.transfer("costs/seconds/output", output);
+  archive.transfer("costs/seconds/checkpoints", checkpoints);
 }
 
 /// FNV-1a over words of eight bytes [http://www.isthe.com/chongo/tech/comp/fnv].

@@ -114,8 +114,8 @@ Dossier make_dossier(const Case& from, const Body& body, const LoadSteppingResul
     say("Last accepted state: none; the first step failed");
   }
   say("");
-  say(fmt::format("Last search: load factor {:.9g}, {} iterations", attempt.load_factor,
-                  attempt.iterations));
+  say(fmt::format("Last search: load factor {:.9g}, {} iterations",
+                  body.conditions->load_factor(attempt.stage), attempt.iterations));
   say(fmt::format("  residual {:.4g} N, measured against {:.4g} N; tolerance {:.3g} of that",
                   attempt.state.residual_norm, attempt.scale, from.solver.relative_tolerance));
   if (attempt.inertia) {

@@ -84,6 +84,7 @@ const std::vector<Column>& later_step_columns() {
        "2-norm of the forces that hold pinned fragments; no reaction counts them"},
       {integer, "settled", "1",
        "1: the state was not asked to be in equilibrium (moving load, displacement tolerance)"},
+      {number, "stage", "1", "stage of the loading programme: how many entries of its tables"},
   };
   return columns;
 }
@@ -115,11 +116,12 @@ std::vector<Column> iteration_columns() {
 std::vector<Column> decision_columns() {
   return {{integer, "step", "1", "number that the step has, or would have had"},
           {number, "load_factor", "1", "load factor that was attempted"},
-          {number, "increment", "1", "increment of the load factor that was attempted"},
+          {number, "increment", "1", "increment of the stage that was attempted"},
           {text, "outcome", "none", "outcome of the search for equilibrium"},
           {text, "action", "none", "what load stepping did then"},
-          {number, "next_increment", "1", "increment of the load factor of the next attempt"},
-          {text, "reason", "none", "why, for a person"}};
+          {number, "next_increment", "1", "increment of the stage of the next attempt"},
+          {text, "reason", "none", "why, for a person"},
+          {number, "stage", "1", "stage of the loading programme that was attempted"}};
 }
 
 std::vector<Column> history_columns(const std::vector<std::string>& support_sets,
@@ -164,7 +166,7 @@ Row make_row(const DecisionRecord& record) {
   static const std::vector<Column> columns = decision_columns();
   return checked(columns,
                  {std::int64_t{record.step}, record.load_factor, record.increment, record.outcome,
-                  name(record.action), record.next_increment, record.reason});
+                  name(record.action), record.next_increment, record.reason, record.stage});
 }
 
 std::vector<Column> broken_bond_columns() {
@@ -215,6 +217,7 @@ Row make_row(const StepRecord& record, const std::vector<std::string>& support_s
   append("numerical_work", record.numerical_work);
   append("pin_force", record.pin_force);
   row.emplace_back(std::int64_t{record.settled});
+  append("stage", record.stage);
   return row;
 }
 
@@ -233,7 +236,7 @@ DecisionRecord read_decision(const Row& row) {
   DecisionRecord record;
   std::string action;
   cells >> record.step >> record.load_factor >> record.increment >> record.outcome >> action >>
-      record.next_increment >> record.reason;
+      record.next_increment >> record.reason >> record.stage;
   record.action = decision_named(action);
   return record;
 }
@@ -261,7 +264,7 @@ StepRecord read_step(const Row& row, const std::vector<std::string>& support_set
     values.resize(std::size_t(probe.components));
     for (double& value : values) cells >> value;
   }
-  cells >> record.numerical_work >> record.pin_force >> record.settled;
+  cells >> record.numerical_work >> record.pin_force >> record.settled >> record.stage;
   return record;
 }
 

@@ -108,6 +108,7 @@ void Recorder::decided(const DecisionRecord& record) {
 void Recorder::changed_solver(const std::string& reason) {
   DecisionRecord record;
   record.step = last_ ? last_->step + 1 : 1;
+  record.stage = last_ ? last_->stage : 0.0;
   record.load_factor = last_ ? last_->load_factor : 0.0;
   record.action = Decision::change_linear_solver;
   record.reason = reason;

@@ -110,6 +110,7 @@ std::string summary_json(const Summary& summary, const StepTotals& totals,
   seconds.add("linear", summary.costs.seconds.linear);
   seconds.add("relaxation", summary.costs.seconds.relaxation);
   seconds.add("output", summary.costs.seconds.output);
+  seconds.add("checkpoints", summary.costs.seconds.checkpoints);
 
   Members all(0);
   all.add("status", summary.status);

@@ -1,61 +1,74 @@
-"""Runs the program, one process at a time, and passes interrupts on to it."""
+"""Runs the program, in as many processes as are asked for, and passes interrupts on to them."""
 
 import os
 import shutil
 import signal
 import subprocess
+import threading
 from dataclasses import dataclass
 
 
 @dataclass
 class Ending:
-    """How a run ended: exit code as a shell tells it, and what was said on the error stream."""
+    """How a run ended: exit code as a shell tells it, and what was said on the two streams."""
 
     code: int
     message: str
+    output: str = ""
 
 
 class Program:
-    """The program in a process group of its own, so that an interrupt reaches it once wherever it was
-    sent (to the terminal's group or to this process alone). Should this process be killed, it is too.
+    """The program in process groups of its own, so that an interrupt reaches each process once wherever it
+    was sent (to the terminal's group or to this process alone). Should this process be killed, they are too.
+    Calls of `run` may stand side by side, in threads.
     """
 
     def __init__(self, path: str):
         guard = ["setpriv", "--pdeathsig", "KILL"] if shutil.which("setpriv") else []
         self._command = [*guard, path]
-        self._child: subprocess.Popen | None = None
-        self._pending = 0  # interrupts to be passed on
-        self.interrupted = False
+        self._lock = threading.Lock()
+        self._children: dict[subprocess.Popen, int] = {}  # and how many interrupts they have got
+        self._interrupts = 0
         for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
             signal.signal(number, self._interrupt)
         signal.signal(signal.SIGTSTP, self._pause)
 
-    def run(self, arguments: list[str]) -> Ending:
-        self._child = subprocess.Popen([*self._command, *arguments], text=True, errors="replace",
-                                       stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
-                                       stderr=subprocess.PIPE, process_group=0)  # fmt: skip
+    @property
+    def interrupted(self) -> bool:
+        return self._interrupts > 0
+
+    def run(self, arguments: list[str], told: bool = False) -> Ending:
+        """@param told whether standard output is kept"""
+        child = subprocess.Popen([*self._command, *arguments], text=True, errors="replace",
+                                 stdin=subprocess.DEVNULL, stdout=subprocess.PIPE if told else subprocess.DEVNULL,
+                                 stderr=subprocess.PIPE, process_group=0)  # fmt: skip
+        with self._lock:
+            self._children[child] = 0
         self._pass_on()
-        message = self._child.communicate()[1]
-        code = self._child.returncode
-        self._child = None
+        output, message = child.communicate()
+        with self._lock:
+            del self._children[child]
+        code = child.returncode
         code = 128 - code if code < 0 else code  # ended by a signal
-        return Ending(130 if code == 128 + signal.SIGINT else code, message.strip())
+        return Ending(130 if code == 128 + signal.SIGINT else code, message.strip(), output or "")
 
     def _interrupt(self, number, frame) -> None:
-        self.interrupted = True
-        self._pending += 1
-        self._pass_on()
+        self._interrupts += 1
+        # Elsewhere than here, where a lock may be held by what was interrupted.
+        threading.Thread(target=self._pass_on).start()
 
     def _pass_on(self) -> None:
-        while self._pending and self._child:
-            self._pending -= 1
-            self._child.send_signal(signal.SIGINT)
+        with self._lock:
+            for child, received in self._children.items():
+                for _ in range(self._interrupts - received):
+                    child.send_signal(signal.SIGINT)
+                self._children[child] = self._interrupts
 
     def _pause(self, number, frame) -> None:
         """Stops with the program, and goes on with it."""
-        child = self._child
-        if child:
+        children = list(self._children)
+        for child in children:
             child.send_signal(signal.SIGSTOP)
         os.kill(os.getpid(), signal.SIGSTOP)
-        if child:
+        for child in children:
             child.send_signal(signal.SIGCONT)

@@ -1,6 +1,7 @@
 """What a combination's results were made from, kept in its folder as sweep.json.
 
-Run as a script it writes the record: python3 record.py FOLDER [key=value]...
+Run as a script it writes the record, python3 record.py FOLDER [key=value]..., or looks whether results are
+of a case, python3 record.py --is-of FOLDER CHECKSUM [key=value]...
 """
 
 import hashlib
@@ -30,6 +31,33 @@ def is_done(folder: Path, case_text: bytes, settings: list[str]) -> bool:
         )
     except (OSError, ValueError, KeyError, TypeError, AttributeError):
         return False
+
+
+def can_go_on(folder: Path, case_text: bytes, settings: list[str]) -> bool:
+    """Whether the folder holds a run of this case text and these settings that was interrupted, killed, or
+    failed by the machine."""
+    if not (folder / "results.h5").is_file():
+        return False
+    try:
+        status = json.loads((folder / "summary.json").read_bytes())["status"]
+    except FileNotFoundError:
+        status = "killed"
+    except (OSError, ValueError, KeyError, TypeError):
+        return False
+    if status not in ("killed", "interrupted", "failed"):
+        return False
+    # In a process of its own, as record_done: and HDF5 may crash on a damaged file.
+    command = [sys.executable, "-BEs", __file__, "--is-of", str(folder), _checksum(case_text), *settings]
+    return subprocess.run(command, stdin=subprocess.DEVNULL, capture_output=True, process_group=0).returncode == 0
+
+
+def _is_of(folder: Path, checksum: str, settings: list[str]) -> bool:
+    import h5py
+
+    with h5py.File(folder / "results.h5", "r") as file:
+        pairs = zip(*(map(_text, file[f"case/settings/{name}"][()]) for name in ("key", "value")))
+        given = [f"{key}={value}" for key, value in pairs if key != "output.directory"]
+        return _checksum(_bytes(file["case/as_read"][()])) == checksum and given == settings
 
 
 def record_done(folder: Path, settings: list[str]) -> bool:
@@ -62,9 +90,15 @@ def _bytes(value) -> bytes:
     return value if isinstance(value, bytes) else str(value).encode()
 
 
+def _text(value) -> str:
+    return _bytes(value).decode()
+
+
 def _checksum(content: bytes) -> str:
     return hashlib.sha256(content).hexdigest()
 
 
 if __name__ == "__main__":
+    if sys.argv[1] == "--is-of":
+        sys.exit(0 if _is_of(Path(sys.argv[2]), sys.argv[3], sys.argv[4:]) else 1)
     _write(Path(sys.argv[1]), sys.argv[2:])

@@ -14,8 +14,9 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "plots"))
 
 from computed import Keys, compute, split_computed
+from jobs import FolderLock, Jobs, bounded, estimated_memory
 from program import Ending, Program
-from record import is_done, record_done
+from record import can_go_on, is_done, record_done
 from refinement import Refinement, refine, write_refinements
 from table import figures, is_own_table, quantities, write_table
 from variations import Axis, WrongInput, check_keys, combinations, folder_name, vary, vary_with
@@ -49,6 +50,7 @@ class Sweep:
     directory: Path
     threads: int | None
     overwrite: bool  # also runs of another case in the folders
+    jobs: int = 1  # runs side by side
     refined: int | None = None  # number of the key that --refine varies
     linked: frozenset[int] = frozenset()  # numbers of that key, of those that vary with it, and of computed ones
 
@@ -57,45 +59,116 @@ class Sweep:
 
 
 def run_all(sweep: Sweep, program: Program) -> int:
-    """Runs what is not done yet, one after the other; returns the exit code of the sweep."""
-    rows = {number: _row(sweep, combination, DONE, True)
-            for number, combination in enumerate(sweep.combinations)
-            if is_done(combination.folder, sweep.case_text, combination.settings)}  # fmt: skip
-    skipped, codes = set(rows), set()
-    for number, combination in enumerate(sweep.combinations):
-        if program.interrupted:
-            return INTERRUPTED
-        say(f"{number + 1}/{len(sweep.combinations)} {_label(sweep, combination)}: ", end="")
-        if number in skipped:
-            say("skipped (done before)")
-            continue
+    """Runs what is not done yet; returns the exit code of the sweep."""
+    all_runs = AllRuns(sweep, program)
+    code = all_runs.run()
+    if code is not None:
+        return code
+    _save(sweep, all_runs.rows)
+    rows = [all_runs.rows[number] for number in range(len(sweep.combinations))]
+    say(f"sweep: {sweep.directory / 'sweep.csv'}")
+    if sweep.refined is not None:
+        _tell_refinements(sweep, rows)
+    _draw(sweep, [row["status"] for row in rows])
+    return _worst(all_runs.codes)
+
+
+@dataclass
+class Ran:
+    """How a run ended."""
+
+    ending: Ending
+    is_new: bool  # else the folder's results are of an earlier run
+    is_recorded: bool  # as done, if it is
+
+
+class AllRuns:
+    """The runs of a sweep, side by side or one after the other, and what they gave."""
+
+    def __init__(self, sweep: Sweep, program: Program):
+        self.sweep, self.program = sweep, program
+        self.rows = {number: _row(sweep, combination, DONE, True)
+                     for number, combination in enumerate(sweep.combinations) if self._is_done(number)}  # fmt: skip
+        self.done_before = frozenset(self.rows)
+        self.codes: set[int] = set()
+
+    def run(self) -> int | None:
+        """@return the exit code of a sweep that ends before all combinations have been run"""
+        jobs = Jobs(self.sweep.jobs, self._memory, lambda number: FolderLock(self.sweep.combinations[number].folder))
+        ends = None
+        goes_on = lambda: ends is None and not self.program.interrupted
+        numbers = range(len(self.sweep.combinations))
+        for number, ran in jobs.run(numbers, self._run, goes_on, self._tell_waiting):
+            stops = self._take(number, ran)
+            ends = stops if ends is None else ends
+        return INTERRUPTED if ends is None and self.program.interrupted else ends
+
+    def _run(self, number: int) -> Ran | None:
+        """Nothing if it is done, before or by another sweep meanwhile."""
+        combination = self.sweep.combinations[number]
+        if number in self.done_before or self._is_done(number):
+            return None
+        if self.sweep.jobs == 1:
+            say(f"{self._label(number)}: ", end="")
         before = _stamp(combination.folder)
-        ending = program.run(_arguments(sweep, combination))
-        is_new = _stamp(combination.folder) != before  # else the folder's results are of an earlier run
-        say(_told(ending, combination.folder if is_new else None))
+        ending = None
+        if can_go_on(combination.folder, self.sweep.case_text, combination.settings):
+            ending = self.program.run(["resume", str(combination.folder), "--quiet", *_threads(self.sweep)])
+        if ending is None or ending.code == WRONG_INPUT:
+            ending = self.program.run(_arguments(self.sweep, combination))
+        is_recorded = ending.code != DONE or record_done(combination.folder, combination.settings)
+        return Ran(ending, _stamp(combination.folder) != before, is_recorded)
+
+    def _take(self, number: int, ran: Ran | None) -> int | None:
+        """@return the exit code of the sweep if it ends with this run"""
+        combination = self.sweep.combinations[number]
+        if ran is None:
+            say(f"{self._label(number)}: skipped (done {'before' if number in self.done_before else 'by another sweep'})")
+            self.rows[number] = _row(self.sweep, combination, DONE, True)
+            return None
+        label = "" if self.sweep.jobs == 1 else f"{self._label(number)}: "
+        ending = ran.ending
+        say(label + _told(ending, combination.folder if ran.is_new else None))
         if ending.code == WRONG_INPUT:
             print(ending.message, file=sys.stderr)
             return WRONG_INPUT
-        if ending.code == DONE and not record_done(combination.folder, combination.settings):
+        if not ran.is_recorded:
             print("  sweep.json could not be written: this combination will be run again", file=sys.stderr)
-        rows[number] = _row(sweep, combination, ending.code, is_new)
-        _save(sweep, rows)
+        self.rows[number] = _row(self.sweep, combination, ending.code, ran.is_new)
+        _save(self.sweep, self.rows)
         if ending.code in (INTERRUPTED, MACHINE_FAILED):  # it would fail the next ones, too
             return ending.code
-        codes.add(ending.code)
-    _save(sweep, rows)
-    say(f"sweep: {sweep.directory / 'sweep.csv'}")
-    if sweep.refined is not None:
-        _tell_refinements(sweep, [rows[number] for number in range(len(rows))])
-    _draw(sweep, [rows[number]["status"] for number in range(len(rows))])
-    return _worst(codes)
+        self.codes.add(ending.code)
+        return None
+
+    def _is_done(self, number: int) -> bool:
+        combination = self.sweep.combinations[number]
+        return is_done(combination.folder, self.sweep.case_text, combination.settings)
+
+    def _memory(self, number: int) -> tuple[float, float] | None:
+        if number in self.done_before:
+            return 0.0, 1.0
+        settings = self.sweep.combinations[number].settings
+        words = [word for setting in settings for word in ("--set", setting)]
+        return estimated_memory(self.program.run(["check", str(self.sweep.case), *words], told=True).output)
+
+    def _label(self, number: int) -> str:
+        combination = self.sweep.combinations[number]
+        return f"{number + 1}/{len(self.sweep.combinations)} {_values(self.sweep, combination)}"
+
+    def _tell_waiting(self, number: int) -> None:
+        say(f"{self._label(number)}: another sweep is running it; waiting for its end")
 
 
 def _arguments(sweep: Sweep, combination: Combination) -> list[str]:
     settings = [word for setting in combination.settings for word in ("--set", setting)]
-    threads = [] if sweep.threads is None else ["--threads", str(sweep.threads)]
     overwrite = ["--overwrite"] if sweep.overwrite else []
-    return ["run", str(sweep.case), "--quiet", *settings, "--output", str(combination.folder), *threads, *overwrite]
+    return ["run", str(sweep.case), "--quiet", *settings, "--output", str(combination.folder), *_threads(sweep),
+            *overwrite]  # fmt: skip
+
+
+def _threads(sweep: Sweep) -> list[str]:
+    return [] if sweep.threads is None else ["--threads", str(sweep.threads)]
 
 
 def say(text: str, end: str = "\n") -> None:
@@ -113,7 +186,7 @@ def _row(sweep: Sweep, combination: Combination, code: int, has_results: bool) -
     return row | (figures(combination.folder) if has_results else {})
 
 
-def _label(sweep: Sweep, combination: Combination) -> str:
+def _values(sweep: Sweep, combination: Combination) -> str:
     return ", ".join(f"{key}={value}" for key, value in zip(sweep.keys, combination.values))
 
 
@@ -225,8 +298,8 @@ class _Varied(argparse.Action):
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
         prog="peristat sweep", allow_abbrev=False,
-        description="Runs a case for every combination of the given values, one after the other, skips "
-        "what is done, and makes one table (DIR/sweep.csv) and one picture (DIR/sweep.png).",
+        description="Runs a case for every combination of the given values, skips what is done, goes on with "
+        "what was interrupted, and makes one table (DIR/sweep.csv) and one picture (DIR/sweep.png).",
         epilog="Exit codes: 0 all completed, 2 wrong input, 3 a combination did not converge, 4 one was "
         "out of memory, 5 the machine failed (disk full, a limit of the shell), 130 interrupted, 1 a bug.",
     )  # fmt: skip
@@ -248,7 +321,10 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--output", metavar="DIR", type=Path,
                         help="folder of the sweep (default: results/FOLDER_STEM_sweep)")  # fmt: skip
     parser.add_argument("--overwrite", action="store_true", help="replace results of another case in DIR")
-    parser.add_argument("--threads", metavar="N", type=int, help="number of threads (default: all processors)")
+    parser.add_argument("--threads", metavar="N", type=int, help="number of threads of each run (default: all "
+                        "processors, shared out among the jobs)")  # fmt: skip
+    parser.add_argument("--jobs", metavar="N", type=int, default=1, help="runs side by side, as far as processors "
+                        "and memory allow (default: 1)")  # fmt: skip
     return parser
 
 
@@ -275,9 +351,19 @@ def read_sweep(arguments: argparse.Namespace) -> Sweep:
         raise WrongInput(f"{foreign} is of no sweep and would be replaced: name another folder (--output)")
     if set('"\\') & set(str(directory)):
         raise WrongInput(f"--output {directory}: must have no quotes and no backslashes")
-    sweep = Sweep(case, text, [], [], directory, arguments.threads, arguments.overwrite)
+    jobs, threads = _jobs(arguments)
+    sweep = Sweep(case, text, [], [], directory, threads, arguments.overwrite, jobs)
     _find_combinations(sweep, arguments)
     return sweep
+
+
+def _jobs(arguments: argparse.Namespace) -> tuple[int, int | None]:
+    if not 1 <= arguments.jobs <= 1024:
+        raise WrongInput(f"--jobs {arguments.jobs}: must be from 1 to 1024")
+    jobs, threads = bounded(arguments.jobs, arguments.threads, len(os.sched_getaffinity(0)))
+    if jobs < arguments.jobs:
+        say(f"sweep: {jobs} at a time, not {arguments.jobs}: there are {len(os.sched_getaffinity(0))} processors")
+    return jobs, threads
 
 
 def _find_combinations(sweep: Sweep, arguments: argparse.Namespace) -> None:

@@ -87,7 +87,7 @@ def write_table(path: Path, keys: list[str], rows: list[dict]) -> None:
     between = [column for column in found if column not in [*fixed, *COSTS]]
     order = ("peak_reaction", "final_reaction", "probe")
     between.sort(key=lambda column: order.index(column.partition(":")[0]))
-    unfinished = path.with_name(path.name + ".tmp")
+    unfinished = path.with_name(f"{path.name}.{os.getpid()}.tmp")  # another sweep may write one, too
     unfinished.unlink(missing_ok=True)  # a link in its place is not followed
     with open(unfinished, "w", newline="", encoding="utf-8", errors="surrogateescape") as file:
         table = csv.DictWriter(file, [*fixed, *between, *COSTS], restval="", lineterminator="\n")

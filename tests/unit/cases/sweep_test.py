@@ -4,6 +4,8 @@ apart, refinements extrapolated."""
 import math
 import sys
 import tempfile
+import threading
+import time
 import unittest
 from pathlib import Path
 
@@ -14,6 +16,7 @@ sys.path[:0] = [str(RUNNER / "sweep"), str(RUNNER / "plots"), str(Path(__file__)
 
 import plot_test  # noqa: E402
 from computed import Keys, compute, split_computed  # noqa: E402
+from jobs import FolderLock, Jobs, bounded, estimated_memory  # noqa: E402
 from refinement import observed_order, refine  # noqa: E402
 from results_folder import ResultsFolder  # noqa: E402
 from sweep_picture import DASHES, draw_sweep, labels, line_looks, midline  # noqa: E402
@@ -30,6 +33,58 @@ def body(reference, layers=None) -> ResultsFolder:
 
 def lattice(*counts: int) -> np.ndarray:
     return np.stack(np.meshgrid(*map(np.arange, counts), indexing="ij"), axis=-1).reshape(-1, len(counts)).astype(float)
+
+
+class SideBySide(unittest.TestCase):
+    def test_jobs_and_threads_take_no_more_than_the_processors(self):
+        self.assertEqual(bounded(1, None, 8), (1, None))
+        self.assertEqual(bounded(1, 16, 8), (1, 16))  # one run may have what it is given
+        self.assertEqual(bounded(4, None, 8), (4, 2))
+        self.assertEqual(bounded(3, None, 8), (3, 2))
+        self.assertEqual(bounded(20, None, 8), (8, 1))
+        self.assertEqual(bounded(4, 4, 8), (2, 4))
+        self.assertEqual(bounded(4, 16, 8), (1, 16))
+
+    def test_memory_is_what_check_tells(self):
+        told = "points      40\nmemory      about 62 MB of 24.90 GB available\ntime        below a second\n"
+        self.assertEqual(estimated_memory(told), (62e6, 24.9e9))
+        self.assertIsNone(estimated_memory("memory      enough\n"))
+
+    def run_jobs(self, jobs, memory):
+        """The largest number of tasks that ran at one time, and the order of their ends."""
+        running, most, lock = set(), [0], threading.Lock()
+
+        def task(number):
+            with lock:
+                running.add(number)
+                most[0] = max(most[0], len(running))
+            time.sleep(0.05)
+            with lock:
+                running.remove(number)
+
+        with tempfile.TemporaryDirectory() as folder:
+            made = Jobs(jobs, memory, lambda number: FolderLock(Path(folder) / str(number)))
+            ended = [number for number, _ in made.run(range(6), task, lambda: True, lambda number: None)]
+        return most[0], ended
+
+    def test_no_more_runs_begin_than_memory_allows(self):
+        self.assertEqual(self.run_jobs(3, lambda number: (1.0, 10.0))[0], 3)
+        self.assertEqual(self.run_jobs(3, lambda number: (4.0, 10.0))[0], 2)
+        self.assertEqual(self.run_jobs(3, lambda number: (8.0, 10.0))[0], 1)
+        self.assertEqual(self.run_jobs(3, lambda number: (80.0, 10.0))[0], 1)  # alone: the run itself refuses
+        self.assertEqual(self.run_jobs(3, lambda number: None)[0], 1)  # not known
+        most, ended = self.run_jobs(1, None)
+        self.assertEqual((most, ended), (1, list(range(6))))
+
+    def test_what_another_sweep_runs_is_waited_for(self):
+        with tempfile.TemporaryDirectory() as folder:
+            held = FolderLock(Path(folder) / "0")
+            self.assertFalse(FolderLock(Path(folder) / "0").is_held)
+            threading.Timer(0.5, held.release).start()
+            waited = []
+            made = Jobs(1, None, lambda number: FolderLock(Path(folder) / str(number)))
+            ended = [number for number, _ in made.run(range(2), lambda number: None, lambda: True, waited.append)]
+        self.assertEqual((ended, waited), ([1, 0], [0]))
 
 
 class Variations(unittest.TestCase):

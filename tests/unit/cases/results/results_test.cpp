@@ -203,6 +203,7 @@ struct ExampleFields {
 StepRecord example_step(int step) {
   StepRecord record;
   record.step = step;
+  record.stage = 1.5;
   record.load_factor = 0.1 * step;
   record.mode = "newton";
   record.newton_iterations = 4;
@@ -227,8 +228,8 @@ StepRecord example_step(int step) {
 void add_step(Results& results, int step, int dimension = 2) {
   results.add(IterationRecord{step, 0, 100.0, 1.0, -1.0, 1.0, 0, 0});
   results.add(IterationRecord{step, 1, 1e-9, 1e-11, -2.0, 0.5, 17, 3, 0.25, 12, 4, 1, 1e-6});
-  results.add(DecisionRecord{step, 0.1 * step, 0.1, "converged", Decision::accept_and_grow, 0.2,
-                             "quick, \"easy\""});
+  results.add(DecisionRecord{step, 1.5, 0.1 * step, 0.1, "converged", Decision::accept_and_grow,
+                             0.2, "quick, \"easy\""});
   const ExampleFields fields(step, dimension);
   results.add(example_step(step), fields.views());
 }
@@ -411,9 +412,10 @@ TEST_F(ResultsTest, TablesHaveTheColumnsOfTheContract) {
           "dissipated_energy,drained_energy,external_work,balance_error,broken_bonds,"
           "max_damage,max_stretch,reaction_x:right,reaction_y:right,reaction_z:right,"
           "\"reaction_x:left, \"\"top\"\"\",\"reaction_y:left, \"\"top\"\"\","
-          "\"reaction_z:left, \"\"top\"\"\",tip_x,tip_y,crack,numerical_work,pin_force,settled",
+          "\"reaction_z:left, \"\"top\"\"\",tip_x,tip_y,crack,numerical_work,pin_force,settled,"
+          "stage",
           "1,0.1,newton,4,100,0.3333333333333333,0.25,0.125,5,1e-17,3,0.5,0.01,1,2,0,-1,-2,0,0.5,"
-          "-0.5,9,0.0625,0.75,1"}));
+          "-0.5,9,0.0625,0.75,1,1.5"}));
   EXPECT_EQ(lines(directory / "iterations.csv"),
             (std::vector<std::string>{
                 "step,iteration,residual,relative_residual,energy,step_length,"
@@ -422,8 +424,8 @@ TEST_F(ResultsTest, TablesHaveTheColumnsOfTheContract) {
                 "1,0,100,1,-1,1,0,0,0,0,0,0,0", "1,1,1e-09,1e-11,-2,0.5,17,3,0.25,12,4,1,1e-06"}));
   EXPECT_EQ(lines(directory / "decisions.csv"),
             (std::vector<std::string>{
-                "step,load_factor,increment,outcome,action,next_increment,reason",
-                "1,0.1,0.1,converged,accept and grow,0.2,\"quick, \"\"easy\"\"\""}));
+                "step,load_factor,increment,outcome,action,next_increment,reason,stage",
+                "1,0.1,0.1,converged,accept and grow,0.2,\"quick, \"\"easy\"\"\",1.5"}));
 }
 
 TEST_F(ResultsTest, TablesStayWholeOverManyPages) {
@@ -456,7 +458,7 @@ TEST_F(ResultsTest, StepWithoutFieldsEntersTheHistoryOnly) {
 
 TEST_F(ResultsTest, DecisionsAfterTheLastStepArePublishedByClose) {
   Results results = open_results(directory);
-  results.add(DecisionRecord{1, 0.5, 0.5, "stalled", Decision::stop, 0.0, "too small"});
+  results.add(DecisionRecord{1, 0.5, 0.5, 0.5, "stalled", Decision::stop, 0.0, "too small"});
   results.close({});
   EXPECT_EQ(Reader(directory / "results.h5").texts("/decisions/action"),
             std::vector<std::string>{"stop"});
@@ -477,7 +479,7 @@ TEST_F(ResultsTest, SummaryTakesSumsFromAllStepsAndTheRestFromTheLast) {
   summary.costs.factorisations = 14;
   summary.costs.linear_iterations = 15;
   summary.max_displacement = 0.1;
-  summary.costs.seconds = {1, 2, 3, 4, 5, 6.5};
+  summary.costs.seconds = {1, 2, 3, 4, 5, 6.5, 7};
   summary.threads = 2;
   results.close(summary);
   const std::string json =
@@ -521,7 +523,8 @@ TEST_F(ResultsTest, SummaryTakesSumsFromAllStepsAndTheRestFromTheLast) {
     "assembly": 3,
     "linear": 4,
     "relaxation": 5,
-    "output": 6.5
+    "output": 6.5,
+    "checkpoints": 7
   },
   "peak_memory_bytes": M,
   "threads": 2,

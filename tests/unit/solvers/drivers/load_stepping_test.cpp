@@ -96,7 +96,7 @@ void expect_consistent(const Followed& followed) {
     ++accepted;
   }
   EXPECT_EQ(accepted, followed.steps.size());
-  EXPECT_EQ(followed.result.state.load_factor, reached);
+  EXPECT_EQ(followed.result.state.stage, reached);
   if (accepted > 0) {
     EXPECT_EQ(followed.result.state.displacement, followed.displacements.back());
   }
@@ -230,7 +230,7 @@ TEST(LoadStepping, KeepsTheLastAcceptedStateWhenInterrupted) {
   EXPECT_EQ(followed.result.outcome, Outcome::interrupted);
   EXPECT_EQ(followed.result.steps, 2);
   expect_consistent(followed);
-  EXPECT_NEAR(followed.result.state.load_factor, 0.4, 1e-14);
+  EXPECT_NEAR(followed.result.state.stage, 0.4, 1e-14);
   EXPECT_EQ(followed.decisions.back().action, Decision::stop);
   EXPECT_EQ(followed.decisions.back().outcome, "interrupted");
 }

@@ -191,7 +191,7 @@ TEST(Study, NoConvergenceIsAnOutcome) {
   const StudyResult result = solve(*body, options);
   EXPECT_NE(result.outcome, Outcome::converged);
   EXPECT_TRUE(result.steps.empty());
-  EXPECT_EQ(result.state.load_factor, 0.0);
+  EXPECT_EQ(result.state.stage, 0.0);
   ASSERT_FALSE(result.decisions.empty());
   EXPECT_EQ(result.decisions.back().action, Decision::stop);
 }
@@ -202,7 +202,7 @@ double pull(const BodySpecification& of, const StudyOptions& options) {
   const StudyResult result = solve(*body, options);
   EXPECT_EQ(result.outcome, Outcome::converged);
   EXPECT_EQ(result.steps.size(), std::size_t(options.loading.steps));
-  EXPECT_EQ(result.state.load_factor, 1.0);
+  EXPECT_EQ(result.state.stage, 1.0);
   EXPECT_NEAR(mean_displacement(body->points, result.state, "right")[0], 1e-3, 1e-15);
   return result.steps.back().reactions.at("right")[0];
 }
@@ -252,7 +252,7 @@ TEST(Study, TheObserverIsToldAndMayInterrupt) {
   EXPECT_EQ(steps, 2);
   EXPECT_GT(iterations, 2);
   EXPECT_EQ(result.steps.size(), 2u);
-  EXPECT_EQ(result.state.load_factor, 0.5);
+  EXPECT_EQ(result.state.stage, 0.5);
 }
 
 TEST(AddSet, RefusesWhatSelectsNothingAndNamesThatAreTaken) {

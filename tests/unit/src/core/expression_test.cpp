@@ -1,8 +1,11 @@
 #include "src/core/expression.hpp"
 
+#include <array>
 #include <cmath>
 #include <locale>
 #include <numbers>
+#include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -11,18 +14,19 @@
 namespace peristat {
 namespace {
 
-constexpr auto with_load = Expression::LoadFactor::allowed;
-constexpr auto without_load = Expression::LoadFactor::not_allowed;
+const std::vector<std::string> with_load{"load"};
+const std::vector<std::string> without_load;
 
 double value(const std::string& text, const Coordinates& place = {}, double load_factor = 0.0) {
-  return Expression(text, 3, 0.01, with_load)(place, load_factor);
+  return Expression(text, 3, 0.01, with_load)(place, std::array{load_factor});
 }
 
 /// What is said about a text that is refused, when it is read or when it is evaluated.
 std::string refusal(const std::string& text, int dimension = 2,
-                    Expression::LoadFactor load = with_load, const Coordinates& place = {}) {
+                    const std::vector<std::string>& load = with_load,
+                    const Coordinates& place = {}) {
   try {
-    (void)Expression(text, dimension, 0.01, load)(place, 0.5);
+    (void)Expression(text, dimension, 0.01, load)(place, std::array{0.5});
   } catch (const InputError& error) {
     EXPECT_EQ(error.key(), "");
     EXPECT_EQ(error.value(), '"' + text + '"');
@@ -39,9 +43,20 @@ TEST(Expression, KnowsPlaceLoadFactorAndConstants) {
 
 TEST(Expression, FollowsPlaceAndLoadFactorFromCallToCall) {
   const Expression expression("x*load", 1, 1.0, with_load);
-  EXPECT_EQ(expression({2, 0, 0}, 3), 6);
-  EXPECT_EQ(expression({5, 0, 0}, 7), 35);
-  EXPECT_EQ(expression({5, 0, 0}), 0);
+  EXPECT_EQ(expression({2, 0, 0}, std::array{3.0}), 6);
+  EXPECT_EQ(expression({5, 0, 0}, std::array{7.0}), 35);
+  EXPECT_EQ(expression({5, 0, 0}, std::array{0.0}), 0);
+}
+
+TEST(Expression, KnowsParametersByTheirNames) {
+  const Expression expression("load - 2*load2", 0, 0.0, {"load", "load2"});
+  EXPECT_EQ(expression({}, std::array{3.0, 1.0}), 1);
+  EXPECT_EQ(refusal("load2", 1, with_load),
+            "unknown variable load2; allowed are x, load, pi, spacing; did you mean load?");
+}
+
+TEST(Expression, HasNoSpacingWhereThereIsNone) {
+  EXPECT_THROW(Expression("spacing", 0, 0.0, {"step"}), InputError);
 }
 
 TEST(Expression, HasTheUsualOperatorsAndFunctions) {
@@ -87,7 +102,7 @@ TEST(Expression, MayRunOverLines) { EXPECT_EQ(value("1\n+\t2\r\n"), 3); }
 TEST(Expression, IsConstantWithoutAVariable) {
   EXPECT_TRUE(Expression("2*pi*spacing", 2, 0.01, with_load).is_constant());
   EXPECT_TRUE(Expression(2.75e-4).is_constant());
-  EXPECT_EQ(Expression(2.75e-4)({1, 2, 3}, 4), 2.75e-4);
+  EXPECT_EQ(Expression(2.75e-4)({1, 2, 3}, std::array{4.0}), 2.75e-4);
   EXPECT_EQ(Expression(2.75e-4).text(), "0.000275");
   EXPECT_FALSE(Expression("0*load", 2, 0.01, with_load).is_constant());
   EXPECT_FALSE(Expression("max(1, x)", 2, 0.01, with_load).is_constant());
@@ -96,7 +111,7 @@ TEST(Expression, IsConstantWithoutAVariable) {
 TEST(Expression, CanBeMoved) {
   Expression first("x + load", 1, 1.0, with_load);
   const Expression second = std::move(first);
-  EXPECT_EQ(second({1, 0, 0}, 2), 3);
+  EXPECT_EQ(second({1, 0, 0}, std::array{2.0}), 3);
 }
 
 struct CommaAsDecimalPoint : std::numpunct<char> {

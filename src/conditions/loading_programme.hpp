@@ -1,0 +1,44 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace peristat {
+
+/// The load parameters `load`, `load2`, … along a path. Each has a table of values. The *stage*
+/// runs from 0 over 1, 2, … and counts the tables' entries; between two entries a parameter goes
+/// linearly from the one to the other. Without tables there is one parameter, the load factor,
+/// which goes from 0 to 1 as the stage does.
+class LoadingProgramme {
+ public:
+  static constexpr std::size_t most_parameters = 4;
+  /// A remainder of the stage below this is round-off of the sum of steps.
+  static constexpr double tolerance = 1e-9;
+
+  LoadingProgramme() : LoadingProgramme({{0.0, 1.0}}) {}
+  /// @param tables of `load`, `load2`, …
+  /// @throws InputError ("programme[k]", k from 0) if there is none or too many, or if one does not
+  ///         begin with 0, has fewer than two entries, another number of them than the first, or
+  ///         one that is not finite
+  explicit LoadingProgramme(std::vector<std::vector<double>> tables);
+
+  /// "load", "load2", … of so many parameters.
+  [[nodiscard]] static std::vector<std::string> names(std::size_t parameters);
+
+  [[nodiscard]] std::size_t parameters() const { return tables_.size(); }
+  [[nodiscard]] const std::vector<std::vector<double>>& tables() const { return tables_; }
+
+  /// Values of the parameters.
+  [[nodiscard]] std::vector<double> at(double stage) const;
+
+  /// The stage of the last entry.
+  [[nodiscard]] double end() const { return static_cast<double>(tables_.front().size() - 1); }
+  [[nodiscard]] bool has_rest(double stage) const { return end() - stage > tolerance; }
+  /// Stage of the first entry that lies beyond.
+  [[nodiscard]] static double next_entry(double stage);
+
+ private:
+  std::vector<std::vector<double>> tables_;
+};
+
+}  // namespace peristat

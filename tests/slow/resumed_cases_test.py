@@ -1,0 +1,101 @@
+"""Shipped cases in every mode, killed on their way: what goes on ends as what was never disturbed."""
+
+import contextlib
+import json
+import os
+import pathlib
+import random
+import subprocess
+import tempfile
+import time
+import unittest
+
+from tests.reference.program import PROGRAM, ROOT, peristat
+from tests.same_results import differences
+from tests.shipped_runs import shipped_run
+
+KILLS = 20
+FRACTURE = ["plate_with_hole/square", "plate_with_hole/rectangle"]
+if os.environ.get("PERISTAT_ALL_KILLS"):  # some minutes more
+    FRACTURE += ["three_point_bending/notched", "four_holes/tension"]
+# In few steps, which are split as many are.
+OTHERS = {
+    "bar/tension": [],
+    "cantilever/plate": [],
+    "cantilever/beam": [],
+    "plate_with_hole/elastic": [],
+    "cpd/square": ["loading.steps=4"],
+    "cpd/square_hole": ["loading.steps=4"],
+    "cpd/cube": ["loading.steps=3", "lattice.spacing=0.125"],
+    "cpd/cube_hole": ["loading.steps=3", "lattice.spacing=0.125"],
+    "cpd/poisson_2d": ["loading.steps=4"],
+    "cpd/poisson_3d": ["loading.steps=3"],
+    "cpd/table3": ["loading.steps=3"],
+}  # fmt: skip
+MODES = {  # of the square
+    "newton": ['solver.mode="newton"', "loading.smallest_step=1e-2"],
+    "relaxation": ['solver.mode="relaxation"', "relaxation.steps=12"],
+    "moving": ['solver.mode="relaxation"', 'relaxation.load="moving"', "relaxation.steps=12",
+               "relaxation.iterations=3600"],
+    "stand-in": ["solver.elastic_horizon_ratio=2.015"],
+}  # fmt: skip
+
+
+class Resumed(unittest.TestCase):
+    def setUp(self):
+        self.out = pathlib.Path(self.enterContext(tempfile.TemporaryDirectory(prefix="peristat_resumed_"))) / "out"
+
+    def begin(self, case, changes, *words):
+        settings = [word for change in changes for word in ("--set", change)]
+        return [PROGRAM, "run", str(ROOT / "cases" / f"{case}.toml"), "--output", str(self.out), "--threads", "1",
+                *settings, *words]  # fmt: skip
+
+    def check(self, case, changes=()):
+        """Three sessions: an end after one step, after another one, and the end."""
+        whole = shipped_run(case, *changes)
+        subprocess.run(self.begin(case, changes, "--stop-after", "1"), capture_output=True)
+        peristat("resume", self.out, "--threads", 1, "--stop-after", 1)
+        ended = peristat("resume", self.out, "--threads", 1, seconds=900, limited=False)
+        self.assertEqual(ended.code, whole.code, ended.said)
+        self.assertEqual(differences(whole.folder, self.out), [])
+
+    def check_killed(self, case):
+        started = time.monotonic()
+        whole = shipped_run(case)
+        self.assertEqual(whole.code, 0, whole.errors)
+        duration = max(time.monotonic() - started, self.seconds(whole.folder))
+        chance = random.Random(case)
+        command = self.begin(case, ())
+        for _ in range(KILLS):
+            process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+            with contextlib.suppress(subprocess.TimeoutExpired):
+                process.wait(chance.uniform(0.0, 2.0 / KILLS) * duration)
+            process.kill()
+            process.wait()
+            if (self.out / "parts/checkpoint.0").exists():
+                command = [PROGRAM, "resume", str(self.out), "--threads", "1"]
+        ended = peristat("resume", self.out, "--threads", 1, seconds=900, limited=False)
+        self.assertEqual(ended.code, 0, ended.said)
+        self.assertEqual(differences(whole.folder, self.out), [])
+
+    def seconds(self, folder):
+        return json.loads((folder / "summary.json").read_text())["seconds"]["total"]
+
+
+def _add_tests():
+    def named(text):
+        return text.replace("/", "_").replace("-", "_")
+
+    for case in FRACTURE:
+        setattr(Resumed, f"test_{named(case)}_killed", lambda self, case=case: self.check_killed(case))
+    for case, changes in OTHERS.items():
+        setattr(Resumed, f"test_{named(case)}", lambda self, case=case, changes=changes: self.check(case, changes))
+    for mode, changes in MODES.items():
+        setattr(Resumed, f"test_square_{named(mode)}",
+                lambda self, changes=changes: self.check("plate_with_hole/square", changes))  # fmt: skip
+
+
+_add_tests()
+
+if __name__ == "__main__":
+    unittest.main()
