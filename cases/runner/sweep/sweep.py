@@ -4,6 +4,7 @@ The program to run is named by the environment variable PERISTAT_PROGRAM, which 
 """
 
 import argparse
+import contextlib
 import errno
 import json
 import os
@@ -63,6 +64,8 @@ def run_all(sweep: Sweep, program: Program) -> int:
     all_runs = AllRuns(sweep, program)
     code = all_runs.run()
     if code is not None:
+        with contextlib.suppress(OSError):  # nothing stays where the first run was refused
+            sweep.directory.rmdir()
         return code
     _save(sweep, all_runs.rows)
     rows = [all_runs.rows[number] for number in range(len(sweep.combinations))]
