@@ -316,6 +316,12 @@ class Refused(Resumed):
             file["points/reference"][3, 1] += 1e-12
         self.refuses("its points are not those of the run")
 
+    def test_sets_that_are_others(self):
+        with h5py.File(self.out / "results.h5", "r+") as file:
+            flags = file["points/sets/right"]
+            flags[0] = 1 - flags[0]
+        self.refuses("its points are not those of the run")
+
     def test_a_checkpoint_that_is_damaged(self):
         self.change_checkpoint(lambda data: data[:-1])
         self.refuses("its checkpoint is damaged: it is not whole")
@@ -361,6 +367,37 @@ class Refused(Resumed):
                         rows = (self.out / name).read_text().splitlines()[4:]
                         self.assertEqual(rows, (whole / name).read_text().splitlines()[4:])
         self.assertEqual(outcomes, {0, 2})
+
+
+class Faults(Resumed):
+    def resume_within(self, blocks):
+        """Under the shell's limit of file sizes, in units of 1024 bytes."""
+        command = [PROGRAM, "resume", self.out, "--threads", "1", "--quiet"]
+        return subprocess.run(["bash", "-c", f'ulimit -f {blocks}; exec "$@"', "bash", *map(str, command)],
+                              capture_output=True, text=True)  # fmt: skip
+
+    def test_whatever_can_not_be_written_the_run_goes_on_once_it_can(self):
+        whole = self.folder / "whole"
+        settings = ["loading.steps=60"]
+        self.run_case(out=whole, text=PULLED, settings=settings)
+        for limits in ([8], [64], [200], [8, 64, 200], [200, 400]):
+            with self.subTest(limits):
+                shutil.rmtree(self.out, ignore_errors=True)
+                self.run_case("--stop-after", 20, text=PULLED, settings=settings, expected=130)
+                for blocks in limits:
+                    self.assertEqual(self.resume_within(blocks).returncode, 5)
+                self.resume()
+                self.is_as(whole)
+
+    def test_two_at_once(self):
+        whole = self.folder / "whole"
+        settings = ["loading.steps=60"]
+        self.run_case(out=whole, text=PULLED, settings=settings)
+        self.run_case("--stop-after", 20, text=PULLED, settings=settings, expected=130)
+        both = [subprocess.Popen([PROGRAM, "resume", self.out, "--threads", "1", "--quiet"], stdout=subprocess.DEVNULL,
+                                 stderr=subprocess.DEVNULL) for _ in range(2)]  # fmt: skip
+        self.assertIn(sorted(process.wait() for process in both), ([0, 0], [0, 2]))
+        self.is_as(whole)
 
 
 class LossOfPower(Resumed):

@@ -81,7 +81,7 @@ void require_same_beginning(const LoadingProgramme& then, const LoadingProgramme
 }
 
 bool is_finished(const EarlierRun& earlier, const LoadingProgramme& way) {
-  return earlier.has_summary() && !way.has_rest(earlier.checkpoint().path.accepted.stage);
+  return earlier.is_concluded() && !way.has_rest(earlier.checkpoint().path.accepted.stage);
 }
 
 }  // namespace

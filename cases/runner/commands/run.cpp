@@ -320,7 +320,10 @@ class CaseRun {
     }
     progress_.problem(summary_.reason);
     progress_.problem(fmt::format("{} accepted steps are in {}", result.steps, folder));
-    if (result.outcome == Outcome::interrupted) return Exit::interrupted;
+    if (result.outcome == Outcome::interrupted) {
+      if (result.steps > 0) progress_.problem("to go on: peristat resume " + folder);
+      return Exit::interrupted;
+    }
     progress_.problem("dossier.txt there tells where it failed and what to do");
     return result.outcome == Outcome::out_of_memory ? Exit::out_of_memory : Exit::not_converged;
   }

@@ -614,7 +614,10 @@ int default_relaxation_steps(const Case& from) {
   const bool hands_over =
       from.solver.mode == Mode::adaptive && from.material.damage.law != DamageLaw::none;
   const int steps = from.loading.steps_to_entry();
-  return hands_over ? std::max(steps, steps_of_damage) : steps;
+  if (!hands_over) return steps;
+  const int entries =
+      from.loading.steps / steps;  // as many as steps where these are an expression's
+  return std::max(steps, (steps_of_damage + entries - 1) / entries);
 }
 
 void check_iterations(const Entry& at, const RelaxationSpecification& relaxation) {
@@ -634,17 +637,20 @@ Table<RelaxationSpecification> relaxation_keys() {
   return {
       "relaxation",
       {K("steps", &Spec::steps, count_from(1),
-         "number of equal steps of the *whole* load; 1/steps is the first one, whatever the "
-         "implicit steps have left")
+         "number of equal steps of the *whole* load, or from one entry of `loading.table` to the "
+         "next; 1/steps is the first one, whatever the implicit steps have left")
            .extends()
            .otherwise([](auto& relaxation,
                          auto& from) { relaxation.steps = default_relaxation_steps(from); },
-                      "`loading.steps`; in mode `adaptive` with damage no fewer than 50"),
+                      "`loading.steps`; in mode `adaptive` with damage no fewer than 50. With a "
+                      "table that is "
+                      "an expression, which has an entry for each step: 1, and 50 in all"),
        K("load", &Spec::moving, choice<bool>({{"fixed", false}, {"moving", true}}),
          "rests after the ramp until the body is in equilibrium, or never rests")
            .early(),
        K("iterations", &Spec::iterations, count_from(1),
-         "load `moving`: iterations over the whole load, shared out equally to the steps")
+         "load `moving`: iterations over the whole load, or from one entry of `loading.table` to "
+         "the next, shared out equally to the steps")
            .unless(rests, "is for load = \"moving\"")
            .then(check_iterations)
            .moreover("a multiple of `steps`"),

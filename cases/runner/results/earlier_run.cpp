@@ -1,7 +1,11 @@
 #include "cases/runner/results/earlier_run.hpp"
 
 #include <algorithm>
+#include <cerrno>
+#include <cstring>
 #include <system_error>
+
+#include <unistd.h>
 
 #include "cases/runner/process/fault_aside.hpp"
 #include "cases/runner/process/output_file.hpp"
@@ -76,6 +80,9 @@ EarlierRun::EarlierRun(const fs::path& directory, const std::string& program)
     : folder_{fs::absolute(directory).lexically_normal()} {
   try {
     marker_.emplace(claim(folder_.directory));
+    if (::access(folder_.directory.c_str(), W_OK) != 0) {
+      throw RefusedFolder("the folder can't be written: " + std::string(std::strerror(errno)));
+    }
   } catch (const RefusedFolder& error) {
     throw refusal(error.what());
   } catch (const fs::filesystem_error& error) {
@@ -124,7 +131,7 @@ void EarlierRun::read(Generation which, const std::string& program) {
       first_rows(file, "/iterations", iteration_columns(), checkpoint_.rows.iterations));
 }
 
-bool EarlierRun::has_summary() const { return fs::exists(folder_.summary()); }
+bool EarlierRun::is_concluded() const { return is_gathered_ && fs::exists(folder_.summary()); }
 
 EarlierResults EarlierRun::results(const std::vector<std::string>& support_sets,
                                    const std::vector<ProbeColumns>& probes) const {

@@ -37,8 +37,8 @@ class EarlierRun {
   [[nodiscard]] const std::string& case_text() const { return case_text_; }
   [[nodiscard]] const Settings& settings() const { return settings_; }
   [[nodiscard]] const Checkpoint& checkpoint() const { return checkpoint_; }
-  /// Whether the run has ended by itself and said so.
-  [[nodiscard]] bool has_summary() const;
+  /// Whether the run has gathered its results and said how it ended.
+  [[nodiscard]] bool is_concluded() const;
   /// A sentence if the newest checkpoint was lost and an older one is taken.
   [[nodiscard]] const std::string& remark() const { return remark_; }
 

@@ -17,6 +17,20 @@ std::vector<std::uint8_t> membership(const Points& points) {
   return matrix;
 }
 
+/// Name of a set's dataset.
+std::string name_of_flags(const std::string& set) {
+  std::string name = set;
+  std::replace(name.begin(), name.end(), '/', '|');
+  return name;
+}
+
+/// 1 where a point is among the members.
+std::vector<std::uint8_t> flags(const Points& points, const std::vector<Index>& members) {
+  std::vector<std::uint8_t> flags(points.volume.size());
+  for (const Index point : members) flags[point] = 1;
+  return flags;
+}
+
 /// Whether all numbers are the same to the last bit.
 bool are_same(const std::vector<double>& some, const std::vector<double>& others) {
   return std::equal(some.begin(), some.end(), others.begin(), others.end(), [](double a, double b) {
@@ -26,11 +40,7 @@ bool are_same(const std::vector<double>& some, const std::vector<double>& others
 
 }  // namespace
 
-std::string flags_of(const std::string& set) {
-  std::string name = set;
-  std::replace(name.begin(), name.end(), '/', '|');
-  return "/points/sets/" + name;
-}
+std::string flags_of(const std::string& set) { return "/points/sets/" + name_of_flags(set); }
 
 void write_points(Hdf5File& file, const Points& points, const std::vector<PointCounts>& counts) {
   const auto count = static_cast<std::uint64_t>(points.count());
@@ -51,9 +61,8 @@ void write_points(Hdf5File& file, const Points& points, const std::vector<PointC
 
   file.make_group("/points/sets");
   for (const auto& [name, members] : points.sets) {
-    std::vector<std::uint8_t> flags(points.volume.size());
-    for (const Index point : members) flags[point] = 1;
-    file.write(flags_of(name), flags, {count}, {"1", "1 where the point is in set " + name});
+    file.write(flags_of(name), flags(points, members), {count},
+               {"1", "1 where the point is in set " + name});
   }
 
   for (const PointCounts& of_points : counts) {
@@ -81,6 +90,13 @@ std::uint64_t bytes_of(const Points& points, const std::vector<PointCounts>& cou
 }
 
 bool holds_points(const Hdf5File& file, const std::string& group, const Points& points) {
+  std::vector<std::string> names;
+  for (const auto& [set, members] : points.sets) names.push_back(name_of_flags(set));
+  std::sort(names.begin(), names.end());
+  if (file.names(group + "/sets") != names) return false;
+  for (const auto& [set, members] : points.sets) {
+    if (file.bytes(group + "/sets/" + name_of_flags(set)) != flags(points, members)) return false;
+  }
   return are_same(file.numbers(group + "/reference"), points.reference) &&
          are_same(file.numbers(group + "/volume"), points.volume);
 }

@@ -25,7 +25,7 @@ void write_points(Hdf5File& file, const Points& points, const std::vector<PointC
 /// Bytes of what it writes.
 [[nodiscard]] std::uint64_t bytes_of(const Points& points, const std::vector<PointCounts>& counts);
 
-/// Whether a group that write_points has written is of these points, to the last bit.
+/// Whether a group that write_points has written is of these points and sets, to the last bit.
 [[nodiscard]] bool holds_points(const Hdf5File& file, const std::string& group,
                                 const Points& points);
 
