@@ -11,7 +11,7 @@ namespace peristat {
 /// What changes along a path of equilibria.
 struct State {
   std::vector<double> displacement;  ///< points x dimension, row major [m]
-  double stage = 0.0;
+  double stage = 0.0;                ///< of the loading programme: without tables the load factor
   History history{};
 };
 

@@ -27,7 +27,7 @@ void commit(Path& path, Attempt& attempt, FoundStep& found,
 [[nodiscard]] std::string complete(Path& path, Attempt& attempt, FoundStep& found);
 
 /// Makes an attempt the path's last accepted state, tells it, and pins what has come free in it.
-/// @param next increment of the load factor, for what is told
+/// @param next increment of the stage, for what is told
 [[nodiscard]] Advance accept(Path& path, Attempt attempt, FoundStep found, double next);
 
 }  // namespace peristat

@@ -10,7 +10,7 @@ namespace peristat {
 
 /// An implicit step on its way.
 struct ImplicitStep {
-  double attempted = 0.0;  ///< increment of the load factor
+  double attempted = 0.0;  ///< increment of the stage
   Attempt attempt;
   DamageGrowth growth;  ///< that committing what the first search has found would bring
   FoundStep found;

@@ -12,7 +12,7 @@ struct LoadSteppingResult {
   Attempt last_attempt;             ///< that failed
 };
 
-/// Follows the equilibrium from load factor 0 to 1 in steps; every decision is told.
+/// Follows the equilibrium along the loading programme in steps; every decision is told.
 ///
 /// The steps are those of the mode's driver (solvers/drivers/).
 ///

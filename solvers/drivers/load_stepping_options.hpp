@@ -8,16 +8,16 @@ namespace peristat {
 
 struct LoadSteppingOptions {
   Mode mode = Mode::newton;
-  int steps = 1;         ///< equal steps of the load factor from 0 to 1
+  int steps = 1;         ///< equal steps from one entry of the programme to the next
   bool adaptive = true;  ///< cut after a failure and grow again; otherwise a failure ends the run
-  double smallest_step = 1e-6;  ///< of the load factor; a cut below it ends the run
-  double largest_step = 0.0;    ///< of the load factor; 0 means 1 / steps
+  double smallest_step = 1e-6;  ///< of the stage; a cut below it ends the run
+  double largest_step = 0.0;    ///< of the stage; 0 means 1 / steps
   double cut = 0.5;             ///< factor of the step after a failure
   double growth = 2.0;          ///< factor of the step after an easy success, up to largest_step
   int easy_iterations = 5;      ///< a step with no more iterations than this was easy
   /// Bonds that may break in one implicit step; a step with more is cut. 0: no limit.
   int max_broken_bonds = 0;
-  int relaxation_steps = 1;  ///< equal steps of the load factor in relaxation
+  int relaxation_steps = 1;  ///< likewise in relaxation
   RelaxationOptions relaxation{};
   /// Relative residual of a relaxed step at which Newton's method takes its last iterations over,
   /// in adaptive mode.

@@ -31,7 +31,7 @@ struct LoadSteppingObserver {
   /// next.
   std::function<void(const PathState&)> reached;
   std::function<bool()> interrupted;
-  /// A sentence about an error of supports or loads that shows only at some load factor.
+  /// A sentence about an error of supports or loads that shows only at some stage.
   std::function<std::string(const InputError&)> describe;
 };
 

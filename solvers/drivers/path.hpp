@@ -65,7 +65,7 @@ class Path {
   [[nodiscard]] std::vector<double> working_force(const Trial& state,
                                                   std::span<const double> external_force) const;
 
-  /// Whether supports and loads have a value at a load factor; otherwise why not.
+  /// Whether supports and loads have a value at a stage; otherwise why not.
   [[nodiscard]] std::optional<std::string> refusal_of_conditions(double stage) const;
 
   /// By Newton's method.

@@ -14,7 +14,7 @@ namespace peristat {
 /// Nor do solvers: every step factorises a tangent of its own before it takes up one that is at
 /// hand.
 struct PathState {
-  State accepted;  ///< the last one: displacement, load factor, histories
+  State accepted;  ///< the last one: displacement, stage, histories
   int steps = 0;   ///< accepted
   PathLedger ledger;
   FragmentPins pins;
@@ -25,7 +25,7 @@ struct PathState {
   double relaxation_seconds = 0.0;  ///< wall time in relaxation
 
   struct Implicit {
-    double increment = 0.0;  ///< of the load factor in the next step; 0: as in the first
+    double increment = 0.0;  ///< of the stage in the next step; 0: as in the first
   } implicit;
   struct Relaxed {
     double increment = 0.0;  ///< likewise

@@ -18,7 +18,7 @@ class RelaxedStepping : public Driver {
 
   struct Found {
     RelaxedStep step;
-    double attempted = 0.0;  ///< increment of the load factor
+    double attempted = 0.0;  ///< increment of the stage
     std::string fault;       ///< what is known of a failure beside its outcome
   };
   /// Relaxes the next step, commits its damage, and checks it.

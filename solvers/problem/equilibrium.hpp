@@ -26,7 +26,7 @@ enum class Outcome {
   limit_point,          ///< damage makes the body unstable: no equilibrium near at a higher load
   damage_limit,         ///< more bonds break at once than allowed, however small the step
   fragmented,           ///< a piece has come off, and that is to end the run
-  undefined_condition,  ///< supports or loads have no value, or two, at the load factor
+  undefined_condition,  ///< supports or loads have no value, or two, at the stage
   inconsistent,         ///< a state found breaks a balance that it owes (solvers/consistency.hpp)
   interrupted,          ///< by the person
 };
@@ -34,7 +34,7 @@ enum class Outcome {
 [[nodiscard]] std::string name(Outcome outcome);
 [[nodiscard]] std::string explanation(Outcome outcome);
 
-/// The equilibrium problem f_ext(load factor) - dE/dx(u) = 0 on the free degrees of freedom, with
+/// The equilibrium problem f_ext(stage) - dE/dx(u) = 0 on the free degrees of freedom, with
 /// what is constant in a solve. The total energy E(u) - f_ext.u is the merit function.
 struct EquilibriumProblem {
   Assembler& assembler;

@@ -65,7 +65,7 @@ struct RelaxationMotion {
 /// Told of every hundredth iteration and of the last; returns true to interrupt.
 using RelaxationObserver = std::function<bool(const IterationRecord&)>;
 
-/// Moves supports and loads from a state's load factor to the given one and relaxes, by explicit
+/// Moves supports and loads from a state's stage to the given one and relaxes, by explicit
 /// adaptive dynamic relaxation (Kilic and Madenci 2010, as [ADAPT] uses it) with the
 /// pseudo time step 1:
 ///

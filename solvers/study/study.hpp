@@ -45,7 +45,7 @@ class Study {
   /// @throws MemoryError if it would not fit
   Study(const Body& body, StudyOptions options, SolverLadder::Reporter tell = {});
 
-  /// From load factor 0 to 1; once. What was not enough memory is outcome out_of_memory.
+  /// Along the loading programme; once. What was not enough memory is outcome out_of_memory.
   /// @param from a state that has been told as `reached`, to go on from; null: from rest
   [[nodiscard]] LoadSteppingResult follow(const LoadSteppingObserver& observer,
                                           const SolvedBody* stand_in = nullptr,
@@ -70,13 +70,13 @@ class Study {
 /// What has become of a study.
 struct StudyResult {
   Outcome outcome = Outcome::converged;
-  State state;                            ///< last accepted: displacement [m], load factor, …
+  State state;                            ///< last accepted: displacement [m], stage, …
   std::vector<StepRecord> steps;          ///< accepted: energies, reactions, damage
   std::vector<DecisionRecord> decisions;  ///< with their reasons
   Attempt last_attempt;                   ///< that failed
 };
 
-/// Follows a body from load factor 0 to 1.
+/// Follows a body along its loading programme, without one from load factor 0 to 1.
 ///
 /// @param observer told of everything on the way; may interrupt
 /// @throws InputError, MemoryError as Study does. Not converging is an outcome.

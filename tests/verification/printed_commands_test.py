@@ -66,7 +66,7 @@ class Commands(unittest.TestCase):
         self.assertGreater(tried, 0)
 
     def test_strip_of_readme(self):
-        elastic, torn = (words for words in commands(ROOT / "README.md") if words[:2] == ["run", "strip.toml"])
+        elastic, torn, cycle = (words for words in commands(ROOT / "README.md") if words[:2] == ["run", "strip.toml"])
         self.assertEqual(peristat(*elastic, "--quiet", folder=self.folder).code, 0)
         self.assertEqual(len(rows(self.folder / "results/strip/history.csv")), 10)
         ended = peristat(*torn, "--quiet", "--output", "torn", folder=self.folder, limited=False)
@@ -75,6 +75,9 @@ class Commands(unittest.TestCase):
         self.assertGreater(last["broken_bonds"], 0)  # "until it breaks"
         peak = max(abs(row["reaction_x:left"]) for row in rows(self.folder / "torn/history.csv"))
         self.assertLess(abs(last["reaction_x:left"]), 1e-2 * peak)  # what loose points between the pieces carry
+        ended = peristat(*cycle, "--quiet", "--output", "cycle", folder=self.folder)
+        self.assertEqual(ended.code, 0, ended.said)
+        self.assertEqual([row["load_factor"] for row in rows(self.folder / "cycle/history.csv")], [1, 0, 1.2])
 
 
 if __name__ == "__main__":
