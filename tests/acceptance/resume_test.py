@@ -348,7 +348,7 @@ class Refused(Resumed):
         chance = random.Random(7)
         intact = (kept / "results.h5").read_bytes()
         outcomes = set()
-        for trial in range(40):
+        for trial in range(24):
             with self.subTest(trial):
                 shutil.rmtree(self.out)
                 shutil.copytree(kept, self.out)
