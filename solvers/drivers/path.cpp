@@ -1,5 +1,6 @@
 #include "solvers/drivers/path.hpp"
 
+#include <stdexcept>
 #include <utility>
 
 #include "solvers/drivers/increment.hpp"
@@ -22,6 +23,9 @@ Path::Path(const PathSetting& setting) : setting_(setting) {
 
 Path::Path(const PathSetting& setting, PathState from)
     : setting_(setting), state_(std::move(from)) {
+  if (state_.stands_in && !setting.stand_in) {
+    throw std::logic_error("a path that its stand-in carries goes on with the stand-in");
+  }
   number_equations();
 }
 

@@ -40,6 +40,7 @@ class Path {
 
   /// From a state that a path with the same setting has reached. Its solvers have to be prepared
   /// before a driver goes on.
+  /// @throws std::logic_error if its stand-in is in force and there is none
   Path(const PathSetting& setting, PathState from);
 
   /// Puts the solvers on the rungs, and before the equations, of the state.

@@ -217,6 +217,13 @@ class Extended(Resumed):
             self.assertNotIn("dossier", file)
             self.assertIn('mode = "adaptive"', file["case/as_resolved"][()].decode())
 
+    def test_a_stand_in_is_replaced_in_mode_adaptive_alone(self):
+        self.run_case("--stop-after", 1, settings=["solver.elastic_horizon_ratio=2.015"], expected=130)
+        for mode in ("newton", "relaxation"):
+            ended = self.resume("--set", f"solver.mode={mode}", expected=2)
+            self.assertIn("the run is still carried by its elastic stand-in", ended.errors)
+        self.resume()
+
     def test_settings_of_all_sessions_hold(self):
         self.run_case("--stop-after", 2, settings=["loading.steps=5", "output.every=2"], expected=130)
         self.resume("--stop-after", 2, "--set", "loading.steps=8", expected=130)

@@ -80,6 +80,16 @@ void require_same_beginning(const LoadingProgramme& then, const LoadingProgramme
                   stage, then.parameters()));
 }
 
+/// Only mode adaptive knows how the body takes the place of its stand-in.
+void require_stand_in(const PathState& path, const Case& from) {
+  if (!path.stands_in || from.solver.mode == Mode::adaptive) return;
+  throw InputError(
+      "--set", "solver.mode=" + std::string(from.solver.mode.name),
+      "the run is still carried by its elastic stand-in (solver.elastic_horizon_ratio), "
+      "which mode adaptive alone replaces by the body; go on in that mode until damage "
+      "has begun");
+}
+
 bool is_finished(const EarlierRun& earlier, const LoadingProgramme& way) {
   return earlier.is_concluded() && !way.has_rest(earlier.checkpoint().path.accepted.stage);
 }
@@ -96,6 +106,11 @@ Exit resume(const std::filesystem::path& directory, const Settings& settings,
   all.insert(all.end(), settings.begin(), settings.end());
   const Case from = read_case(earlier.case_file(), text, all);
   require_same_beginning(programme_of(then), programme_of(from), earlier.checkpoint().path);
+  require_stand_in(earlier.checkpoint().path, from);
+  if (std::any_of(settings.begin(), settings.end(),
+                  [](const auto& setting) { return setting.first.starts_with("solver."); })) {
+    earlier.forget_solvers();
+  }
   if (is_finished(earlier, programme_of(from))) {
     Progress(options.quiet, options.log_file)
         .say(fmt::format("the run in {} has come to its end: {} steps, load factor {:.6g}",

@@ -7,6 +7,7 @@
 #include <new>
 
 #include <fcntl.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -16,6 +17,10 @@ namespace peristat {
 namespace {
 
 constexpr const char* done = "done";
+
+/// Processor time [s] after which a library is taken to be in an endless loop: what it reads is no
+/// more than some hundred gigabytes.
+constexpr rlim_t most_seconds = 600;
 
 /// What the work says in the end.
 std::string told(const std::function<void()>& work) {
@@ -54,6 +59,8 @@ std::optional<std::string> fault_aside(const std::function<void()>& work) {
   const pid_t child = ::fork();
   if (child < 0) fail("no process can be started");
   if (child == 0) {
+    const rlimit limit{most_seconds, most_seconds};
+    static_cast<void>(::setrlimit(RLIMIT_CPU, &limit));
     const std::string text = told(work);
     const ssize_t written = ::write(pipe[1], text.data(), text.size());
     ::_exit(written == static_cast<ssize_t>(text.size()) ? 0 : 1);

@@ -37,6 +37,8 @@ class EarlierRun {
   [[nodiscard]] const std::string& case_text() const { return case_text_; }
   [[nodiscard]] const Settings& settings() const { return settings_; }
   [[nodiscard]] const Checkpoint& checkpoint() const { return checkpoint_; }
+  /// Other solvers than before begin at the top of their ladders.
+  void forget_solvers() { checkpoint_.path.rungs = {}; }
   /// Whether the run has gathered its results and said how it ended.
   [[nodiscard]] bool is_concluded() const;
   /// A sentence if the newest checkpoint was lost and an older one is taken.
