@@ -1,5 +1,5 @@
 # The library libperistat.so of all floors below the cases, and what is installed: the library with
-# its headers and its CMake package, the program, and the module that both load.
+# its headers and its CMake package, the program, and the modules that both load.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
@@ -9,7 +9,7 @@ add_library(peristat_library SHARED
   $<TARGET_OBJECTS:peristat_assembly>
   $<TARGET_OBJECTS:peristat_solvers>)
 add_library(peristat::peristat ALIAS peristat_library)
-add_dependencies(peristat_library peristat_trilinos)
+add_dependencies(peristat_library peristat_trilinos peristat_mumps)
 set_target_properties(peristat_library PROPERTIES
   OUTPUT_NAME peristat EXPORT_NAME peristat LINKER_LANGUAGE CXX
   VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
@@ -20,7 +20,7 @@ target_link_libraries(peristat_library
   PRIVATE peristat_cholmod peristat_muparser fmt::fmt ${CMAKE_DL_LIBS}
   PUBLIC OpenMP::OpenMP_CXX)
 
-# Where each finds the module; and OpenBLAS in the folder of its flavour.
+# Where each finds the modules; and OpenBLAS in the folder of its flavour.
 set(module_folder ${CMAKE_INSTALL_LIBDIR}/peristat)
 file(RELATIVE_PATH module_from_program
      /${CMAKE_INSTALL_BINDIR} /${module_folder})
@@ -30,7 +30,7 @@ set_target_properties(peristat PROPERTIES
   INSTALL_RPATH "$ORIGIN/${module_from_program}" INSTALL_RPATH_USE_LINK_PATH ON)
 
 install(TARGETS peristat RUNTIME)
-install(TARGETS peristat_trilinos LIBRARY DESTINATION ${module_folder})
+install(TARGETS peristat_trilinos peristat_mumps LIBRARY DESTINATION ${module_folder})
 install(TARGETS peristat_library EXPORT peristatTargets LIBRARY)
 set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/peristat)
 install(EXPORT peristatTargets NAMESPACE peristat:: DESTINATION ${package_folder})

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -13,9 +14,17 @@ inline constexpr double onset = 0.01, critical = 0.03;
   return Degraded<TanhDegradation>{micromodulus, TanhDegradation::continuous(onset, critical, 3.0)};
 }
 
-/// A strip with a notch from below in its middle, or whose bonds across the middle alone may fail.
+/// What is controlled in the place of the load, and its values.
+struct Control {
+  std::vector<ControlTerm> terms{};
+  LoadingProgramme programme{};
+};
+
+/// A strip with a notch from below in its middle, whose bonds across the middle alone may fail, or
+/// none.
+/// The sets "left_lip" and "right_lip" are the points beside the mouth of the notch.
 struct Strip {
-  enum class Middle { notched, weak };
+  enum class Middle { notched, weak, elastic };
   BoxSetting box;
   BoxBody body;
   Conditions conditions;
@@ -24,10 +33,10 @@ struct Strip {
   Tangent tangent;
 
   Strip(Middle middle, const std::vector<SupportSpecification>& supports, int threads = 1,
-        double triangles = 0.0)
+        double triangles = 0.0, const Control& control = {})
       : box(setting(triangles)),
         body(points_with_ends(box), box),
-        conditions((change(middle), body.points), supports, {}),
+        conditions((change(middle), body.points), supports, {}, control.programme, control.terms),
         free(conditions.prescribed(), 2),
         assembler(body.points, body.model, threads),
         tangent(BlockPattern(body.model.bonds()), 2) {}
@@ -48,6 +57,12 @@ struct Strip {
 
  private:
   void change(Middle middle) {
+    for (Index i = 0; i < body.points.count(); ++i) {
+      const Coordinates at = body.points.position(i);
+      if (at[1] > 0.06) continue;
+      if (std::abs(at[0] - 0.6) < 0.06) body.points.sets["left_lip"].push_back(i);
+      if (std::abs(at[0] - 0.8) < 0.06) body.points.sets["right_lip"].push_back(i);
+    }
     const Bonds& bonds = body.model.bonds();
     const auto crosses = [&](Index i, Offset bond) {
       const double a = body.points.position(i)[0] - 0.7,
@@ -63,11 +78,17 @@ struct Strip {
     }
     std::vector<char> never_fails(std::size_t(bonds.count()), 1);
     for_each_bond(bonds, [&](Index i, Index, Offset bond) {
-      if (crosses(i, bond)) never_fails[std::size_t(bond)] = 0;
+      if (middle == Middle::weak && crosses(i, bond)) never_fails[std::size_t(bond)] = 0;
     });
     body.replace_bonds(bonds, std::move(never_fails));
   }
 };
+
+/// The opening of the notch's mouth goes to a value [m].
+[[nodiscard]] inline Control mouth_opening(double value) {
+  return {{{"right_lip", {1.0, 0.0, 0.0}}, {"left_lip", {-1.0, 0.0, 0.0}}},
+          LoadingProgramme({{0.0, value}})};
+}
 
 /// Held on the left, drawn along x on the right.
 [[nodiscard]] inline std::vector<SupportSpecification> drawn(const std::string& displacement) {

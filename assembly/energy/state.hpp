@@ -1,6 +1,7 @@
 #pragma once
 
 #include <concepts>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -13,6 +14,8 @@ struct State {
   std::vector<double> displacement;  ///< points x dimension, row major [m]
   double stage = 0.0;                ///< of the loading programme: without tables the load factor
   History history{};
+  /// First load parameter, where a control has found it; nothing: the loading programme's.
+  std::optional<double> load = std::nullopt;
 };
 
 /// Bonds that are stretched beyond their histories: they soften, or follow their secants as if they

@@ -9,11 +9,11 @@ namespace {
 
 /// What searches of both kinds end with.
 template <class Result>
-Attempt common_attempt(Result result, double stage) {
+Attempt common_attempt(Result result, const LoadPoint& at) {
   Attempt attempt;
   attempt.outcome = result.outcome;
   attempt.iterations = result.iterations;
-  attempt.stage = stage;
+  attempt.at = at;
   attempt.scale = result.scale;
   attempt.largest_residual = result.largest_residual;
   attempt.state = std::move(result.state);
@@ -23,7 +23,7 @@ Attempt common_attempt(Result result, double stage) {
 
 }  // namespace
 
-Attempt to_attempt(NewtonResult result, double stage) {
+Attempt to_attempt(NewtonResult result, const LoadPoint& at) {
   const std::optional<Inertia> inertia = result.inertia;
   const bool negative = result.has_negative_pivots, unstable = result.unstable_start;
   std::string note;
@@ -32,7 +32,7 @@ Attempt to_attempt(NewtonResult result, double stage) {
            " N, above the tolerance, but displacements of this size are not known better than to " +
            number_text(result.largest_residual) + " N";
   }
-  Attempt attempt = common_attempt(std::move(result), stage);
+  Attempt attempt = common_attempt(std::move(result), at);
   attempt.note = std::move(note);
   attempt.inertia = inertia;
   attempt.has_negative_pivots = negative;
@@ -40,21 +40,21 @@ Attempt to_attempt(NewtonResult result, double stage) {
   return attempt;
 }
 
-Attempt to_attempt(RelaxationResult result, double stage) {
-  return common_attempt(std::move(result), stage);
+Attempt to_attempt(RelaxationResult result, const LoadPoint& at) {
+  return common_attempt(std::move(result), at);
 }
 
-Attempt undefined_attempt(const State& from, double stage) {
+Attempt undefined_attempt(const State& from, const LoadPoint& at) {
   Attempt attempt;
   attempt.outcome = Outcome::undefined_condition;
-  attempt.stage = stage;
+  attempt.at = at;
   attempt.state.displacement = from.displacement;
   attempt.state.history = from.history;
   return attempt;
 }
 
 State state_of(const Attempt& attempt) {
-  return {attempt.state.displacement, attempt.stage, attempt.state.history};
+  return {attempt.state.displacement, attempt.at.stage, attempt.state.history, attempt.at.load};
 }
 
 bool worth_cutting(const Attempt& attempt) {

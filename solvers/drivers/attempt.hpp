@@ -13,7 +13,7 @@ namespace peristat {
 struct Attempt {
   Outcome outcome = Outcome::converged;
   int iterations = 0;
-  double stage = 0.0;
+  LoadPoint at = 0.0;
   double scale = 0.0;  ///< norm that the residual was measured against [N]
   std::optional<Inertia> inertia;
   bool has_negative_pivots = false;
@@ -26,11 +26,11 @@ struct Attempt {
   [[nodiscard]] bool has_converged() const { return outcome == Outcome::converged; }
 };
 
-[[nodiscard]] Attempt to_attempt(NewtonResult result, double stage);
-[[nodiscard]] Attempt to_attempt(RelaxationResult result, double stage);
+[[nodiscard]] Attempt to_attempt(NewtonResult result, const LoadPoint& at);
+[[nodiscard]] Attempt to_attempt(RelaxationResult result, const LoadPoint& at);
 
 /// One that can't begin, since supports or loads have no value there.
-[[nodiscard]] Attempt undefined_attempt(const State& from, double stage);
+[[nodiscard]] Attempt undefined_attempt(const State& from, const LoadPoint& at);
 
 [[nodiscard]] State state_of(const Attempt& attempt);
 

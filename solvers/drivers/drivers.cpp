@@ -4,6 +4,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "solvers/drivers/arc_length_stepping.hpp"
 #include "solvers/drivers/hand_over.hpp"
 #include "solvers/drivers/implicit_stepping.hpp"
 #include "solvers/drivers/relaxed_stepping.hpp"
@@ -21,6 +22,7 @@ constexpr std::array drivers{
     DriverEntry{Mode::newton, make<ImplicitStepping>},
     DriverEntry{Mode::relaxation, make<RelaxedStepping>},
     DriverEntry{Mode::adaptive, make<HandOver>},
+    DriverEntry{Mode::arc_length, make<ArcLengthStepping>},
 };
 
 }  // namespace

@@ -14,8 +14,12 @@ constexpr int most_commits = 1000;
 void complete_record(const Path& path, const Attempt& attempt, FoundStep& found) {
   StepRecord& record = found.record;
   record.step = path.state().steps;
-  record.stage = attempt.stage;
-  record.load_factor = path.setting().conditions.load_factor(attempt.stage);
+  record.stage = attempt.at.stage;
+  record.load_factor = path.setting().conditions.load_factor(attempt.at);
+  if (const DisplacementControl* control = path.setting().conditions.control()) {
+    record.control = control->value(attempt.state.displacement);
+    if (attempt.inertia) record.negative_pivots = attempt.inertia->negative;
+  }
   record.stored_energy = found.ledger.stored;
   record.dissipated_energy = found.ledger.dissipated;
   record.drained_energy = found.ledger.drained;
@@ -37,8 +41,8 @@ Advance resolve_fragments(Path& path, double next) {
     attempt.outcome = Outcome::fragmented;
     return path.stop(std::move(attempt), 0.0, state.pins.described());
   }
-  path.tell({.stage = state.accepted.stage,
-             .outcome = name(Outcome::converged),
+  path.tell(load_point(state.accepted),
+            {.outcome = name(Outcome::converged),
              .action = remedy == FragmentRemedy::remove ? Decision::remove_fragments
                                                         : Decision::hold_fragments,
              .next_increment = next,
@@ -84,7 +88,8 @@ std::string complete(Path& path, Attempt& attempt, FoundStep& found) {
                           found.energies.relaxed.has_value(), ledger.entries, found.ledger});
   if (!fault.empty()) {
     attempt.outcome = Outcome::inconsistent;
-  } else if (!found.energies.relaxed && found.growth.degrading > 0) {
+  } else if (!found.energies.relaxed && !found.energies.is_avalanche &&
+             found.growth.degrading > 0) {
     fault = ledger.jump_to(found.ledger);
     if (!fault.empty()) attempt.outcome = Outcome::limit_point;
   }

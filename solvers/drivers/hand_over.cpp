@@ -43,12 +43,11 @@ Advance HandOver::approach_damage(const ImplicitStep& step) {
   if (near || !implicit_.increment().can_cut_to(rest)) return hand_over(step, why);
   state.hand_over.is_near_onset = true;
   implicit_.increment().cut_to(rest);
-  path_.tell({.stage = step.attempt.stage,
-              .increment = step.attempted,
-              .outcome = name(Outcome::converged),
-              .action = Decision::cut,
-              .next_increment = rest,
-              .reason = why});
+  path_.tell(step.attempt.at, {.increment = step.attempted,
+                               .outcome = name(Outcome::converged),
+                               .action = Decision::cut,
+                               .next_increment = rest,
+                               .reason = why});
   return Advance::goes_on;
 }
 
@@ -60,12 +59,11 @@ Advance HandOver::hand_over(const ImplicitStep& step, std::string reason) {
   }
   state.hand_over = {.relaxes = true, .is_near_onset = false};
   state.relaxed.motion = {};
-  path_.tell({.stage = step.attempt.stage,
-              .increment = step.attempted,
-              .outcome = name(step.attempt.outcome),
-              .action = Decision::hand_over,
-              .next_increment = relaxed_.increment().value(),
-              .reason = reason});
+  path_.tell(step.attempt.at, {.increment = step.attempted,
+                               .outcome = name(step.attempt.outcome),
+                               .action = Decision::hand_over,
+                               .next_increment = relaxed_.increment().value(),
+                               .reason = reason});
   return Advance::goes_on;
 }
 
@@ -99,8 +97,8 @@ Advance HandOver::relaxed_step() {
 void HandOver::hand_back() {
   path_.state().hand_over.relaxes = false;
   implicit_.increment().start_again();
-  path_.tell({.stage = path_.state().accepted.stage,
-              .outcome = name(Outcome::converged),
+  path_.tell(load_point(path_.state().accepted),
+             {.outcome = name(Outcome::converged),
               .action = Decision::hand_back,
               .next_increment = implicit_.increment().value(),
               .reason = "no bond was damaged in the last step, which ended in equilibrium"});

@@ -3,6 +3,15 @@
 #include <utility>
 
 namespace peristat {
+namespace {
+
+/// Shorter than this share of the first step, one that fails under a control is an avalanche.
+constexpr double share_of_avalanche = 0.25;
+
+/// Of equilibria in an avalanche.
+constexpr int most_passes = 10'000;
+
+}  // namespace
 
 std::string bonds_text(Index count) {
   return std::to_string(count) + (count == 1 ? " bond" : " bonds");
@@ -27,6 +36,7 @@ Advance ImplicitStepping::next() {
   if (!path_.has_load_left()) return Advance::ended;
   ImplicitStep step = search(path_.setting().newton_options.damage);
   if (step.attempt.has_converged()) establish(step);
+  if (may_be_avalanche(step)) run_avalanche(step);
   return step.attempt.has_converged() ? accept(std::move(step)) : fail(std::move(step));
 }
 
@@ -34,6 +44,7 @@ ImplicitStep ImplicitStepping::search(Damage damage) {
   const State& from = path_.state().accepted;
   const double target = increment_.target(from.stage);
   ImplicitStep step;
+  step.target = target;
   step.attempted = target - from.stage;
   if (const auto refusal = path_.refusal_of_conditions(target)) {
     step.attempt = undefined_attempt(from, target);
@@ -43,6 +54,7 @@ ImplicitStep ImplicitStepping::search(Damage damage) {
   NewtonOptions options = path_.setting().newton_options;
   options.damage = damage;
   step.attempt = path_.search(from, target, options);
+  if (step.attempt.outcome == Outcome::undefined_condition) step.fault = step.attempt.note;
   if (step.attempt.has_converged()) step.growth = path_.damaged().growth(step.attempt.state.at());
   return step;
 }
@@ -71,19 +83,69 @@ void ImplicitStepping::establish(ImplicitStep& step) {
   step.fault = complete(path_, attempt, step.found);
 }
 
+bool ImplicitStepping::may_be_avalanche(const ImplicitStep& step) const {
+  const Outcome outcome = step.attempt.outcome;
+  const bool has_failed = outcome == Outcome::iteration_limit || outcome == Outcome::limit_point ||
+                          outcome == Outcome::degenerate || outcome == Outcome::no_answer ||
+                          outcome == Outcome::inconsistent;
+  const LoadSteppingOptions& options = path_.options();
+  const bool is_short = !options.adaptive || step.attempted * options.steps <= share_of_avalanche;
+  return has_failed && is_short && path_.setting().conditions.control() &&
+         path_.damaged().model().has_history();
+}
+
+void ImplicitStepping::run_avalanche(ImplicitStep& step) {
+  NewtonOptions growing = path_.setting().newton_options, held = growing;
+  held.damage = Damage::held;
+  Attempt attempt = path_.search(path_.state().accepted, step.target, held);
+  step.found = {};
+  step.found.energies.is_avalanche = true;
+  int passes = 0;
+  for (int iterations = attempt.iterations; attempt.has_converged(); ++passes) {
+    Assembler& assembler = path_.damaged();
+    const Evaluation committed =
+        assembler.commit(attempt.state.displacement, attempt.state.history);
+    step.found.growth.degrading += committed.growth.degrading;
+    step.found.growth.breaking += committed.growth.breaking;
+    step.found.energies.released += committed.released;
+    if (committed.growth.degrading == 0) break;
+    if (passes == most_passes) {
+      attempt.outcome = Outcome::iteration_limit;
+      break;
+    }
+    const State from = state_of(attempt);
+    held.scale = growing.scale = attempt.scale;
+    attempt = path_.search(from, step.target, growing);
+    iterations += attempt.iterations;
+    if (!attempt.has_converged() && attempt.outcome != Outcome::interrupted) {
+      attempt = path_.search(from, step.target, held);
+      iterations += attempt.iterations;
+    }
+    attempt.iterations = iterations;
+  }
+  step.attempt = std::move(attempt);
+  step.fault.clear();
+  if (!step.attempt.has_converged()) return;
+  step.growth = step.found.growth;
+  step.attempt.note = std::to_string(step.attempt.iterations) + " iterations in " +
+                      std::to_string(passes) + " passes at a control that stands still, while " +
+                      bonds_text(step.growth.breaking) + " broke";
+  establish(step);
+}
+
 Advance ImplicitStepping::accept(ImplicitStep step) {
   const Attempt& attempt = step.attempt;
   const bool grows = attempt.iterations <= path_.options().easy_iterations && increment_.grow();
-  const bool is_exact = attempt.note.empty();
-  path_.tell(
-      {.stage = attempt.stage,
-       .increment = step.attempted,
-       .outcome = name(attempt.outcome),
-       .action = !is_exact ? Decision::accept_at_round_off
-                 : grows   ? Decision::accept_and_grow
-                           : Decision::accept,
-       .next_increment = increment_.value(),
-       .reason = is_exact ? std::to_string(attempt.iterations) + " iterations" : attempt.note});
+  const bool is_exact = attempt.note.empty() || step.found.energies.is_avalanche;
+  path_.tell(attempt.at,
+             {.increment = step.attempted,
+              .outcome = name(attempt.outcome),
+              .action = !is_exact ? Decision::accept_at_round_off
+                        : grows   ? Decision::accept_and_grow
+                                  : Decision::accept,
+              .next_increment = increment_.value(),
+              .reason = attempt.note.empty() ? std::to_string(attempt.iterations) + " iterations"
+                                             : attempt.note});
   return peristat::accept(path_, std::move(step.attempt), std::move(step.found),
                           increment_.value());
 }
@@ -91,15 +153,17 @@ Advance ImplicitStepping::accept(ImplicitStep step) {
 Advance ImplicitStepping::fail(ImplicitStep step) {
   Attempt& attempt = step.attempt;
   std::string reason = reason_of(step);
+  if (attempt.outcome == Outcome::no_answer && path_.state().steps == 0) {
+    throw InputError("controls", "", explanation(attempt.outcome));
+  }
   const double next = step.attempted * path_.options().cut;
   if (worth_cutting(attempt) && increment_.can_cut_to(next)) {
     increment_.cut_to(next);
-    path_.tell({.stage = attempt.stage,
-                .increment = step.attempted,
-                .outcome = name(attempt.outcome),
-                .action = Decision::cut,
-                .next_increment = next,
-                .reason = reason});
+    path_.tell(attempt.at, {.increment = step.attempted,
+                            .outcome = name(attempt.outcome),
+                            .action = Decision::cut,
+                            .next_increment = next,
+                            .reason = reason});
     return Advance::goes_on;
   }
   if (is_limit_point(attempt)) {
@@ -113,6 +177,7 @@ Advance ImplicitStepping::fail(ImplicitStep step) {
 
 /// Whether a step as small as allowed has failed because bonds soften.
 bool ImplicitStepping::is_limit_point(const Attempt& attempt) const {
+  if (path_.setting().conditions.control()) return false;  // beyond one pivots are negative anyway
   const bool may_soften = path_.body().assembler.model().has_history();
   if (!may_soften || !path_.options().adaptive) return false;
   return attempt.outcome == Outcome::not_positive_definite ||

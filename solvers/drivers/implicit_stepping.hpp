@@ -10,6 +10,7 @@ namespace peristat {
 
 /// An implicit step on its way.
 struct ImplicitStep {
+  double target = 0.0;     ///< stage
   double attempted = 0.0;  ///< increment of the stage
   Attempt attempt;
   DamageGrowth growth;  ///< that committing what the first search has found would bring
@@ -22,6 +23,10 @@ class ImplicitStepping : public Driver {
  public:
   explicit ImplicitStepping(Path& path);
 
+  /// Under a control, where no equilibrium is found along with the damage: at the next value of the
+  /// control equilibria are found with the integrities held, and damaged where they are
+  /// overstretched, until none is.
+  void run_avalanche(ImplicitStep& step);
   /// Searches the equilibrium of the next step.
   /// @param damage whether it may grow in it
   [[nodiscard]] ImplicitStep search(Damage damage);
@@ -38,6 +43,7 @@ class ImplicitStepping : public Driver {
 
  private:
   [[nodiscard]] bool is_limit_point(const Attempt& attempt) const;
+  [[nodiscard]] bool may_be_avalanche(const ImplicitStep& step) const;
 
   Increment increment_;
 };

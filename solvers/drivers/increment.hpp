@@ -39,6 +39,7 @@ class Increment {
     return options_.adaptive && increment >= options_.smallest_step;
   }
   void cut_to(double increment) { next_ = increment; }
+  void enlarge_to(double increment) { next_ = std::max(value(), increment); }
   /// @return whether it grew
   bool grow() {
     if (!options_.adaptive || value() >= largest_) return false;

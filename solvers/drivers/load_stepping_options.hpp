@@ -6,6 +6,14 @@
 
 namespace peristat {
 
+/// What mode arc_length does beside stepping.
+struct ArcLengthOptions {
+  /// Ends the path, unless the load has come to its end before; 0: only that ends it.
+  int steps = 0;
+  double largest_step = 1e6;  ///< to which steps may grow: in effect as far as the path is straight
+  bool branches_off = true;   ///< at a bifurcation of a stable path to the path that leaves there
+};
+
 struct LoadSteppingOptions {
   Mode mode = Mode::newton;
   int steps = 1;         ///< equal steps from one entry of the programme to the next
@@ -22,6 +30,7 @@ struct LoadSteppingOptions {
   /// Relative residual of a relaxed step at which Newton's method takes its last iterations over,
   /// in adaptive mode.
   double newton_takes_over_at = 1e-5;
+  ArcLengthOptions arc_length{};
   FragmentRemedy fragments = FragmentRemedy::hold;
 };
 

@@ -63,20 +63,48 @@ std::vector<double> Path::working_force(const Trial& state,
 }
 
 std::optional<std::string> Path::refusal_of_conditions(double stage) const {
+  if (setting_.conditions.control()) return std::nullopt;  // the load is not known yet
   std::vector<double> values(setting_.conditions.prescribed().size());
   try {
     setting_.conditions.prescribe(stage, values);
     setting_.conditions.external_force(stage, values);
   } catch (const InputError& error) {
-    return setting_.observer.describe ? setting_.observer.describe(error) : error.what();
+    return description(error);
   }
   return std::nullopt;
 }
 
+std::string Path::description(const InputError& error) const {
+  return setting_.observer.describe ? setting_.observer.describe(error) : error.what();
+}
+
 Attempt Path::search(const State& from, double target, const NewtonOptions& options) {
+  if (setting_.conditions.control()) return search_by_control(from, target, options);
   return to_attempt(newton(problem(), body().solver, body().tangent, from, target, options,
                            [this](const IterationRecord& row) { return iterated(row); }),
                     target);
+}
+
+Attempt Path::search_by_control(const State& from, double target, const NewtonOptions& options) {
+  const Conditions& conditions = setting_.conditions;
+  BorderedStep step;
+  step.loads = [target](double load) { return LoadPoint(target, load); };
+  step.border = {conditions.control()->weights(), 0.0, conditions.programme().at(target).front()};
+  step.unknown = from.load.value_or(0.0);
+  return search(from, step, options);
+}
+
+Attempt Path::search(const State& from, const BorderedStep& step, const NewtonOptions& options) {
+  try {
+    BorderedResult found =
+        bordered_newton(problem(), body().solver, body().tangent, from, step, options,
+                        [this](const IterationRecord& row) { return iterated(row); });
+    return to_attempt(std::move(found.newton), step.loads(found.unknown));
+  } catch (const InputError& error) {
+    Attempt attempt = undefined_attempt(from, load_point(from));
+    attempt.note = description(error);
+    return attempt;
+  }
 }
 
 void Path::number_equations() {
@@ -107,10 +135,11 @@ bool Path::iterated(IterationRecord row) const {
   return observer.interrupted && observer.interrupted();
 }
 
-void Path::tell(DecisionRecord decision) const {
+void Path::tell(const LoadPoint& at, DecisionRecord decision) const {
   if (!setting_.observer.decision) return;
   decision.step = next_step();
-  decision.load_factor = setting_.conditions.load_factor(decision.stage);
+  decision.stage = at.stage;
+  decision.load_factor = setting_.conditions.load_factor(at);
   setting_.observer.decision(decision);
 }
 
@@ -124,11 +153,10 @@ void Path::count_pivots(Attempt& attempt) const {
 
 Advance Path::stop(Attempt attempt, double attempted, const std::string& reason) {
   if (!attempt.inertia && attempt.has_negative_pivots) count_pivots(attempt);
-  tell({.stage = attempt.stage,
-        .increment = attempted,
-        .outcome = name(attempt.outcome),
-        .action = Decision::stop,
-        .reason = reason});
+  tell(attempt.at, {.increment = attempted,
+                    .outcome = name(attempt.outcome),
+                    .action = Decision::stop,
+                    .reason = reason});
   outcome_ = attempt.outcome;
   last_attempt_ = std::move(attempt);
   return Advance::ended;

@@ -8,6 +8,7 @@
 #include "solvers/drivers/load_stepping_options.hpp"
 #include "solvers/drivers/observer.hpp"
 #include "solvers/drivers/path_state.hpp"
+#include "solvers/search/bordered_newton.hpp"
 
 namespace peristat {
 
@@ -66,11 +67,14 @@ class Path {
   [[nodiscard]] std::vector<double> working_force(const Trial& state,
                                                   std::span<const double> external_force) const;
 
-  /// Whether supports and loads have a value at a stage; otherwise why not.
+  /// Why supports and loads have no value at a stage, if that is so.
   [[nodiscard]] std::optional<std::string> refusal_of_conditions(double stage) const;
 
-  /// By Newton's method.
+  /// By Newton's method, under the conditions' control if they have one.
   [[nodiscard]] Attempt search(const State& from, double target, const NewtonOptions& options);
+  /// By Newton's method with a load that is found, too.
+  [[nodiscard]] Attempt search(const State& from, const BorderedStep& step,
+                               const NewtonOptions& options);
 
   /// Prepares the solver of the body in force for the equations.
   [[nodiscard]] Advance analyze();
@@ -80,7 +84,8 @@ class Path {
   /// Told of every iteration of the next step; returns true to interrupt.
   [[nodiscard]] bool iterated(IterationRecord row) const;
   /// Tells a decision about the next step.
-  void tell(DecisionRecord decision) const;
+  /// @param at that was attempted
+  void tell(const LoadPoint& at, DecisionRecord decision) const;
   /// Ends the path with an attempt that failed.
   [[nodiscard]] Advance stop(Attempt attempt, double attempted, const std::string& reason);
 
@@ -89,6 +94,9 @@ class Path {
 
  private:
   void number_equations();
+  [[nodiscard]] Attempt search_by_control(const State& from, double target,
+                                          const NewtonOptions& options);
+  [[nodiscard]] std::string description(const InputError& error) const;
   /// Of the state that a search has ended in, for what is told of it.
   void count_pivots(Attempt& attempt) const;
 

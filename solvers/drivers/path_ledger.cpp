@@ -48,6 +48,9 @@ Ledger PathLedger::with_step(std::span<const double> displacement_before, const 
     after.numerical_work += step.relaxed->work - work;
     after.drained += step.relaxed->drained;
   }
+  if (step.is_avalanche) {
+    after.drained += std::max(0.0, after.balance_error() - entries.balance_error());
+  }
   return after;
 }
 

@@ -17,6 +17,9 @@ struct StepEnergies {
     double drained = 0.0;  ///< see RelaxationResult
   };
   std::optional<Relaxed> relaxed;  ///< summed over the iterations of relaxation
+  /// Bonds broke one after the other under a control that stood still: what the work is more than
+  /// what is stored and dissipated counts as drained.
+  bool is_avalanche = false;
 };
 
 /// Forces that do work on the body: loads, and on prescribed degrees of freedom what holds them,

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <cstdint>
+#include <vector>
+
 #include "assembly/assembler.hpp"
 #include "assembly/energy/state.hpp"
 #include "solvers/drivers/fragment_pins.hpp"
@@ -31,6 +34,16 @@ struct PathState {
     double increment = 0.0;  ///< likewise
     RelaxationMotion motion;
   } relaxed;
+  struct Arc {
+    double increment = 0.0;  ///< of the arc length in the next step; 0: as in the first
+    /// Of the path in the accepted state, per unit of the arc length: of the displacement [m], and
+    /// of the stage. Empty: not found yet.
+    std::vector<double> direction;
+    double stage_direction = 0.0;
+    double displacement_scale = 0.0;     ///< norm of du/dstage at rest [m]
+    std::int64_t negative_pivots = 0;    ///< in the accepted state
+    bool passes_critical_point = false;  ///< with the next step; it has been located
+  } arc;
   struct HandOver {
     bool relaxes = false;        ///< on the side of relaxation
     bool is_near_onset = false;  ///< an implicit step was cut to end just before damage begins

@@ -48,7 +48,7 @@ RelaxedStep::RelaxedStep(const State& accepted) {
   found.energies.relaxed.emplace();
   attempt.state.displacement = accepted.displacement;
   attempt.state.history = accepted.history;
-  attempt.stage = accepted.stage;
+  attempt.at = load_point(accepted);
 }
 
 void relax_towards(Path& path, RelaxedStep& step, double target, RelaxationOptions options) {

@@ -47,13 +47,12 @@ RelaxedStepping::Found RelaxedStepping::search() {
 Advance RelaxedStepping::accept(Found found) {
   const bool grew = increment_.grow();
   const Attempt& attempt = found.step.attempt;
-  path_.tell({.stage = attempt.stage,
-              .increment = found.attempted,
-              .outcome = name(attempt.outcome),
-              .action = grew ? Decision::accept_and_grow : Decision::accept,
-              .next_increment = increment_.value(),
-              .reason = std::to_string(found.step.found.record.relaxation_iterations) +
-                        " iterations of relaxation"});
+  path_.tell(attempt.at, {.increment = found.attempted,
+                          .outcome = name(attempt.outcome),
+                          .action = grew ? Decision::accept_and_grow : Decision::accept,
+                          .next_increment = increment_.value(),
+                          .reason = std::to_string(found.step.found.record.relaxation_iterations) +
+                                    " iterations of relaxation"});
   return peristat::accept(path_, std::move(found.step.attempt), std::move(found.step.found),
                           increment_.value());
 }
@@ -64,12 +63,11 @@ Advance RelaxedStepping::fail(Found found) {
   const std::string reason = reason_of(attempt, found.fault);
   if (worth_cutting(attempt) && increment_.can_cut_to(next)) {
     increment_.cut_to(next);
-    path_.tell({.stage = attempt.stage,
-                .increment = found.attempted,
-                .outcome = name(attempt.outcome),
-                .action = Decision::cut,
-                .next_increment = next,
-                .reason = reason});
+    path_.tell(attempt.at, {.increment = found.attempted,
+                            .outcome = name(attempt.outcome),
+                            .action = Decision::cut,
+                            .next_increment = next,
+                            .reason = reason});
     return Advance::goes_on;
   }
   return path_.stop(std::move(attempt), found.attempted, reason);

@@ -1,9 +1,19 @@
 #include "solvers/drivers/state_archive.hpp"
 
+#include <optional>
 #include <utility>
 
 namespace peristat {
 namespace {
+
+void transfer_optional(StateArchive& archive, const std::string& name,
+                       std::optional<double>& value) {
+  bool is_there = value.has_value();
+  double held = value.value_or(0.0);
+  archive.transfer(name + "_is_there", is_there);
+  archive.transfer(name, held);
+  value = is_there ? std::optional(held) : std::nullopt;
+}
 
 void transfer_history(StateArchive& archive, History& history) {
   int terms = static_cast<int>(history.terms());
@@ -43,10 +53,11 @@ void transfer_pins(StateArchive& archive, FragmentPins& pins) {
 // The bindings name every member, so that none can be forgotten.
 void transfer(StateArchive& archive, PathState& state) {
   auto& [accepted, steps, ledger, pins, stands_in, rungs, relaxation_seconds, implicit, relaxed,
-         hand_over] = state;
-  auto& [displacement, stage, history] = accepted;
+         arc, hand_over] = state;
+  auto& [displacement, stage, history, load] = accepted;
   archive.transfer("accepted/displacement", displacement);
   archive.transfer("accepted/stage", stage);
+  transfer_optional(archive, "accepted/load", load);
   transfer_history(archive, history);
   archive.transfer("steps", steps);
   transfer_ledger(archive, ledger);
@@ -62,6 +73,14 @@ void transfer(StateArchive& archive, PathState& state) {
   auto& [velocity] = motion;
   archive.transfer("relaxed/increment", relaxed_increment);
   archive.transfer("relaxed/velocity", velocity);
+  auto& [arc_increment, direction, stage_direction, displacement_scale, negative_pivots,
+         passes_critical_point] = arc;
+  archive.transfer("arc/increment", arc_increment);
+  archive.transfer("arc/direction", direction);
+  archive.transfer("arc/stage_direction", stage_direction);
+  archive.transfer("arc/displacement_scale", displacement_scale);
+  archive.transfer("arc/negative_pivots", negative_pivots);
+  archive.transfer("arc/passes_critical_point", passes_critical_point);
   auto& [relaxes, is_near_onset] = hand_over;
   archive.transfer("hand_over/relaxes", relaxes);
   archive.transfer("hand_over/is_near_onset", is_near_onset);

@@ -10,6 +10,7 @@
 #include <suitesparse/cholmod.h>
 
 #include "assembly/operators/tangent.hpp"
+#include "solvers/linear/lower_triangle.hpp"
 #include "solvers/linear/speeds.hpp"
 #include "solvers/linear/trilinos/krylov.hpp"
 #include "solvers/linear/vector_verbs.hpp"
@@ -127,34 +128,12 @@ struct Cholesky::Cholmod {
     }
   }
 
-  /// visit(row, on_diagonal, k, r, c) for each stored entry of one column (the lower triangle) in
-  /// ascending rows: entry (r, c) of the diagonal block of point k, or of the block of bond k.
-  template <class Visit>
-  void for_each_entry_of_column(const BlockPattern& pattern, Index equation,
-                                const Visit& visit) const {
-    const int d = free->dimension;
-    const Index dof = free->dof[equation];
-    const Index i = dof / d;
-    const int r = dof % d;
-    for (int c = r; c < d; ++c) {
-      const Index row = free->equation[std::size_t(i) * d + c];
-      if (row != FreeDofs::none) visit(row, true, i, r, c);
-    }
-    for (Offset bond = pattern.offset[i]; bond < pattern.offset[i + 1]; ++bond) {
-      const std::size_t j = std::size_t(pattern.partner[bond]);
-      for (int c = 0; c < d; ++c) {
-        const Index row = free->equation[j * d + c];
-        if (row != FreeDofs::none) visit(row, false, bond, r, c);
-      }
-    }
-  }
-
   void build_matrix(const BlockPattern& pattern) {
     const Index size = free->count();
     std::vector<Long> begin(std::size_t(size) + 1, 0);
     for (Index e = 0; e < size; ++e) {
       Long entries = 0;
-      for_each_entry_of_column(pattern, e, [&](Index, bool, Offset, int, int) { ++entries; });
+      for_each_entry_of_column(pattern, *free, e, [&](Index, const EntryPlace&) { ++entries; });
       begin[std::size_t(e) + 1] = begin[e] + entries;
     }
     matrix = cholmod_l_allocate_sparse(size, size, std::size_t(begin.back()), 1, 1, -1,
@@ -164,22 +143,20 @@ struct Cholesky::Cholmod {
     Long* rows = static_cast<Long*>(matrix->i);
     for (Index e = 0; e < size; ++e) {
       Long* row = rows + begin[e];
-      for_each_entry_of_column(pattern, e, [&](Index at, bool, Offset, int, int) { *row++ = at; });
+      for_each_entry_of_column(pattern, *free, e,
+                               [&](Index at, const EntryPlace&) { *row++ = at; });
     }
   }
 
   void fill_matrix() {
     double* values = static_cast<double*>(matrix->x);
     const Long* begin = static_cast<const Long*>(matrix->p);
-    const int d = tangent->dimension;
 #pragma omp parallel for schedule(static)
     for (Index e = 0; e < free->count(); ++e) {
       double* value = values + begin[e];
-      for_each_entry_of_column(
-          tangent->pattern, e, [&](Index, bool on_diagonal, Offset k, int r, int c) {
-            *value++ = on_diagonal ? tangent->diagonal[(std::size_t(k) * d + r) * d + c]
-                                   : tangent->entry(k, r, c);
-          });
+      for_each_entry_of_column(tangent->pattern, *free, e, [&](Index, const EntryPlace& place) {
+        *value++ = place.value(*tangent);
+      });
     }
   }
 

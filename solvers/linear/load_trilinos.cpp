@@ -1,48 +1,21 @@
-#include <cerrno>
-#include <cstring>
 #include <new>
 #include <stdexcept>
 #include <string>
 
-#include <dlfcn.h>
-
+#include "solvers/linear/load_module.hpp"
 #include "solvers/linear/trilinos/module.hpp"
-#include "src/core/address_space.hpp"
-#include "src/core/machine_error.hpp"
 
 namespace peristat {
 namespace {
 
-// Address space of Trilinos, 180 MB as measured, and what its solvers allocate: where its libraries
-// find none while they are loaded, the program ends.
+/// Address space of Trilinos, 180 MB as measured, and what its solvers allocate.
 constexpr std::size_t room_for_trilinos = std::size_t(256) << 20;
-
-/// The loader tells why in words alone: "cannot open shared object file: Error 24", "failed to map
-/// segment from shared object", "cannot allocate memory in static TLS block", ...
-[[noreturn]] void throw_why_not(const std::string& reason) {
-  for (const int cause : {EMFILE, ENFILE}) {
-    if (reason.ends_with("Error " + std::to_string(cause)) ||
-        reason.ends_with(std::strerror(cause))) {
-      throw MachineError("Trilinos can't be loaded: " + reason);
-    }
-  }
-  if (reason.find("map segment") != std::string::npos ||
-      reason.find("allocate memory") != std::string::npos) {
-    throw std::bad_alloc();
-  }
-  throw std::runtime_error("Trilinos can't be loaded: " + reason);
-}
 
 /// Loads the module at the first call. It stays: Kokkos is stopped when the process ends.
 const trilinos::Module& module() {
   static const trilinos::Module* const loaded = [] {
-    // Found by the run path of the program. BLAS is the program's own: symbols that it already has
-    // come first.
-    if (!has_address_space(room_for_trilinos)) throw std::bad_alloc();
-    void* const library = dlopen(trilinos::module_file, RTLD_LAZY | RTLD_LOCAL);
-    if (!library) throw_why_not(dlerror());
-    void* const symbol = dlsym(library, trilinos::module_symbol);
-    if (!symbol) throw std::runtime_error(std::string("Trilinos can't be loaded: ") + dlerror());
+    void* const symbol =
+        load_module("Trilinos", trilinos::module_file, trilinos::module_symbol, room_for_trilinos);
     return reinterpret_cast<const trilinos::Module* (*)()>(symbol)();
   }();
   return *loaded;

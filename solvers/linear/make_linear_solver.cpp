@@ -8,6 +8,7 @@
 #include "solvers/linear/block_jacobi.hpp"
 #include "solvers/linear/cholesky.hpp"
 #include "solvers/linear/iterative_solver.hpp"
+#include "solvers/linear/ldlt.hpp"
 #include "solvers/linear/rigid_pieces.hpp"
 #include "solvers/linear/speeds.hpp"
 #include "solvers/linear/surrogate.hpp"
@@ -117,7 +118,7 @@ ChosenSolver choose(const LinearProblem& problem, SolverLadder::Reporter tell) {
 }  // namespace
 
 bool can_be_matrix_free(const LinearSolverOptions& options) {
-  return options.method != LinearMethod::cholesky &&
+  return options.method != LinearMethod::cholesky && options.method != LinearMethod::ldlt &&
          options.preconditioner != PreconditionerKind::riluk &&
          options.preconditioner != PreconditionerKind::chebyshev &&
          options.preconditioner != PreconditionerKind::multigrid;
@@ -129,6 +130,9 @@ ChosenSolver make_linear_solver(const LinearSolverOptions& options, const Linear
     case LinearMethod::cholesky:
       return {std::make_unique<Cholesky>(FactorReuse{}, problem.available_bytes), true,
               Seconds(problem).direct, "as the case asks"};
+    case LinearMethod::ldlt:
+      return {std::make_unique<Ldlt>(), true, Seconds(problem).direct,
+              "it bears the negative pivots beyond a limit point, and counts them"};
     case LinearMethod::conjugate_gradients:
     case LinearMethod::minres:
     case LinearMethod::gmres:

@@ -9,7 +9,14 @@
 
 namespace peristat {
 
-enum class LinearMethod { automatic, cholesky, conjugate_gradients, minres, gmres };
+enum class LinearMethod {
+  automatic,
+  cholesky,
+  ldlt,  ///< bears negative pivots
+  conjugate_gradients,
+  minres,
+  gmres
+};
 
 enum class TangentStorage { automatic, stored, matrix_free };
 

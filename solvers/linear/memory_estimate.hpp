@@ -26,14 +26,14 @@ struct MemoryEstimate {
   double tangent_bytes = 0.0;   ///< of a stored tangent
   double matrix_bytes = 0.0;    ///< of a direct solver without its factor
 
-  [[nodiscard]] double direct_bytes() const;
+  [[nodiscard]] double direct_bytes(LinearMethod method = LinearMethod::cholesky) const;
   /// Of an iterative solver with its preconditioner, rigid pieces where none is named.
   [[nodiscard]] double iterative_bytes(const LinearSolverOptions& options) const;
   /// Of the whole run by a direct or an iterative solver, with or without a stored tangent.
   [[nodiscard]] double bytes(bool is_direct, bool is_stored,
                              const LinearSolverOptions& options) const {
     return body_bytes + (is_stored ? tangent_bytes : 0.0) +
-           (is_direct ? direct_bytes() : iterative_bytes(options));
+           (is_direct ? direct_bytes(options.method) : iterative_bytes(options));
   }
   /// By whatever takes least.
   [[nodiscard]] double least_bytes() const { return bytes(false, false, {}); }

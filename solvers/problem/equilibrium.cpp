@@ -36,6 +36,14 @@ std::string name(Outcome outcome) {
       return "fragmented";
     case Outcome::undefined_condition:
       return "undefined_condition";
+    case Outcome::no_answer:
+      return "no_answer";
+    case Outcome::sharp_turn:
+      return "sharp_turn";
+    case Outcome::step_limit:
+      return "step_limit";
+    case Outcome::damage_begins:
+      return "damage_begins";
     case Outcome::inconsistent:
       return "inconsistent";
     case Outcome::interrupted:
@@ -76,6 +84,17 @@ std::string explanation(Outcome outcome) {
       return "a piece has come off (solver.fragments = \"stop\")";
     case Outcome::undefined_condition:
       return "supports or loads have no value at this load factor, or contradict each other";
+    case Outcome::no_answer:
+      return "the controlled displacement does not answer to the load: here the path turns back in "
+             "it, or nothing that is loaded moves it";
+    case Outcome::sharp_turn:
+      return "the path turns too sharply for so long a step along it";
+    case Outcome::step_limit:
+      return "the load has not come to its end after the largest number of steps; arc_length.steps "
+             "ends the path after as many as it says";
+    case Outcome::damage_begins:
+      return "bonds would be damaged; solver.mode = \"arc_length\" keeps their integrities as they "
+             "are (a [[control]] follows damage)";
     case Outcome::inconsistent:
       return "the state that was found contradicts a balance that it owes";
     case Outcome::interrupted:

@@ -27,6 +27,10 @@ enum class Outcome {
   damage_limit,         ///< more bonds break at once than allowed, however small the step
   fragmented,           ///< a piece has come off, and that is to end the run
   undefined_condition,  ///< supports or loads have no value, or two, at the stage
+  no_answer,            ///< the controlled displacement does not answer to the load
+  sharp_turn,           ///< the path turns by too much for the step
+  step_limit,           ///< as many steps as allowed, and the load has not come to its end
+  damage_begins,        ///< where the integrities are to stay as they are
   inconsistent,         ///< a state found breaks a balance that it owes (solvers/consistency.hpp)
   interrupted,          ///< by the person
 };
@@ -56,6 +60,9 @@ struct Trial {
     return {displacement, history, damage};
   }
 };
+
+/// Where its supports and loads are.
+[[nodiscard]] inline LoadPoint load_point(const State& state) { return {state.stage, state.load}; }
 
 /// Evaluates energy and gradient at the trial's displacement and history.
 void evaluate(const EquilibriumProblem& problem, std::span<const double> external_force,

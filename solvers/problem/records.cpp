@@ -17,7 +17,9 @@ const std::map<Decision, std::string>& decision_names() {
       {Decision::hand_back, "hand back to newton"},
       {Decision::hold_fragments, "hold fragments"},
       {Decision::remove_fragments, "remove fragments"},
-      {Decision::change_linear_solver, "change linear solver"}};
+      {Decision::change_linear_solver, "change linear solver"},
+      {Decision::locate, "locate critical point"},
+      {Decision::branch_off, "branch off"}};
   return names;
 }
 

@@ -50,7 +50,11 @@ struct StepRecord {
   double max_damage = 0.0;
   double max_stretch = 0.0;
   double pin_force = 0.0;  ///< on what has come off and is pinned: 2-norm, 0 if nothing pulls [N]
-  bool settled = false;    ///< no equilibrium was asked for: see RelaxationResult
+  double control = 0.0;    ///< controlled displacement; 0 without a control [m]
+  /// Of the tangent by which a control or an arc length has found the state, or at it: 0 where it
+  /// is stable under its loads as they are. -1: not counted.
+  std::int64_t negative_pivots = -1;
+  bool settled = false;  ///< no equilibrium was asked for: see RelaxationResult
   std::map<std::string, Coordinates> reactions;       ///< by support set [N]
   std::map<std::string, std::vector<double>> probes;  ///< by probe name: components, or one scalar
 };
@@ -67,6 +71,8 @@ enum class Decision {
   hold_fragments,
   remove_fragments,
   change_linear_solver,
+  locate,      ///< a critical point between two states
+  branch_off,  ///< to the path that leaves at a bifurcation
 };
 
 /// As decisions.csv spells it.

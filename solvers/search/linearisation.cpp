@@ -18,19 +18,39 @@ LinearOutcome Linearisation::solve(const StateView& at, std::span<const double> 
     right_hand_side[e] = external_force_[dof] - gradient[dof];
   }
   if (!after_jump.empty()) {
-    std::vector<double> jump(after_jump.begin(), after_jump.end()), force(jump.size());
+    std::vector<double> jump(after_jump.begin(), after_jump.end());
     add_scaled(jump, -1.0, at.displacement);
-    tangent_.multiply(jump, force);
-    for (std::size_t e = 0; e < right_hand_side.size(); ++e) {
-      right_hand_side[e] -= force[problem_.free.dof[e]];
-    }
+    take_off_support_force(jump, right_hand_side);
   }
-  LinearOutcome outcome = solver_.factorize(tangent_, use);
-  std::vector<double> solution(right_hand_side.size());
-  if (outcome == LinearOutcome::solved) {
-    outcome = solver_.solve(right_hand_side, solution, tolerance);
-  }
+  const LinearOutcome outcome = solver_.factorize(tangent_, use);
+  if (outcome == LinearOutcome::solved) return solve_for(right_hand_side, tolerance, direction);
   direction.resize(at.displacement.size());
+  return outcome;
+}
+
+LinearOutcome Linearisation::solve_again(std::span<const double> force,
+                                         std::span<const double> jump, double tolerance,
+                                         std::vector<double>& direction) {
+  std::vector<double> right_hand_side(std::size_t(problem_.free.count()));
+  problem_.free.restrict_to_free(force, right_hand_side);
+  if (!jump.empty()) take_off_support_force(jump, right_hand_side);
+  return solve_for(right_hand_side, tolerance, direction);
+}
+
+void Linearisation::take_off_support_force(std::span<const double> jump,
+                                           std::span<double> right_hand_side) const {
+  std::vector<double> force(jump.size());
+  tangent_.multiply(jump, force);
+  for (std::size_t e = 0; e < right_hand_side.size(); ++e) {
+    right_hand_side[e] -= force[problem_.free.dof[e]];
+  }
+}
+
+LinearOutcome Linearisation::solve_for(std::span<const double> right_hand_side, double tolerance,
+                                       std::vector<double>& direction) {
+  std::vector<double> solution(right_hand_side.size());
+  const LinearOutcome outcome = solver_.solve(right_hand_side, solution, tolerance);
+  direction.resize(problem_.free.equation.size());
   problem_.free.extend_by_zero(solution, direction);
   return outcome;
 }
@@ -54,6 +74,22 @@ void Linearisation::assemble(const StateView& at, double projection) {
   add_scaled(stored->diagonal, projection - projection_, to_projected_->diagonal);
   add_scaled(stored->off_diagonal, projection - projection_, to_projected_->off_diagonal);
   projection_ = projection;
+}
+
+Outcome outcome_of(LinearOutcome linear) {
+  switch (linear) {
+    case LinearOutcome::solved:
+      return Outcome::converged;
+    case LinearOutcome::not_positive_definite:
+      return Outcome::not_positive_definite;
+    case LinearOutcome::singular:
+      return Outcome::singular_tangent;
+    case LinearOutcome::out_of_memory:
+      return Outcome::out_of_memory;
+    case LinearOutcome::inaccurate:
+      return Outcome::linear_solver_inaccurate;
+  }
+  return Outcome::singular_tangent;
 }
 
 double forcing_term(double residual, double last, double target) {

@@ -30,8 +30,20 @@ class Linearisation {
                                     std::span<const double> after_jump, double tolerance,
                                     std::vector<double>& direction);
 
+  /// Finds the direction of another force by the tangent that was solved with last: K_ff du_f =
+  /// force_f - K_fp jump_p.
+  /// @param jump of the prescribed displacements, zero elsewhere; empty for none
+  [[nodiscard]] LinearOutcome solve_again(std::span<const double> force,
+                                          std::span<const double> jump, double tolerance,
+                                          std::vector<double>& direction);
+
  private:
   void assemble(const StateView& at, double projection);
+  /// right_hand_side -= K_fp jump_p
+  void take_off_support_force(std::span<const double> jump,
+                              std::span<double> right_hand_side) const;
+  [[nodiscard]] LinearOutcome solve_for(std::span<const double> right_hand_side, double tolerance,
+                                        std::vector<double>& direction);
 
   const EquilibriumProblem& problem_;
   LinearSolver& solver_;
@@ -41,6 +53,9 @@ class Linearisation {
   bool exact_is_known_ = false;
   std::span<const double> external_force_;
 };
+
+/// What a linear system's end means for the search that it is of.
+[[nodiscard]] Outcome outcome_of(LinearOutcome linear);
 
 /// Relative residual to which a linear system is solved (choice 2 of Eisenstat and Walker, SIAM J.
 /// Sci. Comput. 17, 1996, with exponent 2, for which Newton stays quadratic): the square of the

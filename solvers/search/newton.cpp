@@ -6,32 +6,11 @@
 #include <utility>
 
 #include "solvers/linear/vector_verbs.hpp"
+#include "solvers/search/convergence.hpp"
 #include "solvers/search/linearisation.hpp"
 
 namespace peristat {
 namespace {
-
-Outcome outcome_of(LinearOutcome linear) {
-  switch (linear) {
-    case LinearOutcome::solved:
-      return Outcome::converged;
-    case LinearOutcome::not_positive_definite:
-      return Outcome::not_positive_definite;
-    case LinearOutcome::singular:
-      return Outcome::singular_tangent;
-    case LinearOutcome::out_of_memory:
-      return Outcome::out_of_memory;
-    case LinearOutcome::inaccurate:
-      return Outcome::linear_solver_inaccurate;
-  }
-  return Outcome::singular_tangent;
-}
-
-/// An iteration that leaves more than this share of the residual has stagnated.
-constexpr double stagnation = 0.5;
-
-/// Largest relative residual that counts as converged because round-off leaves no less.
-constexpr double coarsest_round_off = 1e-6;
 
 /// Negative pivots for the history.
 std::int64_t told_negative_pivots(LinearOutcome linear, const std::optional<Inertia>& inertia) {
@@ -186,17 +165,8 @@ class NewtonSearch {
   }
 
   [[nodiscard]] bool has_converged() {
-    if (current_.degenerate) return false;
-    result_.largest_residual = options_.relative_tolerance * result_.scale;
-    if (current_.residual_norm <= result_.largest_residual) return true;
-    if (result_.iterations < 2 || current_.residual_norm < stagnation * last_residual_ ||
-        current_.residual_norm > coarsest_round_off * result_.scale) {
-      return false;
-    }
-    const double round_off = residual_round_off(problem_.free, tangent_, current_.displacement);
-    result_.is_at_round_off = current_.residual_norm <= round_off;
-    if (result_.is_at_round_off) result_.largest_residual = round_off;
-    return result_.is_at_round_off;
+    return note_convergence(problem_.free, tangent_, current_, last_residual_,
+                            options_.relative_tolerance, result_);
   }
 
   /// Tells the observer where the search is.

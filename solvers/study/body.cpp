@@ -129,7 +129,7 @@ std::unique_ptr<const Body> make_body(Points points, const BodySpecification& of
   make_model(body, threads);
   body.conditions = std::make_unique<Conditions>(
       body.points, of.supports, of.loads,
-      of.programme.empty() ? LoadingProgramme() : LoadingProgramme(of.programme));
+      of.programme.empty() ? LoadingProgramme() : LoadingProgramme(of.programme), of.controls);
   const Stopwatch watch(body.seconds_neighbourhood);
   store_interactions(body, threads);
   return owned;

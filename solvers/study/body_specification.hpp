@@ -59,8 +59,10 @@ struct BodySpecification {
   MaterialSpecification material{};
   std::vector<SupportSpecification> supports{};
   std::vector<LoadSpecification> loads{};
+  /// In the place of `load`, see DisplacementControl; none: the programme's own.
+  std::vector<ControlTerm> controls{};
   /// Tables of the load parameters `load`, `load2`, …, see LoadingProgramme; none: `load` from 0 to
-  /// 1.
+  /// 1. With controls the first table is of the controlled displacement [m].
   std::vector<std::vector<double>> programme{};
 };
 

@@ -8,6 +8,30 @@
 #include "src/core/input_error.hpp"
 
 namespace peristat {
+namespace {
+
+/// Where loads are found the tangent may have negative pivots: other solvers give up.
+void require_ldlt(const StudyOptions& options) {
+  const std::string why =
+      "a control and mode arc_length need the direct solver that bears negative pivots, which is "
+      "taken by itself";
+  const LinearMethod method = options.linear.method;
+  if (method != LinearMethod::automatic && method != LinearMethod::ldlt) {
+    throw InputError("linear.method", "", why);
+  }
+  if (options.linear.preconditioner != PreconditionerKind::automatic) {
+    throw InputError("linear.preconditioner", "", why);
+  }
+  if (options.tangent == TangentStorage::matrix_free) {
+    throw InputError("tangent", "matrix_free", why);
+  }
+}
+
+}  // namespace
+
+bool finds_loads(const StudyOptions& options, const Conditions& conditions) {
+  return conditions.control() != nullptr || options.loading.mode == Mode::arc_length;
+}
 
 LinearSystems choose_linear_systems(const StudyOptions& options, const Model& model,
                                     const MemoryEstimate& estimate, SolverLadder::Reporter tell) {
@@ -21,7 +45,7 @@ LinearSystems choose_linear_systems(const StudyOptions& options, const Model& mo
   LinearProblem problem;
   problem.bonds = estimate.size.bonds;
   problem.factor_flops = estimate.factor_flops;
-  problem.factor_bytes = estimate.direct_bytes();
+  problem.factor_bytes = estimate.direct_bytes(linear.method);
   problem.available_bytes = available_memory() - estimate.body_bytes - estimate.tangent_bytes;
   // Elsewhere damage grows in relaxation, which finds stable states alone.
   problem.may_soften = model.has_history() && options.loading.mode == Mode::newton;
@@ -38,6 +62,17 @@ LinearSystems choose_linear_systems(const StudyOptions& options, const Model& mo
   systems.is_stored = problem.is_stored;
   systems.bytes = estimate.bytes(systems.chosen.is_direct, systems.is_stored, linear);
   return systems;
+}
+
+LinearSystems choose_linear_systems(const StudyOptions& options, const Body& body,
+                                    SolverLadder::Reporter tell) {
+  StudyOptions chosen = options;
+  if (finds_loads(options, *body.conditions)) {
+    require_ldlt(options);
+    chosen.linear = {LinearMethod::ldlt, PreconditionerKind::automatic};
+    chosen.tangent = TangentStorage::stored;
+  }
+  return choose_linear_systems(chosen, body.model, estimate_memory(body), std::move(tell));
 }
 
 std::unique_ptr<TangentOperator> LinearSystems::make_tangent(Assembler& assembler) const {

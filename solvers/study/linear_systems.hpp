@@ -4,6 +4,7 @@
 
 #include "assembly/assembler.hpp"
 #include "solvers/linear/memory_estimate.hpp"
+#include "solvers/study/body.hpp"
 #include "solvers/study/study_options.hpp"
 
 namespace peristat {
@@ -17,6 +18,17 @@ struct LinearSystems {
   [[nodiscard]] std::unique_ptr<TangentOperator> make_tangent(Assembler& assembler) const;
 };
 
+/// Whether loads are found with the states, not given: under a control, and along the arc length.
+[[nodiscard]] bool finds_loads(const StudyOptions& options, const Conditions& conditions);
+
+/// Of a body under its conditions.
+/// @param tell see make_linear_solver
+/// @throws InputError ("tangent", "linear.method", "linear.preconditioner") for what does not go
+///         with its model or its conditions
+[[nodiscard]] LinearSystems choose_linear_systems(const StudyOptions& options, const Body& body,
+                                                  SolverLadder::Reporter tell);
+
+/// Of a model whose loads are given.
 /// @param estimate what the body is estimated to need
 /// @param tell see make_linear_solver
 /// @throws InputError ("tangent") if the model's can't do without being stored

@@ -54,8 +54,7 @@ void refuse_unstable_rest(const Body& body, const StudyOptions& options) {
   const FreeDofs free(body.conditions->prescribed(), body.points.dimension);
   if (negative.empty() || free.count() == 0) return;
 
-  const MemoryEstimate estimate = estimate_memory(body);
-  const LinearSystems systems = choose_linear_systems(options, body.model, estimate, {});
+  const LinearSystems systems = choose_linear_systems(options, body, {});
   require_memory(systems.bytes, fmt::format("the body with {} points", body.points.count()));
   Assembler assembler(body.points, body.model, usable_threads(options.threads));
   Tangent tangent(assembler);

@@ -26,8 +26,7 @@ Study::Study(const Body& body, StudyOptions options, SolverLadder::Reporter tell
   options_.threads = usable_threads(options_.threads);
   refuse_unheld_bodies(body);
   refuse_unstable_rest(body, options_);
-  LinearSystems systems =
-      choose_linear_systems(options_, body.model, estimate_memory(body), std::move(tell));
+  LinearSystems systems = choose_linear_systems(options_, body, std::move(tell));
   require_memory(systems.bytes, fmt::format("the body with {} points", body.points.count()));
   equations_ = std::make_unique<SolvedModel>(body.points, body.model, free_, std::move(systems),
                                              options_.threads);

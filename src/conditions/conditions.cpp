@@ -5,23 +5,12 @@
 #include <set>
 #include <utility>
 
+#include "src/conditions/points_of_set.hpp"
 #include "src/core/input_error.hpp"
 #include "src/core/number_text.hpp"
 
 namespace peristat {
 namespace {
-
-const std::vector<Index>& points_of(const Points& points, const std::string& set,
-                                    const std::string& key) {
-  const auto found = points.sets.find(set);
-  if (found == points.sets.end()) {
-    std::string known;
-    for (const auto& [name, members] : points.sets) known += (known.empty() ? "" : ", ") + name;
-    throw InputError(key, "\"" + set + "\"", "no set of this name; the sets are " + known);
-  }
-  if (found->second.empty()) throw InputError(key, "\"" + set + "\"", "the set selects no point");
-  return found->second;
-}
 
 /// Runs `make` and gives its input errors the key that they concern.
 template <class Make>
@@ -33,19 +22,16 @@ auto with_key(const std::string& key, const Make& make) {
   }
 }
 
-std::string indexed(const std::string& table, std::size_t number) {
-  return table + "[" + std::to_string(number) + "]";
-}
-
 }  // namespace
 
 Conditions::Conditions(const Points& points, const std::vector<SupportSpecification>& supports,
-                       const std::vector<LoadSpecification>& loads, LoadingProgramme programme)
+                       const std::vector<LoadSpecification>& loads, LoadingProgramme programme,
+                       const std::vector<ControlTerm>& control)
     : points_(points), programme_(std::move(programme)), prescribed_(points.reference.size(), 0) {
   const std::vector<std::string> parameters = LoadingProgramme::names(programme_.parameters());
   for (std::size_t k = 0; k < supports.size(); ++k) {
     const std::string table = indexed("supports", k);
-    const std::vector<Index>& members = points_of(points, supports[k].set, table + ".set");
+    const std::vector<Index>& members = points_of_set(points, supports[k].set, table + ".set");
     for (int c = 0; c < points.dimension; ++c) {
       const auto& text = supports[k].displacement[c];
       if (!text) continue;
@@ -59,7 +45,7 @@ Conditions::Conditions(const Points& points, const std::vector<SupportSpecificat
   }
   for (std::size_t k = 0; k < loads.size(); ++k) {
     const std::string table = indexed("loads", k);
-    const std::vector<Index>& members = points_of(points, loads[k].set, table + ".set");
+    const std::vector<Index>& members = points_of_set(points, loads[k].set, table + ".set");
     const bool total = loads[k].kind == LoadSpecification::Kind::total_force;
     double volume = 1.0;
     if (total) {
@@ -78,8 +64,15 @@ Conditions::Conditions(const Points& points, const std::vector<SupportSpecificat
                         volume});
     }
   }
+  if (!control.empty()) control_.emplace(points, control, prescribed_);
   find_shared();
   try_stages();
+}
+
+std::vector<double> Conditions::parameters(const LoadPoint& at) const {
+  std::vector<double> values = programme_.at(at.stage);
+  if (at.load) values.front() = *at.load;
+  return values;
 }
 
 void Conditions::find_shared() {
@@ -97,21 +90,22 @@ void Conditions::find_shared() {
 
 void Conditions::try_stages() {
   std::vector<double> values(prescribed_.size(), 0.0);
-  const auto try_at = [&](double stage) {
-    prescribe(stage, values);
+  const auto try_at = [&](double share) {
+    const double stage = share * programme_.end();
+    prescribe(control_ ? LoadPoint(stage, share) : LoadPoint(stage), values);
     for (const double value : values) largest_ = std::max(largest_, std::abs(value));
   };
   // The end first: it tells how large displacements are.
-  for (const double share : {1.0, 0.0, 0.5}) try_at(share * programme_.end());
+  for (const double share : {1.0, 0.0, 0.5}) try_at(share);
   if (first_.empty()) return;
   // Shares at which hardly any two different expressions agree.
   for (const double share : {0.0737, 0.1831, 0.2946, 0.3819, 0.6093, 0.7548, 0.8862}) {
-    try_at(share * programme_.end());
+    try_at(share);
   }
 }
 
 void Conditions::refuse_contradiction(const Prescription& second, Index point, double first_value,
-                                      double second_value, double stage) const {
+                                      double second_value, double load_factor) const {
   const Prescription& first = *first_[dof_of(second, point)];
   throw InputError(second.key, '"' + second.displacement.text() + '"',
                    "the supports of sets " + first.set + " and " + second.set +
@@ -119,31 +113,31 @@ void Conditions::refuse_contradiction(const Prescription& second, Index point, d
                        place_text(points_.position(point), points_.dimension) +
                        " m the displacement in " + "xyz"[second.component] + " is " +
                        number_text(first_value) + " m by one and " + number_text(second_value) +
-                       " m by the other at load factor " + number_text(load_factor(stage)));
+                       " m by the other at load factor " + number_text(load_factor));
 }
 
-void Conditions::prescribe(double stage, std::span<double> displacement) const {
+void Conditions::prescribe(const LoadPoint& at, std::span<double> displacement) const {
   // Two expressions of one value may differ in their last digits: 1e-5*load*3 and 3e-5*load.
   constexpr double same = 1e-12;
-  const std::vector<double> loads = programme_.at(stage);
+  const std::vector<double> loads = parameters(at);
   for (const Prescription& prescription : prescriptions_) {
     with_key(prescription.key, [&] {
       for (Index point : *prescription.points) {
         const double value = prescription.displacement(points_.position(point), loads);
-        double& at = displacement[dof_of(prescription, point)];
+        double& first = displacement[dof_of(prescription, point)];
         if (first_.empty() || first_[dof_of(prescription, point)] == &prescription) {
-          at = value;
-        } else if (std::abs(value - at) >
-                   same * std::max({std::abs(value), std::abs(at), largest_})) {
-          refuse_contradiction(prescription, point, at, value, stage);
+          first = value;
+        } else if (std::abs(value - first) >
+                   same * std::max({std::abs(value), std::abs(first), largest_})) {
+          refuse_contradiction(prescription, point, first, value, loads.front());
         }
       }
     });
   }
 }
 
-void Conditions::external_force(double stage, std::span<double> force) const {
-  const std::vector<double> loads = programme_.at(stage);
+void Conditions::external_force(const LoadPoint& at, std::span<double> force) const {
+  const std::vector<double> loads = parameters(at);
   std::fill(force.begin(), force.end(), 0.0);
   for (const Load& load : loads_) {
     with_key(load.key, [&] {

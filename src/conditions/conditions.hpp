@@ -1,10 +1,13 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "src/conditions/displacement_control.hpp"
+#include "src/conditions/load_point.hpp"
 #include "src/conditions/loading_programme.hpp"
 #include "src/conditions/specification.hpp"
 #include "src/core/expression.hpp"
@@ -18,24 +21,32 @@ class Conditions {
  public:
   /// @throws InputError ("supports[k].…", "loads[k].…", k from 0) for a set that is unknown or
   ///         empty, a bad expression, or two supports that prescribe different displacements to one
-  ///         point and component (compared at some stages, and whenever they are used)
+  ///         point and component (compared at some stages, and whenever they are used); what
+  ///         DisplacementControl throws
+  /// @param control in the place of the first load parameter: the programme's first table is then
+  ///        of its values [m]; no terms: none
   Conditions(const Points& points, const std::vector<SupportSpecification>& supports,
-             const std::vector<LoadSpecification>& loads, LoadingProgramme programme = {});
+             const std::vector<LoadSpecification>& loads, LoadingProgramme programme = {},
+             const std::vector<ControlTerm>& control = {});
 
   [[nodiscard]] const LoadingProgramme& programme() const { return programme_; }
+  /// Null where the programme's first table is of the load factor.
+  [[nodiscard]] const DisplacementControl* control() const {
+    return control_ ? &*control_ : nullptr;
+  }
   /// The first load parameter.
-  [[nodiscard]] double load_factor(double stage) const { return programme_.at(stage).front(); }
+  [[nodiscard]] double load_factor(const LoadPoint& at) const { return parameters(at).front(); }
 
   /// Whether a degree of freedom is prescribed.
   [[nodiscard]] const std::vector<char>& prescribed() const { return prescribed_; }
 
-  /// Overwrites the prescribed entries with their displacement [m] at the stage.
+  /// Overwrites the prescribed entries with their displacement [m] at a point of the programme.
   /// @throws InputError if one is not finite, or two supports contradict each other there
-  void prescribe(double stage, std::span<double> displacement) const;
+  void prescribe(const LoadPoint& at, std::span<double> displacement) const;
 
-  /// External force of the loads [N] at the stage, every entry overwritten.
+  /// External force of the loads [N] there, every entry overwritten.
   /// @throws InputError if one is not finite
-  void external_force(double stage, std::span<double> force) const;
+  void external_force(const LoadPoint& at, std::span<double> force) const;
 
   /// Reaction of each support's set [N]: the sum over its prescribed degrees of freedom of what the
   /// supports add to hold them, dE/dx - external force. Points of two sets count in both.
@@ -57,6 +68,7 @@ class Conditions {
     double spread_over;  // volume that a total force is spread over [m3]; 1 for a body force
   };
 
+  [[nodiscard]] std::vector<double> parameters(const LoadPoint& at) const;
   void find_shared();
   void try_stages();
   [[nodiscard]] std::size_t dof_of(const Prescription& prescription, Index point) const {
@@ -64,13 +76,14 @@ class Conditions {
   }
   [[noreturn]] void refuse_contradiction(const Prescription& second, Index point,
                                          double first_value, double second_value,
-                                         double stage) const;
+                                         double load_factor) const;
 
   const Points& points_;
   LoadingProgramme programme_;
   std::vector<Prescription> prescriptions_;
   std::vector<Load> loads_;
   std::vector<char> prescribed_;
+  std::optional<DisplacementControl> control_;
   /// First of the prescriptions of each degree of freedom; empty if none has more than one.
   std::vector<const Prescription*> first_;
   double largest_ = 0.0;  ///< displacement at the stages that were tried [m]

@@ -21,4 +21,10 @@ struct LoadSpecification {
   std::array<std::string, 3> value{"0", "0", "0"};
 };
 
+/// A term of a control: its set's mean displacement, weighted per component.
+struct ControlTerm {
+  std::string set{};
+  std::array<double, 3> weights{};
+};
+
 }  // namespace peristat

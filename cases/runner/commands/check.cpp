@@ -99,13 +99,12 @@ Exit check(const Case& from, int threads) {
     fmt::print("isolated    {} points have no neighbour\n", neighbours.isolated);
   }
 
-  const MemoryEstimate estimate = estimate_memory(body);
   const FreeDofs free(prescribed, points.dimension);
   const BlockPattern pattern = body.model.pattern();
   std::string reason;
   const StudyOptions options = study_options(from, threads);
-  const LinearSystems systems = choose_linear_systems(
-      options, body.model, estimate, [&](const std::string& told) { reason = told; });
+  const LinearSystems systems =
+      choose_linear_systems(options, body, [&](const std::string& told) { reason = told; });
   const ChosenSolver& chosen = systems.chosen;
   require_memory(systems.bytes, fmt::format("the case with {} points", points.count()));
   if (chosen.solver->analyze(pattern, free) == LinearOutcome::solved) {

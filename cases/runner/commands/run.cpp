@@ -239,7 +239,7 @@ class CaseRun {
     if (!earlier_->remark().empty()) progress_.problem(earlier_->remark());
     const PathState& path = earlier_->checkpoint().path;
     progress_.say(fmt::format("going on after step {}, load factor {:.6g}", path.steps,
-                              body_->conditions->load_factor(path.accepted.stage)));
+                              body_->conditions->load_factor(load_point(path.accepted))));
   }
 
   LoadSteppingResult follow() {
@@ -297,7 +297,7 @@ class CaseRun {
   void conclude(const LoadSteppingResult& result) {
     summary_.status = status_of(result.outcome);
     if (result.outcome != Outcome::converged) {
-      const double reached = body_->conditions->load_factor(result.state.stage);
+      const double reached = body_->conditions->load_factor(load_point(result.state));
       summary_.reason = failure_reason(result, reached);
     }
     summary_.max_displacement = largest_displacement(result.state.displacement, from_.dimension);

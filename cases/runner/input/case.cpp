@@ -54,7 +54,9 @@ const std::map<std::string, std::string>& keys_of_members() {
                                                        {"file", "points.file"},
                                                        {"supports", "support"},
                                                        {"loads", "load"},
-                                                       {"directory", "output.directory"}};
+                                                       {"directory", "output.directory"},
+                                                       {"controls", "control"},
+                                                       {"programme", "loading.table"}};
   return keys;
 }
 

@@ -56,6 +56,7 @@ struct SolverSpecification {
   double relative_tolerance = 1e-10;
   int max_iterations = 25;         ///< of Newton in a step
   double linear_tolerance = 1e-3;  ///< largest relative residual of a linear system in it
+  ArcLengthOptions arc_length{};   ///< table [arc_length]
   FragmentRemedy fragments = FragmentRemedy::hold;
   /// Horizon / spacing of the elastic stand-in that the adaptive mode uses until damage begins; 0:
   /// none.

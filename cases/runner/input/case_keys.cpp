@@ -400,6 +400,17 @@ Table<LoadSpecification> load_keys() {
                .one_of()}};
 }
 
+Table<ControlTerm> control_keys() {
+  using K = Key<ControlTerm>;
+  return {"control",
+          {K("set", &ControlTerm::set, known_set(), "whose mean displacement is taken").required(),
+           K("weights", &ControlTerm::weights, coordinates(""),
+             "of its components: the weighted displacements of all these tables add up to the "
+             "controlled one")
+               .moreover("not all zero")
+               .required()}};
+}
+
 // ---- The search for equilibrium
 
 /// "table", "table2", …
@@ -469,10 +480,10 @@ Table<LoadingSpecification> loading_keys() {
     };
     K key(load_table_key(k), member, load_table(),
           k == 0 ? "values of `load` that the path goes through, linearly from one to the next: "
-                   "up, down, and rests"
+                   "up, down, and rests; with `[[control]]` of the controlled displacement in m"
                  : "likewise of a further load parameter, `" + parameter + "`");
     key.written_if([k](auto& loading, auto&) { return loading.tables.size() > k; })
-        .default_words(k == 0 ? "`[0, 1]`" : "no `" + parameter + "`")
+        .default_words(k == 0 ? "`[0, 1]`; required with `[[control]]`" : "no `" + parameter + "`")
         .extends();
     keys.keys.push_back(std::move(key));
   }
@@ -545,7 +556,8 @@ Table<SolverSpecification> solver_keys() {
       "solver",
       {K("mode", &Spec::mode, choice(modes()),
          "implicit throughout; by dynamic relaxation throughout; implicit while no damage grows "
-         "and by relaxation while it does")
+         "and by relaxation while it does; along the path itself, through limit points and "
+         "bifurcations, without damage")
            .extends(),
        K("linear", &Spec::linear,
          choice<LinearMethod>({{"auto", LinearMethod::automatic},
@@ -606,6 +618,61 @@ Table<SolverSpecification> solver_keys() {
            .written_if([](auto& solver, auto&) { return solver.elastic_horizon_ratio > 0.0; })
            .moreover("in 3D to 100")
            .default_words("no stand-in")}};
+}
+
+Table<SolverSpecification> arc_length_keys() {
+  using Spec = SolverSpecification;
+  using K = Key<Spec>;
+  constexpr auto arc_length = &Spec::arc_length;
+  return {"arc_length",
+          {K("steps", in(arc_length, &ArcLengthOptions::steps), count_from(0, "steps"),
+             "the path ends after so many, unless the load has come to its end before; 0: the load "
+             "has to come there, within 10 000 steps")
+               .extends(),
+           K("largest_step", in(arc_length, &ArcLengthOptions::largest_step), between(1e-12, 1e6),
+             "of the arc length, to which steps grow where the path is straight; the first is "
+             "1/`loading.steps`, which at first is a step of the load factor")
+               .extends(),
+           K("bifurcation", in(arc_length, &ArcLengthOptions::branches_off),
+             choice<bool>({{"branch", true}, {"straight", false}}),
+             "where another path leaves a stable one: go on along that, or straight on, where "
+             "states are unstable")}};
+}
+
+/// Refuses settings of the solver that a control and mode arc_length would not heed.
+void check_heeded(const Entry& at, const std::string& who) {
+  if (!at.from.has("solver")) return;
+  const TomlTable solver = at.from.table("solver");
+  const std::vector<std::pair<std::string, std::string>> heeded{{"linear", "auto"},
+                                                                {"preconditioner", "auto"},
+                                                                {"tangent", "auto"},
+                                                                {"projection", "auto"},
+                                                                {"predictor", "consistent"}};
+  for (const auto& [key, value] : heeded) {
+    if (solver.has(key) && solver.string(key) != value)
+      solver.refuse(key, "must be \"" + value + "\" with " + who +
+                             ", which has a solver and a search of its own");
+  }
+}
+
+/// What goes with a load that is found, not given.
+void check_found_loads(const Entry& at, const Case& result) {
+  const bool is_controlled = !result.controls.empty();
+  const bool is_arc_length = result.solver.mode == Mode::arc_length;
+  const auto& tables = result.loading.tables;
+  if (is_controlled && result.solver.mode != Mode::newton)
+    throw InputError("solver.mode", '"' + std::string(result.solver.mode.name) + '"',
+                     "must be \"newton\" with [[control]]");
+  if (is_controlled && (!at.from.has("loading") || !at.from.table("loading").has("table")))
+    throw InputError("control", "",
+                     "needs loading.table, the values of the controlled displacement [m] that the "
+                     "path goes through: [0, 1e-4], for example");
+  if (is_arc_length && !tables.empty() && tables.front().entries.size() != 2)
+    throw InputError(
+        "loading.table", "",
+        "must have two entries in mode arc_length, which follows one line of the load");
+  if (is_controlled) check_heeded(at, "[[control]]");
+  if (is_arc_length) check_heeded(at, "mode arc_length");
 }
 
 /// Damage grows in steps that are smaller than elastic ones.
@@ -800,10 +867,14 @@ Table<Case> all_keys() {
            .required(),
        K("support", &Case::supports, support_keys(), "tables: prescribed displacements"),
        K("load", &Case::loads, load_keys(), "tables: forces"),
+       K("control", &Case::controls, control_keys(),
+         "tables: the displacement that is controlled in the place of `load`"),
        K("loading", &Case::loading, loading_keys(), "table: the way of the loads, and its steps")
            .early(),
        K("solver", &Case::solver, solver_keys(), "table: search for equilibrium"),
        K("relaxation", &Case::relaxation, relaxation_keys(), "table: steps by dynamic relaxation"),
+       K("arc_length", &Case::solver, arc_length_keys(), "table: steps in mode `arc_length`")
+           .then(check_found_loads),
        K("output", &Case::output, output_keys(), "table: results folder"),
        K("probe", &Case::probes, probe_keys(), "tables: values that enter the history")}};
 }

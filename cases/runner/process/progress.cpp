@@ -10,6 +10,7 @@
 
 #include "cases/runner/process/folded_text.hpp"
 #include "cases/runner/process/output_file.hpp"
+#include "solvers/drivers/mode.hpp"
 #include "src/core/input_error.hpp"
 
 namespace peristat {
@@ -119,7 +120,7 @@ void Progress::iteration(const IterationRecord& record) {
 void Progress::decision(const DecisionRecord& record) {
   if (record.action == Decision::accept) return;
   if (record.action == Decision::accept_and_grow) {
-    say(fmt::format("  next step of the load factor grows to {:.4g}", record.next_increment));
+    say(fmt::format("  next step grows to {:.4g}", record.next_increment));
     return;
   }
   const std::string what = record.action == Decision::cut
@@ -136,7 +137,9 @@ void Progress::accepted(const StepRecord& record, double relative_residual) {
   load_factor_ = record.load_factor;
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start_;
   const bool relaxed_or_damaged = record.relaxation_iterations > 0 || record.max_damage > 0.0;
-  time_left_.accepted(elapsed.count(), record.stage / last_stage_, relaxed_or_damaged);
+  // How long a path is, nobody knows.
+  if (record.mode != Mode::arc_length.name)
+    time_left_.accepted(elapsed.count(), record.stage / last_stage_, relaxed_or_damaged);
   const std::string relaxed =
       record.relaxation_iterations > 0
           ? fmt::format("  after {} of relaxation", record.relaxation_iterations)

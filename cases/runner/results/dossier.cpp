@@ -55,6 +55,17 @@ std::string suggestion(Outcome outcome, Mode mode) {
              "worst points below.";
     case Outcome::undefined_condition:
       return "Mend the expression of the support or load that is named above.";
+    case Outcome::no_answer:
+      return "Control another displacement: one that grows throughout, like the opening of the "
+             "mouth "
+             "of a crack, or a sum of several.";
+    case Outcome::sharp_turn:
+      return "Take smaller steps (loading.steps, loading.smallest_step).";
+    case Outcome::step_limit:
+      return "Look at history.csv: if the path goes where you want it, end it with "
+             "arc_length.steps; if it is long, allow longer steps (loading.largest_step).";
+    case Outcome::damage_begins:
+      return "Follow the damage by a [[control]] in mode newton, or in mode adaptive.";
     case Outcome::inconsistent:
       return "What was found is no state of this body. Take smaller steps (loading.steps, "
              "relaxation.steps, loading.smallest_step). If that does not help, the case shows a "
@@ -115,7 +126,7 @@ Dossier make_dossier(const Case& from, const Body& body, const LoadSteppingResul
   }
   say("");
   say(fmt::format("Last search: load factor {:.9g}, {} iterations",
-                  body.conditions->load_factor(attempt.stage), attempt.iterations));
+                  body.conditions->load_factor(attempt.at), attempt.iterations));
   say(fmt::format("  residual {:.4g} N, measured against {:.4g} N; tolerance {:.3g} of that",
                   attempt.state.residual_norm, attempt.scale, from.solver.relative_tolerance));
   if (attempt.inertia) {

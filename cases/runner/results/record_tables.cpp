@@ -55,7 +55,7 @@ const std::vector<Column>& step_columns() {
   static const std::vector<Column> columns{
       {integer, "step", "1", "number of the accepted step"},
       {number, "load_factor", "1", "load factor of the step"},
-      {text, "mode", "none", "how equilibrium was found: newton or relaxation"},
+      {text, "mode", "none", "how equilibrium was found: newton, relaxation or arc_length"},
       {integer, "newton_iterations", "1", "Newton iterations of the step"},
       {integer, "relaxation_iterations", "1", "iterations of dynamic relaxation of the step"},
       {number, "stored_energy", "J", "energy stored in the interactions"},
@@ -85,6 +85,11 @@ const std::vector<Column>& later_step_columns() {
       {integer, "settled", "1",
        "1: the state was not asked to be in equilibrium (moving load, displacement tolerance)"},
       {number, "stage", "1", "stage of the loading programme: how many entries of its tables"},
+      {number, "control", "m", "controlled displacement; 0 without a control"},
+      {integer, "negative_pivots", "1",
+       "control, arc_length: of the tangent, 0 where the state is stable under fixed loads; -1: "
+       "not "
+       "counted"},
   };
   return columns;
 }
@@ -218,6 +223,8 @@ Row make_row(const StepRecord& record, const std::vector<std::string>& support_s
   append("pin_force", record.pin_force);
   row.emplace_back(std::int64_t{record.settled});
   append("stage", record.stage);
+  append("control", record.control);
+  row.emplace_back(record.negative_pivots);
   return row;
 }
 
@@ -264,7 +271,8 @@ StepRecord read_step(const Row& row, const std::vector<std::string>& support_set
     values.resize(std::size_t(probe.components));
     for (double& value : values) cells >> value;
   }
-  cells >> record.numerical_work >> record.pin_force >> record.settled >> record.stage;
+  cells >> record.numerical_work >> record.pin_force >> record.settled >> record.stage >>
+      record.control >> record.negative_pivots;
   return record;
 }
 

@@ -13,6 +13,7 @@
 #include "solvers/drivers/drivers.hpp"
 #include "solvers/drivers/load_stepping.hpp"
 #include "solvers/drivers/state_archive.hpp"
+#include "solvers/linear/ldlt.hpp"
 #include "solvers/linear/solver_ladder.hpp"
 #include "tests/softening_strip.hpp"
 
@@ -57,6 +58,7 @@ struct Setting {
   bool has_stand_in = false, falls = false;
   int interrupt_after = -1;  ///< accepted steps
   NewtonOptions newton_options{};
+  tests::Control control{};
 };
 
 /// A path that has been followed to its end: states and rows that were told.
@@ -74,9 +76,12 @@ struct Solved {
   SolverLadder solver;
 
   Solved(const Setting& setting, Followed& followed)
-      : strip(setting.middle, setting.supports, 1, setting.triangles),
+      : strip(setting.middle, setting.supports, 1, setting.triangles, setting.control),
         solver({{"first",
                  [&setting]() -> std::unique_ptr<LinearSolver> {
+                   const bool finds_loads =
+                       !setting.control.terms.empty() || setting.options.mode == Mode::arc_length;
+                   if (finds_loads) return std::make_unique<Ldlt>();
                    if (setting.falls) return std::make_unique<ShortOfMemory>();
                    return std::make_unique<Cholesky>();
                  }},
@@ -295,6 +300,31 @@ TEST(PathState, GoesOnOnTheRungOfItsSolver) {
   EXPECT_EQ(whole.states.back().rungs.body, 1);
 }
 
+TEST(PathState, GoesOnUnderAControl) {
+  Setting setting{drawn("0.05*load"), options_of(Mode::newton, 10, 1)};
+  setting.control = tests::mouth_opening(0.015);
+  const Followed whole = expect_to_go_on_from_copies(setting);
+  EXPECT_EQ(whole.outcome, Outcome::converged);
+  EXPECT_TRUE(any_state(whole, [](const PathState& s) { return s.accepted.load.has_value(); }));
+  // The load falls as bonds break at an opening that stands still.
+  EXPECT_TRUE(any_state(whole, [](const PathState& s) { return s.ledger.entries.drained > 0.0; }));
+  EXPECT_TRUE(any_state(whole, [&](const PathState& s) {
+    return s.steps > 0 && *s.accepted.load > *whole.states.back().accepted.load;
+  }));
+}
+
+TEST(PathState, GoesOnAlongTheArcLength) {
+  // Pushed together until it buckles.
+  Setting setting{{support("left", "0", "0"), support("right", "-0.5*load")},
+                  options_of(Mode::arc_length, 40, 1)};
+  setting.middle = Strip::Middle::elastic;
+  setting.options.arc_length.steps = 30;
+  setting.options.arc_length.largest_step = 0.05;
+  const Followed whole = expect_to_go_on_from_copies(setting);
+  EXPECT_EQ(whole.outcome, Outcome::converged);
+  EXPECT_TRUE(any_state(whole, [](const PathState& s) { return s.arc.passes_critical_point; }));
+}
+
 TEST(PathState, IsToldWhereAPathCanGoOn) {
   const Setting setting{drawn("0.045*min(load, 1.2 - load)"), options_of(Mode::adaptive, 10, 50)};
   Followed followed;
@@ -355,10 +385,10 @@ TEST(Drivers, EachModeHasOne) {
   const LoadSteppingObserver observer;
   Path path(
       {solved.body(), solved.strip.conditions, setting.options, setting.newton_options, observer});
-  for (const Mode& mode : {Mode::newton, Mode::relaxation, Mode::adaptive}) {
+  for (const Mode& mode : {Mode::newton, Mode::relaxation, Mode::adaptive, Mode::arc_length}) {
     EXPECT_TRUE(make_driver(mode, path));
   }
-  EXPECT_GE(all_drivers().size(), 3u);
+  EXPECT_GE(all_drivers().size(), 4u);
   EXPECT_THROW((void)make_driver(Mode{"none"}, path), std::logic_error);
 }
 

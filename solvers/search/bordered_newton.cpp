@@ -1,0 +1,260 @@
+#include "solvers/search/bordered_newton.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "solvers/linear/vector_verbs.hpp"
+#include "solvers/search/convergence.hpp"
+#include "solvers/search/linearisation.hpp"
+#include "src/core/input_error.hpp"
+
+namespace peristat {
+namespace {
+
+/// Step of the differences of conditions; a power of two, so that no digit of the unknown is lost.
+constexpr double difference = 0x1p-13;
+
+/// Rates of supports and loads, per degree of freedom.
+struct ConditionRates {
+  std::vector<double> force, displacement;
+};
+
+ConditionRates between(const Conditions& conditions, const LoadPath& loads, double low,
+                       double high) {
+  const std::size_t dofs = conditions.prescribed().size();
+  ConditionRates rates{std::vector<double>(dofs), std::vector<double>(dofs, 0.0)};
+  std::vector<double> before(dofs, 0.0);
+  conditions.external_force(loads(low), before);
+  conditions.external_force(loads(high), rates.force);
+  add_scaled(rates.force, -1.0, before);
+  std::fill(before.begin(), before.end(), 0.0);
+  conditions.prescribe(loads(low), before);
+  conditions.prescribe(loads(high), rates.displacement);
+  add_scaled(rates.displacement, -1.0, before);
+  for (auto* const rate : {&rates.force, &rates.displacement}) {
+    for (double& entry : *rate) entry /= high - low;
+  }
+  return rates;
+}
+
+/// Where an expression ends, sqrt(load) at zero for one, the difference is one-sided.
+ConditionRates rates_of(const Conditions& conditions, const LoadPath& loads, double at) {
+  try {
+    return between(conditions, loads, at - difference, at + difference);
+  } catch (const InputError&) {
+    try {
+      return between(conditions, loads, at, at + difference);
+    } catch (const InputError&) {
+      return between(conditions, loads, at - difference, at);
+    }
+  }
+}
+
+/// Iterations that may pass without halving the least residual so far.
+constexpr int most_without_gain = 10;
+
+/// Below this share of what the border's displacements move by, their sum does not move.
+constexpr double no_answer = 1e-9;
+
+class BorderedSearch {
+ public:
+  BorderedSearch(const EquilibriumProblem& problem, LinearSolver& solver, TangentOperator& tangent,
+                 const State& from, const BorderedStep& step, const NewtonOptions& options,
+                 const IterationObserver& observer)
+      : problem_(problem),
+        solver_(solver),
+        tangent_(tangent),
+        step_(step),
+        options_(options),
+        observer_(observer),
+        unknown_(step.unknown),
+        external_force_(from.displacement.size()),
+        linearisation_(problem, solver, tangent, external_force_) {
+    current_.displacement = from.displacement;
+    current_.history = from.history;
+  }
+
+  [[nodiscard]] BorderedResult run() {
+    result_.outcome = search();
+    result_.state = std::move(current_);
+    result_.external_force = std::move(external_force_);
+    return {std::move(result_), unknown_};
+  }
+
+ private:
+  Outcome search() {
+    problem_.conditions.external_force(step_.loads(unknown_), external_force_);
+    evaluate(problem_, external_force_, current_, Damage::held);
+    old_scale_ = load_norm();
+    Outcome outcome = step_.prediction ? predict() : iterate(1, Damage::held);
+    while (outcome == Outcome::converged && !has_converged()) {
+      if (current_.degenerate) return Outcome::degenerate;
+      if (result_.iterations >= options_.max_iterations || has_stalled()) {
+        return Outcome::iteration_limit;
+      }
+      outcome = iterate(result_.iterations + 1, options_.damage);
+    }
+    return outcome;
+  }
+
+  /// Where bonds damage and heal from one iteration to the next, more of them do not help.
+  bool has_stalled() {
+    if (current_.residual_norm < 0.5 * least_residual_ || result_.iterations == 0) {
+      least_residual_ = current_.residual_norm;
+      least_iteration_ = result_.iterations;
+    }
+    return result_.iterations - least_iteration_ >= most_without_gain;
+  }
+
+  Outcome predict() {
+    current_.displacement = step_.prediction->displacement;
+    unknown_ = step_.prediction->unknown;
+    stand_at_unknown();
+    return interrupts({}) ? Outcome::interrupted : Outcome::converged;
+  }
+
+  /// @param damage of the state that is linearised about
+  Outcome iterate(int iteration, Damage damage) {
+    IterationRecord row;
+    row.iteration = iteration;
+    row.step_length = 1.0;
+    last_residual_ = current_.residual_norm;
+    const Outcome outcome = correct(damage, row);
+    if (outcome != Outcome::converged) return outcome;
+    stand_at_unknown();
+    result_.iterations = iteration;
+    return interrupts(row) ? Outcome::interrupted : Outcome::converged;
+  }
+
+  /// Takes supports and loads to the unknown, and evaluates.
+  void stand_at_unknown() {
+    const LoadPoint at = step_.loads(unknown_);
+    problem_.conditions.prescribe(at, current_.displacement);
+    problem_.conditions.external_force(at, external_force_);
+    evaluate(problem_, external_force_, current_, options_.damage);
+    result_.scale = options_.scale > 0.0 ? options_.scale : std::max(old_scale_, load_norm());
+  }
+
+  Outcome correct(Damage damage, IterationRecord& row) {
+    // Where the search begins at the old state another load parameter may have jumped.
+    std::vector<double> after_jump = current_.displacement;
+    problem_.conditions.prescribe(step_.loads(unknown_), after_jump);
+    const bool jumps = after_jump != current_.displacement;
+    std::vector<double> direction;
+    LinearOutcome linear = linearisation_.solve(
+        current_.at(damage), current_.gradient, 0.0, FactorUse::factorize_now,
+        jumps ? std::span<const double>(after_jump) : std::span<const double>(),
+        options_.linear_tolerance, direction);
+    result_.inertia = solver_.inertia();
+    row.negative_pivots = result_.inertia ? result_.inertia->negative : -1;
+    result_.has_negative_pivots = row.negative_pivots > 0;
+    // In a trial state, points may have lost all their bonds: only the old state tells of the body.
+    if (linear == LinearOutcome::singular && row.iteration > 1) return Outcome::degenerate;
+    if (linear != LinearOutcome::solved) return outcome_of(linear);
+
+    const ConditionRates conditions = rates_of(problem_.conditions, step_.loads, unknown_);
+    std::vector<double> rate;
+    linear = linearisation_.solve_again(conditions.force, conditions.displacement,
+                                        options_.linear_tolerance, rate);
+    if (linear != LinearOutcome::solved) return outcome_of(linear);
+    add_scaled(rate, 1.0, conditions.displacement);
+
+    current_.displacement = std::move(after_jump);
+    add_scaled(current_.displacement, 1.0, direction);
+    const std::optional<double> change = change_of_unknown(rate);
+    if (!change) return Outcome::no_answer;
+    for (const Index dof : problem_.free.dof) current_.displacement[dof] += *change * rate[dof];
+    unknown_ += *change;
+    return Outcome::converged;
+  }
+
+  [[nodiscard]] bool fulfils_border() const {
+    const BorderEquation& border = step_.border;
+    double sum = border.unknown_weight * unknown_, size = std::abs(sum) + std::abs(border.value);
+    for (std::size_t dof = 0; dof < border.weights.size(); ++dof) {
+      const double part = border.weights[dof] * current_.displacement[dof];
+      sum += part;
+      size += std::abs(part);
+    }
+    return std::abs(border.value - sum) <= options_.relative_tolerance * size;
+  }
+
+  /// That fulfils the border; nothing if it does not answer.
+  std::optional<double> change_of_unknown(std::span<const double> rate) const {
+    const BorderEquation& border = step_.border;
+    double missing = border.value - border.unknown_weight * unknown_;
+    double answer = border.unknown_weight, weight = 0.0, largest = 0.0;
+    for (std::size_t dof = 0; dof < border.weights.size(); ++dof) {
+      missing -= border.weights[dof] * current_.displacement[dof];
+      answer += border.weights[dof] * rate[dof];
+      weight += std::abs(border.weights[dof]);
+      largest = std::max(largest, std::abs(rate[dof]));
+    }
+    const double of_all = weight * largest + std::abs(border.unknown_weight);
+    if (!(std::abs(answer) > no_answer * of_all)) return std::nullopt;
+    return missing / answer;
+  }
+
+  /// The larger of the loads and the reactions.
+  double load_norm() const {
+    const double reactions = norm_of(external_force_.size(), [&](std::size_t dof) {
+      const bool is_free = problem_.free.equation[dof] != FreeDofs::none;
+      return is_free ? 0.0 : current_.gradient[dof] - external_force_[dof];
+    });
+    return std::max(norm(external_force_), reactions);
+  }
+
+  [[nodiscard]] bool has_converged() {
+    return fulfils_border() && note_convergence(problem_.free, tangent_, current_, last_residual_,
+                                                options_.relative_tolerance, result_);
+  }
+
+  [[nodiscard]] bool interrupts(IterationRecord row) const {
+    row.residual = current_.residual_norm;
+    row.relative_residual = result_.scale > 0.0 ? current_.residual_norm / result_.scale : 0.0;
+    row.energy = current_.total_energy;
+    return observer_ && observer_(row);
+  }
+
+  const EquilibriumProblem& problem_;
+  LinearSolver& solver_;
+  TangentOperator& tangent_;
+  const BorderedStep& step_;
+  const NewtonOptions& options_;
+  const IterationObserver& observer_;
+  double unknown_;
+  std::vector<double> external_force_;
+  Linearisation linearisation_;
+  Trial current_;
+  double last_residual_ = 0.0, old_scale_ = 0.0;
+  double least_residual_ = std::numeric_limits<double>::infinity();
+  int least_iteration_ = 0;
+  NewtonResult result_;
+};
+
+}  // namespace
+
+BorderedResult bordered_newton(const EquilibriumProblem& problem, LinearSolver& solver,
+                               TangentOperator& tangent, const State& from,
+                               const BorderedStep& step, const NewtonOptions& options,
+                               const IterationObserver& observer) {
+  return BorderedSearch(problem, solver, tangent, from, step, options, observer).run();
+}
+
+LinearOutcome find_rate(const EquilibriumProblem& problem, LinearSolver& solver,
+                        TangentOperator& tangent, const StateView& at, const LoadPath& loads,
+                        double unknown, std::vector<double>& rate) {
+  tangent.linearise(problem.assembler, at, 0.0);
+  LinearOutcome outcome = solver.factorize(tangent, FactorUse::factorize_now);
+  if (outcome != LinearOutcome::solved) return outcome;
+  const ConditionRates conditions = rates_of(problem.conditions, loads, unknown);
+  constexpr double tolerance = 1e-12;
+  outcome = Linearisation(problem, solver, tangent, {})
+                .solve_again(conditions.force, conditions.displacement, tolerance, rate);
+  add_scaled(rate, 1.0, conditions.displacement);
+  return outcome;
+}
+
+}  // namespace peristat

@@ -1,0 +1,72 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "solvers/search/newton.hpp"
+
+namespace peristat {
+
+/// Where the loads are for a value of the unknown.
+using LoadPath = std::function<LoadPoint(double unknown)>;
+
+/// The equation that makes a load an unknown:
+///
+///   weights . u + unknown_weight * unknown = value
+struct BorderEquation {
+  std::span<const double> weights;  ///< per degree of freedom; empty: zero
+  double unknown_weight = 0.0;
+  double value = 0.0;
+};
+
+/// A state to begin a search with, beside an equilibrium.
+struct Prediction {
+  std::vector<double> displacement;
+  double unknown = 0.0;
+};
+
+/// What is searched.
+struct BorderedStep {
+  LoadPath loads;
+  BorderEquation border;
+  double unknown = 0.0;  ///< in the old state
+  /// Nothing: the search begins by linearising about the old state.
+  std::optional<Prediction> prediction{};
+};
+
+struct BorderedResult {
+  NewtonResult newton;
+  double unknown = 0.0;
+};
+
+/// Newton-Raphson for equilibrium together with a linear equation that the load fulfils:
+///
+///   f_ext(l) - dE/dx_f(u) = 0,   weights . u + w l = value,   u_p = u_p(l).
+///
+/// Each iteration solves K_ff a = f_ext - dE/dx_f - K_fp jump_p and K_ff b = df_ext/dl - K_fp
+/// du_p/dl by one factor, and goes to u_f + a + dl b with the dl that fulfils the border (Batoz and
+/// Dhatt, Int. J. Numer. Methods Eng. 14, 1979). Full steps: between a limit point and the next
+/// the energy is no merit. Negative pivots are no fault: the solver has to bear them.
+///
+/// Rates of supports and loads are central differences over 2^-13, to about 1e-9; for conditions
+/// that are linear in the load they are exact to round-off.
+///
+/// The residual is measured against the largest of loads and reactions in the old and the present
+/// state.
+/// @return outcome no_answer where the border does not answer to the unknown
+[[nodiscard]] BorderedResult bordered_newton(const EquilibriumProblem& problem,
+                                             LinearSolver& solver, TangentOperator& tangent,
+                                             const State& from, const BorderedStep& step,
+                                             const NewtonOptions& options,
+                                             const IterationObserver& observer);
+
+/// Rate du / d unknown of the equilibrium, by the exact tangent of a state; the signs of its pivots
+/// are the solver's.
+[[nodiscard]] LinearOutcome find_rate(const EquilibriumProblem& problem, LinearSolver& solver,
+                                      TangentOperator& tangent, const StateView& at,
+                                      const LoadPath& loads, double unknown,
+                                      std::vector<double>& rate);
+
+}  // namespace peristat
