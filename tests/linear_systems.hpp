@@ -2,34 +2,9 @@
 
 #include <vector>
 
-#include <Eigen/Dense>
-
 #include "tests/problems.hpp"
 
 namespace peristat::tests {
-
-/// The rows and columns of the free degrees of freedom, both halves.
-inline Eigen::MatrixXd dense(const Tangent& tangent, const FreeDofs& free) {
-  const int d = tangent.dimension;
-  Eigen::MatrixXd full = Eigen::MatrixXd::Zero(tangent.dofs(), tangent.dofs());
-  for (Index i = 0; i < tangent.pattern.points(); ++i) {
-    for (int r = 0; r < d; ++r) {
-      for (int c = 0; c < d; ++c) {
-        full(i * d + r, i * d + c) = tangent.diagonal[std::size_t(i) * d * d + r * d + c];
-      }
-    }
-    for (Offset bond = tangent.pattern.offset[i]; bond < tangent.pattern.offset[i + 1]; ++bond) {
-      const Index j = tangent.pattern.partner[bond];
-      for (int r = 0; r < d; ++r) {
-        for (int c = 0; c < d; ++c) {
-          const double entry = tangent.entry(bond, r, c);
-          full(i * d + r, j * d + c) = full(j * d + c, i * d + r) = entry;
-        }
-      }
-    }
-  }
-  return full(free.dof, free.dof);
-}
 
 /// A tangent of a body, with some degrees of freedom prescribed.
 struct System {
@@ -71,16 +46,10 @@ inline std::vector<char> some_prescribed(const BoxBody& body) {
   return prescribed;
 }
 
-inline double relative_error(const System& system, const Eigen::VectorXd& expected) {
-  const Eigen::VectorXd x =
-      Eigen::Map<const Eigen::VectorXd>(system.x.data(), Eigen::Index(system.x.size()));
-  return (x - expected).norm() / expected.norm();
-}
+/// Ascending, of the rows and columns of the free degrees of freedom, by Eigen's dense solver.
+[[nodiscard]] std::vector<double> dense_eigenvalues(const System& system);
 
-inline Eigen::VectorXd dense_solution(const System& system) {
-  return dense(system.tangent, system.free)
-      .fullPivLu()
-      .solve(Eigen::Map<const Eigen::VectorXd>(system.b.data(), Eigen::Index(system.b.size())));
-}
+/// Distance of the system's solution from that of Eigen's dense solver, over its norm.
+[[nodiscard]] double solution_error(const System& system);
 
 }  // namespace peristat::tests

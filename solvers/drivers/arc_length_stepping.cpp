@@ -101,10 +101,6 @@ Advance ArcLengthStepping::begin() {
     return path_.stop(std::move(attempt), 0.0, explanation(outcome_of(outcome)));
   }
   state.arc.displacement_scale = norm(rate);
-  if (!(state.arc.displacement_scale > 0.0)) {
-    throw InputError("supports", "",
-                     "neither a support nor a load depends on load, so there is no path to follow");
-  }
   state.arc.direction = std::move(rate);
   state.arc.stage_direction = 1.0;
   state.arc.negative_pivots = body.solver.inertia()->negative;

@@ -153,9 +153,6 @@ Advance ImplicitStepping::accept(ImplicitStep step) {
 Advance ImplicitStepping::fail(ImplicitStep step) {
   Attempt& attempt = step.attempt;
   std::string reason = reason_of(step);
-  if (attempt.outcome == Outcome::no_answer && path_.state().steps == 0) {
-    throw InputError("controls", "", explanation(attempt.outcome));
-  }
   const double next = step.attempted * path_.options().cut;
   if (worth_cutting(attempt) && increment_.can_cut_to(next)) {
     increment_.cut_to(next);

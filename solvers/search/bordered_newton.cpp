@@ -184,17 +184,13 @@ class BorderedSearch {
   /// That fulfils the border; nothing if it does not answer.
   std::optional<double> change_of_unknown(std::span<const double> rate) const {
     const BorderEquation& border = step_.border;
+    const std::optional<double> answer = answer_of(border, rate);
+    if (!answer) return std::nullopt;
     double missing = border.value - border.unknown_weight * unknown_;
-    double answer = border.unknown_weight, weight = 0.0, largest = 0.0;
     for (std::size_t dof = 0; dof < border.weights.size(); ++dof) {
       missing -= border.weights[dof] * current_.displacement[dof];
-      answer += border.weights[dof] * rate[dof];
-      weight += std::abs(border.weights[dof]);
-      largest = std::max(largest, std::abs(rate[dof]));
     }
-    const double of_all = weight * largest + std::abs(border.unknown_weight);
-    if (!(std::abs(answer) > no_answer * of_all)) return std::nullopt;
-    return missing / answer;
+    return missing / *answer;
   }
 
   /// The larger of the loads and the reactions.
@@ -235,6 +231,17 @@ class BorderedSearch {
 };
 
 }  // namespace
+
+std::optional<double> answer_of(const BorderEquation& border, std::span<const double> rate) {
+  double answer = border.unknown_weight, weight = 0.0, largest = 0.0;
+  for (std::size_t dof = 0; dof < border.weights.size(); ++dof) {
+    answer += border.weights[dof] * rate[dof];
+    weight += std::abs(border.weights[dof]);
+    largest = std::max(largest, std::abs(rate[dof]));
+  }
+  const double of_all = weight * largest + std::abs(border.unknown_weight);
+  return std::abs(answer) > no_answer * of_all ? std::optional(answer) : std::nullopt;
+}
 
 BorderedResult bordered_newton(const EquilibriumProblem& problem, LinearSolver& solver,
                                TangentOperator& tangent, const State& from,

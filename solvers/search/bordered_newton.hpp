@@ -21,6 +21,11 @@ struct BorderEquation {
   double value = 0.0;
 };
 
+/// d(weights . u + unknown_weight * unknown) / d unknown for a rate du / d unknown; nothing if that
+/// is no more than round-off.
+[[nodiscard]] std::optional<double> answer_of(const BorderEquation& border,
+                                              std::span<const double> rate);
+
 /// A state to begin a search with, beside an equilibrium.
 struct Prediction {
   std::vector<double> displacement;

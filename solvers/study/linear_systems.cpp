@@ -5,6 +5,7 @@
 #include "assembly/operators/matrix_free_tangent.hpp"
 #include "assembly/operators/tangent.hpp"
 #include "solvers/linear/available_memory.hpp"
+#include "solvers/study/found_loads.hpp"
 #include "src/core/input_error.hpp"
 
 namespace peristat {
@@ -28,10 +29,6 @@ void require_ldlt(const StudyOptions& options) {
 }
 
 }  // namespace
-
-bool finds_loads(const StudyOptions& options, const Conditions& conditions) {
-  return conditions.control() != nullptr || options.loading.mode == Mode::arc_length;
-}
 
 LinearSystems choose_linear_systems(const StudyOptions& options, const Model& model,
                                     const MemoryEstimate& estimate, SolverLadder::Reporter tell) {

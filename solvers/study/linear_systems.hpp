@@ -18,9 +18,6 @@ struct LinearSystems {
   [[nodiscard]] std::unique_ptr<TangentOperator> make_tangent(Assembler& assembler) const;
 };
 
-/// Whether loads are found with the states, not given: under a control, and along the arc length.
-[[nodiscard]] bool finds_loads(const StudyOptions& options, const Conditions& conditions);
-
 /// Of a body under its conditions.
 /// @param tell see make_linear_solver
 /// @throws InputError ("tangent", "linear.method", "linear.preconditioner") for what does not go

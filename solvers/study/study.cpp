@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "solvers/linear/available_memory.hpp"
+#include "solvers/study/found_loads.hpp"
 #include "solvers/study/rest_stability.hpp"
 
 namespace peristat {
@@ -33,7 +34,12 @@ Study::Study(const Body& body, StudyOptions options, SolverLadder::Reporter tell
 }
 
 LinearOutcome Study::analyze() {
-  if (!analysis_) analysis_ = equations_->analyze();
+  if (analysis_) return *analysis_;
+  analysis_ = equations_->analyze();
+  if (*analysis_ == LinearOutcome::solved && finds_loads(options_, *body_.conditions)) {
+    const auto& [assembler, solver, tangent, free] = equations_->solved();
+    refuse_unanswered_loads(body_, free, assembler, solver, tangent);
+  }
   return *analysis_;
 }
 

@@ -52,6 +52,7 @@ class Study {
                                           const PathState* from = nullptr);
 
   /// Prepares the solver; `follow` does if nobody has.
+  /// @throws InputError for loads that are to be found and can't be
   LinearOutcome analyze();
 
   [[nodiscard]] const Body& body() const { return body_; }

@@ -90,17 +90,18 @@ void Conditions::find_shared() {
 
 void Conditions::try_stages() {
   std::vector<double> values(prescribed_.size(), 0.0);
-  const auto try_at = [&](double share) {
-    const double stage = share * programme_.end();
-    prescribe(control_ ? LoadPoint(stage, share) : LoadPoint(stage), values);
+  const auto try_at = [&](const LoadPoint& at) {
+    prescribe(at, values);
     for (const double value : values) largest_ = std::max(largest_, std::abs(value));
   };
+  if (control_) return try_at({0.0, 0.0});  // nobody knows where its loads will go
+  const auto try_share = [&](double share) { try_at(share * programme_.end()); };
   // The end first: it tells how large displacements are.
-  for (const double share : {1.0, 0.0, 0.5}) try_at(share);
+  for (const double share : {1.0, 0.0, 0.5}) try_share(share);
   if (first_.empty()) return;
   // Shares at which hardly any two different expressions agree.
   for (const double share : {0.0737, 0.1831, 0.2946, 0.3819, 0.6093, 0.7548, 0.8862}) {
-    try_at(share);
+    try_share(share);
   }
 }
 

@@ -1,10 +1,14 @@
 """What the headers of the long cases print, compared with one run of each."""
 
+import json
+import pathlib
+import tempfile
 import unittest
 
 from tests.printed.comparison import PrintedTest
 from tests.printed.page import numbers
 from tests.printed.runs import run
+from tests.reference.program import ROOT, peristat
 
 # Round-off decides which of two like bonds breaks first, so that elsewhere counts differ "by some per
 # cent" and peaks by "less than one": so the headers and the tutorial.
@@ -34,6 +38,39 @@ class Fracture(PrintedTest):
         self.prints("the most stretched bond would end at {} (3.3) and {} (5.2) of the onset",
                     rectangle.history[-1]["max_stretch"] / 0.033, square.history[-1]["max_stretch"] / 0.015,
                     page="docs/theory.md")  # fmt: skip
+
+    def test_mouth_opening(self):
+        self.page = "cases/three_point_bending/mouth_opening.toml"
+        plate = run("three_point_bending/mouth_opening")
+        peak = plate.step_of_peak("load", "y")
+        self.prints("a peak of {} kN at", 1e-3 * abs(peak["reaction_y:load"]), within=PEAK)
+        self.prints("at an opening of {} mm;", 1e3 * peak["control"], within=0.03)  # a step
+        last = plate.history[-1]
+        self.assertEqual(round(last["control"], 12), 1.2e-3)
+        share = last["reaction_y:load"] / peak["reaction_y:load"]
+        self.assertLess(abs(share - 2 / 3), 0.1)  # "to two thirds of the peak"
+        # Where load control would have to go back it does; the opening never does.
+        openings = [row["control"] for row in plate.history]
+        self.assertEqual(openings, sorted(openings))
+        loads = [row["load_factor"] for row in plate.history]
+        self.assertNotEqual(loads, sorted(loads))
+        # Nothing is lost but what bonds and avalanches take.
+        self.assertLess(abs(last["balance_error"]), 2e-3 * last["external_work"])
+        self.assertGreater(last["drained_energy"], 0)
+
+    def test_the_notched_plate_ends_under_load_control(self):
+        case = "three_point_bending/mouth_opening"
+        text = (ROOT / "cases" / f"{case}.toml").read_text()
+        loaded = text[: text.index("[[control]]")] + "[loading]\nsteps = 32\n"
+        with tempfile.TemporaryDirectory() as folder:
+            path = pathlib.Path(folder) / "loaded.toml"
+            path.write_text(loaded)
+            ended = peristat("run", path, "--output", f"{folder}/out", "--threads", 1, seconds=900, limited=False)
+            self.assertEqual(ended.code, 3, ended.errors)
+            summary = json.loads((pathlib.Path(folder) / "out" / "summary.json").read_text())
+        controlled = run(case)
+        self.assertIn("limit_point", summary["reason"])
+        self.assertLess(summary["broken_bonds"], 0.3 * controlled.summary["broken_bonds"])
 
     def test_four_holes(self):
         self.page = "cases/four_holes/tension.toml"

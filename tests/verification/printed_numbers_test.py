@@ -286,6 +286,35 @@ class LinearSolvers(PrintedTest):
         self.assert_row("bar-10")
 
 
+class Buckling(PrintedTest):
+    def critical_loads(self, of):
+        return [row["load_factor"] for row in of.decisions if row["action"] == "locate critical point"]
+
+    def test_arch(self):
+        self.page = "cases/buckling/arch.toml"
+        arch = run("buckling/arch")
+        first, second = self.critical_loads(arch)
+        self.prints("a limit point at {}, falls", first)
+        self.prints("to a second one, at {}, while", second)
+        turning = [row["middle_y"] for row in arch.history if row["load_factor"] == second]
+        self.assertLess(turning[0], -0.0866)  # "by more than the rise"
+        self.assertEqual({row["negative_pivots"] for row in arch.history}, {0, 1})
+
+    def test_column(self):
+        self.page = "cases/buckling/column.toml"
+        column = run("buckling/column")
+        (critical,) = self.critical_loads(column)
+        self.prints("a bifurcation at {} of the load", critical)
+        self.prints("of the load, {} kN:", 32 * critical)
+        across = run("buckling/column", 'load[0].total_force=["0","1e-3*load"]', "solver.mode=newton", "loading.steps=1")
+        length = 3.195
+        bending = 1e-3 * length**3 / (3 * across.summary["probes"]["top"][1])
+        euler = math.pi**2 * bending / (4 * length**2)
+        self.prints("{} % above Euler's load", 100 * (32e3 * critical / euler - 1))
+        along, aside = column.summary["probes"]["top"]
+        self.prints("top has moved {} m sideways and {} m down", abs(aside), -along)
+
+
 class Headers(unittest.TestCase):
     def test_every_header_is_compared(self):
         tests = "".join(path.read_text() for path in (ROOT / "tests").glob("*/printed_*_test.py"))

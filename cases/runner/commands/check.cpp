@@ -11,7 +11,9 @@
 #include "solvers/study/bond_potential.hpp"
 #include "solvers/study/cpd_model.hpp"
 #include "solvers/study/linear_systems.hpp"
+#include "solvers/study/found_loads.hpp"
 #include "solvers/study/rest_stability.hpp"
+#include "solvers/study/study.hpp"
 #include "src/neighbourhood/neighbour_counts.hpp"
 
 namespace peristat {
@@ -119,6 +121,7 @@ Exit check(const Case& from, int threads) {
   located_errors(from, [&] {
     refuse_unheld_bodies(body);
     refuse_unstable_rest(body, options);
+    if (finds_loads(options, *body.conditions)) static_cast<void>(Study(body, options).analyze());
   });
   return Exit::done;
 }

@@ -19,6 +19,7 @@
 #include "cases/runner/results/recorder.hpp"
 #include "cases/runner/results/results.hpp"
 #include "solvers/linear/cholesky.hpp"
+#include "solvers/study/found_loads.hpp"
 #include "solvers/study/study.hpp"
 #include "src/core/input_error.hpp"
 #include "src/core/stopwatch.hpp"
@@ -200,6 +201,8 @@ class CaseRun {
                               body_->model.bonds().count(), free.count(), options_.threads));
     for (const std::string& line : describe_interactions(*body_)) progress_.say(line);
     count(*body_, free, options_, summary_);
+    // Loads that can't be found are refused before results are touched.
+    if (finds_loads(study_->options(), *body_->conditions)) study_->analyze();
     progress_.follow_to(body_->conditions->programme().end());
   }
 

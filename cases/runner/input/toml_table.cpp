@@ -36,9 +36,12 @@ std::string suggestion(const std::string& key, const std::vector<std::string>& k
   std::vector<std::string> elsewhere;
   for (const auto& [table, keys] : case_keys())
     if (contains(keys, key)) elsewhere.push_back(table.empty() ? key : table + "." + key);
-  constexpr std::size_t most_listed = 2;
+  constexpr std::size_t most_listed = 3;
   if (elsewhere.empty() || elsewhere.size() > most_listed) return "";
-  for (const auto& place : elsewhere) text += (text.empty() ? "" : " or ") + place;
+  for (const auto& place : elsewhere) {
+    const bool is_last = &place == &elsewhere.back();
+    text += (text.empty() ? "" : is_last ? " or " : ", ") + place;
+  }
   return "; did you mean " + text + "?";
 }
 

@@ -1,0 +1,39 @@
+#include "solvers/study/found_loads.hpp"
+
+#include <vector>
+
+#include "solvers/linear/vector_verbs.hpp"
+#include "solvers/search/bordered_newton.hpp"
+#include "src/core/input_error.hpp"
+
+namespace peristat {
+
+bool finds_loads(const StudyOptions& options, const Conditions& conditions) {
+  return conditions.control() != nullptr || options.loading.mode == Mode::arc_length;
+}
+
+void refuse_unanswered_loads(const Body& body, const FreeDofs& free, Assembler& assembler,
+                             LinearSolver& solver, TangentOperator& tangent) {
+  const Conditions& conditions = *body.conditions;
+  const DisplacementControl* const control = conditions.control();
+  const LoadPath loads = [control](double load) {
+    return control ? LoadPoint(0.0, load) : LoadPoint(load);
+  };
+  const std::vector<double> rest(conditions.prescribed().size(), 0.0);
+  const EquilibriumProblem problem{assembler, conditions, free};
+  std::vector<double> rate;
+  const LinearOutcome outcome =
+      find_rate(problem, solver, tangent, {rest, assembler.initial_history()}, loads, 0.0, rate);
+  if (outcome != LinearOutcome::solved) return;  // the search names it
+  if (norm(rate) == 0.0) {
+    throw InputError("supports", "",
+                     "neither a support nor a load depends on load, so there is no path to follow");
+  }
+  if (control && !answer_of({control->weights(), 0.0, 0.0}, rate)) {
+    throw InputError("controls", "",
+                     "the controlled displacement does not answer to load: nothing that load moves "
+                     "moves it");
+  }
+}
+
+}  // namespace peristat

@@ -1,0 +1,19 @@
+#pragma once
+
+#include "solvers/study/body.hpp"
+#include "solvers/study/study_options.hpp"
+
+namespace peristat {
+
+/// Whether loads are found with the states, not given: under a control, and along the arc length.
+[[nodiscard]] bool finds_loads(const StudyOptions& options, const Conditions& conditions);
+
+/// Refuses loads that can't be found, by the tangent at rest.
+/// @param solver analyzed for the body's pattern and `free`
+/// @throws InputError ("controls") for a control that does not answer to the load, ("supports")
+/// where
+///         nothing depends on it
+void refuse_unanswered_loads(const Body& body, const FreeDofs& free, Assembler& assembler,
+                             LinearSolver& solver, TangentOperator& tangent);
+
+}  // namespace peristat

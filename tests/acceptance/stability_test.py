@@ -1,0 +1,322 @@
+"""Loads that are found with the states: a control by displacements, and the arc length."""
+
+import csv
+import math
+import unittest
+
+import h5py
+import numpy
+
+from tests.acceptance.programme_test import Programmes
+from tests.acceptance.strip import PULLED
+from tests.reference.program import ROOT, peristat
+from tests.same_results import differences
+from tests.shipped_runs import shipped_run
+
+CASES = ROOT / "cases"
+# Of displacements, by residuals of 1e-10.
+CLOSE = 1e-8
+
+
+def rows_of(folder, table="history.csv"):
+    with open(folder / table, newline="") as file:
+        return list(csv.DictReader(file))
+
+
+def numbers(folder, *columns):
+    return [numpy.array([float(row[column]) for row in rows_of(folder)]) for column in columns]
+
+
+def critical_points(folder):
+    return [(float(row["load_factor"]), row["reason"]) for row in rows_of(folder, "decisions.csv")
+            if row["action"] == "locate critical point"]  # fmt: skip
+
+
+class ShippedCase(Programmes):
+    def shipped(self, case, *changes):
+        ended = shipped_run(case, *changes)
+        self.assertEqual(ended.code, 0, ended.errors)
+        return ended.folder
+
+    def straight_strip(self, rows, force):
+        """End displacement and elongation of the middle half of a clamped strip, 240 points long, of the shipped
+        cases' lattice."""
+        height = rows * 0.005
+        text = f"""\
+dimension = 2
+[lattice]
+spacing = 0.01
+thickness = 0.01
+[[lattice.shape]]
+add = "box"
+min = [0.0, {-height}]
+max = [2.4, {height}]
+[[lattice.layer]]
+name = "clamp"
+side = "x-"
+thickness = 3
+[[set]]
+name = "end"
+where = "x > 2.39"
+[[set]]
+name = "near"
+where = "abs(x - 0.605) < 1e-3"
+[[set]]
+name = "far"
+where = "abs(x - 1.805) < 1e-3"
+[material]
+youngs_modulus = 200e9
+[quadrature]
+surface_correction = "energy"
+[[support]]
+set = "clamp"
+displacement = [0, 0]
+[[load]]
+set = "end"
+total_force = {force}
+[[probe]]
+name = "end"
+set = "end"
+[[probe]]
+name = "middle"
+set = "far"
+field = "opening"
+other = "near"
+"""
+        last = self.run_case(text, name=f"strip_{rows}_{force[0]}")[-1]
+        return last["end_y"], last["middle_x"]
+
+    def stiffnesses(self, rows):
+        """EA and EI that the points have: by the strain of the middle, and by the deflection F L^3 / (3 EI)."""
+        axial = 1e-3 / (self.straight_strip(rows, ["1e-3*load", "0"])[1] / 1.2)
+        bending = 1e-3 * 2.395**3 / (3.0 * self.straight_strip(rows, ["0", "1e-3*load"])[0])
+        return axial, bending
+
+
+class Arch(ShippedCase):
+    """y = h/2 (1 - cos kx) between clamps, loaded by q cos kx: with the rise a left,
+    q = k^4/2 (EI (h - a) + EA/16 (h^2 - a^2) a), by equilibrium EI (y - y0)'''' + P y'' = q cos kx
+    under the thrust P = EA k^2/16 (h^2 - a^2) of a shallow arch."""
+
+    LENGTH, ROWS, SPACING = 4.8, 6, 0.01
+    RISE = 5 * ROWS * SPACING / math.sqrt(12)
+
+    def load_factor(self, rise, axial, bending):
+        wave = 2 * math.pi / self.LENGTH
+        load = wave**4 / 2 * (bending * (self.RISE - rise) + axial / 16 * (self.RISE**2 - rise**2) * rise)
+        return load / (1.5e7 * self.ROWS * self.SPACING * 0.01)
+
+    def test_its_points_are_those_of_the_formula(self):
+        points = numpy.genfromtxt(CASES / "buckling/arch.csv", delimiter=",", skip_header=1, usecols=(0, 1, 2))
+        columns = round(self.LENGTH / self.SPACING) + 6
+        self.assertEqual(len(points), columns * self.ROWS)
+        x = (numpy.repeat(numpy.arange(columns), self.ROWS) - 2.5) * self.SPACING
+        inside = (x > 0) & (x < self.LENGTH)
+        middle = numpy.where(inside, self.RISE / 2 * (1 - numpy.cos(2 * math.pi * x / self.LENGTH)), 0.0)
+        across = (numpy.tile(numpy.arange(self.ROWS), columns) - 2.5) * self.SPACING
+        numpy.testing.assert_allclose(points, numpy.stack([x, middle + across, 0 * x + 1e-6], axis=1), atol=1e-9)
+
+    def test_it_snaps_through_as_shallow_arch_theory_says(self):
+        folder = self.shipped("buckling/arch")
+        axial, bending = self.stiffnesses(self.ROWS)
+        highest = math.sqrt((self.RISE**2 - 16 * bending / axial) / 3)
+        expected = [self.load_factor(rise, axial, bending) for rise in (highest, -highest)]
+        found = critical_points(folder)
+        self.assertEqual([reason.split(" between")[0] for _, reason in found], ["a limit point"] * 2)
+        for (load_factor, _), theory in zip(found, expected):
+            self.assertLess(abs(load_factor / theory - 1), 0.01)
+        loads, sunk, pivots = numbers(folder, "load_factor", "middle_y", "negative_pivots")
+        for load, down, negative in zip(loads, sunk, pivots):
+            rise = self.RISE + down
+            self.assertLess(abs(load - self.load_factor(rise, axial, bending)), 0.02)
+            if abs(abs(rise) - highest) > 0.05 * self.RISE:
+                self.assertEqual(negative, int(abs(rise) < highest), rise)
+        self.assertEqual(loads[-1], 1.0)
+
+    def test_it_goes_on_from_every_step_as_if_nothing_had_been(self):
+        # Coarse, so that there are few: a located limit point among them.
+        settings = ["--set", "loading.steps=4", "--set", "arc_length.largest_step=0.5", "--threads", 1]
+        case = CASES / "buckling/arch.toml"
+        whole, split = self.folder / "whole", self.folder / "split"
+        self.assertEqual(peristat("run", case, "--output", whole, *settings).code, 0)
+        ended = peristat("run", case, "--output", split, "--stop-after", 1, *settings)
+        for _ in range(len(rows_of(whole)) + 2):
+            if ended.code == 0:
+                break
+            self.assertEqual(ended.code, 130, ended.said)
+            ended = peristat("resume", split, "--stop-after", 1, "--threads", 1)
+        self.assertEqual(ended.code, 0, ended.said)
+        self.assertEqual(differences(whole, split), [])
+
+
+class Column(ShippedCase):
+    LENGTH = 3.195  # to the middle of its last points
+
+    def test_it_buckles_at_eulers_load_and_bends_as_the_elastica(self):
+        folder = self.shipped("buckling/column")
+        _, bending = self.stiffnesses(8)
+        euler = math.pi**2 * bending / (4 * self.LENGTH**2) / 32e3
+        (critical, reason), *others = critical_points(folder)
+        self.assertTrue(reason.startswith("a bifurcation"), reason)
+        self.assertEqual(others, [])
+        self.assertLess(abs(critical / euler - 1), 0.01)
+        loads, along, across, pivots = numbers(folder, "load_factor", "top_x", "top_y", "negative_pivots")
+        self.assertFalse(pivots.any())  # straight before, bent beyond: stable
+        self.assertEqual(loads[-1], 1.0)
+        compared = 0
+        for load, u, v in zip(loads, along, across):
+            if load < 1.01 * critical:
+                continue
+            modulus = self.modulus_of(load / critical)
+            first, second = self.elliptic_integrals(modulus)
+            self.assertLess(abs(abs(v) / self.LENGTH - 2 * modulus / first), 0.01)
+            self.assertLess(abs(1 + u / self.LENGTH - (2 * second / first - 1)), 0.01)
+            compared += 1
+        self.assertGreater(compared, 3)
+
+    @staticmethod
+    def elliptic_integrals(modulus):
+        """K and E, by the arithmetic-geometric mean."""
+        a, b, rest, factor = 1.0, math.sqrt(1 - modulus**2), 1 - modulus**2 / 2, 0.25
+        while abs(a - b) > 1e-15:
+            rest -= factor * (a - b) ** 2
+            a, b, factor = (a + b) / 2, math.sqrt(a * b), 2 * factor
+        return math.pi / (2 * a), rest * math.pi / (2 * a)
+
+    def modulus_of(self, ratio):
+        """Of the elastica under so many times Euler's load: (2 K / pi)^2."""
+        low, high = 0.0, 1 - 1e-12
+        for _ in range(60):
+            middle = (low + high) / 2
+            if (2 * self.elliptic_integrals(middle)[0] / math.pi) ** 2 < ratio:
+                low = middle
+            else:
+                high = middle
+        return low
+
+    def test_it_can_be_followed_straight_on(self):
+        folder = self.shipped("buckling/column", "arc_length.bifurcation=straight")
+        loads, across, pivots = numbers(folder, "load_factor", "top_y", "negative_pivots")
+        self.assertLess(abs(across).max(), 1e-6)
+        critical = critical_points(folder)[0][0]
+        for load, negative in zip(loads, pivots):
+            self.assertEqual(negative > 0, load > critical)
+
+    def test_one_step_or_a_hundred_find_the_same_load(self):
+        reference = critical_points(self.shipped("buckling/column"))[0][0]
+        for change in ("loading.steps=1", "loading.steps=100"):
+            with self.subTest(change):
+                found = critical_points(self.shipped("buckling/column", change))
+                self.assertLess(abs(found[0][0] / reference - 1), 1e-3)
+
+    def test_load_control_tells_that_it_is_unstable(self):
+        ended = peristat("run", CASES / "buckling/column.toml", "--output", self.folder / "out", "--set", "solver.mode=newton")
+        self.assertEqual(ended.code, 3, ended.said)
+        self.assertIn("negative pivots", ended.said)
+
+
+OPENED = PULLED.replace("1e-5*load", "1e-3*load") + """\
+[[set]]
+name = "middle"
+where = "abs(x - 0.01) < 1e-3"
+[[control]]
+set = "middle"
+weights = [2, -1]
+[loading]
+table = [0, 1e-5]
+steps = 4
+"""
+
+
+class Control(Programmes):
+    def test_its_states_are_those_of_the_loads_that_it_finds(self):
+        rows = self.run_case(OPENED, name="controlled")
+        controlled = self.displacements("controlled")
+        self.assertEqual(len(rows), 4)
+        with h5py.File(self.folder / "controlled" / "results.h5") as file:
+            reference = file["points/reference"][...]
+        middle = abs(reference[:, 0] - 0.01) < 1e-3
+        for k, (row, displacement) in enumerate(zip(rows, controlled), 1):
+            self.assertAlmostEqual(row["control"], k * 2.5e-6, delta=1e-15)
+            mean = displacement[middle].mean(axis=0)
+            self.assertAlmostEqual(2 * mean[0] - mean[1], k * 2.5e-6, delta=1e-14)
+            self.assertEqual(row["negative_pivots"], 0)
+        for row, displacement in zip(rows, controlled):
+            text = OPENED[: OPENED.index("[[control]]")].replace("1e-3*load", f"{row['load_factor']!r}*1e-3*load")
+            self.run_case(text, name=f"loaded_{row['step']}")
+            loaded = self.displacements(f"loaded_{row['step']}")[-1]
+            self.assertLess(abs(loaded - displacement).max(), CLOSE * abs(displacement).max())
+
+    def test_it_goes_up_and_down_and_beside_other_loads(self):
+        text = OPENED.replace('"1e-3*load", "free"', '"1e-3*load", "1e-6*load2"')
+        rows = self.run_case(text, "loading.table=[0,1e-5,-1e-5,0]", "loading.table2=[0,1,1,0]")
+        top, bottom, end = (row for row in rows if row["stage"] in (1, 2, 3))
+        for row, control in ((top, 1e-5), (bottom, -1e-5)):
+            self.assertAlmostEqual(row["control"], control, delta=1e-17)
+        self.assertGreater(top["load_factor"], 0)
+        self.assertLess(bottom["load_factor"], 0)
+        self.assertAlmostEqual(end["load_factor"], 0, delta=1e-9)
+        self.assertLess(abs(end["stored_energy"]), 1e-9 * top["stored_energy"])
+
+    def test_one_step_or_many_end_alike(self):
+        one, many = (self.run_case(OPENED, f"loading.steps={steps}", name=f"in_{steps}")[-1] for steps in (1, 30))
+        self.assertLess(abs(one["load_factor"] / many["load_factor"] - 1), CLOSE)
+
+    def test_it_goes_on_where_it_was_stopped(self):
+        softening = OPENED.replace('youngs_modulus = 200e9\n', """youngs_modulus = 200e9
+[material.damage]
+law = "tanh_continuous"
+onset = 0.001
+critical = 0.01
+no_fail = ["left", "right"]
+""").replace("[0, 1e-5]", "[0, 4e-5]")  # fmt: skip
+        self.run_case(softening, name="whole")
+        self.run_case(softening, name="split", words=("--stop-after", 2), expected=130)
+        ended = peristat("resume", self.folder / "split", "--threads", 1)
+        self.assertEqual(ended.code, 0, ended.said)
+        self.assertGreater(self.history("whole")[-1]["dissipated_energy"], 0)
+        self.assertEqual(differences(self.folder / "whole", self.folder / "split"), [])
+
+
+class BadInput(Programmes):
+    def refused(self, text, *settings):
+        words = [word for setting in settings for word in ("--set", setting)]
+        ended = peristat("run", self.case(text), "--output", self.folder / "out", *words)
+        self.assertEqual(ended.code, 2, ended.said)
+        self.assertFalse((self.folder / "out").exists())
+        return ended.said
+
+    def test_a_control_that_nothing_free_answers_to(self):
+        held = self.refused(OPENED, 'control[0].set="right"', "control[0].weights=[1,0]")
+        self.assertIn("no free degree of freedom answers", held)
+        self.assertIn("case.toml:", held)
+        # Nothing that is loaded moves across: the strip is symmetric to its axis.
+        still = OPENED.replace("abs(x - 0.01) < 1e-3", "abs(x - 0.01) < 1e-3 && abs(y - 5e-3) < 1e-3")
+        self.assertIn("does not answer", self.refused(still, "control[0].weights=[0,1]"))
+        self.assertIn("nor a load depends on load", self.refused(OPENED.replace("1e-3*load", "0")))
+
+    def test_what_does_not_go_with_a_control(self):
+        self.assertIn("loading.table", self.refused(OPENED.replace("table = [0, 1e-5]\n", "")))
+        self.assertIn('must be "newton"', self.refused(OPENED, "solver.mode=adaptive"))
+        self.assertIn('must be "newton"', self.refused(OPENED, "solver.mode=arc_length"))
+        self.assertIn("solver.linear", self.refused(OPENED, "solver.linear=pcg"))
+        self.assertIn("solver.projection", self.refused(OPENED, "solver.projection=always"))
+        self.assertIn("not all zero", self.refused(OPENED, "control[0].weights=[0,0]").replace("are all zero", "not all zero"))
+        self.assertIn("must begin with 0", self.refused(OPENED, "loading.table=[1e-6,1e-5]"))
+
+    def test_what_does_not_go_with_the_arc_length(self):
+        arc = PULLED + '[solver]\nmode = "arc_length"\n'
+        self.assertIn("two entries", self.refused(arc, "loading.table=[0,1,0]"))
+        self.assertIn("depends on load", self.refused(arc.replace("1e-5*load", "0")))
+        self.assertIn("solver.preconditioner", self.refused(arc, "solver.preconditioner=jacobi"))
+
+    def test_a_load_that_ends_within_the_path(self):
+        text = OPENED.replace("1e-3*load", "1e-3*sqrt(0.004 - load)*load")
+        ended = peristat("run", self.case(text), "--output", self.folder / "out")
+        self.assertEqual(ended.code, 3, ended.said)
+        self.assertIn("undefined_condition", ended.said)
+        self.assertGreater(len(self.history()), 1)
+
+
+if __name__ == "__main__":
+    unittest.main()
