@@ -264,10 +264,10 @@ Advance ArcLengthStepping::locate(Step beyond) {
   }
   path_.state().arc.passes_critical_point = true;
   const bool branches = !turns && before_pivots == 0 && path_.options().arc_length.branches_off;
-  return branches ? branch_off() : Advance::goes_on;
+  return branches ? branch_off(beyond.negative_pivots) : Advance::goes_on;
 }
 
-Advance ArcLengthStepping::branch_off() {
+Advance ArcLengthStepping::branch_off(std::int64_t modes) {
   PathState& state = path_.state();
   std::vector<double> mode;
   const SolvedBody& body = path_.body();
@@ -284,28 +284,26 @@ Advance ArcLengthStepping::branch_off() {
   state.arc.stage_direction = 0.0;
   increment_.enlarge_to(share_of_branch * extent(body.assembler.points()) /
                         largest_size(state.arc.direction));
-  path_.tell(load_point(state.accepted),
-             {.outcome = name(Outcome::converged),
-              .action = Decision::branch_off,
-              .next_increment = increment_.value(),
-              .reason = "along the eigenvector of the vanishing pivot; the path that goes on "
-                        "straight is unstable from here on"});
+  path_.tell(
+      load_point(state.accepted),
+      {.outcome = name(Outcome::converged),
+       .action = Decision::branch_off,
+       .next_increment = increment_.value(),
+       .reason = modes == 1 ? "along the eigenvector of the vanishing pivot; the path that goes "
+                              "on straight is unstable from here on"
+                            : "along one of " + std::to_string(modes) +
+                                  " eigenvectors whose pivots vanish together; their "
+                                  "combinations need not be paths, so choose one by a small "
+                                  "load or a perturbed lattice"});
   return Advance::goes_on;
 }
 
 Advance ArcLengthStepping::fail(Step step) {
   Attempt& attempt = step.attempt;
   const std::string reason = reason_of(attempt, step.fault);
-  const double next = step.attempted * path_.options().cut;
-  const bool is_located =
-      attempt.outcome == Outcome::damage_begins && next < share_of_onset / path_.options().steps;
-  if (worth_cutting(attempt) && increment_.can_cut_to(next) && !is_located) {
-    increment_.cut_to(next);
-    path_.tell(attempt.at, {.increment = step.attempted,
-                            .outcome = name(attempt.outcome),
-                            .action = Decision::cut,
-                            .next_increment = next,
-                            .reason = reason});
+  const bool is_located = attempt.outcome == Outcome::damage_begins &&
+                          step.attempted < share_of_onset / path_.options().steps;
+  if (!is_located && cut(path_, increment_, attempt, step.attempted, reason)) {
     return Advance::goes_on;
   }
   return path_.stop(std::move(attempt), step.attempted, reason);

@@ -62,7 +62,8 @@ class ArcLengthStepping : public Driver {
   void find_direction(Step& step);
   /// Between the accepted state and one whose pivots have other signs.
   [[nodiscard]] Advance locate(Step beyond);
-  [[nodiscard]] Advance branch_off();
+  /// @param modes that vanish together
+  [[nodiscard]] Advance branch_off(std::int64_t modes);
   [[nodiscard]] Advance accept(Step step, const std::string& reason);
   [[nodiscard]] Advance fail(Step step);
 

@@ -96,6 +96,19 @@ std::string complete(Path& path, Attempt& attempt, FoundStep& found) {
   return fault;
 }
 
+bool cut(Path& path, Increment& increment, const Attempt& attempt, double attempted,
+         const std::string& reason) {
+  const double next = attempted * path.options().cut;
+  if (!worth_cutting(attempt) || !increment.can_cut_to(next)) return false;
+  increment.cut_to(next);
+  path.tell(attempt.at, {.increment = attempted,
+                         .outcome = name(attempt.outcome),
+                         .action = Decision::cut,
+                         .next_increment = next,
+                         .reason = reason});
+  return true;
+}
+
 Advance accept(Path& path, Attempt attempt, FoundStep found, double next) {
   PathState& state = path.state();
   state.accepted = state_of(attempt);

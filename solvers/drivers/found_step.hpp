@@ -3,6 +3,7 @@
 #include <functional>
 #include <string>
 
+#include "solvers/drivers/increment.hpp"
 #include "solvers/drivers/path.hpp"
 
 namespace peristat {
@@ -25,6 +26,11 @@ void commit(Path& path, Attempt& attempt, FoundStep& found,
 /// Closes the ledger of a step whose damage is committed, and checks what it owes.
 /// @return what is wrong with it; the attempt's outcome is then inconsistent
 [[nodiscard]] std::string complete(Path& path, Attempt& attempt, FoundStep& found);
+
+/// Cuts the next step after one that failed, and tells it, if a smaller one may help and is
+/// allowed.
+[[nodiscard]] bool cut(Path& path, Increment& increment, const Attempt& attempt, double attempted,
+                       const std::string& reason);
 
 /// Makes an attempt the path's last accepted state, tells it, and pins what has come free in it.
 /// @param next increment of the stage, for what is told

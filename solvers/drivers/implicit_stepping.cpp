@@ -87,6 +87,7 @@ bool ImplicitStepping::may_be_avalanche(const ImplicitStep& step) const {
   const Outcome outcome = step.attempt.outcome;
   const bool has_failed = outcome == Outcome::iteration_limit || outcome == Outcome::limit_point ||
                           outcome == Outcome::degenerate || outcome == Outcome::no_answer ||
+                          outcome == Outcome::not_positive_definite ||
                           outcome == Outcome::inconsistent;
   const LoadSteppingOptions& options = path_.options();
   const bool is_short = !options.adaptive || step.attempted * options.steps <= share_of_avalanche;
@@ -153,16 +154,7 @@ Advance ImplicitStepping::accept(ImplicitStep step) {
 Advance ImplicitStepping::fail(ImplicitStep step) {
   Attempt& attempt = step.attempt;
   std::string reason = reason_of(step);
-  const double next = step.attempted * path_.options().cut;
-  if (worth_cutting(attempt) && increment_.can_cut_to(next)) {
-    increment_.cut_to(next);
-    path_.tell(attempt.at, {.increment = step.attempted,
-                            .outcome = name(attempt.outcome),
-                            .action = Decision::cut,
-                            .next_increment = next,
-                            .reason = reason});
-    return Advance::goes_on;
-  }
+  if (cut(path_, increment_, attempt, step.attempted, reason)) return Advance::goes_on;
   if (is_limit_point(attempt)) {
     if (attempt.outcome != Outcome::limit_point) {
       reason = explanation(Outcome::limit_point) + "; the last search ended with: " + reason;

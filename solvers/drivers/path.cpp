@@ -91,7 +91,30 @@ Attempt Path::search_by_control(const State& from, double target, const NewtonOp
   step.loads = [target](double load) { return LoadPoint(target, load); };
   step.border = {conditions.control()->weights(), 0.0, conditions.programme().at(target).front()};
   step.unknown = from.load.value_or(0.0);
+  if (state_.control_sign == 0) find_control_sign();
   return search(from, step, options);
+}
+
+void Path::find_control_sign() {
+  const SolvedBody& solved = body();
+  const State rest{std::vector<double>(state_.accepted.displacement.size(), 0.0), 0.0,
+                   solved.assembler.initial_history()};
+  std::vector<double> rate;
+  const auto loads = [](double load) { return LoadPoint(0.0, load); };
+  if (find_rate(problem(), solved.solver, solved.tangent, {rest}, loads, 0.0, rate) !=
+      LinearOutcome::solved) {
+    return;  // the search names it
+  }
+  const double answer = setting_.conditions.control()->value(rate);
+  const bool is_odd = solved.solver.inertia()->negative % 2 == 1;
+  state_.control_sign = (answer < 0.0) == is_odd ? 1 : -1;
+}
+
+bool Path::is_unstable_under_control(const BorderedResult& found) const {
+  const std::optional<Inertia>& inertia = found.newton.inertia;
+  if (!inertia || inertia->negative == 0) return false;
+  const bool has_turned = found.answer * state_.control_sign < 0.0;
+  return inertia->negative > 1 || !has_turned;
 }
 
 Attempt Path::search(const State& from, const BorderedStep& step, const NewtonOptions& options) {
@@ -99,6 +122,12 @@ Attempt Path::search(const State& from, const BorderedStep& step, const NewtonOp
     BorderedResult found =
         bordered_newton(problem(), body().solver, body().tangent, from, step, options,
                         [this](const IterationRecord& row) { return iterated(row); });
+    // States on the way of an avalanche, whose damage is held, need not be stable.
+    const bool may_stay = setting_.conditions.control() && options.damage == Damage::grows;
+    if (may_stay && found.newton.outcome == Outcome::converged &&
+        is_unstable_under_control(found)) {
+      found.newton.outcome = Outcome::not_positive_definite;
+    }
     return to_attempt(std::move(found.newton), step.loads(found.unknown));
   } catch (const InputError& error) {
     Attempt attempt = undefined_attempt(from, load_point(from));

@@ -34,6 +34,8 @@ struct PathState {
     double increment = 0.0;  ///< likewise
     RelaxationMotion motion;
   } relaxed;
+  /// Under a control: +1 or -1 as the control answers to the load at rest; 0: not known yet.
+  int control_sign = 0;
   struct Arc {
     double increment = 0.0;  ///< of the arc length in the next step; 0: as in the first
     /// Of the path in the accepted state, per unit of the arc length: of the displacement [m], and

@@ -59,17 +59,8 @@ Advance RelaxedStepping::accept(Found found) {
 
 Advance RelaxedStepping::fail(Found found) {
   Attempt& attempt = found.step.attempt;
-  const double next = found.attempted * path_.options().cut;
   const std::string reason = reason_of(attempt, found.fault);
-  if (worth_cutting(attempt) && increment_.can_cut_to(next)) {
-    increment_.cut_to(next);
-    path_.tell(attempt.at, {.increment = found.attempted,
-                            .outcome = name(attempt.outcome),
-                            .action = Decision::cut,
-                            .next_increment = next,
-                            .reason = reason});
-    return Advance::goes_on;
-  }
+  if (cut(path_, increment_, attempt, found.attempted, reason)) return Advance::goes_on;
   return path_.stop(std::move(attempt), found.attempted, reason);
 }
 

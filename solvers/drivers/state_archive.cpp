@@ -53,7 +53,7 @@ void transfer_pins(StateArchive& archive, FragmentPins& pins) {
 // The bindings name every member, so that none can be forgotten.
 void transfer(StateArchive& archive, PathState& state) {
   auto& [accepted, steps, ledger, pins, stands_in, rungs, relaxation_seconds, implicit, relaxed,
-         arc, hand_over] = state;
+         control_sign, arc, hand_over] = state;
   auto& [displacement, stage, history, load] = accepted;
   archive.transfer("accepted/displacement", displacement);
   archive.transfer("accepted/stage", stage);
@@ -73,6 +73,7 @@ void transfer(StateArchive& archive, PathState& state) {
   auto& [velocity] = motion;
   archive.transfer("relaxed/increment", relaxed_increment);
   archive.transfer("relaxed/velocity", velocity);
+  archive.transfer("control_sign", control_sign);
   auto& [arc_increment, direction, stage_direction, displacement_scale, negative_pivots,
          passes_critical_point] = arc;
   archive.transfer("arc/increment", arc_increment);

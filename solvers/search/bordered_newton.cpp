@@ -80,7 +80,7 @@ class BorderedSearch {
     result_.outcome = search();
     result_.state = std::move(current_);
     result_.external_force = std::move(external_force_);
-    return {std::move(result_), unknown_};
+    return {std::move(result_), unknown_, answer_};
   }
 
  private:
@@ -182,10 +182,11 @@ class BorderedSearch {
   }
 
   /// That fulfils the border; nothing if it does not answer.
-  std::optional<double> change_of_unknown(std::span<const double> rate) const {
+  std::optional<double> change_of_unknown(std::span<const double> rate) {
     const BorderEquation& border = step_.border;
     const std::optional<double> answer = answer_of(border, rate);
     if (!answer) return std::nullopt;
+    answer_ = *answer;
     double missing = border.value - border.unknown_weight * unknown_;
     for (std::size_t dof = 0; dof < border.weights.size(); ++dof) {
       missing -= border.weights[dof] * current_.displacement[dof];
@@ -220,7 +221,7 @@ class BorderedSearch {
   const BorderedStep& step_;
   const NewtonOptions& options_;
   const IterationObserver& observer_;
-  double unknown_;
+  double unknown_, answer_ = 0.0;
   std::vector<double> external_force_;
   Linearisation linearisation_;
   Trial current_;

@@ -2,6 +2,8 @@
 
 import csv
 import math
+import subprocess
+import sys
 import unittest
 
 import h5py
@@ -209,6 +211,18 @@ class Column(ShippedCase):
                 found = critical_points(self.shipped("buckling/column", change))
                 self.assertLess(abs(found[0][0] / reference - 1), 1e-3)
 
+    def test_a_control_of_its_top_does_not_hide_that_it_buckles(self):
+        text = (CASES / "buckling/column.toml").read_text()
+        text = text[text.index("dimension"): text.index("[loading]")]
+        top = '[[control]]\nset = "top"\nweights = [-1, 0]\n'
+        critical = critical_points(self.shipped("buckling/column"))[0][0]
+        for steps in (1, 20):
+            with self.subTest(steps):
+                rows = self.run_case(f"{text}{top}[loading]\ntable = [0, 1e-3]\nsteps = {steps}\nsmallest_step = 1e-3\n",
+                                     name=f"in_{steps}", expected=3)  # fmt: skip
+                self.assertTrue(all(row["negative_pivots"] == 0 for row in rows))
+                self.assertLess(abs(rows[-1]["load_factor"] / critical - 1), 0.02)
+
     def test_load_control_tells_that_it_is_unstable(self):
         ended = peristat("run", CASES / "buckling/column.toml", "--output", self.folder / "out", "--set", "solver.mode=newton")
         self.assertEqual(ended.code, 3, ended.said)
@@ -276,6 +290,17 @@ no_fail = ["left", "right"]
         self.assertEqual(ended.code, 0, ended.said)
         self.assertGreater(self.history("whole")[-1]["dissipated_energy"], 0)
         self.assertEqual(differences(self.folder / "whole", self.folder / "split"), [])
+
+
+class Pictures(ShippedCase):
+    def test_the_path_is_drawn_where_loads_were_found(self):
+        self.run_case(OPENED, name="controlled")
+        self.run_case(PULLED, name="loaded")
+        for folder, has_path in ((self.folder / "controlled", True), (self.folder / "loaded", False)):
+            drawn = subprocess.run([sys.executable, "-BEs", ROOT / "cases/runner/plots/plot.py", folder],
+                                   capture_output=True, text=True)  # fmt: skip
+            self.assertEqual(drawn.returncode, 0, drawn.stderr)
+            self.assertEqual((folder / "plots" / "path.png").exists(), has_path)
 
 
 class BadInput(Programmes):

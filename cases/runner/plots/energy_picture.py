@@ -8,7 +8,7 @@ from style import ENERGIES, INK, heading, new_figure, number, unit_for
 PARTS = (  # columns of the history, words and colours, from below
     ("stored_energy", "stored", "#8fb8d4"),
     ("dissipated_energy", "dissipated by damage", "#d98a68"),
-    ("drained_energy", "drained by relaxation", "#c9b26a"),
+    ("drained_energy", "drained by relaxation, or released", "#c9b26a"),
 )
 
 

@@ -31,6 +31,10 @@ def draw_all(results: ResultsFolder):
         yield "load_displacement", draw_load_displacement(results)
     elif results.history:
         results.missing.append("no load_displacement: the history has no accepted step with reactions")
+    from path_picture import draw_path, has_found_loads
+
+    if has_found_loads(results):
+        yield "path", draw_path(results)
     from energy_picture import draw_energies, has_lost_energy
 
     if has_lost_energy(results):

@@ -147,9 +147,12 @@ void Progress::accepted(const StepRecord& record, double relative_residual) {
   const std::string broken = record.broken_bonds > 0
                                  ? fmt::format(", {} bonds broken", record.broken_bonds)
                                  : std::string();
-  say(fmt::format("step {:4}  load {:<8.6g}  {:2} iterations{}  residual {:.1e}  damage {:.3g}{}{}",
-                  record.step, record.load_factor, record.newton_iterations, relaxed,
-                  relative_residual, record.max_damage, broken, time_left()));
+  const std::string unstable =
+      record.negative_pivots > 0 ? fmt::format(", {} negative pivots", record.negative_pivots) : "";
+  say(fmt::format(
+      "step {:4}  load {:<8.6g}  {:2} iterations{}  residual {:.1e}  damage {:.3g}{}{}{}",
+      record.step, record.load_factor, record.newton_iterations, relaxed, relative_residual,
+      record.max_damage, broken, unstable, time_left()));
 }
 
 }  // namespace peristat

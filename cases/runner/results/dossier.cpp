@@ -60,7 +60,9 @@ std::string suggestion(Outcome outcome, Mode mode) {
              "mouth "
              "of a crack, or a sum of several.";
     case Outcome::sharp_turn:
-      return "Take smaller steps (loading.steps, loading.smallest_step).";
+      return "Take smaller steps (loading.steps, loading.smallest_step). Where several pivots "
+             "vanish "
+             "together (decisions.csv), a small load or lattice.perturbation chooses a branch.";
     case Outcome::step_limit:
       return "Look at history.csv: if the path goes where you want it, end it with "
              "arc_length.steps; if it is long, allow longer steps (loading.largest_step).";

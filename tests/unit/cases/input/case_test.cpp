@@ -283,7 +283,8 @@ const std::vector<BadInput> bad_inputs{
      "[material]",
      "[material]\nsteps = 3",
      18,
-     {"material.steps = 3: unknown key; did you mean arc_length.steps, loading.steps or relaxation.steps?"}},
+     {"material.steps = 3: unknown key; did you mean arc_length.steps, loading.steps or "
+      "relaxation.steps?"}},
     {"UnknownTable", "[material]", "[materials]", 17, {"materials", "did you mean material?"}},
     {"UnknownKeyInAnArray",
      "displacement = ",
