@@ -61,7 +61,7 @@ class Fracture(PrintedTest):
     def test_the_notched_plate_ends_under_load_control(self):
         case = "three_point_bending/mouth_opening"
         text = (ROOT / "cases" / f"{case}.toml").read_text()
-        loaded = text[: text.index("[[control]]")] + "[loading]\nsteps = 32\n"
+        loaded = text[: text.index("[[control]]")] + "[loading]\nsteps = 32\nsmallest_step = 1e-3\n"
         with tempfile.TemporaryDirectory() as folder:
             path = pathlib.Path(folder) / "loaded.toml"
             path.write_text(loaded)
