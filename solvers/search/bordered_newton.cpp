@@ -88,6 +88,7 @@ class BorderedSearch {
     problem_.conditions.external_force(step_.loads(unknown_), external_force_);
     evaluate(problem_, external_force_, current_, Damage::held);
     old_scale_ = load_norm();
+    old_border_size_ = border_sum().size;
     Outcome outcome = step_.prediction ? predict() : iterate(1, Damage::held);
     while (outcome == Outcome::converged && !has_converged()) {
       if (current_.degenerate) return Outcome::degenerate;
@@ -170,15 +171,27 @@ class BorderedSearch {
     return Outcome::converged;
   }
 
-  [[nodiscard]] bool fulfils_border() const {
+  /// Of the border's left side, and of the sizes of its parts.
+  struct BorderSum {
+    double value, size;
+  };
+  [[nodiscard]] BorderSum border_sum() const {
     const BorderEquation& border = step_.border;
-    double sum = border.unknown_weight * unknown_, size = std::abs(sum) + std::abs(border.value);
+    const double own = border.unknown_weight * unknown_;
+    BorderSum sum{own, std::abs(own) + std::abs(border.value)};
     for (std::size_t dof = 0; dof < border.weights.size(); ++dof) {
       const double part = border.weights[dof] * current_.displacement[dof];
-      sum += part;
-      size += std::abs(part);
+      sum.value += part;
+      sum.size += std::abs(part);
     }
-    return std::abs(border.value - sum) <= options_.relative_tolerance * size;
+    return sum;
+  }
+
+  /// Against its parts in the old state, too: where all of them vanish there is no other scale.
+  [[nodiscard]] bool fulfils_border() const {
+    const BorderSum sum = border_sum();
+    const double size = std::max(sum.size, old_border_size_);
+    return std::abs(step_.border.value - sum.value) <= options_.relative_tolerance * size;
   }
 
   /// That fulfils the border; nothing if it does not answer.
@@ -225,7 +238,7 @@ class BorderedSearch {
   std::vector<double> external_force_;
   Linearisation linearisation_;
   Trial current_;
-  double last_residual_ = 0.0, old_scale_ = 0.0;
+  double last_residual_ = 0.0, old_scale_ = 0.0, old_border_size_ = 0.0;
   double least_residual_ = std::numeric_limits<double>::infinity();
   int least_iteration_ = 0;
   NewtonResult result_;

@@ -27,11 +27,12 @@ WORDS = """dimension title lattice points spacing horizon_ratio thickness area o
     critical rate no_fail support displacement load body_force total_force loading steps adaptive smallest_step largest_step
     max_broken_bonds solver mode linear preconditioner tangent predictor projection relative_tolerance max_iterations fragments
     elastic_horizon_ratio relaxation iterations ramp breaking damping mass_factor quiet_iterations displacement_tolerance output
-    directory every count_cracks probe field other threshold""".split()
+    directory every count_cracks probe field other threshold control weights table table2 arc_length bifurcation""".split()
 CHOICES = """none linear exact volume energy mean bulk bond cpd stress strain lattice continuum critical_stretch tanh tanh_continuous newton
     relaxation adaptive auto cholesky pcg minres gmres jacobi block_jacobi rigid_pieces surrogate riluk chebyshev multigrid stored
     matrix_free consistent never always hold remove stop fixed moving at_equilibrium transient kinetic cell_centres nodes box disk polygon
-    cylinder sphere x- x+ y- y+ z- z+ displacement force damage stretch energy_density poisson_ratio opening crack_length""".split()
+    cylinder sphere x- x+ y- y+ z- z+ displacement force damage stretch energy_density poisson_ratio opening crack_length
+    arc_length branch straight""".split()
 KEYS = """dimension lattice.spacing lattice.horizon_ratio lattice.thickness lattice.area lattice.origin lattice.perturbation lattice.seed
     lattice.shape[0].min lattice.shape[0].max lattice.shape[0].add lattice.shape[1].radius lattice.shape[9].add lattice.layer[0].thickness
     lattice.layer[0].where points.horizon points.file set[0].where crack[0].from crack[0].to quadrature.volume_correction
@@ -42,7 +43,8 @@ KEYS = """dimension lattice.spacing lattice.horizon_ratio lattice.thickness latt
     loading.max_broken_bonds solver.mode solver.linear solver.preconditioner solver.tangent solver.predictor solver.projection
     solver.relative_tolerance solver.max_iterations solver.fragments solver.elastic_horizon_ratio relaxation.steps relaxation.load
     relaxation.iterations relaxation.ramp relaxation.breaking relaxation.damping relaxation.mass_factor relaxation.max_iterations
-    relaxation.quiet_iterations relaxation.displacement_tolerance output.every output.count_cracks probe[0].field probe[0].set probe[0]
+    control[0].weights control[0].set control[1].set loading.table loading.table2 arc_length.steps arc_length.largest_step
+    arc_length.bifurcation relaxation.quiet_iterations relaxation.displacement_tolerance output.every output.count_cracks probe[0].field probe[0].set probe[0]
     [[ ]. .. a.b.c lattice lattice. .lattice support[-1].set support[99999999999].set support[0]""".split()
 
 

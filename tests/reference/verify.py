@@ -105,6 +105,8 @@ class Verification:
         gradient = mechanics.gradient(step.displacement, history)
         magnitude = mechanics.gradient(step.displacement, history, absolute=True)
         largest = magnitude.max() + 1e-4 * self.whole_force(mechanics, step)
+        if "control" in row:
+            self.judge_control(step, row)
         self.compare(step, "force", step.force, -gradient, largest)
         target = self.conditions.displacement(step.load)
         reach = max(numpy.abs(target).max(), 1e-300)
@@ -252,14 +254,34 @@ class Verification:
             return
         if summary["steps"] != len(rows):
             self.complaints.append(f"the summary counts {summary['steps']} steps, the history {len(rows)}")
-        if summary["status"] == "completed" and (not rows or abs(rows[max(rows)]["load_factor"] - 1) > 1e-12):
-            self.complaints.append("completed, but not at load factor 1")
+        if summary["status"] == "completed" and not self.is_at_its_end(rows):
+            self.complaints.append("completed, but not at its end")
         if summary["bonds"] != len(self.mechanics.body.bonds):
             self.complaints.append(f"{summary['bonds']} bonds are written, {len(self.mechanics.body.bonds)} are right")
         for name, order in (("triangles", 2), ("tetrahedra", 3)):
             tuples = self.mechanics.body.tuples.get(order, ())
             if summary[name] != len(tuples):
                 self.complaints.append(f"{summary[name]} {name} are written, {len(tuples)} are right")
+
+
+    def is_at_its_end(self, rows):
+        """At load factor 1, at the last controlled displacement, or after the steps that the path may have."""
+        if not rows:
+            return False
+        last = rows[max(rows)]
+        table = self.case.get("loading", {}).get("table", [0, 1])
+        if self.case.get("control"):
+            return isinstance(table, str) or abs(last["control"] - table[-1]) <= 1e-9 * max(numpy.abs(table))
+        if self.case["solver"]["mode"] == "arc_length" and len(rows) == self.case.get("arc_length", {}).get("steps", 0):
+            return True
+        return isinstance(table, str) or abs(last["load_factor"] - table[-1]) <= 1e-12
+
+    def judge_control(self, step, row):
+        """The weighted sum of mean displacements that is controlled."""
+        terms, sets = self.case.get("control"), self.results.sets
+        parts = [float(numpy.dot(step.displacement[sets[term["set"]]].mean(axis=0), term["weights"])) for term in terms]
+        size = sum(abs(part) for part in parts) + max(abs(step.displacement).max(), 1e-300)
+        self.compare(step, "control", row["control"], sum(parts), size)
 
 
 class Old:

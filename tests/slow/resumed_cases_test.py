@@ -17,7 +17,8 @@ from tests.shipped_runs import shipped_run
 KILLS = 20
 FRACTURE = ["plate_with_hole/square"]
 if os.environ.get("PERISTAT_ALL_KILLS"):  # some minutes more
-    FRACTURE += ["plate_with_hole/rectangle", "three_point_bending/notched", "four_holes/tension"]
+    FRACTURE += ["plate_with_hole/rectangle", "three_point_bending/notched", "four_holes/tension",
+                 "three_point_bending/mouth_opening"]
 # In few steps, which are split as many are.
 OTHERS = {
     "bar/tension": [],
@@ -31,6 +32,8 @@ OTHERS = {
     "cpd/poisson_2d": ["loading.steps=4"],
     "cpd/poisson_3d": ["loading.steps=3"],
     "cpd/table3": ["loading.steps=3"],
+    "buckling/column": ["arc_length.steps=8"],  # across the bifurcation
+    "three_point_bending/mouth_opening": ["loading.table=[0,7e-4]", "loading.steps=2"],  # with the first avalanche
 }  # fmt: skip
 MODES = {  # of the square
     "newton": ['solver.mode="newton"', "loading.smallest_step=1e-2"],
