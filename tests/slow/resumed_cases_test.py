@@ -77,7 +77,8 @@ class Resumed(unittest.TestCase):
             process.wait()
             if (self.out / "parts/checkpoint.0").exists():
                 command = [PROGRAM, "resume", str(self.out), "--threads", "1"]
-        ended = peristat("resume", self.out, "--threads", 1, seconds=900, limited=False)
+        # Where the machine was too slow for a first step, all of it.
+        ended = peristat(*command[1:], seconds=900, limited=False)
         self.assertEqual(ended.code, 0, ended.said)
         self.assertEqual(differences(whole.folder, self.out), [])
 
