@@ -214,10 +214,13 @@ Advance ArcLengthStepping::accept(Step step, const std::string& reason) {
   path_.tell(step.attempt.at,
              {.increment = step.attempted,
               .outcome = name(step.attempt.outcome),
-              .action = grows ? Decision::accept_and_grow : Decision::accept,
+              .action = !step.attempt.note.empty() ? Decision::accept_at_round_off
+                        : grows                    ? Decision::accept_and_grow
+                                                   : Decision::accept,
               .next_increment = increment_.value(),
-              .reason = reason.empty() ? std::to_string(step.attempt.iterations) + " iterations"
-                                       : reason});
+              .reason = !step.attempt.note.empty() ? step.attempt.note
+                        : reason.empty() ? std::to_string(step.attempt.iterations) + " iterations"
+                                         : reason});
   const bool has_branched = state.arc.stage_direction == 0.0;
   if (has_branched || step.negative_pivots != state.arc.negative_pivots) {
     state.arc.passes_critical_point = false;

@@ -128,25 +128,27 @@ void ImplicitStepping::run_avalanche(ImplicitStep& step) {
   step.fault.clear();
   if (!step.attempt.has_converged()) return;
   step.growth = step.found.growth;
-  step.attempt.note = std::to_string(step.attempt.iterations) + " iterations in " +
-                      std::to_string(passes) + " passes at a control that stands still, while " +
-                      bonds_text(step.growth.breaking) + " broke";
+  step.avalanche = std::to_string(step.attempt.iterations) + " iterations in " +
+                   std::to_string(passes) + " passes at a control that stands still, while " +
+                   bonds_text(step.growth.breaking) + " broke";
   establish(step);
 }
 
 Advance ImplicitStepping::accept(ImplicitStep step) {
   const Attempt& attempt = step.attempt;
   const bool grows = attempt.iterations <= path_.options().easy_iterations && increment_.grow();
-  const bool is_exact = attempt.note.empty() || step.found.energies.is_avalanche;
-  path_.tell(attempt.at,
-             {.increment = step.attempted,
-              .outcome = name(attempt.outcome),
-              .action = !is_exact ? Decision::accept_at_round_off
-                        : grows   ? Decision::accept_and_grow
-                                  : Decision::accept,
-              .next_increment = increment_.value(),
-              .reason = attempt.note.empty() ? std::to_string(attempt.iterations) + " iterations"
-                                             : attempt.note});
+  const bool is_exact = attempt.note.empty();
+  const std::string how =
+      step.avalanche.empty() ? std::to_string(attempt.iterations) + " iterations" : step.avalanche;
+  path_.tell(attempt.at, {.increment = step.attempted,
+                          .outcome = name(attempt.outcome),
+                          .action = !is_exact ? Decision::accept_at_round_off
+                                    : grows   ? Decision::accept_and_grow
+                                              : Decision::accept,
+                          .next_increment = increment_.value(),
+                          .reason = is_exact                 ? how
+                                    : step.avalanche.empty() ? attempt.note
+                                                             : how + "; " + attempt.note});
   return peristat::accept(path_, std::move(step.attempt), std::move(step.found),
                           increment_.value());
 }

@@ -15,7 +15,8 @@ struct ImplicitStep {
   Attempt attempt;
   DamageGrowth growth;  ///< that committing what the first search has found would bring
   FoundStep found;
-  std::string fault;  ///< what is known of a failure beside its outcome
+  std::string fault;      ///< what is known of a failure beside its outcome
+  std::string avalanche;  ///< what is told of one; empty if there was none
 };
 
 /// Implicit steps. One that fails is cut and tried again; an easy one lets the next grow.

@@ -345,6 +345,7 @@ class BadInput(Programmes):
         arc = PULLED + '[solver]\nmode = "arc_length"\n'
         self.assertIn("two entries", self.refused(arc, "loading.table=[0,1,0]"))
         self.assertIn("depends on load", self.refused(arc.replace("1e-5*load", "0")))
+        self.assertIn("arc_length.largest_step", self.refused(arc, "loading.largest_step=1.0"))
         self.assertIn("solver.preconditioner", self.refused(arc, "solver.preconditioner=jacobi"))
 
     def test_a_load_that_ends_within_the_path(self):

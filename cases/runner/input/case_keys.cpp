@@ -671,6 +671,9 @@ void check_found_loads(const Entry& at, const Case& result) {
     throw InputError(
         "loading.table", "",
         "must have two entries in mode arc_length, which follows one line of the load");
+  if (is_arc_length && at.from.has("loading") && at.from.table("loading").has("largest_step"))
+    throw InputError("loading.largest_step", "",
+                     "is not heeded in mode arc_length, which has arc_length.largest_step");
   if (is_controlled) check_heeded(at, "[[control]]");
   if (is_arc_length) check_heeded(at, "mode arc_length");
 }
