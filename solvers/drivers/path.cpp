@@ -110,11 +110,21 @@ void Path::find_control_sign() {
   state_.control_sign = (answer < 0.0) == is_odd ? 1 : -1;
 }
 
-bool Path::is_unstable_under_control(const BorderedResult& found) const {
-  const std::optional<Inertia>& inertia = found.newton.inertia;
-  if (!inertia || inertia->negative == 0) return false;
-  const bool has_turned = found.answer * state_.control_sign < 0.0;
-  return inertia->negative > 1 || !has_turned;
+void Path::judge_stability_under_control(Attempt& found, const LoadPath& loads) {
+  const SolvedBody& solved = body();
+  std::vector<double> rate;
+  if (find_rate(problem(), solved.solver, solved.tangent, found.state.at(), loads, *found.at.load,
+                rate) != LinearOutcome::solved) {
+    found.outcome = Outcome::degenerate;
+    return;
+  }
+  found.inertia = solved.solver.inertia();
+  const int negative = found.inertia->negative;
+  found.has_negative_pivots = negative > 0;
+  const bool has_turned = setting_.conditions.control()->value(rate) * state_.control_sign < 0.0;
+  if (negative > 1 || (negative == 1 && !has_turned)) {
+    found.outcome = Outcome::not_positive_definite;
+  }
 }
 
 Attempt Path::search(const State& from, const BorderedStep& step, const NewtonOptions& options) {
@@ -122,13 +132,11 @@ Attempt Path::search(const State& from, const BorderedStep& step, const NewtonOp
     BorderedResult found =
         bordered_newton(problem(), body().solver, body().tangent, from, step, options,
                         [this](const IterationRecord& row) { return iterated(row); });
+    Attempt attempt = to_attempt(std::move(found.newton), step.loads(found.unknown));
     // States on the way of an avalanche, whose damage is held, need not be stable.
     const bool may_stay = setting_.conditions.control() && options.damage == Damage::grows;
-    if (may_stay && found.newton.outcome == Outcome::converged &&
-        is_unstable_under_control(found)) {
-      found.newton.outcome = Outcome::not_positive_definite;
-    }
-    return to_attempt(std::move(found.newton), step.loads(found.unknown));
+    if (may_stay && attempt.has_converged()) judge_stability_under_control(attempt, step.loads);
+    return attempt;
   } catch (const InputError& error) {
     Attempt attempt = undefined_attempt(from, load_point(from));
     attempt.note = description(error);

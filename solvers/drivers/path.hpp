@@ -96,10 +96,10 @@ class Path {
   void number_equations();
   [[nodiscard]] Attempt search_by_control(const State& from, double target,
                                           const NewtonOptions& options);
-  /// Whether a body would leave a state although its control stands still: it may have one negative
-  /// pivot, and that only if the load turned since rest (the determinant of the tangent changes its
-  /// sign with the control's answer). Otherwise a bifurcation has been passed.
-  [[nodiscard]] bool is_unstable_under_control(const BorderedResult& found) const;
+  /// Refuses a state that a body would leave although its control stands still: it may have one
+  /// negative pivot, and that only if the load turned since rest (the determinant of the tangent
+  /// changes its sign with the control's answer). Otherwise a bifurcation has been passed.
+  void judge_stability_under_control(Attempt& found, const LoadPath& loads);
   void find_control_sign();
   [[nodiscard]] std::string description(const InputError& error) const;
   /// Of the state that a search has ended in, for what is told of it.

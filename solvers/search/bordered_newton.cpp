@@ -80,7 +80,7 @@ class BorderedSearch {
     result_.outcome = search();
     result_.state = std::move(current_);
     result_.external_force = std::move(external_force_);
-    return {std::move(result_), unknown_, answer_};
+    return {std::move(result_), unknown_};
   }
 
  private:
@@ -199,7 +199,6 @@ class BorderedSearch {
     const BorderEquation& border = step_.border;
     const std::optional<double> answer = answer_of(border, rate);
     if (!answer) return std::nullopt;
-    answer_ = *answer;
     double missing = border.value - border.unknown_weight * unknown_;
     for (std::size_t dof = 0; dof < border.weights.size(); ++dof) {
       missing -= border.weights[dof] * current_.displacement[dof];
@@ -234,7 +233,7 @@ class BorderedSearch {
   const BorderedStep& step_;
   const NewtonOptions& options_;
   const IterationObserver& observer_;
-  double unknown_, answer_ = 0.0;
+  double unknown_;
   std::vector<double> external_force_;
   Linearisation linearisation_;
   Trial current_;

@@ -44,8 +44,6 @@ struct BorderedStep {
 struct BorderedResult {
   NewtonResult newton;
   double unknown = 0.0;
-  /// Of the border in the last iteration, see answer_of.
-  double answer = 0.0;
 };
 
 /// Newton-Raphson for equilibrium together with a linear equation that the load fulfils:
