@@ -76,7 +76,7 @@ DamageGrowth Assembler::growth(const StateView& at) {
 
 void Assembler::tangent(const StateView& at, Tangent& tangent, double projection) {
   tangent.reference = points_.reference;
-  for (std::size_t k = 0; k < at.displacement.size(); ++k) {
+  for (std::size_t k = 0; k < points_.reference.size(); ++k) {
     tangent.position[k] = points_.reference[k] + at.displacement[k];
   }
   for_each_term([&](TermPasses& term, Write how) { term.tangent(at, projection, tangent, how); });

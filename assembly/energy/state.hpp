@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "assembly/energy/history.hpp"
+#include "src/core/types.hpp"
 
 namespace peristat {
 
@@ -34,6 +35,8 @@ struct StateView {
   std::span<const double> displacement;  ///< points x dimension, row major [m]
   const History& history;                ///< of the same model
   Damage damage;
+  /// Of rigid sets that turn, see Constraints::curvature; empty: none do, or nobody asks for it.
+  std::span<const Tensor> curvature{};
 
  private:
   static const History& none() {

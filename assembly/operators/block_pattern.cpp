@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <stdexcept>
+#include <utility>
 
 namespace peristat {
 namespace {
@@ -35,6 +36,10 @@ BlockPattern BlockPattern::united(const std::vector<Couplings>& terms, Index poi
     rows.offset.push_back(Offset(rows.partner.size()));
   }
   return BlockPattern(std::make_shared<const Rows>(std::move(rows)));
+}
+
+BlockPattern BlockPattern::of_rows(std::vector<Offset> offset, std::vector<Index> partner) {
+  return BlockPattern(std::make_shared<const Rows>(Rows{std::move(offset), std::move(partner)}));
 }
 
 std::vector<Offset> BlockPattern::places_of(const Couplings& couplings) const {

@@ -36,6 +36,9 @@ class BlockPattern : public Couplings {
   /// the terms has all of them.
   [[nodiscard]] static BlockPattern united(const std::vector<Couplings>& terms, Index points);
 
+  /// With rows of its own, laid out as those of Couplings.
+  [[nodiscard]] static BlockPattern of_rows(std::vector<Offset> offset, std::vector<Index> partner);
+
   [[nodiscard]] Offset blocks() const { return static_cast<Offset>(partner.size()); }
 
   /// Where the blocks of one of its terms are, in the order of the couplings; empty: in that order.

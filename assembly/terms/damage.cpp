@@ -15,7 +15,8 @@ void with_law(const Model& model, const Visit& visit) {
 }  // namespace
 
 DamageState assess_damage(const Model& model, const History& history,
-                          std::span<const double> cut_weight, std::span<double> damage) {
+                          std::span<const double> cut_weight, std::span<double> damage,
+                          std::span<const Index> image_sources) {
   const Bonds& bonds = model.bonds();
   DamageState state;
   std::vector<double> whole(cut_weight.begin(), cut_weight.end());
@@ -41,10 +42,19 @@ DamageState assess_damage(const Model& model, const History& history,
     for_each_bond([&](Offset bond) {
       const double largest = stretches[bond];
       state.dissipated_energy += bonds.weight(bond) * bonds.length(bond) * law.dissipated(largest);
-      state.broken_bonds += law.is_broken(largest);
+      state.broken_bonds += law.is_broken(largest) && bonds.weight(bond) != 0.0;
       return law.integrity_after(largest);
     });
   });
+  const std::size_t own = damage.size() - image_sources.size();
+  for (std::vector<double>* sums : {&whole, &left}) {
+    for (std::size_t k = 0; k < image_sources.size(); ++k) {
+      (*sums)[std::size_t(image_sources[k])] += (*sums)[own + k];
+    }
+    for (std::size_t k = 0; k < image_sources.size(); ++k) {
+      (*sums)[own + k] = (*sums)[std::size_t(image_sources[k])];
+    }
+  }
   for (std::size_t i = 0; i < damage.size(); ++i) {
     damage[i] = whole[i] > 0.0 ? std::clamp(1.0 - left[i] / whole[i], 0.0, 1.0) : 0.0;
     state.max_damage = std::max(state.max_damage, damage[i]);

@@ -25,9 +25,12 @@ struct DamageState {
 /// either 0 or 1 this is one minus the share of unbroken bonds ([GPMB] eq. 13). A point without
 /// bonds has the damage 0, or 1 if a crack has cut them.
 /// @param cut_weight per point [m6], or empty
+/// @param image_sources of the last points (see Images): a bond across a plane of symmetry counts
+///        half, and its twin for the other half
 [[nodiscard]] DamageState assess_damage(const Model& model, const History& history,
                                         std::span<const double> cut_weight,
-                                        std::span<double> damage);
+                                        std::span<double> damage,
+                                        std::span<const Index> image_sources = {});
 
 /// Largest stretch of each bond over the committed states, as far as it has damaged the bond (0
 /// before, Degraded::never_fails where the model says so); empty for bonds that can't be damaged.

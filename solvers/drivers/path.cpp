@@ -59,7 +59,7 @@ EquilibriumProblem Path::problem() const { return {body().assembler, setting_.co
 
 std::vector<double> Path::working_force(const Trial& state,
                                         std::span<const double> external_force) const {
-  return peristat::working_force(setting_.conditions.prescribed(), state, external_force);
+  return peristat::working_force(setting_.conditions, state, external_force);
 }
 
 std::optional<std::string> Path::refusal_of_conditions(double stage) const {

@@ -21,11 +21,13 @@ double trapezoidal_work(std::span<const double> force0, std::span<const double> 
 
 }  // namespace
 
-std::vector<double> working_force(const std::vector<char>& prescribed, const Trial& state,
+std::vector<double> working_force(const Conditions& conditions, const Trial& state,
                                   std::span<const double> external_force) {
+  const std::vector<char>&prescribed = conditions.prescribed(),
+        &dependent = conditions.constraints().dependent();
   std::vector<double> force(external_force.begin(), external_force.end());
   for (std::size_t dof = 0; dof < force.size(); ++dof) {
-    if (prescribed[dof]) force[dof] = state.gradient[dof];
+    if (prescribed[dof] && !dependent[dof]) force[dof] = state.gradient[dof];
   }
   return force;
 }

@@ -24,9 +24,8 @@ struct StepEnergies {
 
 /// Forces that do work on the body: loads, and on prescribed degrees of freedom what holds them,
 /// which is dE/dx there. Pins of fragments do none: they don't move, and when they are taken away
-/// nothing follows them.
-/// @param prescribed per degree of freedom
-[[nodiscard]] std::vector<double> working_force(const std::vector<char>& prescribed,
+/// nothing follows them. Constraints do none either: what follows others bears its loads alone.
+[[nodiscard]] std::vector<double> working_force(const Conditions& conditions,
                                                 const Trial& state,
                                                 std::span<const double> external_force);
 

@@ -131,6 +131,8 @@ MemoryEstimate estimate_memory(const BodySize& size) {
   const double block = size.has_symmetric_blocks ? 0.5 * d * (d + 1.0) : d * d;
   estimate.body_bytes = body_bytes(size) + 8.0 * size.points * d * (d + 1.0);
   estimate.tangent_bytes = 8.0 * size.bonds * block;
+  // The reduced tangent in whole blocks, where each is, and its pattern.
+  if (size.is_constrained) estimate.tangent_bytes += size.bonds * (8.0 * d * d + 8.0 + 4.0);
   estimate.matrix_bytes = 16.0 * (size.bonds + size.points) * d * d;
   // Then the direct solver takes conjugate gradients with an old factor, too.
   if (affordable_iterations(estimate.factor_flops, estimate.factor_entries) > 1.0) {

@@ -14,6 +14,7 @@ struct BodySize {
   double bytes_per_bond = 6.0;       ///< partner and kind, see BondKinds
   bool has_history = false;          ///< bonds may be damaged
   bool has_symmetric_blocks = true;  ///< off-diagonal blocks of the tangent are
+  bool is_constrained = false;       ///< degrees of freedom follow others
   double free_dofs = 0.0;
 };
 

@@ -35,8 +35,18 @@ struct Resultants {
   double reach = 0.0;  ///< largest distance of a point from the centre [m]
 };
 
+/// dE/dx as the interactions have it, folded onto nothing.
+std::vector<double> internal_forces(const EquilibriumProblem& problem, const Trial& trial) {
+  if (problem.conditions.constraints().none()) return trial.gradient;
+  std::vector<double> gradient(trial.gradient.size());
+  static_cast<void>(problem.assembler.gradient(trial.at(), gradient));
+  return gradient;
+}
+
 /// Sums of the internal forces and of their moments about the body's centre.
-Resultants resultants_of(const Points& points, const Trial& trial) {
+Resultants resultants_of(const EquilibriumProblem& problem, const Trial& trial) {
+  const Points& points = problem.assembler.points();
+  const std::vector<double> gradient = internal_forces(problem, trial);
   const Coordinates centre = centre_of(points);
   const std::size_t d = std::size_t(points.dimension);
   Resultants sums;
@@ -45,7 +55,7 @@ Resultants resultants_of(const Points& points, const Trial& trial) {
     for (std::size_t c = 0; c < d; ++c) {
       const std::size_t dof = std::size_t(i) * d + c;
       arm[c] = points.reference[dof] - centre[c] + trial.displacement[dof];
-      force[c] = trial.gradient[dof];
+      force[c] = gradient[dof];
     }
     const Coordinates moment{arm[1] * force[2] - arm[2] * force[1],
                              arm[2] * force[0] - arm[0] * force[2],
@@ -80,9 +90,9 @@ std::string check_strength(Assembler& damaged, const FoundState& found) {
          number_text(growth.utilisation) + " of it";
 }
 
-std::string check_resultants(const Assembler& assembler, const TangentOperator& tangent,
+std::string check_resultants(const EquilibriumProblem& problem, const TangentOperator& tangent,
                              const FoundState& found) {
-  const Balances owed = assembler.model().balances();
+  const Balances owed = problem.assembler.model().balances();
   const std::size_t d = std::size_t(tangent.dimension);
   double trace = 0.0;
   for (std::size_t i = 0; i < tangent.diagonal.size(); i += d * d) {
@@ -90,7 +100,7 @@ std::string check_resultants(const Assembler& assembler, const TangentOperator& 
   }
   const double forces = std::sqrt(2.0 * std::abs(found.after.stored) * trace);
   const double round_off = safety * std::numeric_limits<double>::epsilon() * forces;
-  const Resultants sums = resultants_of(assembler.points(), found.trial);
+  const Resultants sums = resultants_of(problem, found.trial);
   const double force = std::hypot(sums.force[0], sums.force[1], sums.force[2]);
   const double moment = std::hypot(sums.moment[0], sums.moment[1], sums.moment[2]);
   if (owed.force_sum && !(force <= round_off)) {
@@ -142,7 +152,7 @@ std::string find_inconsistency(const EquilibriumProblem& problem, Assembler& dam
   std::string fault = check_magnitude(found);
   if (fault.empty()) fault = check_equilibrium(problem, found);
   if (fault.empty()) fault = check_strength(damaged, found);
-  if (fault.empty()) fault = check_resultants(problem.assembler, tangent, found);
+  if (fault.empty()) fault = check_resultants(problem, tangent, found);
   if (fault.empty()) fault = check_energies(problem.assembler.model().balances(), found);
   return fault;
 }

@@ -103,10 +103,25 @@ std::string explanation(Outcome outcome) {
   return "";
 }
 
+void move_followers(const EquilibriumProblem& problem, Trial& trial) {
+  const Constraints& constraints = problem.conditions.constraints();
+  if (!constraints.none()) constraints.move(trial.displacement);
+}
+
+void fold_followers(const EquilibriumProblem& problem, std::span<const double> external_force,
+                    Trial& trial) {
+  const Constraints& constraints = problem.conditions.constraints();
+  if (constraints.none()) return;
+  constraints.fold(trial.displacement, external_force, trial.gradient);
+  trial.curvature = constraints.curvature(trial.displacement, external_force, trial.gradient);
+}
+
 void evaluate(const EquilibriumProblem& problem, std::span<const double> external_force,
               Trial& trial, Damage damage) {
+  move_followers(problem, trial);
   trial.gradient.resize(trial.displacement.size());
   const Evaluation found = problem.assembler.gradient(trial.at(damage), trial.gradient);
+  fold_followers(problem, external_force, trial);
   trial.stored_energy = found.energy;
   trial.total_energy = found.energy - dot(external_force, trial.displacement);
   trial.residual_norm = norm_of(problem.free.dof.size(), [&](std::size_t e) {

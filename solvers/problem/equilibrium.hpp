@@ -50,21 +50,32 @@ struct EquilibriumProblem {
 struct Trial {
   std::vector<double> displacement;  ///< [m]
   History history;                   ///< that it comes after
-  std::vector<double> gradient;      ///< dE/dx [N]
+  /// dE/dx [N], with what acts on followers folded onto what they follow (see Constraints).
+  std::vector<double> gradient;
+  std::vector<Tensor> curvature{};  ///< of rigid sets, see Constraints
   double stored_energy = 0.0;        ///< [J]
   double total_energy = 0.0;         ///< stored energy - f_ext.u [J]
   double residual_norm = 0.0;        ///< 2-norm of f_ext - dE/dx over free degrees of freedom [N]
   bool degenerate = false;
 
   [[nodiscard]] StateView at(Damage damage = Damage::grows) const {
-    return {displacement, history, damage};
+    StateView view(displacement, history, damage);
+    view.curvature = curvature;
+    return view;
   }
 };
 
 /// Where its supports and loads are.
 [[nodiscard]] inline LoadPoint load_point(const State& state) { return {state.stage, state.load}; }
 
-/// Evaluates energy and gradient at the trial's displacement and history.
+/// Moves what follows other degrees of freedom to where these have taken it.
+void move_followers(const EquilibriumProblem& problem, Trial& trial);
+/// Folds the gradient that the assembler has found onto what is followed.
+void fold_followers(const EquilibriumProblem& problem, std::span<const double> external_force,
+                    Trial& trial);
+
+/// Moves what follows to the trial's displacement, and evaluates energy and gradient there after
+/// its history.
 void evaluate(const EquilibriumProblem& problem, std::span<const double> external_force,
               Trial& trial, Damage damage = Damage::grows);
 

@@ -164,6 +164,8 @@ class BorderedSearch {
 
     current_.displacement = std::move(after_jump);
     add_scaled(current_.displacement, 1.0, direction);
+    move_followers(problem_, current_);
+    problem_.conditions.constraints().extend(current_.displacement, rate);
     const std::optional<double> change = change_of_unknown(rate);
     if (!change) return Outcome::no_answer;
     for (const Index dof : problem_.free.dof) current_.displacement[dof] += *change * rate[dof];
@@ -274,6 +276,7 @@ LinearOutcome find_rate(const EquilibriumProblem& problem, LinearSolver& solver,
   outcome = Linearisation(problem, solver, tangent, {})
                 .solve_again(conditions.force, conditions.displacement, tolerance, rate);
   add_scaled(rate, 1.0, conditions.displacement);
+  problem.conditions.constraints().extend(at.displacement, rate);
   return outcome;
 }
 

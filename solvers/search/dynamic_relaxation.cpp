@@ -33,8 +33,10 @@ class Way {
     problem.conditions.prescribe(stage, displacement1_);
     problem.conditions.external_force(from.stage, force0_);
     problem.conditions.external_force(stage, force1_);
+    const std::vector<char>& dependent = problem.conditions.constraints().dependent();
     for (std::size_t dof = 0; dof < displacement0_.size(); ++dof) {
-      if (problem.free.equation[dof] == FreeDofs::none) prescribed_.push_back(Index(dof));
+      const bool is_free = problem.free.equation[dof] != FreeDofs::none;
+      if (!is_free && !dependent[dof]) prescribed_.push_back(Index(dof));
       has_loads_ |= force0_[dof] != 0.0 || force1_[dof] != 0.0;
     }
   }
@@ -94,6 +96,7 @@ class Relaxation {
   /// Forces, residual and damage at the present displacement.
   void evaluate() {
     Assembler& assembler = problem_.assembler;
+    move_followers(problem_, at_);
     const Evaluation found = options_.breaking == Breaking::transient
                                  ? assembler.commit(at_.displacement, at_.history, at_.gradient)
                                  : assembler.gradient(at_.at(), at_.gradient);
@@ -103,6 +106,7 @@ class Relaxation {
     at_.stored_energy = found.energy;
     residual_.swap(last_residual_);
     const std::vector<double>& force = result_.external_force;
+    fold_followers(problem_, force, at_);
     // [0] F.F, [1] U.K1 U, [2] U.U
     const Sums sums = sum([&](std::size_t e, Sums& s) {
       const double residual = force[dofs_[e]] - at_.gradient[dofs_[e]];

@@ -66,13 +66,16 @@ void Linearisation::assemble(const StateView& at, double projection) {
   }
   // Linear in the share: the projection of every interaction, which is what costs, is done once.
   if (!to_projected_) {
-    to_projected_.emplace(stored->pattern, stored->dimension, stored->threads(), stored->blocks);
-    problem_.assembler.tangent(at, *to_projected_, 1.0);
-    add_scaled(to_projected_->diagonal, -1.0, stored->diagonal);
-    add_scaled(to_projected_->off_diagonal, -1.0, stored->off_diagonal);
+    to_projected_.emplace(stored->diagonal, stored->off_diagonal);
+    auto& [diagonal, off_diagonal] = *to_projected_;
+    tangent_.linearise(problem_.assembler, at, 1.0);
+    diagonal.swap(stored->diagonal);
+    off_diagonal.swap(stored->off_diagonal);
+    add_scaled(diagonal, -1.0, stored->diagonal);
+    add_scaled(off_diagonal, -1.0, stored->off_diagonal);
   }
-  add_scaled(stored->diagonal, projection - projection_, to_projected_->diagonal);
-  add_scaled(stored->off_diagonal, projection - projection_, to_projected_->off_diagonal);
+  add_scaled(stored->diagonal, projection - projection_, to_projected_->first);
+  add_scaled(stored->off_diagonal, projection - projection_, to_projected_->second);
   projection_ = projection;
 }
 

@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "assembly/operators/tangent.hpp"
@@ -48,7 +49,8 @@ class Linearisation {
   const EquilibriumProblem& problem_;
   LinearSolver& solver_;
   TangentOperator& tangent_;
-  std::optional<Tangent> to_projected_;  // projected minus exact, of the present state
+  /// Projected minus exact blocks of the present state, on the diagonal and beside it.
+  std::optional<std::pair<std::vector<double>, std::vector<double>>> to_projected_;
   double projection_ = 0.0;
   bool exact_is_known_ = false;
   std::span<const double> external_force_;

@@ -44,6 +44,7 @@ class NewtonSearch {
     current_.history = from.history;
     evaluate(problem, external_force_, current_, options.damage);
     old_gradient_ = current_.gradient;
+    old_curvature_ = current_.curvature;
     // Right after the jump bonds beside the supports are stretched as no equilibrium will ask for.
     // Where they may break, nothing would be left to measure the residual against, and the search
     // would begin in a torn body: damage is held until the predictor has spread the jump.
@@ -140,8 +141,10 @@ class NewtonSearch {
     const FactorUse use = (row.iteration == 1 && options_.factorizes_first) || !is_exact
                               ? FactorUse::factorize_now
                               : FactorUse::may_reuse;
+    StateView old(from_, damage_);
+    old.curvature = old_curvature_;
     const LinearOutcome linear =
-        is_predictor ? linearisation_.solve({from_, damage_}, old_gradient_, row.projection, use,
+        is_predictor ? linearisation_.solve(old, old_gradient_, row.projection, use,
                                             current_.displacement, tolerance, direction_)
                      : linearisation_.solve(current_.at(damage_), current_.gradient, row.projection,
                                             use, {}, tolerance, direction_);
@@ -187,6 +190,7 @@ class NewtonSearch {
   std::vector<double> external_force_;
   Linearisation linearisation_;
   Trial current_, next_;
+  std::vector<Tensor> old_curvature_;
   std::vector<double> old_gradient_;  // of the state that the search began with
   std::vector<double> direction_;
   std::optional<Inertia> start_inertia_;

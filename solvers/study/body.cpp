@@ -119,6 +119,8 @@ std::unique_ptr<const Body> make_body(Points points, const BodySpecification& of
   Body& body = *owned;
   body.specification = of;
   body.points = std::move(points);
+  const std::vector<Period> periods(of.constraints.periods.begin(), of.constraints.periods.end());
+  add_images(body.points, of.constraints.symmetries, periods, of.horizon);
   body.setting = setting_of(of, body.points);
   require_resolved(body.points, body.setting.horizon);
   BodySize expected = size_of(body.points);
@@ -129,7 +131,8 @@ std::unique_ptr<const Body> make_body(Points points, const BodySpecification& of
   make_model(body, threads);
   body.conditions = std::make_unique<Conditions>(
       body.points, of.supports, of.loads,
-      of.programme.empty() ? LoadingProgramme() : LoadingProgramme(of.programme), of.controls);
+      of.programme.empty() ? LoadingProgramme() : LoadingProgramme(of.programme), of.controls,
+      of.constraints);
   const Stopwatch watch(body.seconds_neighbourhood);
   store_interactions(body, threads);
   return owned;
@@ -160,6 +163,7 @@ MemoryEstimate estimate_memory(const Body& body) {
   size.bytes_per_bond = double(sizeof(Index) + body.model.bonds().kind.bytes_per_bond());
   size.has_history = body.model.has_history();
   size.has_symmetric_blocks = body.model.has_symmetric_blocks();
+  size.is_constrained = !body.conditions->constraints().none();
   size.free_dofs = double(std::count(prescribed.begin(), prescribed.end(), 0));
   MemoryEstimate estimate = estimate_memory(size);
   for (const auto& term : body.model.terms()) estimate.body_bytes += term->stored_bytes();

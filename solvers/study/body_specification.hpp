@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "src/conditions/constraint_specification.hpp"
 #include "src/conditions/specification.hpp"
 #include "src/connectivity/crack.hpp"
 #include "src/geometry/point_set.hpp"
@@ -59,6 +60,7 @@ struct BodySpecification {
   MaterialSpecification material{};
   std::vector<SupportSpecification> supports{};
   std::vector<LoadSpecification> loads{};
+  ConstraintSpecification constraints{};
   /// In the place of `load`, see DisplacementControl; none: the programme's own.
   std::vector<ControlTerm> controls{};
   /// Tables of the load parameters `load`, `load2`, …, see LoadingProgramme; none: `load` from 0 to

@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "assembly/operators/constrained_tangent.hpp"
 #include "assembly/operators/matrix_free_tangent.hpp"
 #include "assembly/operators/tangent.hpp"
 #include "solvers/linear/available_memory.hpp"
@@ -64,6 +65,14 @@ LinearSystems choose_linear_systems(const StudyOptions& options, const Model& mo
 LinearSystems choose_linear_systems(const StudyOptions& options, const Body& body,
                                     SolverLadder::Reporter tell) {
   StudyOptions chosen = options;
+  if (!body.conditions->constraints().none()) {
+    if (options.tangent == TangentStorage::matrix_free) {
+      throw InputError("tangent", "matrix_free",
+                       "is for bodies without rigid sets, rollers, linear constraints, planes of "
+                       "symmetry and periods");
+    }
+    chosen.tangent = TangentStorage::stored;
+  }
   if (finds_loads(options, *body.conditions)) {
     require_ldlt(options);
     chosen.linear = {LinearMethod::ldlt, PreconditionerKind::automatic};
@@ -72,7 +81,9 @@ LinearSystems choose_linear_systems(const StudyOptions& options, const Body& bod
   return choose_linear_systems(chosen, body.model, estimate_memory(body), std::move(tell));
 }
 
-std::unique_ptr<TangentOperator> LinearSystems::make_tangent(Assembler& assembler) const {
+std::unique_ptr<TangentOperator> LinearSystems::make_tangent(Assembler& assembler,
+                                                             const Constraints& constraints) const {
+  if (!constraints.none()) return std::make_unique<ConstrainedTangent>(assembler, constraints);
   if (!is_stored) return std::make_unique<MatrixFreeTangent>(assembler);
   return std::make_unique<Tangent>(assembler);
 }

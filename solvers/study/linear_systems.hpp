@@ -15,7 +15,8 @@ struct LinearSystems {
   bool is_stored = true;  ///< the tangent
   double bytes = 0.0;     ///< estimated for the whole run
 
-  [[nodiscard]] std::unique_ptr<TangentOperator> make_tangent(Assembler& assembler) const;
+  [[nodiscard]] std::unique_ptr<TangentOperator> make_tangent(Assembler& assembler,
+                                                              const Constraints& constraints) const;
 };
 
 /// Of a body under its conditions.

@@ -31,7 +31,7 @@ struct Stability {
   std::optional<Inertia> inertia;
 };
 
-Stability at_rest(LinearSolver& solver, const Tangent& tangent, const FreeDofs& free) {
+Stability at_rest(LinearSolver& solver, const TangentOperator& tangent, const FreeDofs& free) {
   LinearOutcome outcome = solver.analyze(tangent.pattern, free);
   if (outcome == LinearOutcome::solved) {
     outcome = solver.factorize(tangent, FactorUse::factorize_now);
@@ -57,9 +57,11 @@ void refuse_unstable_rest(const Body& body, const StudyOptions& options) {
   const LinearSystems systems = choose_linear_systems(options, body, {});
   require_memory(systems.bytes, fmt::format("the body with {} points", body.points.count()));
   Assembler assembler(body.points, body.model, usable_threads(options.threads));
-  Tangent tangent(assembler);
-  const std::vector<double> reference(body.points.reference.size(), 0.0);
-  assembler.tangent({reference, assembler.initial_history()}, tangent);
+  const Constraints& constraints = body.conditions->constraints();
+  const std::unique_ptr<TangentOperator> tangent = systems.make_tangent(assembler, constraints);
+  const std::vector<double> reference(constraints.dofs(), 0.0);
+  const History history = assembler.initial_history();
+  tangent->linearise(assembler, {reference, history}, 0.0);
   std::unique_ptr<LinearSolver> solver;
   if (systems.chosen.is_direct) {
     solver = std::make_unique<Cholesky>(FactorReuse{0});
@@ -67,7 +69,7 @@ void refuse_unstable_rest(const Body& body, const StudyOptions& options) {
     solver = std::make_unique<IterativeSolver>(KrylovMethod::conjugate_gradients,
                                                std::make_unique<RigidPieces>(), most_iterations);
   }
-  const auto [outcome, inertia] = at_rest(*solver, tangent, free);
+  const auto [outcome, inertia] = at_rest(*solver, *tangent, free);
   if (outcome != LinearOutcome::not_positive_definite) return;
   const std::string pivots =
       inertia ? fmt::format(" (its tangent has {} negative pivots)", inertia->negative) : "";

@@ -10,14 +10,14 @@
 
 namespace peristat {
 
-SolvedModel::SolvedModel(const Points& points, const Model& model, const FreeDofs& free,
-                         LinearSystems systems, int threads)
+SolvedModel::SolvedModel(const Points& points, const Model& model, const Constraints& constraints,
+                         const FreeDofs& free, LinearSystems systems, int threads)
     : systems_(std::move(systems)),
       free_(free),
       assembler_(points, model, threads),
-      tangent_(systems_.make_tangent(assembler_)) {}
+      tangent_(systems_.make_tangent(assembler_, constraints)) {}
 
-LinearOutcome SolvedModel::analyze() { return solver().analyze(assembler_.pattern(), free_); }
+LinearOutcome SolvedModel::analyze() { return solver().analyze(tangent_->pattern, free_); }
 
 Study::Study(const Body& body, StudyOptions options, SolverLadder::Reporter tell)
     : body_(body),
@@ -29,8 +29,9 @@ Study::Study(const Body& body, StudyOptions options, SolverLadder::Reporter tell
   refuse_unstable_rest(body, options_);
   LinearSystems systems = choose_linear_systems(options_, body, std::move(tell));
   require_memory(systems.bytes, fmt::format("the body with {} points", body.points.count()));
-  equations_ = std::make_unique<SolvedModel>(body.points, body.model, free_, std::move(systems),
-                                             options_.threads);
+  equations_ =
+      std::make_unique<SolvedModel>(body.points, body.model, body.conditions->constraints(), free_,
+                                    std::move(systems), options_.threads);
 }
 
 LinearOutcome Study::analyze() {

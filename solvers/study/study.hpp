@@ -14,9 +14,9 @@ namespace peristat {
 /// A model's equations with what solves them; owns what a SolvedBody refers to.
 class SolvedModel {
  public:
-  /// Points, model and `free` must outlive it.
-  SolvedModel(const Points& points, const Model& model, const FreeDofs& free, LinearSystems systems,
-              int threads);
+  /// All references must outlive it.
+  SolvedModel(const Points& points, const Model& model, const Constraints& constraints,
+              const FreeDofs& free, LinearSystems systems, int threads);
 
   /// Prepares the solver.
   [[nodiscard]] LinearOutcome analyze();

@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <set>
 #include <utility>
 
 #include "src/conditions/points_of_set.hpp"
 #include "src/core/input_error.hpp"
 #include "src/core/number_text.hpp"
+#include "src/measures/small_algebra.hpp"
 
 namespace peristat {
 namespace {
@@ -26,8 +28,12 @@ auto with_key(const std::string& key, const Make& make) {
 
 Conditions::Conditions(const Points& points, const std::vector<SupportSpecification>& supports,
                        const std::vector<LoadSpecification>& loads, LoadingProgramme programme,
-                       const std::vector<ControlTerm>& control)
-    : points_(points), programme_(std::move(programme)), prescribed_(points.reference.size(), 0) {
+                       const std::vector<ControlTerm>& control,
+                       const ConstraintSpecification& constraints)
+    : points_(points),
+      programme_(std::move(programme)),
+      prescribed_(points.reference.size(), 0),
+      made_{Constraints(points)} {
   const std::vector<std::string> parameters = LoadingProgramme::names(programme_.parameters());
   for (std::size_t k = 0; k < supports.size(); ++k) {
     const std::string table = indexed("supports", k);
@@ -64,9 +70,65 @@ Conditions::Conditions(const Points& points, const std::vector<SupportSpecificat
                         volume});
     }
   }
-  if (!control.empty()) control_.emplace(points, control, prescribed_);
+  made_ = make_constraints(points, constraints, prescribed_, parameters);
+  refuse_shared_names();
+  hold_periodic_cell(constraints);
+  prescribe_handles();
+  if (!control.empty()) {
+    // What follows others answers where they do.
+    std::vector<char> held = prescribed_;
+    for (std::size_t dof = 0; dof < held.size(); ++dof) {
+      if (made_.constraints.dependent()[dof]) held[dof] = 0;
+    }
+    control_.emplace(points, control, held);
+  }
   find_shared();
   try_stages();
+}
+
+void Conditions::refuse_shared_names() const {
+  std::set<std::string> names;
+  for (const Prescription& prescription : prescriptions_) names.insert(prescription.set);
+  for (const Restraint& restraint : made_.restraints) {
+    if (names.insert(restraint.name).second) continue;
+    throw InputError(restraint.key, '"' + restraint.name + '"',
+                     "there is a support or constraint of this name already, whose reaction could "
+                     "not be told from this one's");
+  }
+}
+
+void Conditions::prescribe_handles() {
+  prescribed_.resize(constraints().dofs(), 0);
+  for (const HandlePrescription& handle : made_.prescriptions) prescribed_[handle.dof] = 1;
+  for (const std::size_t dof : made_.unused) prescribed_[dof] = 1;
+  for (std::size_t dof = 0; dof < prescribed_.size(); ++dof) {
+    prescribed_[dof] |= constraints().dependent()[dof];
+  }
+}
+
+/// A cell without supports may move as a whole, which changes nothing: it is held at the point next
+/// to its middle.
+void Conditions::hold_periodic_cell(const ConstraintSpecification& constraints) {
+  const bool is_held = !prescriptions_.empty() || !constraints.rigid_sets.empty() ||
+                       !constraints.rollers.empty() || !constraints.linear.empty();
+  if (constraints.periods.empty() || is_held) return;
+  Coordinates middle{};
+  for (Index i = 0; i < points_.own(); ++i) {
+    middle = plus<3>(middle, scaled<3>(1.0 / points_.own(), points_.position(i)));
+  }
+  Index nearest = 0;
+  double least = std::numeric_limits<double>::infinity();
+  for (Index i = 0; i < points_.own(); ++i) {
+    const Coordinates arm = minus<3>(points_.position(i), middle);
+    if (dot<3>(arm, arm) < least) least = dot<3>(arm, arm), nearest = i;
+  }
+  for (int c = 0; c < points_.dimension; ++c) {
+    const bool is_mirrored =
+        std::any_of(constraints.symmetries.begin(), constraints.symmetries.end(),
+                    [c](const SymmetryPlane& plane) { return plane.axis == c; });
+    const std::size_t dof = std::size_t(nearest) * points_.dimension + std::size_t(c);
+    if (!is_mirrored) made_.unused.push_back(dof);
+  }
 }
 
 std::vector<double> Conditions::parameters(const LoadPoint& at) const {
@@ -135,6 +197,15 @@ void Conditions::prescribe(const LoadPoint& at, std::span<double> displacement) 
       }
     });
   }
+  prescribe_handles_at(loads, displacement);
+}
+
+void Conditions::prescribe_handles_at(std::span<const double> loads,
+                                      std::span<double> displacement) const {
+  for (const HandlePrescription& handle : made_.prescriptions) {
+    with_key(handle.key,
+             [&] { displacement[handle.dof] = handle.factor * handle.value(handle.place, loads); });
+  }
 }
 
 void Conditions::external_force(const LoadPoint& at, std::span<double> force) const {
@@ -162,7 +233,79 @@ std::map<std::string, Coordinates> Conditions::reactions(std::span<const double>
       sum += gradient[dof] - external[dof];
     }
   }
+  for (const Restraint& restraint : made_.restraints) {
+    sums[restraint.name] = reaction_of(restraint, gradient);
+  }
   return sums;
+}
+
+Coordinates Conditions::reaction_of(const Restraint& restraint,
+                                    std::span<const double> gradient) const {
+  const std::size_t d = std::size_t(points_.dimension);
+  Coordinates sum{};
+  switch (restraint.kind) {
+    case Restraint::Kind::rigid_set:
+    case Restraint::Kind::period:
+      for (std::size_t c = 0; c < d; ++c) {
+        sum[c] = gradient[std::size_t(restraint.handles.front()) * d + c];
+      }
+      break;
+    case Restraint::Kind::rollers:
+      for (const Index handle : restraint.handles) {
+        sum = plus<3>(sum, scaled<3>(gradient[std::size_t(handle) * d], restraint.direction));
+      }
+      break;
+    case Restraint::Kind::linear:
+      sum[0] = gradient[std::size_t(restraint.handles.front()) * d];
+      break;
+    case Restraint::Kind::symmetry:
+      // The bonds across the plane count half, and act on images and on their sources.
+      for (Index image = points_.own(); image < points_.count(); ++image) {
+        const std::size_t axis = std::size_t(restraint.axis);
+        const ImageKind& kind = points_.image_kind(image);
+        const double beyond = points_.position(image)[axis] - restraint.at;
+        const double before = points_.position(points_.source(image))[axis] - restraint.at;
+        if (kind.mirror[axis] > 0.0 || beyond * before > 0.0) continue;
+        sum[axis] += 2.0 * gradient[std::size_t(image) * d + axis];
+      }
+      break;
+  }
+  return sum;
+}
+
+std::map<std::string, Coordinates> Conditions::rotations(
+    std::span<const double> displacement) const {
+  std::map<std::string, Coordinates> rotations;
+  std::size_t k = 0;
+  for (const Restraint& restraint : made_.restraints) {
+    if (restraint.kind != Restraint::Kind::rigid_set) continue;
+    rotations[restraint.name] =
+        constraints().rotation(constraints().rigid_sets()[k++], displacement);
+  }
+  return rotations;
+}
+
+std::map<std::string, Coordinates> Conditions::moments(std::span<const double> displacement,
+                                                       std::span<const double> gradient,
+                                                       std::span<const double> external) const {
+  std::map<std::string, Coordinates> moments;
+  const std::size_t d = std::size_t(points_.dimension);
+  std::size_t k = 0;
+  for (const Restraint& restraint : made_.restraints) {
+    if (restraint.kind != Restraint::Kind::rigid_set) continue;
+    const Constraints::RigidSet& set = constraints().rigid_sets()[k++];
+    Coordinates& sum = moments[restraint.name];
+    for (const Index member : set.members) {
+      Coordinates arm = minus<3>(points_.position(member), set.centre), force{};
+      for (std::size_t c = 0; c < d; ++c) {
+        const std::size_t dof = std::size_t(member) * d + c;
+        arm[c] += displacement[dof] - displacement[std::size_t(set.translation) * d + c];
+        force[c] = gradient[dof] - external[dof];
+      }
+      sum = plus<3>(sum, cross(arm, force));
+    }
+  }
+  return moments;
 }
 
 }  // namespace peristat

@@ -9,26 +9,30 @@
 #include "src/conditions/displacement_control.hpp"
 #include "src/conditions/load_point.hpp"
 #include "src/conditions/loading_programme.hpp"
+#include "src/conditions/make_constraints.hpp"
 #include "src/conditions/specification.hpp"
 #include "src/core/expression.hpp"
 #include "src/geometry/points.hpp"
 
 namespace peristat {
 
-/// Supports and loads of a body along its loading programme. Arrays have one entry per degree
-/// of freedom (point x dimension + component).
+/// Supports, constraints and loads of a body along its loading programme. Arrays have one entry per
+/// degree of freedom (point x dimension + component), those of the constraints' handles last.
 class Conditions {
  public:
   /// @throws InputError ("supports[k].…", "loads[k].…", k from 0) for a set that is unknown or
   ///         empty, a bad expression, or two supports that prescribe different displacements to one
   ///         point and component (compared at some stages, and whenever they are used); what
-  ///         DisplacementControl throws
+  ///         DisplacementControl
+  ///         or make_constraints throws
   /// @param control in the place of the first load parameter: the programme's first table is then
   ///        of its values [m]; no terms: none
   Conditions(const Points& points, const std::vector<SupportSpecification>& supports,
              const std::vector<LoadSpecification>& loads, LoadingProgramme programme = {},
-             const std::vector<ControlTerm>& control = {});
+             const std::vector<ControlTerm>& control = {},
+             const ConstraintSpecification& constraints = {});
 
+  [[nodiscard]] int dimension() const { return points_.dimension; }
   [[nodiscard]] const LoadingProgramme& programme() const { return programme_; }
   /// Null where the programme's first table is of the load factor.
   [[nodiscard]] const DisplacementControl* control() const {
@@ -37,7 +41,10 @@ class Conditions {
   /// The first load parameter.
   [[nodiscard]] double load_factor(const LoadPoint& at) const { return parameters(at).front(); }
 
-  /// Whether a degree of freedom is prescribed.
+  [[nodiscard]] const Constraints& constraints() const { return made_.constraints; }
+  [[nodiscard]] const std::vector<Restraint>& restraints() const { return made_.restraints; }
+
+  /// Whether a degree of freedom has no equation: it is prescribed, or follows others.
   [[nodiscard]] const std::vector<char>& prescribed() const { return prescribed_; }
 
   /// Overwrites the prescribed entries with their displacement [m] at a point of the programme.
@@ -49,9 +56,22 @@ class Conditions {
   void external_force(const LoadPoint& at, std::span<double> force) const;
 
   /// Reaction of each support's set [N]: the sum over its prescribed degrees of freedom of what the
-  /// supports add to hold them, dE/dx - external force. Points of two sets count in both.
+  /// supports add to hold them, dE/dx - external force. Points of two sets count in both. Likewise
+  /// of the restraints: what rigid sets and rollers add, what the part of the body beyond a plane
+  /// of symmetry or a period does, and, in its first component, the multiplier of a linear
+  /// constraint.
+  /// @param gradient folded, see Constraints
   [[nodiscard]] std::map<std::string, Coordinates> reactions(
       std::span<const double> gradient, std::span<const double> external) const;
+
+  /// Moment about the present centre of each rigid set [N m] that it adds.
+  [[nodiscard]] std::map<std::string, Coordinates> moments(std::span<const double> displacement,
+                                                           std::span<const double> gradient,
+                                                           std::span<const double> external) const;
+
+  /// Rotation vector of each rigid set [rad].
+  [[nodiscard]] std::map<std::string, Coordinates> rotations(
+      std::span<const double> displacement) const;
 
  private:
   struct Prescription {
@@ -69,6 +89,12 @@ class Conditions {
   };
 
   [[nodiscard]] std::vector<double> parameters(const LoadPoint& at) const;
+  void refuse_shared_names() const;
+  void prescribe_handles();
+  void hold_periodic_cell(const ConstraintSpecification& constraints);
+  void prescribe_handles_at(std::span<const double> loads, std::span<double> displacement) const;
+  [[nodiscard]] Coordinates reaction_of(const Restraint& restraint,
+                                        std::span<const double> gradient) const;
   void find_shared();
   void try_stages();
   [[nodiscard]] std::size_t dof_of(const Prescription& prescription, Index point) const {
@@ -83,6 +109,7 @@ class Conditions {
   std::vector<Prescription> prescriptions_;
   std::vector<Load> loads_;
   std::vector<char> prescribed_;
+  MadeConstraints made_;
   std::optional<DisplacementControl> control_;
   /// First of the prescriptions of each degree of freedom; empty if none has more than one.
   std::vector<const Prescription*> first_;

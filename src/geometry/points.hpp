@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "src/core/types.hpp"
+#include "src/geometry/images.hpp"
 
 namespace peristat {
 
@@ -16,7 +17,21 @@ struct Points {
   std::vector<double> volume;     ///< per point [m3]
   std::map<std::string, std::vector<Index>> sets;  ///< ascending point numbers by set name
 
+  Images images{};  ///< of the last points; sets name none of them
+
   [[nodiscard]] Index count() const { return static_cast<Index>(volume.size()); }
+  /// Points that stand for themselves: the first ones.
+  [[nodiscard]] Index own() const {
+    return count() - static_cast<Index>(images.source.size());
+  }
+  [[nodiscard]] bool is_image(Index point) const { return point >= own(); }
+  /// The point that an image stands for; of other points themselves.
+  [[nodiscard]] Index source(Index point) const {
+    return is_image(point) ? images.source[std::size_t(point - own())] : point;
+  }
+  [[nodiscard]] const ImageKind& image_kind(Index image) const {
+    return images.kinds[images.kind[std::size_t(image - own())]];
+  }
 
   /// Reference position of a point, padded with zeros to three components.
   [[nodiscard]] Coordinates position(Index point) const {

@@ -60,6 +60,28 @@ void drop_weightless(Bonds& bonds) {
   bonds.remove_if([&](Index, Offset bond) { return bonds.weight(bond) == 0.0; });
 }
 
+/// A sum over the bonds of every point, as far as it was made: what an image has is its source's,
+/// and the source's sum is the image's, too.
+template <class Sum, class Add>
+void gather_images(const Points& points, std::vector<Sum>& sums, const Add& add) {
+  for (Index image = points.own(); image < points.count(); ++image) {
+    add(sums[std::size_t(points.source(image))], sums[std::size_t(image)]);
+  }
+  for (Index image = points.own(); image < points.count(); ++image) {
+    sums[std::size_t(image)] = sums[std::size_t(points.source(image))];
+  }
+}
+
+/// A bond belongs to the body as far as its points do: beyond a plane of symmetry it has a twin.
+void share_with_images(Bonds& bonds, const Points& points) {
+  if (points.own() == points.count()) return;
+  bonds.set_weights([&](Index i, Offset bond) {
+    const int own = int(!points.is_image(i)) + int(!points.is_image(bonds.partner[bond]));
+    return 0.5 * own * bonds.weight(bond);
+  });
+  drop_weightless(bonds);
+}
+
 void apply_volume_method(Bonds& bonds, const Points& points, const Kernel& kernel) {
   std::vector<double> neighbourhood(points.volume.size(), 0.0);
   for_each_bond(bonds, [&](Index i, Offset bond) {
@@ -67,6 +89,7 @@ void apply_volume_method(Bonds& bonds, const Points& points, const Kernel& kerne
     neighbourhood[i] += bonds.weight(bond) / points.volume[i];
     neighbourhood[j] += bonds.weight(bond) / points.volume[j];
   });
+  gather_images(points, neighbourhood, [](double& sum, double more) { sum += more; });
   // For a cloud of points a lattice of its mean spacing serves.
   const double bulk = kernel.lattice_moment(0, points.spacing);
   bonds.set_weights([&](Index i, Offset bond) {
@@ -92,6 +115,9 @@ std::vector<std::array<double, 3>> confined_energy_ratio(const Points& points, c
       ratio[i][a] += energy / points.volume[i];
       ratio[j][a] += energy / points.volume[j];
     }
+  });
+  gather_images(points, ratio, [](auto& sum, const auto& more) {
+    for (std::size_t a = 0; a < sum.size(); ++a) sum[a] += more[a];
   });
   return ratio;
 }
@@ -121,6 +147,7 @@ Bonds make_bonds(const Points& points, SurfaceCorrection surface, const BondSett
   Bonds bonds = search_bonds(points, search_radius(points, setting), threads);
   weigh_volumes(bonds, points, setting);
   if (setting.volume_correction == VolumeCorrection::linear) drop_weightless(bonds);
+  share_with_images(bonds, points);
   if (surface == SurfaceCorrection::volume) {
     apply_volume_method(bonds, points, setting);
   } else if (surface == SurfaceCorrection::energy) {

@@ -18,6 +18,7 @@
 #include "cases/runner/results/probe.hpp"
 #include "cases/runner/results/recorder.hpp"
 #include "cases/runner/results/results.hpp"
+#include "cases/runner/results/rigid_set_columns.hpp"
 #include "solvers/linear/cholesky.hpp"
 #include "solvers/study/found_loads.hpp"
 #include "solvers/study/study.hpp"
@@ -40,6 +41,7 @@ std::filesystem::path identity(const std::filesystem::path& case_file) {
   return error ? std::filesystem::absolute(case_file) : file;
 }
 
+/// Whose reactions are told.
 std::vector<std::string> support_sets(const Case& from) {
   std::vector<std::string> sets;
   for (const SupportSpecification& support : from.supports) {
@@ -48,14 +50,26 @@ std::vector<std::string> support_sets(const Case& from) {
     const bool known = std::find(sets.begin(), sets.end(), support.set) != sets.end();
     if (holds && !known) sets.push_back(support.set);
   }
+  const ConstraintSpecification& constraints = from.constraints;
+  for (const auto& set : constraints.rigid_sets) sets.push_back(set.set);
+  for (const auto& roller : constraints.rollers) sets.push_back(roller.name());
+  for (const auto& linear : constraints.linear) sets.push_back(linear.name);
+  for (const auto& plane : constraints.symmetries) {
+    sets.push_back(std::string("symmetry_") + "xyz"[plane.axis]);
+  }
+  for (const auto& period : constraints.periods) {
+    sets.push_back(std::string("period_") + "xyz"[period.axis]);
+  }
   return sets;
 }
 
-double largest_displacement(const std::vector<double>& displacement, int dimension) {
+double largest_displacement(const std::vector<double>& displacement, const Points& points) {
   double largest = 0.0;
-  for (std::size_t k = 0; k < displacement.size(); k += std::size_t(dimension)) {
+  const std::size_t dimension = std::size_t(points.dimension);
+  for (std::size_t k = 0; k < std::size_t(points.own()) * dimension; k += dimension) {
     double squared = 0.0;
-    for (int c = 0; c < dimension; ++c) squared += displacement[k + c] * displacement[k + c];
+    for (std::size_t c = 0; c < dimension; ++c)
+      squared += displacement[k + c] * displacement[k + c];
     largest = std::max(largest, squared);
   }
   return std::sqrt(largest);
@@ -66,6 +80,7 @@ std::vector<PointCounts> neighbour_counts_of(const Body& body) {
   std::vector<PointCounts> counts;
   for (const auto& term : body.model.terms()) {
     for (InteractionCount& kind : term->counts()) {
+      kind.per_point.resize(std::size_t(body.points.own()));
       for (std::int32_t& count : kind.per_point) count *= kind.orders;
       counts.push_back({kind.per_point_name, kind.per_point_meaning, std::move(kind.per_point)});
     }
@@ -75,7 +90,7 @@ std::vector<PointCounts> neighbour_counts_of(const Body& body) {
 
 /// What is known of a run before its first step.
 void count(const Body& body, const FreeDofs& free, const RunOptions& options, Summary& summary) {
-  summary.points = body.points.count();
+  summary.points = body.points.own();
   summary.free_dofs = free.count();
   for (const auto& term : body.model.terms()) {
     for (const InteractionCount& kind : term->counts()) summary.count(kind.name, kind.count);
@@ -101,7 +116,7 @@ std::unique_ptr<SolvedModel> solved_stand_in(const Case& from, const Study& stud
   size.bonds = double(stand_in.bonds().count());
   size.free_dofs = double(study.free().count());
   return std::make_unique<SolvedModel>(
-      points, stand_in, study.free(),
+      points, stand_in, study.body().conditions->constraints(), study.free(),
       choose_linear_systems(study.options(), stand_in, estimate_memory(size), {}),
       study.options().threads);
 }
@@ -170,6 +185,7 @@ class CaseRun {
         results_(results),
         support_sets_(support_sets(from)) {
     for (const auto& probe : from.probes) probes_.push_back(columns_of(probe, from.dimension));
+    for (ProbeColumns& columns : rigid_set_columns(from)) probes_.push_back(std::move(columns));
   }
 
   Exit run() {
@@ -195,7 +211,7 @@ class CaseRun {
       earlier_results_ = earlier_->results(support_sets_, probes_);
       require_body_of(*earlier_);
     }
-    const Index points = body_->points.count();
+    const Index points = body_->points.own();
     const FreeDofs& free = study_->free();
     progress_.say(fmt::format("{} points, {} bonds, {} free degrees of freedom, {} threads", points,
                               body_->model.bonds().count(), free.count(), options_.threads));
@@ -211,7 +227,7 @@ class CaseRun {
     const auto refuse = [&](const std::string& why) {
       throw InputError("", "", why, earlier.directory().string());
     };
-    if (!earlier.has_points(body_->points)) {
+    if (!earlier.has_points(without_images(body_->points))) {
       refuse("its points are not those of the run that the case makes now");
     }
     if (!is_of_body(earlier.checkpoint().path, study_->equations().assembler(),
@@ -225,14 +241,15 @@ class CaseRun {
     const CaseText text{from_.as_read, from_.as_resolved,    from_.title,
                         versions(),    identity(from_.file), from_.settings};
     if (earlier_) {
-      results_.emplace(*earlier_, earlier_results_, body_->points, text, support_sets_, probes_);
+      results_.emplace(*earlier_, earlier_results_, without_images(body_->points), text,
+                       support_sets_, probes_);
       recorder_.emplace(from_, *body_, assembler, *results_, progress_);
       recorder_->go_on(earlier_->checkpoint(), earlier_results_, support_sets_, probes_);
       earlier_results_ = {};
       tell_beginning();
     } else {
-      results_.emplace(from_.output.directory, body_->points, text, support_sets_, probes_,
-                       neighbour_counts_of(*body_), options_.overwrite);
+      results_.emplace(from_.output.directory, without_images(body_->points), text, support_sets_,
+                       probes_, neighbour_counts_of(*body_), options_.overwrite);
       recorder_.emplace(from_, *body_, assembler, *results_, progress_);
     }
     leave_note(from_.output.directory);
@@ -266,7 +283,7 @@ class CaseRun {
     told.decision = [this](const DecisionRecord& record) { recorder_->decided(record); };
     told.accepted = [this](const StepRecord& record, const AcceptedState& state) {
       recorder_->accepted(record, state);
-      summary_.max_displacement = largest_displacement(state.trial.displacement, from_.dimension);
+      summary_.max_displacement = largest_displacement(state.trial.displacement, body_->points);
       ++steps_here_;
     };
     told.reached = [this](const PathState& state) {
@@ -303,7 +320,7 @@ class CaseRun {
       const double reached = body_->conditions->load_factor(load_point(result.state));
       summary_.reason = failure_reason(result, reached);
     }
-    summary_.max_displacement = largest_displacement(result.state.displacement, from_.dimension);
+    summary_.max_displacement = largest_displacement(result.state.displacement, body_->points);
     recorder_->finish();
     summary_.costs = costs(result.relaxation_seconds);
     if (result.outcome == Outcome::converged || result.outcome == Outcome::interrupted) return;

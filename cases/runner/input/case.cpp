@@ -54,6 +54,11 @@ const std::map<std::string, std::string>& keys_of_members() {
                                                        {"file", "points.file"},
                                                        {"supports", "support"},
                                                        {"loads", "load"},
+                                                       {"rigid_sets", "rigid"},
+                                                       {"rollers", "roller"},
+                                                       {"linear", "constraint"},
+                                                       {"symmetries", "symmetry"},
+                                                       {"periods", "period"},
                                                        {"directory", "output.directory"},
                                                        {"controls", "control"},
                                                        {"programme", "loading.table"}};

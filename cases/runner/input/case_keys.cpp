@@ -7,6 +7,7 @@
 #include <type_traits>
 #include <variant>
 
+#include "cases/runner/input/constraint_keys.hpp"
 #include "cases/runner/input/key_kinds.hpp"
 #include "cases/runner/input/shape_keys.hpp"
 #include "solvers/drivers/drivers.hpp"
@@ -17,9 +18,6 @@ namespace peristat {
 namespace {
 
 // ---- What several tables share
-
-template <int dimension>
-constexpr auto in_dimension = [](auto&, const Case& from) { return from.dimension == dimension; };
 
 template <class Body>
 constexpr auto body_is =
@@ -869,6 +867,16 @@ Table<Case> all_keys() {
            .then(check_quadrature)
            .required(),
        K("support", &Case::supports, support_keys(), "tables: prescribed displacements"),
+       K("rigid", in(&Case::constraints, &ConstraintSpecification::rigid_sets), rigid_set_keys(),
+         "tables: sets that move as rigid bodies"),
+       K("roller", in(&Case::constraints, &ConstraintSpecification::rollers), roller_keys(),
+         "tables: points that slide, at any angle"),
+       K("constraint", in(&Case::constraints, &ConstraintSpecification::linear),
+         linear_constraint_keys(), "tables: linear constraints between sets"),
+       K("symmetry", in(&Case::constraints, &ConstraintSpecification::symmetries), symmetry_keys(),
+         "tables: planes of symmetry, with the bonds across them"),
+       K("period", in(&Case::constraints, &ConstraintSpecification::periods), period_keys(),
+         "tables: sides across which the body repeats"),
        K("load", &Case::loads, load_keys(), "tables: forces"),
        K("control", &Case::controls, control_keys(),
          "tables: the displacement that is controlled in the place of `load`"),

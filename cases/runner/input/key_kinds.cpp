@@ -241,6 +241,58 @@ Kind<std::array<std::optional<std::string>, 3>> prescribed_components() {
           "number, expression of place and `load`, or `\"free\"`", "m"};
 }
 
+Kind<std::array<std::optional<std::string>, 3>> free_components(Components kind,
+                                                                const std::string& unit) {
+  const auto count = [kind](const Case& from) {
+    const std::size_t dimension = dimension_of(from);
+    return kind != Components::rotations ? dimension : dimension == 3 ? std::size_t{3} : 1;
+  };
+  const auto read = [=](const Entry& at) {
+    std::array<std::optional<std::string>, 3> prescribed;
+    const auto components = at.from.components(at.key, count(at.so_far));
+    for (std::size_t c = 0; c < components.size(); ++c) {
+      if (components[c] == "free") continue;
+      check_component(at, c, components[c], 0);
+      prescribed[c] = components[c];
+    }
+    return prescribed;
+  };
+  return {read,
+          [=](const auto& prescribed, const Case& from) {
+            return array_text(std::span(prescribed).first(count(from)), [](const auto& component) {
+              return toml_string(component.value_or("free"));
+            });
+          },
+          "number, expression of `load` alone, or `\"free\"`", unit};
+}
+
+namespace {
+
+Kind<std::string> expression(bool of_place, bool or_free) {
+  const auto read = [=](const Entry& at) {
+    const std::string text = at.from.is_string(at.key)
+                                 ? at.from.string(at.key)
+                                 : number_text(at.from.number(at.key, Range()));
+    if (or_free && text == "free") return text;
+    try {
+      Expression(text, of_place ? at.so_far.dimension : 0, spacing_of(at.so_far),
+                 at.so_far.loading.parameters());
+    } catch (const InputError& error) {
+      at.refuse(error.allowed());
+    }
+    return text;
+  };
+  return {read, string_text,
+          std::string("number, or expression of ") +
+              (of_place ? "place and `load`" : "`load` alone") + (or_free ? ", or `\"free\"`" : ""),
+          "m"};
+}
+
+}  // namespace
+
+Kind<std::string> expression_or_free() { return expression(true, true); }
+Kind<std::string> expression_of_load() { return expression(false, false); }
+
 Kind<std::array<std::string, 3>> force_components(bool is_total) {
   const auto read = [=](const Entry& at) {
     std::array<std::string, 3> force = LoadSpecification().value;

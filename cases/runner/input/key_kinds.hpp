@@ -72,6 +72,15 @@ template <class Value>
 [[nodiscard]] Kind<std::string> condition();
 /// Per component an expression of place and load, or "free".
 [[nodiscard]] Kind<std::array<std::optional<std::string>, 3>> prescribed_components();
+/// What components are for, and whether an expression of them may ask for a place.
+enum class Components { axes, rotations, of_load };
+/// Per component an expression of load alone, or "free"; all may be free.
+[[nodiscard]] Kind<std::array<std::optional<std::string>, 3>> free_components(
+    Components components, const std::string& unit);
+/// An expression of place and load, or "free".
+[[nodiscard]] Kind<std::string> expression_or_free();
+/// An expression of load alone.
+[[nodiscard]] Kind<std::string> expression_of_load();
 /// Per component an expression of load, and of place unless it is a total.
 [[nodiscard]] Kind<std::array<std::string, 3>> force_components(bool is_total);
 

@@ -245,4 +245,8 @@ struct Table {
   }
 };
 
+/// For `unless`.
+template <int dimension>
+constexpr auto in_dimension = [](auto&, const Case& from) { return from.dimension == dimension; };
+
 }  // namespace peristat

@@ -90,7 +90,7 @@ std::string coordinates_text(const Points& points, Index point) {
 Dossier make_dossier(const Case& from, const Body& body, const LoadSteppingResult& result,
                      const std::optional<StepRecord>& last,
                      const std::vector<DecisionRecord>& decisions) {
-  const Points& points = body.points;
+  const Points points = without_images(body.points);
   const auto d = std::size_t(points.dimension);
   const Attempt& attempt = result.last_attempt;
   Dossier dossier;
@@ -98,7 +98,8 @@ Dossier make_dossier(const Case& from, const Body& body, const LoadSteppingResul
   dossier.displacement = attempt.state.displacement;
   dossier.displacement.resize(points.reference.size(), 0.0);
   const std::vector<char>& prescribed = body.conditions->prescribed();
-  for (std::size_t dof = 0; dof < attempt.state.gradient.size(); ++dof) {
+  for (std::size_t dof = 0; dof < std::min(attempt.state.gradient.size(), dossier.residual.size());
+       ++dof) {
     if (!prescribed[dof]) {
       dossier.residual[dof] = attempt.external_force[dof] - attempt.state.gradient[dof];
     }

@@ -7,6 +7,7 @@
 #include "assembly/terms/bonds/point_stretches.hpp"
 #include "assembly/terms/damage.hpp"
 #include "cases/runner/results/record_tables.hpp"
+#include "cases/runner/results/rigid_set_columns.hpp"
 
 namespace peristat {
 
@@ -29,22 +30,30 @@ void Recorder::iteration(const IterationRecord& record) {
 Recorder::Fields Recorder::fields(const StateView& at, std::vector<double> force,
                                   std::span<const std::int32_t> piece) const {
   const std::size_t points = points_.volume.size();
+  const std::ptrdiff_t dofs = std::ptrdiff_t(own_) * points_.dimension;
+  force.resize(std::size_t(dofs));
   Fields made{
-      {at.displacement.begin(), at.displacement.end()},
+      {at.displacement.begin(), at.displacement.begin() + dofs},
       std::move(force),
       std::vector<double>(points),
       std::vector<double>(points),
       std::vector<double>(points),
-      std::vector<double>(points, 0.0),
+      std::vector<double>(own_, 0.0),
       0.0,
       written_histories_.changes(body_.model.bonds(), bond_stretches(body_.model, at.history))};
   assembler_.point_energies(at, made.energy_density);
-  for (std::size_t i = 0; i < points; ++i) made.energy_density[i] /= points_.volume[i];
+  for (std::size_t i = own_; i < points; ++i) {
+    made.energy_density[std::size_t(points_.source(Index(i)))] += made.energy_density[i];
+  }
+  for (std::size_t i = 0; i < own_; ++i) made.energy_density[i] /= points_.volume[i];
   point_stretches(points_, body_.model, at, made.stretch);
   const auto cut_weight =
       case_.output.count_cracks ? std::span(body_.cut_weight) : std::span<const double>();
-  made.max_damage = assess_damage(body_.model, at.history, cut_weight, made.damage).max_damage;
-  std::copy(piece.begin(), piece.end(), made.fragment.begin());
+  made.max_damage =
+      assess_damage(body_.model, at.history, cut_weight, made.damage, points_.images.source)
+          .max_damage;
+  for (auto* field : {&made.damage, &made.energy_density, &made.stretch}) field->resize(own_);
+  std::copy_n(piece.begin(), std::min(piece.size(), own_), made.fragment.begin());
   return made;
 }
 
@@ -60,6 +69,7 @@ void Recorder::accepted(StepRecord record, const AcceptedState& state) {
   for (const ProbeSpecification& probe : case_.probes) {
     record.probes[probe.name] = probe_values(probe, points_, view, separated_);
   }
+  add_rigid_set_values(*body_.conditions, state.trial, state.external_force, record.probes);
   const bool write_fields = record.step % case_.output.every == 0;
   results_.add(record, write_fields ? std::optional(view) : std::nullopt);
   if (write_fields) written_histories_.tell(bond_stretches(body_.model, at.history));
@@ -127,8 +137,9 @@ void Recorder::record_broken_bonds(const StepRecord& record, const History& hist
   const Bonds& bonds = body_.model.bonds();
   for (Index i = 0; i < bonds.points(); ++i) {
     for (Offset bond = bonds.offset[i]; bond < bonds.offset[i + 1]; ++bond) {
-      if (!broken[bond] || broken_[bond]) continue;
-      records.push_back({record.step, record.load_factor, i, bonds.partner[bond]});
+      if (!broken[bond] || broken_[bond] || bonds.weight(bond) == 0.0) continue;
+      records.push_back({record.step, record.load_factor, points_.source(i),
+                         points_.source(bonds.partner[bond])});
       separated_.push_back({i, bonds.partner[bond]});
     }
   }

@@ -22,6 +22,7 @@ class Recorder {
            Progress& progress)
       : case_(from),
         points_(body.points),
+        own_(std::size_t(body.points.own())),
         assembler_(assembler),
         results_(results),
         progress_(progress),
@@ -56,7 +57,7 @@ class Recorder {
   };
 
   /// Fields of a state.
-  /// @param force minus its gradient [N]
+  /// @param force minus its gradient [N], of more than these points
   [[nodiscard]] Fields fields(const StateView& at, std::vector<double> force,
                               std::span<const std::int32_t> piece) const;
   /// Adds the bonds that have broken since the last step to the results.
@@ -64,6 +65,7 @@ class Recorder {
 
   const Case& case_;
   const Points& points_;
+  std::size_t own_;  // points that are recorded: images are not
   Assembler& assembler_;
   Results& results_;
   Progress& progress_;

@@ -1,0 +1,102 @@
+#include "cases/runner/input/constraint_keys.hpp"
+
+#include "cases/runner/input/key_kinds.hpp"
+
+namespace peristat {
+namespace {
+
+const Range any_number;
+
+}  // namespace
+
+Table<RigidSetSpecification> rigid_set_keys() {
+  using Spec = RigidSetSpecification;
+  using K = Key<Spec>;
+  return {"rigid",
+          {K("set", &Spec::set, known_set(), "whose points move as one rigid body").required(),
+           K("centre", &Spec::centre, coordinates(),
+             "about which it turns and moments are told, in the reference")
+               .default_words("centre of the set's volume"),
+           K("displacement", &Spec::displacement, free_components(Components::axes, "m"),
+             "of the centre, per component"),
+           K("rotation", &Spec::rotation, free_components(Components::rotations, "rad"),
+             "rotation vector: in 2D one component, about z")},
+          [](auto& at, auto&) {
+            if (at.so_far.dimension == 1)
+              at.refuse("is for dimension 2 and 3; in 1D prescribe a displacement");
+          }};
+}
+
+Table<RollerSpecification> roller_keys() {
+  using Spec = RollerSpecification;
+  using K = Key<Spec>;
+  return {
+      "roller",
+      {K("set", &Spec::set, known_set(), "each of whose points slides across the normal").one_of(),
+       K("at", &Spec::at, coordinates(),
+         "where a roller touches the body: the points next to it are held in the mean, weighted so "
+         "that it is the displacement there")
+           .one_of(),
+       K("to", &Spec::to, coordinates(), "3D: other end of the line along which it touches")
+           .unless(in_dimension<2>, "is for dimension 3: in 2D a roller touches at a point")
+           .unless([](auto& roller, auto&) { return !roller.at; }, "goes with at")
+           .default_words("a point"),
+       K("name", &Spec::label, name(), "with `at`: that its reaction is told by")
+           .unless([](auto& roller, auto&) { return !roller.at; }, "goes with at")
+           .required("required with `at`"),
+       K("normal", &Spec::normal, coordinates(""), "direction that is held, of any length")
+           .moreover("not all zero")
+           .required(),
+       K("displacement", &Spec::displacement, expression_or_free(),
+         "along the normal; `\"free\"`: unknown, but the same for all points of the set (a platen "
+         "without friction that does not turn)")},
+      [](auto& at, auto&) {
+        if (at.so_far.dimension == 1)
+          at.refuse("is for dimension 2 and 3; in 1D prescribe a displacement");
+      }};
+}
+
+Table<LinearConstraintSpecification> linear_constraint_keys() {
+  using Spec = LinearConstraintSpecification;
+  using K = Key<Spec>;
+  const Table<ControlTerm> term{
+      "constraint.term",
+      {Key<ControlTerm>("set", &ControlTerm::set, known_set(), "whose mean displacement is taken")
+           .required(),
+       Key<ControlTerm>("weights", &ControlTerm::weights, coordinates(""), "of its components")
+           .required()}};
+  return {"constraint",
+          {K("name", &Spec::name, name(), "that its force is told by").required(),
+           K("displacement", &Spec::displacement, expression_of_load(),
+             "that the weighted mean displacements of all terms add up to"),
+           K("term", &Spec::terms, term, "tables: the terms").default_words("required")},
+          {},
+          [](auto& at, auto& spec) {
+            if (spec.terms.empty()) at.refuse("needs a [[constraint.term]] or more");
+          }};
+}
+
+Table<SymmetryPlane> symmetry_keys() {
+  using K = Key<SymmetryPlane>;
+  return {"symmetry",
+          {K("axis", &SymmetryPlane::axis, axis(), "that the plane lies across").required(),
+           K("at", &SymmetryPlane::at, number(any_number, "a number", "m"),
+             "where it crosses the axis, half a spacing before the first points")}};
+}
+
+Table<PeriodSpecification> period_keys() {
+  using Spec = PeriodSpecification;
+  using K = Key<Spec>;
+  return {"period",
+          {K("axis", &Spec::axis, axis(), "across which the body repeats").required(),
+           K("from", &Spec::from, number(any_number, "a number", "m"), "one side of the cell")
+               .required(),
+           K("to", &Spec::to, number(any_number, "a number", "m"), "the other side")
+               .moreover("above `from`")
+               .required(),
+           K("gradient", &Spec::gradient, free_components(Components::of_load, "1"),
+             "mean displacement gradient ∂u/∂(axis), per component; `\"free\"`: the cell has no "
+             "mean stress there")}};
+}
+
+}  // namespace peristat

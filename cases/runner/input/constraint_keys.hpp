@@ -1,0 +1,14 @@
+#pragma once
+
+#include "cases/runner/input/key_table.hpp"
+
+namespace peristat {
+
+/// What holds or ties points beside supports.
+[[nodiscard]] Table<RigidSetSpecification> rigid_set_keys();
+[[nodiscard]] Table<RollerSpecification> roller_keys();
+[[nodiscard]] Table<LinearConstraintSpecification> linear_constraint_keys();
+[[nodiscard]] Table<SymmetryPlane> symmetry_keys();
+[[nodiscard]] Table<PeriodSpecification> period_keys();
+
+}  // namespace peristat

@@ -1,0 +1,67 @@
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "src/conditions/specification.hpp"
+#include "src/core/types.hpp"
+#include "src/geometry/images.hpp"
+
+namespace peristat {
+
+/// A set that moves as one rigid body. Expressions of the load parameters; nothing: free.
+struct RigidSetSpecification {
+  std::string set{};
+  std::optional<Coordinates> centre{};  ///< [m]; nothing: that of the set's volume
+  std::array<std::optional<std::string>, 3> displacement{};  ///< of the centre [m]
+  /// Rotation vector [rad]; 2D: its first component, about z.
+  std::array<std::optional<std::string>, 3> rotation{};
+};
+
+/// Points that are held along one direction and slide across it.
+struct RollerSpecification {
+  std::string set{};
+  std::string label{};  ///< in the place of the set's name
+  /// In the place of a set: where a roller touches the body [m], and in 3D the other end of its
+  /// line.
+  std::optional<Coordinates> at{}, to{};
+  Coordinates normal{};
+  /// Along the normal [m], an expression of place and load parameters; "free": unknown, but the
+  /// same for all points of the set.
+  std::string displacement = "0";
+
+  [[nodiscard]] const std::string& name() const { return set.empty() ? label : set; }
+};
+
+/// The sum of weighted mean displacements of sets is a displacement [m], an expression of the load
+/// parameters.
+struct LinearConstraintSpecification {
+  std::string name{};
+  std::vector<ControlTerm> terms{};
+  std::string displacement = "0";
+};
+
+/// Two sides of a cell across an axis, between which the displacement jumps by the length times a
+/// column of the mean displacement gradient.
+struct PeriodSpecification : Period {
+  /// du/dx_axis, expressions of the load parameters; nothing: free, the body's mean stress has no
+  /// such component.
+  std::array<std::optional<std::string>, 3> gradient{"0", "0", "0"};
+};
+
+struct ConstraintSpecification {
+  std::vector<RigidSetSpecification> rigid_sets{};
+  std::vector<RollerSpecification> rollers{};
+  std::vector<LinearConstraintSpecification> linear{};
+  std::vector<SymmetryPlane> symmetries{};
+  std::vector<PeriodSpecification> periods{};
+
+  [[nodiscard]] bool none() const {
+    return rigid_sets.empty() && rollers.empty() && linear.empty() && symmetries.empty() &&
+           periods.empty();
+  }
+};
+
+}  // namespace peristat

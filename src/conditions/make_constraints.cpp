@@ -1,0 +1,351 @@
+#include "src/conditions/make_constraints.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <utility>
+
+#include "src/conditions/linear_rows.hpp"
+#include "src/conditions/points_of_set.hpp"
+#include "src/core/input_error.hpp"
+#include "src/core/number_text.hpp"
+#include "src/measures/small_algebra.hpp"
+
+namespace peristat {
+namespace {
+
+double length(const Coordinates& vector) { return std::sqrt(dot<3>(vector, vector)); }
+
+/// Unit vectors that complete a unit normal.
+std::array<Coordinates, 3> basis_of(const Coordinates& normal, int dimension) {
+  if (dimension == 2) return {normal, {-normal[1], normal[0], 0.0}, {}};
+  std::size_t least = 0;
+  for (std::size_t c = 1; c < 3; ++c) {
+    if (std::abs(normal[c]) < std::abs(normal[least])) least = c;
+  }
+  Coordinates axis{};
+  axis[least] = 1.0;
+  Coordinates first = cross(normal, axis);
+  first = scaled<3>(1.0 / length(first), first);
+  return {normal, first, cross(normal, first)};
+}
+
+class Maker {
+ public:
+  Maker(const Points& points, const ConstraintSpecification& of,
+        const std::vector<char>& prescribed, const std::vector<std::string>& parameters)
+      : points_(points),
+        of_(of),
+        prescribed_(prescribed),
+        parameters_(parameters),
+        made_{Constraints(points)},
+        holder_(std::size_t(points.count())),
+        rows_(points.dimension, prescribed) {}
+
+  [[nodiscard]] MadeConstraints make() {
+    for (std::size_t k = 0; k < of_.symmetries.size(); ++k) {
+      const SymmetryPlane& plane = of_.symmetries[k];
+      made_.restraints.push_back({Restraint::Kind::symmetry,
+                                  indexed("symmetries", k) + ".axis",
+                                  std::string("symmetry_") + "xyz" [plane.axis],
+                                  {},
+                                  {},
+                                  plane.axis,
+                                  plane.at});
+    }
+    for (std::size_t k = 0; k < of_.periods.size(); ++k) make_period(k);
+    for (std::size_t k = 0; k < of_.rigid_sets.size(); ++k) make_rigid_set(k);
+    for (std::size_t k = 0; k < of_.rollers.size(); ++k) {
+      of_.rollers[k].at ? make_touching_roller(k) : make_rollers(k);
+    }
+    for (std::size_t k = 0; k < of_.linear.size(); ++k) make_linear(k);
+    rows_.eliminate(made_.constraints);
+    return std::move(made_);
+  }
+
+ private:
+  [[nodiscard]] int dimension() const { return points_.dimension; }
+  [[nodiscard]] std::size_t dof(Index row, int component) const {
+    return std::size_t(row) * std::size_t(dimension()) + std::size_t(component);
+  }
+
+  void prescribe(const std::string& key, const std::string& text, std::size_t of_dof,
+                 double factor = 1.0, const Coordinates* place = nullptr) {
+    try {
+      Expression value(text, place ? dimension() : 0, points_.spacing, parameters_);
+      made_.prescriptions.push_back(
+          {key, of_dof, place ? *place : Coordinates{}, factor, std::move(value)});
+    } catch (const InputError& error) {
+      throw InputError(key, error.value(), error.allowed());
+    }
+  }
+
+  void leave_unused(Index handle, int first) {
+    for (int c = first; c < dimension(); ++c) made_.unused.push_back(dof(handle, c));
+  }
+
+  /// Notes who holds a point; refuses a second one.
+  void hold(Index point, const std::string& key, const std::string& who) {
+    std::string& holder = holder_[std::size_t(point)];
+    for (int c = 0; c < dimension(); ++c) {
+      if (holder.empty() && prescribed_[dof(point, c)]) holder = "a support";
+    }
+    if (!holder.empty()) {
+      throw InputError(key, "",
+                       who + " and " + holder + " contradict each other: both hold the point at " +
+                           place_text(points_.position(point), dimension()) +
+                           " m. Leave it to one of them");
+    }
+    holder = who;
+  }
+
+  void make_period(std::size_t k) {
+    const PeriodSpecification& period = of_.periods[k];
+    const Index handle = made_.constraints.period_handle(period.axis);
+    if (handle < 0) return;  // the body is farther from its images than a horizon
+    for (int c = 0; c < dimension(); ++c) {
+      const auto& text = period.gradient[std::size_t(c)];
+      const std::string key = indexed(indexed("periods", k) + ".gradient", std::size_t(c));
+      if (text) prescribe(key, *text, dof(handle, c), period.to - period.from);
+    }
+    made_.restraints.push_back({Restraint::Kind::period,
+                                indexed("periods", k) + ".axis",
+                                std::string("period_") + "xyz" [period.axis],
+                                { handle },
+                                {},
+                                period.axis,
+                                period.from});
+  }
+
+  void make_rigid_set(std::size_t k) {
+    const RigidSetSpecification& spec = of_.rigid_sets[k];
+    const std::string table = indexed("rigid_sets", k);
+    Constraints::RigidSet set;
+    set.members = points_of_set(points_, spec.set, table + ".set");
+    for (const Index member : set.members) {
+      hold(member, table + ".set", "the rigid set " + spec.set);
+    }
+    set.centre = spec.centre ? *spec.centre : centre_of(set.members);
+    set.size = size_of(set, table + ".set", spec.set);
+    set.translation = made_.constraints.add_handle(set.centre);
+    for (int c = 0; c < dimension(); ++c) {
+      const auto& text = spec.displacement[std::size_t(c)];
+      const std::string key = indexed(table + ".displacement", std::size_t(c));
+      if (text) prescribe(key, *text, dof(set.translation, c));
+    }
+    set.rotation = made_.constraints.add_handle(set.centre);
+    const int rotations = dimension() == 3 ? 3 : dimension() - 1;
+    for (int c = 0; c < rotations; ++c) {
+      const auto& text = spec.rotation[std::size_t(c)];
+      const std::string key = indexed(table + ".rotation", std::size_t(c));
+      if (text) prescribe(key, *text, dof(set.rotation, c), set.size);
+    }
+    leave_unused(set.rotation, rotations);
+    made_.restraints.push_back(
+        {Restraint::Kind::rigid_set, table + ".set", spec.set, {set.translation}, {}, 0, 0.0});
+    made_.constraints.follow(std::move(set));
+  }
+
+  [[nodiscard]] Coordinates centre_of(const std::vector<Index>& members) const {
+    Coordinates centre{};
+    double volume = 0.0;
+    for (const Index member : members) {
+      const double of_point = points_.volume[std::size_t(member)];
+      centre = plus<3>(centre, scaled<3>(of_point, points_.position(member)));
+      volume += of_point;
+    }
+    return scaled<3>(1.0 / volume, centre);
+  }
+
+  /// Largest arm; refuses a set that can turn without moving its points.
+  [[nodiscard]] double size_of(const Constraints::RigidSet& set, const std::string& key,
+                               const std::string& name) const {
+    if (set.members.size() < 2) {
+      throw InputError(key, '"' + name + '"',
+                       "has one point, which can't turn: a rigid set needs two or more");
+    }
+    double size = 0.0;
+    Coordinates longest{};
+    for (const Index member : set.members) {
+      const Coordinates arm = minus<3>(points_.position(member), set.centre);
+      if (length(arm) > size) size = length(arm), longest = arm;
+    }
+    double across = 0.0;
+    for (const Index member : set.members) {
+      const Coordinates arm = minus<3>(points_.position(member), set.centre);
+      across = std::max(across, length(cross(longest, arm)) / size);
+    }
+    constexpr double on_a_line = 1e-6;
+    if (dimension() == 3 && across <= on_a_line * size) {
+      throw InputError(key, '"' + name + '"',
+                       "has all its points on a line through its centre, about which it can turn "
+                       "without moving them");
+    }
+    return size;
+  }
+
+  [[nodiscard]] Coordinates unit_normal(const RollerSpecification& spec,
+                                        const std::string& table) const {
+    const double size = length(spec.normal);
+    if (!(size > 0.0) || !std::isfinite(size)) {
+      throw InputError(table + ".normal", place_text(spec.normal, dimension()),
+                       "must be a direction");
+    }
+    return scaled<3>(1.0 / size, spec.normal);
+  }
+
+  void make_rollers(std::size_t k) {
+    const RollerSpecification& spec = of_.rollers[k];
+    const std::string table = indexed("rollers", k);
+    const std::array<Coordinates, 3> basis = basis_of(unit_normal(spec, table), dimension());
+    Restraint restraint{
+        Restraint::Kind::rollers, table + ".set", spec.name(), {}, basis[0], 0, 0.0};
+    const std::vector<Index>& members = points_of_set(points_, spec.set, table + ".set");
+    Index common = -1;
+    const bool is_free = spec.displacement == "free";
+    if (is_free) {
+      common = made_.constraints.add_handle(centre_of(members));
+      leave_unused(common, 1);
+      restraint.handles.push_back(common);
+    }
+    for (const Index member : members) {
+      hold(member, table + ".set", "the roller of set " + spec.set);
+      const Coordinates place = points_.position(member);
+      const Index own = made_.constraints.add_handle(place);
+      if (!is_free) {
+        prescribe(table + ".displacement", spec.displacement, dof(own, 0), 1.0, &place);
+        restraint.handles.push_back(own);
+      } else {
+        made_.unused.push_back(dof(own, 0));
+      }
+      std::vector<Dependence> masters{{own, {}}};
+      if (common >= 0) masters.push_back({common, {}});
+      for (std::size_t r = 0; r < std::size_t(dimension()); ++r) {
+        for (std::size_t c = 0; c < std::size_t(dimension()); ++c) {
+          masters.front().block[r][c] = basis[c][r];
+        }
+        if (common >= 0) masters.back().block[r][0] = basis[0][r];
+      }
+      made_.constraints.follow(member, {true, true, true}, std::move(masters));
+    }
+    made_.restraints.push_back(std::move(restraint));
+  }
+
+  /// A roller that touches the body at a place or along a line: the mean of the nearest points'
+  /// displacements, weighted so that it is that of the place, is held along the normal.
+  void make_touching_roller(std::size_t k) {
+    const RollerSpecification& spec = of_.rollers[k];
+    const std::string table = indexed("rollers", k);
+    const std::array<Coordinates, 3> basis = basis_of(unit_normal(spec, table), dimension());
+    Restraint restraint{
+        Restraint::Kind::rollers, table + ".set", spec.name(), {}, basis[0], 0, 0.0};
+    const Coordinates along = spec.to ? minus<3>(*spec.to, *spec.at) : Coordinates{};
+    const int stations =
+        std::max(1, static_cast<int>(std::lround(length(along) / points_.spacing)));
+    for (int station = 0; station < stations; ++station) {
+      const double share = spec.to ? (station + 0.5) / stations : 0.0;
+      const Coordinates place = plus<3>(*spec.at, scaled<3>(share, along));
+      const Index value = made_.constraints.add_handle(place);
+      leave_unused(value, 1);
+      prescribe(table + ".displacement", spec.displacement, dof(value, 0), 1.0, &place);
+      restraint.handles.push_back(value);
+      LinearRow row{table + ".at", "the roller " + spec.name(), {}, dof(value, 0)};
+      for (const auto& [point, weight] : nearest(place, basis, table)) {
+        for (int c = 0; c < dimension(); ++c) {
+          row.add(dof(point, c), weight * basis[0][std::size_t(c)]);
+        }
+        refuse_follower(point, table + ".at", "the roller " + spec.name());
+      }
+      rows_.push_back(std::move(row));
+    }
+    made_.restraints.push_back(std::move(restraint));
+  }
+
+  /// Points of the row at a place, with hat functions as weights: they reproduce linear fields.
+  [[nodiscard]] std::vector<std::pair<Index, double>> nearest(
+      const Coordinates& place, const std::array<Coordinates, 3>& basis,
+      const std::string& table) const {
+    const double reach = points_.spacing;
+    std::vector<std::pair<Index, double>> found;
+    std::vector<double> depth;
+    double least = std::numeric_limits<double>::infinity(), sum = 0.0;
+    for (Index i = 0; i < points_.own(); ++i) {
+      const Coordinates arm = minus<3>(points_.position(i), place);
+      double weight = 1.0;
+      for (int c = 1; c < dimension(); ++c) {
+        weight *= 1.0 - std::abs(dot<3>(arm, basis[std::size_t(c)])) / reach;
+        if (weight <= 1e-9) break;
+      }
+      const double across = std::abs(dot<3>(arm, basis[0]));
+      if (weight <= 1e-9 || across > 2.0 * reach) continue;
+      found.emplace_back(i, weight);
+      depth.push_back(across);
+      least = std::min(least, across);
+    }
+    std::vector<std::pair<Index, double>> row;
+    for (std::size_t k = 0; k < found.size(); ++k) {
+      if (depth[k] > least + 0.5 * reach) continue;
+      row.push_back(found[k]);
+      sum += found[k].second;
+    }
+    if (row.empty()) {
+      throw InputError(table + ".at", place_text(place, dimension()),
+                       "no points of the body are within two spacings of this place");
+    }
+    for (auto& [point, weight] : row) weight /= sum;
+    return row;
+  }
+
+  void refuse_follower(Index point, const std::string& key, const std::string& who) const {
+    const std::string& holder = holder_[std::size_t(point)];
+    if (holder.empty()) return;
+    throw InputError(key, "",
+                     who + " and " + holder +
+                         " contradict each other: both hold the "
+                         "point at " +
+                         place_text(points_.position(point), dimension()) + " m");
+  }
+
+  void make_linear(std::size_t k) {
+    const LinearConstraintSpecification& spec = of_.linear[k];
+    const std::string table = indexed("linear", k);
+    Restraint restraint{Restraint::Kind::linear, table + ".name", spec.name, {}, {}, 0, 0.0};
+    const Index value = made_.constraints.add_handle({});
+    leave_unused(value, 1);
+    prescribe(table + ".displacement", spec.displacement, dof(value, 0));
+    restraint.handles.push_back(value);
+    LinearRow row{table, "the linear constraint " + spec.name, {}, dof(value, 0)};
+    for (std::size_t t = 0; t < spec.terms.size(); ++t) {
+      const ControlTerm& term = spec.terms[t];
+      const std::string key = indexed(table + ".term", t);
+      const std::vector<Index>& members = points_of_set(points_, term.set, key + ".set");
+      for (const Index member : members) {
+        refuse_follower(member, key + ".set", "the linear constraint " + spec.name);
+        for (int c = 0; c < dimension(); ++c) {
+          row.add(dof(member, c), term.weights[std::size_t(c)] / double(members.size()));
+        }
+      }
+    }
+    rows_.push_back(std::move(row));
+    made_.restraints.push_back(std::move(restraint));
+  }
+
+  const Points& points_;
+  const ConstraintSpecification& of_;
+  const std::vector<char>& prescribed_;
+  const std::vector<std::string>& parameters_;
+  MadeConstraints made_;
+  std::vector<std::string> holder_;  // of each point: a rigid set or rollers; empty: none
+  LinearRows rows_;
+};
+
+}  // namespace
+
+MadeConstraints make_constraints(const Points& points, const ConstraintSpecification& of,
+                                 const std::vector<char>& prescribed,
+                                 const std::vector<std::string>& parameters) {
+  return Maker(points, of, prescribed, parameters).make();
+}
+
+}  // namespace peristat

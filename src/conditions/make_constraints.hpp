@@ -1,0 +1,51 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "src/conditions/constraint_specification.hpp"
+#include "src/constraints/constraints.hpp"
+#include "src/core/expression.hpp"
+
+namespace peristat {
+
+/// A generalised coordinate that follows the load parameters.
+struct HandlePrescription {
+  std::string key;
+  std::size_t dof;
+  Coordinates place;  ///< that its expression may ask for [m]
+  double factor;      ///< that its value is multiplied by
+  Expression value;
+};
+
+/// What holds a body besides its supports, for what is told of it.
+struct Restraint {
+  enum class Kind { rigid_set, rollers, linear, symmetry, period } kind;
+  std::string key, name;
+  std::vector<Index> handles{};  ///< rigid set: its translation; rollers and linear: of each value
+  Coordinates direction{};       ///< rollers: their normal
+  int axis = 0;                  ///< symmetry, period
+  double at = 0.0;               ///< symmetry [m]
+};
+
+/// Constraints with all that makes their handles move.
+struct MadeConstraints {
+  Constraints constraints;
+  std::vector<HandlePrescription> prescriptions{};
+  std::vector<std::size_t> unused{};  ///< components of handles that stand for nothing
+  std::vector<Restraint> restraints{};
+};
+
+/// @param points with their images
+/// @param prescribed by supports, per degree of freedom of the points
+/// @param parameters names of the load parameters
+/// @throws InputError ("rigid_sets[k].…", "rollers[k].…", "linear[k].…", "periods[k].…") for sets
+///         that are unknown, points that two of them or a support hold, a rigid set that its points
+///         do not span, expressions that can't be read, constraints that contradict or repeat
+///         others
+[[nodiscard]] MadeConstraints make_constraints(const Points& points,
+                                               const ConstraintSpecification& of,
+                                               const std::vector<char>& prescribed,
+                                               const std::vector<std::string>& parameters);
+
+}  // namespace peristat

@@ -1,0 +1,136 @@
+#pragma once
+
+#include <array>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "src/constraints/rotation.hpp"
+#include "src/core/types.hpp"
+#include "src/geometry/points.hpp"
+
+namespace peristat {
+
+/// A share of a point's displacement: `block` (row major, in the corner of 3 x 3) times the
+/// components of another point or handle.
+struct Dependence {
+  Index master = 0;
+  Tensor block{};
+};
+
+/// Degrees of freedom that follow others, which leave the equations (master and slave elimination):
+///
+///   u = phi(q),   R_q = J^T (f - dE/du),   K_q = J^T K J + (dE/du - f) . d2 phi / dq2
+///
+/// with J = d phi / dq, so that the tangent keeps its symmetry and, where it had it, its
+/// definiteness. Arrays have, after the body's points, one more entry of `dimension` numbers per
+/// handle: generalised coordinates that stand for no point, like the rotation of a rigid set.
+///
+/// A dependent component is a function of others that depend on nothing, with one exception: images
+/// follow sources that may themselves follow.
+class Constraints {
+ public:
+  /// With what the points' images follow. Each period has a handle, the jump of the displacement
+  /// over it [m].
+  explicit Constraints(const Points& points);
+
+  [[nodiscard]] bool none() const {
+    return followers_.empty() && rigid_.empty() && body_->images.source.empty();
+  }
+
+  /// Points and handles.
+  [[nodiscard]] Index rows() const { return points_ + static_cast<Index>(handles_.size()); }
+  [[nodiscard]] std::size_t dofs() const { return std::size_t(rows()) * std::size_t(dimension_); }
+  /// Where handles stand, for what asks for places [m].
+  [[nodiscard]] const std::vector<Coordinates>& handles() const { return handles_; }
+  /// Handle of the period across an axis; -1: none.
+  [[nodiscard]] Index period_handle(int axis) const { return period_[std::size_t(axis)]; }
+  /// Per degree of freedom, handles included: 1 where it follows others.
+  [[nodiscard]] const std::vector<char>& dependent() const { return dependent_; }
+
+  Index add_handle(const Coordinates& place);
+
+  /// Lets components of a point follow.
+  /// @param follows per component
+  /// @param masters rows of other components are zero
+  /// @throws std::logic_error if one of them follows already
+  void follow(Index point, const std::array<bool, 3>& follows, std::vector<Dependence> masters);
+
+  /// Lets points follow a rigid motion about a centre: u = c + (R(theta) - I)(X - centre), c the
+  /// components of one handle and theta those of another, divided by `size` [m] (2D: its first
+  /// one).
+  struct RigidSet {
+    std::vector<Index> members;
+    Coordinates centre{};
+    double size = 1.0;
+    Index translation = 0, rotation = 0;  ///< handles
+  };
+  void follow(RigidSet set);
+
+  [[nodiscard]] const std::vector<RigidSet>& rigid_sets() const { return rigid_; }
+
+  /// Rotation vector of a rigid set [rad].
+  [[nodiscard]] Coordinates rotation(const RigidSet& set,
+                                     std::span<const double> displacement) const;
+
+  /// Moves whatever follows.
+  void move(std::span<double> displacement) const;
+
+  /// Lets a rate of displacements include what follows: J times that of the others.
+  void extend(std::span<const double> displacement, std::span<double> rate) const;
+
+  /// Takes derivatives by all displacements to those that nothing prescribes: adds J^T (dE/du - f)
+  /// of what follows to the gradient's entries of its masters. Entries of what follows keep the
+  /// whole force that acts there.
+  void fold(std::span<const double> displacement, std::span<const double> external_force,
+            std::span<double> gradient) const;
+
+  /// The rows of J of a point: itself as far as it does not follow, and its masters.
+  [[nodiscard]] std::vector<Dependence> dependences(Index point,
+                                                    std::span<const double> displacement) const;
+  /// Whether a point or handle follows nothing.
+  [[nodiscard]] bool stands_alone(Index row) const {
+    return row >= points_ || role_[std::size_t(row)].kind == Role::Kind::alone;
+  }
+
+  /// What the curvature of phi adds to K_q: for each rigid set the block of its rotation [N/m].
+  /// @param gradient folded
+  [[nodiscard]] std::vector<Tensor> curvature(std::span<const double> displacement,
+                                              std::span<const double> external_force,
+                                              std::span<const double> gradient) const;
+
+ private:
+  struct Role {
+    enum class Kind : char { alone, follower, rigid, image } kind = Kind::alone;
+    Index number = 0;  ///< in followers_ or rigid_
+  };
+  struct Follower {
+    Index point;
+    std::array<bool, 3> follows;
+    std::vector<Dependence> masters;
+  };
+  [[nodiscard]] Coordinates arm(const RigidSet& set, Index member) const;
+  [[nodiscard]] std::size_t dof(Index row, int component = 0) const {
+    return std::size_t(row) * std::size_t(dimension_) + std::size_t(component);
+  }
+  void give_role(Index point, Role role, const std::array<bool, 3>& follows);
+  [[nodiscard]] std::vector<Dependence> of_rigid(const RigidSet& set, const Rotation& turned,
+                                                 Index member) const;
+  [[nodiscard]] Coordinates moved_by(const std::vector<Dependence>& masters,
+                                     std::span<const double> displacement) const;
+  void move_followers(std::span<double> displacement) const;
+  void move_images(std::span<double> displacement) const;
+  void fold_images(std::span<double> gradient) const;
+
+  const Points* body_;
+  int dimension_;
+  Index points_;
+  std::vector<Coordinates> handles_;
+  std::array<Index, 3> period_{-1, -1, -1};
+  std::vector<char> dependent_;
+  std::vector<Follower> followers_;
+  std::vector<RigidSet> rigid_;
+  std::vector<Role> role_;  ///< per point
+};
+
+}  // namespace peristat

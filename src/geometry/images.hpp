@@ -1,0 +1,54 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "src/core/types.hpp"
+
+namespace peristat {
+
+struct Points;
+
+/// A plane of symmetry across an axis, on one side of which the body lies.
+struct SymmetryPlane {
+  int axis = 0;
+  double at = 0.0;  ///< [m]
+};
+
+/// Two sides across an axis of which one is the other's continuation.
+struct Period {
+  int axis = 0;
+  double from = 0.0, to = 0.0;  ///< [m]
+};
+
+/// How an image follows its source: X' = mirror X + shift, per component.
+struct ImageKind {
+  std::array<double, 3> mirror{1.0, 1.0, 1.0};  ///< -1 across a plane of symmetry
+  Coordinates shift{};                          ///< [m]
+  std::array<int, 3> periods{};                 ///< per axis, how many of them it is away
+
+  [[nodiscard]] Coordinates place(const Coordinates& of_source) const {
+    Coordinates at{};
+    for (std::size_t c = 0; c < 3; ++c) at[c] = mirror[c] * of_source[c] + shift[c];
+    return at;
+  }
+};
+
+/// The last points of a body, which stand for others beyond planes of symmetry and periodic sides.
+struct Images {
+  std::vector<ImageKind> kinds;
+  std::vector<Index> source;      ///< of each image
+  std::vector<std::size_t> kind;  ///< of each image
+};
+
+/// Adds the images that lie within a horizon of the body's points.
+/// @throws InputError ("symmetries[k].…", "periods[k].…") for a plane that runs through points or
+///         does not mirror the lattice, points on both sides of it, points beyond a period, or two
+///         that share an axis
+void add_images(Points& points, const std::vector<SymmetryPlane>& planes,
+                const std::vector<Period>& periods, double horizon);
+
+/// The points that stand for themselves.
+[[nodiscard]] Points without_images(const Points& points);
+
+}  // namespace peristat
