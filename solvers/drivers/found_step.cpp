@@ -116,7 +116,7 @@ Advance accept(Path& path, Attempt attempt, FoundStep found, double next) {
   state.ledger.accept(found.ledger, path.working_force(attempt.state, attempt.external_force),
                       found.energies);
   if (found.growth.breaking > 0) {
-    state.pins.find(path.body().assembler, state.accepted, path.setting().conditions.prescribed(),
+    state.pins.find(path.body().assembler, state.accepted, path.setting().conditions,
                     path.options().fragments);
   }
   complete_record(path, attempt, found);

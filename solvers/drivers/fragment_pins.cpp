@@ -14,10 +14,11 @@ void remove_pieces(Fragments& found, const std::vector<char>& prescribed, int di
   const auto d = std::size_t(dimension);
   std::vector<char> removed(std::size_t(found.count) + 1, 1);
   removed[0] = 0;  // the pieces that are held
-  for (std::size_t dof = 0; dof < prescribed.size(); ++dof) {
+  const std::size_t dofs = found.piece.size() * d;
+  for (std::size_t dof = 0; dof < dofs; ++dof) {
     if (prescribed[dof]) removed[std::size_t(found.piece[dof / d])] = 0;
   }
-  for (std::size_t dof = 0; dof < prescribed.size(); ++dof) {
+  for (std::size_t dof = 0; dof < dofs; ++dof) {
     found.pinned[dof] |= removed[std::size_t(found.piece[dof / d])];
   }
 }
@@ -25,10 +26,11 @@ void remove_pieces(Fragments& found, const std::vector<char>& prescribed, int di
 }  // namespace
 
 void FragmentPins::find(const Assembler& assembler, const State& state,
-                        const std::vector<char>& prescribed, FragmentRemedy remedy) {
+                        const Conditions& conditions, FragmentRemedy remedy) {
+  const std::vector<char>& prescribed = conditions.prescribed();
   found = find_fragments(assembler.points(), assembler.model().bonds(),
                          broken_bonds(assembler.model(), state.history), prescribed,
-                         state.displacement);
+                         state.displacement, conditions.holding(state.displacement));
   if (remedy == FragmentRemedy::remove) {
     remove_pieces(found, prescribed, assembler.points().dimension);
   }

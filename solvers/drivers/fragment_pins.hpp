@@ -24,8 +24,7 @@ struct FragmentPins {
   std::vector<char> pinned;  ///< per degree of freedom; empty before anything was
 
   /// Looks for what has come off in a state; nothing is pinned yet.
-  /// @param prescribed per degree of freedom
-  void find(const Assembler& assembler, const State& state, const std::vector<char>& prescribed,
+  void find(const Assembler& assembler, const State& state, const Conditions& conditions,
             FragmentRemedy remedy);
 
   /// Whether what was found last asks for other pins than there are.

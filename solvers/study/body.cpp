@@ -95,6 +95,10 @@ void store_interactions(Body& body, int threads) {
   for (const auto& term : body.model.terms()) term->store(body.points, threads);
 }
 
+std::vector<double> at_rest(const Body& body) {
+  return std::vector<double>(body.conditions->constraints().dofs(), 0.0);
+}
+
 }  // namespace
 
 double expected_bonds(double points, int dimension, double horizon_ratio) {
@@ -191,13 +195,13 @@ std::vector<std::string> describe_interactions(const Body& body) {
 
 std::string describe_free_motions(const Body& body) {
   const std::vector<FreeMotion> parts =
-      free_motions(body.points, body.model.bonds(), body.conditions->prescribed());
+      free_motions(body.points, body.model.bonds(), body.conditions->holding(at_rest(body)));
   std::string text;
   constexpr std::size_t most_listed = 5;
   for (std::size_t k = 0; k < std::min(parts.size(), most_listed); ++k) {
     const FreeMotion& part = parts[k];
     const std::string place = place_text(body.points.position(part.example), body.points.dimension);
-    if (part.points == body.points.count()) {
+    if (part.points == body.points.own()) {
       text += "the whole body may ";
     } else if (part.points == 1) {
       text += "the isolated point at " + place + " m may ";
@@ -218,9 +222,10 @@ std::string describe_free_motions(const Body& body) {
 }
 
 std::string describe_loose_points(const Body& body) {
-  const std::vector<double> at_rest(body.points.reference.size(), 0.0);
+  const std::vector<double> rest = at_rest(body);
   const Fragments fragments =
-      find_fragments(body.points, body.model.bonds(), {}, body.conditions->prescribed(), at_rest);
+      find_fragments(body.points, body.model.bonds(), {}, body.conditions->prescribed(), rest,
+                     body.conditions->holding(rest));
   if (fragments.loose.empty()) return {};
   const std::size_t count = fragments.loose.size();
   return fmt::format(

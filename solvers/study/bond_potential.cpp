@@ -61,7 +61,7 @@ std::vector<char> never_failing_bonds(const BodySpecification& from, const Point
   }
   for (Index i = 0; i < bonds.points(); ++i) {
     for (Offset bond = bonds.offset[i]; bond < bonds.offset[i + 1]; ++bond) {
-      of_bond[bond] = of_point[i] | of_point[bonds.partner[bond]];
+      of_bond[bond] = of_point[points.source(i)] | of_point[points.source(bonds.partner[bond])];
     }
   }
   return of_bond;

@@ -308,4 +308,52 @@ std::map<std::string, Coordinates> Conditions::moments(std::span<const double> d
   return moments;
 }
 
+Holding Conditions::holding(std::span<const double> displacement) const {
+  const std::size_t d = std::size_t(points_.dimension);
+  Holding holding;
+  holding.prescribed.assign(prescribed_.begin(),
+                            prescribed_.begin() + std::ptrdiff_t(points_.reference.size()));
+  for (std::size_t dof = 0; dof < holding.prescribed.size(); ++dof) {
+    if (constraints().dependent()[dof]) holding.prescribed[dof] = 0;
+  }
+  const auto place = [&](Index row, Coordinates at) {
+    for (std::size_t c = 0; c < d; ++c) at[c] += displacement[std::size_t(row) * d + c];
+    return at;
+  };
+  for (const HeldSum& sum : made_.held_sums) {
+    HeldMotion motion{sum.front().first, {}, {}};
+    for (const auto& [point, weight] : sum) {
+      motion.along = plus<3>(motion.along, weight);
+      motion.about = plus<3>(motion.about, cross(place(point, points_.position(point)), weight));
+      holding.links.push_back({motion.member, point});
+    }
+    holding.motions.push_back(motion);
+  }
+  for (const Constraints::RigidSet& set : constraints().rigid_sets()) {
+    for (const Index member : set.members) {
+      holding.links.push_back({set.members.front(), member});
+    }
+    const Coordinates centre = place(set.translation, set.centre);
+    const auto is_held = [&](Index handle, std::size_t c) {
+      return prescribed_[std::size_t(handle) * d + c] != 0;
+    };
+    for (std::size_t c = 0; c < 3; ++c) {
+      Coordinates axis{};
+      axis[c] = 1.0;
+      if (c < d && is_held(set.translation, c)) {
+        holding.motions.push_back({set.members.front(), axis, cross(centre, axis)});
+      }
+      const bool is_about = d == 3 ? is_held(set.rotation, c) : c == 2 && is_held(set.rotation, 0);
+      if (is_about) holding.motions.push_back({set.members.front(), {}, axis});
+    }
+  }
+  for (int axis = 0; axis < points_.dimension; ++axis) {
+    const Index handle = constraints().period_handle(axis);
+    for (std::size_t c = 0; handle >= 0 && c < d; ++c) {
+      holding.free_jump[std::size_t(axis)][c] = !prescribed_[std::size_t(handle) * d + c];
+    }
+  }
+  return holding;
+}
+
 }  // namespace peristat

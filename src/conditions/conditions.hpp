@@ -11,6 +11,7 @@
 #include "src/conditions/loading_programme.hpp"
 #include "src/conditions/make_constraints.hpp"
 #include "src/conditions/specification.hpp"
+#include "src/connectivity/holding.hpp"
 #include "src/core/expression.hpp"
 #include "src/geometry/points.hpp"
 
@@ -46,6 +47,9 @@ class Conditions {
 
   /// Whether a degree of freedom has no equation: it is prescribed, or follows others.
   [[nodiscard]] const std::vector<char>& prescribed() const { return prescribed_; }
+
+  /// What holds pieces of the body, at a displacement.
+  [[nodiscard]] Holding holding(std::span<const double> displacement) const;
 
   /// Overwrites the prescribed entries with their displacement [m] at a point of the programme.
   /// @throws InputError if one is not finite, or two supports contradict each other there

@@ -219,6 +219,12 @@ class Maker {
       } else {
         made_.unused.push_back(dof(own, 0));
       }
+      if (!is_free) {
+        made_.held_sums.push_back({{member, basis[0]}});
+      } else if (member != members.front()) {
+        made_.held_sums.push_back(
+            {{member, basis[0]}, {members.front(), scaled<3>(-1.0, basis[0])}});
+      }
       std::vector<Dependence> masters{{own, {}}};
       if (common >= 0) masters.push_back({common, {}});
       for (std::size_t r = 0; r < std::size_t(dimension()); ++r) {
@@ -250,13 +256,16 @@ class Maker {
       leave_unused(value, 1);
       prescribe(table + ".displacement", spec.displacement, dof(value, 0), 1.0, &place);
       restraint.handles.push_back(value);
+      HeldSum held;
       LinearRow row{table + ".at", "the roller " + spec.name(), {}, dof(value, 0)};
       for (const auto& [point, weight] : nearest(place, basis, table)) {
         for (int c = 0; c < dimension(); ++c) {
           row.add(dof(point, c), weight * basis[0][std::size_t(c)]);
         }
         refuse_follower(point, table + ".at", "the roller " + spec.name());
+        held.emplace_back(point, scaled<3>(weight, basis[0]));
       }
+      made_.held_sums.push_back(std::move(held));
       rows_.push_back(std::move(row));
     }
     made_.restraints.push_back(std::move(restraint));
@@ -316,6 +325,7 @@ class Maker {
     prescribe(table + ".displacement", spec.displacement, dof(value, 0));
     restraint.handles.push_back(value);
     LinearRow row{table, "the linear constraint " + spec.name, {}, dof(value, 0)};
+    HeldSum held;
     for (std::size_t t = 0; t < spec.terms.size(); ++t) {
       const ControlTerm& term = spec.terms[t];
       const std::string key = indexed(table + ".term", t);
@@ -325,8 +335,10 @@ class Maker {
         for (int c = 0; c < dimension(); ++c) {
           row.add(dof(member, c), term.weights[std::size_t(c)] / double(members.size()));
         }
+        held.emplace_back(member, scaled<3>(1.0 / double(members.size()), term.weights));
       }
     }
+    made_.held_sums.push_back(std::move(held));
     rows_.push_back(std::move(row));
     made_.restraints.push_back(std::move(restraint));
   }

@@ -28,12 +28,16 @@ struct Restraint {
   double at = 0.0;               ///< symmetry [m]
 };
 
+/// A sum of displacements, weighted by vectors, that a roller or linear constraint holds.
+using HeldSum = std::vector<std::pair<Index, Coordinates>>;
+
 /// Constraints with all that makes their handles move.
 struct MadeConstraints {
   Constraints constraints;
   std::vector<HandlePrescription> prescriptions{};
   std::vector<std::size_t> unused{};  ///< components of handles that stand for nothing
   std::vector<Restraint> restraints{};
+  std::vector<HeldSum> held_sums{};
 };
 
 /// @param points with their images

@@ -214,7 +214,31 @@ bool cuts(const Crack& crack, const Coordinates& a, const Coordinates& b) {
   return std::visit([&](const auto& kind) { return meets(kind, a, b, slack); }, crack);
 }
 
-CutBonds cut_bonds(Bonds& bonds, const Points& points, const std::vector<Crack>& cracks) {
+namespace {
+
+/// A crack beyond planes of symmetry and periodic sides, too.
+std::vector<Crack> with_images(const std::vector<Crack>& cracks, const Images& images) {
+  std::vector<Crack> all = cracks;
+  for (const ImageKind& kind : images.kinds) {
+    for (Crack crack : cracks) {
+      if (auto* segment = std::get_if<CrackSegment>(&crack)) {
+        segment->from = kind.place(segment->from);
+        segment->to = kind.place(segment->to);
+      } else {
+        for (Coordinates& vertex : std::get<CrackPolygon>(crack).vertices) {
+          vertex = kind.place(vertex);
+        }
+      }
+      all.push_back(std::move(crack));
+    }
+  }
+  return all;
+}
+
+}  // namespace
+
+CutBonds cut_bonds(Bonds& bonds, const Points& points, const std::vector<Crack>& of_body) {
+  const std::vector<Crack> cracks = with_images(of_body, points.images);
   std::vector<Box> boxes;
   for (const Crack& crack : cracks) {
     boxes.push_back(std::visit([](const auto& kind) { return box_around(kind); }, crack));

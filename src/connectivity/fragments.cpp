@@ -180,13 +180,14 @@ void pin_loose(const Web& web, const std::vector<Index>& loose, std::vector<Supp
 
 /// Numbers the pieces that float, in the order of Fragments::piece.
 void number_pieces(const std::vector<std::vector<Index>>& pieces, const Points& points,
-                   const std::vector<double>& positions, const std::vector<char>& prescribed,
+                   const std::vector<double>& positions, const Holding& holding,
                    Fragments& fragments) {
   std::vector<const std::vector<Index>*> floating;
   for (const std::vector<Index>& piece : pieces) {
-    if (free_rigid_motions(points.dimension, positions, piece, prescribed, points.spacing).count) {
-      floating.push_back(&piece);
-    }
+    if (points.is_image(piece.front())) continue;  // beyond reach of the body
+    const RigidMotions free = free_rigid_motions(
+        points.dimension, positions, piece, holding.prescribed, points.spacing, holding.motions);
+    if (free.count > 0) floating.push_back(&piece);
   }
   std::stable_sort(floating.begin(), floating.end(),
                    [](const auto* a, const auto* b) { return a->size() > b->size(); });
@@ -199,11 +200,16 @@ void number_pieces(const std::vector<std::vector<Index>>& pieces, const Points& 
 
 /// Connected components of the points that are not loose.
 std::vector<std::vector<Index>> cores_of(const Web& web, const Bonds& bonds,
-                                         const std::vector<char>& is_loose) {
+                                         const std::vector<char>& is_loose,
+                                         const std::vector<BondEnds>& links) {
   std::vector<char> apart(std::size_t(bonds.count()), 1);
   web.for_each_bond(
       [&](Index i, Index j, Offset bond) { apart[bond] = is_loose[i] || is_loose[j]; });
-  std::vector<std::vector<Index>> cores = connected_components(bonds, apart).members();
+  std::vector<BondEnds> of_cores;
+  for (const auto& [i, j] : links) {
+    if (!is_loose[i] && !is_loose[j]) of_cores.push_back({i, j});
+  }
+  std::vector<std::vector<Index>> cores = connected_components(bonds, apart, of_cores).members();
   std::erase_if(cores, [&](const std::vector<Index>& core) { return is_loose[core.front()]; });
   return cores;
 }
@@ -211,17 +217,19 @@ std::vector<std::vector<Index>> cores_of(const Web& web, const Bonds& bonds,
 }  // namespace
 
 Fragments find_fragments(const Points& points, const Bonds& bonds, std::span<const char> broken,
-                         const std::vector<char>& prescribed,
-                         std::span<const double> displacement) {
+                         const std::vector<char>& prescribed, std::span<const double> displacement,
+                         const Holding& of_body) {
   const int d = points.dimension;
   std::vector<double> positions = points.reference;
   for (std::size_t dof = 0; dof < positions.size(); ++dof) positions[dof] += displacement[dof];
   Web web(bonds, broken, d, std::move(positions));
 
+  const Holding holding = with_images(of_body, points, bonds, broken, web.positions());
   Fragments fragments;
   fragments.pinned.assign(prescribed.size(), 0);
-  std::vector<std::vector<Index>> cores = connected_components(bonds, broken).members();
-  number_pieces(cores, points, web.positions(), prescribed, fragments);
+  std::vector<std::vector<Index>> cores =
+      connected_components(bonds, broken, holding.links).members();
+  number_pieces(cores, points, web.positions(), holding, fragments);
 
   std::vector<Support> support = supports_of(web, points.count(), prescribed);
   fragments.loose = strip(web, support);
@@ -230,11 +238,12 @@ Fragments find_fragments(const Points& points, const Bonds& bonds, std::span<con
     for (Index i : fragments.loose) is_loose[i] = 1;
     pin_loose(web, fragments.loose, support, fragments.pinned);
     std::sort(fragments.loose.begin(), fragments.loose.end());
-    cores = cores_of(web, bonds, is_loose);
+    cores = cores_of(web, bonds, is_loose, holding.links);
   }
   for (const std::vector<Index>& core : cores) {
-    const RigidMotions free =
-        free_rigid_motions(d, web.positions(), core, prescribed, points.spacing);
+    if (points.is_image(core.front())) continue;
+    const RigidMotions free = free_rigid_motions(d, web.positions(), core, holding.prescribed,
+                                                 points.spacing, holding.motions);
     for (std::size_t dof : determinate_pins(free, web.positions(), core, prescribed)) {
       fragments.pinned[dof] = 1;
     }

@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "src/connectivity/holding.hpp"
 #include "src/geometry/points.hpp"
 #include "src/neighbourhood/bonds.hpp"
 
@@ -57,11 +58,13 @@ inline constexpr double independence_tolerance = 2.5e-7;
 /// their points has bonds enough and the core counts as rigid, yet parts of it can turn.
 ///
 /// @param broken one flag per bond, or empty: none is broken
-/// @param prescribed per degree of freedom
+/// @param prescribed per degree of freedom: it has no equation
 /// @param displacement per degree of freedom [m]
+/// @param holding what holds pieces, in this state
 [[nodiscard]] Fragments find_fragments(const Points& points, const Bonds& bonds,
                                        std::span<const char> broken,
                                        const std::vector<char>& prescribed,
-                                       std::span<const double> displacement);
+                                       std::span<const double> displacement,
+                                       const Holding& holding);
 
 }  // namespace peristat

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "src/connectivity/holding.hpp"
 #include "src/geometry/points.hpp"
 #include "src/neighbourhood/bonds.hpp"
 
@@ -20,8 +21,15 @@ struct Components {
 
 /// Numbered by their lowest points.
 /// @param broken one flag per bond; flagged bonds do not connect. Empty: all bonds do.
-[[nodiscard]] Components connected_components(const Bonds& bonds,
-                                              std::span<const char> broken = {});
+/// @param links pairs of points that are connected, too
+[[nodiscard]] Components connected_components(const Bonds& bonds, std::span<const char> broken = {},
+                                              std::span<const BondEnds> links = {});
+
+/// With what ties images to their sources, as far as unbroken bonds join them to the body: links,
+/// and motions that would part them.
+/// @param positions of the points, points x dimension [m]
+[[nodiscard]] Holding with_images(Holding holding, const Points& points, const Bonds& bonds,
+                                  std::span<const char> broken, std::span<const double> positions);
 
 /// Rigid motions that the supports leave to one connected component of the bond graph.
 struct FreeMotion {
@@ -33,6 +41,6 @@ struct FreeMotion {
 /// All components that may move as rigid bodies, largest first; empty if everything is held.
 /// Decided by the rank of the prescribed components on the rigid motions of each component.
 [[nodiscard]] std::vector<FreeMotion> free_motions(const Points& points, const Bonds& bonds,
-                                                   const std::vector<char>& prescribed);
+                                                   const Holding& holding);
 
 }  // namespace peristat

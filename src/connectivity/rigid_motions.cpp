@@ -6,6 +6,8 @@
 
 #include <Eigen/Dense>
 
+#include "src/measures/small_algebra.hpp"
+
 namespace peristat {
 namespace {
 
@@ -36,6 +38,20 @@ PointMotions rigid_motions(const Eigen::Vector3d& arm, int dimension, double siz
       0, 1, 0, -a.z(), 0, a.x(),        //
       0, 0, 1, a.y(), -a.x(), 0;
   return motion;
+}
+
+/// A held motion by the motions about a centre, as rigid_motions has them; of length one.
+Eigen::RowVectorXd row_of(const HeldMotion& motion, const Eigen::Vector3d& centre, int dimension,
+                          double size) {
+  const Coordinates from_centre{centre.x(), centre.y(), centre.z()};
+  const Coordinates about =  // r is about the centre
+      scaled<3>(1.0 / size, minus<3>(motion.about, cross(from_centre, motion.along)));
+  Eigen::RowVectorXd row = Eigen::RowVectorXd::Zero(dimension * (dimension + 1) / 2);
+  for (int c = 0; c < dimension; ++c) row(c) = motion.along[std::size_t(c)];
+  if (dimension == 2) row(2) = about[2];
+  for (int c = 0; dimension == 3 && c < 3; ++c) row(3 + c) = about[std::size_t(c)];
+  const double norm = row.norm();
+  return norm > 0.0 ? Eigen::RowVectorXd(row / norm) : row;
 }
 
 /// Orthonormal basis of the vectors that a positive semi-definite matrix maps to zero (or, with
@@ -84,7 +100,7 @@ Eigen::Map<const Eigen::MatrixXd> basis_of(const RigidMotions& motions) {
 
 RigidMotions free_rigid_motions(int dimension, std::span<const double> positions,
                                 std::span<const Index> members, const std::vector<char>& prescribed,
-                                double smallest_size) {
+                                double smallest_size, std::span<const HeldMotion> held_motions) {
   const int d = dimension;
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();
   for (Index i : members) centre += vector_of(positions, i, d);
@@ -100,6 +116,11 @@ RigidMotions free_rigid_motions(int dimension, std::span<const double> positions
     for (int c = 0; c < d; ++c) {
       if (prescribed[std::size_t(i) * d + c]) held += motion.row(c).transpose() * motion.row(c);
     }
+  }
+  for (const HeldMotion& motion : held_motions) {
+    if (!std::binary_search(members.begin(), members.end(), motion.member)) continue;
+    const Eigen::RowVectorXd row = row_of(motion, centre, d, size);
+    held += row.transpose() * row;
   }
   // A straight row of points does not move when it turns about itself: such motions do not count.
   const Eigen::MatrixXd moving = null_space(gram, double(members.size()), true);

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "src/connectivity/holding.hpp"
 #include "src/core/types.hpp"
 
 namespace peristat {
@@ -27,11 +28,13 @@ struct RigidMotions {
 /// @param positions where the points are, points x dimension, row major [m]
 /// @param members the points of the set
 /// @param prescribed per degree of freedom
+/// @param held what else is; motions of other points are passed over
 /// @param smallest_size lower bound of the size, that of a set of one point [m]
 [[nodiscard]] RigidMotions free_rigid_motions(int dimension, std::span<const double> positions,
                                               std::span<const Index> members,
                                               const std::vector<char>& prescribed,
-                                              double smallest_size);
+                                              double smallest_size,
+                                              std::span<const HeldMotion> held = {});
 
 /// "move along x", "rotate about z", …
 [[nodiscard]] std::vector<std::string> motion_names(const RigidMotions& motions);

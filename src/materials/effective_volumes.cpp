@@ -14,6 +14,11 @@ constexpr double orders = Measure::arms == 2 ? 2.0 : 6.0;
 /// + n^2)/2: their weights vanish with them instead of sharing what is left.
 double divisor(double count) { return count >= 1.0 ? count : 0.5 * (1.0 + count * count); }
 
+/// What a point beyond a plane of symmetry contributes to an interaction belongs to its twin.
+double own_volume(const Points& points, Index point) {
+  return points.is_image(point) ? 0.0 : points.volume[std::size_t(point)];
+}
+
 }  // namespace
 
 double effective_neighbour_volume(const BulkNeighbourhood& bulk) {
@@ -23,7 +28,7 @@ double effective_neighbour_volume(const BulkNeighbourhood& bulk) {
 void set_one_neighbour_weights(Bonds& bonds, const Points& points, const BulkNeighbourhood& bulk) {
   const double v1 = effective_neighbour_volume(bulk);
   bonds.set_weights([&](Index i, Offset bond) {
-    return 0.5 * (points.volume[i] + points.volume[bonds.partner[bond]]) * v1;
+    return 0.5 * (own_volume(points, i) + own_volume(points, bonds.partner[bond])) * v1;
   });
 }
 
@@ -50,7 +55,8 @@ std::vector<double> weight_shares(const Points& points,
                                   const std::vector<double>& effective_volume) {
   std::vector<double> shares(effective_volume.size());
   for (std::size_t a = 0; a < shares.size(); ++a) {
-    shares[a] = orders<Measure> / (Measure::arms + 1) * points.volume[a] * effective_volume[a];
+    shares[a] =
+        orders<Measure> / (Measure::arms + 1) * own_volume(points, Index(a)) * effective_volume[a];
   }
   return shares;
 }

@@ -102,7 +102,9 @@ std::optional<Model> make_elastic_stand_in(const Case& from, const Body& body, i
     setting.horizon = from.solver.elastic_horizon_ratio * body.points.spacing;
     Bonds bonds = make_bonds(body.points, from.surface_correction, setting, threads);
     static_cast<void>(cut_bonds(bonds, body.points, from.cracks));
-    if (!free_motions(body.points, bonds, body.conditions->prescribed()).empty())
+    const Holding holding =
+        body.conditions->holding(std::vector<double>(body.conditions->constraints().dofs(), 0.0));
+    if (!free_motions(body.points, bonds, holding).empty())
       throw InputError(key, number_text(from.solver.elastic_horizon_ratio),
                        "leaves points that may move freely");
     MaterialSpecification elastic = from.material;

@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <sstream>
 
 #include <fmt/format.h>
 
+#include "assembly/operators/constrained_tangent.hpp"
 #include "cases/runner/build/body.hpp"
 #include "solvers/linear/vector_verbs.hpp"
 #include "src/core/expression.hpp"
@@ -54,15 +56,90 @@ std::vector<double> displacement_of(const std::string& deformation, const Points
   return displacement;
 }
 
+/// Gives handles the values that fit a deformation of the points best, each by itself.
+void fit_handles(const Constraints& constraints, const Points& points,
+                 std::vector<double>& displacement) {
+  const std::size_t d = std::size_t(points.dimension);
+  displacement.resize(constraints.dofs(), 0.0);
+  const std::vector<double> rest(displacement.size(), 0.0);
+  std::vector<double> sum(displacement.size(), 0.0), weight(displacement.size(), 0.0);
+  for (Index i = 0; i < points.count(); ++i) {
+    if (constraints.stands_alone(i)) continue;
+    Coordinates left{};
+    const std::vector<Dependence> all = constraints.dependences(i, rest);
+    for (std::size_t r = 0; r < d; ++r) {
+      left[r] = displacement[std::size_t(i) * d + r];
+      for (const Dependence& on : all) {
+        if (on.master >= points.count()) continue;
+        for (std::size_t c = 0; c < d; ++c) {
+          left[r] -= on.block[r][c] * displacement[std::size_t(on.master) * d + c];
+        }
+      }
+    }
+    for (const Dependence& on : all) {
+      if (on.master < points.count()) continue;
+      for (std::size_t c = 0; c < d; ++c) {
+        for (std::size_t r = 0; r < d; ++r) {
+          sum[std::size_t(on.master) * d + c] += on.block[r][c] * left[r];
+          weight[std::size_t(on.master) * d + c] += on.block[r][c] * on.block[r][c];
+        }
+      }
+    }
+  }
+  for (std::size_t dof = points.reference.size(); dof < displacement.size(); ++dof) {
+    if (weight[dof] > 0.0) displacement[dof] = sum[dof] / weight[dof];
+  }
+}
+
+/// The energy as a function of what follows nothing, without loads.
+class Reduced {
+ public:
+  Reduced(Assembler& assembler, const Constraints& constraints)
+      : assembler_(assembler), constraints_(constraints) {}
+
+  /// Moves what follows, and finds the gradient, which is zero there.
+  Evaluation gradient(std::vector<double> displacement, const History& history,
+                      std::vector<double>& gradient) const {
+    if (constraints_.none()) return assembler_.gradient({displacement, history}, gradient);
+    constraints_.move(displacement);
+    const Evaluation found = assembler_.gradient({displacement, history}, gradient);
+    constraints_.fold(displacement, no_load(), gradient);
+    for (std::size_t dof = 0; dof < gradient.size(); ++dof) {
+      if (constraints_.dependent()[dof]) gradient[dof] = 0.0;
+    }
+    return found;
+  }
+
+  /// Of rigid sets, at a displacement at which what follows has moved.
+  [[nodiscard]] std::vector<Tensor> curvature(const std::vector<double>& displacement,
+                                              const History& history) const {
+    std::vector<double> forces(displacement.size());
+    static_cast<void>(assembler_.gradient({displacement, history}, forces));
+    constraints_.fold(displacement, no_load(), forces);
+    return constraints_.curvature(displacement, no_load(), forces);
+  }
+
+ private:
+  [[nodiscard]] std::vector<double> no_load() const {
+    return std::vector<double>(constraints_.dofs(), 0.0);
+  }
+
+  Assembler& assembler_;
+  const Constraints& constraints_;
+};
+
 /// Fixed pseudo-random direction with entries of the size of the spacing.
-std::vector<double> test_direction(const Points& points) {
-  std::vector<double> direction(points.reference.size());
+std::vector<double> test_direction(const Points& points, const std::vector<char>& dependent) {
+  std::vector<double> direction(dependent.size());
   std::uint64_t state = 88172645463325252ULL;
   for (double& entry : direction) {
     state ^= state << 13;
     state ^= state >> 7;
     state ^= state << 17;
     entry = points.spacing * (2.0 * double(state >> 11) / 9007199254740992.0 - 1.0);
+  }
+  for (std::size_t dof = 0; dof < direction.size(); ++dof) {
+    if (dependent[dof]) direction[dof] = 0.0;
   }
   return direction;
 }
@@ -115,7 +192,7 @@ double keep_off_kinks(const Body& body, const std::vector<double>& displacement,
         return std::abs(stretch - kink) < margin;
       });
       if (!close) continue;
-      for (const Index point : {i, j}) {
+      for (const Index point : {points.source(i), points.source(j)}) {
         std::fill_n(direction.begin() + std::ptrdiff_t(std::size_t(point) * d), d, 0.0);
       }
     }
@@ -220,7 +297,7 @@ std::vector<std::size_t> sampled_dofs(const Body& body, const std::vector<double
 
 /// Entries of the columns of some degrees of freedom in their own rows, by central differences of
 /// the gradient with steps h, h/2 and h/4 and Richardson's extrapolation: an error of order h^6.
-std::vector<double> differenced_block(Assembler& assembler, const StateView& at,
+std::vector<double> differenced_block(const Reduced& body, const StateView& at,
                                       const std::vector<std::size_t>& dofs, double step) {
   const std::size_t count = dofs.size();
   const std::span<const double> displacement = at.displacement;
@@ -231,9 +308,9 @@ std::vector<double> differenced_block(Assembler& assembler, const StateView& at,
     double h = step;
     for (const double weight : weights) {
       shifted[dofs[j]] = displacement[dofs[j]] + h;
-      static_cast<void>(assembler.gradient({shifted, at.history}, forward));
+      static_cast<void>(body.gradient(shifted, at.history, forward));
       shifted[dofs[j]] = displacement[dofs[j]] - h;
-      static_cast<void>(assembler.gradient({shifted, at.history}, backward));
+      static_cast<void>(body.gradient(shifted, at.history, backward));
       for (std::size_t i = 0; i < count; ++i) {
         block[i * count + j] += weight * (forward[dofs[i]] - backward[dofs[i]]) / (2.0 * h);
       }
@@ -270,17 +347,31 @@ Exit check_tangent(const Case& from, const std::string& deformation, int threads
   } catch (const InputError& error) {
     throw InputError("--deformation", error.value(), error.allowed());
   }
+  const Constraints& constraints = body.conditions->constraints();
+  if (!constraints.none()) {
+    fit_handles(constraints, points, displacement);
+    constraints.move(displacement);
+  }
   Assembler assembler(points, body.model, threads);
+  const Reduced reduced(assembler, constraints);
   const std::size_t dofs = displacement.size();
   std::vector<double> gradient(dofs), image(dofs), shifted(dofs), forward(dofs), backward(dofs);
   const History history = assembler.initial_history();
-  const Evaluation found = assembler.gradient({displacement, history}, gradient);
+  std::vector<double> internal_force(points.reference.size());  // folded onto nothing
+  static_cast<void>(assembler.gradient({displacement, history}, internal_force));
+  const Evaluation found = reduced.gradient(displacement, history, gradient);
   if (found.degenerate) {
     throw InputError("--deformation", '"' + text + '"', "collapses a bond to zero length");
   }
-  Tangent tangent(assembler);
-  assembler.tangent({displacement, history}, tangent);
-  std::vector<double> direction = test_direction(points);
+  const std::unique_ptr<Tangent> made_tangent =
+      constraints.none() ? std::make_unique<Tangent>(assembler)
+                         : std::make_unique<ConstrainedTangent>(assembler, constraints);
+  Tangent& tangent = *made_tangent;
+  const std::vector<Tensor> of_rigid_sets = reduced.curvature(displacement, history);
+  StateView state(displacement, history);
+  state.curvature = of_rigid_sets;
+  tangent.linearise(assembler, state, 0.0);
+  std::vector<double> direction = test_direction(points, constraints.dependent());
   const double largest_step = keep_off_kinks(body, displacement, gradient, direction, 0.05);
   tangent.multiply(direction, image);
   const double slope = dot(gradient, direction), curvature = dot(image, direction);
@@ -299,10 +390,10 @@ Exit check_tangent(const Case& from, const std::string& deformation, int threads
   for (int k = 0; k < halvings; ++k, step *= 0.5) {
     shifted = displacement;
     add_scaled(shifted, step, direction);
-    const double energy_forward = assembler.gradient({shifted, history}, forward).energy;
+    const double energy_forward = reduced.gradient(shifted, history, forward).energy;
     shifted = displacement;
     add_scaled(shifted, -step, direction);
-    const double energy_backward = assembler.gradient({shifted, history}, backward).energy;
+    const double energy_backward = reduced.gradient(shifted, history, backward).energy;
     const double difference = (energy_forward - energy_backward) / (2.0 * step);
     residual_errors.push_back(std::abs(difference - slope) / energy_scale);
     add_scaled(forward, -1.0, backward);
@@ -315,7 +406,7 @@ Exit check_tangent(const Case& from, const std::string& deformation, int threads
   for (const double entry : direction) fastest = std::max(fastest, std::abs(entry));
   const double sample_step = std::min(0.01 * points.spacing, 0.25 * largest_step * fastest);
   const double asymmetry = asymmetry_of(
-      differenced_block(assembler, {displacement, history}, sample, sample_step), sample.size());
+      differenced_block(reduced, {displacement, history}, sample, sample_step), sample.size());
 
   const Convergence of_residual = convergence_of(residual_errors);
   const Convergence of_tangent = convergence_of(tangent_errors);
@@ -335,8 +426,9 @@ Exit check_tangent(const Case& from, const std::string& deformation, int threads
       "  \"tangent_order\": {}\n"
       "}}\n",
       text, found.energy, norm(gradient), tangent.frobenius_norm(), asymmetry,
-      relative_force_sum(points, gradient), relative_moment_sum(points, displacement, gradient),
-      of_residual.error, of_tangent.error, of_residual.order_text(), of_tangent.order_text());
+      relative_force_sum(points, internal_force),
+      relative_moment_sum(points, displacement, internal_force), of_residual.error,
+      of_tangent.error, of_residual.order_text(), of_tangent.order_text());
   return Exit::done;
 }
 

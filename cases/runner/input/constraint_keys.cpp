@@ -36,6 +36,7 @@ Table<RollerSpecification> roller_keys() {
        K("at", &Spec::at, coordinates(),
          "where a roller touches the body: the points next to it are held in the mean, weighted so "
          "that it is the displacement there")
+           .early()
            .one_of(),
        K("to", &Spec::to, coordinates(), "3D: other end of the line along which it touches")
            .unless(in_dimension<2>, "is for dimension 3: in 2D a roller touches at a point")

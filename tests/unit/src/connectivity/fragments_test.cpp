@@ -115,7 +115,7 @@ struct Web {
   }
 
   [[nodiscard]] Fragments find() const {
-    return find_fragments(points, bonds, broken, prescribed, displacement);
+    return find_fragments(points, bonds, broken, prescribed, displacement, {prescribed});
   }
 
   /// Stiffness of unit springs along the unbroken bonds, in the present state.
@@ -190,8 +190,8 @@ TEST(Fragments, AreNoneOfAnIntactBody) {
   for (int dimension : {1, 2, 3}) {
     const Web web = held_block(dimension);
     for (std::span<const char> broken : {std::span<const char>{}, std::span(web.broken)}) {
-      const Fragments fragments =
-          find_fragments(web.points, web.bonds, broken, web.prescribed, web.displacement);
+      const Fragments fragments = find_fragments(web.points, web.bonds, broken, web.prescribed,
+                                                 web.displacement, {web.prescribed});
       EXPECT_EQ(fragments.count, 0);
       EXPECT_EQ(fragments.piece, std::vector<std::int32_t>(web.points.volume.size(), 0));
       EXPECT_TRUE(fragments.loose.empty());

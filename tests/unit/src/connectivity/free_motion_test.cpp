@@ -46,7 +46,7 @@ struct Blocks {
   }
 
   [[nodiscard]] std::vector<FreeMotion> motions() const {
-    return free_motions(points, bonds, prescribed);
+    return free_motions(points, bonds, {prescribed});
   }
 
   /// Of the only component that may move.

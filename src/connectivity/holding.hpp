@@ -1,0 +1,28 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "src/core/types.hpp"
+#include "src/neighbourhood/bonds.hpp"
+
+namespace peristat {
+
+/// A rigid motion u(x) = t + r x x of the piece that a point belongs to may not have along.t +
+/// about.r.
+struct HeldMotion {
+  Index member = 0;
+  Coordinates along{}, about{};
+};
+
+/// What holds pieces beside their prescribed degrees of freedom.
+struct Holding {
+  /// Per degree of freedom of the points: prescribed by a support. What only follows others is not.
+  std::vector<char> prescribed;
+  std::vector<HeldMotion> motions{};
+  std::vector<BondEnds> links{};  ///< points that move together, bonded or not
+  /// Whether component [c] of the jump over the period across an axis [a] is free.
+  std::array<std::array<bool, 3>, 3> free_jump{};
+};
+
+}  // namespace peristat

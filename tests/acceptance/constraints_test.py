@@ -1,0 +1,347 @@
+"""Planes of symmetry, periodic cells, rigid sets, rollers and linear constraints."""
+
+import json
+import math
+
+import h5py
+import numpy
+
+from tests.acceptance.programme_test import Programmes
+from tests.reference.body import lattice_ball, micromodulus_factor
+from tests.reference.program import peristat
+
+# Two numberings of one system agree to the round-off of its solution: the condition of these small
+# bodies, 1e3, times that of a double.
+SAME_BODY = 1e-12
+
+PLATE = """\
+dimension = {dimension}
+[lattice]
+spacing = 1e-3
+horizon_ratio = 3.015
+{thickness}
+[[lattice.shape]]
+add = "box"
+min = {low}
+max = {high}
+{hole}
+[[lattice.layer]]
+name = "top"
+side = "y+"
+thickness = 2
+{layers}
+[material]
+{material}
+[quadrature]
+surface_correction = "{correction}"
+[[support]]
+set = "top"
+displacement = ["0", "{pull}*load"{third}]
+{supports}
+{planes}
+[solver]
+relative_tolerance = 1e-12
+"""
+BONDS = 'model = "bond"\nplane = "stress"\nyoungs_modulus = 200e9\n'
+BRITTLE = BONDS + '[material.damage]\nlaw = "critical_stretch"\ncritical = 0.01\nno_fail = ["top"]\n'
+CPD_2D = 'model = "cpd"\nyoungs_modulus = 200e9\npoisson_ratio = 0.4\n'
+CPD_3D = 'model = "cpd"\nyoungs_modulus = 200e9\npoisson_ratio = 0.3\n'
+
+
+def plane(axis):
+    return f'[[symmetry]]\naxis = "{axis}"\n'
+
+
+def plate(part, material=BONDS, correction="none", pull="1e-5", hole="", dimension=2, more=""):
+    """A body of 24 x 24 (x 4) points about the origin, or the part of it with positive x, y, z."""
+    low = [0.0 if axis in part else -0.012 for axis in "xy"] + [0.0 if "z" in part else -0.002]
+    high = [0.012, 0.012, 0.002]
+    is_whole = "y" not in part
+    bottom = '[[lattice.layer]]\nname = "bottom"\nside = "y-"\nthickness = 2\n' if is_whole else ""
+    held = f'[[support]]\nset = "bottom"\ndisplacement = ["0", "-{pull}*load"{", 0" * (dimension == 3)}]\n' if is_whole else ""
+    if "no_fail" in material and is_whole:
+        material = material.replace('["top"]', '["top", "bottom"]')
+    return PLATE.format(dimension=dimension, thickness="thickness = 1e-3" if dimension == 2 else "", low=low[:dimension],
+                        high=high[:dimension], hole=hole, layers=bottom, material=material.replace('plane = "stress"\n', "" if dimension == 3 else 'plane = "stress"\n'),
+                        correction=correction, pull=pull, third=", 0" if dimension == 3 else "", supports=held,
+                        planes="".join(plane(axis) for axis in part)) + more  # fmt: skip
+
+
+HOLE = '[[lattice.shape]]\nsubtract = "disk"\ncentre = [0.0, 0.0]\nradius = 4e-3\n'
+
+
+class Constrained(Programmes):
+    def fields(self, name):
+        with h5py.File(self.folder / name / "results.h5") as file:
+            step = file["steps"][sorted(file["steps"])[-1]]
+            return file["points/reference"][...], {key: step[key][...] for key in ("displacement", "force", "energy_density", "damage")}
+
+    def broken(self, name):
+        rows = (self.folder / name / "broken_bonds.csv").read_text().splitlines()[1:]
+        return [tuple(map(int, row.split(",")[2:4])) for row in rows]
+
+
+class Symmetry(Constrained):
+    def assert_part_of(self, whole, part):
+        of_place = {tuple(numpy.rint(place * 2e3).astype(int)): i for i, place in enumerate(whole[0])}
+        twins = [of_place[tuple(numpy.rint(place * 2e3).astype(int))] for place in part[0]]
+        for name, field in part[1].items():
+            size = max(numpy.abs(whole[1][name]).max(), 1e-300)
+            self.assertLess(numpy.abs(field - whole[1][name][twins]).max() / size, SAME_BODY, name)
+
+    def compare(self, parts, steps=1, **body):
+        whole = self.run_case(plate("", **body), f"loading.steps={steps}", name="whole")
+        for part in parts:
+            with self.subTest(part, **{key: value for key, value in body.items() if key != "material"}):
+                history = self.run_case(plate(part, **body), f"loading.steps={steps}", name=f"part_{part}")
+                self.assert_part_of(self.fields("whole"), self.fields(f"part_{part}"))
+                share = 0.5 ** len(part)
+                for energy in ("stored_energy", "external_work", "dissipated_energy"):
+                    self.assertAlmostEqual(history[-1][energy] / share, whole[-1][energy], delta=1e-11 * whole[-1]["external_work"])
+                # What the part beyond the plane pulls with balances the supports.
+                if "y" in part:
+                    self.assertAlmostEqual(history[-1]["reaction_y:symmetry_y"] / history[-1]["reaction_y:top"], -1, delta=1e-9)
+
+    def test_parts_are_the_whole_plate(self):
+        for correction in ("none", "volume", "energy"):
+            self.compare(("x", "y", "xy"), correction=correction, hole=HOLE)
+
+    def test_parts_of_cpd_bodies_are_the_whole(self):
+        self.compare(("x", "xy"), material=CPD_2D, hole=HOLE)
+        self.compare(("xy", "xyz"), material=CPD_3D, dimension=3)
+
+    def test_a_crack_runs_as_in_the_whole_plate(self):
+        crack = "[[crack]]\nfrom = [{}, 0.0]\nto = [{}, 0.0]\n"
+        self.enterContext(self.subTest("across the plane"))
+        text = dict(material=BRITTLE, pull="2e-4")
+        settings = ("loading.steps=4", "solver.mode='adaptive'", "solver.relative_tolerance=1e-10")
+        notch = crack.format(-0.004, 0.004)
+        whole = self.run_case(plate("", **text, more=notch), *settings, name="whole")
+        part = self.run_case(plate("x", **text, more=notch), *settings, name="part")
+        self.assertGreater(whole[-1]["broken_bonds"], 50)
+        places = {name: self.fields(name)[0] for name in ("whole", "part")}
+
+        def bonds(name):
+            """By the magnitudes of their ends' places: twins are one."""
+            found = set()
+            for ends in self.broken(name):
+                ends = [tuple(numpy.rint(places[name][end] * 2e3).astype(int) * [1 if name == "whole" else 1, 1]) for end in ends]
+                found.add(tuple(sorted((abs(x), y) for x, y in ends)))
+            return found
+
+        self.assertEqual(bonds("whole"), bonds("part"))
+        self.assertAlmostEqual(part[-1]["reaction_y:top"] * 2 / whole[-1]["reaction_y:top"], 1, delta=1e-6)
+
+    def test_planes_that_are_none_are_refused(self):
+        for text, words in ((plate("x") + plane("x"), "already"),
+                            (plate("x").replace('axis = "x"', 'axis = "x"\nat = 5e-4'), "runs through points"),
+                            (plate("x").replace('axis = "x"', 'axis = "x"\nat = 3e-3'), "both sides"),
+                            (plate("x").replace('axis = "x"', 'axis = "z"'), "axis")):  # fmt: skip
+            ended = peristat("check", self.case(text))
+            self.assertEqual(ended.code, 2, ended.said)
+            self.assertIn(words, ended.said)
+
+    def test_what_a_plane_leaves_free_is_refused(self):
+        text = plate("x").replace('displacement = ["0", "1e-5*load"]', 'displacement = ["0", "free"]')
+        text = text.replace('displacement = ["0", "-1e-5*load"]', 'displacement = ["0", "free"]')
+        ended = peristat("check", self.case(text))
+        self.assertEqual(ended.code, 2, ended.said)
+        self.assertIn("move along y", ended.said)
+
+
+CELL = """\
+dimension = 2
+[lattice]
+spacing = 1e-3
+horizon_ratio = 3.015
+thickness = 1e-3
+[[lattice.shape]]
+add = "box"
+min = [0.0, 0.0]
+max = [0.008, 0.006]
+[material]
+{material}
+[[period]]
+axis = "x"
+from = 0.0
+to = 0.008
+gradient = {x}
+[[period]]
+axis = "y"
+from = 0.0
+to = 0.006
+gradient = {y}
+[solver]
+relative_tolerance = 1e-13
+"""
+
+
+def lattice_stress(gradient, youngs_modulus=200e9, spacing=1e-3, ratio=3.015):
+    """First Piola-Kirchhoff stress of the bonds of a lattice at a displacement gradient."""
+    bonds = lattice_ball(2, ratio) * spacing
+    lengths = numpy.linalg.norm(bonds, axis=1)
+    moved = bonds @ (numpy.eye(2) + numpy.array(gradient)).T
+    now = numpy.linalg.norm(moved, axis=1)
+    modulus = micromodulus_factor(2, "stress", ratio * spacing, spacing) * youngs_modulus
+    forces = (modulus * (now / lengths - 1) * spacing**3 / now)[:, None] * moved
+    return 0.5 * forces.T @ bonds
+
+
+class Periodic(Constrained):
+    def test_a_cell_has_the_stress_of_its_lattice(self):
+        for gradient in ([[1e-4, 0], [0, 0]], [[0.02, 0.01], [-0.03, 0.05]]):
+            text = CELL.format(material=BONDS, x=[gradient[0][0], gradient[1][0]], y=[gradient[0][1], gradient[1][1]])
+            for thickness in (0.006, 0.002):  # also thinner than the horizon
+                row = self.run_case(text.replace("0.006", str(thickness)), name=f"{gradient[0][0]}_{thickness}")[-1]
+                stress = lattice_stress(gradient)
+                found = numpy.array([[row["reaction_x:period_x"] / (thickness * 1e-3), row["reaction_x:period_y"] / (0.008 * 1e-3)],
+                                     [row["reaction_y:period_x"] / (thickness * 1e-3), row["reaction_y:period_y"] / (0.008 * 1e-3)]])  # fmt: skip
+                self.assertLess(numpy.abs(found / stress.max() - stress / stress.max()).max(), 1e-12)
+
+    def test_a_free_side_has_no_stress(self):
+        row = self.run_case(CELL.format(material=CPD_2D, x=["1e-5*load", 0], y=[0, "free"]))[-1]
+        self.assertLess(abs(row["reaction_y:period_y"]), 1e-9 * row["reaction_x:period_x"])
+        # The stiffness that C1 and C2 are calibrated for, but for the strain that bonds turn by.
+        self.assertAlmostEqual(row["reaction_x:period_x"] / (0.006 * 1e-3) / (200e9 * 1e-5), 1, delta=1e-4)
+
+    def test_a_cell_that_may_turn_is_refused(self):
+        ended = peristat("check", self.case(CELL.format(material=BONDS, x=["1e-3*load", "free"], y=["free", 0])))
+        self.assertEqual(ended.code, 2, ended.said)
+        self.assertIn("rotate", ended.said)
+
+
+BODY = """\
+dimension = 2
+[lattice]
+spacing = 1e-3
+horizon_ratio = 3.015
+thickness = 1e-3
+[[lattice.shape]]
+add = "box"
+min = [-0.015, -0.01]
+max = [0.015, 0.01]
+[[set]]
+name = "pin"
+where = "(x+0.005)^2+y^2 < 0.003^2"
+[[set]]
+name = "right"
+where = "x > 0.014"
+[[set]]
+name = "left"
+where = "x < -0.014"
+[material]
+model = "bond"
+plane = "stress"
+youngs_modulus = 200e9
+[solver]
+relative_tolerance = 1e-11
+"""
+PIN = '[[rigid]]\nset = "pin"\ncentre = [-5e-3, 0.0]\ndisplacement = ["0", "0"]\n'
+LIFTED = '[[support]]\nset = "right"\ndisplacement = ["free", "1e-3*load"]\n'
+ROLLER = '[[roller]]\nname = "foot"\nat = [1e-3, -0.01]\nnormal = [0, 1]\n'
+
+
+class Rigid(Constrained):
+    def balance(self, row, *holders):
+        for axis in "xy":
+            forces = [row[f"reaction_{axis}:{holder}"] for holder in holders]
+            self.assertLess(abs(sum(forces)), 1e-8 * max(abs(row["reaction_y:right"]), 1))
+
+    def test_a_pin_turns_and_carries_no_moment(self):
+        row = self.run_case(BODY + PIN + LIFTED + ROLLER)[-1]
+        self.assertGreater(abs(row["rotation_z:pin"]), 0.02)
+        self.assertLess(abs(row["moment_z:pin"]), 1e-9 * abs(row["reaction_y:pin"]) * 3e-3)
+        self.balance(row, "pin", "right", "foot")
+        moments = -5e-3 * row["reaction_y:pin"]  # of the roller and the layer as well, about the origin
+        self.assertTrue(math.isfinite(moments))
+
+    def test_a_clamped_set_is_a_support(self):
+        """A rigid set without rotation is a layer of prescribed displacements."""
+        rigid = self.run_case(BODY + PIN.replace('"pin"', '"left"').replace('["0", "0"]', '[0, "1e-5*load"]\nrotation = [0]') + LIFTED, name="rigid")[-1]
+        held = self.run_case(BODY + '[[support]]\nset = "left"\ndisplacement = ["0", "1e-5*load"]\n' + LIFTED, name="held")[-1]
+        for column in ("reaction_x:left", "reaction_y:left", "stored_energy", "external_work"):
+            self.assertAlmostEqual(rigid[column], held[column], delta=1e-9 * abs(held["reaction_y:left"]))
+
+    def test_a_rotation_is_a_rigid_motion(self):
+        """Two rigid sets that turn by the same finite angle about one centre carry the body along."""
+        turned = "".join(f'[[rigid]]\nset = "{name}"\ncentre = [0.0, 0.0]\ndisplacement = [0, 0]\nrotation = ["2.5*load"]\n'
+                         for name in ("left", "right"))  # fmt: skip
+        rows = self.run_case(BODY + turned, "loading.steps=25", "solver.relative_tolerance=1e-10")
+        stiffness = 200e9 * 1e-3  # a strain of one
+        self.assertLess(abs(rows[-1]["stored_energy"]), 1e-12 * stiffness * 0.02**2)
+        place, fields = self.fields("out")
+        turn = numpy.array([[math.cos(2.5), -math.sin(2.5)], [math.sin(2.5), math.cos(2.5)]])
+        self.assertLess(numpy.abs(place + fields["displacement"] - place @ turn.T).max(), 1e-12)
+
+    def test_newton_is_quadratic(self):
+        self.run_case(BODY + PIN + LIFTED + ROLLER, "solver.linear_tolerance=1e-12")
+        rows = [line.split(",") for line in (self.folder / "out/iterations.csv").read_text().splitlines()[1:]]
+        residuals = [float(row[3]) for row in rows if float(row[3]) > 1e-11]
+        self.assertLess(residuals[-1], 30 * residuals[-2] ** 2)
+
+    def test_all_linear_solvers_find_the_same(self):
+        expected = self.run_case(BODY + PIN + LIFTED + ROLLER, name="direct")[-1]
+        for solver in ("pcg/rigid_pieces", "pcg/jacobi", "pcg/block_jacobi", "pcg/surrogate", "pcg/riluk", "pcg/chebyshev", "pcg/multigrid"):
+            with self.subTest(solver):
+                method, preconditioner = solver.split("/")
+                row = self.run_case(BODY + PIN + LIFTED + ROLLER, f"solver.linear='{method}'", f"solver.preconditioner='{preconditioner}'", name=preconditioner)[-1]
+                self.assertAlmostEqual(row["reaction_y:pin"] / expected["reaction_y:pin"], 1, delta=1e-8)
+
+    def test_relaxation_finds_the_same(self):
+        gentle = LIFTED.replace("1e-3", "1e-5")
+        expected = self.run_case(BODY + PIN + gentle + ROLLER, name="newton")[-1]
+        row = self.run_case(BODY + PIN + gentle + ROLLER, "solver.mode='relaxation'", "solver.relative_tolerance=1e-8", "relaxation.max_iterations=100000", name="relaxed")[-1]
+        for column in ("reaction_y:pin", "reaction_y:foot", "stored_energy", "external_work"):
+            self.assertAlmostEqual(row[column] / expected[column], 1, delta=1e-5, msg=column)
+
+    def test_it_goes_on_where_it_was(self):
+        text = BODY + PIN + LIFTED + ROLLER + "[loading]\nsteps = 4\n"
+        whole = self.run_case(text, name="whole")
+        self.run_case(text, "loading.max_steps=2" if False else "loading.steps=4", name="again")
+        self.assertEqual(whole, self.history("again"))
+
+    def test_tangents_are_those_of_the_energy(self):
+        periods = CELL.format(material=BONDS, x=["1e-3*load", 0], y=[0, "free"])
+        slope = '[[roller]]\nset = "left"\nnormal = [1, 2]\n'
+        shared = '[[roller]]\nset = "right"\nnormal = [2, -1]\ndisplacement = "free"\n'
+        tied = ('[[constraint]]\nname = "tie"\ndisplacement = "1e-4*load"\n[[constraint.term]]\nset = "left"\nweights = [1, 0.5]\n'
+                '[[constraint.term]]\nset = "right"\nweights = [-1, 2]\n')  # fmt: skip
+        bodies = {"pin": BODY + PIN + LIFTED + ROLLER, "slope": BODY + PIN + slope, "shared": BODY + PIN + shared, "tied": BODY + PIN + tied,
+                  "part": plate("xy"), "cpd": plate("xy", material=CPD_2D), "solid": plate("xyz", material=CPD_3D, dimension=3), "cell": periods}  # fmt: skip
+        for name, text in bodies.items():
+            with self.subTest(name):
+                ended = peristat("check-tangent", self.case(text))
+                self.assertEqual(ended.code, 0, ended.said)
+                found = json.loads(ended.output)
+                self.assertLess(found["tangent_error"], 1e-8)
+                self.assertLess(found["residual_error"], 1e-7)
+                self.assertLess(found["asymmetry"], 1e-8)
+
+    def test_an_inclined_roller_carries_no_force_along_its_slope(self):
+        """The whole case turned by an angle: what holds along an axis then holds along the slope."""
+        held = BODY + '[[support]]\nset = "left"\ndisplacement = ["0", "0"]\n' + '[[roller]]\nset = "right"\nnormal = [{}, {}]\ndisplacement = "1e-5*load"\n'
+        row = self.run_case(held.format(1, 0), name="along")[-1]
+        support = self.run_case(BODY + '[[support]]\nset = "left"\ndisplacement = ["0", "0"]\n[[support]]\nset = "right"\ndisplacement = ["1e-5*load", "free"]\n', name="support")[-1]
+        self.assertAlmostEqual(row["reaction_x:right"] / support["reaction_x:right"], 1, delta=1e-10)
+        inclined = self.run_case(held.format(3, 4), name="inclined")[-1]
+        force = numpy.array([inclined["reaction_x:right"], inclined["reaction_y:right"]])
+        self.assertLess(abs(force @ [-4, 3]), 1e-12 * numpy.abs(force).max())
+
+    def test_contradictions_are_named(self):
+        support = '[[support]]\nset = "pin"\ndisplacement = [0, 0]\n'
+        one = BODY.replace("0.003^2", "0.0008^2") + PIN + LIFTED
+        tie = '[[constraint]]\nname = "tie"\n[[constraint.term]]\nset = "right"\nweights = [{}]\n'
+        for text, words in ((BODY + PIN + support, "contradict each other"),
+                            (BODY + PIN + PIN + LIFTED, "contradict each other"),
+                            (BODY + PIN + LIFTED + '[[roller]]\nset = "right"\nnormal = [0, 1]\n', "contradict each other"),
+                            (BODY + PIN + LIFTED + '[[roller]]\nset = "left"\nnormal = [0, 0]\n', "direction"),
+                            (one, "two or more"),
+                            (BODY + PIN + LIFTED + tie.format("0, 1"), "holds nothing that is free"),
+                            (BODY + PIN + tie.format("1, 0") + tie.format("2, 0").replace('"tie"', '"again"'), "say the same"),
+                            (BODY + PIN + tie.format("1, 0") + tie.format("0, 1"), "of this name"),
+                            (BODY + PIN + LIFTED + ROLLER.replace("-0.01", "-0.03"), "no points"),
+                            (BODY + PIN, "rotate about z")):  # fmt: skip
+            with self.subTest(words):
+                ended = peristat("check", self.case(text))
+                self.assertEqual(ended.code, 2, ended.said)
+                self.assertIn(words, ended.said)
