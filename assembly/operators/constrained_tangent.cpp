@@ -22,8 +22,15 @@ void for_each_of_followers(const BlockPattern& pattern, const Constraints& const
   }
 }
 
-/// Which points and handles K_q couples.
-BlockPattern reduced_pattern(const BlockPattern& whole, const Constraints& constraints) {
+Offset place_of(const BlockPattern& pattern, Index row, Index column) {
+  const Index* const first = pattern.partner.data() + pattern.offset[row];
+  const Index* const last = pattern.partner.data() + pattern.offset[row + 1];
+  return std::lower_bound(first, last, column) - pattern.partner.data();
+}
+
+}  // namespace
+
+BlockPattern constrained_pattern(const BlockPattern& whole, const Constraints& constraints) {
   std::vector<std::vector<Index>> more(std::size_t(constraints.rows()));
   const std::vector<double> at_rest(constraints.dofs(), 0.0);
   const auto couple = [&](Index a, Index b) {
@@ -65,16 +72,8 @@ BlockPattern reduced_pattern(const BlockPattern& whole, const Constraints& const
   return BlockPattern::of_rows(std::move(offset), std::move(partner));
 }
 
-Offset place_of(const BlockPattern& pattern, Index row, Index column) {
-  const Index* const first = pattern.partner.data() + pattern.offset[row];
-  const Index* const last = pattern.partner.data() + pattern.offset[row + 1];
-  return std::lower_bound(first, last, column) - pattern.partner.data();
-}
-
-}  // namespace
-
 ConstrainedTangent::ConstrainedTangent(const Energy& energy, const Constraints& constraints)
-    : Tangent(reduced_pattern(energy.pattern(), constraints), energy.points().dimension,
+    : Tangent(constrained_pattern(energy.pattern(), constraints), energy.points().dimension,
               energy.threads(), Blocks::whole),
       constraints_(constraints),
       whole_(energy),
@@ -151,8 +150,8 @@ void ConstrainedTangent::add_blocks_of_followers(std::span<const double> displac
 }
 
 void ConstrainedTangent::add_reduced(const std::vector<Dependence>& a,
-                                     const std::vector<Dependence>& b,
-                                     const Tensor& block, bool is_diagonal) {
+                                     const std::vector<Dependence>& b, const Tensor& block,
+                                     bool is_diagonal) {
   const std::size_t d = std::size_t(dimension);
   for (const Dependence& left : a) {
     for (const Dependence& right : b) {

@@ -7,6 +7,10 @@
 
 namespace peristat {
 
+/// Which points and handles K_q couples where K couples these points.
+[[nodiscard]] BlockPattern constrained_pattern(const BlockPattern& whole,
+                                               const Constraints& constraints);
+
 /// Tangent of a body whose degrees of freedom follow others,
 ///
 ///   K_q = J^T K J + sum (dE/du - f) . d2 phi / dq2

@@ -76,6 +76,7 @@ void make_model(Body& body, int threads) {
     body.model = make_cpd_model(of, body.points, body.setting, std::move(bonds), cut, threads);
   } else {
     // Corrections near surfaces are those of the whole body: a crack is no surface.
+    if (body.points.own() < body.points.count()) drop_weightless(bonds);
     cut = cut_bonds(bonds, body.points, of.cracks);
     std::vector<char> never_fails = never_failing_bonds(of, body.points, bonds);
     body.model =
@@ -189,6 +190,36 @@ std::vector<std::string> describe_interactions(const Body& body) {
     lines.push_back(fmt::format("{}: storing them takes {} of {} that are free for it",
                                 storage.fits() ? "stored" : "found anew in every pass",
                                 bytes_text(storage.needed), bytes_text(storage.room)));
+  }
+  return lines;
+}
+
+std::vector<std::string> describe_constraints(const Body& body) {
+  std::vector<std::string> lines;
+  std::size_t rigid = 0;
+  const auto& sets = body.conditions->constraints().rigid_sets();
+  for (const Restraint& restraint : body.conditions->restraints()) {
+    switch (restraint.kind) {
+      case Restraint::Kind::rigid_set: {
+        const Constraints::RigidSet& set = sets[rigid++];
+        lines.push_back(fmt::format("{}: {} points move as one rigid body about {} m",
+                                    restraint.name, set.members.size(),
+                                    place_text(set.centre, body.points.dimension)));
+        break;
+      }
+      case Restraint::Kind::rollers:
+        lines.push_back(fmt::format("{}: held along {} only", restraint.name,
+                                    place_text(restraint.direction, body.points.dimension)));
+        break;
+      case Restraint::Kind::linear:
+        lines.push_back(fmt::format("{}: linear constraint", restraint.name));
+        break;
+      case Restraint::Kind::symmetry:
+      case Restraint::Kind::period:
+        lines.push_back(fmt::format("{}: {} image points within the horizon", restraint.name,
+                                    body.points.count() - body.points.own()));
+        break;
+    }
   }
   return lines;
 }

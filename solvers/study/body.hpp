@@ -66,6 +66,9 @@ struct Body {
 /// alone.
 [[nodiscard]] std::vector<std::string> describe_interactions(const Body& body);
 
+/// Lines that tell rigid sets, rollers, linear constraints, planes of symmetry and periods.
+[[nodiscard]] std::vector<std::string> describe_constraints(const Body& body);
+
 /// Sentence that tells which parts of the body may move freely; empty if none.
 [[nodiscard]] std::string describe_free_motions(const Body& body);
 

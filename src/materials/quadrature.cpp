@@ -56,10 +56,6 @@ double search_radius(const Points& points, const Kernel& kernel) {
   return kernel.search_radius(largest);
 }
 
-void drop_weightless(Bonds& bonds) {
-  bonds.remove_if([&](Index, Offset bond) { return bonds.weight(bond) == 0.0; });
-}
-
 /// A sum over the bonds of every point, as far as it was made: what an image has is its source's,
 /// and the source's sum is the image's, too.
 template <class Sum, class Add>
@@ -79,7 +75,6 @@ void share_with_images(Bonds& bonds, const Points& points) {
     const int own = int(!points.is_image(i)) + int(!points.is_image(bonds.partner[bond]));
     return 0.5 * own * bonds.weight(bond);
   });
-  drop_weightless(bonds);
 }
 
 void apply_volume_method(Bonds& bonds, const Points& points, const Kernel& kernel) {
@@ -141,6 +136,10 @@ void apply_energy_method(Bonds& bonds, const Points& points, const BondSetting& 
 }
 
 }  // namespace
+
+void drop_weightless(Bonds& bonds) {
+  bonds.remove_if([&](Index, Offset bond) { return bonds.weight(bond) == 0.0; });
+}
 
 Bonds make_bonds(const Points& points, SurfaceCorrection surface, const BondSetting& setting,
                  int threads) {

@@ -9,7 +9,11 @@ namespace peristat {
 /// Repair of the missing neighbours near surfaces; see make_bonds.
 enum class SurfaceCorrection { none, volume, energy };
 
-/// Finds the bonds of a body and sets their weights; bonds of weight zero are dropped.
+/// Takes out bonds that store no energy.
+void drop_weightless(Bonds& bonds);
+
+/// Finds the bonds of a body and sets their weights. Those that the linear correction leaves none
+/// are dropped; those between two images have none, but triangles stand on them.
 ///
 ///   w_ij = 1/2 (V_i V_j nu_ij + V_j V_i nu_ji) omega_ij mu_ij   [m6]
 ///

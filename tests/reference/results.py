@@ -34,7 +34,7 @@ class Results:
             self.reference = file["points/reference"][...]
             self.volume = file["points/volume"][...]
             ids = file["points/set_ids"]
-            names = [name.decode() if isinstance(name, bytes) else str(name) for name in ids.attrs["sets"]]
+            names = [name.decode() if isinstance(name, bytes) else str(name) for name in ids.attrs.get("sets", [])]
             self.sets = {name: ids[:, k] == 1 for k, name in enumerate(names)}
             self.steps = [Step(group) for _, group in sorted(file["steps"].items())] if "steps" in file else []
         path = self.folder / "summary.json"

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "assembly/operators/constrained_tangent.hpp"
 #include "cases/runner/build/body.hpp"
 #include "cases/runner/build/solver_options.hpp"
 #include "solvers/linear/available_memory.hpp"
@@ -97,12 +98,18 @@ Exit check(const Case& from, int threads) {
   const auto held = std::count(prescribed.begin(), prescribed.end(), 1);
   fmt::print("supports    {} prescribed and {} free degrees of freedom\n", held,
              std::int64_t(prescribed.size()) - held);
+  for (const std::string& line : describe_constraints(body)) {
+    fmt::print("constraint  {}\n", line);
+  }
   if (neighbours.isolated > 0) {
     fmt::print("isolated    {} points have no neighbour\n", neighbours.isolated);
   }
 
   const FreeDofs free(prescribed, points.dimension);
-  const BlockPattern pattern = body.model.pattern();
+  const Constraints& constraints = body.conditions->constraints();
+  const BlockPattern pattern = constraints.none()
+                                   ? body.model.pattern()
+                                   : constrained_pattern(body.model.pattern(), constraints);
   std::string reason;
   const StudyOptions options = study_options(from, threads);
   const LinearSystems systems =

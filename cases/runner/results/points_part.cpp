@@ -57,7 +57,7 @@ void write_points(Hdf5File& file, const Points& points, const std::vector<PointC
       {"1", "1 where the point (row) is in the set (column); attribute sets names the columns"});
   std::vector<std::string> names;
   for (const auto& [name, members] : points.sets) names.push_back(name);
-  file.set_attribute("/points/set_ids", "sets", names);
+  if (!names.empty()) file.set_attribute("/points/set_ids", "sets", names);
 
   file.make_group("/points/sets");
   for (const auto& [name, members] : points.sets) {
