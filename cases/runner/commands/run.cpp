@@ -61,8 +61,9 @@ double largest_displacement(const std::vector<double>& displacement, int dimensi
   return std::sqrt(largest);
 }
 
-/// The counts of [CPD] sec. 3.1 for the results folder.
-std::vector<PointCounts> neighbour_counts_of(const Body& body) {
+/// What the results folder tells of every point: the counts of [CPD] sec. 3.1, its region and
+/// random factors.
+std::vector<PointCounts> constant_fields_of(const Body& body) {
   std::vector<PointCounts> counts;
   for (const auto& term : body.model.terms()) {
     for (InteractionCount& kind : term->counts()) {
@@ -70,6 +71,17 @@ std::vector<PointCounts> neighbour_counts_of(const Body& body) {
       counts.push_back({kind.per_point_name, kind.per_point_meaning, std::move(kind.per_point)});
     }
   }
+  if (!body.region.empty()) {
+    counts.push_back(
+        {"region", "number of the point's [[region]], from 0; -1: in none", body.region});
+  }
+  const auto add_factors = [&](const std::string& of, const std::vector<double>& factors) {
+    if (factors.empty()) return;
+    counts.push_back(
+        {of + "_factor", "random factor of the " + of + " of the point's bonds", factors});
+  };
+  add_factors("stiffness", body.factors.stiffness);
+  add_factors("strength", body.factors.strength);
   return counts;
 }
 
@@ -232,7 +244,7 @@ class CaseRun {
       tell_beginning();
     } else {
       results_.emplace(from_.output.directory, body_->points, text, support_sets_, probes_,
-                       neighbour_counts_of(*body_), options_.overwrite);
+                       constant_fields_of(*body_), options_.overwrite);
       recorder_.emplace(from_, *body_, assembler, *results_, progress_);
     }
     leave_note(from_.output.directory);
