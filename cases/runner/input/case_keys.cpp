@@ -553,7 +553,7 @@ Table<InterfaceSpecification> interface_keys() {
          "`density` and `scatter`: constants and damage of its own")
            .written_if([](auto& interface, auto&) { return interface.material.has_value(); })
            .early()
-           .default_words("none: by the rule")},
+           .otherwise([](auto&, auto&) {}, "none: by the rule")},
       {},
       [](auto& at, auto& interface) {
         for (const auto& other : at.so_far.interfaces) {
