@@ -27,6 +27,18 @@ constexpr auto body_is =
 
 bool is_cpd(const Case& from) { return from.material.model == MaterialModel::cpd; }
 
+/// Whether any of the materials has a law of damage.
+bool may_fail(const Case& from) {
+  const auto fails = [](const MaterialSpecification& material) {
+    return material.damage.law != DamageLaw::none;
+  };
+  return fails(from.material) ||
+         std::ranges::any_of(from.regions, fails, &RegionSpecification::material) ||
+         std::ranges::any_of(from.interfaces, [&](const InterfaceSpecification& interface) {
+           return interface.material && fails(*interface.material);
+         });
+}
+
 constexpr auto itself = [](auto& spec) -> auto& { return spec; };
 constexpr auto lattice = [](auto& from) -> auto& { return std::get<Lattice>(from.body); };
 constexpr auto points = [](auto& from) -> auto& { return std::get<PointSource>(from.body); };
@@ -452,6 +464,7 @@ Table<MaterialSpecification> material_keys(const std::string& name) {
          "the direction of the bond")
            .written_if([](auto& material, auto&) { return material.fibre.has_value(); })
            .unless(of_cpd, for_bond)
+           .unless(in_dimension<1>, "needs dimension 2 or 3")
            .otherwise([](auto&, auto&) {}, "none"),
        K("scatter", &Spec::scatter, scatter_keys(name),
          "tables `[[material.scatter]]`: random fields")}};
@@ -727,7 +740,7 @@ void check_tangent(const Entry& at, const SolverSpecification& solver) {
 }
 
 void check_stand_in(const Entry& at, const SolverSpecification& solver) {
-  if (solver.elastic_horizon_ratio > 0.0 && at.so_far.material.damage.law == DamageLaw::none)
+  if (solver.elastic_horizon_ratio > 0.0 && !may_fail(at.so_far))
     at.refuse(
         "is for bodies with damage: the stand-in takes the place of the body until damage begins, "
         "and without damage it would do so to the end");
@@ -871,8 +884,7 @@ void check_found_loads(const Entry& at, const Case& result) {
 /// Damage grows in steps that are smaller than elastic ones.
 int default_relaxation_steps(const Case& from) {
   constexpr int steps_of_damage = 50;
-  const bool hands_over =
-      from.solver.mode == Mode::adaptive && from.material.damage.law != DamageLaw::none;
+  const bool hands_over = from.solver.mode == Mode::adaptive && may_fail(from);
   const int steps = from.loading.steps_to_entry();
   if (!hands_over) return steps;
   const int entries =
