@@ -44,9 +44,9 @@ TEST(DegradedByBond, IsDegradedByEachBondsLaw) {
         for (const double history : {never_failing, 0.0, 0.02, 0.035, 0.09}) {
           const auto found = potential.of_bond(bond)(s, history);
           const auto expected = Mixed::expected(bond, s, history, held);
-          EXPECT_EQ(found.value, expected.value);
-          EXPECT_EQ(found.first, expected.first);
-          EXPECT_EQ(found.second, expected.second);
+          EXPECT_DOUBLE_EQ(found.value, expected.value);
+          EXPECT_DOUBLE_EQ(found.first, expected.first);
+          EXPECT_DOUBLE_EQ(found.second, expected.second);
           softened += found.first != 5.0 * s && found.first != 0.0;
         }
       }
