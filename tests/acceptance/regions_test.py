@@ -503,6 +503,14 @@ class Regions(unittest.TestCase):
             with self.subTest(mode=name):
                 self.judged(self.run_case(CRACKED, *STRENGTH, *settings, name=name))
 
+    def test_calibrate_tells_every_material(self):
+        material, stiff = ({"model": "cpd", "youngs_modulus": e, "poisson_ratio": 0.4} for e in (2.0, 6.0))
+        path = random_cloud(self.random, self.folder, 2, count=22, horizon=2.2, material=material,
+                            region=[{"set": "right", "material": stiff}])  # fmt: skip
+        told = peristat("calibrate", path, "--set", "region[0].material.youngs_modulus=8").json()
+        self.assertEqual(list(told), ["material", "right"])
+        self.assertAlmostEqual(told["right"]["lattice"]["c1"] / told["material"]["lattice"]["c1"], 4)
+
     # ---- what is refused --------------------------------------------------------------------------
 
     def test_wrong_regions_are_refused(self):
