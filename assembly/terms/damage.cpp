@@ -6,7 +6,7 @@
 namespace peristat {
 namespace {
 
-/// Calls visit(law) if the bonds can be damaged.
+/// Calls visit(law) if the bonds can be damaged; law.of_bond(bond) is that of one of them.
 template <class Visit>
 void with_law(const Model& model, const Visit& visit) {
   if (const BondTerm* const bonds = model.failing_bonds()) bonds->with_damage_law(visit);
@@ -38,8 +38,9 @@ DamageState assess_damage(const Model& model, const History& history,
   };
   if (!model.failing_bonds()) for_each_bond([](Offset) { return 1.0; });
   const std::span<const double> stretches = bond_stretches(model, history);
-  with_law(model, [&](const auto& law) {
+  with_law(model, [&](const auto& laws) {
     for_each_bond([&](Offset bond) {
+      const auto& law = laws.of_bond(bond);
       const double largest = stretches[bond];
       state.dissipated_energy += bonds.weight(bond) * bonds.length(bond) * law.dissipated(largest);
       state.broken_bonds += law.is_broken(largest) && bonds.weight(bond) != 0.0;
@@ -72,8 +73,9 @@ std::vector<char> broken_bonds(const Model& model, const History& history) {
   const std::span<const double> stretches = bond_stretches(model, history);
   std::vector<char> broken(stretches.size());
   with_law(model, [&](const auto& law) {
-    std::transform(stretches.begin(), stretches.end(), broken.begin(),
-                   [&](double largest) { return law.is_broken(largest); });
+    for (std::size_t bond = 0; bond < broken.size(); ++bond) {
+      broken[bond] = law.of_bond(Offset(bond)).is_broken(stretches[bond]);
+    }
   });
   return broken;
 }

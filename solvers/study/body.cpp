@@ -65,24 +65,50 @@ void refuse_coincident_points(const Points& points, const Bonds& bonds) {
   }
 }
 
+/// Constants of the bonds inside the materials and of interfaces with constants of their own.
+std::vector<DirectedConstant> micromoduli(const BodySpecification& of,
+                                          const PointMaterials& materials,
+                                          const BondSetting& setting) {
+  std::vector<DirectedConstant> constants;
+  for (const auto& material : all_materials(of, materials)) {
+    constants.push_back(micromodulus_of(*material.of, material.key, setting));
+  }
+  return constants;
+}
+
+/// Model of a body of model "bond", and what its pre-cracks have cut: corrections near surfaces are
+/// those of the whole body, for a crack is no surface, and neither is an interface.
+Model make_bond_model(const Body& body, const PointMaterials& materials, Bonds bonds,
+                      CutBonds& cut) {
+  const BodySpecification& of = body.specification;
+  if (body.points.own() < body.points.count()) drop_weightless(bonds);
+  const BondMaterials mixed(of, materials, body.factors, body.points,
+                            micromoduli(of, materials, body.setting));
+  if (!of.is_uniform()) {
+    refuse_idle_interfaces(of, materials, bonds);
+    mixed.weigh(bonds);
+  }
+  cut = cut_bonds(bonds, body.points, of.cracks);
+  auto [potential, never_fails] = mixed.potential(bonds);
+  return Model(std::move(bonds), std::move(potential), std::move(never_fails));
+}
+
 /// Model of a body, and what its pre-cracks have cut.
 void make_model(Body& body, int threads) {
   const BodySpecification& of = body.specification;
   const Stopwatch watch(body.seconds_neighbourhood);
   Bonds bonds = make_bonds(body.points, of.surface_correction, body.setting, threads);
   refuse_coincident_points(body.points, bonds);
+  const PointMaterials materials(of, body.points);
+  body.region = materials.regions();
+  using Quantity = ScatterSpecification::Quantity;
+  body.factors = {materials.factors(body.points, Quantity::stiffness, threads),
+                  materials.factors(body.points, Quantity::strength, threads)};
   CutBonds cut;
-  if (of.material.model == MaterialModel::cpd) {
-    body.model = make_cpd_model(of, body.points, body.setting, std::move(bonds), cut, threads);
-  } else {
-    // Corrections near surfaces are those of the whole body: a crack is no surface.
-    if (body.points.own() < body.points.count()) drop_weightless(bonds);
-    cut = cut_bonds(bonds, body.points, of.cracks);
-    std::vector<char> never_fails = never_failing_bonds(of, body.points, bonds);
-    body.model =
-        Model(std::move(bonds), bond_potential(of.material, micromodulus_of(of, body.setting)),
-              std::move(never_fails));
-  }
+  body.model = of.material.model == MaterialModel::cpd
+                   ? make_cpd_model(of, materials, body.factors, body.points, body.setting,
+                                    std::move(bonds), cut, threads)
+                   : make_bond_model(body, materials, std::move(bonds), cut);
   body.cut_weight = std::move(cut.weight);
   body.cut_bonds = std::move(cut.ends);
 }
@@ -101,6 +127,22 @@ std::vector<double> at_rest(const Body& body) {
 }
 
 }  // namespace
+
+Model make_elastic_bonds(const Body& body, Bonds bonds, const BondSetting& setting) {
+  BodySpecification elastic = body.specification;
+  const auto spare = [](MaterialSpecification& material) { material.damage = {}; };
+  spare(elastic.material);
+  for (RegionSpecification& region : elastic.regions) spare(region.material);
+  for (InterfaceSpecification& interface : elastic.interfaces) {
+    if (interface.material) spare(*interface.material);
+  }
+  const PointMaterials materials(elastic, body.points);
+  const BondMaterials mixed(elastic, materials, body.factors, body.points,
+                            micromoduli(elastic, materials, setting));
+  if (!elastic.is_uniform()) mixed.weigh(bonds);
+  auto [potential, never_fails] = mixed.potential(bonds);
+  return Model(std::move(bonds), std::move(potential));
+}
 
 double expected_bonds(double points, int dimension, double horizon_ratio) {
   // No more than there are pairs of points.

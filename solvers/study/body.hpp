@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
@@ -7,6 +8,7 @@
 #include "assembly/terms/model.hpp"
 #include "solvers/linear/memory_estimate.hpp"
 #include "solvers/study/body_specification.hpp"
+#include "solvers/study/bond_materials.hpp"
 #include "src/conditions/conditions.hpp"
 
 namespace peristat {
@@ -31,8 +33,10 @@ struct Body {
   Model model;
   std::unique_ptr<Conditions> conditions;  // refers to points
   InteractionStorage interaction_storage;
-  std::vector<double> cut_weight;   ///< per point, of the bonds that pre-cracks have cut [m6]
-  std::vector<BondEnds> cut_bonds;  ///< by pre-cracks
+  std::vector<std::int32_t> region;  ///< per point, from 0; -1: of none; empty without regions
+  PointFactors factors;              ///< by random fields
+  std::vector<double> cut_weight;    ///< per point, of the bonds that pre-cracks have cut [m6]
+  std::vector<BondEnds> cut_bonds;   ///< by pre-cracks
   double seconds_neighbourhood = 0.0;
 
   [[nodiscard]] double horizon_ratio() const { return setting.horizon / points.spacing; }
@@ -46,6 +50,10 @@ struct Body {
 /// @throws MemoryError if the estimate exceeds the memory available
 [[nodiscard]] std::unique_ptr<const Body> make_body(Points points, const BodySpecification& of,
                                                     int threads = 0);
+
+/// Elastic bonds between the points of a body of model "bond" with another horizon.
+/// @throws InputError as make_body does
+[[nodiscard]] Model make_elastic_bonds(const Body& body, Bonds bonds, const BondSetting& setting);
 
 /// Number of threads to run on.
 /// @param asked_for 0: as many as OpenMP takes by itself

@@ -1,5 +1,7 @@
 #include "solvers/study/body_specification.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -31,8 +33,7 @@ void require_within(double value, double least, double most, const std::string& 
           "must be from " + number_text(least) + " to " + number_text(most));
 }
 
-void check_damage(const DamageSpecification& damage) {
-  const std::string table = "material.damage.";
+void check_damage(const DamageSpecification& damage, const std::string& table) {
   const bool is_tanh = damage.law == DamageLaw::tanh || damage.law == DamageLaw::tanh_continuous;
   if (damage.law == DamageLaw::none)
     require_absent(damage.critical != 0.0, table + "critical", "needs a law");
@@ -48,35 +49,162 @@ void check_damage(const DamageSpecification& damage) {
   require_within(damage.rate, 0.1, 50.0, table + "rate");
 }
 
-void check_bond_material(const BodySpecification& of) {
-  const MaterialSpecification& material = of.material;
+void check_bond_material(const MaterialSpecification& material, const std::string& key) {
   const std::string for_cpd = "is for the model cpd";
-  require(material.youngs_modulus.has_value() != material.micromodulus.has_value(), "material", "",
+  require(material.youngs_modulus.has_value() != material.micromodulus.has_value(), key, "",
           "needs a youngs_modulus or a micromodulus, and not both");
-  require_absent(material.poisson_ratio.has_value(), "material.poisson_ratio",
+  require_absent(material.poisson_ratio.has_value(), key + ".poisson_ratio",
                  for_cpd + "; bonds alone have 1/4, in plane stress 1/3");
-  require_absent(material.c1.has_value(), "material.c1", for_cpd);
-  require_absent(material.c2 != 0.0, "material.c2", for_cpd);
-  require_absent(material.c3 != 0.0, "material.c3", for_cpd);
-  require_absent(of.weights != InteractionWeights::mean, "weights", for_cpd);
+  require_absent(material.c1.has_value(), key + ".c1", for_cpd);
+  require_absent(material.c2 != 0.0, key + ".c2", for_cpd);
+  require_absent(material.c3 != 0.0, key + ".c3", for_cpd);
 }
 
-void check_cpd_material(const BodySpecification& of, int dimension) {
-  const MaterialSpecification& material = of.material;
-  require(dimension > 1, "material.model", "cpd", "needs dimension 2 or 3");
-  require(material.youngs_modulus.has_value() != material.c1.has_value(), "material", "",
+void check_cpd_material(const MaterialSpecification& material, const std::string& key,
+                        int dimension) {
+  require(dimension > 1, key + ".model", "cpd", "needs dimension 2 or 3");
+  require(material.youngs_modulus.has_value() != material.c1.has_value(), key, "",
           "needs a youngs_modulus with a poisson_ratio, or c1, and not both");
-  require_absent(material.micromodulus.has_value(), "material.micromodulus",
-                 "is for the model bond");
+  require_absent(material.micromodulus.has_value(), key + ".micromodulus", "is for the model bond");
   require(material.poisson_ratio.has_value() == material.youngs_modulus.has_value(),
-          "material.poisson_ratio", "", "goes with youngs_modulus");
-  require(std::isfinite(material.c2), "material.c2", number_text(material.c2), "must be finite");
-  require(std::isfinite(material.c3), "material.c3", number_text(material.c3), "must be finite");
+          key + ".poisson_ratio", "", "goes with youngs_modulus");
+  require(std::isfinite(material.c2), key + ".c2", number_text(material.c2), "must be finite");
+  require(std::isfinite(material.c3), key + ".c3", number_text(material.c3), "must be finite");
   const bool has_moduli = material.youngs_modulus.has_value();
-  require_absent(has_moduli && dimension == 2 && material.c2 != 0.0, "material.c2",
+  require_absent(has_moduli && dimension == 2 && material.c2 != 0.0, key + ".c2",
                  "follows from youngs_modulus and poisson_ratio in 2D");
-  require_absent((has_moduli || dimension == 2) && material.c3 != 0.0, "material.c3",
+  require_absent((has_moduli || dimension == 2) && material.c3 != 0.0, key + ".c3",
                  has_moduli ? "follows from youngs_modulus and poisson_ratio" : "must be 0 in 2D");
+}
+
+void check_fibre(const MaterialSpecification& material, const std::string& key, int dimension) {
+  if (!material.fibre) return;
+  const FibreSpecification& fibre = *material.fibre;
+  const std::string table = key + ".fibre";
+  require_absent(material.model != MaterialModel::bond, table, "is for the model bond");
+  require_absent(dimension == 1, table, "needs dimension 2 or 3");
+  require_absent(!material.youngs_modulus, table,
+                 "needs a youngs_modulus, the one along the fibres");
+  require_absent(dimension == 2 && material.plane != PlaneState::stress, table,
+                 "is for plane stress: in plane strain E_1, E_2 and the shear modulus do not tell "
+                 "the constants");
+  require(std::isfinite(fibre.angle), table + ".angle", number_text(fibre.angle), "must be finite");
+  require_absent(dimension == 3 && fibre.angle != 0.0, table + ".angle",
+                 "is for dimension 2; 3D has a direction");
+  if (dimension == 3) {
+    const auto& [x, y, z] = fibre.direction;
+    const double length = std::hypot(x, y, z);
+    require(std::isfinite(length) && length > 1e-100, table + ".direction",
+            place_text(fibre.direction, 3), "must be finite, and not all zero");
+  } else {
+    require_absent(fibre.direction != Coordinates{}, table + ".direction",
+                   "is for dimension 3; 2D has an angle");
+  }
+  require_positive(fibre.transverse_modulus, table + ".transverse_modulus");
+  require_positive(fibre.shear_modulus, table + ".shear_modulus");
+  if (!fibre.transverse_critical) return;
+  require_absent(material.damage.law == DamageLaw::none, table + ".transverse_critical",
+                 "needs a law of damage");
+  require_within(*fibre.transverse_critical, 1e-9, 1e3, table + ".transverse_critical");
+}
+
+void check_scatter(const MaterialSpecification& material, const std::string& key) {
+  using Quantity = ScatterSpecification::Quantity;
+  bool is_known[2] = {false, false};
+  for (std::size_t k = 0; k < material.scatter.size(); ++k) {
+    const auto& [of, distribution, field] = material.scatter[k];
+    const std::string table = key + ".scatter[" + std::to_string(k) + "]";
+    require_absent(std::exchange(is_known[int(of)], true), table + ".of",
+                   "another table of this material is of the same quantity");
+    require_absent(of == Quantity::strength && material.damage.law == DamageLaw::none,
+                   table + ".of", "strength needs a law of damage");
+    require_within(field.modulus, 1.0, 1e3, table + ".weibull_modulus");
+    require(std::isfinite(field.correlation_length) && field.correlation_length >= 0.0,
+            table + ".correlation_length", number_text(field.correlation_length),
+            "must be 0 or positive");
+  }
+}
+
+void check_material(const MaterialSpecification& material, const std::string& key, int dimension) {
+  if (material.model == MaterialModel::bond)
+    check_bond_material(material, key);
+  else
+    check_cpd_material(material, key, dimension);
+  require_positive(material.youngs_modulus, key + ".youngs_modulus");
+  require_positive(material.micromodulus, key + ".micromodulus");
+  require_positive(material.c1, key + ".c1");
+  require_positive(material.density, key + ".density");
+  check_damage(material.damage, key + ".damage.");
+  check_fibre(material, key, dimension);
+  check_scatter(material, key);
+}
+
+/// Materials of regions and interfaces are of the body's model.
+void require_of_body(const MaterialSpecification& material, const std::string& key,
+                     const BodySpecification& of) {
+  const std::string same = "must be the same for all materials of a body";
+  require(material.model == of.material.model, key + ".model", "", same);
+  require(material.potential == of.material.potential, key + ".potential", "", same);
+  require(material.plane == of.material.plane, key + ".plane", "", same);
+}
+
+bool is_material_of(const std::string& name, const BodySpecification& of) {
+  if (name == rest_name) return of.material.has_constants();
+  return std::any_of(of.regions.begin(), of.regions.end(),
+                     [&](const RegionSpecification& region) { return region.set == name; });
+}
+
+bool is_same_pair(const InterfaceSpecification& one, const InterfaceSpecification& other) {
+  const auto& [a, b] = one.between;
+  return one.between == other.between || other.between == std::array{b, a};
+}
+
+void check_interface(const InterfaceSpecification& interface, const std::string& key,
+                     const BodySpecification& of, int dimension) {
+  const auto& [a, b] = interface.between;
+  require_absent(of.regions.empty(), key, "needs regions");
+  for (const std::string& name : interface.between) {
+    require(interface.is_of_all() || is_material_of(name, of), key + ".between", '"' + name + '"',
+            std::string("must be the set of a region, or \"") + rest_name +
+                "\" for the points of none");
+  }
+  require(interface.is_of_all() || a != b, key + ".between", '"' + a + '"',
+          "must name two materials");
+  if (!interface.material) return;
+  const MaterialSpecification& material = *interface.material;
+  require_of_body(material, key + ".material", of);
+  check_material(material, key + ".material", dimension);
+  require_absent(!material.scatter.empty(), key + ".material.scatter",
+                 "is of points, and so of their materials");
+  require_absent(material.density.has_value(), key + ".material.density",
+                 "is of points, and so of their materials");
+}
+
+void check_regions(const BodySpecification& of, int dimension) {
+  require(of.regions.size() + of.interfaces.size() <= most_materials, "regions", "",
+          "there are at most " + std::to_string(most_materials) + " of regions and interfaces");
+  for (std::size_t k = 0; k < of.regions.size(); ++k) {
+    const std::string key = "regions[" + std::to_string(k) + "]";
+    require(of.regions[k].set != rest_name, key + ".set", '"' + of.regions[k].set + '"',
+            "is the name of the material of the points in no region; give the set another one");
+    require_of_body(of.regions[k].material, key + ".material", of);
+    check_material(of.regions[k].material, key + ".material", dimension);
+  }
+  for (std::size_t k = 0; k < of.interfaces.size(); ++k) {
+    const std::string key = "interfaces[" + std::to_string(k) + "]";
+    check_interface(of.interfaces[k], key, of, dimension);
+    for (std::size_t other = 0; other < k; ++other)
+      require(!is_same_pair(of.interfaces[k], of.interfaces[other]), key + ".between", "",
+              "another interface is of the same pair");
+  }
+}
+
+/// Refuses what belongs to the other model's weights.
+void check_weights(const BodySpecification& of) {
+  if (of.material.model == MaterialModel::bond) {
+    require_absent(of.weights != InteractionWeights::mean, "weights", "is for the model cpd");
+    return;
+  }
   const std::string needs_none = "is for the model bond; the effective volumes of cpd need none";
   require_absent(of.volume_correction != VolumeCorrection::none, "volume_correction", needs_none);
   require_absent(of.surface_correction != SurfaceCorrection::none, "surface_correction",
@@ -132,18 +260,12 @@ void check_points(const Points& points) {
 }
 
 void check_specification(const BodySpecification& of, const Points& points) {
-  const MaterialSpecification& material = of.material;
   check_horizon(of, points);
   check_cross_section(of, points);
-  if (material.model == MaterialModel::bond)
-    check_bond_material(of);
-  else
-    check_cpd_material(of, points.dimension);
-  require_positive(material.youngs_modulus, "material.youngs_modulus");
-  require_positive(material.micromodulus, "material.micromodulus");
-  require_positive(material.c1, "material.c1");
-  require_positive(material.density, "material.density");
-  check_damage(material.damage);
+  const bool has_rest = of.regions.empty() || of.material.has_constants();
+  if (has_rest) check_material(of.material, "material", points.dimension);
+  check_weights(of);
+  check_regions(of, points.dimension);
   for (std::size_t k = 0; k < of.cracks.size(); ++k)
     check_crack(of.cracks[k], points.dimension, "cracks[" + std::to_string(k) + "]");
 }

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -10,7 +12,9 @@
 #include "src/geometry/point_set.hpp"
 #include "src/materials/bond_constants.hpp"
 #include "src/materials/effective_volumes.hpp"
+#include "src/materials/interface_rule.hpp"
 #include "src/materials/quadrature.hpp"
+#include "src/materials/random_field.hpp"
 #include "src/potentials/potential.hpp"
 
 namespace peristat {
@@ -32,6 +36,24 @@ struct DamageSpecification {
   std::vector<std::string> no_fail{};  ///< sets whose points' bonds never fail
 };
 
+/// Fibres, along which the moduli and stretches of the material hold; bonds across them have these.
+struct FibreSpecification {
+  double angle = 0.0;                           ///< 2D: against the x axis [degrees]
+  Coordinates direction{};                      ///< 3D, of any length
+  double transverse_modulus = 0.0;              ///< Young's modulus across the fibres [Pa]
+  std::optional<double> shear_modulus{};        ///< [Pa]; none: natural_shear
+  std::optional<double> transverse_critical{};  ///< s_c of bonds across; none: as along
+};
+
+/// A random factor of the bonds, the mean of those of their two points.
+struct ScatterSpecification {
+  enum class Quantity { stiffness, strength };
+  enum class Distribution { weibull };
+  Quantity of = Quantity::stiffness;  ///< of their constants, or of all stretches of their law
+  Distribution distribution = Distribution::weibull;
+  WeibullField field{};
+};
+
 struct MaterialSpecification {
   MaterialModel model = MaterialModel::bond;
   std::string potential = Harmonic::name;  ///< of whole bonds, see WholeBondPotentials
@@ -46,7 +68,33 @@ struct MaterialSpecification {
   Calibration calibration = Calibration::lattice;
   std::optional<double> density{};  ///< [kg/m3], for dynamics only
   DamageSpecification damage{};
+  std::optional<FibreSpecification> fibre{};  ///< bonds with youngs_modulus, the one along them
+  std::vector<ScatterSpecification> scatter{};
+
+  [[nodiscard]] bool has_constants() const { return youngs_modulus || micromodulus || c1; }
 };
+
+/// The points of a set are of a material of their own.
+struct RegionSpecification {
+  std::string set{};
+  MaterialSpecification material{};  ///< model, potential and plane are those of the body
+};
+
+/// What holds between points of two materials: their constants by a rule, or constants of its own.
+struct InterfaceSpecification {
+  /// Sets of regions, or `rest_name` for the points of none; both empty: all other pairs.
+  std::array<std::string, 2> between{};
+  InterfaceRule rule = InterfaceRule::harmonic;
+  std::optional<MaterialSpecification> material{};
+
+  [[nodiscard]] bool is_of_all() const { return between[0].empty(); }
+};
+
+/// Regions and interfaces of a body at most: points and bonds keep a byte of which they are.
+inline constexpr std::size_t most_materials = 200;
+
+/// Name of the material of the points in no region.
+inline constexpr const char* rest_name = "material";
 
 /// What makes a body of points.
 struct BodySpecification {
@@ -57,7 +105,10 @@ struct BodySpecification {
   SurfaceCorrection surface_correction = SurfaceCorrection::none;
   InteractionWeights weights = InteractionWeights::mean;  ///< of cpd
   std::vector<Crack> cracks{};
+  /// Of the points in no region. Without constants every point has to be in one.
   MaterialSpecification material{};
+  std::vector<RegionSpecification> regions{};
+  std::vector<InterfaceSpecification> interfaces{};
   std::vector<SupportSpecification> supports{};
   std::vector<LoadSpecification> loads{};
   ConstraintSpecification constraints{};
@@ -66,6 +117,11 @@ struct BodySpecification {
   /// Tables of the load parameters `load`, `load2`, …, see LoadingProgramme; none: `load` from 0 to
   /// 1. With controls the first table is of the controlled displacement [m].
   std::vector<std::vector<double>> programme{};
+
+  /// Whether all bonds follow from one micromodulus and one law.
+  [[nodiscard]] bool is_uniform() const {
+    return regions.empty() && !material.fibre && material.scatter.empty();
+  }
 };
 
 /// Refuses points that are no body: arrays that don't fit together, places and volumes that are not

@@ -1,7 +1,10 @@
 #include "solvers/study/bond_potential.hpp"
 
 #include <optional>
+#include <stdexcept>
 #include <tuple>
+#include <utility>
+#include <variant>
 
 #include "src/core/input_error.hpp"
 
@@ -42,23 +45,33 @@ BondPotential bond_potential(const MaterialSpecification& material, double micro
   return *result;
 }
 
-double micromodulus_of(const BodySpecification& from, const BondSetting& setting) {
-  const MaterialSpecification& material = from.material;
-  return material.micromodulus ? *material.micromodulus
-                               : micromodulus(*material.youngs_modulus, setting);
+BondPotential with_laws(const BondPotential& failing, std::shared_ptr<const BondLaws> laws) {
+  return std::visit(
+      [&]<class P>(const P& potential) -> BondPotential {
+        if constexpr (PotentialWithHistory<P>) {
+          return DegradedByBond{potential.modulus, std::move(laws), potential.shape};
+        } else {
+          throw std::logic_error("bonds that never fail have no laws of damage");
+        }
+      },
+      failing);
 }
 
-std::vector<char> never_failing_bonds(const BodySpecification& from, const Points& points,
-                                      const Bonds& bonds) {
-  const std::vector<std::string>& sets = from.material.damage.no_fail;
-  if (sets.empty()) return {};
-  std::vector<char> of_point(std::size_t(points.count())), of_bond(std::size_t(bonds.count()));
-  for (const std::string& set : sets) {
-    const auto members = points.sets.find(set);
-    if (members == points.sets.end())
-      throw InputError("material.damage.no_fail", '"' + set + '"', "no set of this name");
-    for (const Index i : members->second) of_point[i] = 1;
+std::vector<char> never_failing_bonds(const std::vector<PointMaterials::Material>& materials,
+                                      const Points& points, const Bonds& bonds) {
+  std::vector<char> of_point(std::size_t(points.count()));
+  bool is_any = false;
+  for (const auto& material : materials) {
+    for (const std::string& set : material.of->damage.no_fail) {
+      const auto members = points.sets.find(set);
+      if (members == points.sets.end())
+        throw InputError(material.key + ".damage.no_fail", '"' + set + '"', "no set of this name");
+      for (const Index i : members->second) of_point[i] = 1;
+      is_any = true;
+    }
   }
+  if (!is_any) return {};
+  std::vector<char> of_bond(std::size_t(bonds.count()));
   for (Index i = 0; i < bonds.points(); ++i) {
     for (Offset bond = bonds.offset[i]; bond < bonds.offset[i + 1]; ++bond) {
       of_bond[bond] = of_point[points.source(i)] | of_point[points.source(bonds.partner[bond])];

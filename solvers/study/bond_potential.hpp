@@ -1,10 +1,11 @@
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include "solvers/study/body_specification.hpp"
+#include "solvers/study/point_materials.hpp"
 #include "src/geometry/points.hpp"
-#include "src/materials/bond_constants.hpp"
 #include "src/neighbourhood/bonds.hpp"
 #include "src/potentials/potential.hpp"
 
@@ -15,12 +16,16 @@ namespace peristat {
 [[nodiscard]] BondPotential bond_potential(const MaterialSpecification& material,
                                            double micromodulus);
 
-/// Micromodulus of the bonds of a body of model "bond" [N/m6].
-[[nodiscard]] double micromodulus_of(const BodySpecification& from, const BondSetting& setting);
+/// The same potential with a law of damage for each bond.
+/// @throws std::logic_error if it is none of bonds that fail
+[[nodiscard]] BondPotential with_laws(const BondPotential& failing,
+                                      std::shared_ptr<const BondLaws> laws);
 
-/// Flags of the bonds of the points of the sets that never fail; empty without such sets.
+/// Flags of the bonds of the points of the sets that never fail, by any of the materials; empty
+/// without such sets.
 /// @throws InputError if there is no such set
-[[nodiscard]] std::vector<char> never_failing_bonds(const BodySpecification& from,
-                                                    const Points& points, const Bonds& bonds);
+[[nodiscard]] std::vector<char> never_failing_bonds(
+    const std::vector<PointMaterials::Material>& materials, const Points& points,
+    const Bonds& bonds);
 
 }  // namespace peristat

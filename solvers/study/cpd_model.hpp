@@ -5,16 +5,20 @@
 
 #include "assembly/terms/model.hpp"
 #include "solvers/study/body_specification.hpp"
+#include "solvers/study/bond_materials.hpp"
+#include "solvers/study/point_materials.hpp"
 #include "src/connectivity/crack.hpp"
 #include "src/materials/cpd_constants.hpp"
 #include "src/neighbourhood/bulk_neighbourhood.hpp"
 
 namespace peristat {
 
-/// Constants of a body of model "cpd": as given, or from E and nu on the lattice's bulk sums or in
-/// the continuum.
-/// @throws InputError with keys of table [material]
-[[nodiscard]] CpdConstants cpd_constants_of(const BodySpecification& from, const Points& points,
+/// Constants of a material of model "cpd": as given, or from E and nu on the lattice's bulk sums or
+/// in the continuum.
+/// @param key of the material, for errors
+/// @throws InputError
+[[nodiscard]] CpdConstants cpd_constants_of(const MaterialSpecification& material,
+                                            const std::string& key, const Points& points,
                                             const BondSetting& setting);
 
 /// Key of a constant below zero, "c2" or "c3", whose interactions store negative energy; empty if
@@ -26,7 +30,8 @@ namespace peristat {
 ///         that a broken bond takes along would release energy that nobody has put in
 /// @param bonds whose weights are to be set
 /// @param cut gets the bonds that pre-cracks have cut
-[[nodiscard]] Model make_cpd_model(const BodySpecification& from, const Points& points,
+[[nodiscard]] Model make_cpd_model(const BodySpecification& from, const PointMaterials& materials,
+                                   const PointFactors& factors, const Points& points,
                                    const BondSetting& setting, Bonds bonds, CutBonds& cut,
                                    int threads);
 

@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -44,13 +45,22 @@ Stability at_rest(LinearSolver& solver, const TangentOperator& tangent, const Fr
   return {outcome, solver.inertia()};
 }
 
+/// A material with a negative constant, and the key of that; without a key if there is none.
+std::pair<PointMaterials::Material, std::string> negative_material(const Body& body) {
+  const PointMaterials materials(body.specification, body.points);
+  for (const auto& material : all_materials(body.specification, materials)) {
+    const std::string negative =
+        negative_constant(cpd_constants_of(*material.of, material.key, body.points, body.setting));
+    if (!negative.empty()) return {material, negative};
+  }
+  return {};
+}
+
 }  // namespace
 
 void refuse_unstable_rest(const Body& body, const StudyOptions& options) {
-  const MaterialSpecification& material = body.specification.material;
-  if (material.model != MaterialModel::cpd) return;
-  const std::string negative =
-      negative_constant(cpd_constants_of(body.specification, body.points, body.setting));
+  if (body.specification.material.model != MaterialModel::cpd) return;
+  const auto [of, negative] = negative_material(body);
   const FreeDofs free(body.conditions->prescribed(), body.points.dimension);
   if (negative.empty() || free.count() == 0) return;
 
@@ -73,8 +83,9 @@ void refuse_unstable_rest(const Body& body, const StudyOptions& options) {
   if (outcome != LinearOutcome::not_positive_definite) return;
   const std::string pivots =
       inertia ? fmt::format(" (its tangent has {} negative pivots)", inertia->negative) : "";
+  const MaterialSpecification& material = *of.of;
   throw InputError(
-      "material." + (material.poisson_ratio ? "poisson_ratio" : negative),
+      of.key + "." + (material.poisson_ratio ? "poisson_ratio" : negative),
       number_text(material.poisson_ratio ? *material.poisson_ratio
                   : negative == "c2"     ? material.c2
                                          : material.c3),

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
@@ -12,6 +13,7 @@
 #include "src/measures/volume.hpp"
 #include "src/neighbourhood/flatness.hpp"
 #include "src/neighbourhood/local_neighbourhood.hpp"
+#include "src/neighbourhood/point_kinds.hpp"
 
 namespace peristat {
 
@@ -68,6 +70,13 @@ class Interactions {
   /// An interaction's weight is the sum of its points' shares [m9 or m12] times its flatness
   /// factor. Until they are set it is the factor alone.
   void set_shares(std::vector<double> shares) { shares_ = std::move(shares); }
+  /// Further factors of the weights, by the kinds of the points.
+  void set_factors(FactorsOfKinds factors) { factors_ = std::move(factors); }
+  /// Whether any of them is negative: such interactions have the other sign of energy.
+  [[nodiscard]] bool has_negative_factors() const {
+    return std::any_of(factors_.factor.begin(), factors_.factor.end(),
+                       [](double factor) { return factor < 0.0; });
+  }
 
   /// Memory that storing them takes [bytes].
   [[nodiscard]] double stored_bytes() const;
@@ -103,12 +112,15 @@ class Interactions {
   template <int D>
   static bool make_block(const Arms<Measure::arms, D, Lanes>& arms, const Vector<2, Lanes>& shares,
                          std::uint32_t candidates, InteractionBlock& block);
+  void apply_factors(const UpperNeighbourhood& upper, const Group& group,
+                     InteractionBlock& block) const;
 
   Offset count_ = 0;
   Offset blocks_ = 0, groups_ = 0;
   std::vector<std::int32_t> per_point_;
   std::vector<double> effective_counts_;
   std::vector<double> shares_;
+  FactorsOfKinds factors_;
   std::vector<double> cell_shares_;  // an interaction's cell measure M0 is their sum [m2 or m3]
   std::vector<Chunk> chunks_;
 };
@@ -164,6 +176,22 @@ bool Interactions<Measure>::make_block(const Arms<Measure::arms, D, Lanes>& arms
   return true;
 }
 
+/// Multiplies the weights of a block's interactions by the factors of their points' kinds.
+template <class Measure>
+void Interactions<Measure>::apply_factors(const UpperNeighbourhood& upper, const Group& group,
+                                          InteractionBlock& block) const {
+  const std::size_t kinds = factors_.kinds;
+  std::size_t row = factors_.of_point[std::size_t(upper.own())];
+  for (const std::int32_t a : group.partners) {
+    row = row * kinds + factors_.of_point[std::size_t(upper.points()[std::size_t(a)])];
+  }
+  for (int l = 0; l < lane_count; ++l) {
+    if ((block.active >> l & 1U) == 0) continue;
+    const Index last = upper.points()[std::size_t(block.first + l)];
+    block.weight[l] *= factors_.factor[row * kinds + factors_.of_point[std::size_t(last)]];
+  }
+}
+
 template <class Measure>
 template <int D, class Visit>
 void Interactions<Measure>::find_groups(const LocalNeighbourhood<D>& local,
@@ -190,7 +218,9 @@ void Interactions<Measure>::find_groups(const LocalNeighbourhood<D>& local,
         block.first = w * 64 + nibble;
         arms[fixed] = local.reference.block(block.first);
         const Vector<2, Lanes> shares = plus<2>(of_fixed, scratch.of_partners.block(block.first));
-        if (make_block<D>(arms, shares, candidates, block)) ++count;
+        if (!make_block<D>(arms, shares, candidates, block)) continue;
+        if (!factors_.factor.empty()) apply_factors(upper, group, block);
+        ++count;
       }
     }
     group.blocks = {scratch.blocks.data(), count};

@@ -16,6 +16,7 @@ struct CriticalStretch {
   [[nodiscard]] double work(const auto& whole, double s) const {
     return whole(std::min(s, critical_stretch)).value;
   }
+  [[nodiscard]] CriticalStretch between(double, double critical) const { return {critical}; }
 };
 
 }  // namespace peristat

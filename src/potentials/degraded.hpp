@@ -1,13 +1,47 @@
 #pragma once
 
 #include <algorithm>
+#include <memory>
 
 #include "src/core/integral.hpp"
 #include "src/core/lanes.hpp"
+#include "src/core/types.hpp"
+#include "src/potentials/bond_laws.hpp"
 #include "src/potentials/harmonic.hpp"
 #include "src/potentials/potential_density.hpp"
 
 namespace peristat {
+
+/// History of a bond that stays whole whatever happens.
+inline constexpr double never_failing = -1.0;
+
+/// The density of a batch of bonds: nearly all of them are whole or broken, and only where one is
+/// neither each is asked for.
+/// @param range of their laws, see DamageRange
+/// @param whole the potential of the whole bonds
+/// @param of_lane(l) density of one of them
+template <class Real, class Whole, class OfLane>
+[[nodiscard, gnu::always_inline]] inline PotentialDensity<Lanes> degraded_batch(
+    const Lanes& e, const Lanes& largest_stretch, const DamageRange<Real>& range,
+    const Whole& whole, const OfLane& of_lane) {
+  const auto broken = largest_stretch >= range.critical;
+  const auto degraded = std::experimental::max(e, largest_stretch) > range.onset;
+  PotentialDensity<Lanes> result;
+  if (std::experimental::none_of(degraded && !broken)) {
+    result = whole(e);
+    for (Lanes* part : {&result.value, &result.first, &result.second}) {
+      std::experimental::where(broken, *part) = 0.0;
+    }
+    return result;
+  }
+  for (int l = 0; l < lane_count; ++l) {
+    const PotentialDensity<double> one = of_lane(l);
+    result.value[l] = one.value;
+    result.first[l] = one.first;
+    result.second[l] = one.second;
+  }
+  return result;
+}
 
 /// A bond that loses its stiffness as it is stretched, for good. With the potential phi_0 of the
 /// whole bond, the integrity T(s) of a law, s the stretch and kappa the largest stretch over the
@@ -53,30 +87,19 @@ struct Degraded {
             modulus * (integrity * unit.second + unit.first * law.slope(e))};
   }
 
-  [[nodiscard]] PotentialDensity<Lanes> operator()(const Lanes& e,
-                                                   const Lanes& largest_stretch) const {
-    const auto broken = largest_stretch >= law.critical();
-    const auto degraded = std::experimental::max(e, largest_stretch) > law.onset();
-    if (std::experimental::none_of(degraded && !broken)) {
-      // Whole bonds and broken ones: nearly all there are.
-      PotentialDensity<Lanes> result = whole(modulus)(e);
-      for (Lanes* part : {&result.value, &result.first, &result.second}) {
-        std::experimental::where(broken, *part) = 0.0;
-      }
-      return result;
-    }
-    PotentialDensity<Lanes> result;
-    for (int l = 0; l < lane_count; ++l) {
-      const PotentialDensity<double> one = (*this)(double(e[l]), double(largest_stretch[l]));
-      result.value[l] = one.value;
-      result.first[l] = one.first;
-      result.second[l] = one.second;
-    }
-    return result;
+  /// @param first the batch's first bond
+  [[nodiscard]] PotentialDensity<Lanes> operator()(const Lanes& e, const Lanes& largest_stretch,
+                                                   Offset first = 0) const {
+    return degraded_batch(e, largest_stretch, ranges(first), whole(modulus),
+                          [&](int l) { return (*this)(double(e[l]), double(largest_stretch[l])); });
   }
 
-  /// History of a bond that stays whole whatever happens.
-  static constexpr double never_fails = -1.0;
+  /// The potential of one of the bonds, which all have this one; see DegradedByBond.
+  [[nodiscard]] const Degraded& of_bond(Offset) const { return *this; }
+  [[nodiscard]] DamageRange<double> ranges(Offset) const { return {law.onset(), law.critical()}; }
+  [[nodiscard]] double bytes() const { return 0.0; }
+
+  static constexpr double never_fails = never_failing;
 
   /// Whether an accepted state with this stretch would damage the bond further.
   [[nodiscard]] bool is_loading(double e, double largest_stretch) const {
@@ -124,6 +147,32 @@ struct Degraded {
       const auto force = [&](double r) { return law.integrity(r) * shape(r).first; };
       return shape(elastic).value + (end > elastic ? integral(force, elastic, end) : 0.0);
     }
+  }
+};
+
+/// Bonds that lose their stiffness as Degraded ones do, each by a law of its own.
+template <class Whole = Harmonic>
+struct DegradedByBond {
+  double modulus = 0.0;  ///< of the whole bonds
+  std::shared_ptr<const BondLaws> laws;
+  Whole shape{1.0};           ///< their potential with the modulus 1
+  bool holds_damage = false;  ///< see Degraded
+
+  static constexpr double never_fails = never_failing;
+
+  [[nodiscard]] Degraded<AnyLaw, Whole> of_bond(Offset bond) const {
+    return {modulus, laws->at(bond), shape, holds_damage};
+  }
+  [[nodiscard]] DamageRange<Lanes> ranges(Offset first) const { return laws->ranges(first); }
+  [[nodiscard]] double bytes() const { return laws->bytes(); }
+
+  [[nodiscard]] PotentialDensity<Lanes> operator()(const Lanes& e, const Lanes& largest_stretch,
+                                                   Offset first) const {
+    Whole whole = shape;
+    whole.modulus = modulus;
+    return degraded_batch(e, largest_stretch, ranges(first), whole, [&](int l) {
+      return of_bond(first + l)(double(e[l]), double(largest_stretch[l]));
+    });
   }
 };
 

@@ -24,19 +24,22 @@ concept Potential = std::is_aggregate_v<P> &&
   { potential(lanes) } -> std::same_as<PotentialDensity<Lanes>>;
 };
 
-/// A scalar law that also depends on the largest stretch that the bond has had.
+/// A scalar law that also depends on the largest stretch that the bond has had, and possibly on the
+/// bond.
 template <class P>
-concept PotentialWithHistory = requires(const P potential, double number, Lanes lanes) {
-  { potential(number, number) } -> std::same_as<PotentialDensity<double>>;
-  { potential(lanes, lanes) } -> std::same_as<PotentialDensity<Lanes>>;
-  { potential.is_loading(number, number) } -> std::same_as<bool>;
+concept PotentialWithHistory = requires(const P potential, Offset bond, double number,
+                                        Lanes lanes) {
+  { potential.of_bond(bond)(number, number) } -> std::same_as<PotentialDensity<double>>;
+  { potential(lanes, lanes, bond) } -> std::same_as<PotentialDensity<Lanes>>;
+  { potential.of_bond(bond).is_loading(number, number) } -> std::same_as<bool>;
 };
 
-/// Potentials of whole bonds, and each of them with every law of damage.
+/// Potentials of whole bonds, and each of them with every law of damage, and with laws that differ
+/// from bond to bond.
 template <Potential... Whole>
 struct BondPotentials {
   using Any = std::variant<Whole..., Degraded<CriticalStretch, Whole>...,
-                           Degraded<TanhDegradation, Whole>...>;
+                           Degraded<TanhDegradation, Whole>..., DegradedByBond<Whole>...>;
 
   /// Calls visit(potential) for each of them, with the modulus 1.
   template <class Visit>

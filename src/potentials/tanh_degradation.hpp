@@ -33,6 +33,11 @@ struct TanhDegradation {
   ///   F_1 = -ln(1 + exp(-y)),  F_2 = -y ln(1 + exp(-y)) + Li_2(-exp(-y)).
   [[nodiscard]] double work(const Harmonic& whole, double s) const;
 
+  /// The same law between other stretches.
+  [[nodiscard]] TanhDegradation between(double onset, double critical) const {
+    return {onset, critical, rate, scale, shift};
+  }
+
  private:
   [[nodiscard]] double exponent(double s) const;
   [[nodiscard]] double primitive(double y) const;

@@ -71,7 +71,7 @@ class DamageHistory(unittest.TestCase):
         self.assertEqual(self.run_case(path).code, 0)
         results = Results(self.folder / "out")
         weight = 100.0 * results.volume.prod()  # c w; the length is 1
-        formula, largest, past = Law(Case(path.read_text())["material"]["damage"] | {"rate": law.get("rate", 3.0)}), 0.0, 0.0
+        formula, largest, past = Law.of_table(Case(path.read_text())["material"]["damage"] | {"rate": law.get("rate", 3.0)}), 0.0, 0.0
         rows = results.table("history")
         self.assertGreaterEqual(len(rows), 25)
         for row, step in zip(rows, results.steps, strict=True):

@@ -23,7 +23,7 @@ ROUND_OFF = 1e-12
 def mechanics_of(path):
     case = Case(path.read_text(), path.parent)
     reference, volume, sets = read_points(case)
-    mechanics = Mechanics(Body(case, reference, volume))
+    mechanics = Mechanics(Body(case, reference, volume, sets=sets))
     mechanics.spare(sets)
     return mechanics, sets
 

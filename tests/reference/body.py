@@ -5,6 +5,8 @@ import math
 
 import numpy
 
+from tests.reference.materials import Materials
+
 HORIZON_TOLERANCE = 1e-8
 
 
@@ -85,16 +87,20 @@ def confined_modulus_factor(dimension, plane):
 class Body:
     """Everything that is constant: interactions as arrays of point numbers, with their weights.
 
-    bonds, triangles, tetrahedra: (points, weight, reference measure), the measures with sign.
+    bonds, triangles, tetrahedra: (points, weight, reference measure), the measures with sign. Weights
+    are relative to the constants of the first material.
+
+    sets: flags of the points by name, for regions; factors: random ones of the points, by name.
     """
 
-    def __init__(self, case, reference, volume, horizon_ratio=None):
+    def __init__(self, case, reference, volume, horizon_ratio=None, sets=None, factors=None):
         self.case, self.dimension = case, case.dimension
         self.reference, self.volume = numpy.asarray(reference, float), numpy.asarray(volume, float)
         self.horizon = case.horizon(horizon_ratio)
         self.spacing = case.spacing(volume)
         self.cross_section = case.cross_section
         self.is_cpd = case["material"]["model"] == "cpd"
+        self.materials = Materials(case, sets or {}, len(self.volume), factors)
         self.tuples, self.weight = {}, {}
         self.flatness, self.factor_sums = {}, {}  # cpd: g of interactions, and their sums at points
         if self.is_cpd:
@@ -115,8 +121,9 @@ class Body:
     # ---- bonds alone -----------------------------------------------------------------------------
 
     def _make_bonds(self):
-        material, quadrature = self.case["material"], self.case["quadrature"]
-        factor = micromodulus_factor(self.dimension, material["plane"], self.horizon, self.cross_section)
+        material, quadrature = self.materials.tables[0], self.case["quadrature"]
+        plane = self.case["material"]["plane"]
+        factor = micromodulus_factor(self.dimension, plane, self.horizon, self.cross_section)
         if "micromodulus" in material:
             self.constants = {1: float(material["micromodulus"])}
         else:
@@ -144,6 +151,9 @@ class Body:
             weight = weight * self._volume_correction(pairs, mean_share)
         elif surface == "energy":
             weight = weight * self._energy_correction(pairs, arm / length[:, None], length, weight)
+        if not self.materials.are_one:
+            own = self.materials.bond_constants(pairs, arm / length[:, None], factor)
+            weight = weight * own / self.constants[1]
         self.tuples[1], self.weight[1] = pairs, weight
 
     def _volume_correction(self, pairs, share):
@@ -177,9 +187,13 @@ class Body:
     # ---- continuum-kinematics-inspired ----------------------------------------------------------
 
     def _make_cpd(self):
-        material = self.case["material"]
-        self.constants = {n: float(material.get(f"c{n}", 0.0)) for n in (1, 2, 3)}
-        assert "c1" in material, "the reference does not calibrate"
+        tables = self.materials.tables
+        assert all("c1" in table for table in tables), "the reference does not calibrate"
+        # Where the first material has none the weights are relative to 1.
+        self.constants = {n: float(tables[0].get(f"c{n}", 0.0)) for n in (1, 2, 3)}
+        for n in (2, 3):
+            if any(table.get(f"c{n}", 0.0) for table in tables):
+                self.constants[n] = self.constants[n] or 1.0
         bulk_weights = self.case["quadrature"]["weights"] == "bulk"
         ball = lattice_ball(self.dimension, self.horizon / self.spacing) * self.spacing
         volume = ball_volume(self.dimension, self.horizon, self.cross_section)
@@ -189,6 +203,9 @@ class Body:
         effective = numpy.full(len(self.volume), volume / len(ball))
         self.tuples[1] = pairs
         self.weight[1] = (self.volume * effective)[pairs].mean(axis=1)
+        if not self.materials.are_one:
+            own = self.materials.constants(pairs, "c1") * self.materials.factor("stiffness", pairs)
+            self.weight[1] = self.weight[1] * own / self.constants[1]
         for order, constant in ((2, 2), (3, 6)):
             if order > self.dimension or self.constants[order] == 0:
                 continue
@@ -206,7 +223,11 @@ class Body:
                 ordered = math.factorial(order) * number
                 effective = numpy.divide(own_volume**order, ordered, out=numpy.zeros(len(ordered)), where=ordered > 0)
             self.tuples[order], self.flatness[order] = tuples, factor
-            self.weight[order] = constant * factor * (self.volume * effective)[tuples].mean(axis=1)
+            share = self.volume * effective * self.materials.factors.get("stiffness", 1.0)
+            self.weight[order] = constant * factor * share[tuples].mean(axis=1)
+            if not self.materials.are_one:
+                own = self.materials.constants(tuples, f"c{order}")
+                self.weight[order] = self.weight[order] * own / self.constants[order]
 
     def _flatness(self, tuples, places, cells):
         """g(|M| / M0): 0 for what is flat, 1 from three quarters of a cell on."""

@@ -23,6 +23,10 @@ class Case:
     def __init__(self, text, folder=pathlib.Path(".")):
         self.tables = tomllib.loads(text) if isinstance(text, str) else copy.deepcopy(text)
         self.folder = pathlib.Path(folder)
+        self.has_material = "material" in self.tables
+        first = self.tables["region"][0]["material"] if "region" in self.tables else {}
+        if not self.has_material:  # model and plane are those of the first region
+            self.tables["material"] = {key: first[key] for key in ("model", "plane") if key in first}
         for name, defaults in DEFAULTS.items():
             self.tables[name] = defaults | self.tables.get(name, {})
         self.dimension = self.tables["dimension"]
@@ -63,10 +67,11 @@ class Case:
         return lattice["spacing"] * (lattice.get("horizon_ratio", 3.015) if ratio is None else ratio)
 
     @property
-    def damage(self):
-        """The table of damage with its defaults, or nothing."""
-        damage = self["material"].get("damage", {})
-        return {"rate": 3.0, "no_fail": []} | damage if damage.get("law", "none") != "none" else None
+    def has_damage(self):
+        """Whether any of the materials fails."""
+        materials = [self["material"]] + [t["material"] for t in self.get("region")]
+        materials += [t["material"] for t in self.get("interface") if "material" in t]
+        return any(table.get("damage", {}).get("law", "none") != "none" for table in materials)
 
 
 def read_points(case):

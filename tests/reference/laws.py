@@ -10,24 +10,31 @@ FRACTIONS = ((numpy.arange(PANELS)[:, None] + (NODES + 1) / 2) / PANELS).ravel()
 SHARES = numpy.tile(WEIGHTS / 2 / PANELS, PANELS)
 
 
-class Elastic:
-    """No damage at any stretch."""
-
-    onset = critical = numpy.inf
-
-    def integrity(self, stretch):
-        return numpy.ones_like(stretch)
-
-    def moment(self, stretch):
-        return stretch**2 / 2
-
-
 class Law:
-    """A law by its table in the case file."""
+    """Laws of bonds: numbers for all of them, or arrays with an entry for each."""
 
-    def __init__(self, table):
-        self.name, self.critical, self.rate = table["law"], float(table["critical"]), float(table["rate"])
-        self.onset = self.critical if self.name == "critical_stretch" else float(table["onset"])
+    def __init__(self, name, onset, critical, rate):
+        self.name, self.onset, self.critical, self.rate = name, onset, critical, rate
+
+    @classmethod
+    def of_table(cls, table):
+        """By its table in the case file."""
+        name, critical = table["law"], float(table["critical"])
+        return cls(name, critical if name == "critical_stretch" else float(table["onset"]), critical, float(table["rate"]))
+
+    @classmethod
+    def elastic(cls):
+        """No damage at any stretch."""
+        return cls("none", numpy.inf, numpy.inf, 3.0)
+
+    def of(self, bonds):
+        """Those of some of the bonds."""
+        parts = (self.name, self.onset, self.critical, self.rate)
+        return Law(*(part[bonds] if numpy.ndim(part) else part for part in parts))
+
+    def spread(self, count):
+        """An entry for each."""
+        return Law(*(numpy.broadcast_to(part, count) for part in (self.name, self.onset, self.critical, self.rate)))
 
     def published(self, stretch):
         """Equation 12 of [ADAPT], between onset and critical stretch."""
@@ -35,10 +42,9 @@ class Law:
         return (1 - numpy.tanh(argument)) / 2
 
     def softening(self, stretch):
-        if self.name == "tanh":
-            return self.published(stretch)
         start, end = self.published(self.onset), self.published(self.critical)
-        return (self.published(stretch) - end) / (start - end)
+        rescaled = (self.published(stretch) - end) / (start - end)
+        return numpy.where(self.name == numpy.array("tanh"), self.published(stretch), rescaled)
 
     def integrity(self, stretch):
         """1 up to the onset, 0 from the critical stretch on; of a complex number by its real part."""
@@ -46,7 +52,7 @@ class Law:
         value = numpy.where(real >= self.critical, 0.0, 1.0).astype(numpy.asarray(stretch).dtype)
         between = (real > self.onset) & (real < self.critical)
         if between.any():
-            value[between] = self.softening(stretch[between])
+            value[between] = self.spread(real.shape).of(between).softening(stretch[between])
         return value
 
     def moment(self, stretch):
@@ -54,9 +60,11 @@ class Law:
         low = numpy.where(real < self.onset, stretch, self.onset)
         top = numpy.where(real < self.critical, stretch, self.critical)
         value = low**2 / 2
-        beyond = real > self.onset
-        if self.onset < self.critical and beyond.any():
-            span = top[beyond] - self.onset
-            at = self.onset + span[:, None] * FRACTIONS
-            value[beyond] += span * (at * self.softening(at) @ SHARES)
+        beyond = (real > self.onset) & (numpy.asarray(self.onset) < self.critical)
+        if beyond.any():
+            law = self.spread(real.shape).of(beyond)
+            rows = Law(law.name[:, None], law.onset[:, None], law.critical[:, None], law.rate[:, None])
+            span = top[beyond] - law.onset
+            at = rows.onset + span[:, None] * FRACTIONS
+            value[beyond] += span * (at * rows.softening(at) @ SHARES)
         return value

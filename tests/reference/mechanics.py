@@ -5,7 +5,7 @@ import itertools
 import numpy
 
 from tests.reference.body import arms_of, measure
-from tests.reference.laws import Elastic, Law
+from tests.reference.laws import Law
 
 STEP = 1e-30  # of complex steps: its square vanishes beside 1, so that there is no truncation
 
@@ -60,14 +60,16 @@ class Mechanics:
 
     def __init__(self, body, elastic=False):
         self.body, self.case = body, body.case
-        damage = None if elastic else self.case.damage
-        self.law = Law(damage) if damage else Elastic()
-        self.fails = numpy.ones(len(body.bonds), bool)
         self.reference_arms = {k: arms_of(t, body.reference) for k, t in body.tuples.items()}
+        direction = self.reference_arms[1][0] / body.measure[1][:, None]
+        law = Law.elastic() if elastic else body.materials.law(body.bonds, direction)
+        self.law = law.spread(len(body.bonds))
+        # Where any bond fails, one without a law is one that never does.
+        self.fails = (self.law.name != "none") | ~numpy.full(len(body.bonds), self.case.has_damage and not elastic)
 
     def spare(self, sets):
         """Bonds of the points of no-fail sets stay elastic."""
-        for name in (self.case.damage or {}).get("no_fail", []):
+        for name in self.body.materials.no_fail:
             self.fails &= ~sets[name][self.body.bonds].any(axis=1)
 
     def no_history(self):
@@ -87,7 +89,7 @@ class Mechanics:
         """T of the histories; 1 before any damage."""
         value = numpy.ones(len(history))
         worn = history > 0
-        value[worn] = self.law.integrity(history[worn])
+        value[worn] = self.law.of(worn).integrity(history[worn])
         return value
 
     def is_broken(self, history):
@@ -102,8 +104,9 @@ class Mechanics:
         loading = self._is_loading(stretch, history)
         if loading.any():
             past = history[loading]
-            base = self.integrity(past) * past**2 / 2 - self.law.moment(past)
-            value[loading] = base + self.law.moment(stretch[loading])
+            law = self.law.of(loading)
+            base = self.integrity(history)[loading] * past**2 / 2 - law.moment(past)
+            value[loading] = base + law.moment(stretch[loading])
         return value
 
     def _bond_tension(self, stretch, history, held=False):
@@ -113,7 +116,7 @@ class Mechanics:
             return value
         loading = self._is_loading(stretch, history)
         if loading.any():
-            value[loading] = self.law.integrity(stretch[loading]) * stretch[loading]
+            value[loading] = self.law.of(loading).integrity(stretch[loading]) * stretch[loading]
         return value
 
     def _kept(self, order, history):
@@ -185,7 +188,7 @@ class Mechanics:
         """By bonds [J]; what triangles and tetrahedra lose depends on when they lose it."""
         worn = history > 0
         past = history[worn]
-        lost = self.law.moment(past) - self.integrity(past) * past**2 / 2
+        lost = self.law.of(worn).moment(past) - self.integrity(history)[worn] * past**2 / 2
         return float((self.body.constants[1] * self.body.weight[1][worn] * self.body.lengths[worn] * lost).sum())
 
     def damage(self, history):

@@ -30,12 +30,13 @@ class Verification:
         self.rows = {int(row["step"]): row for row in self.results.table("history")}
         reference, volume, sets = self.results.reference, self.results.volume, self.results.sets
         self.conditions = Conditions(self.case, reference, volume, sets)
-        self.mechanics = Mechanics(Body(self.case, reference, volume))
+        more = {"sets": sets, "factors": self.results.factors}
+        self.mechanics = Mechanics(Body(self.case, reference, volume, **more))
         self.mechanics.spare(sets)
         self.first_real_step = 0
         self.stand_in = None
         if "elastic_horizon_ratio" in self.case["solver"]:
-            body = Body(self.case, reference, volume, self.case["solver"]["elastic_horizon_ratio"])
+            body = Body(self.case, reference, volume, self.case["solver"]["elastic_horizon_ratio"], **more)
             self.stand_in = Mechanics(body, elastic=True)
             handed = [r["step"] for r in self.results.table("decisions") if r["action"] == "hand over to relaxation"]
             self.first_real_step = int(handed[0]) if handed else 10**9
@@ -59,14 +60,14 @@ class Verification:
     def histories_are_known(self):
         """They are written, or follow from the accepted states."""
         steps = self.results.steps
-        if self.case.damage is None or any(step.history is not None for step in steps):
+        if not self.case.has_damage or any(step.history is not None for step in steps):
             return True
         relaxed = self.case["solver"]["mode"] != "newton"
         path_is_written = self.case["output"]["every"] == 1 and not self.mechanics.body.is_cpd
         return path_is_written and not (relaxed and self.case["relaxation"]["breaking"] == "transient")
 
     def next_history(self, step, history):
-        if self.case.damage is None or step.number < self.first_real_step:
+        if not self.case.has_damage or step.number < self.first_real_step:
             return history
         if step.history is None:
             return self.mechanics.grown(history, step.displacement)
@@ -80,7 +81,7 @@ class Verification:
             elif (stretch == NEVER_FAILS) == self.mechanics.fails[bond]:
                 self.complain(step, f"bond {first}-{second} is written to fail or not to, and the other is right")
             elif stretch != NEVER_FAILS:
-                if stretch < history[bond] or stretch <= self.mechanics.law.onset:
+                if stretch < history[bond] or stretch <= self.mechanics.law.onset[bond]:
                     self.complain(step, f"history {stretch} of bond {first}-{second} after {history[bond]}")
                 history[bond] = stretch
         return history
@@ -201,7 +202,7 @@ class Verification:
         scale += 1e-5 * self.whole_force(mechanics, step) * numpy.abs(step.displacement).max()
         self.compare(step, "stored energy", row["stored_energy"], stored, scale)
         dissipated = mechanics.dissipated(history)
-        brittle_cpd = mechanics.body.is_cpd and mechanics.law.onset < numpy.inf
+        brittle_cpd = mechanics.body.is_cpd and mechanics.law.onset.min() < numpy.inf
         if not brittle_cpd:
             self.compare(step, "dissipated energy", row["dissipated_energy"], dissipated, scale)
         elif row["dissipated_energy"] < dissipated - AGREEMENT * scale and min(mechanics.body.constants.values()) >= 0:

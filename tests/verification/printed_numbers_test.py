@@ -38,6 +38,34 @@ class Bar(PrintedTest):
             self.assertAlmostEqual(error(spacing, "none"), 0.25, delta=0.005)
 
 
+class Regions(PrintedTest):
+    def test_bar_of_two_materials(self):
+        self.page = "cases/regions/bimaterial.toml"
+        bar = run("regions/bimaterial")
+        stress = 100.0 / 1e-4
+        self.prints("strains of F / (A E) in either half, {} and", stress / 70e9)
+        self.prints("F/A (0.5/E1 + 0.497/E2) = {} m there", stress * (0.5 / 70e9 + 0.497 / 210e9))
+        self.prints("there; at the interface {} m", stress * 0.5 / 70e9)
+        self.prints('probe "end": {} m', bar.summary["probes"]["end"])
+        self.prints('"interface": {} m.', bar.summary["probes"]["interface"])
+        self.prints('Reaction on "held": {} N', bar.reaction("held"))
+
+    def test_plate_of_fibres(self):
+        self.page = "cases/regions/composite.toml"
+
+        def growth(*changes):
+            probes = run("regions/composite", *changes).summary["probes"]
+            return probes["right_mark"][0] - probes["left_mark"][0]
+
+        closed = [1e3 * 0.02 / (12e-3 * 1e-3 * modulus) for modulus in (40e9, 10e9)]
+        self.prints("F L / (A E1) = {} m, and with", closed[0])
+        self.prints("F L / (A E2) = {} m", closed[1])
+        found = [growth(), growth("material.fibre.angle=90")]
+        self.prints("On this lattice {} m and {} m", *found)
+        for one, other in zip(found, closed):
+            self.assertAlmostEqual(one / other, 1, delta=0.05)
+
+
 class Cantilever(PrintedTest):
     def test_plate(self):
         self.page = "cases/cantilever/plate.toml"

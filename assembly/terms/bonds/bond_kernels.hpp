@@ -164,8 +164,9 @@ template <class P>
 struct AtHistory {
   const P& potential;
   Lanes largest_stretch;
+  Offset first_bond;
   [[nodiscard]] PotentialDensity<Lanes> operator()(const Lanes& e) const {
-    return potential(e, largest_stretch);
+    return potential(e, largest_stretch, first_bond);
   }
 };
 
@@ -175,7 +176,8 @@ template <class P>
                                               Offset first_bond) {
   if constexpr (PotentialWithHistory<P>) {
     return AtHistory<P>{potential,
-                        Lanes(largest_stretch + first_bond, std::experimental::element_aligned)};
+                        Lanes(largest_stretch + first_bond, std::experimental::element_aligned),
+                        first_bond};
   } else {
     return potential;
   }
@@ -186,15 +188,17 @@ template <int D, class P>
 inline void commit(const P& potential, const Batch<D>& batch, const Lanes& stretch,
                    double* largest_stretch, DamageGrowth& growth) {
   const Lanes before(largest_stretch + batch.first, std::experimental::element_aligned);
-  const auto may_grow = stretch > potential.law.onset() && before < potential.law.critical();
+  const auto range = potential.ranges(batch.first);
+  const auto may_grow = stretch > range.onset && before < range.critical;
   if (std::experimental::none_of(may_grow)) return;
   for (int l = 0; l < batch.count; ++l) {
     double& largest = largest_stretch[batch.first + l];
     const double s = stretch[l];
-    if (!potential.is_loading(s, largest)) continue;
+    const auto& of_bond = potential.of_bond(batch.first + l);
+    if (!of_bond.is_loading(s, largest)) continue;
     largest = s;
     ++growth.degrading;
-    growth.breaking += potential.is_broken(s);
+    growth.breaking += of_bond.is_broken(s);
   }
 }
 
@@ -202,13 +206,15 @@ inline void commit(const P& potential, const Batch<D>& batch, const Lanes& stret
 template <int D, class P>
 inline void look_at(const P& potential, const Batch<D>& batch, const Lanes& stretch,
                     const double* largest_stretch, DamageGrowth& growth) {
-  if (largest(stretch) <= std::min(growth.utilisation, 1.0) * potential.law.onset()) return;
+  const auto range = potential.ranges(batch.first);
+  if (std::experimental::none_of(stretch > std::min(growth.utilisation, 1.0) * range.onset)) return;
   for (int l = 0; l < batch.count; ++l) {
     const double before = largest_stretch[batch.first + l], s = stretch[l];
-    growth.utilisation = std::max(growth.utilisation, potential.utilisation(s, before));
-    if (!potential.is_loading(s, before)) continue;
+    const auto& of_bond = potential.of_bond(batch.first + l);
+    growth.utilisation = std::max(growth.utilisation, of_bond.utilisation(s, before));
+    if (!of_bond.is_loading(s, before)) continue;
     ++growth.degrading;
-    growth.breaking += potential.is_broken(s);
+    growth.breaking += of_bond.is_broken(s);
   }
 }
 

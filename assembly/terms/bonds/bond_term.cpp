@@ -47,6 +47,12 @@ std::vector<InteractionCount> BondTerm::counts() const {
            neighbour_counts(*bonds_)}};
 }
 
+double BondTerm::stored_bytes() const {
+  double bytes = 0.0;
+  with_damage_law([&](const auto& law) { bytes = law.bytes(); });
+  return bytes;
+}
+
 std::unique_ptr<TermPasses> BondTerm::passes(const TermSetting& setting) const {
   return std::make_unique<BondPasses>(*this, setting);
 }

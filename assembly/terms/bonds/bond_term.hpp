@@ -31,7 +31,7 @@ class BondTerm : public Term {
     return std::visit([]<class P>(const P&) { return PotentialWithHistory<P>; }, potential_);
   }
 
-  /// Calls visit(law) if the bonds can be damaged.
+  /// Calls visit(law) if the bonds can be damaged; law.of_bond(bond) is that of one of them.
   template <class Visit>
   void with_damage_law(const Visit& visit) const {
     std::visit(
@@ -51,6 +51,7 @@ class BondTerm : public Term {
   [[nodiscard]] Balances balances() const override;
   [[nodiscard]] std::vector<double> initial_history() const override;
   [[nodiscard]] std::vector<InteractionCount> counts() const override;
+  [[nodiscard]] double stored_bytes() const override;
   [[nodiscard]] std::unique_ptr<TermPasses> passes(const TermSetting& setting) const override;
 
  private:

@@ -78,9 +78,13 @@ class SimplexPasses : public TermPasses {
   SimplexWorkspace<D> workspace_;
 };
 
+/// Whether some of them may store negative energy.
 template <class Kind>
 bool is_negative(const std::optional<Kind>& kind) {
-  return kind && std::visit([](const auto& law) { return law.modulus < 0.0; }, kind->potential);
+  if (!kind) return false;
+  const bool is_reversed =
+      std::visit([](const auto& law) { return law.modulus < 0.0; }, kind->potential);
+  return is_reversed || kind->interactions.has_negative_factors();
 }
 
 /// The same names for one kind of simplices as for the other.
@@ -133,7 +137,7 @@ void SimplexTerm::follow(const Model& model, History& history) const {
     const std::span<const double> largest_stretch = history.of(model.slot_of(*bonds_));
     for (Index i = 0; i < bonds().points(); ++i) {
       for (Offset bond = bonds().offset[i]; bond < bonds().offset[i + 1]; ++bond) {
-        integrity[bond] = law.integrity_after(largest_stretch[bond]);
+        integrity[bond] = law.of_bond(bond).integrity_after(largest_stretch[bond]);
         for (const Index point : {i, bonds().partner[bond]}) {
           of_point[point] = std::min(of_point[point], integrity[bond]);
         }

@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 
 #include "solvers/linear/available_memory.hpp"
-#include "solvers/study/bond_potential.hpp"
+#include "solvers/study/bond_materials.hpp"
 #include "src/connectivity/free_motion.hpp"
 #include "src/core/input_error.hpp"
 #include "src/core/number_text.hpp"
@@ -91,7 +91,12 @@ std::optional<Model> make_elastic_stand_in(const Case& from, const Body& body, i
   if (from.solver.elastic_horizon_ratio == 0.0 || from.solver.mode != Mode::adaptive) return {};
   return located_errors(from, [&]() -> std::optional<Model> {
     const std::string key = "solver.elastic_horizon_ratio";
-    if (from.material.model != MaterialModel::bond || !from.material.youngs_modulus)
+    const auto has_modulus = [](const auto& material) {
+      return material.of->youngs_modulus.has_value();
+    };
+    const PointMaterials materials(from, body.points);
+    const auto all = all_materials(from, materials);
+    if (from.material.model != MaterialModel::bond || !std::ranges::all_of(all, has_modulus))
       throw InputError(key, number_text(from.solver.elastic_horizon_ratio),
                        "needs the bond model with a youngs_modulus: a micromodulus belongs to one "
                        "horizon");
@@ -107,10 +112,7 @@ std::optional<Model> make_elastic_stand_in(const Case& from, const Body& body, i
     if (!free_motions(body.points, bonds, holding).empty())
       throw InputError(key, number_text(from.solver.elastic_horizon_ratio),
                        "leaves points that may move freely");
-    MaterialSpecification elastic = from.material;
-    elastic.damage = {};
-    return Model(std::move(bonds),
-                 bond_potential(elastic, micromodulus(*elastic.youngs_modulus, setting)));
+    return make_elastic_bonds(body, std::move(bonds), setting);
   });
 }
 

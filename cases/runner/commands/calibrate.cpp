@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "cases/runner/build/body.hpp"
+#include "solvers/study/bond_materials.hpp"
 #include "src/core/input_error.hpp"
 #include "src/core/number_text.hpp"
 #include "src/neighbourhood/bulk_neighbourhood.hpp"
@@ -181,8 +182,7 @@ Exit calibrate(const CalibrationQuestion& question) {
 }
 
 Exit calibrate(const Case& from) {
-  const MaterialSpecification& material = from.material;
-  if (material.model != MaterialModel::cpd) {
+  if (from.material.model != MaterialModel::cpd) {
     throw located(from, InputError("material.model", "\"bond\"", "calibrate is for model \"cpd\""));
   }
   const Points points = make_points_of(from);
@@ -197,12 +197,22 @@ Exit calibrate(const Case& from) {
     question.horizon_ratio = source.horizon / points.spacing;
     if (from.dimension == 2) question.thickness = source.cross_section;
   }
-  question.youngs_modulus = material.youngs_modulus;
-  question.poisson_ratio = material.poisson_ratio;
-  question.c1 = material.c1;
-  if (material.c1 || from.dimension == 3) question.c2 = material.c2;
-  if (material.c1) question.c3 = material.c3;
-  return calibrate(question);
+  const auto all =
+      located_errors(from, [&] { return all_materials(from, PointMaterials(from, points)); });
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    const MaterialSpecification& material = *all[k].of;
+    question.youngs_modulus = material.youngs_modulus;
+    question.poisson_ratio = material.poisson_ratio;
+    question.c1 = material.c1;
+    question.c2.reset();
+    question.c3.reset();
+    if (material.c1 || from.dimension == 3) question.c2 = material.c2;
+    if (material.c1) question.c3 = material.c3;
+    if (all.size() > 1) fmt::print("{}\"{}\":\n", k == 0 ? "{" : ", ", all[k].name);
+    if (const Exit exit = calibrate(question); exit != Exit::done) return exit;
+  }
+  if (all.size() > 1) fmt::print("}}\n");
+  return Exit::done;
 }
 
 }  // namespace peristat

@@ -9,7 +9,7 @@
 #include "cases/runner/build/solver_options.hpp"
 #include "solvers/linear/available_memory.hpp"
 #include "solvers/linear/make_linear_solver.hpp"
-#include "solvers/study/bond_potential.hpp"
+#include "solvers/study/bond_materials.hpp"
 #include "solvers/study/cpd_model.hpp"
 #include "solvers/study/found_loads.hpp"
 #include "solvers/study/linear_systems.hpp"
@@ -43,35 +43,90 @@ std::string seconds_text(double seconds) {
   return fmt::format("about {:.1f} h", seconds / 3600.0);
 }
 
-void print_constants(const Case& from, const Body& body) {
-  if (from.material.model == MaterialModel::bond) {
-    const double modulus = micromodulus_of(from, body.setting);
+/// "constants", or "constants of fibres": the lines of several materials say whose they are.
+std::string heading(const std::string& what, const std::string& of) {
+  return of.empty() ? fmt::format("{:<11}", what) : fmt::format("{} of {}:", what, of);
+}
+
+/// Constants of bonds and their moduli.
+void print_bond_constants(const PointMaterials::Material& of, const std::string& name,
+                          const BondSetting& setting) {
+  const DirectedConstant constant = micromodulus_of(*of.of, of.key, setting);
+  if (of.of->fibre) {
+    const FibreSpecification& fibre = *of.of->fibre;
+    const double along = *of.of->youngs_modulus, across = fibre.transverse_modulus;
     fmt::print(
-        "constants   micromodulus {:.6g} N/m6, Young's modulus {:.6g} Pa, Poisson's ratio {:.4g}\n",
-        modulus, youngs_modulus_of(modulus, body.setting), poisson_ratio(body.setting));
-    fmt::print(
-        "quadrature  energy of a confined strain deviates by at most {:.3g} from the classical\n",
-        confined_energy_error(body.points, body.model.bonds(), body.setting));
+        "{} micromodulus {:.6g} N/m6 along the fibres, {:.6g} N/m6 across, at least {:.6g} N/m6; "
+        "Young's moduli {:.6g} and {:.6g} Pa, shear modulus {:.6g} Pa\n",
+        heading("constants", name), constant.at(1.0), constant.at(0.0), constant.least(), along,
+        across, fibre.shear_modulus.value_or(natural_shear(along, across, setting)));
     return;
   }
-  const int dimension = from.dimension;
-  const CpdConstants constants = cpd_constants_of(from, body.points, body.setting);
-  fmt::print("constants   C1 {:.6g} N/m6, C2 {:.6g} N/m10, C3 {:.6g} N/m14\n", constants.c1,
-             constants.c2, constants.c3);
+  const double modulus = constant.at(1.0);
+  fmt::print("{} micromodulus {:.6g} N/m6, Young's modulus {:.6g} Pa, Poisson's ratio {:.4g}\n",
+             heading("constants", name), modulus, youngs_modulus_of(modulus, setting),
+             poisson_ratio(setting));
+}
+
+void print_cpd_constants(const PointMaterials::Material& of, const std::string& name,
+                         const Body& body) {
+  const int dimension = body.points.dimension;
+  const CpdConstants constants = cpd_constants_of(*of.of, of.key, body.points, body.setting);
+  fmt::print("{} C1 {:.6g} N/m6, C2 {:.6g} N/m10, C3 {:.6g} N/m14\n", heading("constants", name),
+             constants.c1, constants.c2, constants.c3);
   const auto print_moduli = [&](const char* where, const CpdStiffness& stiffness) {
     const CubicElasticity elasticity = stiffness.elasticity(constants);
     const LameModuli moduli = elasticity.isotropic(dimension);
     fmt::print(
-        "moduli      {}: Young's modulus {:.6g} Pa, Poisson's ratio {:.4g} (along the axes "
+        "{} {}: Young's modulus {:.6g} Pa, Poisson's ratio {:.4g} (along the axes "
         "{:.4g}), "
         "anisotropy {:.4g}\n",
-        where, youngs_modulus_of(moduli, dimension), poisson_ratio_of(moduli, dimension),
-        elasticity.axis_poisson_ratio(dimension), elasticity.anisotropy());
+        heading("moduli", name), where, youngs_modulus_of(moduli, dimension),
+        poisson_ratio_of(moduli, dimension), elasticity.axis_poisson_ratio(dimension),
+        elasticity.anisotropy());
   };
   print_moduli("lattice", lattice_stiffness(dimension, body.points.spacing, body.setting.horizon,
                                             body.setting.cross_section));
   print_moduli("continuum",
                continuum_stiffness(dimension, body.setting.horizon, body.setting.cross_section));
+}
+
+/// What the quadrature of bonds is worth, whatever their constants.
+void print_quadrature(const Case& from, const Body& body, int threads) {
+  Bonds bonds = body.model.bonds();
+  if (!from.is_uniform()) {  // their weights have the constants in them
+    bonds = make_bonds(body.points, from.surface_correction, body.setting, threads);
+    static_cast<void>(cut_bonds(bonds, body.points, from.cracks));
+  }
+  fmt::print(
+      "quadrature  energy of a confined strain deviates by at most {:.3g} from the classical\n",
+      confined_energy_error(body.points, bonds, body.setting));
+}
+
+void print_constants(const Case& from, const Body& body, int threads) {
+  const PointMaterials materials(from, body.points);
+  const auto all = all_materials(from, materials);
+  const bool is_bond = from.material.model == MaterialModel::bond;
+  for (const auto& material : all) {
+    const std::string name = from.regions.empty() ? "" : material.name;
+    if (is_bond)
+      print_bond_constants(material, name, body.setting);
+    else
+      print_cpd_constants(material, name, body);
+  }
+  if (is_bond) print_quadrature(from, body, threads);
+}
+
+/// How many points each material has.
+void print_regions(const Case& from, const Body& body) {
+  if (from.regions.empty()) return;
+  const auto count = [&](std::int32_t region) {
+    return std::count(body.region.begin(), body.region.end(), region);
+  };
+  for (std::size_t k = 0; k < from.regions.size(); ++k) {
+    fmt::print("region      {}: {} points\n", from.regions[k].set, count(std::int32_t(k)));
+  }
+  if (count(-1) > 0) fmt::print("region      none, [material]: {} points\n", count(-1));
 }
 
 }  // namespace
@@ -90,7 +145,8 @@ Exit check(const Case& from, int threads) {
   for (const std::string& line : describe_interactions(body)) {
     fmt::print("interaction {}\n", line);
   }
-  print_constants(from, body);
+  print_regions(from, body);
+  print_constants(from, body, threads);
   for (const auto& [set, members] : points.sets) {
     fmt::print("set         {}: {} points\n", set, members.size());
   }

@@ -160,16 +160,15 @@ void steepen(const std::vector<double>& gradient, double size, std::vector<doubl
 double keep_off_kinks(const Body& body, const std::vector<double>& displacement,
                       const std::vector<double>& gradient, std::vector<double>& direction,
                       double largest_step) {
-  std::vector<double> kinks;
-  if (const BondTerm* const failing = body.model.failing_bonds()) {
-    failing->with_damage_law([&](const auto& potential) {
-      kinks = {potential.law.onset(), potential.law.critical()};
-    });
-  }
-  if (kinks.empty()) return largest_step;
+  const BondTerm* const failing = body.model.failing_bonds();
+  if (!failing) return largest_step;
   steepen(gradient, body.points.spacing, direction);
-  const double width = kinks[1] > kinks[0] ? kinks[1] - kinks[0] : kinks[1];
-  const double margin = 0.02 * width;
+  const auto range_of = [&](Offset bond) {
+    DamageRange<double> range{};
+    failing->with_damage_law([&](const auto& laws) { range = laws.of_bond(bond).ranges(bond); });
+    return range;
+  };
+  double margin = std::numeric_limits<double>::infinity();  // the least of all bonds
 
   const Points& points = body.points;
   const Bonds& bonds = body.model.bonds();
@@ -188,10 +187,10 @@ double keep_off_kinks(const Body& body, const std::vector<double>& displacement,
       const double stretch =
           std::hypot(b[0] - a[0], b[1] - a[1], b[2] - a[2]) * bonds.inverse_length(bond) - 1.0;
       shortest = std::min(shortest, bonds.length(bond));
-      const bool close = std::any_of(kinks.begin(), kinks.end(), [&](double kink) {
-        return std::abs(stretch - kink) < margin;
-      });
-      if (!close) continue;
+      const auto [onset, critical] = range_of(bond);
+      const double near = 0.02 * (critical > onset ? critical - onset : critical);
+      margin = std::min(margin, near);
+      if (std::abs(stretch - onset) >= near && std::abs(stretch - critical) >= near) continue;
       for (const Index point : {points.source(i), points.source(j)}) {
         std::fill_n(direction.begin() + std::ptrdiff_t(std::size_t(point) * d), d, 0.0);
       }

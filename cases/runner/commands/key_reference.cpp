@@ -61,8 +61,7 @@ Exit print_keys(const std::string& asked) {
   std::vector<std::string> names;
   std::string page;
   for (const auto& table : table_descriptions()) {
-    // what is in set.shape stands in lattice.shape
-    if (!table.name.starts_with("set.shape")) names.push_back(shown_name(table));
+    if (!repeats_another(table.name)) names.push_back(shown_name(table));
     if (asked == shown_name(table) || (asked.empty() && names.back() == shown_name(table)))
       page += fmt::format("{}{}\n\n{}", page.empty() ? "" : "\n",
                           table.name.empty() ? "The document"

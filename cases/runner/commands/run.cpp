@@ -75,16 +75,31 @@ double largest_displacement(const std::vector<double>& displacement, const Point
   return std::sqrt(largest);
 }
 
-/// The counts of [CPD] sec. 3.1 for the results folder.
-std::vector<PointCounts> neighbour_counts_of(const Body& body) {
+/// What the results folder tells of every point: the counts of [CPD] sec. 3.1, its region and
+/// random factors.
+std::vector<PointCounts> constant_fields_of(const Body& body) {
   std::vector<PointCounts> counts;
+  const auto own = [&](auto values) {
+    values.resize(std::size_t(body.points.own()));
+    return values;
+  };
   for (const auto& term : body.model.terms()) {
     for (InteractionCount& kind : term->counts()) {
-      kind.per_point.resize(std::size_t(body.points.own()));
       for (std::int32_t& count : kind.per_point) count *= kind.orders;
-      counts.push_back({kind.per_point_name, kind.per_point_meaning, std::move(kind.per_point)});
+      counts.push_back({kind.per_point_name, kind.per_point_meaning, own(kind.per_point)});
     }
   }
+  if (!body.region.empty()) {
+    counts.push_back(
+        {"region", "number of the point's [[region]], from 0; -1: in none", own(body.region)});
+  }
+  const auto add_factors = [&](const std::string& of, const std::vector<double>& factors) {
+    if (factors.empty()) return;
+    counts.push_back(
+        {of + "_factor", "random factor of the " + of + " of the point's bonds", own(factors)});
+  };
+  add_factors("stiffness", body.factors.stiffness);
+  add_factors("strength", body.factors.strength);
   return counts;
 }
 
@@ -249,7 +264,7 @@ class CaseRun {
       tell_beginning();
     } else {
       results_.emplace(from_.output.directory, without_images(body_->points), text, support_sets_,
-                       probes_, neighbour_counts_of(*body_), options_.overwrite);
+                       probes_, constant_fields_of(*body_), options_.overwrite);
       recorder_.emplace(from_, *body_, assembler, *results_, progress_);
     }
     leave_note(from_.output.directory);

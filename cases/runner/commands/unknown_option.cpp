@@ -16,7 +16,7 @@ constexpr std::size_t most_of_word = 80, most_keys = 3;
 std::vector<std::string> keys_named(const std::string& name) {
   std::vector<std::string> found;
   for (const std::string table : {"", "lattice", "quadrature", "material", "material.damage",
-                                  "loading", "solver", "relaxation", "output"}) {
+                                  "material.fibre", "loading", "solver", "relaxation", "output"}) {
     const auto known = case_keys().find(table);
     if (known == case_keys().end()) continue;
     const std::vector<std::string>& keys = known->second;

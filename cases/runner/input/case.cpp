@@ -51,6 +51,8 @@ const std::map<std::string, std::string>& keys_of_members() {
                                                        {"shapes", "lattice.shape"},
                                                        {"layers", "lattice.layer"},
                                                        {"cracks", "crack"},
+                                                       {"regions", "region"},
+                                                       {"interfaces", "interface"},
                                                        {"file", "points.file"},
                                                        {"supports", "support"},
                                                        {"loads", "load"},

@@ -25,6 +25,18 @@ constexpr auto body_is =
 
 bool is_cpd(const Case& from) { return from.material.model == MaterialModel::cpd; }
 
+/// Whether any of the materials has a law of damage.
+bool may_fail(const Case& from) {
+  const auto fails = [](const MaterialSpecification& material) {
+    return material.damage.law != DamageLaw::none;
+  };
+  return fails(from.material) ||
+         std::ranges::any_of(from.regions, fails, &RegionSpecification::material) ||
+         std::ranges::any_of(from.interfaces, [&](const InterfaceSpecification& interface) {
+           return interface.material && fails(*interface.material);
+         });
+}
+
 constexpr auto itself = [](auto& spec) -> auto& { return spec; };
 constexpr auto lattice = [](auto& from) -> auto& { return std::get<Lattice>(from.body); };
 constexpr auto points = [](auto& from) -> auto& { return std::get<PointSource>(from.body); };
@@ -241,14 +253,26 @@ void check_quadrature(const Entry& at, const Case& result) {
   }
 }
 
-Table<DamageSpecification> damage_keys() {
+/// What follows from the materials. Without [material] the first region tells model and plane.
+void check_regions(const Entry& at, Case& result) {
+  if (!at.from.has("material")) {
+    if (result.regions.empty()) static_cast<void>(at.from.table("material"));  // it is missing
+    const MaterialSpecification& first = result.regions.front().material;
+    result.material.model = first.model;
+    result.material.potential = first.potential;
+    result.material.plane = first.plane;
+  }
+  check_quadrature(at, result);
+}
+
+Table<DamageSpecification> damage_keys(const std::string& material) {
   using Spec = DamageSpecification;
   using K = Key<Spec>;
   const auto is_whole = [](auto& damage, auto&) { return damage.law == DamageLaw::none; };
   const auto is_sudden = [](auto& damage, auto&) {
     return damage.law == DamageLaw::critical_stretch;
   };
-  return {"material.damage",
+  return {material + ".damage",
           {K("law", &Spec::law,
              choice<DamageLaw>({{"none", DamageLaw::none},
                                 {"critical_stretch", DamageLaw::critical_stretch},
@@ -296,17 +320,80 @@ Choices<std::string> bond_potentials() {
   return names;
 }
 
-Table<MaterialSpecification> material_keys() {
+Table<FibreSpecification> fibre_keys(const std::string& material) {
+  using Spec = FibreSpecification;
+  using K = Key<Spec>;
+  return {
+      material + ".fibre",
+      {K("angle", &Spec::angle, between(-360.0, 360.0, "degrees"),
+         "2D: of the fibres against the x axis, towards y")
+           .unless(in_dimension<3>, "is for dimension 2; 3D has a direction")
+           .required("required in 2D"),
+       K("direction", &Spec::direction, coordinates("1"), "3D: of the fibres, of any length")
+           .unless(in_dimension<2>, "is for dimension 3; 2D has an angle")
+           .moreover("not all zero")
+           .required("required in 3D"),
+       K("transverse_modulus", &Spec::transverse_modulus, positive("Pa"),
+         "Young's modulus $E_2$ across the fibres; `youngs_modulus` is $E_1$, along them")
+           .required(),
+       K("shear_modulus", &Spec::shear_modulus, positive("Pa"),
+         "$G$ of planes that the fibres lie in; Poisson's ratio follows")
+           .moreover("such that no bond has a negative constant")
+           .default_words("$\\sqrt{E_1E_2}/(2 + 2\\nu)$ with the $\\nu$ of isotropic bonds, 1/3 or "
+                          "1/4"),
+       K("transverse_critical", &Spec::transverse_critical, between(1e-9, 1e3, "1"),
+         "`critical` of bonds across the fibres; that of `[material.damage]` is then of those "
+         "along them, and between it goes with the square of the cosine, `onset` with it")
+           .default_words("as along the fibres")}};
+}
+
+Table<ScatterSpecification> scatter_keys(const std::string& material) {
+  using Spec = ScatterSpecification;
+  using K = Key<Spec>;
+  constexpr auto field = [](auto& scatter) -> auto& { return scatter.field; };
+  return {material + ".scatter",
+          {K("of", &Spec::of,
+             choice<Spec::Quantity>({{"stiffness", Spec::Quantity::stiffness},
+                                     {"strength", Spec::Quantity::strength}}),
+             "what the factor multiplies: the constants of bonds, triangles and tetrahedra, or the "
+             "stretches of the law of damage")
+               .required(),
+           K("distribution", &Spec::distribution,
+             choice<Spec::Distribution>({{"weibull", Spec::Distribution::weibull}}),
+             "of the factor, whose mean is 1"),
+           K("weibull_modulus", in(field, &WeibullField::modulus), between(1.0, 1e3, "1"),
+             "shape $m$: the larger, the less scatter")
+               .required(),
+           K("correlation_length", in(field, &WeibullField::correlation_length),
+             number({0.0, 1e30, "must be 0 or a positive number [m]"}, "0 or positive", "m"),
+             "$\\ell$ over which the field changes; 0: every point has a value of its own"),
+           K("seed", in(field, &WeibullField::seed),
+             count_from(0, "", std::numeric_limits<std::int64_t>::max()),
+             "of the field; the same seed and place give the same value, whatever else the case "
+             "has")}};
+}
+
+/// @param name of the table: of the body, a region or an interface
+Table<MaterialSpecification> material_keys(const std::string& name) {
   using Spec = MaterialSpecification;
   using K = Key<Spec>;
   const auto of_cpd = [](auto& material, auto&) { return material.model == MaterialModel::cpd; };
   const auto of_bond = [](auto& material, auto&) { return material.model == MaterialModel::bond; };
   const auto has_moduli = [](auto& material, auto&) { return material.youngs_modulus.has_value(); };
   const auto has_constants = [](auto& material, auto&) { return material.c1.has_value(); };
+  constexpr auto fibre_of = [](auto& material) -> auto& {
+    if constexpr (std::is_const_v<std::remove_reference_t<decltype(material)>>) {
+      static const FibreSpecification none;
+      return material.fibre ? *material.fibre : none;
+    } else {
+      if (!material.fibre) material.fibre.emplace();
+      return *material.fibre;
+    }
+  };
   const std::string for_bond = "is for model \"bond\"", for_cpd = "is for model \"cpd\"",
                     with_moduli = "goes with youngs_modulus, not with c1";
   return {
-      "material",
+      name,
       {K("model", &Spec::model,
          choice<MaterialModel>({{"bond", MaterialModel::bond}, {"cpd", MaterialModel::cpd}}),
          "bond-based peridynamics, whose Poisson ratio is 1/4 (3D and plane strain) or 1/3 (plane "
@@ -368,8 +455,124 @@ Table<MaterialSpecification> material_keys() {
            .unless(has_constants, with_moduli),
        K("density", &Spec::density, positive("kg/m3"),
          "for dynamics only: dynamic relaxation has a density of its own"),
-       K("damage", &Spec::damage, damage_keys(), "table `[material.damage]`")
-           .default_words("no damage")}};
+       K("damage", &Spec::damage, damage_keys(name), "table `[material.damage]`")
+           .default_words("no damage"),
+       K("fibre", fibre_of, fibre_keys(name),
+         "table `[material.fibre]`: moduli and stretches by "
+         "the direction of the bond")
+           .written_if([](auto& material, auto&) { return material.fibre.has_value(); })
+           .unless(of_cpd, for_bond)
+           .unless(in_dimension<1>, "needs dimension 2 or 3")
+           .otherwise([](auto&, auto&) {}, "none"),
+       K("scatter", &Spec::scatter, scatter_keys(name),
+         "tables `[[material.scatter]]`: random fields")}};
+}
+
+/// What regions and interfaces add to the keys of a material: its model, potential and plane are
+/// those of the body.
+Table<MaterialSpecification> material_of_body_keys(const std::string& name) {
+  Table<MaterialSpecification> keys = material_keys(name);
+  const auto of_body = [](const Case& so_far) -> const MaterialSpecification& {
+    const bool is_first = !so_far.material.has_constants() && !so_far.regions.empty();
+    return is_first ? so_far.regions.front().material : so_far.material;
+  };
+  keys.before = [of_body](const Entry& at, MaterialSpecification& material) {
+    const MaterialSpecification& body = of_body(at.so_far);
+    material.model = body.model;
+    material.potential = body.potential;
+    material.plane = body.plane;
+  };
+  keys.after = [of_body](const Entry& at, MaterialSpecification& material) {
+    const bool is_first = !at.so_far.material.has_constants() && at.so_far.regions.empty();
+    const MaterialSpecification& body = of_body(at.so_far);
+    if (is_first) return;
+    const auto require = [&](bool is_same, const std::string& key) {
+      if (!is_same) at.from.refuse(key, "must be the same for all materials of a body");
+    };
+    require(material.model == body.model, "model");
+    require(material.potential == body.potential, "potential");
+    require(material.plane == body.plane, "plane");
+  };
+  return keys;
+}
+
+Table<RegionSpecification> region_keys() {
+  using Spec = RegionSpecification;
+  using K = Key<Spec>;
+  return {"region",
+          {K("set", &Spec::set, known_set(), "whose points are of this material")
+               .then([](auto& at, auto& region) {
+                 if (region.set == rest_name)
+                   at.refuse(
+                       "is what `between` calls the points in no region; give the set another "
+                       "name");
+               })
+               .moreover("no region shares points with another")
+               .required()
+               .early(),
+           K("material", &Spec::material, material_of_body_keys("region.material"),
+             "table `[region.material]`, with the keys of [`[material]`](#material)")
+               .required()}};
+}
+
+Kind<std::array<std::string, 2>> two_materials() {
+  const auto read = [](const Entry& at) {
+    const std::vector<std::string> given = at.from.strings(at.key);
+    if (given.size() != 2) at.refuse("must be two names");
+    std::vector<std::string> names;
+    for (const RegionSpecification& region : at.so_far.regions) names.push_back(region.set);
+    if (at.so_far.material.has_constants()) names.emplace_back(rest_name);
+    for (const std::string& name : given) {
+      if (std::find(names.begin(), names.end(), name) != names.end()) continue;
+      at.refuse("there is no region of the set \"" + name + "\"" + did_you_mean(name, names) +
+                (names.empty() ? "" : "  (there: " + listed(names) + ")"));
+    }
+    if (given[0] == given[1]) at.refuse("must be two materials, not one");
+    return std::array{given[0], given[1]};
+  };
+  return {read, [](const auto& names, const Case&) { return array_text(names, toml_string); },
+          "two sets of regions; `\"material\"` for the points in none"};
+}
+
+Table<InterfaceSpecification> interface_keys() {
+  using Spec = InterfaceSpecification;
+  using K = Key<Spec>;
+  constexpr auto own = [](auto& interface) -> auto& {
+    if constexpr (std::is_const_v<std::remove_reference_t<decltype(interface)>>) {
+      static const MaterialSpecification none;
+      return interface.material ? *interface.material : none;
+    } else {
+      if (!interface.material) interface.material.emplace();
+      return *interface.material;
+    }
+  };
+  return {
+      "interface",
+      {K("between", &Spec::between, two_materials(), "the two materials that it lies between")
+           .written_if([](auto& interface, auto&) { return !interface.is_of_all(); })
+           .default_words("all pairs that no other `[[interface]]` names"),
+       K("rule", &Spec::rule,
+         choice<InterfaceRule>({{"harmonic", InterfaceRule::harmonic},
+                                {"arithmetic", InterfaceRule::arithmetic},
+                                {"weaker", InterfaceRule::weaker}}),
+         "what a bond between them, or an interaction of points of both, makes of the constants "
+         "of its points, and of the stretches of like laws of damage: their mean, or the least")
+           .unless([](auto& interface, auto&) { return interface.material.has_value(); },
+                   "stands beside material; give one of them"),
+       K("material", own, material_of_body_keys("interface.material"),
+         "table `[interface.material]`, with the keys of [`[material]`](#material) but "
+         "`density` and `scatter`: constants and damage of its own")
+           .written_if([](auto& interface, auto&) { return interface.material.has_value(); })
+           .early()
+           .otherwise([](auto&, auto&) {}, "none: by the rule")},
+      {},
+      [](auto& at, auto& interface) {
+        for (const auto& other : at.so_far.interfaces) {
+          const auto& [a, b] = interface.between;
+          if (other.between == interface.between || other.between == std::array{b, a})
+            at.refuse("another interface is of the same pair");
+        }
+      }};
 }
 
 // ---- Supports and loads
@@ -535,7 +738,7 @@ void check_tangent(const Entry& at, const SolverSpecification& solver) {
 }
 
 void check_stand_in(const Entry& at, const SolverSpecification& solver) {
-  if (solver.elastic_horizon_ratio > 0.0 && at.so_far.material.damage.law == DamageLaw::none)
+  if (solver.elastic_horizon_ratio > 0.0 && !may_fail(at.so_far))
     at.refuse(
         "is for bodies with damage: the stand-in takes the place of the body until damage begins, "
         "and without damage it would do so to the end");
@@ -679,8 +882,7 @@ void check_found_loads(const Entry& at, const Case& result) {
 /// Damage grows in steps that are smaller than elastic ones.
 int default_relaxation_steps(const Case& from) {
   constexpr int steps_of_damage = 50;
-  const bool hands_over =
-      from.solver.mode == Mode::adaptive && from.material.damage.law != DamageLaw::none;
+  const bool hands_over = from.solver.mode == Mode::adaptive && may_fail(from);
   const int steps = from.loading.steps_to_entry();
   if (!hands_over) return steps;
   const int entries =
@@ -863,9 +1065,18 @@ Table<Case> all_keys() {
        K("set", &Case::sets, set_keys(), "tables: named sets of points"),
        K("crack", &Case::cracks, crack_keys(), "tables: cracks that are there from the start"),
        K("quadrature", itself, quadrature_keys(), "table: corrections of the weights"),
-       K("material", &Case::material, material_keys(), "table: model, constants, damage")
-           .then(check_quadrature)
-           .required(),
+       K("material", &Case::material, material_keys("material"),
+         "table: model, constants, damage; of the points in no region")
+           .otherwise([](auto&, auto&) {}, "required without `[[region]]`")
+           .written_if([](auto& result, auto&) { return result.material.has_constants(); }),
+       K("region", &Case::regions, region_keys(),
+         "tables: sets of points with materials of their own")
+           .then(check_regions),
+       K("interface", &Case::interfaces, interface_keys(),
+         "tables: what holds between points of two materials")
+           .then([](auto& at, auto& result) {
+             if (!result.interfaces.empty() && result.regions.empty()) at.refuse("needs regions");
+           }),
        K("support", &Case::supports, support_keys(), "tables: prescribed displacements"),
        K("rigid", in(&Case::constraints, &ConstraintSpecification::rigid_sets), rigid_set_keys(),
          "tables: sets that move as rigid bodies"),
@@ -906,6 +1117,11 @@ const std::vector<TableDescription>& table_descriptions() {
     return all;
   }();
   return tables;
+}
+
+bool repeats_another(const std::string& table) {
+  return table.starts_with("set.shape") || table.starts_with("region.material") ||
+         table.starts_with("interface.material");
 }
 
 const std::map<std::string, std::vector<std::string>>& case_keys() {

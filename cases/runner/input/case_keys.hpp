@@ -34,6 +34,9 @@ struct TableDescription {
 /// Every table, the document first.
 [[nodiscard]] const std::vector<TableDescription>& table_descriptions();
 
+/// Whether a table has the keys of another one, which stands for both in lists.
+[[nodiscard]] bool repeats_another(const std::string& table);
+
 /// Every key that a table of a case file may have, by the table's dotted name.
 [[nodiscard]] const std::map<std::string, std::vector<std::string>>& case_keys();
 

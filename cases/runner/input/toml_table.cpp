@@ -35,7 +35,8 @@ std::string suggestion(const std::string& key, const std::vector<std::string>& k
   if (!text.empty()) return text;
   std::vector<std::string> elsewhere;
   for (const auto& [table, keys] : case_keys())
-    if (contains(keys, key)) elsewhere.push_back(table.empty() ? key : table + "." + key);
+    if (contains(keys, key) && !repeats_another(table))
+      elsewhere.push_back(table.empty() ? key : table + "." + key);
   constexpr std::size_t most_listed = 3;
   if (elsewhere.empty() || elsewhere.size() > most_listed) return "";
   for (const auto& place : elsewhere) {

@@ -66,8 +66,11 @@ void write_points(Hdf5File& file, const Points& points, const std::vector<PointC
   }
 
   for (const PointCounts& of_points : counts) {
-    file.write("/points/" + of_points.name, of_points.values, {count},
-               {"1", of_points.description});
+    std::visit(
+        [&](const auto& values) {
+          file.write("/points/" + of_points.name, values, {count}, {"1", of_points.description});
+        },
+        of_points.values);
   }
 
   std::vector<double> geometry;
@@ -83,7 +86,7 @@ void write_points(Hdf5File& file, const Points& points, const std::vector<PointC
 }
 
 std::uint64_t bytes_of(const Points& points, const std::vector<PointCounts>& counts) {
-  const std::uint64_t bytes_per_point = counts.size() * sizeof(std::int32_t) +
+  const std::uint64_t bytes_per_point = counts.size() * sizeof(double) +
                                         (std::uint64_t(points.dimension) + 4) * sizeof(double) +
                                         sizeof(std::int32_t) + 2 * points.sets.size();
   return points.volume.size() * bytes_per_point;

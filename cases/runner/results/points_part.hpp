@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "cases/runner/results/hdf5_file.hpp"
@@ -9,11 +10,11 @@
 
 namespace peristat {
 
-/// Numbers of every point that do not change, e.g. counts of neighbours.
+/// Pure numbers of every point that do not change, e.g. counts of neighbours.
 struct PointCounts {
   std::string name;  ///< of the dataset in /points
   std::string description;
-  std::vector<std::int32_t> values;
+  std::variant<std::vector<std::int32_t>, std::vector<double>> values;
 };
 
 /// Path of a set's flags, one per point.
