@@ -48,6 +48,7 @@ void resolve_size(Case& result) {
 const std::map<std::string, std::string>& keys_of_members() {
   static const std::map<std::string, std::string> keys{{"spacing", "lattice.spacing"},
                                                        {"perturbation", "lattice.perturbation"},
+                                                       {"angle", "lattice.angle"},
                                                        {"shapes", "lattice.shape"},
                                                        {"layers", "lattice.layer"},
                                                        {"cracks", "crack"},
@@ -69,6 +70,7 @@ std::string key_of(const Case& from, std::string member) {
   if (member == "horizon") return lattice != nullptr ? "lattice.horizon_ratio" : "points.horizon";
   if (member.starts_with("points") && lattice != nullptr) return "lattice.shape";
   if (member == "points.reference") return "points.file";
+  if (member == "neighbours") return "points.neighbours";
   const std::size_t end = std::min(member.find_first_of("[."), member.size());
   const auto known = keys_of_members().find(member.substr(0, end));
   if (known == keys_of_members().end()) return member;
