@@ -130,7 +130,7 @@ double estimate_points(const Lattice& lattice) {
 Points make_points(const Lattice& lattice) {
   check_lattice(lattice);
   require_numbers(lattice);
-  const std::vector<Site> body = body_sites(lattice);
+  std::vector<Site> body = body_sites(lattice);
   if (body.empty()) {
     throw InputError(
         "shapes", "",

@@ -3,10 +3,10 @@
 #include <cstdint>
 #include <vector>
 
+#include "src/core/spacing.hpp"
 #include "src/geometry/layer.hpp"
 #include "src/geometry/points.hpp"
 #include "src/geometry/solid.hpp"
-#include "src/core/spacing.hpp"
 
 namespace peristat {
 
@@ -14,7 +14,7 @@ namespace peristat {
 enum class LatticeOrigin { cell_centres, nodes };
 
 /// What volumes points get: that of a cell, the body being all cells whose place lies in it; or
-/// that of the part of the cell that lies in the body, standing at the part's centroid.
+/// that of the part of the cell that lies in the body, whether the cell's place does or not.
 enum class CellVolumes { whole, fractional };
 
 struct Lattice {
@@ -36,8 +36,8 @@ struct Lattice {
 void check_lattice(const Lattice& lattice);
 
 /// A part of a cell that holds less than this share of it is given to the parts in the cells beside
-/// it, in proportion to theirs, with its centroid: volume and first moments stay.
-inline constexpr double smallest_share = 0.1;
+/// it, in proportion to theirs; where there are none it stays.
+inline constexpr double smallest_share = 0.01;
 
 /// Upper bound of the number of points, without making them: the lattice places in the box around
 /// all added shapes, and the layers; infinite if that box or the spacing can't be used.

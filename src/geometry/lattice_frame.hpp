@@ -4,9 +4,9 @@
 #include <cstdint>
 #include <functional>
 
+#include "src/core/spacing.hpp"
 #include "src/core/types.hpp"
 #include "src/geometry/shape.hpp"
-#include "src/core/spacing.hpp"
 
 namespace peristat {
 

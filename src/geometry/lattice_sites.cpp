@@ -48,11 +48,11 @@ std::vector<Site> pieces(const LatticeFrame& frame, const Shape& region, const N
     const Coordinates place = frame.position(cell);
     const auto nearby = near(region, place, reach);
     if (!nearby.may_end_near(place, reach)) {
-      if (nearby.contains(place)) sites.push_back({cell, place, 1.0});
+      if (nearby.contains(place)) sites.push_back({cell, place, 1.0, place});
       return;
     }
     const CellPiece piece = piece_of(frame, cell, nearby);
-    if (piece.share > 0.0) sites.push_back({cell, piece.centroid, piece.share});
+    if (piece.share > 0.0) sites.push_back({cell, place, piece.share, piece.centroid});
   });
   return sites;
 }
@@ -81,11 +81,7 @@ void merge_small(int dimension, std::vector<Site>& sites) {
     }
     for (const std::size_t heir : heirs) {
       const double part = before[k].share * before[heir].share / of_heirs;
-      Site& site = sites[heir];
-      for (int c = 0; c < dimension; ++c) {
-        site.place[c] += (before[k].place[c] - site.place[c]) * part / (site.share + part);
-      }
-      site.share += part;
+      sites[heir].share += part;
     }
     is_gone[k] = !heirs.empty();
   }
@@ -107,7 +103,7 @@ std::vector<Site> copies_of_outermost_plane(const LatticeFrame& frame,
     if (sign * cell[axis] != outermost) continue;
     for (int shift = 1; shift <= layer.thickness; ++shift) {
       cell[axis] += sign;
-      sites.push_back({cell, frame.position(cell), 1.0});
+      sites.push_back({cell, frame.position(cell), 1.0, frame.position(cell)});
     }
   }
   return sites;
@@ -119,7 +115,7 @@ class Faces {
   Faces(const Lattice& lattice, const LatticeFrame& frame, const std::vector<Site>& body)
       : frame_(frame), solid_(lattice.dimension, lattice.shapes), is_cut_(is_cut(lattice)) {
     std::vector<Coordinates> places;
-    for (const Site& site : body) places.push_back(site.place);
+    for (const Site& site : body) places.push_back(site.centroid);
     for (std::size_t k = 0; k < lattice.layers.size(); ++k) {
       const Layer& layer = lattice.layers[k];
       const auto is_on_it = [&](const Face& face) { return face.side == layer.side; };
@@ -135,6 +131,22 @@ class Faces {
     }
   }
 
+  /// Moves sites that share a cell with the body's or with those of other faces, and these, to the
+  /// centroids of their parts.
+  void part_from(std::vector<Site>& body) {
+    std::map<Cell, std::vector<Site*>> of_cell;
+    for (Face& face : faces_)
+      for (Site& site : face.sites) of_cell[site.cell].push_back(&site);
+    for (Site& site : body) {
+      const auto found = of_cell.find(site.cell);
+      if (found != of_cell.end()) found->second.push_back(&site);
+    }
+    for (const auto& [cell, sites] : of_cell) {
+      if (sites.size() == 1 || !is_cut_) continue;
+      for (Site* site : sites) site->place = site->centroid;
+    }
+  }
+
   /// Sites of a layer, before `where`.
   [[nodiscard]] std::vector<Site> of(const Layer& layer) const {
     const Face& face = *std::find_if(faces_.begin(), faces_.end(),
@@ -142,7 +154,7 @@ class Faces {
     std::vector<Site> sites;
     const double depth = depth_of(frame_, layer) * (1.0 + grid_tolerance);
     for (const Site& site : face.sites)
-      if (face.front->height(site.place) <= depth) sites.push_back(site);
+      if (face.front->height(site.centroid) <= depth) sites.push_back(site);
     return sites;
   }
 
@@ -175,7 +187,7 @@ class Faces {
     } else {
       frame_.for_each_cell(front.bounds(), grid_tolerance, [&](const Cell& cell) {
         const Coordinates place = frame_.position(cell);
-        if (front.contains(place)) face.sites.push_back({cell, place, 1.0});
+        if (front.contains(place)) face.sites.push_back({cell, place, 1.0, place});
       });
     }
     faces_.push_back(std::move(face));
@@ -248,15 +260,16 @@ std::vector<Site> body_sites(const Lattice& lattice) {
   }
   frame.for_each_cell(solid.bounds(), grid_tolerance, [&](const Cell& cell) {
     const Coordinates place = frame.position(cell);
-    if (solid.contains(place)) sites.push_back({cell, place, 1.0});
+    if (solid.contains(place)) sites.push_back({cell, place, 1.0, place});
   });
   return sites;
 }
 
-LayerSites layer_sites(const Lattice& lattice, const std::vector<Site>& body) {
+LayerSites layer_sites(const Lattice& lattice, std::vector<Site>& body) {
   const LatticeFrame frame = frame_of(lattice);
   std::optional<Faces> faces;
   if (has_faces(lattice, frame)) faces.emplace(lattice, frame, body);
+  if (faces) faces->part_from(body);
   LayerSites result;
   // With whole cells, layers of different sides may share a site; cut cells are of one side.
   std::map<std::pair<int, Cell>, Index> known;

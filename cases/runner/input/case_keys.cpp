@@ -127,8 +127,9 @@ Table<Case> lattice_keys() {
        K("volumes", in(lattice, &Lattice::volumes),
          choice<CellVolumes>(
              {{"cells", CellVolumes::whole}, {"fractional", CellVolumes::fractional}}),
-         "of points: that of a cell where its place lies in the body, or of the part of each cell "
-         "that does, at the part's centroid")
+         "of points: that of a cell if its place lies in the body, or of the part of each cell "
+         "that "
+         "does")
            .moreover("`fractional` with model `bond`"),
        K("perturbation", in(lattice, &Lattice::perturbation), between(0.0, 0.49, "spacings"),
          "largest random shift of a point along each of the lattice's axes; points of layers stay"),
