@@ -102,7 +102,8 @@ def rim_errors(folder: Path, spacing: float, volumes: str, surface: str, angle: 
 
 def tell_rim(folder: Path, levels: int, surface: str, angle: float) -> None:
     print(f"Rim strain, surface correction {surface}, lattice turned by {angle:g} degrees\n")
-    print("| radius / spacing | stairs | order | spread | fractional | order | spread |\n|---|---|---|---|---|---|---|")
+    print("| radius / spacing | stairs: mean | rms | order | spread | fractional: mean | rms | order | spread |")
+    print("|---|---|---|---|---|---|---|---|---|")
     before = {}
     for level in range(levels):
         ratio = 5 * 2**level
@@ -111,7 +112,8 @@ def tell_rim(folder: Path, levels: int, surface: str, angle: float) -> None:
             errors = rim_errors(folder, RADIUS / ratio, volumes, surface, angle)
             size = math.sqrt((errors**2).mean())
             order = f"{math.log2(before[volumes] / size):.2f}" if volumes in before else ""
-            cells += [f"{100 * errors.mean():+.2f} %", order, f"{100 * numpy.ptp(errors):.2f} %"]
+            told = (f"{100 * errors.mean():+.2f} %", f"{100 * size:.2f} %", order, f"{100 * numpy.ptp(errors):.2f} %")
+            cells += told
             before[volumes] = size
         print(f"| {ratio} | " + " | ".join(cells) + " |", flush=True)
     print()

@@ -53,7 +53,7 @@ std::vector<double> neighbour_shares(const Points& points) {
 
 /// Whether a group has the given neighbours of points, or none as they have.
 bool holds_neighbours(const Hdf5File& file, const std::string& group, const Points& points) {
-  const std::string place = group + "/neighbours";
+  const std::string place = group + "/given_neighbours";
   if (file.has(place) == points.neighbours.empty()) return false;
   if (points.neighbours.empty()) return true;
   const std::vector<std::int64_t> ends = file.integers(place + "/points");
@@ -95,10 +95,10 @@ void write_points(Hdf5File& file, const Points& points, const std::vector<PointC
 
   if (!points.neighbours.empty()) {
     const auto pairs = std::uint64_t(points.neighbours.size());
-    file.make_group("/points/neighbours");
-    file.write("/points/neighbours/points", neighbour_points(points), {pairs, 2},
+    file.make_group("/points/given_neighbours");
+    file.write("/points/given_neighbours/points", neighbour_points(points), {pairs, 2},
                {"1", "points i < j that see each other, as they were given"});
-    file.write("/points/neighbours/shares", neighbour_shares(points), {pairs, 2},
+    file.write("/points/given_neighbours/shares", neighbour_shares(points), {pairs, 2},
                {"1", "share of the volume of j that i counts, and of i that j counts"});
   }
 
