@@ -142,12 +142,13 @@ Points make_points(const Lattice& lattice) {
   points.dimension = lattice.dimension;
   points.spacing = lattice.spacing;
   points.angle = lattice.angle;
-  points.cell_volume = std::pow(lattice.spacing, lattice.dimension) * lattice.cross_section;
+  const double cell_volume = std::pow(lattice.spacing, lattice.dimension) * lattice.cross_section;
+  if (lattice.volumes == CellVolumes::fractional) points.cell_volume = cell_volume;
   for (const std::vector<Site>& sites : {std::cref(body), std::cref(outside.sites)}) {
     for (const Site& site : sites) {
       points.reference.insert(points.reference.end(), site.place.begin(),
                               site.place.begin() + lattice.dimension);
-      points.volume.push_back(points.cell_volume * site.share);
+      points.volume.push_back(cell_volume * site.share);
     }
   }
   for (std::size_t k = 0; k < lattice.layers.size(); ++k) {

@@ -35,13 +35,14 @@ NeighbourCounts count_neighbours(const Bonds& bonds) {
   return counts;
 }
 
-/// "0.001", "0.001 x 0.002", "0.001 (turned by 30 degrees)"
+/// "0.001 m", "0.001 x 0.002 m", "0.001 m (turned by 30 degrees)"
 std::string spacing_text(const Points& points) {
   std::string text;
   for (int c = 0; c < (points.spacing.is_square() ? 1 : points.dimension); ++c)
     text += fmt::format("{}{:g}", c == 0 ? "" : " x ", points.spacing.along(c));
-  return points.angle == 0.0 ? text
-                             : fmt::format("{} (turned by {:g} degrees)", text, points.angle);
+  text += " m";
+  if (points.angle != 0.0) text += fmt::format(" (turned by {:g} degrees)", points.angle);
+  return text;
 }
 
 std::string seconds_text(double seconds) {
@@ -90,7 +91,7 @@ Exit check(const Case& from, int threads) {
   const Points& points = body.points;
   const NeighbourCounts neighbours = count_neighbours(body.model.bonds());
   fmt::print("case        {}\n", from.title.empty() ? from.file : from.title);
-  fmt::print("points      {} in {}D, spacing {} m, horizon {:g} m ({:.4g} spacings)\n",
+  fmt::print("points      {} in {}D, spacing {}, horizon {:g} m ({:.4g} spacings)\n",
              points.count(), points.dimension, spacing_text(points), body.setting.horizon,
              body.horizon_ratio());
   fmt::print("bonds       {}; neighbours per point {} to {}, {:.1f} on average\n",

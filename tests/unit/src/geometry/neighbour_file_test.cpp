@@ -23,7 +23,7 @@ class NeighbourFileTest : public ::testing::Test {
 
   /// Four points in a row, numbered from right to left in their file.
   Points read(const std::string& text) const {
-    std::ofstream(folder_ / "points.csv") << "x, volume\n3, 1\n2, 1\n1, 2\n0, 1\n";
+    std::ofstream(folder_ / "points.csv") << "x, volume\n3, 0.5\n2, 0.5\n1, 2\n0, 0.5\n";
     std::ofstream(file(), std::ios::binary) << text;
     return read_points(folder_ / "points.csv", 1, 1.0, NeighbourFile{file(), 1.0, 1.0});
   }
