@@ -46,18 +46,21 @@ void resolve_size(Case& result) {
 
 /// Keys by the names that lower floors have for what they are given.
 const std::map<std::string, std::string>& keys_of_members() {
-  static const std::map<std::string, std::string> keys{{"spacing", "lattice.spacing"},
-                                                       {"perturbation", "lattice.perturbation"},
-                                                       {"angle", "lattice.angle"},
-                                                       {"shapes", "lattice.shape"},
-                                                       {"layers", "lattice.layer"},
-                                                       {"cracks", "crack"},
-                                                       {"file", "points.file"},
-                                                       {"supports", "support"},
-                                                       {"loads", "load"},
-                                                       {"directory", "output.directory"},
-                                                       {"controls", "control"},
-                                                       {"programme", "loading.table"}};
+  static const std::map<std::string, std::string> keys{
+      {"spacing", "lattice.spacing"},
+      {"perturbation", "lattice.perturbation"},
+      {"angle", "lattice.angle"},
+      {"volume_correction", "quadrature.volume_correction"},
+      {"surface_correction", "quadrature.surface_correction"},
+      {"shapes", "lattice.shape"},
+      {"layers", "lattice.layer"},
+      {"cracks", "crack"},
+      {"file", "points.file"},
+      {"supports", "support"},
+      {"loads", "load"},
+      {"directory", "output.directory"},
+      {"controls", "control"},
+      {"programme", "loading.table"}};
   return keys;
 }
 
