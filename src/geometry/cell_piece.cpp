@@ -50,9 +50,10 @@ Moments integral(const Integrand& f, double from, double to, const Moments& esti
 }
 
 /// Over the cell's width, panel by panel between the given places in spacings from its middle.
-Moments integral(const Integrand& f, std::vector<double>& breaks, double tolerance) {
+/// @param panels at least; a corner that no break tells may hide between the places of a panel
+Moments integral(const Integrand& f, std::vector<double>& breaks, double tolerance, int panels) {
   constexpr int deepest = 24;
-  breaks.insert(breaks.end(), {-0.5, -0.25, 0.0, 0.25, 0.5});
+  for (int k = 0; k <= panels; ++k) breaks.push_back(double(k) / panels - 0.5);
   std::sort(breaks.begin(), breaks.end());
   Moments sum{};
   for (std::size_t k = 0; k + 1 < breaks.size(); ++k) {
@@ -85,7 +86,7 @@ class Measured {
     for (const double x : {-0.5, 0.5})
       for (const double y : {-0.5, 0.5}) append_crossings(2, {x, y, 0.0}, breaks);
     return integral([&](double z) { return section(z, 1e-2 * tolerance(3)); }, breaks,
-                    1e-1 * tolerance(3));
+                    1e-1 * tolerance(3), 4);
   }
 
   /// Of a region between planes along the lattice's axes, from the blocks that they cut; none if
@@ -147,7 +148,11 @@ class Measured {
     std::vector<double> breaks;
     append_levels(1, {0.0, 0.0, z}, breaks);
     for (const double x : {-0.5, 0.5}) append_crossings(1, {x, 0.0, z}, breaks);
-    return integral([&](double y) { return chord({0.0, y, z}); }, breaks, tolerance);
+    return integral(
+        [&](double y) {
+          return chord({0.0, y, z});
+        },
+        breaks, tolerance, frame_.dimension() == 2 ? 64 : 4);
   }
 
   /// Of the line through a place along the first axis.

@@ -43,6 +43,7 @@ FrontOfFace::FrontOfFace(const Solid& body, const Side& side, double face, doubl
       side_(side),
       face_(face),
       depth_(depth),
+      dimension_(body.dimension()),
       within_(below_face * spacing),
       others_(std::move(others)) {}
 
@@ -76,9 +77,7 @@ void FrontOfFace::append_crossings(const Line& line, std::vector<double>& t) con
 
 void FrontOfFace::append_levels(const Coordinates& direction, std::vector<double>& levels) const {
   body_.append_levels(direction, levels);
-  for (const double level : {face_, face_ + side_.sign * depth_}) {
-    if (std::abs(direction[side_.axis]) == 1.0) levels.push_back(direction[side_.axis] * level);
-  }
+  peristat::append_levels(bounds(), dimension_, direction, levels);
   for (const FrontOfFace* other : others_) other->append_levels(direction, levels);
 }
 

@@ -62,7 +62,9 @@ class FrontOfFace : public Region {
 
   const Solid& body_;
   Side side_;
-  double face_, depth_, within_;
+  double face_, depth_;
+  int dimension_;
+  double within_;
   std::vector<const FrontOfFace*> others_;
 };
 

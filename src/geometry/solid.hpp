@@ -52,6 +52,8 @@ class Solid : public Region {
   /// The same within a distance of a place, of no more steps than count there.
   [[nodiscard]] Solid near(const Coordinates& place, double distance) const;
 
+  [[nodiscard]] int dimension() const { return dimension_; }
+
   /// Box around all that is added.
   [[nodiscard]] Box bounds() const;
 
