@@ -22,13 +22,6 @@
 namespace peristat {
 namespace {
 
-/// Cross-section that the points have: mean volume / spacing^dimension.
-double cross_section_of(const Points& points) {
-  double volume = 0.0;
-  for (const double of_point : points.volume) volume += of_point;
-  return volume / points.count() / std::pow(points.spacing, points.dimension);
-}
-
 BondSetting setting_of(const BodySpecification& of, const Points& points) {
   BondSetting setting;
   setting.dimension = points.dimension;
@@ -36,7 +29,7 @@ BondSetting setting_of(const BodySpecification& of, const Points& points) {
   setting.volume_correction = of.volume_correction;
   setting.horizon = of.horizon;
   setting.cross_section = points.dimension == 3     ? 1.0
-                          : of.cross_section == 0.0 ? cross_section_of(points)
+                          : of.cross_section == 0.0 ? points.cross_section()
                                                     : of.cross_section;
   return setting;
 }

@@ -200,11 +200,15 @@ void check_regions(const BodySpecification& of, int dimension) {
 }
 
 /// Refuses what belongs to the other model's weights.
-void check_weights(const BodySpecification& of) {
+void check_weights(const BodySpecification& of, const Points& points) {
   if (of.material.model == MaterialModel::bond) {
     require_absent(of.weights != InteractionWeights::mean, "weights", "is for the model cpd");
+    require(points.spacing.is_square() || of.volume_correction == VolumeCorrection::none,
+            "volume_correction", "linear",
+            "is for square or cubic cells; spacings that differ need \"none\"");
     return;
   }
+  require_whole_square_cells(points);
   const std::string needs_none = "is for the model bond; the effective volumes of cpd need none";
   require_absent(of.volume_correction != VolumeCorrection::none, "volume_correction", needs_none);
   require_absent(of.surface_correction != SurfaceCorrection::none, "surface_correction",
@@ -213,18 +217,33 @@ void check_weights(const BodySpecification& of) {
 
 void check_horizon(const BodySpecification& of, const Points& points) {
   require_positive(of.horizon, "horizon");
-  require(
-      of.horizon >= points.spacing * (1.0 - horizon_tolerance), "horizon", number_text(of.horizon),
-      "horizon smaller than the mean spacing of the points, " + number_text(points.spacing) + " m");
+  require(of.horizon >= points.spacing.largest() * (1.0 - horizon_tolerance), "horizon",
+          number_text(of.horizon),
+          points.spacing.is_square() ? "horizon smaller than the mean spacing of the points, " +
+                                           number_text(points.spacing) + " m"
+                                     : "the horizon, " + number_text(of.horizon) +
+                                           " m, is smaller than the largest spacing, " +
+                                           number_text(points.spacing.largest()) + " m");
   require_summable(of.material.model, points.dimension, "horizon", number_text(of.horizon),
                    of.horizon / points.spacing);
 }
 
 /// Volumes, spacing and cross-section are not independent of each other.
+/// Refuses what would come on top of given shares, or has nothing to do with them.
+void check_neighbours(const BodySpecification& of, const Points& points) {
+  if (points.neighbours.empty()) return;
+  require(of.material.model == MaterialModel::bond, "material.model", "cpd",
+          "finds its own neighbours; given ones are for model \"bond\"");
+  require_absent(of.volume_correction != VolumeCorrection::none, "volume_correction",
+                 "is for neighbours that are found; given ones have their shares");
+  require_absent(
+      of.surface_correction == SurfaceCorrection::volume, "surface_correction",
+      "\"volume\" is for neighbours that are found: of given ones nobody knows what they "
+      "add up to inside a body; give \"energy\" or \"none\"");
+}
+
 void check_cross_section(const BodySpecification& of, const Points& points) {
-  double volume = 0.0;
-  for (const double of_point : points.volume) volume += of_point;
-  const double has = volume / points.count() / std::pow(points.spacing, points.dimension);
+  const double has = points.cross_section();
   const double given = points.dimension == 3 ? 1.0 : of.cross_section;
   if (of.cross_section != 0.0) require_positive(of.cross_section, "cross_section");
   require(points.dimension < 3 || of.cross_section == 0.0 || of.cross_section == 1.0,
@@ -234,6 +253,20 @@ void check_cross_section(const BodySpecification& of, const Points& points) {
   require(std::abs(has / given - 1.0) < 1e-6, "cross_section", number_text(given),
           "does not fit the points, whose mean volume over spacing^" +
               std::to_string(points.dimension) + " is " + number_text(has));
+}
+
+void check_shares(const Points& points) {
+  const NeighbourShares* before = nullptr;
+  for (const NeighbourShares& pair : points.neighbours) {
+    const bool ascends =
+        before == nullptr || before->i < pair.i || (before->i == pair.i && before->j < pair.j);
+    const bool are_points = pair.i >= 0 && pair.i < pair.j && pair.j < points.count();
+    const bool are_shares = pair.of_i >= 0.0 && pair.of_j >= 0.0 && pair.of_i + pair.of_j > 0.0 &&
+                            std::isfinite(pair.of_i + pair.of_j);
+    require(ascends && are_points && are_shares, "points.neighbours", "",
+            "must ascend, be of two points each, and have shares of at least 0, not both 0");
+    before = &pair;
+  }
 }
 
 void check_set(const std::string& name, const std::vector<Index>& members, Index points) {
@@ -256,7 +289,20 @@ void check_points(const Points& points) {
   for (const double at : points.reference)
     require(std::isfinite(at), "points.reference", number_text(at), "must be finite");
   for (const double volume : points.volume) require_positive(volume, "points.volume");
+  check_shares(points);
   for (const auto& [name, members] : points.sets) check_set(name, members, points.count());
+}
+
+void require_whole_square_cells(const Points& points) {
+  require(points.spacing.is_square(), "material.model", "cpd",
+          "needs square or cubic cells: its constants and effective volumes are those of a cubic "
+          "lattice; give one spacing, or model = \"bond\"");
+  const auto is_cut = [&](double volume) {
+    return points.cell_volume > 0.0 && std::abs(volume / points.cell_volume - 1.0) > 1e-9;
+  };
+  require(std::none_of(points.volume.begin(), points.volume.end(), is_cut), "material.model", "cpd",
+          "needs whole cells: its effective volumes count neighbours, whatever their volume is; "
+          "give volumes = \"cells\", or model = \"bond\"");
 }
 
 void check_specification(const BodySpecification& of, const Points& points) {
@@ -264,7 +310,7 @@ void check_specification(const BodySpecification& of, const Points& points) {
   check_cross_section(of, points);
   const bool has_rest = of.regions.empty() || of.material.has_constants();
   if (has_rest) check_material(of.material, "material", points.dimension);
-  check_weights(of);
+  check_weights(of, points);
   check_regions(of, points.dimension);
   for (std::size_t k = 0; k < of.cracks.size(); ++k)
     check_crack(of.cracks[k], points.dimension, "cracks[" + std::to_string(k) + "]");

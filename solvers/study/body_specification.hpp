@@ -134,6 +134,10 @@ void check_points(const Points& points);
 /// @throws InputError ("horizon", "cross_section", "material.…", "cracks[0].…", …)
 void check_specification(const BodySpecification& of, const Points& points);
 
+/// Refuses a lattice that model "cpd" is not made for.
+/// @throws InputError ("material.model")
+void require_whole_square_cells(const Points& points);
+
 /// Refuses a horizon whose neighbourhood in the bulk takes minutes to sum, however small the body.
 /// @param key   what holds the horizon, for the error
 /// @param ratio horizon / spacing

@@ -17,7 +17,7 @@ namespace peristat {
 struct Expression::Parser {
   std::string text;
   int dimension = 3;
-  bool has_spacing = false;
+  std::vector<std::string> constants;
   std::vector<std::string> parameters;
   std::optional<double> constant;
   mu::Parser parser;
@@ -35,11 +35,19 @@ struct Expression::Parser {
     refuse("not a valid expression" + where + ": " + error.GetMsg());
   }
 
-  void define(double spacing) {
+  void define(const std::string& name, double value) {
+    parser.DefineConst(name, value);
+    constants.push_back(name);
+  }
+
+  void define(const Spacing& spacing) {
     parser.ClearConst();  // _pi and _e
-    parser.DefineConst("pi", std::numbers::pi);
-    has_spacing = spacing > 0.0;
-    if (has_spacing) parser.DefineConst("spacing", spacing);
+    define("pi", std::numbers::pi);
+    if (spacing > 0.0) {
+      if (spacing.is_square()) define("spacing", spacing);
+      for (int c = 0; c < dimension; ++c)
+        define(std::string("spacing_") + "xyz"[c], spacing.along(c));
+    }
     for (int c = 0; c < dimension; ++c) parser.DefineVar(std::string(1, "xyz"[c]), &place[c]);
     values.resize(parameters.size());
     for (std::size_t k = 0; k < values.size(); ++k) parser.DefineVar(parameters[k], &values[k]);
@@ -49,8 +57,7 @@ struct Expression::Parser {
     std::vector<std::string> variables{"x", "y", "z"}, functions;
     variables.resize(dimension);
     variables.insert(variables.end(), parameters.begin(), parameters.end());
-    variables.emplace_back("pi");
-    if (has_spacing) variables.emplace_back("spacing");
+    variables.insert(variables.end(), constants.begin(), constants.end());
     for (const auto& [name, callback] : parser.GetFunDef()) functions.push_back(name);
 
     std::vector<std::string> allowed = is_called ? functions : variables;
@@ -164,7 +171,7 @@ struct Expression::Parser {
   }
 };
 
-Expression::Expression(const std::string& text, int dimension, double spacing,
+Expression::Expression(const std::string& text, int dimension, const Spacing& spacing,
                        std::vector<std::string> parameters)
     : parser_(std::make_unique<Parser>()) {
   parser_->text = text;

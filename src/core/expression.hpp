@@ -5,14 +5,15 @@
 #include <string>
 #include <vector>
 
+#include "src/core/spacing.hpp"
 #include "src/core/types.hpp"
 
 namespace peristat {
 
 /// A number as a function of place and of parameters, written as text: operators, functions and
 /// comparisons of muParser, the variables x, y, z (those of the dimension) [m], the parameters by
-/// their names (`load`), and the constants pi and spacing [m]. Decimals have a point, whatever the
-/// locale.
+/// their names (`load`), and the constants pi, spacing_x, spacing_y, spacing_z (along the lattice's
+/// axes) and, where these are equal, spacing [m]. Decimals have a point, whatever the locale.
 ///
 /// What muParser takes but hardly anyone means is refused: an assignment (x = 1 for x == 1), a
 /// chain of comparisons (0 < x < 1 compares a truth value) and several values (1, 2 for 1.2).
@@ -22,7 +23,7 @@ class Expression {
   /// @throws InputError that names the unknown variable or the place of the syntax error, and what
   ///         is allowed; also for a constant that is not finite. Its key is left empty for the
   ///         caller to fill in, its value is the quoted text.
-  Expression(const std::string& text, int dimension, double spacing,
+  Expression(const std::string& text, int dimension, const Spacing& spacing,
              std::vector<std::string> parameters = {});
   /// A constant.
   explicit Expression(double value);

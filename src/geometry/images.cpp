@@ -158,6 +158,13 @@ std::vector<AxisImage> images_along(const Points& points, int axis,
 void add_images(Points& points, const std::vector<SymmetryPlane>& planes,
                 const std::vector<Period>& periods, double horizon) {
   if (planes.empty() && periods.empty()) return;
+  const std::string first = planes.empty() ? "periods[0].axis" : "symmetries[0].axis";
+  if (!points.neighbours.empty()) {
+    throw InputError(first, "", "given neighbours know nothing beyond a plane or period");
+  }
+  if (points.angle != 0.0) {
+    throw InputError(first, "", "a lattice that is turned does not go on beyond a plane or period");
+  }
   std::vector<ImageKind> kinds{{}};
   std::array<Extent, 3> extents;
   for (int axis = 0; axis < points.dimension; ++axis) {
@@ -194,6 +201,32 @@ void add_images(Points& points, const std::vector<SymmetryPlane>& planes,
       points.reference.insert(points.reference.end(), at.begin(), at.begin() + points.dimension);
       points.volume.push_back(points.volume[std::size_t(i)]);
     }
+  }
+}
+
+void require_lattice_goes_on(const Points& lattice, const std::vector<SymmetryPlane>& planes,
+                             const std::vector<Period>& periods) {
+  constexpr double same = 1e-6;  // of a spacing
+  const auto require = [&](const std::string& key, int axis, double found, double wanted) {
+    const double spacing = lattice.spacing.along(axis);
+    if (std::abs(found - wanted * spacing) <= same * spacing) return;
+    throw InputError(key, "",
+                     "the lattice does not go on beyond it: its outermost points are " +
+                         number_text(found) + " m away along " + axis_name(axis) + " instead of " +
+                         number_text(wanted * spacing));
+  };
+  for (std::size_t k = 0; k < planes.size(); ++k) {
+    require_axis(planes[k].axis, lattice.dimension, "symmetries[" + std::to_string(k) + "].axis");
+    const Extent extent = extent_along(lattice, planes[k].axis);
+    const double away = std::min(std::abs(extent.least - planes[k].at),
+                                 std::abs(extent.most - planes[k].at));
+    require("symmetries[" + std::to_string(k) + "].at", planes[k].axis, away, 0.5);
+  }
+  for (std::size_t k = 0; k < periods.size(); ++k) {
+    require_axis(periods[k].axis, lattice.dimension, "periods[" + std::to_string(k) + "].axis");
+    const Extent extent = extent_along(lattice, periods[k].axis);
+    const double missing = periods[k].to - periods[k].from - (extent.most - extent.least);
+    require("periods[" + std::to_string(k) + "].to", periods[k].axis, missing, 1.0);
   }
 }
 

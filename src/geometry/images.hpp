@@ -48,6 +48,11 @@ struct Images {
 void add_images(Points& points, const std::vector<SymmetryPlane>& planes,
                 const std::vector<Period>& periods, double horizon);
 
+/// Refuses planes that do not mirror a lattice onto itself, and periods that do not continue it.
+/// @throws InputError as add_images does
+void require_lattice_goes_on(const Points& lattice, const std::vector<SymmetryPlane>& planes,
+                             const std::vector<Period>& periods);
+
 /// The points that stand for themselves.
 [[nodiscard]] Points without_images(const Points& points);
 

@@ -1,49 +1,33 @@
 #pragma once
 
 #include <cstdint>
-#include <string>
 #include <vector>
 
+#include "src/core/spacing.hpp"
+#include "src/geometry/layer.hpp"
 #include "src/geometry/points.hpp"
-#include "src/geometry/shape.hpp"
+#include "src/geometry/solid.hpp"
 
 namespace peristat {
 
 /// Where lattice points stand relative to the lower corner of the first added shape's bounding box.
 enum class LatticeOrigin { cell_centres, nodes };
 
-/// One step of building the body: the shape is added to it or taken away from it, in order; the
-/// boundary belongs to the shape, so a point on a subtracted shape's boundary goes. The first step
-/// adds.
-struct ShapeStep {
-  enum class Action { add, subtract } action = Action::add;
-  Shape shape{};
-};
-
-/// A direction along an axis: "x-", "x+", "y-", "y+", "z-", "z+".
-struct Side {
-  int axis = 0;
-  int sign = 1;
-};
-
-/// Fictitious points outside the body that carry a support: copies of the body's outermost lattice
-/// plane on one side, shifted outwards by one to `thickness` spacings. The layer is also a set;
-/// layers of one name make one set, and a place in two layers holds one point that is in both sets.
-struct Layer {
-  std::string name{};
-  Side side{};
-  int thickness = 3;    ///< in spacings
-  std::string where{};  ///< optional expression of x, y, z that keeps a part of the layer
-};
+/// What volumes points get: that of a cell, the body being all cells whose place lies in it; or
+/// that of the part of the cell that lies in the body, whether the cell's place does or not.
+enum class CellVolumes { whole, fractional };
 
 struct Lattice {
   int dimension = 2;
-  double spacing = 0.0;        ///< [m]
+  Spacing spacing = 0.0;  ///< along the lattice's axes [m]
+  double angle = 0.0;     ///< that the lattice is turned by about z through the origin [degrees]
   double cross_section = 1.0;  ///< 1D: area [m2]; 2D: thickness [m]; 3D: 1
   LatticeOrigin origin = LatticeOrigin::cell_centres;
+  CellVolumes volumes = CellVolumes::whole;
   std::vector<ShapeStep> shapes{};
   std::vector<Layer> layers{};
-  double perturbation = 0.0;  ///< largest random shift per component, in spacings, below 0.5
+  double perturbation = 0.0;  ///< largest random shift along each of the lattice's axes, in
+                              ///< spacings, below 0.5
   std::uint64_t seed = 1;
 };
 
@@ -51,14 +35,20 @@ struct Lattice {
 /// @throws InputError
 void check_lattice(const Lattice& lattice);
 
+/// A part of a cell that holds less than this share of it is given to the parts in the cells beside
+/// it, in proportion to theirs; where there are none it stays.
+inline constexpr double smallest_share = 0.01;
+
 /// Upper bound of the number of points, without making them: the lattice places in the box around
 /// all added shapes, and the layers; infinite if that box or the spacing can't be used.
 [[nodiscard]] double estimate_points(const Lattice& lattice);
 
-/// Points of the lattice, numbered with locality (see numbering.hpp); every point has the volume
-/// spacing^dimension x cross_section. The layers' points stay on the lattice when it is perturbed;
-/// a seed gives the same perturbation everywhere.
-/// @throws InputError if a shape or value can't be used, or if no point is left
+/// Points of the lattice, numbered with locality (see numbering.hpp). With whole cells every point
+/// has the volume of a cell, the product of the spacings x cross_section; with fractional volumes
+/// the sum of the body's is its volume, as exactly as piece_of tells. The layers' points stay on
+/// the lattice when it is perturbed; a seed gives the same perturbation everywhere.
+/// @throws InputError if a shape or value can't be used, if no point is left, or if a layer that
+///         needs a flat face has none
 [[nodiscard]] Points make_points(const Lattice& lattice);
 
 }  // namespace peristat

@@ -5,10 +5,11 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <utility>
 
 namespace peristat {
 
-std::vector<Index> locality_order(int dimension, double spacing,
+std::vector<Index> locality_order(int dimension, const Spacing& spacing,
                                   const std::vector<double>& reference) {
   const std::size_t count = reference.size() / dimension;
   constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -21,7 +22,7 @@ std::vector<Index> locality_order(int dimension, double spacing,
   // Numbers of cells per direction; whole, so that round-off does not decide between equal lengths.
   const auto cell = [&](double coordinate, int direction) {
     // Cells are centred on the lattice's points, which would otherwise lie on cell boundaries.
-    return std::floor((coordinate - low[direction]) / spacing + 0.5);
+    return std::floor((coordinate - low[direction]) / spacing.along(direction) + 0.5);
   };
   std::array<int, 3> directions{0, 1, 2};
   std::stable_sort(directions.begin(), directions.begin() + dimension,
@@ -53,6 +54,8 @@ Points renumbered(const Points& points, const std::vector<Index>& order) {
   Points result;
   result.dimension = points.dimension;
   result.spacing = points.spacing;
+  result.angle = points.angle;
+  result.cell_volume = points.cell_volume;
   result.reference.reserve(points.reference.size());
   result.volume.reserve(points.volume.size());
   std::vector<Index> new_number(order.size());
@@ -62,6 +65,19 @@ Points renumbered(const Points& points, const std::vector<Index>& order) {
     result.reference.insert(result.reference.end(), first, first + points.dimension);
     result.volume.push_back(points.volume[old]);
   }
+  for (NeighbourShares pair : points.neighbours) {
+    pair.i = new_number[pair.i];
+    pair.j = new_number[pair.j];
+    if (pair.i > pair.j) {
+      std::swap(pair.i, pair.j);
+      std::swap(pair.of_i, pair.of_j);
+    }
+    result.neighbours.push_back(pair);
+  }
+  std::sort(result.neighbours.begin(), result.neighbours.end(),
+            [](const NeighbourShares& a, const NeighbourShares& b) {
+              return a.i != b.i ? a.i < b.i : a.j < b.j;
+            });
   for (const auto& [name, members] : points.sets) {
     std::vector<Index>& new_members = result.sets[name];
     new_members.reserve(members.size());

@@ -11,7 +11,7 @@ namespace peristat {
 /// tangent as narrow as the body's cross section, which a shuffled numbering would not (products
 /// run 2 to 9 times slower there).
 /// @return old numbers in the new order
-[[nodiscard]] std::vector<Index> locality_order(int dimension, double spacing,
+[[nodiscard]] std::vector<Index> locality_order(int dimension, const Spacing& spacing,
                                                 const std::vector<double>& reference);
 
 /// Points renumbered: new point k is old point order[k]; sets follow.

@@ -2,10 +2,8 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <cstddef>
-#include <fstream>
 #include <limits>
 #include <optional>
 #include <string_view>
@@ -15,40 +13,13 @@
 #include "src/core/nearest_name.hpp"
 #include "src/core/number_text.hpp"
 #include "src/geometry/numbering.hpp"
+#include "src/geometry/table_text.hpp"
 
 namespace peristat {
 namespace {
 
 /// Part of the spacing within which two points stand at one place.
 constexpr double same_place_tolerance = 1e-9;
-
-constexpr std::string_view blanks = " \t\r\v\f";
-
-std::string_view trimmed(std::string_view text) {
-  const std::size_t first = text.find_first_not_of(blanks);
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(blanks) - first + 1);
-}
-
-std::vector<std::string_view> split(std::string_view text, char separator) {
-  std::vector<std::string_view> fields;
-  for (std::size_t end; (end = text.find(separator)) != std::string_view::npos;) {
-    fields.push_back(trimmed(text.substr(0, end)));
-    text.remove_prefix(end + 1);
-  }
-  fields.push_back(trimmed(text));
-  return fields;
-}
-
-std::vector<std::string_view> split_at_blanks(std::string_view text) {
-  std::vector<std::string_view> fields;
-  while (!(text = trimmed(text)).empty()) {
-    const std::size_t end = std::min(text.find_first_of(blanks), text.size());
-    fields.push_back(text.substr(0, end));
-    text.remove_prefix(end);
-  }
-  return fields;
-}
 
 /// Two points whose coordinates differ by no more than the tolerance, the one read first in front.
 ///
@@ -88,22 +59,14 @@ class Reader {
     points_.dimension = dimension;
   }
 
-  Points read(double cross_section) {
-    std::ifstream stream(file_);
-    if (std::filesystem::is_directory(file_) || !stream) refuse_file("the file can't be read");
-    for (std::string line; std::getline(stream, line);) {
-      ++line_;
-      std::string_view text = line;
-      constexpr std::string_view byte_order_mark = "\xef\xbb\xbf";
-      if (line_ == 1 && text.starts_with(byte_order_mark)) text.remove_prefix(3);
-      text = trimmed(text);
-      if (text.empty() || text.front() == '#') continue;
+  Points read(double cross_section, const std::optional<NeighbourFile>& neighbours) {
+    for_each_row(file_, [&](std::size_t line, std::string_view text) {
+      line_ = line;
       columns_.empty() ? read_header(text) : read_point(text);
-    }
-    if (stream.bad()) refuse_file("the file can't be read to its end");
+    });
     if (columns_.empty()) refuse_file("no line names the columns, which are " + allowed_columns());
     if (points_.count() == 0) refuse_file("the file has no points");
-    finish(cross_section);
+    finish(cross_section, neighbours);
     return std::move(points_);
   }
 
@@ -189,14 +152,10 @@ class Reader {
 
   double number(const std::string& column, std::string_view text) const {
     const std::string shown = column + " = '" + std::string(text) + "'";
-    if (text.starts_with('+')) text.remove_prefix(1);
-    double value = 0.0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (error == std::errc::result_out_of_range) refuse(shown + " is out of range");
-    if (error != std::errc() || end != text.data() + text.size())
-      refuse(shown + " is not a number");
-    if (!std::isfinite(value)) refuse(shown + " is not finite");
-    return value;
+    std::string why_not;
+    const std::optional<double> value = number_in(text, why_not);
+    if (!value) refuse(shown + " " + why_not);
+    return *value;
   }
 
   void add_to_sets(Index point, std::string_view names) {
@@ -207,7 +166,7 @@ class Reader {
     }
   }
 
-  void finish(double cross_section) {
+  void finish(double cross_section, const std::optional<NeighbourFile>& neighbours) {
     double mean = 0.0;
     for (const double volume : points_.volume) mean += volume / points_.count();
     points_.spacing = std::pow(mean / cross_section, 1.0 / points_.dimension);
@@ -220,6 +179,7 @@ class Reader {
              "the point at " + place_text(points_.position(second), points_.dimension) +
                  " stands at the place of the point in line " + std::to_string(lines_[first]));
     }
+    if (neighbours) points_.neighbours = read_neighbours(*neighbours, points_);
     points_ =
         renumbered(points_, locality_order(points_.dimension, points_.spacing, points_.reference));
   }
@@ -234,11 +194,12 @@ class Reader {
 
 }  // namespace
 
-Points read_points(const std::filesystem::path& file, int dimension, double cross_section) {
+Points read_points(const std::filesystem::path& file, int dimension, double cross_section,
+                   const std::optional<NeighbourFile>& neighbours) {
   if (!(std::isfinite(cross_section) && cross_section > 0)) {
     throw InputError("cross_section", number_text(cross_section), "must be positive and finite");
   }
-  return Reader(file, dimension).read(cross_section);
+  return Reader(file, dimension).read(cross_section, neighbours);
 }
 
 }  // namespace peristat

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 
+#include "src/geometry/neighbour_file.hpp"
 #include "src/geometry/points.hpp"
 
 namespace peristat {
@@ -16,7 +18,10 @@ namespace peristat {
 /// @throws InputError with "FILE:LINE" as its place for a missing or unknown column, a value that
 ///         is not a number or not finite, a volume that is not positive, and two points at one
 ///         place; with "file" for a file that can't be read or has no points
+/// @param neighbours their neighbours, if they are given; points are numbered there from 1 in the
+///        order of the file
 [[nodiscard]] Points read_points(const std::filesystem::path& file, int dimension,
-                                 double cross_section);
+                                 double cross_section,
+                                 const std::optional<NeighbourFile>& neighbours = {});
 
 }  // namespace peristat

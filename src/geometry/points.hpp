@@ -1,20 +1,32 @@
 #pragma once
 
+#include <cmath>
 #include <map>
 #include <string>
 #include <vector>
 
+#include "src/core/spacing.hpp"
 #include "src/core/types.hpp"
 #include "src/geometry/images.hpp"
 
 namespace peristat {
 
+/// Two points that see each other, and how much of each other's volume they count.
+struct NeighbourShares {
+  Index i = 0, j = 0;             ///< i < j
+  double of_j = 1.0, of_i = 1.0;  ///< nu_ij, share of V_j that i counts, and nu_ji
+};
+
 /// The body in its reference configuration: points that carry a volume, and named sets of them.
 struct Points {
   int dimension = 0;              ///< 1, 2 or 3
-  double spacing = 0.0;           ///< lattice spacing, or mean spacing of a cloud [m]
+  Spacing spacing = 0.0;          ///< lattice spacing, or mean spacing of a cloud [m]
+  double angle = 0.0;             ///< of the lattice's axes to x, y about z [degrees]
+  double cell_volume = 0.0;       ///< of a whole cell [m3]; 0: the points' mean volume
   std::vector<double> reference;  ///< positions, count x dimension, row major [m]
   std::vector<double> volume;     ///< per point [m3]
+  /// Neighbours that were given, ascending by i and then j; empty: those within the horizon.
+  std::vector<NeighbourShares> neighbours{};
   std::map<std::string, std::vector<Index>> sets;  ///< ascending point numbers by set name
 
   Images images{};  ///< of the last points; sets name none of them
@@ -31,6 +43,16 @@ struct Points {
   }
   [[nodiscard]] const ImageKind& image_kind(Index image) const {
     return images.kinds[images.kind[std::size_t(image - own())]];
+  }
+
+  /// 1D: area [m2]; 2D: thickness [m]; 3D: 1, as far as volumes and spacing tell.
+  [[nodiscard]] double cross_section() const {
+    double cell = cell_volume;
+    if (cell == 0.0) {
+      for (const double of_point : volume) cell += of_point;
+      cell /= double(count());
+    }
+    return cell / std::pow(spacing, dimension);
   }
 
   /// Reference position of a point, padded with zeros to three components.

@@ -28,7 +28,8 @@ double micromodulus(double youngs_modulus, const BondSetting& setting) {
   return micromodulus_of_moment(youngs_modulus, setting, setting.moment(1));
 }
 
-double lattice_micromodulus(double youngs_modulus, const BondSetting& setting, double spacing) {
+double lattice_micromodulus(double youngs_modulus, const BondSetting& setting,
+                            const Spacing& spacing) {
   return micromodulus_of_moment(youngs_modulus, setting, setting.lattice_moment(1, spacing));
 }
 
@@ -42,7 +43,7 @@ double critical_stretch(double fracture_energy, double micromodulus, const Kerne
 }
 
 double lattice_critical_stretch(double fracture_energy, double micromodulus, const Kernel& kernel,
-                                double spacing) {
+                                const Spacing& spacing) {
   return critical_stretch_of_moment(fracture_energy, micromodulus, kernel.dimension,
                                     kernel.lattice_moment(2, spacing));
 }

@@ -28,7 +28,7 @@ struct BondSetting : Kernel {
 
 /// The same with the moment of a lattice: right in the mean over all directions of its axes.
 [[nodiscard]] double lattice_micromodulus(double youngs_modulus, const BondSetting& setting,
-                                          double spacing);
+                                          const Spacing& spacing);
 
 /// Young's modulus that belongs to a micromodulus: the inverse of `micromodulus`.
 [[nodiscard]] double youngs_modulus_of(double micromodulus, const BondSetting& setting);
@@ -46,7 +46,7 @@ struct BondSetting : Kernel {
 
 /// The same with the moment of a lattice: the mean over all directions of the crack.
 [[nodiscard]] double lattice_critical_stretch(double fracture_energy, double micromodulus,
-                                              const Kernel& kernel, double spacing);
+                                              const Kernel& kernel, const Spacing& spacing);
 
 /// Poisson's ratio that central forces impose: 1/3 in plane stress, 1/4 in plane strain and 3D,
 /// 0 in 1D.

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "src/geometry/squared_distance.hpp"
 #include "src/neighbourhood/search.hpp"
 
 namespace peristat {
@@ -33,11 +34,28 @@ void for_each_bond(const Bonds& bonds, const Visit& visit) {
   }
 }
 
+/// The bonds of given neighbours, in their order.
+Bonds given_bonds(const Points& points) {
+  Bonds bonds;
+  bonds.offset.assign(points.volume.size() + 1, 0);
+  for (const NeighbourShares& pair : points.neighbours) {
+    ++bonds.offset[std::size_t(pair.i) + 1];
+    bonds.partner.push_back(pair.j);
+    const double squared = squared_distance(points.reference, points.dimension, pair.i, pair.j);
+    bonds.kind.push_back({1.0 / std::sqrt(squared), 0.0});
+  }
+  for (std::size_t i = 1; i < bonds.offset.size(); ++i) bonds.offset[i] += bonds.offset[i - 1];
+  return bonds;
+}
+
 void weigh_volumes(Bonds& bonds, const Points& points, const Kernel& kernel) {
   bonds.set_weights([&](Index i, Offset bond) {
     const Index j = bonds.partner[bond];
     double share = 1.0;
-    if (kernel.volume_correction != VolumeCorrection::none) {
+    if (!points.neighbours.empty()) {
+      const NeighbourShares& given = points.neighbours[std::size_t(bond)];
+      share = 0.5 * (given.of_j + given.of_i);
+    } else if (kernel.volume_correction != VolumeCorrection::none) {
       const double size_i = cell_size(points, i, kernel.cross_section);
       const double size_j = cell_size(points, j, kernel.cross_section);
       share = 0.5 * (kernel.partial_volume(bonds.length(bond), size_i) +
@@ -143,7 +161,9 @@ void drop_weightless(Bonds& bonds) {
 
 Bonds make_bonds(const Points& points, SurfaceCorrection surface, const BondSetting& setting,
                  int threads) {
-  Bonds bonds = search_bonds(points, search_radius(points, setting), threads);
+  Bonds bonds = points.neighbours.empty()
+                    ? search_bonds(points, search_radius(points, setting), threads)
+                    : given_bonds(points);
   weigh_volumes(bonds, points, setting);
   if (setting.volume_correction == VolumeCorrection::linear) drop_weightless(bonds);
   share_with_images(bonds, points);

@@ -12,13 +12,14 @@ enum class SurfaceCorrection { none, volume, energy };
 /// Takes out bonds that store no energy.
 void drop_weightless(Bonds& bonds);
 
-/// Finds the bonds of a body and sets their weights. Those that the linear correction leaves none
+/// Finds the bonds of a body, unless its points have given neighbours, and sets their weights.
+/// Those that the linear correction leaves none
 /// are dropped; those between two images have none, but triangles stand on them.
 ///
 ///   w_ij = 1/2 (V_i V_j nu_ij + V_j V_i nu_ji) omega_ij mu_ij   [m6]
 ///
-/// nu is the kernel's partial volume, omega its influence and mu the surface correction, all
-/// symmetric and frozen in the reference configuration:
+/// nu is the kernel's partial volume or the given share, omega its influence and mu the surface
+/// correction, all symmetric and frozen in the reference configuration:
 ///  - none:   mu = 1.
 ///  - volume: mu = 2 V_H / (V_i + V_j) with V_i = sum_j 1/2 (nu_ij + nu_ji) V_j and V_H that of a
 ///            point inside the lattice, for a cloud of points inside a lattice of the cloud's mean

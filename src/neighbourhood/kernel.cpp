@@ -1,6 +1,7 @@
 #include "src/neighbourhood/kernel.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -37,16 +38,20 @@ double Kernel::moment(int k) const {
   return cross_section * unit_sphere * radial * std::pow(horizon, power);
 }
 
-double Kernel::lattice_moment(int k, double spacing) const {
-  const int width = static_cast<int>(std::ceil(horizon / spacing)) + 1;
+double Kernel::lattice_moment(int k, const Spacing& spacing) const {
+  std::array<int, 3> width{};
+  for (int c = 0; c < dimension; ++c) {
+    width[c] = static_cast<int>(std::ceil(horizon / spacing.along(c))) + 1;
+  }
   const double cell = std::pow(spacing, dimension) * cross_section;
-  const int width_y = dimension > 1 ? width : 0;
-  const int width_z = dimension > 2 ? width : 0;
   double sum = 0.0;
-  for (int x = -width; x <= width; ++x) {
-    for (int y = -width_y; y <= width_y; ++y) {
-      for (int z = -width_z; z <= width_z; ++z) {
-        const double distance = spacing * std::sqrt(double(x * x + y * y + z * z));
+  for (int x = -width[0]; x <= width[0]; ++x) {
+    for (int y = -width[1]; y <= width[1]; ++y) {
+      for (int z = -width[2]; z <= width[2]; ++z) {
+        const double distance =
+            spacing.is_square()
+                ? spacing * std::sqrt(double(x * x + y * y + z * z))
+                : std::hypot(spacing.along(0) * x, spacing.along(1) * y, spacing.along(2) * z);
         const double share = distance > 0.0 ? partial_volume(distance, spacing) : 0.0;
         if (share == 0.0) continue;
         sum += cell * share * influence_at(distance) * std::pow(distance, k);

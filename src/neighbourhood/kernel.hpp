@@ -2,6 +2,8 @@
 
 #include <functional>
 
+#include "src/core/spacing.hpp"
+
 namespace peristat {
 
 /// Part of a neighbour's volume that counts: all of it, or a share that falls linearly from 1 to 0
@@ -36,7 +38,7 @@ struct Kernel {
   [[nodiscard]] double moment(int k) const;
 
   /// The same sum over the neighbours of a point inside a lattice, with their partial volumes.
-  [[nodiscard]] double lattice_moment(int k, double spacing) const;
+  [[nodiscard]] double lattice_moment(int k, const Spacing& spacing) const;
 };
 
 }  // namespace peristat

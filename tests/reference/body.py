@@ -5,6 +5,7 @@ import math
 
 import numpy
 
+from tests.reference.case import read_neighbours, read_points
 from tests.reference.materials import Materials
 
 HORIZON_TOLERANCE = 1e-8
@@ -52,10 +53,11 @@ def cliques(bonds, count, size):
     return numpy.array(found, int).reshape(-1, size)
 
 
-def lattice_ball(dimension, ratio):
-    """Neighbours of a lattice's bulk point, in spacings."""
-    reach = int(ratio * (1 + HORIZON_TOLERANCE))
-    grid = numpy.array(list(itertools.product(range(-reach, reach + 1), repeat=dimension)), float)
+def lattice_ball(dimension, ratio, edges=1.0):
+    """Neighbours of a lattice's bulk point, in spacings; edges of cells that are not square."""
+    edges = numpy.broadcast_to(edges, (dimension,))
+    reaches = (ratio * (1 + HORIZON_TOLERANCE) / edges).astype(int)
+    grid = numpy.array(list(itertools.product(*(range(-reach, reach + 1) for reach in reaches))), float) * edges
     distance = numpy.sqrt((grid**2).sum(axis=1))
     return grid[(distance > 0) & (distance <= ratio * (1 + HORIZON_TOLERANCE))]
 
@@ -131,7 +133,8 @@ class Body:
         self.youngs_modulus = self.constants[1] / factor
         size = (self.volume / self.cross_section) ** (1 / self.dimension)
         linear = quadrature["volume_correction"] == "linear"
-        pairs = pairs_within(self.reference, self.horizon + (size.max() / 2 if linear else 0))
+        given = self._given_pairs()
+        pairs = given[0] if given else pairs_within(self.reference, self.horizon + (size.max() / 2 if linear else 0))
         i, j = pairs.T
         arm = self.reference[j] - self.reference[i]
         length = numpy.sqrt((arm**2).sum(axis=1))
@@ -142,7 +145,7 @@ class Body:
             inside = numpy.clip((self.horizon + of / 2 - length) / of, 0, 1)
             return numpy.where(inside < HORIZON_TOLERANCE, 0, inside)  # round-off at the far end
 
-        mean_share = (share(size[j]) + share(size[i])) / 2
+        mean_share = given[1] if given else (share(size[j]) + share(size[i])) / 2
         weight = self.volume[i] * self.volume[j] * mean_share
         keep = weight > 0
         pairs, arm, length, weight, mean_share = (a[keep] for a in (pairs, arm, length, weight, mean_share))
@@ -156,6 +159,16 @@ class Body:
             weight = weight * own / self.constants[1]
         self.tuples[1], self.weight[1] = pairs, weight
 
+    def _given_pairs(self):
+        """Neighbours from a file and the means of their shares, in the numbers of these points."""
+        if self.case.is_lattice or "neighbours" not in self.case["points"]:
+            return None
+        places, _, _ = read_points(self.case)
+        number = {tuple(place): k for k, place in enumerate(self.reference.tolist())}
+        renumbered = numpy.array([number[tuple(place)] for place in places.tolist()])
+        pairs, shares = read_neighbours(self.case)
+        return numpy.sort(renumbered[pairs], axis=1), shares.mean(axis=1)
+
     def _volume_correction(self, pairs, share):
         i, j = pairs.T
         own = self._sum_over(i, share * self.volume[j]) + self._sum_over(j, share * self.volume[i])
@@ -165,7 +178,9 @@ class Body:
         """V_H of a point inside the lattice; for a cloud a lattice of its mean spacing."""
         linear = self.case["quadrature"]["volume_correction"] == "linear"
         ratio = self.horizon / self.spacing
-        distance = numpy.sqrt((lattice_ball(self.dimension, ratio + (0.5 if linear else 0)) ** 2).sum(axis=1))
+        edges = self.case.spacings / self.spacing if self.case.is_lattice else 1.0
+        ball = lattice_ball(self.dimension, ratio + (0.5 if linear else 0), edges)
+        distance = numpy.sqrt((ball**2).sum(axis=1))
         shares = numpy.clip(ratio + 0.5 - distance, 0, 1) if linear else numpy.ones(len(distance))
         return shares.sum() * self.spacing**self.dimension * self.cross_section
 

@@ -54,17 +54,22 @@ class Case:
         key = {1: "area", 2: "thickness", 3: None}[self.dimension]
         return float(self.place.get(key, 1.0))
 
+    @property
+    def spacings(self):
+        """Of the lattice along its axes [m]."""
+        return numpy.broadcast_to(numpy.asarray(self["lattice"]["spacing"], float), (self.dimension,))
+
     def spacing(self, volume):
-        """Of the lattice, or of a lattice with the cloud's mean volume [m]."""
+        """Edge of a square of a lattice's cell's volume, or of a cloud's mean volume [m]."""
         if self.is_lattice:
-            return float(self["lattice"]["spacing"])
+            return float(numpy.prod(self.spacings) ** (1 / self.dimension))
         return float((numpy.mean(volume) / self.cross_section) ** (1 / self.dimension))
 
     def horizon(self, ratio=None):
         if not self.is_lattice:
             return float(self["points"]["horizon"])
         lattice = self["lattice"]
-        return lattice["spacing"] * (lattice.get("horizon_ratio", 3.015) if ratio is None else ratio)
+        return self.spacing(None) * (lattice.get("horizon_ratio", 3.015) if ratio is None else ratio)
 
     @property
     def has_damage(self):
@@ -91,6 +96,20 @@ def read_points(case):
 FUNCTIONS = {name: getattr(numpy, name) for name in "sin cos tan sinh cosh tanh exp sqrt abs sign".split()}
 FUNCTIONS |= {"ln": numpy.log, "asin": numpy.arcsin, "acos": numpy.arccos, "atan": numpy.arctan}
 FUNCTIONS |= {"min": numpy.minimum, "max": numpy.maximum, "pi": math.pi}
+
+
+def read_neighbours(case):
+    """Pairs of points, numbered from 0 as in their file, and the shares that they count of each other."""
+    lines = (case.folder / case["points"]["neighbours"]).read_text().splitlines()
+    rows = [line.replace(",", " ").split() for line in lines if line.strip() and not line.startswith("#")]
+    shares = {}
+    for row in rows[1:]:
+        i, j, *share = int(row[0]) - 1, int(row[1]) - 1, *map(float, row[2:])
+        shares[i, j] = share[0]
+        if (j, i) not in shares or len(share) == 2:
+            shares[j, i] = share[-1]
+    pairs = numpy.array(sorted({tuple(sorted(pair)) for pair in shares}))
+    return pairs, numpy.array([[shares[i, j], shares[j, i]] for i, j in pairs.tolist()])
 
 
 def evaluate(expression, reference, load=0.0, spacing=0.0):

@@ -41,7 +41,7 @@ void require_memory_for_lattice(const Case& from, const Lattice& lattice) {
   size.free_dofs = points * from.dimension;
   const Box box = lattice.shapes.empty() ? Box{} : bounds(lattice.shapes.front().shape);
   for (int c = 0; c < from.dimension; ++c) {
-    const double along = (box.max[c] - box.min[c]) / lattice.spacing;
+    const double along = (box.max[c] - box.min[c]) / lattice.spacing.along(c);
     if (std::isfinite(along)) size.longest = std::max(size.longest, along);
   }
   // This estimate counts the bounding box: only what cannot fit even if half of it is cut away is
@@ -61,7 +61,10 @@ Points make_points_of(const Case& from) {
       points = make_points(*lattice);
     } else {
       const auto& source = std::get<PointSource>(from.body);
-      points = read_points(source.file, from.dimension, source.cross_section);
+      std::optional<NeighbourFile> neighbours;
+      if (!source.neighbours.empty())
+        neighbours = {source.neighbours, source.horizon, source.cross_section};
+      points = read_points(source.file, from.dimension, source.cross_section, neighbours);
     }
     for (std::size_t k = 0; k < from.sets.size(); ++k) {
       const SetRule& rule = from.sets[k];
@@ -103,6 +106,12 @@ std::optional<Model> make_elastic_stand_in(const Case& from, const Body& body, i
     require_summable(from.material.model, from.dimension, key,
                      number_text(from.solver.elastic_horizon_ratio),
                      from.solver.elastic_horizon_ratio);
+    if (!body.points.neighbours.empty())
+      throw InputError(key, number_text(from.solver.elastic_horizon_ratio),
+                       "is for neighbours that are found; points.neighbours gives them");
+    if (from.solver.elastic_horizon_ratio * body.points.spacing < body.points.spacing.largest())
+      throw InputError(key, number_text(from.solver.elastic_horizon_ratio),
+                       "gives a horizon smaller than the largest spacing");
     BondSetting setting = body.setting;
     setting.horizon = from.solver.elastic_horizon_ratio * body.points.spacing;
     Bonds bonds = make_bonds(body.points, from.surface_correction, setting, threads);

@@ -186,6 +186,7 @@ Exit calibrate(const Case& from) {
     throw located(from, InputError("material.model", "\"bond\"", "calibrate is for model \"cpd\""));
   }
   const Points points = make_points_of(from);
+  located_errors(from, [&] { require_whole_square_cells(points); });
   CalibrationQuestion question;
   question.dimension = from.dimension;
   question.spacing = points.spacing;

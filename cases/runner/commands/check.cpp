@@ -36,6 +36,16 @@ NeighbourCounts count_neighbours(const Bonds& bonds) {
   return counts;
 }
 
+/// "0.001 m", "0.001 x 0.002 m", "0.001 m (turned by 30 degrees)"
+std::string spacing_text(const Points& points) {
+  std::string text;
+  for (int c = 0; c < (points.spacing.is_square() ? 1 : points.dimension); ++c)
+    text += fmt::format("{}{:g}", c == 0 ? "" : " x ", points.spacing.along(c));
+  text += " m";
+  if (points.angle != 0.0) text += fmt::format(" (turned by {:g} degrees)", points.angle);
+  return text;
+}
+
 std::string seconds_text(double seconds) {
   if (seconds < 1.0) return "below a second";
   if (seconds < 120.0) return fmt::format("about {:.0f} s", seconds);
@@ -137,8 +147,8 @@ Exit check(const Case& from, int threads) {
   const Points& points = body.points;
   const NeighbourCounts neighbours = count_neighbours(body.model.bonds());
   fmt::print("case        {}\n", from.title.empty() ? from.file : from.title);
-  fmt::print("points      {} in {}D, spacing {:g} m, horizon {:g} m ({:.4g} spacings)\n",
-             points.count(), points.dimension, points.spacing, body.setting.horizon,
+  fmt::print("points      {} in {}D, spacing {}, horizon {:g} m ({:.4g} spacings)\n",
+             points.count(), points.dimension, spacing_text(points), body.setting.horizon,
              body.horizon_ratio());
   fmt::print("bonds       {}; neighbours per point {} to {}, {:.1f} on average\n",
              body.model.bonds().count(), neighbours.least, neighbours.most, neighbours.mean);

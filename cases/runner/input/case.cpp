@@ -46,24 +46,21 @@ void resolve_size(Case& result) {
 
 /// Keys by the names that lower floors have for what they are given.
 const std::map<std::string, std::string>& keys_of_members() {
-  static const std::map<std::string, std::string> keys{{"spacing", "lattice.spacing"},
-                                                       {"perturbation", "lattice.perturbation"},
-                                                       {"shapes", "lattice.shape"},
-                                                       {"layers", "lattice.layer"},
-                                                       {"cracks", "crack"},
-                                                       {"regions", "region"},
-                                                       {"interfaces", "interface"},
-                                                       {"file", "points.file"},
-                                                       {"supports", "support"},
-                                                       {"loads", "load"},
-                                                       {"rigid_sets", "rigid"},
-                                                       {"rollers", "roller"},
-                                                       {"linear", "constraint"},
-                                                       {"symmetries", "symmetry"},
-                                                       {"periods", "period"},
-                                                       {"directory", "output.directory"},
-                                                       {"controls", "control"},
-                                                       {"programme", "loading.table"}};
+  static const std::map<std::string, std::string> keys{
+      {"spacing", "lattice.spacing"},
+      {"perturbation", "lattice.perturbation"},
+      {"angle", "lattice.angle"},
+      {"volume_correction", "quadrature.volume_correction"},
+      {"surface_correction", "quadrature.surface_correction"},
+      {"shapes", "lattice.shape"},
+      {"layers", "lattice.layer"},
+      {"cracks", "crack"},
+      {"file", "points.file"},
+      {"supports", "support"},
+      {"loads", "load"},
+      {"directory", "output.directory"},
+      {"controls", "control"},
+      {"programme", "loading.table"}};
   return keys;
 }
 
@@ -76,6 +73,7 @@ std::string key_of(const Case& from, std::string member) {
   if (member == "horizon") return lattice != nullptr ? "lattice.horizon_ratio" : "points.horizon";
   if (member.starts_with("points") && lattice != nullptr) return "lattice.shape";
   if (member == "points.reference") return "points.file";
+  if (member == "neighbours") return "points.neighbours";
   const std::size_t end = std::min(member.find_first_of("[."), member.size());
   const auto known = keys_of_members().find(member.substr(0, end));
   if (known == keys_of_members().end()) return member;

@@ -22,8 +22,9 @@ namespace peristat {
 /// Points that come from a file instead of a lattice (table [points]).
 struct PointSource {
   std::filesystem::path file;  ///< absolute; in the case file relative to the case file's folder
-  double cross_section = 1.0;  ///< 1D: area [m2]; 2D: thickness [m]
-  double horizon = 0.0;        ///< [m]
+  std::filesystem::path neighbours{};  ///< absolute; empty: the points within the horizon
+  double cross_section = 1.0;          ///< 1D: area [m2]; 2D: thickness [m]
+  double horizon = 0.0;                ///< [m]
 };
 
 /// Values of a load parameter: given one by one, or as an expression of the step.

@@ -13,6 +13,7 @@
 #include "solvers/drivers/drivers.hpp"
 #include "src/conditions/loading_programme.hpp"
 #include "src/core/expression.hpp"
+#include "src/core/number_text.hpp"
 
 namespace peristat {
 namespace {
@@ -106,14 +107,25 @@ Table<Case> lattice_keys() {
   using K = Key<Case>;
   return {
       "lattice",
-      {K("spacing", in(lattice, &Lattice::spacing), positive("m"),
-         "distance of neighbouring points")
+      {K("spacing", in(lattice, &Lattice::spacing), spacing(),
+         "distance of neighbouring points, or one along each of the lattice's axes")
            .required(),
+       K("angle", in(lattice, &Lattice::angle), between(-360.0, 360.0, "degrees"),
+         "that the lattice is turned by under the body, anticlockwise about the origin, in 3D "
+         "about the z axis; shapes, layers and sets stay")
+           .unless(in_dimension<1>, "is for dimensions 2 and 3"),
        K("horizon_ratio", &Case::horizon_ratio, number(Range::positive("-"), "1 to 1000"),
-         "horizon / spacing")
+         "horizon / spacing; of spacings that differ, their geometric mean")
            .then([](auto& at, auto& result) {
              if (result.horizon_ratio < 1.0)
                at.refuse("horizon smaller than the spacing; must be at least 1, usually 3.015");
+             const Spacing& spacing = lattice(result).spacing;
+             const double horizon = result.horizon_ratio * spacing;
+             if (!spacing.is_square() && horizon < spacing.largest())
+               at.refuse("gives a horizon of " + number_text(horizon) +
+                         " m (it refers to the geometric mean of the spacings), smaller than the "
+                         "largest spacing, " +
+                         number_text(spacing.largest()) + " m");
            })
            .moreover("in 3D to 100; with model `cpd` to 50 in 2D, to 8 in 3D"),
        thickness(in(lattice, &Lattice::cross_section)), area(in(lattice, &Lattice::cross_section)),
@@ -122,8 +134,15 @@ Table<Case> lattice_keys() {
              {{"cell_centres", LatticeOrigin::cell_centres}, {"nodes", LatticeOrigin::nodes}}),
          "where points stand relative to the lower corner of the first shape: cells' centres, half "
          "a spacing inside, or the corner itself"),
+       K("volumes", in(lattice, &Lattice::volumes),
+         choice<CellVolumes>(
+             {{"cells", CellVolumes::whole}, {"fractional", CellVolumes::fractional}}),
+         "of points: that of a cell if its place lies in the body, or of the part of each cell "
+         "that "
+         "does")
+           .moreover("`fractional` with model `bond`"),
        K("perturbation", in(lattice, &Lattice::perturbation), between(0.0, 0.49, "spacings"),
-         "largest random shift of a point per component; points of layers stay"),
+         "largest random shift of a point along each of the lattice's axes; points of layers stay"),
        K("seed", in(lattice, &Lattice::seed),
          count_from(0, "", std::numeric_limits<std::int64_t>::max()),
          "of the random shifts; the same seed gives the same points"),
@@ -165,6 +184,11 @@ Table<Case> points_keys() {
            .moreover("at least the mean spacing; at most as many mean spacings as "
                      "`lattice.horizon_ratio` allows")
            .required(),
+       K("neighbours", in(points, &PointSource::neighbours), file_beside_the_case(),
+         "neighbours of the points and the shares of their volumes that count, beside the case "
+         "file like `file`; model `bond`")
+           .written_if([](auto& from, auto&) { return !points(from).neighbours.empty(); })
+           .default_words("all points within the horizon"),
        thickness(in(points, &PointSource::cross_section)),
        area(in(points, &PointSource::cross_section))},
       [](auto&, auto& result) { result.body = PointSource(); }};

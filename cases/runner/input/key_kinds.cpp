@@ -20,9 +20,9 @@ std::vector<Item> components_of(const std::array<Item, 3>& items, const Case& fr
 }
 
 /// Of the lattice; stands for any positive number if points come from a file.
-double spacing_of(const Case& from) {
+Spacing spacing_of(const Case& from) {
   const auto* lattice = std::get_if<Lattice>(&from.body);
-  return lattice != nullptr ? lattice->spacing : 1.0;
+  return lattice != nullptr ? lattice->spacing : Spacing(1.0);
 }
 
 /// Sets and layers that were read so far, and the keys that gave them their names.
@@ -67,6 +67,23 @@ Kind<double> number(const Range& range, std::string allowed, std::string unit) {
 
 Kind<double> positive(const std::string& unit, double high) {
   return number(Range::positive(unit, high), "positive", unit == "-" ? "" : unit);
+}
+
+Kind<Spacing> spacing() {
+  const auto read = [](const Entry& at) {
+    const Range range = Range::positive("m");
+    if (!at.from.is_array(at.key)) return Spacing(at.from.number(at.key, range));
+    Coordinates along{};
+    const auto numbers = at.from.numbers(at.key, dimension_of(at.so_far), range);
+    std::copy(numbers.begin(), numbers.end(), along.begin());
+    return Spacing(along, at.so_far.dimension);
+  };
+  const auto text = [](const Spacing& spacing, const Case& from) {
+    const std::array<double, 3> along{spacing.along(0), spacing.along(1), spacing.along(2)};
+    return spacing.is_square() ? toml_number(spacing)
+                               : array_text(components_of(along, from), toml_number);
+  };
+  return {read, text, "positive, or a list of as many as the dimension", "m"};
 }
 
 Kind<double> between(double low, double high, std::string unit) {

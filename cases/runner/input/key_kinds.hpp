@@ -9,6 +9,7 @@
 
 #include "cases/runner/input/key_table.hpp"
 #include "cases/runner/input/toml_text.hpp"
+#include "src/core/spacing.hpp"
 #include "src/core/types.hpp"
 
 namespace peristat {
@@ -16,6 +17,8 @@ namespace peristat {
 /// A finite number within the range.
 [[nodiscard]] Kind<double> number(const Range& range, std::string allowed, std::string unit = {});
 [[nodiscard]] Kind<double> positive(const std::string& unit, double high = 1e30);
+/// Of a lattice: a number, or one for each of its axes.
+[[nodiscard]] Kind<Spacing> spacing();
 [[nodiscard]] Kind<double> between(double low, double high, std::string unit = {});
 [[nodiscard]] Kind<std::int64_t> integer(std::int64_t low, std::int64_t high,
                                          std::string unit = {});

@@ -214,6 +214,11 @@ std::vector<double> TomlTable::numbers(const std::string& key, const Range& rang
   return numbers(key, 0, range);
 }
 
+bool TomlTable::is_array(const std::string& key) const {
+  const TomlValue* const value = find(key);
+  return value != nullptr && value->kind == TomlValue::Kind::array;
+}
+
 bool TomlTable::is_string(const std::string& key) const {
   const TomlValue* const value = find(key);
   return value != nullptr && value->kind == TomlValue::Kind::string;

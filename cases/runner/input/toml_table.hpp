@@ -60,6 +60,8 @@ class TomlTable {
                                             const Range& range) const;
   /// An array of two numbers or more.
   [[nodiscard]] std::vector<double> numbers(const std::string& key, const Range& range) const;
+  /// Whether the key has an array.
+  [[nodiscard]] bool is_array(const std::string& key) const;
   /// Whether the key has a string.
   [[nodiscard]] bool is_string(const std::string& key) const;
   /// An array of pairs of numbers.

@@ -13,15 +13,18 @@ class Cells:
     its own. Points that are no lattice get a square or cube each, without neighbours.
 
     index      count x dimension, lattice position of the cell
-    spacing    edge length [m]
+    edges      of a cell, a row for each of the lattice's axes [m]
+    spacing    edge length of a square or cube as large [m]
     is_lattice whether the points stand on a lattice
     """
 
-    def __init__(self, reference: np.ndarray, spacing: float):
-        self.spacing = spacing
+    def __init__(self, reference: np.ndarray, spacing):
         self.dimension = reference.shape[1]
-        phase = np.angle(np.exp(2j * np.pi * reference / spacing).mean(axis=0)) / (2 * np.pi)
-        index = np.rint(reference / spacing - phase).astype(np.int64)
+        self.edges = as_edges(spacing, self.dimension)
+        self.spacing = float(abs(np.linalg.det(self.edges)) ** (1.0 / self.dimension))
+        places = reference @ np.linalg.inv(self.edges)
+        phase = np.angle(np.exp(2j * np.pi * places).mean(axis=0)) / (2 * np.pi)
+        index = np.rint(places - phase).astype(np.int64)
         index -= index.min(axis=0)
         self._shape = index.max(axis=0) + 3  # one empty cell around, so that neighbours always exist
         count = len(index)
@@ -62,6 +65,11 @@ class Cells:
         """Whether every cell has a neighbour in a direction that it has been parted from."""
         return (self.neighbours(axis, sign) >= 0) & (self.joined(axis, sign) < 0)
 
+    @property
+    def is_upright(self) -> bool:
+        """Whether cells stand along the coordinate axes."""
+        return bool((self.edges == np.diag(np.diag(self.edges))).all())
+
     def image(self, values: np.ndarray) -> np.ndarray:
         """Values of a plane lattice as an image, rows along y from below; NaN where there is no point."""
         image = np.full(self.index.max(axis=0) + 1, np.nan)
@@ -74,10 +82,9 @@ class Cells:
         Displacements are continued linearly from the points to the corners and averaged there, among the
         cells that hang together. Loose cells (those of broken material) move with their point alone.
         """
-        gradient = self._gradient(displacement, loose)
-        half = 0.5 * self.spacing
+        change = self._change(displacement, loose)
         signs = corner_signs(self.dimension)
-        moved = displacement[:, None, :] + half * np.einsum("ka,nac->nkc", signs, gradient)
+        moved = displacement[:, None, :] + 0.5 * np.einsum("ka,nac->nkc", signs, change)
         knot = self._knots(loose)
         number_of_cells = np.maximum(np.bincount(knot.ravel(), minlength=knot.size), 1)
         for component in range(self.dimension):
@@ -85,9 +92,9 @@ class Cells:
             moved[:, :, component] = (sums / number_of_cells)[knot]
         centres = reference
         if self.is_lattice:  # of a perturbed lattice: the unperturbed places
-            centres = self.index * self.spacing
+            centres = self.index @ self.edges
             centres = centres + (reference - centres).mean(axis=0)
-        return centres[:, None, :] + half * signs + moved
+        return centres[:, None, :] + 0.5 * signs @ self.edges + moved
 
     def _knots(self, loose: np.ndarray) -> np.ndarray:
         """A number of every corner that it shares with the corners of other cells it is joined to."""
@@ -106,19 +113,19 @@ class Cells:
                 break
         return knot
 
-    def _gradient(self, displacement: np.ndarray, loose: np.ndarray) -> np.ndarray:
-        """Displacement gradient by differences to the neighbours: count x axis x component."""
-        gradient = np.zeros((len(displacement), self.dimension, self.dimension))
+    def _change(self, displacement: np.ndarray, loose: np.ndarray) -> np.ndarray:
+        """Change of the displacement along each edge by differences to the neighbours: count x axis x component."""
+        change = np.zeros((len(displacement), self.dimension, self.dimension))
         for axis in range(self.dimension):
             number = np.zeros(len(displacement))
             for sign in (-1, 1):
                 other = self.joined(axis, sign)
                 usable = (other >= 0) & ~loose & ~loose[other]
-                difference = sign * (displacement[other] - displacement) / self.spacing
-                gradient[:, axis] += np.where(usable[:, None], difference, 0.0)
+                difference = sign * (displacement[other] - displacement)
+                change[:, axis] += np.where(usable[:, None], difference, 0.0)
                 number += usable
-            gradient[:, axis] /= np.maximum(number, 1.0)[:, None]
-        return gradient
+            change[:, axis] /= np.maximum(number, 1.0)[:, None]
+        return change
 
 
 def at_the_rim(cells: Cells, floating: np.ndarray) -> np.ndarray:
@@ -130,22 +137,29 @@ def at_the_rim(cells: Cells, floating: np.ndarray) -> np.ndarray:
     return rim
 
 
+def as_edges(spacing, dimension: int) -> np.ndarray:
+    """Edges of a cell, a row for each axis, of one spacing or as they are."""
+    return spacing * np.eye(dimension) if np.ndim(spacing) == 0 else np.asarray(spacing, float)
+
+
 def corner_signs(dimension: int) -> np.ndarray:
     """Signs of a cell's corners, 2^dimension x dimension; the last axis changes fastest."""
     return np.array(list(product((-1.0, 1.0), repeat=dimension)))
 
 
-def merged(reference: np.ndarray, spacing: float, limit: int, *fields: np.ndarray):
+def merged(reference: np.ndarray, spacing, limit: int, *fields: np.ndarray):
     """Fewer points for a picture: means over blocks of lattice cells until at most `limit` remain.
 
-    Returns spacing, reference and fields, unchanged if there are few enough points. A million cells
+    Returns spacing (or edges, as given), reference and fields, unchanged if there are few enough points. A million cells
     can't be told apart on a screen, but take long to draw.
     """
     if len(reference) <= limit:
         return spacing, reference, *fields
     dimension = reference.shape[1]
     factor = int(np.ceil((len(reference) / limit) ** (1.0 / dimension)))
-    block = np.floor((reference - reference.min(axis=0)) / (factor * spacing) + 1e-6).astype(np.int64)
+    edges = as_edges(spacing, dimension)
+    along = reference @ np.linalg.inv(edges)  # the lattice's axes, in its spacings
+    block = np.floor((along - along.min(axis=0)) / factor + 1e-6).astype(np.int64)
     shape = block.max(axis=0) + 1
     key = block @ np.array([int(np.prod(shape[axis + 1 :])) for axis in range(dimension)])
     _, group = np.unique(key, return_inverse=True)
@@ -159,5 +173,5 @@ def merged(reference: np.ndarray, spacing: float, limit: int, *fields: np.ndarra
     # Blocks that the body fills only in part stay in their place, so that they tile without gaps.
     first = np.zeros((len(number), dimension))
     first[group] = block
-    places = reference.min(axis=0) + (first + 0.5) * factor * spacing - 0.5 * spacing
+    places = (along.min(axis=0) + (first + 0.5) * factor - 0.5) @ edges
     return factor * spacing, places, *(mean(values) for values in fields)

@@ -232,7 +232,7 @@ def draw_plane_fields(results, step):
         held = held_values(values, floating)
         norm, colours = _norm(held, colours)
         extend = beyond(values, norm.vmin, norm.vmax)
-        if cells.is_lattice:
+        if cells.is_lattice and cells.is_upright:
             picture = axes.imshow(cells.image(values), extent=(low[0], high[0], low[1], high[1]), origin="lower",
                                   interpolation="nearest", cmap=colours, norm=norm)  # fmt: skip
         else:

@@ -61,10 +61,16 @@ class ResultsFolder:
     case: dict  # the resolved case
     missing: list[str] = field(default_factory=list)  # sentences for a person
     _bonds: tuple | None = None  # broken ones, once they have been read
+    lattice_edges: np.ndarray | None = None  # of a lattice that is turned or not of squares, a row per axis [m]
 
     @property
     def dimension(self) -> int:
         return self.reference.shape[1]
+
+    @property
+    def edges(self) -> np.ndarray:
+        """Edges of a cell, a row for each of the lattice's axes [m]."""
+        return self.spacing * np.eye(self.dimension) if self.lattice_edges is None else self.lattice_edges
 
     @property
     def status(self) -> str:
@@ -237,6 +243,8 @@ def read_results_folder(path: Path) -> ResultsFolder:
         case = _case(file, missing)
         title = as_text(file.attribute("", "title", ""))
         spacing = _finite(file.attribute("points", "spacing"))
+        along = [_finite(file.attribute("points", f"spacing_{axis}")) for axis in "xyz"[: reference.shape[1]]]
+        angle = _finite(file.attribute("points", "angle"))
         step_numbers = _readable_steps(file, missing)
     title = title or as_text(case.get("title", "")) or path.resolve().name
     title = "".join(c if c.isprintable() else " " for c in title)[:LONGEST_TITLE]
@@ -247,11 +255,25 @@ def read_results_folder(path: Path) -> ResultsFolder:
             break
     else:
         spacing = _mean_spacing(reference)
-    return ResultsFolder(
+    found = ResultsFolder(
         path, title, reference, volume, spacing, sets, step_numbers,
         _history(path / "history.csv", missing), _table(path / "iterations.csv", missing),
         _table(path / "decisions.csv", []), _orders(path / "convergence.csv"), _summary(path, missing), case, missing,
     )  # fmt: skip
+    found.lattice_edges = _edges(spacing, along, angle)
+    return found
+
+
+def _edges(spacing: float, along: list, angle: float | None) -> np.ndarray | None:
+    """Of cells that are turned or not square; nothing for others, and for what makes no sense."""
+    lengths = [length if length and length > 0.0 else spacing for length in along]
+    if max(lengths) > MOST_SPACINGS * min(lengths) or (lengths == [spacing] * len(lengths) and not angle):
+        return None
+    turn = np.eye(len(lengths))
+    if angle and len(lengths) > 1:
+        cosine, sine = np.cos(np.radians(angle)), np.sin(np.radians(angle))
+        turn[:2, :2] = [[cosine, sine], [-sine, cosine]]
+    return np.array(lengths)[:, None] * turn
 
 
 def _finite(value) -> float | None:

@@ -101,11 +101,11 @@ def cells_of(results, step, limit: int, size: float, *fields: np.ndarray):
     whether each floats, whether each moves with its point alone, and the fields. Where the folder does not
     list broken bonds, or cells stand for many points, damage tells what is loose.
     """
-    spacing, reference, displacement, damage, floating, *fields = merged(
-        results.reference, results.spacing, limit, step.displacement, step.damage, step.floating.astype(float), *fields
+    edges, reference, displacement, damage, floating, *fields = merged(
+        results.reference, results.edges, limit, step.displacement, step.damage, step.floating.astype(float), *fields
     )
     floating = floating > 0.5
-    cells = Cells(reference / size, spacing / size)
+    cells = Cells(reference / size, edges / size)
     is_whole = len(reference) == len(results.reference) and results.tells_broken_bonds
     ends, steps = results.broken_bonds() if is_whole else (None, None)
     separate(cells, reference, results.cracks, ends[steps <= step.number] if is_whole else None, results.reach)

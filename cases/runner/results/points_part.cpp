@@ -38,6 +38,30 @@ bool are_same(const std::vector<double>& some, const std::vector<double>& others
   });
 }
 
+std::vector<std::int32_t> neighbour_points(const Points& points) {
+  std::vector<std::int32_t> ends;
+  for (const NeighbourShares& pair : points.neighbours) ends.insert(ends.end(), {pair.i, pair.j});
+  return ends;
+}
+
+std::vector<double> neighbour_shares(const Points& points) {
+  std::vector<double> shares;
+  for (const NeighbourShares& pair : points.neighbours)
+    shares.insert(shares.end(), {pair.of_j, pair.of_i});
+  return shares;
+}
+
+/// Whether a group has the given neighbours of points, or none as they have.
+bool holds_neighbours(const Hdf5File& file, const std::string& group, const Points& points) {
+  const std::string place = group + "/given_neighbours";
+  if (file.has(place) == points.neighbours.empty()) return false;
+  if (points.neighbours.empty()) return true;
+  const std::vector<std::int64_t> ends = file.integers(place + "/points");
+  const std::vector<std::int32_t> now = neighbour_points(points);
+  return std::equal(ends.begin(), ends.end(), now.begin(), now.end()) &&
+         are_same(file.numbers(place + "/shares"), neighbour_shares(points));
+}
+
 }  // namespace
 
 std::string flags_of(const std::string& set) { return "/points/sets/" + name_of_flags(set); }
@@ -47,7 +71,11 @@ void write_points(Hdf5File& file, const Points& points, const std::vector<PointC
   const auto dimension = static_cast<std::uint64_t>(points.dimension);
   file.make_group("/points");
   file.set_attribute("/points", "dimension", std::int64_t{points.dimension});
-  file.set_attribute("/points", "spacing", points.spacing);
+  file.set_attribute("/points", "spacing", double(points.spacing));
+  for (int c = 0; c < points.dimension && !points.spacing.is_square(); ++c) {
+    file.set_attribute("/points", std::string("spacing_") + "xyz"[c], points.spacing.along(c));
+  }
+  if (points.angle != 0.0) file.set_attribute("/points", "angle", points.angle);
   file.write("/points/reference", points.reference, {count, dimension},
              {"m", "reference position of each point"});
   file.write("/points/volume", points.volume, {count}, {"m3", "volume of each point"});
@@ -63,6 +91,15 @@ void write_points(Hdf5File& file, const Points& points, const std::vector<PointC
   for (const auto& [name, members] : points.sets) {
     file.write(flags_of(name), flags(points, members), {count},
                {"1", "1 where the point is in set " + name});
+  }
+
+  if (!points.neighbours.empty()) {
+    const auto pairs = std::uint64_t(points.neighbours.size());
+    file.make_group("/points/given_neighbours");
+    file.write("/points/given_neighbours/points", neighbour_points(points), {pairs, 2},
+               {"1", "points i < j that see each other, as they were given"});
+    file.write("/points/given_neighbours/shares", neighbour_shares(points), {pairs, 2},
+               {"1", "share of the volume of j that i counts, and of i that j counts"});
   }
 
   for (const PointCounts& of_points : counts) {
@@ -89,7 +126,8 @@ std::uint64_t bytes_of(const Points& points, const std::vector<PointCounts>& cou
   const std::uint64_t bytes_per_point = counts.size() * sizeof(double) +
                                         (std::uint64_t(points.dimension) + 4) * sizeof(double) +
                                         sizeof(std::int32_t) + 2 * points.sets.size();
-  return points.volume.size() * bytes_per_point;
+  const std::uint64_t bytes_per_pair = 2 * (sizeof(std::int32_t) + sizeof(double));
+  return points.volume.size() * bytes_per_point + points.neighbours.size() * bytes_per_pair;
 }
 
 bool holds_points(const Hdf5File& file, const std::string& group, const Points& points) {
@@ -100,7 +138,8 @@ bool holds_points(const Hdf5File& file, const std::string& group, const Points& 
   for (const auto& [set, members] : points.sets) {
     if (file.bytes(group + "/sets/" + name_of_flags(set)) != flags(points, members)) return false;
   }
-  return are_same(file.numbers(group + "/reference"), points.reference) &&
+  return holds_neighbours(file, group, points) &&
+         are_same(file.numbers(group + "/reference"), points.reference) &&
          are_same(file.numbers(group + "/volume"), points.volume);
 }
 

@@ -67,14 +67,16 @@ double crack_length(const ProbeSpecification& probe, const Points& points,
   const auto is_member = [&](Index point) {
     return std::binary_search(members.begin(), members.end(), point);
   };
+  const double spacing =
+      points.angle == 0.0 ? points.spacing.along(probe.axis) : double(points.spacing);
   double least = std::numeric_limits<double>::infinity(), most = -least;
   for (const auto& [i, j] : separated) {
     const double a = points.position(i)[probe.axis], b = points.position(j)[probe.axis];
-    if (std::abs(b - a) > 0.5 * points.spacing || !(is_member(i) || is_member(j))) continue;
+    if (std::abs(b - a) > 0.5 * spacing || !(is_member(i) || is_member(j))) continue;
     least = std::min(least, 0.5 * (a + b));
     most = std::max(most, 0.5 * (a + b));
   }
-  return most < least ? 0.0 : most - least + points.spacing;
+  return most < least ? 0.0 : most - least + spacing;
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 """Values that are computed from those of other keys: "loading.steps:=round(0.02/lattice.spacing)"."""
 
 import ast
+import contextlib
 import math
 import operator
 import re
@@ -51,6 +52,19 @@ class Keys:
         if isinstance(value, bool) or not isinstance(value, (int, float)):
             raise WrongInput(f"{key} is no number")
         return value
+
+    def numbers(self, key: str) -> list[float | int]:
+        """A number, or each one of a list. @raises WrongInput where there is none"""
+        try:
+            return [self.number(key)]
+        except WrongInput as error:
+            found = []
+            with contextlib.suppress(WrongInput):
+                while True:
+                    found.append(self.number(f"{key}[{len(found)}]"))
+            if found:
+                return found
+            raise error
 
     def _put(self, parts: list[str | int], value) -> None:
         table = self._case

@@ -7,6 +7,7 @@ import argparse
 import contextlib
 import errno
 import json
+import math
 import os
 import sys
 from dataclasses import dataclass
@@ -246,7 +247,7 @@ def _refinements(sweep: Sweep, rows: list[dict]) -> list[tuple[tuple[str, ...], 
             told = f" of {', '.join(others)}" if others else ""
             say(f"sweep: nothing is extrapolated{told}: a lattice has no completed run")
             continue
-        spacings = [float(row[sweep.keys[sweep.refined]]) for row in lattices]
+        spacings = [_spacing(row[sweep.keys[sweep.refined]]) for row in lattices]
         found += [(others, refine(name, spacings, values)) for name, values in quantities(lattices).items()]
     return found
 
@@ -428,10 +429,17 @@ def _lattices(text: str, ratio: float, keys: Keys) -> Axis:
     if not 1.05 <= ratio <= 10.0:
         raise WrongInput(f"--ratio {ratio}: must be from 1.05 to 10")
     try:
-        spacing = keys.number(REFINED)
+        spacing = keys.numbers(REFINED)
     except WrongInput as error:
         raise WrongInput(f"--refine {text}: {error}") from None
-    return Axis([REFINED], [[repr(spacing / ratio**level) for level in range(int(text))]])
+    lattices = [[length / ratio**level for length in spacing] for level in range(int(text))]
+    return Axis([REFINED], [[repr(lengths if len(lengths) > 1 else lengths[0]) for lengths in lattices]])
+
+
+def _spacing(text: str) -> float:
+    """The geometric mean of spacings as they are given, which is what the horizon is measured in."""
+    lengths = [float(length) for length in text.strip("[] ").split(",")]
+    return math.prod(lengths) ** (1 / len(lengths)) if len(lengths) > 1 else lengths[0]
 
 
 def main(words: list[str]) -> int:

@@ -159,7 +159,7 @@ TEST(FreeMotions, DoNotDependOnUnitsOrPlace) {
     Blocks two(2);
     two.add({4, 3, 1}).hold(5, 0).hold(5, 1);
     for (double& at : two.points.reference) at = scale * (at + 1e3);
-    two.points.spacing *= scale;
+    two.points.spacing = two.points.spacing * scale;
     EXPECT_EQ(two.names(), (Names{"rotate about z"})) << scale;
   }
 }

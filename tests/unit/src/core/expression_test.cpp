@@ -51,8 +51,9 @@ TEST(Expression, FollowsPlaceAndLoadFactorFromCallToCall) {
 TEST(Expression, KnowsParametersByTheirNames) {
   const Expression expression("load - 2*load2", 0, 0.0, {"load", "load2"});
   EXPECT_EQ(expression({}, std::array{3.0, 1.0}), 1);
-  EXPECT_EQ(refusal("load2", 1, with_load),
-            "unknown variable load2; allowed are x, load, pi, spacing; did you mean load?");
+  EXPECT_EQ(
+      refusal("load2", 1, with_load),
+      "unknown variable load2; allowed are x, load, pi, spacing, spacing_x; did you mean load?");
 }
 
 TEST(Expression, HasNoSpacingWhereThereIsNone) {
@@ -130,10 +131,12 @@ TEST(Expression, ReadsAPointWhateverTheLocale) {
 
 TEST(Expression, NamesAnUnknownVariableTheAllowedAndTheNearest) {
   EXPECT_EQ(refusal("2*laod"),
-            "unknown variable laod; allowed are x, y, load, pi, spacing; did you mean load?");
-  EXPECT_EQ(refusal("z", 2), "unknown variable z; allowed are x, y, load, pi, spacing");
+            "unknown variable laod; allowed are x, y, load, pi, spacing, spacing_x, spacing_y; did "
+            "you mean load?");
+  EXPECT_EQ(refusal("z", 2),
+            "unknown variable z; allowed are x, y, load, pi, spacing, spacing_x, spacing_y");
   EXPECT_EQ(refusal("load*x", 1, without_load),
-            "unknown variable load; allowed are x, pi, spacing");
+            "unknown variable load; allowed are x, pi, spacing, spacing_x");
   EXPECT_NE(refusal("sqr(x)").find("unknown function sqr; allowed are abs, "), std::string::npos);
   EXPECT_NE(refusal("sqr(x)").find("did you mean sqrt?"), std::string::npos);
   EXPECT_NE(refusal("x and y").find("unknown variable and"), std::string::npos);

@@ -347,5 +347,288 @@ TEST(MakePoints, NamesTheKeyOfALayerThatCannotBeUsed) {
   EXPECT_EQ(refused_key([](Lattice& l) { l.layers[1].name = ""; }), "layers[1].name");
 }
 
+// ---- Spacings that differ
+
+TEST(Spacings, OfOneValueAreThatValueToTheLastBit) {
+  Lattice lattice = plate();
+  lattice.layers = {{"top", {1, 1}, 3, ""}};
+  const Points one = make_points(lattice);
+  lattice.spacing = Spacing({0.1, 0.1, 0.0}, 2);
+  const Points listed = make_points(lattice);
+  EXPECT_EQ(one.reference, listed.reference);
+  EXPECT_EQ(one.volume, listed.volume);
+  EXPECT_EQ(double(one.spacing), double(listed.spacing));
+}
+
+TEST(Spacings, MakeCellsOfTheirProduct) {
+  Lattice lattice = plate();
+  lattice.spacing = Spacing({0.1, 0.2, 0.0}, 2);
+  lattice.layers = {{"top", {1, 1}, 2, ""}, {"left", {0, -1}, 2, ""}};
+  const Points points = make_points(lattice);
+  EXPECT_EQ(points.count(), 6 * 2 + 6 * 2 + 2 * 2);
+  EXPECT_NEAR(points.spacing, std::sqrt(0.1 * 0.2), 1e-15);
+  EXPECT_FALSE(points.spacing.is_square());
+  for (const double volume : points.volume) EXPECT_NEAR(volume, 0.1 * 0.2 * 0.02, 1e-16);
+  for (const Index point : points.sets.at("top")) {
+    const double above = points.position(point)[1] - 0.4;
+    EXPECT_NEAR(std::min(std::abs(above - 0.1), std::abs(above - 0.3)), 0.0, 1e-12);
+  }
+  for (const Index point : points.sets.at("left")) {
+    const double outside = -points.position(point)[0];
+    EXPECT_NEAR(std::min(std::abs(outside - 0.05), std::abs(outside - 0.15)), 0.0, 1e-12);
+  }
+}
+
+// ---- Turned lattices
+
+TEST(TurnedLattice, WholeTurnsAreNoneToTheLastBit) {
+  Lattice lattice = plate();
+  lattice.perturbation = 0.2;
+  lattice.layers = {{"top", {1, 1}, 3, ""}};
+  const Points still = make_points(lattice);
+  for (const double angle : {360.0, -360.0, -0.0}) {
+    lattice.angle = angle;
+    EXPECT_EQ(make_points(lattice).reference, still.reference);
+  }
+}
+
+TEST(TurnedLattice, StandsOnItsTurnedPlacesAndNowhereElse) {
+  for (const int dimension : {2, 3}) {
+    Lattice lattice = plate();
+    lattice.dimension = dimension;
+    lattice.shapes = {{add, Box{{0.03, 0.05, 0}, {0.63, 0.45, 0.3}}}};
+    lattice.angle = 25.0;
+    const double c = std::cos(25.0 * M_PI / 180.0), s = std::sin(25.0 * M_PI / 180.0);
+    std::set<HalfSteps> expected, found;
+    for (int x = -20; x <= 20; ++x) {
+      for (int y = -20; y <= 20; ++y) {
+        const double u = 0.03 + (x + 0.5) * 0.1, v = 0.05 + (y + 0.5) * 0.1;
+        const double at[] = {c * u - s * v, s * u + c * v};
+        const bool inside = at[0] >= 0.03 && at[0] <= 0.63 && at[1] >= 0.05 && at[1] <= 0.45;
+        for (int z = 0; inside && z < (dimension == 3 ? 3 : 1); ++z) expected.insert({x, y, z});
+      }
+    }
+    const Points points = make_points(lattice);
+    for (Index point = 0; point < points.count(); ++point) {
+      const Coordinates at = points.position(point);
+      const double u = (c * at[0] + s * at[1] - 0.03) / 0.1 - 0.5;
+      const double v = (c * at[1] - s * at[0] - 0.05) / 0.1 - 0.5;
+      const double w = dimension == 3 ? at[2] / 0.1 - 0.5 : 0.0;
+      EXPECT_NEAR(u, std::round(u), 1e-9);
+      EXPECT_NEAR(v, std::round(v), 1e-9);
+      found.insert({std::lround(u), std::lround(v), std::lround(w)});
+    }
+    EXPECT_EQ(found, expected);
+    EXPECT_GE(estimate_points(lattice), points.count());
+  }
+}
+
+TEST(TurnedLattice, OfAQuarterIsTheSquareLatticeOfASymmetricBody) {
+  Lattice lattice = plate();
+  lattice.shapes = {{add, Box{{-0.3, -0.2, 0}, {0.3, 0.2, 0}}}};
+  lattice.layers = {{"top", {1, 1}, 3, ""}, {"left", {0, -1}, 2, ""}};
+  const Points still = make_points(lattice);
+  for (const double angle : {90.0, -90.0, 180.0, 270.0}) {
+    lattice.angle = angle;
+    const Points turned = make_points(lattice);
+    EXPECT_EQ(places(turned), places(still));
+    EXPECT_EQ(places(turned, turned.sets.at("top")), places(still, still.sets.at("top")));
+    EXPECT_EQ(places(turned, turned.sets.at("left")), places(still, still.sets.at("left")));
+  }
+}
+
+TEST(TurnedLattice, HasLayersInFrontOfTheFace) {
+  Lattice lattice = plate();
+  lattice.spacing = 0.02;
+  lattice.angle = 33.0;
+  lattice.layers = {{"top", {1, 1}, 3, ""}, {"corner", {1, 1}, 2, "x < 0.1"}};
+  const Points points = make_points(lattice);
+  Index above = 0;
+  for (Index point = 0; point < points.count(); ++point) above += points.position(point)[1] > 0.4;
+  EXPECT_EQ(Index(points.sets.at("top").size()), above);
+  EXPECT_NEAR(double(above), 30 * 3, 10);  // as many cells as fit, up to those at the rim
+  for (const Index point : points.sets.at("top")) {
+    const Coordinates at = points.position(point);
+    EXPECT_TRUE(at[0] >= 0.0 && at[0] <= 0.6 && at[1] > 0.4 && at[1] <= 0.46 + 1e-12);
+  }
+  for (const Index point : points.sets.at("corner")) {
+    EXPECT_TRUE(points.position(point)[0] < 0.1 && points.position(point)[1] <= 0.44 + 1e-12);
+  }
+}
+
+TEST(TurnedLattice, RefusesALayerOnARoundSide) {
+  Lattice lattice = plate();
+  lattice.spacing = 0.02;
+  lattice.angle = 10.0;
+  lattice.shapes = {{add, Disk{{0.0, 0.0, 0}, 0.3}}};
+  lattice.layers = {{"top", {1, 1}, 3, ""}};
+  try {
+    (void)make_points(lattice);
+    FAIL() << "accepted";
+  } catch (const InputError& error) {
+    EXPECT_EQ(error.key(), "layers[0].side");
+  }
+}
+
+TEST(TurnedLattice, OfASlenderBodyTakesNoMoreTimeThanItsPoints) {
+  Lattice lattice = plate();
+  lattice.spacing = 1.0;
+  lattice.angle = 45.0;
+  lattice.shapes = {{add, Box{{0, 0, 0}, {1e5, 2, 0}}}};
+  EXPECT_NEAR(make_points(lattice).count(), 2e5, 2e4);
+  EXPECT_LT(estimate_points(lattice), 1e6);  // the box along the lattice's axes has 5e9 places
+}
+
+// ---- Fractional volumes
+
+double volume_of(const Points& points, const std::vector<Index>& members) {
+  double sum = 0.0;
+  for (const Index point : members) sum += points.volume[std::size_t(point)];
+  return sum;
+}
+
+double volume_of(const Points& points) {
+  return std::accumulate(points.volume.begin(), points.volume.end(), 0.0);
+}
+
+TEST(FractionalVolumes, OfWholeCellsAreTheCellsToTheLastBit) {
+  Lattice lattice = plate();
+  lattice.layers = {{"top", {1, 1}, 3, ""}, {"left", {0, -1}, 2, "y < 0.25"}};
+  const Points whole = make_points(lattice);
+  lattice.volumes = CellVolumes::fractional;
+  const Points cut = make_points(lattice);
+  EXPECT_EQ(whole.reference, cut.reference);
+  EXPECT_EQ(whole.volume, cut.volume);
+  EXPECT_EQ(whole.sets, cut.sets);
+}
+
+struct Body {
+  int dimension;
+  std::vector<ShapeStep> shapes;
+  double volume;  // or area
+};
+
+const double pi = std::acos(-1.0);
+const std::vector<Body> bodies{
+    {1, {{add, Box{{0, 0, 0}, {0.93, 0, 0}}}}, 0.93},
+    {2,
+     {{add, Box{{0, 0, 0}, {0.61, 0.37, 0}}}, {subtract, Box{{0.2, 0.1, 0}, {0.31, 9, 0}}}},
+     0.61 * 0.37 - 0.11 * 0.27},
+    {2,
+     {{add, Box{{-1, -0.5, 0}, {1, 0.5, 0}}}, {subtract, Disk{{0.013, 0.021, 0}, 0.3}}},
+     2 - pi * 0.09},
+    {2, {{add, Polygon{{{0, 0}, {1, 0.2}, {0.3, 0.9}}}}}, 0.42},
+    {2, {{add, Disk{{0, 0, 0}, 1}}, {subtract, Disk{{0, 0, 0}, 0.6}}}, pi * 0.64},
+    {3, {{add, Box{{0, 0, 0}, {0.6, 0.5, 0.44}}}}, 0.6 * 0.5 * 0.44},
+    {3, {{add, Sphere{{0.02, 0.01, 0}, 0.4}}}, 4.0 / 3.0 * pi * 0.064},
+    {3,
+     {{add, Box{{0, 0, 0}, {1, 1, 0.5}}}, {subtract, Cylinder{{.5, .5, .2}, {0, 0, 1}, .3}}},
+     0.5 - pi * 0.09 * 0.5}};
+
+// To round-off of some hundred cells, and to 1e-5 of a cell, of which there are tens, at corners
+// where shapes cross and in 3D; with nodes at the corner of the first shape as with cells there.
+TEST(FractionalVolumes, AddUpToTheBodyWhereverTheLatticeStands) {
+  for (const Body& body : bodies) {
+    for (const double angle : {0.0, 17.0, 45.0}) {
+      if (body.dimension == 1 && angle != 0.0) continue;
+      for (const LatticeOrigin origin : {LatticeOrigin::cell_centres, LatticeOrigin::nodes}) {
+        Lattice lattice = plate();
+        lattice.dimension = body.dimension;
+        lattice.cross_section = body.dimension == 3 ? 1.0 : 0.02;
+        lattice.spacing = Spacing({0.1, 0.12, 0.09}, body.dimension);
+        lattice.shapes = body.shapes;
+        lattice.angle = angle;
+        lattice.origin = origin;
+        lattice.volumes = CellVolumes::fractional;
+        const Points points = make_points(lattice);
+        EXPECT_NEAR(volume_of(points) / (body.volume * lattice.cross_section), 1.0,
+                    body.dimension < 3 && body.shapes.size() == 1 ? 1e-9 : 1e-5);
+        EXPECT_GE(estimate_points(lattice), points.count());
+        for (const double volume : points.volume) EXPECT_GT(volume, 0.0);
+      }
+    }
+  }
+}
+
+// By hand: a slanted cut through the middles of cells.
+TEST(FractionalVolumes, StandAtTheirCellsPlaces) {
+  Lattice lattice = plate();
+  lattice.spacing = 1.0;
+  lattice.shapes = {{add, Polygon{{{0, 0}, {3, 0}, {3, 3}, {0, 3}}}},
+                    {subtract, Polygon{{{3, 1}, {3, 4}, {0, 4}}}}};
+  lattice.volumes = CellVolumes::fractional;
+  const Points points = make_points(lattice);  // what is below x + y = 4
+  ASSERT_EQ(points.count(), 8);
+  int halves = 0;
+  for (Index point = 0; point < points.count(); ++point) {
+    const Coordinates at = points.position(point);
+    const double share = points.volume[std::size_t(point)] / points.cell_volume;
+    EXPECT_EQ(at[0], std::floor(at[0]) + 0.5);
+    EXPECT_EQ(at[1], std::floor(at[1]) + 0.5);
+    if (share == 1.0) continue;
+    EXPECT_NEAR(share, 0.5, 1e-12);
+    ++halves;
+  }
+  EXPECT_EQ(halves, 2);
+}
+
+TEST(FractionalVolumes, GiveSliversToTheirNeighbours) {
+  Lattice lattice = plate();
+  lattice.volumes = CellVolumes::fractional;
+  lattice.shapes = {{add, Box{{0, 0, 0}, {0.6, 0.4005, 0}}}};  // 1/200 of a cell on top
+  const Points points = make_points(lattice);
+  EXPECT_EQ(points.count(), 6 * 4);
+  EXPECT_NEAR(volume_of(points), 0.6 * 0.4005 * 0.02, 1e-15);
+  int larger = 0;
+  for (Index point = 0; point < points.count(); ++point) {
+    const double share = points.volume[std::size_t(point)] / points.cell_volume;
+    if (share == 1.0) continue;
+    EXPECT_NEAR(share, 1.005, 1e-12);
+    EXPECT_NEAR(points.position(point)[1], 0.35, 1e-12);
+    ++larger;
+  }
+  EXPECT_EQ(larger, 6);
+}
+
+// Corners of layers on a turned lattice are right to 1e-5 of a cell, of which there are ten.
+TEST(FractionalVolumes, OfLayersFillWhatIsInFrontOfTheFace) {
+  for (const double angle : {0.0, 30.0, 45.0}) {
+    for (const LatticeOrigin origin : {LatticeOrigin::cell_centres, LatticeOrigin::nodes}) {
+      Lattice lattice = plate();
+      lattice.angle = angle;
+      lattice.origin = origin;
+      lattice.volumes = CellVolumes::fractional;
+      lattice.shapes = {{add, Box{{0, 0, 0}, {0.63, 0.47, 0}}}};
+      lattice.layers = {{"top", {1, 1}, 3, ""}, {"left", {0, -1}, 2, ""}, {"near", {1, 1}, 1, ""}};
+      const Points points = make_points(lattice);
+      const double top = 0.63 * 0.3 * 0.02, left = 0.47 * 0.2 * 0.02;
+      EXPECT_NEAR(volume_of(points, points.sets.at("top")) / top, 1.0, 1e-6);
+      EXPECT_NEAR(volume_of(points, points.sets.at("left")) / left, 1.0, 1e-6);
+      EXPECT_NEAR(volume_of(points) / (0.63 * 0.47 * 0.02 + top + left), 1.0, 1e-6);
+      EXPECT_LT(points.sets.at("near").size(), points.sets.at("top").size());
+      std::set<std::vector<double>> apart;
+      for (Index point = 0; point < points.count(); ++point) {
+        const Coordinates at = points.position(point);
+        apart.insert({at[0], at[1]});
+      }
+      EXPECT_EQ(Index(apart.size()), points.count()) << "two points at one place";
+      EXPECT_GE(estimate_points(lattice), points.count());
+    }
+  }
+}
+
+TEST(MakePoints, NamesTheKeyOfALatticeThatCannotBeUsed) {
+  for (const double angle : {400.0, -361.0, std::nan(""), infinity}) {
+    EXPECT_EQ(refused_key([&](Lattice& l) { l.angle = angle; }), "angle");
+  }
+  EXPECT_EQ(refused_key([](Lattice& l) { l.spacing = Spacing({0.1, -0.1, 0}, 2); }), "spacing");
+  Lattice bar;
+  bar.dimension = 1;
+  bar.spacing = 0.1;
+  bar.angle = 10.0;
+  bar.shapes = {{add, Box{{0, 0, 0}, {1, 0, 0}}}};
+  EXPECT_THROW((void)make_points(bar), InputError);
+}
+
 }  // namespace
 }  // namespace peristat

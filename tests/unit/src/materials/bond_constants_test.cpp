@@ -210,6 +210,40 @@ TEST(BondConstants, OfALatticeGiveItTheClassicalEnergyOfADilation) {
   }
 }
 
+// The same on cells that are not square, under a lattice that is turned: the bulk's sums are those
+// of the lattice as it is. Round-off of a hundred bonds.
+TEST(BondConstants, OfATurnedOblongLatticeGiveItTheClassicalEnergyOfADilation) {
+  for (const int dimension : {2, 3}) {
+    for (const double angle : {0.0, 30.0}) {
+      Lattice lattice;
+      lattice.dimension = dimension;
+      lattice.spacing = Spacing({0.1, 0.14, 0.12}, dimension);
+      lattice.angle = angle;
+      lattice.shapes = {{ShapeStep::Action::add, Box{{-0.9, -0.9, -0.9}, {0.9, 0.9, 0.9}}}};
+      const Points points = make_points(lattice);
+      const BondSetting setting{{dimension, 3.05 * points.spacing, 1.0}, PlaneState::stress};
+      const double c = lattice_micromodulus(youngs_modulus, setting, points.spacing);
+      EXPECT_GT(std::abs(c / lattice_micromodulus(youngs_modulus, setting, 0.1) - 1.0), 1e-3);
+      const Model model(make_bonds(points, SurfaceCorrection::none, setting, 1), Harmonic{c});
+      constexpr double strain = 1e-3;
+      std::vector<double> displacement = points.reference, energies(points.volume.size());
+      for (double& entry : displacement) entry *= strain;
+      Assembler(points, model, 1).point_energies(displacement, energies);
+      const double classical =
+          classical_energy(setting, {strain, strain, dimension == 3 ? strain : 0.0, 0, 0, 0});
+      int inside = 0;
+      for (Index i = 0; i < points.count(); ++i) {
+        const Coordinates at = points.position(i);
+        const double depth = 0.9 - std::max({std::abs(at[0]), std::abs(at[1]), std::abs(at[2])});
+        if (depth < setting.horizon + 0.15) continue;
+        EXPECT_NEAR(energies[i] / points.volume[i] / classical, 1.0, 1e-12);
+        ++inside;
+      }
+      EXPECT_GT(inside, 0);
+    }
+  }
+}
+
 TEST(BondConstants, YoungsModulusIsTheInverse) {
   for (const BondSetting& setting : settings) {
     EXPECT_NEAR(youngs_modulus_of(micromodulus(youngs_modulus, setting), setting), youngs_modulus,

@@ -1,0 +1,65 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "src/geometry/shape.hpp"
+#include "src/geometry/shape_boundary.hpp"
+
+namespace peristat {
+
+/// One step of building the body: the shape is added to it or taken away from it, in order; the
+/// boundary belongs to the shape, so a point on a subtracted shape's boundary goes. The first step
+/// adds.
+struct ShapeStep {
+  enum class Action { add, subtract } action = Action::add;
+  Shape shape{};
+};
+
+/// A part of space, as far as measuring its share of a cell needs it.
+class Region {
+ public:
+  Region() = default;
+  Region(const Region&) = default;
+  Region& operator=(const Region&) = default;
+  virtual ~Region() = default;
+
+  [[nodiscard]] virtual bool contains(const Coordinates& place) const = 0;
+  /// Appends the t at which the line may pass into the region or out of it.
+  virtual void append_crossings(const Line& line, std::vector<double>& t) const = 0;
+  /// Appends the heights along a direction at which sections across it change abruptly, as far as
+  /// they are known.
+  virtual void append_levels(const Coordinates& direction, std::vector<double>& levels) const = 0;
+  /// Appends the places along each axis of planes across it that hold all of the boundary.
+  /// @return false if it has other parts
+  virtual bool append_planes(std::array<std::vector<double>, 3>& at) const = 0;
+  /// Whether the boundary may pass within a distance of the place.
+  [[nodiscard]] virtual bool may_end_near(const Coordinates& place, double distance) const = 0;
+};
+
+/// The body that steps of adding and subtracting make.
+class Solid : public Region {
+ public:
+  /// @param steps must outlive the solid
+  Solid(int dimension, const std::vector<ShapeStep>& steps);
+
+  [[nodiscard]] bool contains(const Coordinates& place) const override;
+  void append_crossings(const Line& line, std::vector<double>& t) const override;
+  void append_levels(const Coordinates& direction, std::vector<double>& levels) const override;
+  bool append_planes(std::array<std::vector<double>, 3>& at) const override;
+  [[nodiscard]] bool may_end_near(const Coordinates& place, double distance) const override;
+
+  /// The same within a distance of a place, of no more steps than count there.
+  [[nodiscard]] Solid near(const Coordinates& place, double distance) const;
+
+  [[nodiscard]] int dimension() const { return dimension_; }
+
+  /// Box around all that is added.
+  [[nodiscard]] Box bounds() const;
+
+ private:
+  int dimension_;
+  std::vector<const ShapeStep*> steps_;
+};
+
+}  // namespace peristat

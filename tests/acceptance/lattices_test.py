@@ -1,0 +1,251 @@
+"""Lattices with unequal spacings, turned lattices, cut cells, and neighbours from a file."""
+
+import itertools
+import json
+import pathlib
+import tempfile
+import unittest
+
+import h5py
+import numpy
+
+from tests.acceptance.strip import PULLED
+from tests.reference.program import peristat
+from tests.reference.verify import verify
+
+SQUARE = """\
+dimension = {dimension}
+[lattice]
+spacing = 0.1
+shape = [{{ add = "box", min = {low}, max = {high} }}]
+[material]
+youngs_modulus = 1e9
+[[set]]
+name = "frame"
+where = "{where}"
+[[support]]
+set = "frame"
+displacement = {displacement}
+[solver]
+relative_tolerance = 1e-12
+"""
+# Lattices that are neither square nor upright, as --set takes them.
+LATTICES = {
+    2: [["lattice.angle=30"], ["lattice.spacing=[0.1, 0.14]"], ["lattice.spacing=[0.12, 0.08]", "lattice.angle=-52"]],
+    3: [["lattice.angle=30"], ["lattice.spacing=[0.1, 0.14, 0.12]"], ["lattice.spacing=[0.12, 0.1, 0.13]", "lattice.angle=70"]],
+}  # fmt: skip
+# Slanted and round boundaries, layers, and cells that a face cuts.
+CUT = PULLED.replace("max = [0.02, 0.01]", "max = [0.02, 0.0104]").replace("[[lattice.layer]]", """\
+[[lattice.shape]]
+subtract = "disk"
+centre = [0.0103, 0.0051]
+radius = 2.7e-3
+[[lattice.layer]]""", 1)  # fmt: skip
+
+
+class Cases(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory(prefix="peristat_lattices_")
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+
+    def command(self, name, text, settings=()):
+        path = self.folder / "case.toml"
+        path.write_text(text)
+        given = [word for setting in settings for word in ("--set", setting)]
+        return peristat(name, path, *(["--output", self.folder / "out", "--overwrite", "--quiet", "--no-plots"]
+                                      if name == "run" else []), *given)  # fmt: skip
+
+    def run_case(self, text, settings=()):
+        """Places, volumes, displacements; the reference judges the run if it is elastic and small."""
+        ended = self.command("run", text, settings)
+        self.assertEqual(ended.code, 0, ended.said)
+        with h5py.File(self.folder / "out/results.h5") as file:
+            step = file["steps"][sorted(file["steps"])[-1]]
+            self.resolved = file["case/as_resolved"][()].decode()
+            return file["points/reference"][:], file["points/volume"][:], step["displacement"][:]
+
+    def judge(self):
+        """The run beside the reference."""
+        self.assertEqual(verify(self.folder / "out", self.resolved, self.folder)[0], [])
+
+    def refusal(self, text, settings, *words):
+        ended = self.command("check", text, settings)
+        self.assertEqual(ended.code, 2, ended.said)
+        for word in words:
+            self.assertIn(word, ended.said)
+
+
+class PatchTest(Cases):
+    def test_homogeneous_deformations_are_equilibria(self):
+        """Every free point has its whole neighbourhood, which is symmetric about it, so that no force is left."""
+        for dimension, lattices in LATTICES.items():
+            reach, half = 0.5, {2: 1.0, 3: 0.72}[dimension]
+            where = f"max({', '.join(f'abs({axis})' for axis in 'xyz'[:dimension])}) > {half - reach}"
+            gradient = 1e-2 * numpy.array([[1.0, 0.3, -0.2], [0.1, -0.4, 0.5], [0.2, 0.7, 0.6]])[:dimension, :dimension]
+            displacement = ["+".join(f"({value!r})*{axis}*load" for value, axis in zip(row, "xyz")) for row in gradient.tolist()]
+            text = SQUARE.format(dimension=dimension, low=[-half] * dimension, high=[half] * dimension, where=where,
+                                 displacement=json.dumps(displacement))  # fmt: skip
+            for settings in lattices:
+                with self.subTest(settings=settings):
+                    places, _, found = self.run_case(text, [*settings, "lattice.horizon_ratio=3.1"])
+                    inside = numpy.abs(places).max(axis=1) <= half - reach
+                    self.assertGreater(inside.sum(), 4)
+                    # The residual is at 1e-12 of what the frame's forces are.
+                    off = numpy.abs(found - places @ gradient.T)[inside].max()
+                    self.assertLess(off, 1e-9 * numpy.abs(found).max())
+
+
+class ByTheReference(Cases):
+    def test_runs_on_any_lattice(self):
+        corrections = (["quadrature.surface_correction=volume"], ["quadrature.surface_correction=energy"], [])
+        lattices = (["lattice.angle=20"], ["lattice.spacing=[1.3e-3, 0.9e-3]"], ["lattice.volumes=fractional"],
+                    ["lattice.spacing=[0.9e-3, 1.2e-3]", "lattice.angle=-35", "lattice.volumes=fractional"],
+                    ["lattice.volumes=fractional", "quadrature.volume_correction=linear"])  # fmt: skip
+        for lattice, correction in itertools.product(lattices, corrections):
+            with self.subTest(lattice=lattice, correction=correction):
+                self.run_case(CUT, lattice + correction)
+                self.judge()
+
+    def test_equal_spacings_are_one_spacing_to_the_last_bit(self):
+        for settings in ([], ["lattice.angle=15"]):
+            one = self.run_case(CUT, settings)
+            listed = self.run_case(CUT, [*settings, "lattice.spacing=[1e-3, 1e-3]"])
+            for a, b in zip(one, listed):
+                numpy.testing.assert_array_equal(a, b)
+
+    def test_whole_turns_change_nothing(self):
+        still, turned = self.run_case(CUT), self.run_case(CUT, ["lattice.angle=360"])
+        for a, b in zip(still, turned):
+            numpy.testing.assert_array_equal(a, b)
+
+
+class CutCells(Cases):
+    def test_volumes_are_those_of_samples_of_the_cells(self):
+        """Each cell's part inside, counted on a fine grid of its own: shares to about a line of that grid."""
+        settings = ["lattice.volumes=fractional", "lattice.angle=33"]
+        text = CUT.split("[[lattice.layer]]")[0] + """\
+[material]
+youngs_modulus = 200e9
+[[set]]
+name = "left"
+where = "x < 3e-3"
+[[support]]
+set = "left"
+displacement = [0, 0]
+"""
+        places, volumes, _ = self.run_case(text, settings)
+        turn = numpy.radians(33)
+        axes = numpy.array([[numpy.cos(turn), numpy.sin(turn)], [-numpy.sin(turn), numpy.cos(turn)]])
+        line = (numpy.arange(200) + 0.5) / 200 - 0.5
+        grid = 1e-3 * numpy.stack(numpy.meshgrid(line, line), -1).reshape(-1, 2) @ axes
+        cut = 0
+        for place, volume in zip(places, volumes):
+            x, y = (place + grid).T
+            inside = (x > 0) & (x < 0.02) & (y > 0) & (y < 0.0104)
+            inside &= (x - 0.0103) ** 2 + (y - 0.0051) ** 2 > 2.7e-3**2
+            share = volume / 1e-9
+            # A sliver of up to a hundredth may have come from each of four cells beside it.
+            self.assertGreater(share, inside.mean() - 0.01)
+            self.assertLess(share, inside.mean() + 0.05)
+            cut += 0.02 < inside.mean() < 0.98
+        self.assertGreater(cut, 40)
+        self.assertAlmostEqual(volumes.sum() / (1e-3 * (0.02 * 0.0104 - numpy.pi * 2.7e-3**2)), 1, delta=1e-9)
+
+
+class Refusals(Cases):
+    def test_what_does_not_hold_is_refused_with_its_key(self):
+        cpd = 'material={model="cpd", youngs_modulus=1e9, poisson_ratio=0.4}'
+        oblong = "lattice.spacing=[1e-3, 1.5e-3]"
+        self.refusal(PULLED, [oblong, "quadrature.volume_correction=linear"], "volume_correction", "square")
+        self.refusal(PULLED, [oblong, cpd], "material.model", "square")
+        self.refusal(CUT, ["lattice.volumes=fractional", cpd], "material.model", "whole cells")
+        self.refusal(PULLED, ["lattice.spacing=[1e-4, 2e-3]"], "lattice.horizon_ratio", "largest spacing")
+        self.refusal(PULLED, ["lattice.spacing=[1e-3]"], "lattice.spacing", "2 numbers")
+        self.refusal(PULLED, ["lattice.spacing=[1e-3, 0]"], "lattice.spacing[1]", "positive")
+        self.refusal(PULLED, ["lattice.angle=361"], "lattice.angle", "from -360 to 360")
+        self.refusal(PULLED, [oblong, "lattice.layer[0].where=y < 3*spacing"], "lattice.layer[0].where", "spacing_y")
+        disk = PULLED.replace('add = "box"', 'add = "disk"\ncentre = [0, 0]\nradius = 0.01')
+        disk = disk.replace("min = [0.0, 0.0]\nmax = [0.02, 0.01]\n", "")
+        self.refusal(disk, ["lattice.angle=10"], "lattice.layer[0].side", "flat")
+        self.assertEqual(self.command("check", PULLED, [oblong, "lattice.layer[0].where=y < 3*spacing_y"]).code, 0)
+
+
+class GivenNeighbours(Cases):
+    POINTS = """\
+dimension = 2
+[points]
+file = "points.csv"
+horizon = 3.015e-3
+thickness = 1e-3
+[material]
+youngs_modulus = 200e9
+[[support]]
+set = "left"
+displacement = [0, 0]
+[[support]]
+set = "right"
+displacement = ["1e-5*load", "free"]
+"""
+    GIVEN = POINTS.replace("horizon", 'neighbours = "neighbours.txt"\nhorizon', 1)
+
+    def setUp(self):
+        super().setUp()
+        random = numpy.random.default_rng(4)
+        grid = 1e-3 * numpy.stack(numpy.meshgrid(range(12), range(6)), -1).reshape(-1, 2)
+        self.places = random.permutation(grid + random.uniform(-1e-4, 1e-4, grid.shape))
+        with open(self.folder / "points.csv", "w") as file:
+            print("x, y, volume, set", file=file)
+            for x, y in self.places.tolist():
+                set_name = "left" if x < 2.5e-3 else "right" if x > 8.5e-3 else ""
+                print(f"{x!r}, {y!r}, {random.uniform(0.8e-9, 1.2e-9)!r}, {set_name}", file=file)
+
+    def write(self, share, both_ways=False):
+        """Pairs within the horizon, with shares by a function of their distance."""
+        with open(self.folder / "neighbours.txt", "w") as file:
+            print("i j w_ij" if both_ways else "i j w_ij w_ji", file=file)
+            for i, j in itertools.combinations(range(len(self.places)), 2):
+                distance = numpy.hypot(*(self.places[j] - self.places[i]))
+                if distance > 3.015e-3:
+                    continue
+                there, back = share(distance), share(1.01 * distance)
+                if both_ways:
+                    print(i + 1, j + 1, repr(there), f"\n{j + 1}", i + 1, repr(back), file=file)
+                else:
+                    print(j + 1, i + 1, repr(back), repr(there), file=file)
+
+    def test_whole_volumes_of_all_neighbours_are_those_that_are_found(self):
+        found = self.run_case(self.POINTS)[2]
+        self.write(lambda distance: 1.0)
+        numpy.testing.assert_allclose(self.run_case(self.GIVEN)[2], found, rtol=0, atol=1e-12 * numpy.abs(found).max())
+
+    def test_shares_weigh_bonds_as_the_reference_says(self):
+        for both_ways in (False, True):
+            self.write(lambda distance: float(numpy.clip(1.2 - distance / 4e-3, 0.1, 1)), both_ways)
+            self.run_case(self.GIVEN)
+            self.judge()
+            self.run_case(self.GIVEN, ["quadrature.surface_correction=energy"])
+            self.judge()
+
+    def test_a_run_goes_on_with_the_same_neighbours_only(self):
+        self.write(lambda distance: 1.0)
+        self.assertEqual(self.command("run", self.GIVEN, ["loading.steps=4"]).code, 0)
+        self.assertEqual(peristat("resume", self.folder / "out", "--set", "loading.table=[0, 1, 2]").code, 0)
+        self.write(lambda distance: 0.9)
+        changed = peristat("resume", self.folder / "out", "--set", "loading.table=[0, 1, 2, 3]")
+        self.assertEqual(changed.code, 2, changed.said)
+
+    def test_what_does_not_go_with_them_is_refused(self):
+        self.write(lambda distance: 1.0)
+        self.refusal(self.GIVEN, ["quadrature.volume_correction=linear"], "volume_correction", "shares")
+        self.refusal(self.GIVEN, ["quadrature.surface_correction=volume"], "surface_correction", "energy")
+        self.refusal(self.GIVEN, ['material={model="cpd", youngs_modulus=1e9, poisson_ratio=0.4}'], "material.model")
+        self.refusal(self.GIVEN, ["solver.mode=adaptive", "solver.elastic_horizon_ratio=2"], "elastic_horizon_ratio")
+        (self.folder / "neighbours.txt").write_text("i j w_ij\n1 2 1\n2 100 1\n")
+        self.refusal(self.GIVEN, [], "neighbours.txt:3", "from 1 to 72")
+        (self.folder / "neighbours.txt").unlink()
+        self.refusal(self.GIVEN, [], "points.neighbours", "no such file")
+
+
+if __name__ == "__main__":
+    unittest.main()
