@@ -95,6 +95,14 @@ void store_interactions(Body& body, int threads) {
   for (const auto& term : body.model.terms()) term->store(body.points, threads);
 }
 
+LoadSetting load_setting(const BodySpecification& of, const Points& points) {
+  LoadSetting setting{of.horizon};
+  if (of.material.density) {
+    setting.density.assign(std::size_t(points.count()), *of.material.density);
+  }
+  return setting;
+}
+
 }  // namespace
 
 double expected_bonds(double points, int dimension, double horizon_ratio) {
@@ -129,7 +137,8 @@ std::unique_ptr<const Body> make_body(Points points, const BodySpecification& of
   make_model(body, threads);
   body.conditions = std::make_unique<Conditions>(
       body.points, of.supports, of.loads,
-      of.programme.empty() ? LoadingProgramme() : LoadingProgramme(of.programme), of.controls);
+      of.programme.empty() ? LoadingProgramme() : LoadingProgramme(of.programme), of.controls,
+      load_setting(of, body.points));
   const Stopwatch watch(body.seconds_neighbourhood);
   store_interactions(body, threads);
   return owned;

@@ -43,7 +43,7 @@ struct MaterialSpecification {
   double c2 = 0.0;                        ///< C2 [N/m10]; in 2D not with youngs_modulus
   double c3 = 0.0;                        ///< C3 [N/m14]; with c1 only
   Calibration calibration = Calibration::lattice;
-  std::optional<double> density{};  ///< [kg/m3], for dynamics only
+  std::optional<double> density{};  ///< [kg/m3], for gravity and dynamics
   DamageSpecification damage{};
 };
 

@@ -2,12 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <set>
 #include <utility>
 
 #include "src/conditions/points_of_set.hpp"
+#include "src/conditions/traction.hpp"
 #include "src/core/input_error.hpp"
 #include "src/core/number_text.hpp"
+#include "src/geometry/body_cells.hpp"
 
 namespace peristat {
 namespace {
@@ -22,11 +25,29 @@ auto with_key(const std::string& key, const Make& make) {
   }
 }
 
+/// Gives input errors that have no key that of the table.
+template <class Make>
+auto with_table(const std::string& table, const Make& make) {
+  try {
+    return make();
+  } catch (const InputError& error) {
+    throw InputError(error.key().empty() ? table : error.key(), error.value(), error.allowed());
+  }
+}
+
+/// All points but those of layers.
+std::vector<Index> points_of_body(const Points& points) {
+  if (points.lattice) return BodyCells(points).points();
+  std::vector<Index> all(std::size_t(points.count()));
+  std::iota(all.begin(), all.end(), Index(0));
+  return all;
+}
+
 }  // namespace
 
 Conditions::Conditions(const Points& points, const std::vector<SupportSpecification>& supports,
                        const std::vector<LoadSpecification>& loads, LoadingProgramme programme,
-                       const std::vector<ControlTerm>& control)
+                       const std::vector<ControlTerm>& control, const LoadSetting& setting)
     : points_(points), programme_(std::move(programme)), prescribed_(points.reference.size(), 0) {
   const std::vector<std::string> parameters = LoadingProgramme::names(programme_.parameters());
   for (std::size_t k = 0; k < supports.size(); ++k) {
@@ -45,28 +66,46 @@ Conditions::Conditions(const Points& points, const std::vector<SupportSpecificat
   }
   for (std::size_t k = 0; k < loads.size(); ++k) {
     const std::string table = indexed("loads", k);
-    const std::vector<Index>& members = points_of_set(points, loads[k].set, table + ".set");
+    const auto on = std::make_shared<const Loaded>(loaded(loads[k], setting, table));
     const bool total = loads[k].kind == LoadSpecification::Kind::total_force;
-    double volume = 1.0;
-    if (total) {
-      volume = 0.0;
-      for (Index point : members) volume += points.volume[point];
-    }
     for (int c = 0; c < points.dimension; ++c) {
       const std::string key = indexed(table + ".value", std::size_t(c));
-      loads_.push_back({key, &members, c,
-                        with_key(key,
-                                 [&] {
-                                   return Expression(loads[k].value[c],
-                                                     total ? 0 : points.dimension, points.spacing,
-                                                     parameters);
-                                 }),
-                        volume});
+      loads_.push_back({key, on, c, with_key(key, [&] {
+                          return Expression(loads[k].value[c], total ? 0 : points.dimension,
+                                            points.spacing, parameters);
+                        })});
     }
   }
   if (!control.empty()) control_.emplace(points, control, prescribed_);
   find_shared();
   try_stages();
+}
+
+Conditions::Loaded Conditions::loaded(const LoadSpecification& load, const LoadSetting& setting,
+                                      const std::string& table) const {
+  using Kind = LoadSpecification::Kind;
+  if (load.kind == Kind::traction) {
+    TractionAreas areas =
+        with_table(table, [&] { return traction_areas(points_, load, setting.horizon, table); });
+    return {std::move(areas.points), std::move(areas.area)};
+  }
+  Loaded on;
+  const bool is_everywhere = load.kind == Kind::gravity && load.set.empty();
+  on.points =
+      is_everywhere ? points_of_body(points_) : points_of_set(points_, load.set, table + ".set");
+  for (const Index point : on.points) on.amount.push_back(points_.volume[point]);
+  if (load.kind == Kind::total_force) {
+    on.spread_over = std::accumulate(on.amount.begin(), on.amount.end(), 0.0);
+  }
+  if (load.kind == Kind::gravity) {
+    if (setting.density.empty()) {
+      throw InputError("material.density", "", "is missing; gravity needs it");
+    }
+    for (std::size_t k = 0; k < on.points.size(); ++k) {
+      on.amount[k] *= setting.density[std::size_t(on.points[k])];
+    }
+  }
+  return on;
 }
 
 std::vector<double> Conditions::parameters(const LoadPoint& at) const {
@@ -142,9 +181,10 @@ void Conditions::external_force(const LoadPoint& at, std::span<double> force) co
   std::fill(force.begin(), force.end(), 0.0);
   for (const Load& load : loads_) {
     with_key(load.key, [&] {
-      for (Index point : *load.points) {
-        force[std::size_t(point) * points_.dimension + load.component] +=
-            load.value(points_.position(point), loads) * points_.volume[point] / load.spread_over;
+      const auto& [points, amount, spread_over] = *load.on;
+      for (std::size_t k = 0; k < points.size(); ++k) {
+        force[std::size_t(points[k]) * points_.dimension + load.component] +=
+            load.value(points_.position(points[k]), loads) * amount[k] / spread_over;
       }
     });
   }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <map>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -15,6 +16,12 @@
 
 namespace peristat {
 
+/// What loads depend on beside the points.
+struct LoadSetting {
+  double horizon = 0.0;              ///< [m], for tractions
+  std::vector<double> density = {};  ///< per point [kg/m3], for gravity; empty: not known
+};
+
 /// Supports and loads of a body along its loading programme. Arrays have one entry per degree
 /// of freedom (point x dimension + component).
 class Conditions {
@@ -27,7 +34,7 @@ class Conditions {
   ///        of its values [m]; no terms: none
   Conditions(const Points& points, const std::vector<SupportSpecification>& supports,
              const std::vector<LoadSpecification>& loads, LoadingProgramme programme = {},
-             const std::vector<ControlTerm>& control = {});
+             const std::vector<ControlTerm>& control = {}, const LoadSetting& setting = {});
 
   [[nodiscard]] const LoadingProgramme& programme() const { return programme_; }
   /// Null where the programme's first table is of the load factor.
@@ -60,13 +67,21 @@ class Conditions {
     int component;
     Expression displacement;
   };
+  /// The points of a load, and what its value is multiplied with at each to be a force.
+  struct Loaded {
+    std::vector<Index> points;
+    std::vector<double> amount;  // volume [m3], mass [kg], or area [m2]
+    double spread_over = 1.0;    // the whole volume of a total force [m3]
+  };
   struct Load {
     std::string key;
-    const std::vector<Index>* points;
+    std::shared_ptr<const Loaded> on;
     int component;
-    Expression value;    // body force [N/m3], or total force [N]
-    double spread_over;  // volume that a total force is spread over [m3]; 1 for a body force
+    Expression value;  // [N/m3], [N], [m/s2] or [Pa]
   };
+
+  [[nodiscard]] Loaded loaded(const LoadSpecification& load, const LoadSetting& setting,
+                              const std::string& table) const;
 
   [[nodiscard]] std::vector<double> parameters(const LoadPoint& at) const;
   void find_shared();

@@ -248,6 +248,11 @@ Points make_points(const Lattice& lattice) {
   Points points;
   points.dimension = lattice.dimension;
   points.spacing = lattice.spacing;
+  points.lattice.emplace();
+  for (int c = 0; c < lattice.dimension; ++c) {
+    points.lattice->origin[c] = grid.anchor[c] + grid.offset * lattice.spacing;
+  }
+  for (const Layer& layer : lattice.layers) points.lattice->layers.push_back(layer.name);
   std::vector<Cell> outside;
   std::map<Cell, Index> layer_points;
   for (std::size_t k = 0; k < lattice.layers.size(); ++k) {

@@ -6,6 +6,7 @@
 
 #include "src/geometry/points.hpp"
 #include "src/geometry/shape.hpp"
+#include "src/geometry/side.hpp"
 
 namespace peristat {
 
@@ -18,12 +19,6 @@ enum class LatticeOrigin { cell_centres, nodes };
 struct ShapeStep {
   enum class Action { add, subtract } action = Action::add;
   Shape shape{};
-};
-
-/// A direction along an axis: "x-", "x+", "y-", "y+", "z-", "z+".
-struct Side {
-  int axis = 0;
-  int sign = 1;
 };
 
 /// Fictitious points outside the body that carry a support: copies of the body's outermost lattice

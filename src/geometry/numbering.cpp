@@ -53,6 +53,7 @@ Points renumbered(const Points& points, const std::vector<Index>& order) {
   Points result;
   result.dimension = points.dimension;
   result.spacing = points.spacing;
+  result.lattice = points.lattice;
   result.reference.reserve(points.reference.size());
   result.volume.reserve(points.volume.size());
   std::vector<Index> new_number(order.size());

@@ -78,10 +78,7 @@ std::string key_of(const Case& from, std::string member) {
     const std::size_t number = std::stoul(member.substr(end + 1));
     member.replace(at + 2, part.size() - 2, key_of_element(number));
   };
-  replace("].value", [&](std::size_t k) {
-    return from.loads.at(k).kind == LoadSpecification::Kind::body_force ? "body_force"
-                                                                        : "total_force";
-  });
+  replace("].value", [&](std::size_t k) { return std::string(load_key(from.loads.at(k).kind)); });
   replace("].action", [&](std::size_t k) {
     return lattice->shapes.at(k).action == ShapeStep::Action::add ? "add" : "subtract";
   });

@@ -77,10 +77,17 @@ Kind<Side> side() {
     const std::string chosen = at.from.one_of(at.key, sides);
     return Side{chosen[0] - 'x', chosen[1] == '+' ? 1 : -1};
   };
-  const auto text = [](const Side& side, const Case&) {
-    return toml_string(std::string(1, "xyz"[side.axis]) + (side.sign > 0 ? "+" : "-"));
-  };
+  const auto text = [](const Side& side, const Case&) { return toml_string(peristat::name(side)); };
   return {read, text, "`\"x-\"`, `\"x+\"`, and so on for y and z"};
+}
+
+Kind<std::optional<Side>> optional_side() {
+  const Kind<Side> kind = side();
+  return {[=](const Entry& at) { return std::optional(kind.read(at)); },
+          [=](const std::optional<Side>& side, const Case& from) {
+            return side ? kind.text(*side, from) : std::string();
+          },
+          kind.allowed};
 }
 
 Table<Layer> layer_keys() {
@@ -369,7 +376,7 @@ Table<MaterialSpecification> material_keys() {
            .unless(of_bond, for_cpd)
            .unless(has_constants, with_moduli),
        K("density", &Spec::density, positive("kg/m3"),
-         "for dynamics only: dynamic relaxation has a density of its own"),
+         "for gravity: dynamic relaxation has a density of its own"),
        K("damage", &Spec::damage, damage_keys(), "table `[material.damage]`")
            .default_words("no damage")}};
 }
@@ -385,19 +392,61 @@ Table<SupportSpecification> support_keys() {
                .required()}};
 }
 
+/// A key that gives the value of a load of a kind.
+Key<LoadSpecification> load_value(LoadSpecification::Kind kind, const std::string& unit,
+                                  const std::string& meaning) {
+  using Spec = LoadSpecification;
+  return Key<Spec>(load_key(kind), &Spec::value,
+                   force_components(kind == Spec::Kind::total_force, unit), meaning)
+      .then([=](auto&, auto& load) { load.kind = kind; })
+      .written_if([=](auto& load, auto&) { return load.kind == kind; })
+      .one_of();
+}
+
+/// Where a load acts depends on its kind.
+void check_place_of_load(const Entry& at, const LoadSpecification& load) {
+  using Kind = LoadSpecification::Kind;
+  const bool is_on_boundary = load.kind == Kind::traction;
+  for (const std::string key : {"side", "depth"}) {
+    if (!is_on_boundary && at.from.has(key)) at.from.refuse(key, "is for a traction");
+  }
+  const bool needs_set = load.kind == Kind::body_force || load.kind == Kind::total_force;
+  if (needs_set) static_cast<void>(at.from.string("set"));
+  if (is_on_boundary && load.set.empty() && !load.side)
+    at.refuse("a traction needs a side or a set that it acts on");
+}
+
 Table<LoadSpecification> load_keys() {
   using Spec = LoadSpecification;
   using K = Key<Spec>;
-  return {"load",
-          {K("set", &Spec::set, known_set(), "that is loaded").required().early(),
-           K("body_force", &Spec::value, force_components(false), "force density per component")
-               .written_if([](auto& load, auto&) { return load.kind == Spec::Kind::body_force; })
-               .one_of(),
-           K("total_force", &Spec::value, force_components(true),
-             "force on the whole set per component, spread in proportion to the volume")
-               .then([](auto&, auto& load) { load.kind = Spec::Kind::total_force; })
-               .written_if([](auto& load, auto&) { return load.kind == Spec::Kind::total_force; })
-               .one_of()}};
+  using Kind = Spec::Kind;
+  const auto is_on_boundary = [](auto& load, auto&) { return load.kind == Kind::traction; };
+  return {
+      "load",
+      {K("set", &Spec::set, known_set(), "that is loaded")
+           .early()
+           .written_if([](auto& load, auto&) { return !load.set.empty(); })
+           .default_words("required, but for `gravity`, which then acts on the whole body, and "
+                          "`traction` with a `side`"),
+       load_value(Kind::body_force, "N/m3", "force density per component"),
+       load_value(Kind::total_force, "N",
+                  "force on the whole set per component, spread in proportion to the volume"),
+       load_value(Kind::gravity, "m/s2",
+                  "acceleration per component, times `material.density`; layers weigh nothing"),
+       load_value(Kind::traction, "Pa",
+                  "force per area per component on a flat part of the boundary, which keeps "
+                  "its direction; on a lattice only"),
+       K("side", &Spec::side, optional_side(),
+         "`traction`: the body's outermost plane of points on a side, as of "
+         "`[[lattice.layer]]`")
+           .written_if([](auto& load, auto&) { return load.side.has_value(); })
+           .default_words("`traction`: this or a `set` in one plane of points is required"),
+       K("depth", &Spec::depth, choice<Depth>({{"row", Depth::row}, {"horizon", Depth::horizon}}),
+         "`traction`: borne by the outermost row of points, or spread evenly over a horizon "
+         "below the boundary")
+           .written_if(is_on_boundary)},
+      {},
+      check_place_of_load};
 }
 
 Table<ControlTerm> control_keys() {

@@ -241,7 +241,7 @@ Kind<std::array<std::optional<std::string>, 3>> prescribed_components() {
           "number, expression of place and `load`, or `\"free\"`", "m"};
 }
 
-Kind<std::array<std::string, 3>> force_components(bool is_total) {
+Kind<std::array<std::string, 3>> force_components(bool is_total, const std::string& unit) {
   const auto read = [=](const Entry& at) {
     std::array<std::string, 3> force = LoadSpecification().value;
     const auto components = at.from.components(at.key, dimension_of(at.so_far));
@@ -260,7 +260,7 @@ Kind<std::array<std::string, 3>> force_components(bool is_total) {
           },
           is_total ? "number or expression of `load` alone"
                    : "number or expression of place and `load`",
-          is_total ? "N" : "N/m3"};
+          unit};
 }
 
 }  // namespace peristat

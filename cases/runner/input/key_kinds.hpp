@@ -73,7 +73,8 @@ template <class Value>
 /// Per component an expression of place and load, or "free".
 [[nodiscard]] Kind<std::array<std::optional<std::string>, 3>> prescribed_components();
 /// Per component an expression of load, and of place unless it is a total.
-[[nodiscard]] Kind<std::array<std::string, 3>> force_components(bool is_total);
+[[nodiscard]] Kind<std::array<std::string, 3>> force_components(bool is_total,
+                                                                const std::string& unit);
 
 /// "[a, b]"
 template <class Items, class Text>
