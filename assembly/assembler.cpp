@@ -56,10 +56,10 @@ Evaluation Assembler::gradient(const StateView& at, std::span<double> gradient) 
 }
 
 Evaluation Assembler::commit(std::span<const double> displacement, History& history,
-                             std::span<double> gradient) {
+                             std::span<double> gradient, const SharedEnvironment& environment) {
   Evaluation found;
   for_each_term([&](TermPasses& term, Write how) {
-    found += term.commit(displacement, history, gradient, how);
+    found += term.commit(displacement, environment, history, gradient, how);
   });
   return found;
 }

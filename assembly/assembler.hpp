@@ -43,7 +43,7 @@ class Assembler : public Energy {
   /// that stand on bonds after their loss. Only accepted states are committed, and in relaxation
   /// that breaks bonds on the way, every iteration.
   Evaluation commit(std::span<const double> displacement, History& history,
-                    std::span<double> gradient = {});
+                    std::span<double> gradient = {}, const SharedEnvironment& environment = {});
 
   /// What committing a state would damage.
   [[nodiscard]] DamageGrowth growth(const StateView& at);

@@ -32,9 +32,10 @@ class TermPasses {
 
   /// As `gradient`, and moves the term's history to the state: E is what is stored after that.
   /// Terms before it have committed already.
-  virtual Evaluation commit(std::span<const double> displacement, History& history,
+  virtual Evaluation commit(std::span<const double> displacement,
+                            const SharedEnvironment& environment, History& history,
                             std::span<double> gradient, Write how) {
-    return this->gradient({displacement, history}, gradient, how);
+    return this->gradient({displacement, history, Damage::grows, environment}, gradient, how);
   }
 
   /// What committing the state would damage.

@@ -39,7 +39,8 @@ void PathLedger::begin(const Trial& state, std::vector<double> working) {
 Ledger PathLedger::with_step(std::span<const double> displacement_before, const Trial& state,
                              std::span<const double> working, double dissipated,
                              const StepEnergies& step) const {
-  const double work = trapezoidal_work(force, working, displacement_before, state.displacement);
+  const double work =
+      trapezoidal_work(force, working, displacement_before, state.displacement) + step.heating;
   Ledger after = entries;
   after.stored = state.stored_energy;
   after.dissipated = dissipated + released + step.released;

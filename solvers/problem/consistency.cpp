@@ -64,6 +64,7 @@ std::string check_equilibrium(const EquilibriumProblem& problem, const FoundStat
   Trial again;
   again.displacement = found.trial.displacement;
   again.history = found.trial.history;
+  again.environment = found.trial.environment;
   evaluate(problem, found.external_force, again);
   // The committed histories may change the last digits of forces that were summed before.
   const double allowed = 2.0 * found.largest_residual;

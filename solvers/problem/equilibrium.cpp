@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "solvers/linear/vector_verbs.hpp"
 
@@ -101,6 +102,18 @@ std::string explanation(Outcome outcome) {
       return "interrupted";
   }
   return "";
+}
+
+double heating_work(Assembler& assembler, const StateView& from, const StateView& to) {
+  const auto [before, after] = std::pair(from.environment, to.environment);
+  if (before == after || (before && after && *before == *after)) return 0.0;
+  const auto added_at = [&](const StateView& at) {
+    const auto energy_under = [&](const SharedEnvironment& environment) {
+      return assembler.energy({at.displacement, at.history, Damage::held, environment}).energy;
+    };
+    return energy_under(after) - energy_under(before);
+  };
+  return 0.5 * (added_at(from) + added_at(to));
 }
 
 void evaluate(const EquilibriumProblem& problem, std::span<const double> external_force,

@@ -50,6 +50,7 @@ struct EquilibriumProblem {
 struct Trial {
   std::vector<double> displacement;  ///< [m]
   History history;                   ///< that it comes after
+  SharedEnvironment environment;     ///< that of the load point
   std::vector<double> gradient;      ///< dE/dx [N]
   double stored_energy = 0.0;        ///< [J]
   double total_energy = 0.0;         ///< stored energy - f_ext.u [J]
@@ -57,12 +58,16 @@ struct Trial {
   bool degenerate = false;
 
   [[nodiscard]] StateView at(Damage damage = Damage::grows) const {
-    return {displacement, history, damage};
+    return {displacement, history, damage, environment};
   }
 };
 
 /// Where its supports and loads are.
 [[nodiscard]] inline LoadPoint load_point(const State& state) { return {state.stage, state.load}; }
+
+/// Work that heating does on the way between two states [J], by the trapezoidal rule: half of what
+/// it would add to the energy in the one and in the other, with the damage that is there.
+[[nodiscard]] double heating_work(Assembler& assembler, const StateView& from, const StateView& to);
 
 /// Evaluates energy and gradient at the trial's displacement and history.
 void evaluate(const EquilibriumProblem& problem, std::span<const double> external_force,

@@ -16,19 +16,36 @@ namespace {
 /// Step of the differences of conditions; a power of two, so that no digit of the unknown is lost.
 constexpr double difference = 0x1p-13;
 
-/// Rates of supports and loads, per degree of freedom.
+/// Rates of supports and loads, and of what the load changes of the internal forces, per degree of
+/// freedom.
 struct ConditionRates {
   std::vector<double> force, displacement;
 };
 
-ConditionRates between(const Conditions& conditions, const LoadPath& loads, double low,
-                       double high) {
+/// force -= the difference of dE/dx between two load points.
+void take_off_heating(Assembler& assembler, const Conditions& conditions, const StateView& at,
+                      const LoadPoint& low, const LoadPoint& high, std::vector<double>& force) {
+  StateView there = at;
+  there.environment = conditions.environment(high);
+  if (!there.environment) return;
+  std::vector<double> gradient(force.size());
+  static_cast<void>(assembler.gradient(there, gradient));
+  add_scaled(force, -1.0, gradient);
+  there.environment = conditions.environment(low);
+  static_cast<void>(assembler.gradient(there, gradient));
+  add_scaled(force, 1.0, gradient);
+}
+
+ConditionRates between(const EquilibriumProblem& problem, const StateView& at,
+                       const LoadPath& loads, double low, double high) {
+  const Conditions& conditions = problem.conditions;
   const std::size_t dofs = conditions.prescribed().size();
   ConditionRates rates{std::vector<double>(dofs), std::vector<double>(dofs, 0.0)};
   std::vector<double> before(dofs, 0.0);
   conditions.external_force(loads(low), before);
   conditions.external_force(loads(high), rates.force);
   add_scaled(rates.force, -1.0, before);
+  take_off_heating(problem.assembler, conditions, at, loads(low), loads(high), rates.force);
   std::fill(before.begin(), before.end(), 0.0);
   conditions.prescribe(loads(low), before);
   conditions.prescribe(loads(high), rates.displacement);
@@ -40,14 +57,16 @@ ConditionRates between(const Conditions& conditions, const LoadPath& loads, doub
 }
 
 /// Where an expression ends, sqrt(load) at zero for one, the difference is one-sided.
-ConditionRates rates_of(const Conditions& conditions, const LoadPath& loads, double at) {
+ConditionRates rates_of(const EquilibriumProblem& problem, const StateView& at,
+                        const LoadPath& loads, double unknown) {
+  const double low = unknown - difference, high = unknown + difference;
   try {
-    return between(conditions, loads, at - difference, at + difference);
+    return between(problem, at, loads, low, high);
   } catch (const InputError&) {
     try {
-      return between(conditions, loads, at, at + difference);
+      return between(problem, at, loads, unknown, high);
     } catch (const InputError&) {
-      return between(conditions, loads, at - difference, at);
+      return between(problem, at, loads, low, unknown);
     }
   }
 }
@@ -86,6 +105,7 @@ class BorderedSearch {
  private:
   Outcome search() {
     problem_.conditions.external_force(step_.loads(unknown_), external_force_);
+    current_.environment = problem_.conditions.environment(step_.loads(unknown_));
     evaluate(problem_, external_force_, current_, Damage::held);
     old_scale_ = load_norm();
     old_border_size_ = border_sum().size;
@@ -134,6 +154,7 @@ class BorderedSearch {
     const LoadPoint at = step_.loads(unknown_);
     problem_.conditions.prescribe(at, current_.displacement);
     problem_.conditions.external_force(at, external_force_);
+    current_.environment = problem_.conditions.environment(at);
     evaluate(problem_, external_force_, current_, options_.damage);
     result_.scale = options_.scale > 0.0 ? options_.scale : std::max(old_scale_, load_norm());
   }
@@ -155,7 +176,8 @@ class BorderedSearch {
     if (linear == LinearOutcome::singular && row.iteration > 1) return Outcome::degenerate;
     if (linear != LinearOutcome::solved) return outcome_of(linear);
 
-    const ConditionRates conditions = rates_of(problem_.conditions, step_.loads, unknown_);
+    const ConditionRates conditions =
+        rates_of(problem_, current_.at(damage), step_.loads, unknown_);
     std::vector<double> rate;
     linear = linearisation_.solve_again(conditions.force, conditions.displacement,
                                         options_.linear_tolerance, rate);
@@ -269,7 +291,7 @@ LinearOutcome find_rate(const EquilibriumProblem& problem, LinearSolver& solver,
   tangent.linearise(problem.assembler, at, 0.0);
   LinearOutcome outcome = solver.factorize(tangent, FactorUse::factorize_now);
   if (outcome != LinearOutcome::solved) return outcome;
-  const ConditionRates conditions = rates_of(problem.conditions, loads, unknown);
+  const ConditionRates conditions = rates_of(problem, at, loads, unknown);
   constexpr double tolerance = 1e-12;
   outcome = Linearisation(problem, solver, tangent, {})
                 .solve_again(conditions.force, conditions.displacement, tolerance, rate);

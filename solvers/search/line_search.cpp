@@ -31,6 +31,7 @@ LineSearchResult line_search(const EquilibriumProblem& problem,
   const double round_off = 64.0 * std::numeric_limits<double>::epsilon() *
                            std::max(std::abs(from.stored_energy), std::abs(work));
   trial.history = from.history;
+  trial.environment = from.environment;
   double length = 1.0;
   for (int count = 0; count < options.max_trials; ++count, length *= options.shrink) {
     trial.displacement = from.displacement;

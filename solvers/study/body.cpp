@@ -22,6 +22,9 @@
 namespace peristat {
 namespace {
 
+/// Of an environment of their own, in a step: the old state, the new one, those of differences.
+constexpr double states_with_environment = 4.0;
+
 /// Cross-section that the points have: mean volume / spacing^dimension.
 double cross_section_of(const Points& points) {
   double volume = 0.0;
@@ -97,9 +100,11 @@ void store_interactions(Body& body, int threads) {
 
 LoadSetting load_setting(const BodySpecification& of, const Points& points) {
   LoadSetting setting{of.horizon};
-  if (of.material.density) {
-    setting.density.assign(std::size_t(points.count()), *of.material.density);
-  }
+  const auto everywhere = [&](const std::optional<double>& value) {
+    return value ? std::vector<double>(std::size_t(points.count()), *value) : std::vector<double>();
+  };
+  setting.density = everywhere(of.material.density);
+  setting.thermal_expansion = everywhere(of.material.thermal_expansion);
   return setting;
 }
 
@@ -138,7 +143,7 @@ std::unique_ptr<const Body> make_body(Points points, const BodySpecification& of
   body.conditions = std::make_unique<Conditions>(
       body.points, of.supports, of.loads,
       of.programme.empty() ? LoadingProgramme() : LoadingProgramme(of.programme), of.controls,
-      load_setting(of, body.points));
+      load_setting(of, body.points), of.eigenstrains);
   const Stopwatch watch(body.seconds_neighbourhood);
   store_interactions(body, threads);
   return owned;
@@ -172,6 +177,9 @@ MemoryEstimate estimate_memory(const Body& body) {
   size.free_dofs = double(std::count(prescribed.begin(), prescribed.end(), 0));
   MemoryEstimate estimate = estimate_memory(size);
   for (const auto& term : body.model.terms()) estimate.body_bytes += term->stored_bytes();
+  if (body.specification.eigenstrains.are_there()) {
+    estimate.body_bytes += states_with_environment * sizeof(double) * double(body.points.count());
+  }
   return estimate;
 }
 

@@ -35,19 +35,23 @@ auto with_table(const std::string& table, const Make& make) {
   }
 }
 
-/// All points but those of layers.
-std::vector<Index> points_of_body(const Points& points) {
-  if (points.lattice) return BodyCells(points).points();
+std::vector<Index> all_points(const Points& points) {
   std::vector<Index> all(std::size_t(points.count()));
   std::iota(all.begin(), all.end(), Index(0));
   return all;
+}
+
+/// All points but those of layers.
+std::vector<Index> points_of_body(const Points& points) {
+  return points.lattice ? BodyCells(points).points() : all_points(points);
 }
 
 }  // namespace
 
 Conditions::Conditions(const Points& points, const std::vector<SupportSpecification>& supports,
                        const std::vector<LoadSpecification>& loads, LoadingProgramme programme,
-                       const std::vector<ControlTerm>& control, const LoadSetting& setting)
+                       const std::vector<ControlTerm>& control, const LoadSetting& setting,
+                       const Eigenstrains& eigenstrains)
     : points_(points), programme_(std::move(programme)), prescribed_(points.reference.size(), 0) {
   const std::vector<std::string> parameters = LoadingProgramme::names(programme_.parameters());
   for (std::size_t k = 0; k < supports.size(); ++k) {
@@ -76,6 +80,7 @@ Conditions::Conditions(const Points& points, const std::vector<SupportSpecificat
                         })});
     }
   }
+  add_eigenstrains(eigenstrains, setting);
   if (!control.empty()) control_.emplace(points, control, prescribed_);
   find_shared();
   try_stages();
@@ -108,6 +113,54 @@ Conditions::Loaded Conditions::loaded(const LoadSpecification& load, const LoadS
   return on;
 }
 
+void Conditions::add_eigenstrains(const Eigenstrains& eigenstrains, const LoadSetting& setting) {
+  const auto add = [&](const std::string& key, const std::string& text, std::vector<Index> points,
+                       std::vector<double> factor) {
+    eigenstretches_.push_back({key, std::move(points), std::move(factor), with_key(key, [&] {
+                                 return Expression(
+                                     text, points_.dimension, points_.spacing,
+                                     LoadingProgramme::names(programme_.parameters()));
+                               })});
+  };
+  for (std::size_t k = 0; k < eigenstrains.given.size(); ++k) {
+    const auto& [set, strain] = eigenstrains.given[k];
+    const std::string table = indexed("eigenstrains", k);
+    const std::vector<Index> points =
+        set.empty() ? all_points(points_) : points_of_set(points_, set, table + ".set");
+    add(table + ".strain", strain, points, std::vector<double>(points.size(), 1.0));
+  }
+  if (!eigenstrains.temperature_change) return;
+  if (setting.thermal_expansion.empty()) {
+    throw InputError("material.thermal_expansion", "", "is missing; a temperature needs it");
+  }
+  add("temperature.change", *eigenstrains.temperature_change, all_points(points_),
+      setting.thermal_expansion);
+}
+
+SharedEnvironment Conditions::environment(const LoadPoint& at) const {
+  if (eigenstretches_.empty()) return nullptr;
+  const std::vector<double> loads = parameters(at);
+  auto made = std::make_shared<Environment>();
+  made->eigenstretch.assign(std::size_t(points_.count()), 0.0);
+  for (const auto& [key, points, factor, value] : eigenstretches_) {
+    with_key(key, [&] {
+      for (std::size_t k = 0; k < points.size(); ++k) {
+        const double stretch = factor[k] * value(points_.position(points[k]), loads);
+        double& sum = made->eigenstretch[std::size_t(points[k])];
+        sum += stretch;
+        if (!(sum > -1.0)) {
+          throw InputError("", '"' + value.text() + '"',
+                           "leaves nothing of the length there was: an eigenstrain of " +
+                               number_text(sum) + " at " +
+                               place_text(points_.position(points[k]), points_.dimension) +
+                               " m; it must be above -1");
+        }
+      }
+    });
+  }
+  return made;
+}
+
 std::vector<double> Conditions::parameters(const LoadPoint& at) const {
   std::vector<double> values = programme_.at(at.stage);
   if (at.load) values.front() = *at.load;
@@ -131,6 +184,7 @@ void Conditions::try_stages() {
   std::vector<double> values(prescribed_.size(), 0.0);
   const auto try_at = [&](const LoadPoint& at) {
     prescribe(at, values);
+    static_cast<void>(environment(at));
     for (const double value : values) largest_ = std::max(largest_, std::abs(value));
   };
   if (control_) return try_at({0.0, 0.0});  // nobody knows where its loads will go

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "src/conditions/displacement_control.hpp"
+#include "src/conditions/environment.hpp"
 #include "src/conditions/load_point.hpp"
 #include "src/conditions/loading_programme.hpp"
 #include "src/conditions/specification.hpp"
@@ -16,10 +17,19 @@
 
 namespace peristat {
 
-/// What loads depend on beside the points.
+/// What loads depend on beside the points; arrays are per point, or empty if that is not known.
 struct LoadSetting {
-  double horizon = 0.0;              ///< [m], for tractions
-  std::vector<double> density = {};  ///< per point [kg/m3], for gravity; empty: not known
+  double horizon = 0.0;                        ///< [m], for tractions
+  std::vector<double> density = {};            ///< [kg/m3], for gravity
+  std::vector<double> thermal_expansion = {};  ///< [1/K], for the temperature
+};
+
+/// What strains the points without forces.
+struct Eigenstrains {
+  std::vector<EigenstrainSpecification> given{};
+  std::optional<std::string> temperature_change{};  ///< [K], an expression of x, y, z and load
+
+  [[nodiscard]] bool are_there() const { return !given.empty() || temperature_change; }
 };
 
 /// Supports and loads of a body along its loading programme. Arrays have one entry per degree
@@ -34,7 +44,8 @@ class Conditions {
   ///        of its values [m]; no terms: none
   Conditions(const Points& points, const std::vector<SupportSpecification>& supports,
              const std::vector<LoadSpecification>& loads, LoadingProgramme programme = {},
-             const std::vector<ControlTerm>& control = {}, const LoadSetting& setting = {});
+             const std::vector<ControlTerm>& control = {}, const LoadSetting& setting = {},
+             const Eigenstrains& eigenstrains = {});
 
   [[nodiscard]] const LoadingProgramme& programme() const { return programme_; }
   /// Null where the programme's first table is of the load factor.
@@ -54,6 +65,10 @@ class Conditions {
   /// External force of the loads [N] there, every entry overwritten.
   /// @throws InputError if one is not finite
   void external_force(const LoadPoint& at, std::span<double> force) const;
+
+  /// What the load makes of the energy there; null where there are no eigenstrains.
+  /// @throws InputError if one is not finite, or leaves nothing of a length
+  [[nodiscard]] SharedEnvironment environment(const LoadPoint& at) const;
 
   /// Reaction of each support's set [N]: the sum over its prescribed degrees of freedom of what the
   /// supports add to hold them, dE/dx - external force. Points of two sets count in both.
@@ -80,6 +95,14 @@ class Conditions {
     Expression value;  // [N/m3], [N], [m/s2] or [Pa]
   };
 
+  struct Eigenstretch {
+    std::string key;
+    std::vector<Index> points;
+    std::vector<double> factor;  // per point
+    Expression value;            // [1], or of the temperature [K]
+  };
+
+  void add_eigenstrains(const Eigenstrains& eigenstrains, const LoadSetting& setting);
   [[nodiscard]] Loaded loaded(const LoadSpecification& load, const LoadSetting& setting,
                               const std::string& table) const;
 
@@ -97,6 +120,7 @@ class Conditions {
   LoadingProgramme programme_;
   std::vector<Prescription> prescriptions_;
   std::vector<Load> loads_;
+  std::vector<Eigenstretch> eigenstretches_;
   std::vector<char> prescribed_;
   std::optional<DisplacementControl> control_;
   /// First of the prescriptions of each degree of freedom; empty if none has more than one.

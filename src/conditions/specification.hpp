@@ -32,6 +32,13 @@ struct LoadSpecification {
   Depth depth = Depth::row;
 };
 
+/// Isotropic strain that a set, or without one the body, would have if nothing held it: length over
+/// reference length - 1, an expression of x, y, z and load.
+struct EigenstrainSpecification {
+  std::string set{};
+  std::string strain{"0"};
+};
+
 /// "body_force", …: of what a load gives.
 [[nodiscard]] constexpr const char* load_key(LoadSpecification::Kind kind) {
   switch (kind) {

@@ -130,9 +130,67 @@ class Conditions:
         """Dead loads [N]."""
         value = numpy.zeros(self.reference.shape)
         for table in self.case.get("load"):
-            inside = self.sets[table["set"]]
-            total = "total_force" in table
-            share = self.volume[inside] / self.volume[inside].sum() if total else self.volume[inside]
-            for axis, component in enumerate(table["total_force" if total else "body_force"]):
-                value[inside, axis] += share * evaluate(component, self.reference, load, self.spacing)[inside]
+            key, amount = self.amounts(table)
+            for axis, component in enumerate(table[key]):
+                value[:, axis] += amount * evaluate(component, self.reference, load, self.spacing)
         return value
+
+    def amounts(self, table):
+        """A load's key, and what its value is multiplied with at each point."""
+        members = self.sets[table["set"]] if "set" in table else numpy.ones(len(self.volume), bool)
+        if "gravity" in table:
+            inside = members if "set" in table else self.is_in_body()
+            return "gravity", numpy.where(inside, self.case["material"]["density"] * self.volume, 0)
+        if "traction" in table:
+            return "traction", self.traction_areas(table, members)
+        volume = numpy.where(members, self.volume, 0)
+        return ("total_force", volume / volume.sum()) if "total_force" in table else ("body_force", volume)
+
+    def is_in_body(self):
+        inside = numpy.ones(len(self.volume), bool)
+        for layer in self.case.get("lattice", {}).get("layer", []):
+            inside &= ~self.sets[layer["name"]]
+        return inside
+
+    def traction_areas(self, table, members):
+        """Per point: the loaded faces of cells, each shared by the points below it as far as the depth reaches."""
+        cell = numpy.rint((self.reference - self.reference.min(axis=0)) / self.spacing).astype(int)
+        body = {tuple(c): k for k, c in enumerate(cell) if self.is_in_body()[k]}
+        sides = [(axis, sign) for axis in range(cell.shape[1]) for sign in (-1, 1)]
+        if "side" in table:
+            sides = [("xyz".index(table["side"][0]), 1 if table["side"][1] == "+" else -1)]
+
+        def beside(place, axis, step):
+            return (*place[:axis], place[axis] + step, *place[axis + 1 :])
+
+        for axis, sign in sides:
+            along = {k: sign * place[axis] for place, k in body.items()}
+            row = [k for k in along if members[k] and ("set" in table or along[k] == max(along.values()))]
+            if len({along[k] for k in row}) == 1 and not any(beside(cell[k], axis, sign) in body for k in row):
+                break
+        depth = 1.0
+        if table.get("depth") == "horizon":
+            depth = max(1.0, self.case.horizon() / self.spacing)
+        area = numpy.zeros(len(self.volume))
+        for first in row:
+            column, place = [], tuple(cell[first])
+            while place in body and len(column) < depth - 1e-9:
+                column.append((body[place], min(1.0, depth - len(column))))
+                place = beside(place, axis, -sign)
+            for k, part in column:
+                area[k] += self.volume[first] / self.spacing * part / sum(p for _, p in column)
+        return area
+
+    def eigenstretch(self, load):
+        """Per point; nothing if there is none."""
+        strained, temperature = self.case.get("eigenstrain"), self.case.get("temperature", {})
+        if not strained and not temperature:
+            return None
+        total = numpy.zeros(len(self.volume))
+        for table in strained:
+            inside = self.sets[table["set"]] if "set" in table else slice(None)
+            total[inside] += evaluate(table["strain"], self.reference, load, self.spacing)[inside]
+        if temperature:
+            change = evaluate(temperature["change"], self.reference, load, self.spacing)
+            total += self.case["material"]["thermal_expansion"] * change
+        return total

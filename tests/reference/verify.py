@@ -102,6 +102,7 @@ class Verification:
 
     def judge(self, mechanics, step, old, history):
         row, prescribed = self.rows[step.number], self.conditions.prescribed
+        mechanics.eigenstretch = self.conditions.eigenstretch(step.load)
         gradient = mechanics.gradient(step.displacement, history)
         magnitude = mechanics.gradient(step.displacement, history, absolute=True)
         largest = magnitude.max() + 1e-4 * self.whole_force(mechanics, step)
@@ -118,7 +119,7 @@ class Verification:
         self.judge_energies(mechanics, step, row, old, history)
         if mechanics is self.mechanics:
             self.judge_damage(mechanics, step, row, history)
-        self.judge_work(mechanics, step, row, old, gradient, external)
+        self.judge_work(mechanics, step, row, old, history, gradient, external)
 
     def whole_force(self, mechanics, step):
         """What a whole bond would bear at the largest displacement [N]: rounding of displacements
@@ -149,7 +150,9 @@ class Verification:
         jumped[prescribed] = self.conditions.displacement(step.load)[prescribed]
         past = old.history if mechanics is self.mechanics else history
         external = self.conditions.force(step.load)
+        mechanics.eigenstretch = self.conditions.eigenstretch(old.load)
         reactions = mechanics.gradient(old.displacement, past) - self.conditions.force(old.load)
+        mechanics.eigenstretch = self.conditions.eigenstretch(step.load)
         # Reactions of both states: Newton's method that finishes a relaxed step starts from the latter.
         norms = [numpy.linalg.norm(part) for part in (external, reactions[prescribed], out_of_balance[prescribed])]
         # The jump that a step begins with is measured with the damage held.
@@ -233,16 +236,20 @@ class Verification:
         largest = whole.max() if len(whole) else 0.0
         self.compare(step, "max_stretch", row["max_stretch"], largest, max(abs(stretch).max(), 1e-300))
 
-    def judge_work(self, mechanics, step, row, old, gradient, external):
+    def judge_work(self, mechanics, step, row, old, history, gradient, external):
         """External work by the trapezoidal rule over the accepted steps; implicit ones add no other."""
         if old.mechanics not in (None, mechanics) or old.number + 1 != step.number:
             return
         if step.mode == "newton" and row["numerical_work"] != old.numerical_work:
             self.complain(step, f"numerical work {row['numerical_work']} in an implicit step, {old.numerical_work} before it")
         prescribed = self.conditions.prescribed
-        before = mechanics.gradient(old.displacement, old.history if mechanics is self.mechanics else mechanics.no_history())
+        past = old.history if mechanics is self.mechanics else mechanics.no_history()
+        here = self.conditions.eigenstretch(step.load)
+        mechanics.eigenstretch = self.conditions.eigenstretch(old.load)
+        before = mechanics.gradient(old.displacement, past)
+        heating = mechanics.heating_work((old.displacement, past), (step.displacement, history), mechanics.eigenstretch, here)
         pull = numpy.where(prescribed, before + gradient, self.conditions.force(old.load) + external) / 2
-        work = float((pull * (step.displacement - old.displacement)).sum())
+        work = float((pull * (step.displacement - old.displacement)).sum()) + heating
         scale = max(abs(row["external_work"]), numpy.abs(pull * (step.displacement - old.displacement)).sum())
         scale += 1e-5 * self.whole_force(mechanics, step) * numpy.abs(step.displacement).max()
         self.compare(step, "work", row["external_work"] - old.external_work, work, scale)

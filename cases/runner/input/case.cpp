@@ -54,6 +54,7 @@ const std::map<std::string, std::string>& keys_of_members() {
                                                        {"file", "points.file"},
                                                        {"supports", "support"},
                                                        {"loads", "load"},
+                                                       {"eigenstrains", "eigenstrain"},
                                                        {"directory", "output.directory"},
                                                        {"controls", "control"},
                                                        {"programme", "loading.table"}};

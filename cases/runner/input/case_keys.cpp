@@ -375,6 +375,8 @@ Table<MaterialSpecification> material_keys() {
          "sums or integrals")
            .unless(of_bond, for_cpd)
            .unless(has_constants, with_moduli),
+       K("thermal_expansion", &Spec::thermal_expansion, between(-1.0, 1.0, "1/K"),
+         "of lengths, α: for `[temperature]`"),
        K("density", &Spec::density, positive("kg/m3"),
          "for gravity: dynamic relaxation has a density of its own"),
        K("damage", &Spec::damage, damage_keys(), "table `[material.damage]`")
@@ -447,6 +449,45 @@ Table<LoadSpecification> load_keys() {
            .written_if(is_on_boundary)},
       {},
       check_place_of_load};
+}
+
+Table<EigenstrainSpecification> eigenstrain_keys() {
+  using Spec = EigenstrainSpecification;
+  using K = Key<Spec>;
+  return {"eigenstrain",
+          {K("set", &Spec::set, known_set(), "that is strained")
+               .written_if([](auto& strained, auto&) { return !strained.set.empty(); })
+               .default_words("all points"),
+           K("strain", &Spec::strain, scalar_field("1"),
+             "that a part which nothing held would have, the same in all directions: its length "
+             "over the one in the reference, less 1")
+               .moreover("above −1")
+               .required()}};
+}
+
+Table<Eigenstrains> temperature_keys() {
+  using K = Key<Eigenstrains>;
+  const auto change = [](auto& eigenstrains) -> auto& {
+    if constexpr (!std::is_const_v<std::remove_reference_t<decltype(eigenstrains)>>) {
+      if (!eigenstrains.temperature_change) eigenstrains.temperature_change.emplace();
+      return *eigenstrains.temperature_change;
+    } else {
+      static const std::string none;
+      return eigenstrains.temperature_change ? *eigenstrains.temperature_change : none;
+    }
+  };
+  return {"temperature",
+          {K("change", change, scalar_field("K"),
+             "of the temperature from that of the reference: with `material.thermal_expansion` an "
+             "eigenstrain α ΔT of all points")
+               .written_if([](auto& of, auto&) { return of.temperature_change.has_value(); })
+               .default_words("no change; required in the table")}};
+}
+
+/// A table without its only key is a slip.
+void check_temperature(const Entry& at, const Case& result) {
+  if (at.from.has("temperature") && !result.eigenstrains.temperature_change)
+    static_cast<void>(at.from.table("temperature").string("change"));
 }
 
 Table<ControlTerm> control_keys() {
@@ -919,6 +960,13 @@ Table<Case> all_keys() {
            .required(),
        K("support", &Case::supports, support_keys(), "tables: prescribed displacements"),
        K("load", &Case::loads, load_keys(), "tables: forces"),
+       K("eigenstrain", in(&Case::eigenstrains, &Eigenstrains::given), eigenstrain_keys(),
+         "tables: strains that cost no energy"),
+       K("temperature", &Case::eigenstrains, temperature_keys(), "table: change of temperature")
+           .then(check_temperature)
+           .written_if([](auto& result, auto&) {
+             return result.eigenstrains.temperature_change.has_value();
+           }),
        K("control", &Case::controls, control_keys(),
          "tables: the displacement that is controlled in the place of `load`"),
        K("loading", &Case::loading, loading_keys(), "table: the way of the loads, and its steps")

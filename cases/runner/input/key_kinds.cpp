@@ -241,6 +241,21 @@ Kind<std::array<std::optional<std::string>, 3>> prescribed_components() {
           "number, expression of place and `load`, or `\"free\"`", "m"};
 }
 
+Kind<std::string> scalar_field(const std::string& unit) {
+  const auto read = [](const Entry& at) {
+    const std::string given = at.from.is_string(at.key)
+                                  ? at.from.string(at.key)
+                                  : toml_number(at.from.number(at.key, Range()));
+    try {
+      Expression(given, at.so_far.dimension, spacing_of(at.so_far), at.so_far.loading.parameters());
+    } catch (const InputError& error) {
+      at.refuse(error.allowed());
+    }
+    return given;
+  };
+  return {read, string_text, "number or expression of place and `load`", unit};
+}
+
 Kind<std::array<std::string, 3>> force_components(bool is_total, const std::string& unit) {
   const auto read = [=](const Entry& at) {
     std::array<std::string, 3> force = LoadSpecification().value;

@@ -72,6 +72,8 @@ template <class Value>
 [[nodiscard]] Kind<std::string> condition();
 /// Per component an expression of place and load, or "free".
 [[nodiscard]] Kind<std::array<std::optional<std::string>, 3>> prescribed_components();
+/// An expression of place and load.
+[[nodiscard]] Kind<std::string> scalar_field(const std::string& unit);
 /// Per component an expression of load, and of place unless it is a total.
 [[nodiscard]] Kind<std::array<std::string, 3>> force_components(bool is_total,
                                                                 const std::string& unit);

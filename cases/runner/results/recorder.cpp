@@ -94,8 +94,9 @@ void Recorder::go_on(const Checkpoint& checkpoint, const EarlierResults& earlier
   written_histories_.tell(is_unwritten ? std::span(checkpoint.unwritten.told_stretches)
                                        : bond_stretches(body_.model, path.accepted.history));
   if (is_unwritten) {
-    unwritten_ =
-        fields(StateView(path.accepted), checkpoint.unwritten.force, path.pins.found.piece);
+    State accepted = path.accepted;
+    accepted.environment = body_.conditions->environment({accepted.stage, accepted.load});
+    unwritten_ = fields(StateView(accepted), checkpoint.unwritten.force, path.pins.found.piece);
   }
 }
 
