@@ -1,5 +1,6 @@
 #include "assembly/assembler.hpp"
 
+#include <algorithm>
 #include <stdexcept>
 
 #include "src/core/stopwatch.hpp"
@@ -62,6 +63,11 @@ Evaluation Assembler::commit(std::span<const double> displacement, History& hist
     found += term.commit(displacement, environment, history, gradient, how);
   });
   return found;
+}
+
+void Assembler::follower_force(const StateView& at, std::span<double> force) {
+  std::fill(force.begin(), force.end(), 0.0);
+  for_each_term([&](TermPasses& term, Write) { term.follower_force(at, force); });
 }
 
 DamageGrowth Assembler::growth(const StateView& at) {

@@ -38,6 +38,10 @@ class TermPasses {
     return this->gradient({displacement, history, Damage::grows, environment}, gradient, how);
   }
 
+  /// Adds the forces of loads that follow the deformation [N]: the gradient holds them with the
+  /// other sign.
+  virtual void follower_force(const StateView&, std::span<double> /*force*/) {}
+
   /// What committing the state would damage.
   virtual DamageGrowth growth(const StateView&) { return {}; }
 

@@ -26,6 +26,7 @@ std::vector<double> working_force(const std::vector<char>& prescribed, const Tri
   std::vector<double> force(external_force.begin(), external_force.end());
   for (std::size_t dof = 0; dof < force.size(); ++dof) {
     if (prescribed[dof]) force[dof] = state.gradient[dof];
+    if (!state.follower_force.empty()) force[dof] += state.follower_force[dof];
   }
   return force;
 }

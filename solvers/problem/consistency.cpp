@@ -46,6 +46,7 @@ Resultants resultants_of(const Points& points, const Trial& trial) {
       const std::size_t dof = std::size_t(i) * d + c;
       arm[c] = points.reference[dof] - centre[c] + trial.displacement[dof];
       force[c] = trial.gradient[dof];
+      if (!trial.follower_force.empty()) force[c] += trial.follower_force[dof];
     }
     const Coordinates moment{arm[1] * force[2] - arm[2] * force[1],
                              arm[2] * force[0] - arm[0] * force[2],

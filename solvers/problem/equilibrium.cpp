@@ -116,10 +116,25 @@ double heating_work(Assembler& assembler, const StateView& from, const StateView
   return 0.5 * (added_at(from) + added_at(to));
 }
 
+double environment_norm(const EquilibriumProblem& problem, const StateView& at,
+                        std::span<const double> gradient) {
+  if (!at.environment) return 0.0;
+  std::vector<double> without(gradient.size());
+  static_cast<void>(problem.assembler.gradient({at.displacement, at.history, at.damage}, without));
+  return norm_of(problem.free.dof.size(), [&](std::size_t e) {
+    const Index dof = problem.free.dof[e];
+    return gradient[dof] - without[dof];
+  });
+}
+
 void evaluate(const EquilibriumProblem& problem, std::span<const double> external_force,
               Trial& trial, Damage damage) {
   trial.gradient.resize(trial.displacement.size());
   const Evaluation found = problem.assembler.gradient(trial.at(damage), trial.gradient);
+  if (trial.environment && !trial.environment->pressure.empty()) {
+    trial.follower_force.resize(trial.displacement.size());
+    problem.assembler.follower_force(trial.at(damage), trial.follower_force);
+  }
   trial.stored_energy = found.energy;
   trial.total_energy = found.energy - dot(external_force, trial.displacement);
   trial.residual_norm = norm_of(problem.free.dof.size(), [&](std::size_t e) {

@@ -48,13 +48,14 @@ struct EquilibriumProblem {
 
 /// A trial state with everything that a decision about it needs.
 struct Trial {
-  std::vector<double> displacement;  ///< [m]
-  History history;                   ///< that it comes after
-  SharedEnvironment environment;     ///< that of the load point
-  std::vector<double> gradient;      ///< dE/dx [N]
-  double stored_energy = 0.0;        ///< [J]
-  double total_energy = 0.0;         ///< stored energy - f_ext.u [J]
-  double residual_norm = 0.0;        ///< 2-norm of f_ext - dE/dx over free degrees of freedom [N]
+  std::vector<double> displacement;    ///< [m]
+  History history;                     ///< that it comes after
+  SharedEnvironment environment;       ///< that of the load point
+  std::vector<double> gradient;        ///< dE/dx [N], less the follower force
+  std::vector<double> follower_force;  ///< of pressures [N]; empty: none
+  double stored_energy = 0.0;          ///< [J]
+  double total_energy = 0.0;           ///< stored energy - f_ext.u [J]
+  double residual_norm = 0.0;          ///< 2-norm of f_ext - dE/dx over free degrees of freedom [N]
   bool degenerate = false;
 
   [[nodiscard]] StateView at(Damage damage = Damage::grows) const {
@@ -68,6 +69,11 @@ struct Trial {
 /// Work that heating does on the way between two states [J], by the trapezoidal rule: half of what
 /// it would add to the energy in the one and in the other, with the damage that is there.
 [[nodiscard]] double heating_work(Assembler& assembler, const StateView& from, const StateView& to);
+
+/// Norm of what the environment adds to the forces of a state, on free degrees of freedom [N].
+/// @param gradient there
+[[nodiscard]] double environment_norm(const EquilibriumProblem& problem, const StateView& at,
+                                      std::span<const double> gradient);
 
 /// Evaluates energy and gradient at the trial's displacement and history.
 void evaluate(const EquilibriumProblem& problem, std::span<const double> external_force,

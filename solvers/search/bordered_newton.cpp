@@ -234,7 +234,8 @@ class BorderedSearch {
       const bool is_free = problem_.free.equation[dof] != FreeDofs::none;
       return is_free ? 0.0 : current_.gradient[dof] - external_force_[dof];
     });
-    return std::max(norm(external_force_), reactions);
+    return std::max({norm(external_force_), reactions,
+                     environment_norm(problem_, current_.at(), current_.gradient)});
   }
 
   [[nodiscard]] bool has_converged() {

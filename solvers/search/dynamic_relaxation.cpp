@@ -110,6 +110,11 @@ class Relaxation {
     result_.growth.breaking += found.growth.breaking;
     result_.released_energy += found.released;
     at_.stored_energy = found.energy;
+    if (!at_.follower_force.empty()) {
+      last_follower_force_.swap(at_.follower_force);
+      at_.follower_force.resize(last_follower_force_.size());
+      assembler.follower_force(at_.at(), at_.follower_force);
+    }
     residual_.swap(last_residual_);
     const std::vector<double>& force = result_.external_force;
     // [0] F.F, [1] U.K1 U, [2] U.U
@@ -176,6 +181,7 @@ class Relaxation {
   /// once `complete_work` is called after the next evaluation.
   void move(double share) {
     heat_up(share);
+    if (!at_.follower_force.empty()) last_displacement_ = at_.displacement;
     const Sums sums = sum([&](std::size_t e, Sums& s) {
       double& displacement = at_.displacement[dofs_[e]];
       displacement += velocity_[e];
@@ -199,6 +205,10 @@ class Relaxation {
   }
 
   void complete_work() {
+    for (std::size_t k = 0; k < at_.follower_force.size(); ++k) {
+      result_.external_work += 0.5 * (last_follower_force_[k] + at_.follower_force[k]) *
+                               (at_.displacement[k] - last_displacement_[k]);
+    }
     if (last_environment_ != at_.environment) {
       result_.external_work += 0.5 * (at_.stored_energy - energy_under(last_environment_));
       last_environment_ = at_.environment;
@@ -289,7 +299,8 @@ class Relaxation {
   std::vector<double> residual_, last_residual_;  // F^n, F^(n-1)
   std::vector<double> last_reaction_;             // dE/dx on prescribed degrees of freedom
   SharedEnvironment last_environment_;
-  double quotient_ = 0.0;  // U.K1 U / U.U
+  std::vector<double> last_follower_force_, last_displacement_;  // before the last move
+  double quotient_ = 0.0;                                        // U.K1 U / U.U
   double kinetic_energy_ = 0.0, relative_change_ = 1.0;
   double mean_speed_ = 0.0;  // root mean square of the velocities of the last move
   double share_ = 0.0, share_change_ = 0.0;
@@ -334,6 +345,13 @@ RelaxationResult relax(const EquilibriumProblem& problem, TangentOperator& tange
   evaluate(problem, result.external_force, result.state);
   result.scale = options.scale > 0.0 ? options.scale
                                      : scale_of_step(problem, way, result.state, options.holds);
+  if (way.end_environment() && options.scale <= 0.0) {
+    Trial start = result.state;
+    start.environment = way.end_environment();
+    evaluate(problem, way.end_force(), start, Damage::held);
+    result.scale =
+        std::max(result.scale, environment_norm(problem, start.at(Damage::held), start.gradient));
+  }
 
   const double taken_up_at_start = taken_up(problem, options, result.state);
 

@@ -56,6 +56,10 @@ class NewtonSearch {
                         : residual_scale(problem, external_force_, start_gradient_, current_);
     if (current_.environment) {
       static_cast<void>(problem.assembler.gradient(start(), start_gradient_));
+      if (options.scale <= 0.0) {
+        result_.scale =
+            std::max(result_.scale, environment_norm(problem, start(), start_gradient_));
+      }
     }
   }
 

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 #include <omp.h>
 
+#include "assembly/terms/pressure/pressure_term.hpp"
 #include "solvers/linear/available_memory.hpp"
 #include "solvers/study/bond_potential.hpp"
 #include "solvers/study/cpd_model.hpp"
@@ -144,9 +145,16 @@ std::unique_ptr<const Body> make_body(Points points, const BodySpecification& of
       body.points, of.supports, of.loads,
       of.programme.empty() ? LoadingProgramme() : LoadingProgramme(of.programme), of.controls,
       load_setting(of, body.points), of.eigenstrains);
+  add_pressures(body.model, body);
   const Stopwatch watch(body.seconds_neighbourhood);
   store_interactions(body, threads);
   return owned;
+}
+
+void add_pressures(Model& model, const Body& body) {
+  const PressedBoundary& boundary = body.conditions->pressed_boundary();
+  if (boundary.face.empty()) return;
+  model.add(std::make_shared<PressureTerm>(body.points, boundary));
 }
 
 BodySize size_of(const Points& points) {

@@ -47,6 +47,9 @@ struct Body {
 [[nodiscard]] std::unique_ptr<const Body> make_body(Points points, const BodySpecification& of,
                                                     int threads = 0);
 
+/// Adds the pressures of the body's loads to a model of its points: its own has them.
+void add_pressures(Model& model, const Body& body);
+
 /// Number of threads to run on.
 /// @param asked_for 0: as many as OpenMP takes by itself
 /// @throws InputError ("threads") for a number below 0

@@ -70,6 +70,10 @@ Conditions::Conditions(const Points& points, const std::vector<SupportSpecificat
   }
   for (std::size_t k = 0; k < loads.size(); ++k) {
     const std::string table = indexed("loads", k);
+    if (loads[k].kind == LoadSpecification::Kind::pressure) {
+      add_pressure(loads[k], table);
+      continue;
+    }
     const auto on = std::make_shared<const Loaded>(loaded(loads[k], setting, table));
     const bool total = loads[k].kind == LoadSpecification::Kind::total_force;
     for (int c = 0; c < points.dimension; ++c) {
@@ -113,6 +117,16 @@ Conditions::Loaded Conditions::loaded(const LoadSpecification& load, const LoadS
   return on;
 }
 
+void Conditions::add_pressure(const LoadSpecification& load, const std::string& table) {
+  const std::size_t first = pressed_.face.size();
+  with_table(table, [&] { add_pressed_faces(points_, load, table, pressed_); });
+  const std::string key = table + ".value";
+  pressures_.push_back({key, first, pressed_.face.size(), with_key(key, [&] {
+                          return Expression(load.value[0], points_.dimension, points_.spacing,
+                                            LoadingProgramme::names(programme_.parameters()));
+                        })});
+}
+
 void Conditions::add_eigenstrains(const Eigenstrains& eigenstrains, const LoadSetting& setting) {
   const auto add = [&](const std::string& key, const std::string& text, std::vector<Index> points,
                        std::vector<double> factor) {
@@ -138,10 +152,17 @@ void Conditions::add_eigenstrains(const Eigenstrains& eigenstrains, const LoadSe
 }
 
 SharedEnvironment Conditions::environment(const LoadPoint& at) const {
-  if (eigenstretches_.empty()) return nullptr;
+  if (eigenstretches_.empty() && pressures_.empty()) return nullptr;
   const std::vector<double> loads = parameters(at);
   auto made = std::make_shared<Environment>();
-  made->eigenstretch.assign(std::size_t(points_.count()), 0.0);
+  for (const auto& [key, first, last, value] : pressures_) {
+    with_key(key, [&] {
+      for (std::size_t face = first; face < last; ++face) {
+        made->pressure.push_back(value(pressed_.centre[face], loads));
+      }
+    });
+  }
+  if (!eigenstretches_.empty()) made->eigenstretch.assign(std::size_t(points_.count()), 0.0);
   for (const auto& [key, points, factor, value] : eigenstretches_) {
     with_key(key, [&] {
       for (std::size_t k = 0; k < points.size(); ++k) {

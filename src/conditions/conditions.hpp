@@ -11,6 +11,7 @@
 #include "src/conditions/environment.hpp"
 #include "src/conditions/load_point.hpp"
 #include "src/conditions/loading_programme.hpp"
+#include "src/conditions/pressed_boundary.hpp"
 #include "src/conditions/specification.hpp"
 #include "src/core/expression.hpp"
 #include "src/geometry/points.hpp"
@@ -66,9 +67,13 @@ class Conditions {
   /// @throws InputError if one is not finite
   void external_force(const LoadPoint& at, std::span<double> force) const;
 
-  /// What the load makes of the energy there; null where there are no eigenstrains.
+  /// What the load makes of the energy there; null where there are neither eigenstrains nor
+  /// pressures.
   /// @throws InputError if one is not finite, or leaves nothing of a length
   [[nodiscard]] SharedEnvironment environment(const LoadPoint& at) const;
+
+  /// Faces that pressures act on, in the order of Environment::pressure.
+  [[nodiscard]] const PressedBoundary& pressed_boundary() const { return pressed_; }
 
   /// Reaction of each support's set [N]: the sum over its prescribed degrees of freedom of what the
   /// supports add to hold them, dE/dx - external force. Points of two sets count in both.
@@ -102,6 +107,13 @@ class Conditions {
     Expression value;            // [1], or of the temperature [K]
   };
 
+  struct Pressure {
+    std::string key;
+    std::size_t first, last;  // of the pressed boundary's faces
+    Expression value;         // [Pa]
+  };
+
+  void add_pressure(const LoadSpecification& load, const std::string& table);
   void add_eigenstrains(const Eigenstrains& eigenstrains, const LoadSetting& setting);
   [[nodiscard]] Loaded loaded(const LoadSpecification& load, const LoadSetting& setting,
                               const std::string& table) const;
@@ -121,6 +133,8 @@ class Conditions {
   std::vector<Prescription> prescriptions_;
   std::vector<Load> loads_;
   std::vector<Eigenstretch> eigenstretches_;
+  PressedBoundary pressed_;
+  std::vector<Pressure> pressures_;
   std::vector<char> prescribed_;
   std::optional<DisplacementControl> control_;
   /// First of the prescriptions of each degree of freedom; empty if none has more than one.

@@ -7,9 +7,11 @@ SharedEnvironment between(const SharedEnvironment& from, const SharedEnvironment
   if (from == to || share == 0.0) return from;
   if (share == 1.0) return to;
   auto there = std::make_shared<Environment>(*from);
-  for (std::size_t k = 0; k < there->eigenstretch.size(); ++k) {
-    double& value = there->eigenstretch[k];
-    value += share * (to->eigenstretch[k] - value);
+  for (const auto member : {&Environment::eigenstretch, &Environment::pressure}) {
+    std::vector<double>& values = (*there).*member;
+    for (std::size_t k = 0; k < values.size(); ++k) {
+      values[k] += share * (((*to).*member)[k] - values[k]);
+    }
   }
   return there;
 }

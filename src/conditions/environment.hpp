@@ -10,6 +10,8 @@ struct Environment {
   /// Per point, 0 at rest: by how much of its length the body around it would be longer if nothing
   /// held it. Empty: none.
   std::vector<double> eigenstretch{};
+  /// Per face of the boundary that pressures act on [Pa]; empty: none.
+  std::vector<double> pressure{};
 
   friend bool operator==(const Environment&, const Environment&) = default;
 };

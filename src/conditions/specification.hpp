@@ -19,13 +19,14 @@ struct SupportSpecification {
 /// horizon.
 enum class Depth { row, horizon };
 
-/// Dead load: a body force density [N/m3] on a set, an expression of x, y, z and load; a total
-/// force [N], an expression of load alone, spread over a set in proportion to the volume; gravity
-/// [m/s2] on a set or, without one, the body, layers left out; a traction [Pa] on a flat part of a
-/// lattice body's boundary, the outermost plane of points on a side or a set that lies in one
-/// plane.
+/// Load that keeps its direction: a body force density [N/m3] on a set, an expression of x, y, z
+/// and load; a total force [N], an expression of load alone, spread over a set in proportion to the
+/// volume; gravity [m/s2] on a set or, without one, the body, layers left out; a traction [Pa] on a
+/// flat part of a lattice body's boundary, the outermost plane of points on a side or a set that
+/// lies in one plane. And a load that follows the deformation: a pressure [Pa], its first value, on
+/// the exposed faces of the cells of a side or set.
 struct LoadSpecification {
-  enum class Kind { body_force, total_force, gravity, traction } kind = Kind::body_force;
+  enum class Kind { body_force, total_force, gravity, traction, pressure } kind = Kind::body_force;
   std::string set{};
   std::array<std::string, 3> value{"0", "0", "0"};
   std::optional<Side> side{};
@@ -50,6 +51,8 @@ struct EigenstrainSpecification {
       return "gravity";
     case LoadSpecification::Kind::traction:
       return "traction";
+    case LoadSpecification::Kind::pressure:
+      return "pressure";
   }
   return "";
 }

@@ -107,8 +107,10 @@ std::optional<Model> make_elastic_stand_in(const Case& from, const Body& body, i
                        "leaves points that may move freely");
     MaterialSpecification elastic = from.material;
     elastic.damage = {};
-    return Model(std::move(bonds),
-                 bond_potential(elastic, micromodulus(*elastic.youngs_modulus, setting)));
+    Model stand_in(std::move(bonds),
+                   bond_potential(elastic, micromodulus(*elastic.youngs_modulus, setting)));
+    add_pressures(stand_in, body);
+    return stand_in;
   });
 }
 

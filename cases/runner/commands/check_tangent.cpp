@@ -231,9 +231,11 @@ std::vector<double> differenced_block(Assembler& assembler, const StateView& at,
     double h = step;
     for (const double weight : weights) {
       shifted[dofs[j]] = displacement[dofs[j]] + h;
-      static_cast<void>(assembler.gradient({shifted, at.history}, forward));
+      static_cast<void>(
+          assembler.gradient({shifted, at.history, at.damage, at.environment}, forward));
       shifted[dofs[j]] = displacement[dofs[j]] - h;
-      static_cast<void>(assembler.gradient({shifted, at.history}, backward));
+      static_cast<void>(
+          assembler.gradient({shifted, at.history, at.damage, at.environment}, backward));
       for (std::size_t i = 0; i < count; ++i) {
         block[i * count + j] += weight * (forward[dofs[i]] - backward[dofs[i]]) / (2.0 * h);
       }
@@ -257,6 +259,12 @@ double asymmetry_of(const std::vector<double>& block, std::size_t count) {
   return largest > 0.0 ? difference / largest : 0.0;
 }
 
+/// Eigenstrains and pressures at the end of the load; under a control at the load 1.
+SharedEnvironment environment_at_end(const Conditions& conditions) {
+  const double end = conditions.programme().end();
+  return conditions.environment(conditions.control() ? LoadPoint(end, 1.0) : LoadPoint(end));
+}
+
 }  // namespace
 
 Exit check_tangent(const Case& from, const std::string& deformation, int threads) {
@@ -274,16 +282,24 @@ Exit check_tangent(const Case& from, const std::string& deformation, int threads
   const std::size_t dofs = displacement.size();
   std::vector<double> gradient(dofs), image(dofs), shifted(dofs), forward(dofs), backward(dofs);
   const History history = assembler.initial_history();
-  const Evaluation found = assembler.gradient({displacement, history}, gradient);
+  const SharedEnvironment environment = environment_at_end(*body.conditions);
+  const auto at = [&](const std::vector<double>& place) {
+    return StateView{place, history, Damage::grows, environment};
+  };
+  const Evaluation found = assembler.gradient(at(displacement), gradient);
   if (found.degenerate) {
     throw InputError("--deformation", '"' + text + '"', "collapses a bond to zero length");
   }
   Tangent tangent(assembler);
-  assembler.tangent({displacement, history}, tangent);
+  assembler.tangent(at(displacement), tangent);
   std::vector<double> direction = test_direction(points);
   const double largest_step = keep_off_kinks(body, displacement, gradient, direction, 0.05);
   tangent.multiply(direction, image);
-  const double slope = dot(gradient, direction), curvature = dot(image, direction);
+  // Forces that follow the deformation have no part in the energy.
+  std::vector<double> follower_force(dofs);
+  assembler.follower_force(at(displacement), follower_force);
+  const double slope = dot(gradient, direction) + dot(follower_force, direction);
+  const double curvature = dot(image, direction);
   // At a state without forces the slope is round-off: there the energy of a unit step is the scale.
   constexpr double no_slope = 1e-10;
   const double energy_scale =
@@ -299,10 +315,10 @@ Exit check_tangent(const Case& from, const std::string& deformation, int threads
   for (int k = 0; k < halvings; ++k, step *= 0.5) {
     shifted = displacement;
     add_scaled(shifted, step, direction);
-    const double energy_forward = assembler.gradient({shifted, history}, forward).energy;
+    const double energy_forward = assembler.gradient(at(shifted), forward).energy;
     shifted = displacement;
     add_scaled(shifted, -step, direction);
-    const double energy_backward = assembler.gradient({shifted, history}, backward).energy;
+    const double energy_backward = assembler.gradient(at(shifted), backward).energy;
     const double difference = (energy_forward - energy_backward) / (2.0 * step);
     residual_errors.push_back(std::abs(difference - slope) / energy_scale);
     add_scaled(forward, -1.0, backward);
@@ -315,7 +331,7 @@ Exit check_tangent(const Case& from, const std::string& deformation, int threads
   for (const double entry : direction) fastest = std::max(fastest, std::abs(entry));
   const double sample_step = std::min(0.01 * points.spacing, 0.25 * largest_step * fastest);
   const double asymmetry = asymmetry_of(
-      differenced_block(assembler, {displacement, history}, sample, sample_step), sample.size());
+      differenced_block(assembler, at(displacement), sample, sample_step), sample.size());
 
   const Convergence of_residual = convergence_of(residual_errors);
   const Convergence of_tangent = convergence_of(tangent_errors);

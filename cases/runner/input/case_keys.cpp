@@ -408,28 +408,30 @@ Key<LoadSpecification> load_value(LoadSpecification::Kind kind, const std::strin
 /// Where a load acts depends on its kind.
 void check_place_of_load(const Entry& at, const LoadSpecification& load) {
   using Kind = LoadSpecification::Kind;
-  const bool is_on_boundary = load.kind == Kind::traction;
-  for (const std::string key : {"side", "depth"}) {
-    if (!is_on_boundary && at.from.has(key)) at.from.refuse(key, "is for a traction");
-  }
+  const bool is_on_boundary = load.kind == Kind::traction || load.kind == Kind::pressure;
+  if (!is_on_boundary && at.from.has("side"))
+    at.from.refuse("side", "is for a traction or a pressure");
+  if (load.kind != Kind::traction && at.from.has("depth"))
+    at.from.refuse("depth", "is for a traction");
   const bool needs_set = load.kind == Kind::body_force || load.kind == Kind::total_force;
   if (needs_set) static_cast<void>(at.from.string("set"));
   if (is_on_boundary && load.set.empty() && !load.side)
-    at.refuse("a traction needs a side or a set that it acts on");
+    at.refuse(std::string("a ") + load_key(load.kind) + " needs a side or a set that it acts on");
 }
 
 Table<LoadSpecification> load_keys() {
   using Spec = LoadSpecification;
   using K = Key<Spec>;
   using Kind = Spec::Kind;
-  const auto is_on_boundary = [](auto& load, auto&) { return load.kind == Kind::traction; };
+  const auto is_traction = [](auto& load, auto&) { return load.kind == Kind::traction; };
+  constexpr auto pressure = [](auto& load) -> auto& { return load.value[0]; };
   return {
       "load",
       {K("set", &Spec::set, known_set(), "that is loaded")
            .early()
            .written_if([](auto& load, auto&) { return !load.set.empty(); })
            .default_words("required, but for `gravity`, which then acts on the whole body, and "
-                          "`traction` with a `side`"),
+                          "`traction` and `pressure` with a `side`"),
        load_value(Kind::body_force, "N/m3", "force density per component"),
        load_value(Kind::total_force, "N",
                   "force on the whole set per component, spread in proportion to the volume"),
@@ -438,15 +440,22 @@ Table<LoadSpecification> load_keys() {
        load_value(Kind::traction, "Pa",
                   "force per area per component on a flat part of the boundary, which keeps "
                   "its direction; on a lattice only"),
+       K("pressure", pressure, scalar_field("Pa"),
+         "on the exposed faces of the cells of the set's points, or of a side: it follows them "
+         "as they deform, and pushes where it is positive; on a lattice only")
+           .then([](auto&, auto& load) { load.kind = Kind::pressure; })
+           .written_if([](auto& load, auto&) { return load.kind == Kind::pressure; })
+           .one_of(),
        K("side", &Spec::side, optional_side(),
-         "`traction`: the body's outermost plane of points on a side, as of "
+         "`traction`, `pressure`: the body's outermost plane of points on a side, as of "
          "`[[lattice.layer]]`")
            .written_if([](auto& load, auto&) { return load.side.has_value(); })
-           .default_words("`traction`: this or a `set` in one plane of points is required"),
+           .default_words("`traction`, `pressure`: this or a `set` is required, for a traction "
+                          "one in one plane of points"),
        K("depth", &Spec::depth, choice<Depth>({{"row", Depth::row}, {"horizon", Depth::horizon}}),
          "`traction`: borne by the outermost row of points, or spread evenly over a horizon "
          "below the boundary")
-           .written_if(is_on_boundary)},
+           .written_if(is_traction)},
       {},
       check_place_of_load};
 }
@@ -624,6 +633,10 @@ void check_tangent(const Entry& at, const SolverSpecification& solver) {
         "does not go with this solver.linear or solver.preconditioner, which need the stored "
         "tangent");
   if (is_cpd(at.so_far)) at.refuse("is for material.model = \"bond\"");
+  for (const LoadSpecification& load : at.so_far.loads) {
+    if (load.kind == LoadSpecification::Kind::pressure)
+      at.refuse("does not go with a [[load]] pressure, whose stiffness has to be stored");
+  }
 }
 
 void check_stand_in(const Entry& at, const SolverSpecification& solver) {

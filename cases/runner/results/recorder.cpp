@@ -52,6 +52,8 @@ void Recorder::accepted(StepRecord record, const AcceptedState& state) {
   const StateView at = state.trial.at();
   std::vector<double> force = state.trial.gradient;
   for (double& component : force) component = -component;
+  const std::vector<double>& follower_force = state.trial.follower_force;
+  for (std::size_t k = 0; k < follower_force.size(); ++k) force[k] -= follower_force[k];
   Fields made = fields(at, std::move(force), state.piece);
   record.max_stretch = *std::max_element(made.stretch.begin(), made.stretch.end());
   record.max_damage = made.max_damage;
