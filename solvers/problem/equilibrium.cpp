@@ -121,10 +121,7 @@ double environment_norm(const EquilibriumProblem& problem, const StateView& at,
   if (!at.environment) return 0.0;
   std::vector<double> without(gradient.size());
   static_cast<void>(problem.assembler.gradient({at.displacement, at.history, at.damage}, without));
-  return norm_of(problem.free.dof.size(), [&](std::size_t e) {
-    const Index dof = problem.free.dof[e];
-    return gradient[dof] - without[dof];
-  });
+  return norm_of(gradient.size(), [&](std::size_t dof) { return gradient[dof] - without[dof]; });
 }
 
 void evaluate(const EquilibriumProblem& problem, std::span<const double> external_force,

@@ -70,7 +70,8 @@ struct Trial {
 /// it would add to the energy in the one and in the other, with the damage that is there.
 [[nodiscard]] double heating_work(Assembler& assembler, const StateView& from, const StateView& to);
 
-/// Norm of what the environment adds to the forces of a state, on free degrees of freedom [N].
+/// Norm of what the environment adds to the forces of a state [N]: a scale for residuals, since
+/// where nothing holds a body that grows no other force is left.
 /// @param gradient there
 [[nodiscard]] double environment_norm(const EquilibriumProblem& problem, const StateView& at,
                                       std::span<const double> gradient);

@@ -79,12 +79,15 @@ class Faces {
     return entry->second;
   }
 
+  /// The body's points in the cells around a corner and in those next to them.
   std::vector<Index> points_around(const LatticeCell& corner) const {
     std::vector<Index> around;
-    for (int octant = 0; octant < 1 << points_.dimension; ++octant) {
+    constexpr std::array<int, 4> offsets{-3, -1, 1, 3};
+    const int last = points_.dimension == 1 ? 4 : points_.dimension == 2 ? 16 : 64;
+    for (int k = 0; k < last; ++k) {
       LatticeCell cell{};
-      for (int c = 0; c < points_.dimension; ++c) {
-        cell[c] = (corner[c] + ((octant >> c & 1) != 0 ? 1 : -1)) / 2;
+      for (int c = 0, rest = k; c < points_.dimension; ++c, rest /= 4) {
+        cell[c] = (corner[c] + offsets[std::size_t(rest % 4)]) / 2;
       }
       const Index point = cells_.point(cell);
       if (point >= 0) around.push_back(point);

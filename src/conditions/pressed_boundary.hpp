@@ -11,11 +11,12 @@
 namespace peristat {
 
 /// Exposed faces of the cells of a lattice body, to which pressures are applied. The corner of a
-/// face moves with the mean of the body's points whose cells meet in it, so that faces stay
+/// face moves with points of the body around it, the same for all its faces, so that these stay
 /// together as the body deforms.
 struct PressedBoundary {
-  std::vector<Coordinates> corner;           ///< in the reference [m]
-  std::vector<std::vector<Index>> adjacent;  ///< points, per corner
+  std::vector<Coordinates> corner;  ///< in the reference [m]
+  std::vector<std::vector<Index>>
+      adjacent;  ///< the body's points within a cell and a half of each corner
   /// Corners of each face, seen from outside counter-clockwise: 1, 2 or 4 in 1D, 2D, 3D.
   std::vector<std::array<Index, 4>> face;
   std::vector<double> sign;         ///< 1D: of the outward normal, per face

@@ -165,20 +165,26 @@ class Conditions:
 
     def follower_force(self, load, displacement):
         """Pressures on the exposed faces of cells [N]: minus the pressure times the gradient of the volume that the
-        faces and the origin span, less what the rims of an open boundary add to it; a corner moves with the mean of
-        the points around it."""
+        faces and the origin span, less what the rims of an open boundary add to it; a corner moves with the points
+        around it by the smallest weights that are exact for linear fields."""
         total = numpy.zeros(displacement.shape, numpy.asarray(displacement).dtype)
         for table in self.case.get("load"):
             if "pressure" not in table:
                 continue
             corners, faces, around = self.faces(table)
-            places = numpy.array([corner + displacement[points].mean(axis=0) for corner, points in zip(corners, around)])
+            weights = [self.linear_weights(corner, points) for corner, points in zip(corners, around)]
+            places = numpy.array([corner + weight @ displacement[points]
+                                  for corner, weight, points in zip(corners, weights, around)])  # fmt: skip
             centres = numpy.array([corners[list(face)].mean(axis=0) for face, _ in faces])
             pressures = evaluate(table["pressure"], centres, load, self.spacing) * self.case.cross_section
             for (face, sign), pressure in zip(faces, pressures):
                 for corner, force in zip(face, face_forces(places[list(face)])):
-                    total[around[corner]] -= sign * pressure * force / len(around[corner])
+                    total[around[corner]] -= sign * pressure * numpy.outer(weights[corner], force)
         return total
+
+    def linear_weights(self, corner, points):
+        sums = numpy.vstack([numpy.ones(len(points)), (self.reference[points] - corner).T / self.spacing])
+        return numpy.linalg.pinv(sums)[:, 0]
 
     def faces(self, table):
         """Corners in the reference, faces as corner numbers with the sign of their normal, points around corners."""
@@ -213,7 +219,7 @@ class Conditions:
                     face.append(numbers.setdefault(tuple(corner), len(numbers)))
                 faces.append((tuple(face), sign))
         corners = low + numpy.array(list(numbers), float) * self.spacing / 2
-        around = [[k for place, k in body.items() if (numpy.abs(2 * numpy.array(place) - corner) == 1).all()]
+        around = [[k for place, k in body.items() if (numpy.abs(2 * numpy.array(place) - corner) <= 3).all()]
                   for corner in numbers]  # fmt: skip
         return corners, faces, around
 

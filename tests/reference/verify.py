@@ -161,7 +161,7 @@ class Verification:
         norms = [numpy.linalg.norm(part) for part in (external, reactions[prescribed], out_of_balance[prescribed])]
         # The jump that a step begins with is measured with the damage held.
         norms.append(numpy.linalg.norm((mechanics.gradient(jumped, past, held=True) - external)[~prescribed]))
-        norms.append(numpy.linalg.norm(self.of_environment(mechanics, step, old, past)[~prescribed]))
+        norms.append(numpy.linalg.norm(self.of_environment(mechanics, step, old, past)))
         scale = max(norms)
         floor = 8 * UNIT_ROUND_OFF * (numpy.linalg.norm(magnitude) + self.whole_force(mechanics, step))
         residual = numpy.linalg.norm(out_of_balance[free])

@@ -7,6 +7,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "src/core/input_error.hpp"
+#include "src/core/number_text.hpp"
 #include "src/measures/small_algebra.hpp"
 
 namespace peristat {
@@ -28,10 +30,10 @@ class ElementAt {
       const auto corner = std::size_t(element.corner[k]);
       const std::vector<Index>& adjacent = boundary.adjacent[corner];
       place_[k] = boundary.corner[corner];
-      for (const Index point : adjacent) {
+      const std::vector<double>& weights = term.weights(element.corner[k]);
+      for (std::size_t p = 0; p < adjacent.size(); ++p) {
         for (int c = 0; c < dimension_; ++c) {
-          place_[k][c] +=
-              at.displacement[std::size_t(point) * dimension_ + c] / double(adjacent.size());
+          place_[k][c] += weights[p] * at.displacement[std::size_t(adjacent[p]) * dimension_ + c];
         }
       }
     }
@@ -93,14 +95,61 @@ void for_each_pair(const PressureTerm& term, const PressureTerm::Element& elemen
   const auto& adjacent = term.boundary().adjacent;
   for (int x = 0; x < corners; ++x) {
     const std::vector<Index>& of_x = adjacent[std::size_t(element.corner[x])];
+    const std::vector<double>& weights_x = term.weights(element.corner[x]);
     for (int y = 0; y < corners; ++y) {
       const std::vector<Index>& of_y = adjacent[std::size_t(element.corner[y])];
-      const double share = 1.0 / double(of_x.size() * of_y.size());
-      for (const Index i : of_x) {
-        for (const Index j : of_y) visit(x, y, i, j, share);
+      const std::vector<double>& weights_y = term.weights(element.corner[y]);
+      for (std::size_t p = 0; p < of_x.size(); ++p) {
+        for (std::size_t q = 0; q < of_y.size(); ++q) {
+          visit(x, y, of_x[p], of_y[q], weights_x[p] * weights_y[q]);
+        }
       }
     }
   }
+}
+
+/// The smallest weights that are exact for linear fields: sum w = 1, sum w (X - corner) = 0. With A
+/// the matrix of these sums w = A^T (A A^T)^-1 (1, 0, 0, 0), by elimination with places in
+/// spacings.
+std::vector<double> linear_weights(const Points& points, const std::vector<Index>& around,
+                                   const Coordinates& corner) {
+  constexpr double singular = 1e-6;  // of a matrix of whole and half numbers
+  const int size = points.dimension + 1;
+  std::vector<std::array<double, 4>> columns;
+  for (const Index point : around) {
+    const Coordinates at = points.position(point);
+    std::array<double, 4> column{1.0};
+    for (int c = 0; c < points.dimension; ++c) {
+      column[std::size_t(c) + 1] = (at[c] - corner[c]) / points.spacing;
+    }
+    columns.push_back(column);
+  }
+  std::array<std::array<double, 5>, 4> rows{};
+  for (int r = 0; r < size; ++r) {
+    for (int c = 0; c < size; ++c) {
+      for (const auto& column : columns) rows[r][c] += column[r] * column[c];
+    }
+  }
+  rows[0][4] = 1.0;
+  for (int pivot = 0; pivot < size; ++pivot) {  // symmetric and positive definite: no exchanges
+    if (!(rows[pivot][pivot] > singular)) {
+      throw InputError("loads", "",
+                       "a pressure needs a body of two points or more across, but at " +
+                           place_text(corner, points.dimension) + " m it has one");
+    }
+    for (int r = 0; r < size; ++r) {
+      if (r == pivot) continue;
+      const double factor = rows[r][pivot] / rows[pivot][pivot];
+      for (int c = 0; c < 5; ++c) rows[r][c] -= factor * rows[pivot][c];
+    }
+  }
+  std::vector<double> weights;
+  for (const auto& column : columns) {
+    double weight = 0.0;
+    for (int r = 0; r < size; ++r) weight += column[r] * rows[r][4] / rows[r][r];
+    weights.push_back(weight);
+  }
+  return weights;
 }
 
 bool acts(const StateView& at) { return at.environment && !at.environment->pressure.empty(); }
@@ -175,9 +224,10 @@ class PressurePasses : public TermPasses {
       const Vector3 pull = there.pull();
       for (int k = 0; k < there.corners(); ++k) {
         const auto& adjacent = term_.boundary().adjacent[std::size_t(element.corner[k])];
-        for (const Index point : adjacent) {
+        const std::vector<double>& weights = term_.weights(element.corner[k]);
+        for (std::size_t p = 0; p < adjacent.size(); ++p) {
           for (std::size_t c = 0; c < d; ++c) {
-            to[std::size_t(point) * d + c] += factor * pull[c] / double(adjacent.size());
+            to[std::size_t(adjacent[p]) * d + c] += factor * weights[p] * pull[c];
           }
         }
       }
@@ -200,6 +250,9 @@ class PressurePasses : public TermPasses {
 
 PressureTerm::PressureTerm(const Points& points, PressedBoundary boundary)
     : points_(points), boundary_(std::move(boundary)) {
+  for (std::size_t k = 0; k < boundary_.corner.size(); ++k) {
+    weights_.push_back(linear_weights(points, boundary_.adjacent[k], boundary_.corner[k]));
+  }
   for (std::size_t f = 0; f < boundary_.face.size(); ++f) {
     const auto& [a, b, c, d] = boundary_.face[f];
     const auto number = Index(f);

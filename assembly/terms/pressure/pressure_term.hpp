@@ -13,7 +13,8 @@ namespace peristat {
 ///
 ///   -p A n / corners   at each corner of an edge or triangle with the area vector A n,
 ///
-/// spread evenly over the points that the corner moves with. A quadrangle is the mean of its two
+/// spread over the points around the corner by the weights that it moves with: a linear field of
+/// displacements is theirs exactly, a rotation for one. A quadrangle is the mean of its two
 /// divisions into triangles. On a closed boundary a constant p has the potential p V, V the volume
 /// within, and forces and moments add up to zero. Elsewhere forces have no potential: the energy of
 /// the term is zero, its gradient minus the forces, and the tangent the symmetric part of their
@@ -22,6 +23,7 @@ namespace peristat {
 /// The pressure of each face is the environment's.
 class PressureTerm : public Term {
  public:
+  /// @throws InputError ("loads") where the body is but one point thick
   PressureTerm(const Points& points, PressedBoundary boundary);
 
   [[nodiscard]] Couplings couplings() const override { return {offset_, partner_}; }
@@ -47,10 +49,15 @@ class PressureTerm : public Term {
   };
   [[nodiscard]] const std::vector<Element>& elements() const { return elements_; }
   [[nodiscard]] const Points& points() const { return points_; }
+  /// Of a corner's points, in the order of the boundary; they add up to 1.
+  [[nodiscard]] const std::vector<double>& weights(Index corner) const {
+    return weights_[std::size_t(corner)];
+  }
 
  private:
   const Points& points_;
   PressedBoundary boundary_;
+  std::vector<std::vector<double>> weights_;
   std::vector<Element> elements_;
   std::vector<Offset> offset_;
   std::vector<Index> partner_;
