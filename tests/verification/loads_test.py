@@ -271,6 +271,7 @@ strain = "0.2*load"
             (HEATED, ('temperature.change="-1000*load"',), "must be above -1"),
             (HEATED.replace('change = "200*load"', ""), (), "temperature.change"),
             (HEATED, ('temperature.change="200*lod"',), "temperature.change"),
+            (HEATED, ("solver.fragments=remove",), "could not grow or shrink"),
         ):
             with self.subTest(told=told):
                 words = [word for setting in settings for word in ("--set", setting)]

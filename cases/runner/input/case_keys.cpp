@@ -375,7 +375,7 @@ Table<MaterialSpecification> material_keys() {
          "sums or integrals")
            .unless(of_bond, for_cpd)
            .unless(has_constants, with_moduli),
-       K("thermal_expansion", &Spec::thermal_expansion, between(-1.0, 1.0, "1/K"),
+       K("thermal_expansion", &Spec::thermal_expansion, between(-1.0, 1.0, "per K"),
          "of lengths, α: for `[temperature]`"),
        K("density", &Spec::density, positive("kg/m3"),
          "for gravity: dynamic relaxation has a density of its own"),
@@ -639,6 +639,14 @@ void check_tangent(const Entry& at, const SolverSpecification& solver) {
   }
 }
 
+/// A piece that stays where it is would be torn by what it can't take up.
+void check_fragments(const Entry& at, const SolverSpecification& solver) {
+  if (solver.fragments == FragmentRemedy::remove && at.so_far.eigenstrains.are_there())
+    at.refuse(
+        "does not go with eigenstrains or a temperature: a piece that left the equations could not "
+        "grow or shrink; take \"hold\"");
+}
+
 void check_stand_in(const Entry& at, const SolverSpecification& solver) {
   if (solver.elastic_horizon_ratio > 0.0 && at.so_far.material.damage.law == DamageLaw::none)
     at.refuse(
@@ -713,7 +721,9 @@ Table<SolverSpecification> solver_keys() {
                                  {"stop", FragmentRemedy::stop}}),
          "what becomes of pieces that come off: just enough of their degrees of freedom are pinned "
          "that they cannot move freely; they leave the equations and stay where they are; the run "
-         "ends with outcome `fragmented`"),
+         "ends with outcome `fragmented`")
+           .then(check_fragments)
+           .moreover("not `\"remove\"` with eigenstrains or a temperature"),
        K("elastic_horizon_ratio", &Spec::elastic_horizon_ratio, between(1.0, 1e3),
          "mode `adaptive`: horizon / spacing of an elastic body that stands in for the real one "
          "until damage begins; with model `bond`, `youngs_modulus` and a damage law")
