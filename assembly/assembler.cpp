@@ -1,5 +1,6 @@
 #include "assembly/assembler.hpp"
 
+#include <algorithm>
 #include <stdexcept>
 
 #include "src/core/stopwatch.hpp"
@@ -56,12 +57,17 @@ Evaluation Assembler::gradient(const StateView& at, std::span<double> gradient) 
 }
 
 Evaluation Assembler::commit(std::span<const double> displacement, History& history,
-                             std::span<double> gradient) {
+                             std::span<double> gradient, const SharedEnvironment& environment) {
   Evaluation found;
   for_each_term([&](TermPasses& term, Write how) {
-    found += term.commit(displacement, history, gradient, how);
+    found += term.commit(displacement, environment, history, gradient, how);
   });
   return found;
+}
+
+void Assembler::follower_force(const StateView& at, std::span<double> force) {
+  std::fill(force.begin(), force.end(), 0.0);
+  for_each_term([&](TermPasses& term, Write) { term.follower_force(at, force); });
 }
 
 DamageGrowth Assembler::growth(const StateView& at) {

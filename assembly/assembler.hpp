@@ -43,7 +43,11 @@ class Assembler : public Energy {
   /// that stand on bonds after their loss. Only accepted states are committed, and in relaxation
   /// that breaks bonds on the way, every iteration.
   Evaluation commit(std::span<const double> displacement, History& history,
-                    std::span<double> gradient = {});
+                    std::span<double> gradient = {}, const SharedEnvironment& environment = {});
+
+  /// Forces of loads that follow the deformation [N], every entry overwritten. They have no part in
+  /// E; in dE/dx they are, with the other sign.
+  void follower_force(const StateView& at, std::span<double> force);
 
   /// What committing a state would damage.
   [[nodiscard]] DamageGrowth growth(const StateView& at);

@@ -3,9 +3,11 @@
 #include <concepts>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "assembly/energy/history.hpp"
+#include "src/conditions/environment.hpp"
 #include "src/core/types.hpp"
 
 namespace peristat {
@@ -17,6 +19,7 @@ struct State {
   History history{};
   /// First load parameter, where a control has found it; nothing: the loading programme's.
   std::optional<double> load = std::nullopt;
+  SharedEnvironment environment = nullptr;  ///< that of its load point
 };
 
 /// Bonds that are stretched beyond their histories: they soften, or follow their secants as if they
@@ -24,19 +27,27 @@ struct State {
 enum class Damage { grows, held };
 
 /// Where energy, gradient, tangent and product are evaluated: a view of a displacement and of the
-/// history that it comes after. Both must outlive the view.
+/// history that it comes after, which must outlive the view, and what the load makes of the energy.
 struct StateView {
   template <std::convertible_to<std::span<const double>> Displacement>
-  StateView(const Displacement& at, const History& after = none(), Damage rule = Damage::grows)
-      : displacement(at), history(after), damage(rule) {}
+  StateView(const Displacement& at, const History& after = none(), Damage rule = Damage::grows,
+            SharedEnvironment under = nullptr)
+      : displacement(at), history(after), damage(rule), environment(std::move(under)) {}
   StateView(const State& state, Damage rule = Damage::grows)
-      : StateView(state.displacement, state.history, rule) {}
+      : StateView(state.displacement, state.history, rule, state.environment) {}
 
   std::span<const double> displacement;  ///< points x dimension, row major [m]
   const History& history;                ///< of the same model
   Damage damage;
   /// Of rigid sets that turn, see Constraints::curvature; empty: none do, or nobody asks for it.
   std::span<const Tensor> curvature{};
+  SharedEnvironment environment;
+
+  /// Per point, or empty.
+  [[nodiscard]] std::span<const double> eigenstretch() const {
+    return environment ? std::span<const double>(environment->eigenstretch)
+                       : std::span<const double>();
+  }
 
  private:
   static const History& none() {

@@ -22,6 +22,7 @@ void MatrixFreeTangent::linearise(Energy& energy, const StateView& at, double pr
   displacement_.assign(at.displacement.begin(), at.displacement.end());
   history_ = at.history;
   damage_ = at.damage;
+  environment_ = at.environment;
   projection_ = projection;
   energy.visit_tangent(
       at, projection, [](int, Index, std::span<const double>) {}, diagonal);

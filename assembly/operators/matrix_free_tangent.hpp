@@ -17,12 +17,13 @@ struct MatrixFreeTangent : TangentOperator {
   void for_each_row(const RowVisitor& visit) const override;
 
  private:
-  [[nodiscard]] StateView at() const { return {displacement_, history_, damage_}; }
+  [[nodiscard]] StateView at() const { return {displacement_, history_, damage_, environment_}; }
 
   Energy* energy_;
   std::vector<double> displacement_;
   History history_;
   Damage damage_ = Damage::grows;
+  SharedEnvironment environment_;
   double projection_ = 0.0;
 };
 

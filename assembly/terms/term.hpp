@@ -32,10 +32,15 @@ class TermPasses {
 
   /// As `gradient`, and moves the term's history to the state: E is what is stored after that.
   /// Terms before it have committed already.
-  virtual Evaluation commit(std::span<const double> displacement, History& history,
+  virtual Evaluation commit(std::span<const double> displacement,
+                            const SharedEnvironment& environment, History& history,
                             std::span<double> gradient, Write how) {
-    return this->gradient({displacement, history}, gradient, how);
+    return this->gradient({displacement, history, Damage::grows, environment}, gradient, how);
   }
+
+  /// Adds the forces of loads that follow the deformation [N]: the gradient holds them with the
+  /// other sign.
+  virtual void follower_force(const StateView&, std::span<double> /*force*/) {}
 
   /// What committing the state would damage.
   virtual DamageGrowth growth(const StateView&) { return {}; }

@@ -50,11 +50,13 @@ Attempt undefined_attempt(const State& from, const LoadPoint& at) {
   attempt.at = at;
   attempt.state.displacement = from.displacement;
   attempt.state.history = from.history;
+  attempt.state.environment = from.environment;
   return attempt;
 }
 
 State state_of(const Attempt& attempt) {
-  return {attempt.state.displacement, attempt.at.stage, attempt.state.history, attempt.at.load};
+  return {attempt.state.displacement, attempt.at.stage, attempt.state.history, attempt.at.load,
+          attempt.state.environment};
 }
 
 bool worth_cutting(const Attempt& attempt) {

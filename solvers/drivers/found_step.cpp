@@ -57,8 +57,8 @@ void commit(Path& path, Attempt& attempt, FoundStep& found,
             const std::function<Outcome()>& equilibrate) {
   Assembler& assembler = path.body().assembler;
   for (int pass = 0; pass < most_commits; ++pass) {
-    const Evaluation committed =
-        assembler.commit(attempt.state.displacement, attempt.state.history);
+    const Evaluation committed = assembler.commit(attempt.state.displacement, attempt.state.history,
+                                                  {}, attempt.state.environment);
     found.growth.degrading += committed.growth.degrading;
     found.growth.breaking += committed.growth.breaking;
     found.energies.released += committed.released;
@@ -75,6 +75,7 @@ std::string complete(Path& path, Attempt& attempt, FoundStep& found) {
   std::vector<double> damage(std::size_t(assembler.points().count()));
   const DamageState damaged = assess_damage(assembler.model(), attempt.state.history, {}, damage);
   found.record.broken_bonds = damaged.broken_bonds;
+  found.energies.heating = heating_work(assembler, path.state().accepted, attempt.state.at());
   found.ledger = ledger.with_step(path.state().accepted.displacement, attempt.state,
                                   path.working_force(attempt.state, attempt.external_force),
                                   damaged.dissipated_energy, found.energies);

@@ -104,8 +104,8 @@ void ImplicitStepping::run_avalanche(ImplicitStep& step) {
   int passes = 0;
   for (int iterations = attempt.iterations; attempt.has_converged(); ++passes) {
     Assembler& assembler = path_.damaged();
-    const Evaluation committed =
-        assembler.commit(attempt.state.displacement, attempt.state.history);
+    const Evaluation committed = assembler.commit(attempt.state.displacement, attempt.state.history,
+                                                  {}, attempt.state.environment);
     step.found.growth.degrading += committed.growth.degrading;
     step.found.growth.breaking += committed.growth.breaking;
     step.found.energies.released += committed.released;

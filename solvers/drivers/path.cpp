@@ -13,11 +13,12 @@ Path::Path(const PathSetting& setting) : setting_(setting) {
   Trial reference;
   reference.displacement.assign(conditions.prescribed().size(), 0.0);
   reference.history = damaged().initial_history();
+  reference.environment = conditions.environment(0.0);
   std::vector<double> external_force(reference.displacement.size());
   conditions.external_force(0.0, external_force);
   evaluate(problem(), external_force, reference);
   state_.ledger.begin(reference, working_force(reference, external_force));
-  state_.accepted = {reference.displacement, 0.0, reference.history};
+  state_.accepted = {reference.displacement, 0.0, reference.history, {}, reference.environment};
   note_rungs();
 }
 
@@ -26,6 +27,7 @@ Path::Path(const PathSetting& setting, PathState from)
   if (state_.stands_in && !setting.stand_in) {
     throw std::logic_error("a path that its stand-in carries goes on with the stand-in");
   }
+  state_.accepted.environment = setting.conditions.environment(load_point(state_.accepted));
   number_equations();
 }
 
@@ -68,6 +70,7 @@ std::optional<std::string> Path::refusal_of_conditions(double stage) const {
   try {
     setting_.conditions.prescribe(stage, values);
     setting_.conditions.external_force(stage, values);
+    static_cast<void>(setting_.conditions.environment(stage));
   } catch (const InputError& error) {
     return description(error);
   }
@@ -98,7 +101,8 @@ Attempt Path::search_by_control(const State& from, double target, const NewtonOp
 void Path::find_control_sign() {
   const SolvedBody& solved = body();
   const State rest{std::vector<double>(state_.accepted.displacement.size(), 0.0), 0.0,
-                   solved.assembler.initial_history()};
+                   solved.assembler.initial_history(), 0.0,
+                   setting_.conditions.environment({0.0, 0.0})};
   std::vector<double> rate;
   const auto loads = [](double load) { return LoadPoint(0.0, load); };
   if (find_rate(problem(), solved.solver, solved.tangent, {rest}, loads, 0.0, rate) !=

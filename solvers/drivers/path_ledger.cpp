@@ -28,6 +28,7 @@ std::vector<double> working_force(const Conditions& conditions, const Trial& sta
   std::vector<double> force(external_force.begin(), external_force.end());
   for (std::size_t dof = 0; dof < force.size(); ++dof) {
     if (prescribed[dof] && !dependent[dof]) force[dof] = state.gradient[dof];
+    if (!state.follower_force.empty()) force[dof] += state.follower_force[dof];
   }
   return force;
 }
@@ -41,7 +42,8 @@ void PathLedger::begin(const Trial& state, std::vector<double> working) {
 Ledger PathLedger::with_step(std::span<const double> displacement_before, const Trial& state,
                              std::span<const double> working, double dissipated,
                              const StepEnergies& step) const {
-  const double work = trapezoidal_work(force, working, displacement_before, state.displacement);
+  const double work =
+      trapezoidal_work(force, working, displacement_before, state.displacement) + step.heating;
   Ledger after = entries;
   after.stored = state.stored_energy;
   after.dissipated = dissipated + released + step.released;

@@ -12,8 +12,9 @@ namespace peristat {
 /// What a step has turned over, beside what follows from the states before and after it [J].
 struct StepEnergies {
   double released = 0.0;  ///< see Evaluation::released
+  double heating = 0.0;   ///< see heating_work
   struct Relaxed {
-    double work = 0.0;     ///< of supports and loads
+    double work = 0.0;     ///< of supports, loads and heating
     double drained = 0.0;  ///< see RelaxationResult
   };
   std::optional<Relaxed> relaxed;  ///< summed over the iterations of relaxation
@@ -25,15 +26,14 @@ struct StepEnergies {
 /// Forces that do work on the body: loads, and on prescribed degrees of freedom what holds them,
 /// which is dE/dx there. Pins of fragments do none: they don't move, and when they are taken away
 /// nothing follows them. Constraints do none either: what follows others bears its loads alone.
-[[nodiscard]] std::vector<double> working_force(const Conditions& conditions,
-                                                const Trial& state,
+[[nodiscard]] std::vector<double> working_force(const Conditions& conditions, const Trial& state,
                                                 std::span<const double> external_force);
 
 /// Energies of the accepted steps of a load path. A value.
 ///
 /// External work is summed with the trapezoidal rule over each step, of the loads on the free and
-/// of the reactions on the prescribed degrees of freedom. Relaxation sums the work over each of its
-/// iterations, too: what that is more is the numerical work.
+/// of the reactions on the prescribed degrees of freedom, and of heating. Relaxation sums the work
+/// over each of its iterations, too: what that is more is the numerical work.
 struct PathLedger {
   Ledger entries;
   double released = 0.0;      ///< by triangles and tetrahedra whose bonds were damaged [J]

@@ -48,6 +48,7 @@ RelaxedStep::RelaxedStep(const State& accepted) {
   found.energies.relaxed.emplace();
   attempt.state.displacement = accepted.displacement;
   attempt.state.history = accepted.history;
+  attempt.state.environment = accepted.environment;
   attempt.at = load_point(accepted);
 }
 

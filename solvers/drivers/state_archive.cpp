@@ -54,7 +54,8 @@ void transfer_pins(StateArchive& archive, FragmentPins& pins) {
 void transfer(StateArchive& archive, PathState& state) {
   auto& [accepted, steps, ledger, pins, stands_in, rungs, relaxation_seconds, implicit, relaxed,
          control_sign, arc, hand_over] = state;
-  auto& [displacement, stage, history, load] = accepted;
+  // Made anew from the stage, see Path.
+  [[maybe_unused]] auto& [displacement, stage, history, load, environment] = accepted;
   archive.transfer("accepted/displacement", displacement);
   archive.transfer("accepted/stage", stage);
   transfer_optional(archive, "accepted/load", load);

@@ -56,6 +56,7 @@ Resultants resultants_of(const EquilibriumProblem& problem, const Trial& trial) 
       const std::size_t dof = std::size_t(i) * d + c;
       arm[c] = points.reference[dof] - centre[c] + trial.displacement[dof];
       force[c] = gradient[dof];
+      if (!trial.follower_force.empty()) force[c] += trial.follower_force[dof];
     }
     const Coordinates moment{arm[1] * force[2] - arm[2] * force[1],
                              arm[2] * force[0] - arm[0] * force[2],
@@ -74,6 +75,7 @@ std::string check_equilibrium(const EquilibriumProblem& problem, const FoundStat
   Trial again;
   again.displacement = found.trial.displacement;
   again.history = found.trial.history;
+  again.environment = found.trial.environment;
   evaluate(problem, found.external_force, again);
   // The committed histories may change the last digits of forces that were summed before.
   const double allowed = 2.0 * found.largest_residual;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "solvers/linear/vector_verbs.hpp"
 
@@ -116,11 +117,39 @@ void fold_followers(const EquilibriumProblem& problem, std::span<const double> e
   trial.curvature = constraints.curvature(trial.displacement, external_force, trial.gradient);
 }
 
+double heating_work(Assembler& assembler, const StateView& from, const StateView& to) {
+  const auto [before, after] = std::pair(from.environment, to.environment);
+  if (before == after || (before && after && *before == *after)) return 0.0;
+  const auto added_at = [&](const StateView& at) {
+    const auto energy_under = [&](const SharedEnvironment& environment) {
+      return assembler.energy({at.displacement, at.history, Damage::held, environment}).energy;
+    };
+    return energy_under(after) - energy_under(before);
+  };
+  return 0.5 * (added_at(from) + added_at(to));
+}
+
+double environment_norm(const EquilibriumProblem& problem, const StateView& at,
+                        std::span<const double> gradient) {
+  if (!at.environment) return 0.0;
+  std::vector<double> with(gradient.begin(), gradient.end()), without(gradient.size());
+  if (!problem.conditions.constraints().none()) {  // the gradient is folded
+    std::fill(with.begin(), with.end(), 0.0);
+    static_cast<void>(problem.assembler.gradient(at, with));
+  }
+  static_cast<void>(problem.assembler.gradient({at.displacement, at.history, at.damage}, without));
+  return norm_of(with.size(), [&](std::size_t dof) { return with[dof] - without[dof]; });
+}
+
 void evaluate(const EquilibriumProblem& problem, std::span<const double> external_force,
               Trial& trial, Damage damage) {
   move_followers(problem, trial);
   trial.gradient.resize(trial.displacement.size());
   const Evaluation found = problem.assembler.gradient(trial.at(damage), trial.gradient);
+  if (trial.environment && !trial.environment->pressure.empty()) {
+    trial.follower_force.resize(trial.displacement.size());
+    problem.assembler.follower_force(trial.at(damage), trial.follower_force);
+  }
   fold_followers(problem, external_force, trial);
   trial.stored_energy = found.energy;
   trial.total_energy = found.energy - dot(external_force, trial.displacement);

@@ -50,16 +50,18 @@ struct EquilibriumProblem {
 struct Trial {
   std::vector<double> displacement;  ///< [m]
   History history;                   ///< that it comes after
-  /// dE/dx [N], with what acts on followers folded onto what they follow (see Constraints).
+  SharedEnvironment environment;     ///< that of the load point
+  /// dE/dx [N] less the follower force, with what acts on followers folded onto what they follow.
   std::vector<double> gradient;
-  std::vector<Tensor> curvature{};  ///< of rigid sets, see Constraints
-  double stored_energy = 0.0;        ///< [J]
-  double total_energy = 0.0;         ///< stored energy - f_ext.u [J]
-  double residual_norm = 0.0;        ///< 2-norm of f_ext - dE/dx over free degrees of freedom [N]
+  std::vector<Tensor> curvature{};     ///< of rigid sets, see Constraints
+  std::vector<double> follower_force;  ///< of pressures [N]; empty: none
+  double stored_energy = 0.0;          ///< [J]
+  double total_energy = 0.0;           ///< stored energy - f_ext.u [J]
+  double residual_norm = 0.0;          ///< 2-norm of f_ext - dE/dx over free degrees of freedom [N]
   bool degenerate = false;
 
   [[nodiscard]] StateView at(Damage damage = Damage::grows) const {
-    StateView view(displacement, history, damage);
+    StateView view(displacement, history, damage, environment);
     view.curvature = curvature;
     return view;
   }
@@ -73,6 +75,16 @@ void move_followers(const EquilibriumProblem& problem, Trial& trial);
 /// Folds the gradient that the assembler has found onto what is followed.
 void fold_followers(const EquilibriumProblem& problem, std::span<const double> external_force,
                     Trial& trial);
+
+/// Work that heating does on the way between two states [J], by the trapezoidal rule: half of what
+/// it would add to the energy in the one and in the other, with the damage that is there.
+[[nodiscard]] double heating_work(Assembler& assembler, const StateView& from, const StateView& to);
+
+/// Norm of what the environment adds to the forces of a state [N]: a scale for residuals, since
+/// where nothing holds a body that grows no other force is left.
+/// @param gradient there
+[[nodiscard]] double environment_norm(const EquilibriumProblem& problem, const StateView& at,
+                                      std::span<const double> gradient);
 
 /// Moves what follows to the trial's displacement, and evaluates energy and gradient there after
 /// its history.

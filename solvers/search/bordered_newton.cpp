@@ -16,19 +16,41 @@ namespace {
 /// Step of the differences of conditions; a power of two, so that no digit of the unknown is lost.
 constexpr double difference = 0x1p-13;
 
-/// Rates of supports and loads, per degree of freedom.
+/// Rates of supports and loads, and of what the load changes of the internal forces, per degree of
+/// freedom.
 struct ConditionRates {
   std::vector<double> force, displacement;
 };
 
-ConditionRates between(const Conditions& conditions, const LoadPath& loads, double low,
-                       double high) {
+/// force -= the difference of dE/dx between two load points, both folded onto what is followed.
+void take_off_heating(Assembler& assembler, const Conditions& conditions, const StateView& at,
+                      const LoadPoint& low, const LoadPoint& high, std::vector<double>& force) {
+  StateView there = at;
+  there.environment = conditions.environment(high);
+  const bool follows = !conditions.constraints().none();
+  if (!there.environment && !follows) return;
+  std::vector<double> change(force.size());
+  if (there.environment) {
+    static_cast<void>(assembler.gradient(there, change));
+    std::vector<double> gradient(force.size());
+    there.environment = conditions.environment(low);
+    static_cast<void>(assembler.gradient(there, gradient));
+    add_scaled(change, -1.0, gradient);
+  }
+  if (follows) conditions.constraints().fold(at.displacement, force, change);
+  add_scaled(force, -1.0, change);
+}
+
+ConditionRates between(const EquilibriumProblem& problem, const StateView& at,
+                       const LoadPath& loads, double low, double high) {
+  const Conditions& conditions = problem.conditions;
   const std::size_t dofs = conditions.prescribed().size();
   ConditionRates rates{std::vector<double>(dofs), std::vector<double>(dofs, 0.0)};
   std::vector<double> before(dofs, 0.0);
   conditions.external_force(loads(low), before);
   conditions.external_force(loads(high), rates.force);
   add_scaled(rates.force, -1.0, before);
+  take_off_heating(problem.assembler, conditions, at, loads(low), loads(high), rates.force);
   std::fill(before.begin(), before.end(), 0.0);
   conditions.prescribe(loads(low), before);
   conditions.prescribe(loads(high), rates.displacement);
@@ -40,14 +62,16 @@ ConditionRates between(const Conditions& conditions, const LoadPath& loads, doub
 }
 
 /// Where an expression ends, sqrt(load) at zero for one, the difference is one-sided.
-ConditionRates rates_of(const Conditions& conditions, const LoadPath& loads, double at) {
+ConditionRates rates_of(const EquilibriumProblem& problem, const StateView& at,
+                        const LoadPath& loads, double unknown) {
+  const double low = unknown - difference, high = unknown + difference;
   try {
-    return between(conditions, loads, at - difference, at + difference);
+    return between(problem, at, loads, low, high);
   } catch (const InputError&) {
     try {
-      return between(conditions, loads, at, at + difference);
+      return between(problem, at, loads, unknown, high);
     } catch (const InputError&) {
-      return between(conditions, loads, at - difference, at);
+      return between(problem, at, loads, low, unknown);
     }
   }
 }
@@ -86,6 +110,7 @@ class BorderedSearch {
  private:
   Outcome search() {
     problem_.conditions.external_force(step_.loads(unknown_), external_force_);
+    current_.environment = problem_.conditions.environment(step_.loads(unknown_));
     evaluate(problem_, external_force_, current_, Damage::held);
     old_scale_ = load_norm();
     old_border_size_ = border_sum().size;
@@ -134,6 +159,7 @@ class BorderedSearch {
     const LoadPoint at = step_.loads(unknown_);
     problem_.conditions.prescribe(at, current_.displacement);
     problem_.conditions.external_force(at, external_force_);
+    current_.environment = problem_.conditions.environment(at);
     evaluate(problem_, external_force_, current_, options_.damage);
     result_.scale = options_.scale > 0.0 ? options_.scale : std::max(old_scale_, load_norm());
   }
@@ -155,7 +181,8 @@ class BorderedSearch {
     if (linear == LinearOutcome::singular && row.iteration > 1) return Outcome::degenerate;
     if (linear != LinearOutcome::solved) return outcome_of(linear);
 
-    const ConditionRates conditions = rates_of(problem_.conditions, step_.loads, unknown_);
+    const ConditionRates conditions =
+        rates_of(problem_, current_.at(damage), step_.loads, unknown_);
     std::vector<double> rate;
     linear = linearisation_.solve_again(conditions.force, conditions.displacement,
                                         options_.linear_tolerance, rate);
@@ -214,7 +241,8 @@ class BorderedSearch {
       const bool is_free = problem_.free.equation[dof] != FreeDofs::none;
       return is_free ? 0.0 : current_.gradient[dof] - external_force_[dof];
     });
-    return std::max(norm(external_force_), reactions);
+    return std::max({norm(external_force_), reactions,
+                     environment_norm(problem_, current_.at(), current_.gradient)});
   }
 
   [[nodiscard]] bool has_converged() {
@@ -271,7 +299,7 @@ LinearOutcome find_rate(const EquilibriumProblem& problem, LinearSolver& solver,
   tangent.linearise(problem.assembler, at, 0.0);
   LinearOutcome outcome = solver.factorize(tangent, FactorUse::factorize_now);
   if (outcome != LinearOutcome::solved) return outcome;
-  const ConditionRates conditions = rates_of(problem.conditions, loads, unknown);
+  const ConditionRates conditions = rates_of(problem, at, loads, unknown);
   constexpr double tolerance = 1e-12;
   outcome = Linearisation(problem, solver, tangent, {})
                 .solve_again(conditions.force, conditions.displacement, tolerance, rate);

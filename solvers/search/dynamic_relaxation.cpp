@@ -34,6 +34,8 @@ class Way {
     problem.conditions.external_force(from.stage, force0_);
     problem.conditions.external_force(stage, force1_);
     const std::vector<char>& dependent = problem.conditions.constraints().dependent();
+    environment0_ = from.environment;
+    environment1_ = problem.conditions.environment(stage);
     for (std::size_t dof = 0; dof < displacement0_.size(); ++dof) {
       const bool is_free = problem.free.equation[dof] != FreeDofs::none;
       if (!is_free && !dependent[dof]) prescribed_.push_back(Index(dof));
@@ -46,6 +48,11 @@ class Way {
   [[nodiscard]] const std::vector<double>& end_displacement() const { return displacement1_; }
   [[nodiscard]] const std::vector<double>& end_force() const { return force1_; }
 
+  [[nodiscard]] const SharedEnvironment& end_environment() const { return environment1_; }
+
+  [[nodiscard]] SharedEnvironment environment(double share) const {
+    return between(environment0_, environment1_, share);
+  }
   [[nodiscard]] double displacement(Index dof, double share) const {
     return displacement0_[dof] + share * (displacement1_[dof] - displacement0_[dof]);
   }
@@ -57,6 +64,7 @@ class Way {
 
  private:
   std::vector<double> displacement0_, displacement1_, force0_, force1_;
+  SharedEnvironment environment0_, environment1_;
   std::vector<Index> prescribed_;
   bool has_loads_ = false;
 };
@@ -97,13 +105,19 @@ class Relaxation {
   void evaluate() {
     Assembler& assembler = problem_.assembler;
     move_followers(problem_, at_);
-    const Evaluation found = options_.breaking == Breaking::transient
-                                 ? assembler.commit(at_.displacement, at_.history, at_.gradient)
-                                 : assembler.gradient(at_.at(), at_.gradient);
+    const Evaluation found =
+        options_.breaking == Breaking::transient
+            ? assembler.commit(at_.displacement, at_.history, at_.gradient, at_.environment)
+            : assembler.gradient(at_.at(), at_.gradient);
     result_.growth.degrading += found.growth.degrading;
     result_.growth.breaking += found.growth.breaking;
     result_.released_energy += found.released;
     at_.stored_energy = found.energy;
+    if (!at_.follower_force.empty()) {
+      last_follower_force_.swap(at_.follower_force);
+      at_.follower_force.resize(last_follower_force_.size());
+      assembler.follower_force(at_.at(), at_.follower_force);
+    }
     residual_.swap(last_residual_);
     const std::vector<double>& force = result_.external_force;
     fold_followers(problem_, force, at_);
@@ -170,6 +184,8 @@ class Relaxation {
   /// U^(n+1), with supports and loads at a share of their way. The work of the step is complete
   /// once `complete_work` is called after the next evaluation.
   void move(double share) {
+    heat_up(share);
+    if (!at_.follower_force.empty()) last_displacement_ = at_.displacement;
     const Sums sums = sum([&](std::size_t e, Sums& s) {
       double& displacement = at_.displacement[dofs_[e]];
       displacement += velocity_[e];
@@ -193,6 +209,14 @@ class Relaxation {
   }
 
   void complete_work() {
+    for (std::size_t k = 0; k < at_.follower_force.size(); ++k) {
+      result_.external_work += 0.5 * (last_follower_force_[k] + at_.follower_force[k]) *
+                               (at_.displacement[k] - last_displacement_[k]);
+    }
+    if (last_environment_ != at_.environment) {
+      result_.external_work += 0.5 * (at_.stored_energy - energy_under(last_environment_));
+      last_environment_ = at_.environment;
+    }
     for (std::size_t k = 0; k < last_reaction_.size(); ++k) {
       const Index dof = way_.prescribed()[k];
       const double now = at_.gradient[dof];
@@ -224,6 +248,20 @@ class Relaxation {
   }
 
  private:
+  /// Takes what the energy depends on to a share of the way, with half of the work of that; the
+  /// other half is due in the state that follows.
+  void heat_up(double share) {
+    last_environment_ = at_.environment;
+    if (share == share_ || !way_.end_environment()) return;
+    at_.environment = way_.environment(share);
+    result_.external_work += 0.5 * (energy_under(at_.environment) - at_.stored_energy);
+  }
+
+  [[nodiscard]] double energy_under(const SharedEnvironment& environment) {
+    return problem_.assembler.energy({at_.displacement, at_.history, Damage::grows, environment})
+        .energy;
+  }
+
   template <class Body>
   Sums sum(const Body& body) {
     const auto count = static_cast<Index>(dofs_.size());
@@ -264,7 +302,9 @@ class Relaxation {
   std::vector<double> inverse_density_;           // 1/lambda; 0 where nothing resists
   std::vector<double> residual_, last_residual_;  // F^n, F^(n-1)
   std::vector<double> last_reaction_;             // dE/dx on prescribed degrees of freedom
-  double quotient_ = 0.0;                         // U.K1 U / U.U
+  SharedEnvironment last_environment_;
+  std::vector<double> last_follower_force_, last_displacement_;  // before the last move
+  double quotient_ = 0.0;                                        // U.K1 U / U.U
   double kinetic_energy_ = 0.0, relative_change_ = 1.0;
   double mean_speed_ = 0.0;  // root mean square of the velocities of the last move
   double share_ = 0.0, share_change_ = 0.0;
@@ -277,6 +317,7 @@ double scale_of_step(const EquilibriumProblem& problem, const Way& way, const Tr
   for (const Index dof : way.prescribed()) {
     after_jump.displacement[dof] = way.end_displacement()[dof];
   }
+  after_jump.environment = way.end_environment();
   // A jump that tears bonds would leave no residual to measure against.
   evaluate(problem, way.end_force(), after_jump, Damage::held);
   if (after_jump.degenerate) after_jump.residual_norm = 0.0;  // a jump onto a neighbour
@@ -301,12 +342,20 @@ RelaxationResult relax(const EquilibriumProblem& problem, TangentOperator& tange
   RelaxationResult result;
   result.state.displacement = from.displacement;
   result.state.history = from.history;
+  result.state.environment = from.environment;
   result.external_force.resize(from.displacement.size());
   const Way way(problem, from, stage);
   way.load(0.0, result.external_force);
   evaluate(problem, result.external_force, result.state);
   result.scale = options.scale > 0.0 ? options.scale
                                      : scale_of_step(problem, way, result.state, options.holds);
+  if (way.end_environment() && options.scale <= 0.0) {
+    Trial start = result.state;
+    start.environment = way.end_environment();
+    evaluate(problem, way.end_force(), start, Damage::held);
+    result.scale =
+        std::max(result.scale, environment_norm(problem, start.at(Damage::held), start.gradient));
+  }
 
   const double taken_up_at_start = taken_up(problem, options, result.state);
 

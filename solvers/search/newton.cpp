@@ -42,9 +42,11 @@ class NewtonSearch {
     problem.conditions.external_force(stage, external_force_);
     current_.displacement = from.displacement;
     current_.history = from.history;
+    current_.environment = from.environment;
     evaluate(problem, external_force_, current_, options.damage);
-    old_gradient_ = current_.gradient;
-    old_curvature_ = current_.curvature;
+    start_gradient_ = current_.gradient;
+    start_curvature_ = current_.curvature;
+    current_.environment = problem.conditions.environment(stage);
     // Right after the jump bonds beside the supports are stretched as no equilibrium will ask for.
     // Where they may break, nothing would be left to measure the residual against, and the search
     // would begin in a torn body: damage is held until the predictor has spread the jump.
@@ -52,7 +54,20 @@ class NewtonSearch {
     evaluate(problem, external_force_, current_, damage_);
     result_.scale = options.scale > 0.0
                         ? options.scale
-                        : residual_scale(problem, external_force_, old_gradient_, current_);
+                        : residual_scale(problem, external_force_, start_gradient_, current_);
+    if (current_.environment) {
+      Trial there;
+      there.displacement = from.displacement;
+      there.history = from.history;
+      there.environment = current_.environment;
+      evaluate(problem, external_force_, there, damage_);
+      start_gradient_ = std::move(there.gradient);
+      start_curvature_ = std::move(there.curvature);
+      if (options.scale <= 0.0) {
+        result_.scale =
+            std::max(result_.scale, environment_norm(problem, start(), start_gradient_));
+      }
+    }
   }
 
   [[nodiscard]] NewtonResult run() {
@@ -68,6 +83,13 @@ class NewtonSearch {
   }
 
  private:
+  /// Where the predictor linearises: the old displacement under the new load's environment.
+  [[nodiscard]] StateView start() const {
+    StateView view(from_.displacement, from_.history, damage_, current_.environment);
+    view.curvature = start_curvature_;
+    return view;
+  }
+
   Outcome search() {
     // A state right after the jump may be degenerate (a support driven onto a neighbour); the
     // predictor is what moves the neighbours away, so only its result is judged.
@@ -130,6 +152,7 @@ class NewtonSearch {
     // judges it.
     next_.displacement = current_.displacement;
     next_.history = current_.history;
+    next_.environment = current_.environment;
     add_scaled(next_.displacement, 1.0, direction_);
     evaluate(problem_, external_force_, next_, damage_);
     row.step_length = 1.0;
@@ -141,10 +164,8 @@ class NewtonSearch {
     const FactorUse use = (row.iteration == 1 && options_.factorizes_first) || !is_exact
                               ? FactorUse::factorize_now
                               : FactorUse::may_reuse;
-    StateView old(from_, damage_);
-    old.curvature = old_curvature_;
     const LinearOutcome linear =
-        is_predictor ? linearisation_.solve(old, old_gradient_, row.projection, use,
+        is_predictor ? linearisation_.solve(start(), start_gradient_, row.projection, use,
                                             current_.displacement, tolerance, direction_)
                      : linearisation_.solve(current_.at(damage_), current_.gradient, row.projection,
                                             use, {}, tolerance, direction_);
@@ -190,8 +211,8 @@ class NewtonSearch {
   std::vector<double> external_force_;
   Linearisation linearisation_;
   Trial current_, next_;
-  std::vector<Tensor> old_curvature_;
-  std::vector<double> old_gradient_;  // of the state that the search began with
+  std::vector<Tensor> start_curvature_;
+  std::vector<double> start_gradient_;  // dE/dx at start()
   std::vector<double> direction_;
   std::optional<Inertia> start_inertia_;
   double last_residual_ = 0.0, last_projection_ = 0.0;

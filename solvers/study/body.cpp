@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 #include <omp.h>
 
+#include "assembly/terms/pressure/pressure_term.hpp"
 #include "solvers/linear/available_memory.hpp"
 #include "solvers/study/bond_potential.hpp"
 #include "solvers/study/cpd_model.hpp"
@@ -21,6 +22,9 @@
 
 namespace peristat {
 namespace {
+
+/// Of an environment of their own, in a step: the old state, the new one, those of differences.
+constexpr double states_with_environment = 4.0;
 
 BondSetting setting_of(const BodySpecification& of, const Points& points) {
   BondSetting setting;
@@ -119,6 +123,41 @@ std::vector<double> at_rest(const Body& body) {
   return std::vector<double>(body.conditions->constraints().dofs(), 0.0);
 }
 
+/// A quantity of the points' materials; empty if none has it.
+/// @param needed what asks for it; empty: nothing does
+/// @throws InputError if some have it and others not, and it is needed
+std::vector<double> of_materials(const PointMaterials& materials, const Points& points,
+                                 std::optional<double> MaterialSpecification::*quantity,
+                                 const std::string& key, const std::string& needed) {
+  const auto has = [&](const auto& material) { return (material.of->*quantity).has_value(); };
+  const auto& all = materials.all();
+  if (std::none_of(all.begin(), all.end(), has)) return {};
+  const auto lacks = std::find_if_not(all.begin(), all.end(), has);
+  if (lacks != all.end()) {
+    if (needed.empty()) return {};
+    throw InputError(lacks->key + "." + key, "", "is missing; " + needed + " needs it");
+  }
+  std::vector<double> values;
+  for (Index i = 0; i < points.count(); ++i) {
+    values.push_back(*(all[materials.of(i)].of->*quantity));
+  }
+  return values;
+}
+
+LoadSetting load_setting(const BodySpecification& of, const Points& points) {
+  const PointMaterials materials(of, points);
+  const bool has_gravity = std::any_of(
+      of.loads.begin(), of.loads.end(),
+      [](const LoadSpecification& load) { return load.kind == LoadSpecification::Kind::gravity; });
+  LoadSetting setting{of.horizon};
+  setting.density = of_materials(materials, points, &MaterialSpecification::density, "density",
+                                 has_gravity ? "gravity" : "");
+  setting.thermal_expansion =
+      of_materials(materials, points, &MaterialSpecification::thermal_expansion,
+                   "thermal_expansion", of.eigenstrains.temperature_change ? "a temperature" : "");
+  return setting;
+}
+
 }  // namespace
 
 Model make_elastic_bonds(const Body& body, Bonds bonds, const BondSetting& setting) {
@@ -172,10 +211,17 @@ std::unique_ptr<const Body> make_body(Points points, const BodySpecification& of
   body.conditions = std::make_unique<Conditions>(
       body.points, of.supports, of.loads,
       of.programme.empty() ? LoadingProgramme() : LoadingProgramme(of.programme), of.controls,
-      of.constraints);
+      load_setting(of, body.points), of.eigenstrains, of.constraints);
+  add_pressures(body.model, body);
   const Stopwatch watch(body.seconds_neighbourhood);
   store_interactions(body, threads);
   return owned;
+}
+
+void add_pressures(Model& model, const Body& body) {
+  const PressedBoundary& boundary = body.conditions->pressed_boundary();
+  if (boundary.face.empty()) return;
+  model.add(std::make_shared<PressureTerm>(body.points, boundary));
 }
 
 BodySize size_of(const Points& points) {
@@ -207,6 +253,9 @@ MemoryEstimate estimate_memory(const Body& body) {
   size.free_dofs = double(std::count(prescribed.begin(), prescribed.end(), 0));
   MemoryEstimate estimate = estimate_memory(size);
   for (const auto& term : body.model.terms()) estimate.body_bytes += term->stored_bytes();
+  if (body.specification.eigenstrains.are_there()) {
+    estimate.body_bytes += states_with_environment * sizeof(double) * double(body.points.count());
+  }
   return estimate;
 }
 

@@ -55,6 +55,9 @@ struct Body {
 /// @throws InputError as make_body does
 [[nodiscard]] Model make_elastic_bonds(const Body& body, Bonds bonds, const BondSetting& setting);
 
+/// Adds the pressures of the body's loads to a model of its points: its own has them.
+void add_pressures(Model& model, const Body& body);
+
 /// Number of threads to run on.
 /// @param asked_for 0: as many as OpenMP takes by itself
 /// @throws InputError ("threads") for a number below 0

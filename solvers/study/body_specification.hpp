@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "src/conditions/conditions.hpp"
 #include "src/conditions/constraint_specification.hpp"
-#include "src/conditions/specification.hpp"
 #include "src/connectivity/crack.hpp"
 #include "src/geometry/point_set.hpp"
 #include "src/materials/bond_constants.hpp"
@@ -66,7 +66,8 @@ struct MaterialSpecification {
   double c2 = 0.0;                        ///< C2 [N/m10]; in 2D not with youngs_modulus
   double c3 = 0.0;                        ///< C3 [N/m14]; with c1 only
   Calibration calibration = Calibration::lattice;
-  std::optional<double> density{};  ///< [kg/m3], for dynamics only
+  std::optional<double> thermal_expansion{};  ///< [1/K]
+  std::optional<double> density{};            ///< [kg/m3], for gravity and dynamics
   DamageSpecification damage{};
   std::optional<FibreSpecification> fibre{};  ///< bonds with youngs_modulus, the one along them
   std::vector<ScatterSpecification> scatter{};
@@ -112,6 +113,7 @@ struct BodySpecification {
   std::vector<SupportSpecification> supports{};
   std::vector<LoadSpecification> loads{};
   ConstraintSpecification constraints{};
+  Eigenstrains eigenstrains{};
   /// In the place of `load`, see DisplacementControl; none: the programme's own.
   std::vector<ControlTerm> controls{};
   /// Tables of the load parameters `load`, `load2`, …, see LoadingProgramme; none: `load` from 0 to

@@ -3,12 +3,15 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <set>
 #include <utility>
 
 #include "src/conditions/points_of_set.hpp"
+#include "src/conditions/traction.hpp"
 #include "src/core/input_error.hpp"
 #include "src/core/number_text.hpp"
+#include "src/geometry/body_cells.hpp"
 #include "src/measures/small_algebra.hpp"
 
 namespace peristat {
@@ -24,12 +27,41 @@ auto with_key(const std::string& key, const Make& make) {
   }
 }
 
+/// Gives input errors that have no key that of the table.
+template <class Make>
+auto with_table(const std::string& table, const Make& make) {
+  try {
+    return make();
+  } catch (const InputError& error) {
+    throw InputError(error.key().empty() ? table : error.key(), error.value(), error.allowed());
+  }
+}
+
+std::vector<Index> all_points(const Points& points) {
+  std::vector<Index> all(std::size_t(points.own()));
+  std::iota(all.begin(), all.end(), Index(0));
+  return all;
+}
+
+/// All points but those of layers.
+std::vector<Index> points_of_body(const Points& points) {
+  std::vector<char> is_outside(std::size_t(points.own()), 0);
+  if (points.lattice) {
+    for (const std::string& layer : points.lattice->layers) {
+      for (const Index point : points.sets.at(layer)) is_outside[std::size_t(point)] = 1;
+    }
+  }
+  std::vector<Index> inside = all_points(points);
+  std::erase_if(inside, [&](Index point) { return is_outside[std::size_t(point)] != 0; });
+  return inside;
+}
+
 }  // namespace
 
 Conditions::Conditions(const Points& points, const std::vector<SupportSpecification>& supports,
                        const std::vector<LoadSpecification>& loads, LoadingProgramme programme,
-                       const std::vector<ControlTerm>& control,
-                       const ConstraintSpecification& constraints)
+                       const std::vector<ControlTerm>& control, const LoadSetting& setting,
+                       const Eigenstrains& eigenstrains, const ConstraintSpecification& constraints)
     : points_(points),
       programme_(std::move(programme)),
       prescribed_(points.reference.size(), 0),
@@ -51,27 +83,24 @@ Conditions::Conditions(const Points& points, const std::vector<SupportSpecificat
   }
   for (std::size_t k = 0; k < loads.size(); ++k) {
     const std::string table = indexed("loads", k);
-    const std::vector<Index>& members = points_of_set(points, loads[k].set, table + ".set");
-    const bool total = loads[k].kind == LoadSpecification::Kind::total_force;
-    double volume = 1.0;
-    if (total) {
-      volume = 0.0;
-      for (Index point : members) volume += points.volume[point];
+    if (loads[k].kind == LoadSpecification::Kind::pressure) {
+      add_pressure(loads[k], table);
+      continue;
     }
+    const auto on = std::make_shared<const Loaded>(loaded(loads[k], setting, table));
+    const bool total = loads[k].kind == LoadSpecification::Kind::total_force;
     for (int c = 0; c < points.dimension; ++c) {
       const std::string key = indexed(table + ".value", std::size_t(c));
-      loads_.push_back({key, &members, c,
-                        with_key(key,
-                                 [&] {
-                                   return Expression(loads[k].value[c],
-                                                     total ? 0 : points.dimension, points.spacing,
-                                                     parameters);
-                                 }),
-                        volume});
+      loads_.push_back({key, on, c, with_key(key, [&] {
+                          return Expression(loads[k].value[c], total ? 0 : points.dimension,
+                                            points.spacing, parameters);
+                        })});
     }
   }
+  add_eigenstrains(eigenstrains, setting);
   made_ = make_constraints(points, constraints, prescribed_, parameters);
   refuse_shared_names();
+  refuse_loads_beside_constraints(loads);
   hold_periodic_cell(constraints);
   prescribe_handles();
   if (!control.empty()) {
@@ -84,6 +113,30 @@ Conditions::Conditions(const Points& points, const std::vector<SupportSpecificat
   }
   find_shared();
   try_stages();
+}
+
+void Conditions::refuse_loads_beside_constraints(
+    const std::vector<LoadSpecification>& loads) const {
+  if (constraints().none()) return;
+  for (std::size_t k = 0; k < loads.size(); ++k) {
+    const std::string key = indexed("loads", k) + ".value";
+    if (loads[k].kind == LoadSpecification::Kind::pressure) {
+      throw InputError(key, "",
+                       "a pressure beside rigid sets, rollers, linear constraints, planes of "
+                       "symmetry or periods can't be used");
+    }
+    const bool is_traction = loads[k].kind == LoadSpecification::Kind::traction;
+    if (is_traction && points_.own() < points_.count() && loads[k].side) {
+      const std::size_t axis = std::size_t(loads[k].side->axis);
+      for (Index image = points_.own(); image < points_.count(); ++image) {
+        const double away =
+            points_.position(image)[axis] - points_.position(points_.source(image))[axis];
+        if (away * loads[k].side->sign > 0.0) {
+          throw InputError(key, "", "on this side the body goes on beyond a plane or period");
+        }
+      }
+    }
+  }
 }
 
 void Conditions::refuse_shared_names() const {
@@ -131,6 +184,101 @@ void Conditions::hold_periodic_cell(const ConstraintSpecification& constraints) 
   }
 }
 
+Conditions::Loaded Conditions::loaded(const LoadSpecification& load, const LoadSetting& setting,
+                                      const std::string& table) const {
+  using Kind = LoadSpecification::Kind;
+  if (load.kind == Kind::traction) {
+    TractionAreas areas =
+        with_table(table, [&] { return traction_areas(points_, load, setting.horizon, table); });
+    return {std::move(areas.points), std::move(areas.area)};
+  }
+  Loaded on;
+  const bool is_everywhere = load.kind == Kind::gravity && load.set.empty();
+  on.points =
+      is_everywhere ? points_of_body(points_) : points_of_set(points_, load.set, table + ".set");
+  for (const Index point : on.points) on.amount.push_back(points_.volume[point]);
+  if (load.kind == Kind::total_force) {
+    on.spread_over = std::accumulate(on.amount.begin(), on.amount.end(), 0.0);
+  }
+  if (load.kind == Kind::gravity) {
+    if (setting.density.empty()) {
+      throw InputError("material.density", "", "is missing; gravity needs it");
+    }
+    for (std::size_t k = 0; k < on.points.size(); ++k) {
+      on.amount[k] *= setting.density[std::size_t(on.points[k])];
+    }
+  }
+  return on;
+}
+
+void Conditions::add_pressure(const LoadSpecification& load, const std::string& table) {
+  const std::size_t first = pressed_.face.size();
+  with_table(table, [&] { add_pressed_faces(points_, load, table, pressed_); });
+  const std::string key = table + ".value";
+  pressures_.push_back({key, first, pressed_.face.size(), with_key(key, [&] {
+                          return Expression(load.value[0], points_.dimension, points_.spacing,
+                                            LoadingProgramme::names(programme_.parameters()));
+                        })});
+}
+
+void Conditions::add_eigenstrains(const Eigenstrains& eigenstrains, const LoadSetting& setting) {
+  const auto add = [&](const std::string& key, const std::string& text, std::vector<Index> points,
+                       std::vector<double> factor) {
+    eigenstretches_.push_back({key, std::move(points), std::move(factor), with_key(key, [&] {
+                                 return Expression(
+                                     text, points_.dimension, points_.spacing,
+                                     LoadingProgramme::names(programme_.parameters()));
+                               })});
+  };
+  for (std::size_t k = 0; k < eigenstrains.given.size(); ++k) {
+    const auto& [set, strain] = eigenstrains.given[k];
+    const std::string table = indexed("eigenstrains", k);
+    const std::vector<Index> points =
+        set.empty() ? all_points(points_) : points_of_set(points_, set, table + ".set");
+    add(table + ".strain", strain, points, std::vector<double>(points.size(), 1.0));
+  }
+  if (!eigenstrains.temperature_change) return;
+  if (setting.thermal_expansion.empty()) {
+    throw InputError("material.thermal_expansion", "", "is missing; a temperature needs it");
+  }
+  add("temperature.change", *eigenstrains.temperature_change, all_points(points_),
+      setting.thermal_expansion);
+}
+
+SharedEnvironment Conditions::environment(const LoadPoint& at) const {
+  if (eigenstretches_.empty() && pressures_.empty()) return nullptr;
+  const std::vector<double> loads = parameters(at);
+  auto made = std::make_shared<Environment>();
+  for (const auto& [key, first, last, value] : pressures_) {
+    with_key(key, [&] {
+      for (std::size_t face = first; face < last; ++face) {
+        made->pressure.push_back(value(pressed_.centre[face], loads));
+      }
+    });
+  }
+  if (!eigenstretches_.empty()) made->eigenstretch.assign(std::size_t(points_.count()), 0.0);
+  for (const auto& [key, points, factor, value] : eigenstretches_) {
+    with_key(key, [&] {
+      for (std::size_t k = 0; k < points.size(); ++k) {
+        const double stretch = factor[k] * value(points_.position(points[k]), loads);
+        double& sum = made->eigenstretch[std::size_t(points[k])];
+        sum += stretch;
+        if (!(sum > -1.0)) {
+          throw InputError("", '"' + value.text() + '"',
+                           "leaves nothing of the length there was: an eigenstrain of " +
+                               number_text(sum) + " at " +
+                               place_text(points_.position(points[k]), points_.dimension) +
+                               " m; it must be above -1");
+        }
+      }
+    });
+  }
+  for (Index image = points_.own(); image < points_.count() && !eigenstretches_.empty(); ++image) {
+    made->eigenstretch[std::size_t(image)] = made->eigenstretch[std::size_t(points_.source(image))];
+  }
+  return made;
+}
+
 std::vector<double> Conditions::parameters(const LoadPoint& at) const {
   std::vector<double> values = programme_.at(at.stage);
   if (at.load) values.front() = *at.load;
@@ -154,6 +302,7 @@ void Conditions::try_stages() {
   std::vector<double> values(prescribed_.size(), 0.0);
   const auto try_at = [&](const LoadPoint& at) {
     prescribe(at, values);
+    static_cast<void>(environment(at));
     for (const double value : values) largest_ = std::max(largest_, std::abs(value));
   };
   if (control_) return try_at({0.0, 0.0});  // nobody knows where its loads will go
@@ -213,9 +362,10 @@ void Conditions::external_force(const LoadPoint& at, std::span<double> force) co
   std::fill(force.begin(), force.end(), 0.0);
   for (const Load& load : loads_) {
     with_key(load.key, [&] {
-      for (Index point : *load.points) {
-        force[std::size_t(point) * points_.dimension + load.component] +=
-            load.value(points_.position(point), loads) * points_.volume[point] / load.spread_over;
+      const auto& [points, amount, spread_over] = *load.on;
+      for (std::size_t k = 0; k < points.size(); ++k) {
+        force[std::size_t(points[k]) * points_.dimension + load.component] +=
+            load.value(points_.position(points[k]), loads) * amount[k] / spread_over;
       }
     });
   }

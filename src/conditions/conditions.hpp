@@ -1,21 +1,39 @@
 #pragma once
 
 #include <map>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "src/conditions/displacement_control.hpp"
+#include "src/conditions/environment.hpp"
 #include "src/conditions/load_point.hpp"
 #include "src/conditions/loading_programme.hpp"
 #include "src/conditions/make_constraints.hpp"
+#include "src/conditions/pressed_boundary.hpp"
 #include "src/conditions/specification.hpp"
 #include "src/connectivity/holding.hpp"
 #include "src/core/expression.hpp"
 #include "src/geometry/points.hpp"
 
 namespace peristat {
+
+/// What loads depend on beside the points; arrays are per point, or empty if that is not known.
+struct LoadSetting {
+  double horizon = 0.0;                        ///< [m], for tractions
+  std::vector<double> density = {};            ///< [kg/m3], for gravity
+  std::vector<double> thermal_expansion = {};  ///< [1/K], for the temperature
+};
+
+/// What strains the points without forces.
+struct Eigenstrains {
+  std::vector<EigenstrainSpecification> given{};
+  std::optional<std::string> temperature_change{};  ///< [K], an expression of x, y, z and load
+
+  [[nodiscard]] bool are_there() const { return !given.empty() || temperature_change; }
+};
 
 /// Supports, constraints and loads of a body along its loading programme. Arrays have one entry per
 /// degree of freedom (point x dimension + component), those of the constraints' handles last.
@@ -30,7 +48,8 @@ class Conditions {
   ///        of its values [m]; no terms: none
   Conditions(const Points& points, const std::vector<SupportSpecification>& supports,
              const std::vector<LoadSpecification>& loads, LoadingProgramme programme = {},
-             const std::vector<ControlTerm>& control = {},
+             const std::vector<ControlTerm>& control = {}, const LoadSetting& setting = {},
+             const Eigenstrains& eigenstrains = {},
              const ConstraintSpecification& constraints = {});
 
   [[nodiscard]] int dimension() const { return points_.dimension; }
@@ -59,6 +78,14 @@ class Conditions {
   /// @throws InputError if one is not finite
   void external_force(const LoadPoint& at, std::span<double> force) const;
 
+  /// What the load makes of the energy there; null where there are neither eigenstrains nor
+  /// pressures.
+  /// @throws InputError if one is not finite, or leaves nothing of a length
+  [[nodiscard]] SharedEnvironment environment(const LoadPoint& at) const;
+
+  /// Faces that pressures act on, in the order of Environment::pressure.
+  [[nodiscard]] const PressedBoundary& pressed_boundary() const { return pressed_; }
+
   /// Reaction of each support's set [N]: the sum over its prescribed degrees of freedom of what the
   /// supports add to hold them, dE/dx - external force. Points of two sets count in both. Likewise
   /// of the restraints: what rigid sets and rollers add, what the part of the body beyond a plane
@@ -84,16 +111,40 @@ class Conditions {
     int component;
     Expression displacement;
   };
+  /// The points of a load, and what its value is multiplied with at each to be a force.
+  struct Loaded {
+    std::vector<Index> points;
+    std::vector<double> amount;  // volume [m3], mass [kg], or area [m2]
+    double spread_over = 1.0;    // the whole volume of a total force [m3]
+  };
   struct Load {
     std::string key;
-    const std::vector<Index>* points;
+    std::shared_ptr<const Loaded> on;
     int component;
-    Expression value;    // body force [N/m3], or total force [N]
-    double spread_over;  // volume that a total force is spread over [m3]; 1 for a body force
+    Expression value;  // [N/m3], [N], [m/s2] or [Pa]
   };
+
+  struct Eigenstretch {
+    std::string key;
+    std::vector<Index> points;
+    std::vector<double> factor;  // per point
+    Expression value;            // [1], or of the temperature [K]
+  };
+
+  struct Pressure {
+    std::string key;
+    std::size_t first, last;  // of the pressed boundary's faces
+    Expression value;         // [Pa]
+  };
+
+  void add_pressure(const LoadSpecification& load, const std::string& table);
+  void add_eigenstrains(const Eigenstrains& eigenstrains, const LoadSetting& setting);
+  [[nodiscard]] Loaded loaded(const LoadSpecification& load, const LoadSetting& setting,
+                              const std::string& table) const;
 
   [[nodiscard]] std::vector<double> parameters(const LoadPoint& at) const;
   void refuse_shared_names() const;
+  void refuse_loads_beside_constraints(const std::vector<LoadSpecification>& loads) const;
   void prescribe_handles();
   void hold_periodic_cell(const ConstraintSpecification& constraints);
   void prescribe_handles_at(std::span<const double> loads, std::span<double> displacement) const;
@@ -112,6 +163,9 @@ class Conditions {
   LoadingProgramme programme_;
   std::vector<Prescription> prescriptions_;
   std::vector<Load> loads_;
+  std::vector<Eigenstretch> eigenstretches_;
+  PressedBoundary pressed_;
+  std::vector<Pressure> pressures_;
   std::vector<char> prescribed_;
   MadeConstraints made_;
   std::optional<DisplacementControl> control_;

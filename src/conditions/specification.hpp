@@ -4,6 +4,8 @@
 #include <optional>
 #include <string>
 
+#include "src/geometry/side.hpp"
+
 namespace peristat {
 
 /// Prescribed displacements of a set: per component an expression of x, y, z and load [m], or
@@ -13,13 +15,47 @@ struct SupportSpecification {
   std::array<std::optional<std::string>, 3> displacement{};
 };
 
-/// Dead load on a set: a body force density [N/m3], an expression of x, y, z and load, or a total
-/// force [N], an expression of load alone, spread in proportion to the volume.
+/// How deep a traction acts: in the outermost row of points alone, or spread evenly over the
+/// horizon.
+enum class Depth { row, horizon };
+
+/// Load that keeps its direction: a body force density [N/m3] on a set, an expression of x, y, z
+/// and load; a total force [N], an expression of load alone, spread over a set in proportion to the
+/// volume; gravity [m/s2] on a set or, without one, the body, layers left out; a traction [Pa] on a
+/// flat part of a lattice body's boundary, the outermost plane of points on a side or a set that
+/// lies in one plane. And a load that follows the deformation: a pressure [Pa], its first value, on
+/// the exposed faces of the cells of a side or set.
 struct LoadSpecification {
-  enum class Kind { body_force, total_force } kind = Kind::body_force;
+  enum class Kind { body_force, total_force, gravity, traction, pressure } kind = Kind::body_force;
   std::string set{};
   std::array<std::string, 3> value{"0", "0", "0"};
+  std::optional<Side> side{};
+  Depth depth = Depth::row;
 };
+
+/// Isotropic strain that a set, or without one the body, would have if nothing held it: length over
+/// reference length - 1, an expression of x, y, z and load.
+struct EigenstrainSpecification {
+  std::string set{};
+  std::string strain{"0"};
+};
+
+/// "body_force", …: of what a load gives.
+[[nodiscard]] constexpr const char* load_key(LoadSpecification::Kind kind) {
+  switch (kind) {
+    case LoadSpecification::Kind::body_force:
+      return "body_force";
+    case LoadSpecification::Kind::total_force:
+      return "total_force";
+    case LoadSpecification::Kind::gravity:
+      return "gravity";
+    case LoadSpecification::Kind::traction:
+      return "traction";
+    case LoadSpecification::Kind::pressure:
+      return "pressure";
+  }
+  return "";
+}
 
 /// A term of a control: its set's mean displacement, weighted per component.
 struct ControlTerm {

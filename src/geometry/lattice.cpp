@@ -142,6 +142,9 @@ Points make_points(const Lattice& lattice) {
   points.dimension = lattice.dimension;
   points.spacing = lattice.spacing;
   points.angle = lattice.angle;
+  points.lattice.emplace();
+  points.lattice->origin = frame_of(lattice).position({});
+  for (const Layer& layer : lattice.layers) points.lattice->layers.push_back(layer.name);
   const double cell_volume = std::pow(lattice.spacing, lattice.dimension) * lattice.cross_section;
   if (lattice.volumes == CellVolumes::fractional) points.cell_volume = cell_volume;
   for (const std::vector<Site>& sites : {std::cref(body), std::cref(outside.sites)}) {

@@ -4,16 +4,10 @@
 #include <string>
 #include <vector>
 
+#include "src/geometry/side.hpp"
 #include "src/geometry/solid.hpp"
 
 namespace peristat {
-
-/// A direction along an axis: "x-", "x+", "y-", "y+", "z-", "z+".
-struct Side {
-  int axis = 0;
-  int sign = 1;
-  bool operator==(const Side&) const = default;
-};
 
 /// Fictitious points outside the body that carry a support. The layer is also a set; layers of one
 /// name make one set, and a place in two layers holds one point that is in both sets.

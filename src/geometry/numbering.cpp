@@ -56,6 +56,7 @@ Points renumbered(const Points& points, const std::vector<Index>& order) {
   result.spacing = points.spacing;
   result.angle = points.angle;
   result.cell_volume = points.cell_volume;
+  result.lattice = points.lattice;
   result.reference.reserve(points.reference.size());
   result.volume.reserve(points.volume.size());
   std::vector<Index> new_number(order.size());

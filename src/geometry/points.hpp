@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,6 +18,13 @@ struct NeighbourShares {
   double of_j = 1.0, of_i = 1.0;  ///< nu_ij, share of V_j that i counts, and nu_ji
 };
 
+/// Where the points of a lattice stand: (position - origin) / spacing rounds to whole numbers, also
+/// in a perturbed one.
+struct LatticeCells {
+  Coordinates origin{};               ///< a place of the lattice [m]
+  std::vector<std::string> layers{};  ///< names of the sets of points outside the body
+};
+
 /// The body in its reference configuration: points that carry a volume, and named sets of them.
 struct Points {
   int dimension = 0;              ///< 1, 2 or 3
@@ -28,14 +36,13 @@ struct Points {
   /// Neighbours that were given, ascending by i and then j; empty: those within the horizon.
   std::vector<NeighbourShares> neighbours{};
   std::map<std::string, std::vector<Index>> sets;  ///< ascending point numbers by set name
+  std::optional<LatticeCells> lattice{};           ///< nothing for a cloud
 
   Images images{};  ///< of the last points; sets name none of them
 
   [[nodiscard]] Index count() const { return static_cast<Index>(volume.size()); }
   /// Points that stand for themselves: the first ones.
-  [[nodiscard]] Index own() const {
-    return count() - static_cast<Index>(images.source.size());
-  }
+  [[nodiscard]] Index own() const { return count() - static_cast<Index>(images.source.size()); }
   [[nodiscard]] bool is_image(Index point) const { return point >= own(); }
   /// The point that an image stands for; of other points themselves.
   [[nodiscard]] Index source(Index point) const {

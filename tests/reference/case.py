@@ -122,6 +122,21 @@ def evaluate(expression, reference, load=0.0, spacing=0.0):
     return numpy.broadcast_to(numpy.asarray(value, float), (count,)).copy()
 
 
+def face_forces(places):
+    """Area vector of a face, of the normal whose sign is +, shared out to its corners."""
+    if len(places) == 1:
+        return [numpy.ones(1)]
+    if len(places) == 2:
+        along = places[1] - places[0]
+        return [numpy.array([along[1], -along[0]]) / 2] * 2
+    forces = [0.0, 0.0, 0.0, 0.0]
+    for triangle in ((0, 1, 2), (0, 2, 3), (0, 1, 3), (1, 2, 3)):
+        a, b, c = places[list(triangle)]
+        for corner in triangle:
+            forces[corner] = forces[corner] + numpy.cross(b - a, c - a) / 12
+    return forces
+
+
 class Conditions:
     """What holds and loads the points."""
 
@@ -154,9 +169,129 @@ class Conditions:
         """Dead loads [N]."""
         value = numpy.zeros(self.reference.shape)
         for table in self.case.get("load"):
-            inside = self.sets[table["set"]]
-            total = "total_force" in table
-            share = self.volume[inside] / self.volume[inside].sum() if total else self.volume[inside]
-            for axis, component in enumerate(table["total_force" if total else "body_force"]):
-                value[inside, axis] += share * evaluate(component, self.reference, load, self.spacing)[inside]
+            if "pressure" in table:
+                continue
+            key, amount = self.amounts(table)
+            for axis, component in enumerate(table[key]):
+                value[:, axis] += amount * evaluate(component, self.reference, load, self.spacing)
         return value
+
+    def amounts(self, table):
+        """A load's key, and what its value is multiplied with at each point."""
+        members = self.sets[table["set"]] if "set" in table else numpy.ones(len(self.volume), bool)
+        if "gravity" in table:
+            inside = members if "set" in table else self.is_in_body()
+            return "gravity", numpy.where(inside, self.case["material"]["density"] * self.volume, 0)
+        if "traction" in table:
+            return "traction", self.traction_areas(table, members)
+        volume = numpy.where(members, self.volume, 0)
+        return ("total_force", volume / volume.sum()) if "total_force" in table else ("body_force", volume)
+
+    def follower_force(self, load, displacement):
+        """Pressures on the exposed faces of cells [N]: minus the pressure times the gradient of the volume that the
+        faces and the origin span, less what the rims of an open boundary add to it; a corner moves with the points
+        around it by the smallest weights that are exact for linear fields."""
+        total = numpy.zeros(displacement.shape, numpy.asarray(displacement).dtype)
+        for table in self.case.get("load"):
+            if "pressure" not in table:
+                continue
+            corners, faces, around = self.faces(table)
+            weights = [self.linear_weights(corner, points) for corner, points in zip(corners, around)]
+            places = numpy.array([corner + weight @ displacement[points]
+                                  for corner, weight, points in zip(corners, weights, around)])  # fmt: skip
+            centres = numpy.array([corners[list(face)].mean(axis=0) for face, _ in faces])
+            pressures = evaluate(table["pressure"], centres, load, self.spacing) * self.case.cross_section
+            for (face, sign), pressure in zip(faces, pressures):
+                for corner, force in zip(face, face_forces(places[list(face)])):
+                    total[around[corner]] -= sign * pressure * numpy.outer(weights[corner], force)
+        return total
+
+    def linear_weights(self, corner, points):
+        sums = numpy.vstack([numpy.ones(len(points)), (self.reference[points] - corner).T / self.spacing])
+        return numpy.linalg.pinv(sums)[:, 0]
+
+    def faces(self, table):
+        """Corners in the reference, faces as corner numbers with the sign of their normal, points around corners."""
+        dimension = self.reference.shape[1]
+        low = self.reference.min(axis=0)
+        inside = self.is_in_body()
+        cell = numpy.rint((self.reference - low) / self.spacing).astype(int)
+        body = {tuple(c): k for k, c in enumerate(cell) if inside[k]}
+        sides = [(axis, sign) for axis in range(dimension) for sign in (-1, 1)]
+        members = self.sets[table["set"]] if "set" in table else inside
+        if "side" in table:
+            sides = [("xyz".index(table["side"][0]), 1 if table["side"][1] == "+" else -1)]
+            if "set" not in table:
+                axis, sign = sides[0]
+                along = sign * cell[:, axis]
+                members = inside & (along == along[inside].max())
+        numbers, faces = {}, []
+        for place, k in body.items():
+            for axis, sign in sides if members[k] else []:
+                beyond = numpy.array(place)
+                beyond[axis] += sign
+                if tuple(beyond) in body:
+                    continue
+                others = [c % dimension for c in range(axis + 1, axis + dimension)]
+                rounds = {1: [()], 2: [(1,), (-1,)] if axis == 1 else [(-1,), (1,)],
+                          3: [(-1, -1), (1, -1), (1, 1), (-1, 1)]}[dimension]  # fmt: skip
+                face = []
+                for shifts in rounds:
+                    corner = 2 * numpy.array(place)
+                    corner[axis] += sign
+                    corner[others] += numpy.array(shifts, int)
+                    face.append(numbers.setdefault(tuple(corner), len(numbers)))
+                faces.append((tuple(face), sign))
+        corners = low + numpy.array(list(numbers), float) * self.spacing / 2
+        around = [[k for place, k in body.items() if (numpy.abs(2 * numpy.array(place) - corner) <= 3).all()]
+                  for corner in numbers]  # fmt: skip
+        return corners, faces, around
+
+    def is_in_body(self):
+        inside = numpy.ones(len(self.volume), bool)
+        for layer in self.case.get("lattice", {}).get("layer", []):
+            inside &= ~self.sets[layer["name"]]
+        return inside
+
+    def traction_areas(self, table, members):
+        """Per point: the loaded faces of cells, each shared by the points below it as far as the depth reaches."""
+        cell = numpy.rint((self.reference - self.reference.min(axis=0)) / self.spacing).astype(int)
+        body = {tuple(c): k for k, c in enumerate(cell) if self.is_in_body()[k]}
+        sides = [(axis, sign) for axis in range(cell.shape[1]) for sign in (-1, 1)]
+        if "side" in table:
+            sides = [("xyz".index(table["side"][0]), 1 if table["side"][1] == "+" else -1)]
+
+        def beside(place, axis, step):
+            return (*place[:axis], place[axis] + step, *place[axis + 1 :])
+
+        for axis, sign in sides:
+            along = {k: sign * place[axis] for place, k in body.items()}
+            row = [k for k in along if members[k] and ("set" in table or along[k] == max(along.values()))]
+            if len({along[k] for k in row}) == 1 and not any(beside(cell[k], axis, sign) in body for k in row):
+                break
+        depth = 1.0
+        if table.get("depth") == "horizon":
+            depth = max(1.0, self.case.horizon() / self.spacing)
+        area = numpy.zeros(len(self.volume))
+        for first in row:
+            column, place = [], tuple(cell[first])
+            while place in body and len(column) < depth - 1e-9:
+                column.append((body[place], min(1.0, depth - len(column))))
+                place = beside(place, axis, -sign)
+            for k, part in column:
+                area[k] += self.volume[first] / self.spacing * part / sum(p for _, p in column)
+        return area
+
+    def eigenstretch(self, load):
+        """Per point; nothing if there is none."""
+        strained, temperature = self.case.get("eigenstrain"), self.case.get("temperature", {})
+        if not strained and not temperature:
+            return None
+        total = numpy.zeros(len(self.volume))
+        for table in strained:
+            inside = self.sets[table["set"]] if "set" in table else slice(None)
+            total[inside] += evaluate(table["strain"], self.reference, load, self.spacing)[inside]
+        if temperature:
+            change = evaluate(temperature["change"], self.reference, load, self.spacing)
+            total += self.case["material"]["thermal_expansion"] * change
+        return total

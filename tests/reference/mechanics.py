@@ -60,6 +60,7 @@ class Mechanics:
 
     def __init__(self, body, elastic=False):
         self.body, self.case = body, body.case
+        self.eigenstretch = None  # per point; every evaluation is under it
         self.reference_arms = {k: arms_of(t, body.reference) for k, t in body.tuples.items()}
         direction = self.reference_arms[1][0] / body.measure[1][:, None]
         law = Law.elastic() if elastic else body.materials.law(body.bonds, direction)
@@ -75,10 +76,18 @@ class Mechanics:
     def no_history(self):
         return numpy.zeros(len(self.body.bonds))
 
+    def change(self, order, u):
+        """m/M - 1 beyond what the interaction would have if nothing held it."""
+        change = relative_change(self.reference_arms[order], arms_of(self.body.tuples[order], u))
+        if self.eigenstretch is None:
+            return change
+        mean = self.eigenstretch[self.body.tuples[order]].mean(axis=1)
+        return change - {1: mean, 2: mean * (2 + mean), 3: mean * (3 + mean * (3 + mean))}[order]
+
     # ---- bonds and their histories ---------------------------------------------------------------
 
     def stretch(self, u):
-        return relative_change(self.reference_arms[1], arms_of(self.body.bonds, u))
+        return self.change(1, u)
 
     def grown(self, history, u):
         """The histories after this state has been accepted."""
@@ -98,9 +107,11 @@ class Mechanics:
     def _is_loading(self, stretch, history):
         return self.fails & (numpy.real(stretch) > numpy.maximum(history, self.law.onset))
 
-    def _bond_potential(self, stretch, history):
+    def _bond_potential(self, stretch, history, held=False):
         """phi / C1: what a bond takes up."""
         value = self.integrity(history) * stretch**2 / 2
+        if held:
+            return value
         loading = self._is_loading(stretch, history)
         if loading.any():
             past = history[loading]
@@ -133,21 +144,31 @@ class Mechanics:
 
     # ---- sums over the body ----------------------------------------------------------------------
 
-    def energies(self, u, history):
+    def energies(self, u, history, held=False):
         """What every interaction takes up [J], by order."""
         energy = {}
-        for order, reference in self.reference_arms.items():
-            change = relative_change(reference, arms_of(self.body.tuples[order], u))
+        for order in self.reference_arms:
+            change = self.change(order, u)
             scale = self.body.constants[order] * self.body.weight[order] * numpy.abs(self.body.measure[order])
             if order == 1:
-                energy[order] = scale * self._bond_potential(change, history)
+                energy[order] = scale * self._bond_potential(change, history, held)
             else:
                 energy[order] = scale * self._kept(order, history) * change**2 / 2
         return energy
 
-    def energy(self, u, history=None):
+    def energy(self, u, history=None, held=False):
         history = self.no_history() if history is None else history
-        return sum(part.sum() for part in self.energies(u, history).values())
+        return sum(part.sum() for part in self.energies(u, history, held).values())
+
+    def heating_work(self, old, new, before, after):
+        """Half of what an eigenstretch going from before to after adds to the energy in each of two states, each
+        (u, history)."""
+        work = 0.0
+        for u, history in (old, new):
+            for self.eigenstretch, sign in ((after, 0.5), (before, -0.5)):
+                work += sign * self.energy(u, history, held=True)
+        self.eigenstretch = after
+        return work
 
     def gradient(self, u, history=None, absolute=False, held=False):
         """Derivative of the energy [N], count x dimension; or sums of magnitudes, for round-off."""
@@ -156,7 +177,7 @@ class Mechanics:
         for order, reference in self.reference_arms.items():
             tuples = self.body.tuples[order]
             change = arms_of(tuples, u)
-            relative = relative_change(reference, change)
+            relative = self.change(order, u)
             if order == 1:
                 slope = self._bond_tension(relative, history, held)
             else:

@@ -103,6 +103,7 @@ class Verification:
 
     def judge(self, mechanics, step, old, history):
         row, prescribed = self.rows[step.number], self.conditions.prescribed
+        mechanics.eigenstretch = self.conditions.eigenstretch(step.load)
         gradient = mechanics.gradient(step.displacement, history)
         magnitude = mechanics.gradient(step.displacement, history, absolute=True)
         largest = magnitude.max() + 1e-4 * self.whole_force(mechanics, step)
@@ -112,14 +113,18 @@ class Verification:
         target = self.conditions.displacement(step.load)
         reach = max(numpy.abs(target).max(), 1e-300)
         self.compare(step, "prescribed displacement", step.displacement[prescribed], target[prescribed], reach, 1e-12)
-        external = self.conditions.force(step.load)
+        external = self.external(step.load, step.displacement)
         unheld = self.unheld(step, old)
         self.judge_residual(mechanics, step, row, old, history, gradient - external, magnitude, unheld)
         self.judge_reactions(step, row, gradient - external, largest, unheld, external)
         self.judge_energies(mechanics, step, row, old, history)
         if mechanics is self.mechanics:
             self.judge_damage(mechanics, step, row, history)
-        self.judge_work(mechanics, step, row, old, gradient, external)
+        self.judge_work(mechanics, step, row, old, history, gradient, external)
+
+    def external(self, load, displacement):
+        """Dead loads, and those that follow the deformation [N]."""
+        return self.conditions.force(load) + self.conditions.follower_force(load, displacement)
 
     def whole_force(self, mechanics, step):
         """What a whole bond would bear at the largest displacement [N]: rounding of displacements
@@ -149,12 +154,15 @@ class Verification:
         prescribed = self.conditions.prescribed
         jumped[prescribed] = self.conditions.displacement(step.load)[prescribed]
         past = old.history if mechanics is self.mechanics else history
-        external = self.conditions.force(step.load)
-        reactions = mechanics.gradient(old.displacement, past) - self.conditions.force(old.load)
+        external = self.external(step.load, jumped)
+        mechanics.eigenstretch = self.conditions.eigenstretch(old.load)
+        reactions = mechanics.gradient(old.displacement, past) - self.external(old.load, old.displacement)
+        mechanics.eigenstretch = self.conditions.eigenstretch(step.load)
         # Reactions of both states: Newton's method that finishes a relaxed step starts from the latter.
         norms = [numpy.linalg.norm(part) for part in (external, reactions[prescribed], out_of_balance[prescribed])]
         # The jump that a step begins with is measured with the damage held.
         norms.append(numpy.linalg.norm((mechanics.gradient(jumped, past, held=True) - external)[~prescribed]))
+        norms.append(numpy.linalg.norm(self.of_environment(mechanics, step, old, past)))
         scale = max(norms)
         floor = 8 * UNIT_ROUND_OFF * (numpy.linalg.norm(magnitude) + self.whole_force(mechanics, step))
         residual = numpy.linalg.norm(out_of_balance[free])
@@ -168,6 +176,14 @@ class Verification:
         if not residual <= allowed:
             self.complain(step, f"not in equilibrium: residual {residual:.4g} N, {allowed:.4g} N is allowed "
                                 f"(relative {residual / scale if scale else numpy.inf:.3g})")  # fmt: skip
+
+    def of_environment(self, mechanics, step, old, past):
+        """What eigenstrains and pressures add to the forces of the old displacement."""
+        under = mechanics.gradient(old.displacement, past, held=True)
+        kept, mechanics.eigenstretch = mechanics.eigenstretch, None
+        without = mechanics.gradient(old.displacement, past, held=True)
+        mechanics.eigenstretch = kept
+        return under - without - self.conditions.follower_force(step.load, old.displacement)
 
     def judge_pins(self, step, row, on_unheld, allowed):
         """Nothing but pins may bear a force on points that nothing holds, and all of it is told."""
@@ -234,16 +250,20 @@ class Verification:
         largest = whole.max() if len(whole) else 0.0
         self.compare(step, "max_stretch", row["max_stretch"], largest, max(abs(stretch).max(), 1e-300))
 
-    def judge_work(self, mechanics, step, row, old, gradient, external):
+    def judge_work(self, mechanics, step, row, old, history, gradient, external):
         """External work by the trapezoidal rule over the accepted steps; implicit ones add no other."""
         if old.mechanics not in (None, mechanics) or old.number + 1 != step.number:
             return
         if step.mode == "newton" and row["numerical_work"] != old.numerical_work:
             self.complain(step, f"numerical work {row['numerical_work']} in an implicit step, {old.numerical_work} before it")
         prescribed = self.conditions.prescribed
-        before = mechanics.gradient(old.displacement, old.history if mechanics is self.mechanics else mechanics.no_history())
-        pull = numpy.where(prescribed, before + gradient, self.conditions.force(old.load) + external) / 2
-        work = float((pull * (step.displacement - old.displacement)).sum())
+        past = old.history if mechanics is self.mechanics else mechanics.no_history()
+        here = self.conditions.eigenstretch(step.load)
+        mechanics.eigenstretch = self.conditions.eigenstretch(old.load)
+        before = mechanics.gradient(old.displacement, past)
+        heating = mechanics.heating_work((old.displacement, past), (step.displacement, history), mechanics.eigenstretch, here)
+        pull = numpy.where(prescribed, before + gradient, self.external(old.load, old.displacement) + external) / 2
+        work = float((pull * (step.displacement - old.displacement)).sum()) + heating
         scale = max(abs(row["external_work"]), numpy.abs(pull * (step.displacement - old.displacement)).sum())
         scale += 1e-5 * self.whole_force(mechanics, step) * numpy.abs(step.displacement).max()
         self.compare(step, "work", row["external_work"] - old.external_work, work, scale)

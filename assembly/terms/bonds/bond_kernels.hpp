@@ -5,6 +5,7 @@
 #include <cstring>
 #include <limits>
 #include <span>
+#include <type_traits>
 
 #include "assembly/operators/tangent.hpp"
 #include "assembly/terms/bonds/bond_workspace.hpp"
@@ -159,6 +160,23 @@ inline void store_upper_halves(double* blocks, int count,
   }
 }
 
+/// Bonds that are free of stress at a stretch of their own, the mean of their points'.
+struct Eigenstretch {
+  const double* of_point;
+};
+struct NoEigenstretch {};
+
+/// Takes off what the bonds of row i would be stretched by if nothing held them.
+template <int D, class E, class MeasureAt>
+[[gnu::always_inline]] inline void relieve(MeasureAt& measure, const E& eigenstretch, Index i,
+                                           const Batch<D>& batch) {
+  if constexpr (std::is_same_v<E, Eigenstretch>) {
+    const double own = eigenstretch.of_point[i];
+    measure.relative_change -=
+        Lanes([&](int l) { return 0.5 * (own + eigenstretch.of_point[batch.partner[l]]); });
+  }
+}
+
 /// A potential at bonds with their histories.
 template <class P>
 struct AtHistory {
@@ -240,8 +258,9 @@ struct BondKernels {
   using Span = std::span<const double>;
 
   /// @tparam commits whether histories follow: the energy is then what is stored after that
-  template <bool commits, class P>
-  static Evaluation gradient(BondWorkspace& a, const P& potential, Span displacement,
+  template <bool commits, class P, class E>
+  static Evaluation gradient(BondWorkspace& a, const P& potential, const E& eigenstretch,
+                             Span displacement,
                              std::conditional_t<commits, double*, const double*> largest_stretch,
                              std::span<double> result, Write how) {
     a.pack<D>(a.points.reference, displacement);
@@ -259,8 +278,9 @@ struct BondKernels {
         own.fill(Lanes(0.0));
         for_each_batch<D>(
             bonds, a.rows.data(), i, [&](const Batch<D>& batch) __attribute__((always_inline)) {
-              const auto measure =
+              auto measure =
                   Length::at<D, Lanes>(batch.inverse_length, {batch.vector0}, {batch.vector1});
+              relieve(measure, eigenstretch, i, batch);
               if constexpr (commits) {
                 commit<D>(potential, batch, measure.relative_change, largest_stretch, growth);
               }
@@ -284,16 +304,17 @@ struct BondKernels {
     return a.threads.total_evaluation();
   }
 
-  template <class P>
-  static DamageGrowth growth(BondWorkspace& a, const P& potential, Span displacement,
-                             const double* largest_stretch) {
+  template <class P, class E>
+  static DamageGrowth growth(BondWorkspace& a, const P& potential, const E& eigenstretch,
+                             Span displacement, const double* largest_stretch) {
     a.pack<D>(a.points.reference, displacement);
     const auto body = [&](int thread, RowRange range, double*) {
       DamageGrowth found;
       for (Index i = range.first; i < range.last; ++i) {
         for_each_batch<D>(a.bonds, a.rows.data(), i, [&](const Batch<D>& batch) {
-          const auto measure =
+          auto measure =
               Length::at<D, Lanes>(batch.inverse_length, {batch.vector0}, {batch.vector1});
+          relieve(measure, eigenstretch, i, batch);
           look_at<D>(potential, batch, measure.relative_change, largest_stretch, found);
         });
       }
@@ -306,10 +327,10 @@ struct BondKernels {
   /// @param blocks_of(thread, i) where the off-diagonal blocks of row i go
   /// @param done(thread, i) called once they are there
   /// @param diagonal blocks; empty: not wanted
-  template <Tangent::Blocks stored_as, class P, class BlocksOf, class Done>
-  static void tangent(BondWorkspace& a, const P& potential, Span displacement,
-                      const double* largest_stretch, double projection, const BlocksOf& blocks_of,
-                      const Done& done, std::span<double> diagonal) {
+  template <Tangent::Blocks stored_as, class P, class E, class BlocksOf, class Done>
+  static void tangent(BondWorkspace& a, const P& potential, const E& eigenstretch,
+                      Span displacement, const double* largest_stretch, double projection,
+                      const BlocksOf& blocks_of, const Done& done, std::span<double> diagonal) {
     a.pack<D>(a.points.reference, displacement);
     const Bonds& bonds = a.bonds;
     constexpr int width = block_width(D);
@@ -320,8 +341,9 @@ struct BondKernels {
         own.fill(Lanes(0.0));
         for_each_batch<D>(
             bonds, a.rows.data(), i, [&](const Batch<D>& batch) __attribute__((always_inline)) {
-              const auto measure =
+              auto measure =
                   Length::at<D, Lanes>(batch.inverse_length, {batch.vector0}, {batch.vector1});
+              relieve(measure, eigenstretch, i, batch);
               auto psi = interaction_energy(
                   batch.weight, at_history(largest_stretch, potential, batch.first), measure);
               if (projection > 0.0) psi = projected(psi, projection);
@@ -351,9 +373,9 @@ struct BondKernels {
     });
   }
 
-  template <class P>
-  static void product(BondWorkspace& a, const P& potential, Span displacement,
-                      const double* largest_stretch, Span v, double projection,
+  template <class P, class E>
+  static void product(BondWorkspace& a, const P& potential, const E& eigenstretch,
+                      Span displacement, const double* largest_stretch, Span v, double projection,
                       std::span<double> result, Write how) {
     a.pack<D>(displacement, v);
     constexpr int row = row_width(D);
@@ -372,8 +394,8 @@ struct BondKernels {
         own.fill(Lanes(0.0));
         for_each_batch<D>(
             bonds, a.rows.data(), i, [&](const Batch<D>& batch) __attribute__((always_inline)) {
-              const auto measure =
-                  Length::from_current<D, Lanes>(batch.inverse_length, {batch.vector0});
+              auto measure = Length::from_current<D, Lanes>(batch.inverse_length, {batch.vector0});
+              relieve(measure, eigenstretch, i, batch);
               auto psi = interaction_energy(
                   batch.weight, at_history(largest_stretch, potential, batch.first), measure);
               if (projection > 0.0) psi = projected(psi, projection);
@@ -390,9 +412,10 @@ struct BondKernels {
     });
   }
 
-  template <class P>
-  static void point_energies(BondWorkspace& a, const P& potential, Span displacement,
-                             const double* largest_stretch, std::span<double> energies, Write how) {
+  template <class P, class E>
+  static void point_energies(BondWorkspace& a, const P& potential, const E& eigenstretch,
+                             Span displacement, const double* largest_stretch,
+                             std::span<double> energies, Write how) {
     a.pack<D>(a.points.reference, displacement);
     const Bonds& bonds = a.bonds;
     const auto body = [&](int, RowRange range, double* sums) {
@@ -400,8 +423,9 @@ struct BondKernels {
         Lanes own = 0.0;
         for_each_batch<D>(
             bonds, a.rows.data(), i, [&](const Batch<D>& batch) __attribute__((always_inline)) {
-              const auto measure =
+              auto measure =
                   Length::at<D, Lanes>(batch.inverse_length, {batch.vector0}, {batch.vector1});
+              relieve(measure, eigenstretch, i, batch);
               const Lanes half =
                   0.5 * interaction_energy(batch.weight,
                                            at_history(largest_stretch, potential, batch.first),

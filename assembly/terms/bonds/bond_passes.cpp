@@ -18,15 +18,21 @@ BondPasses::BondPasses(const BondTerm& term, const TermSetting& setting)
 
 template <class Body>
 auto BondPasses::dispatch(const StateView& at, const Body& body) const {
-  const auto with_law = [&](const auto& law, const double* largest_stretch) {
+  const auto in_dimension = [&](const auto& law, const double* largest_stretch,
+                                const auto& eigenstretch) {
     switch (workspace_.points.dimension) {
       case 1:
-        return body(std::integral_constant<int, 1>{}, law, largest_stretch);
+        return body(std::integral_constant<int, 1>{}, law, largest_stretch, eigenstretch);
       case 2:
-        return body(std::integral_constant<int, 2>{}, law, largest_stretch);
+        return body(std::integral_constant<int, 2>{}, law, largest_stretch, eigenstretch);
       default:
-        return body(std::integral_constant<int, 3>{}, law, largest_stretch);
+        return body(std::integral_constant<int, 3>{}, law, largest_stretch, eigenstretch);
     }
+  };
+  const auto with_law = [&](const auto& law, const double* largest_stretch) {
+    const std::span<const double> of_point = at.eigenstretch();
+    if (of_point.empty()) return in_dimension(law, largest_stretch, NoEigenstretch{});
+    return in_dimension(law, largest_stretch, Eigenstretch{of_point.data()});
   };
   return std::visit(
       [&]<class P>(const P& potential) {
@@ -46,20 +52,23 @@ auto BondPasses::dispatch(const StateView& at, const Body& body) const {
 }
 
 Evaluation BondPasses::gradient(const StateView& at, std::span<double> gradient, Write how) {
-  return dispatch(at, [&](auto d, const auto& law, const double* largest_stretch) {
-    return BondKernels<decltype(d)::value>::template gradient<false>(
-        workspace_, law, at.displacement, largest_stretch, gradient, how);
-  });
+  return dispatch(
+      at, [&](auto d, const auto& law, const double* largest_stretch, const auto& eigenstretch) {
+        return BondKernels<decltype(d)::value>::template gradient<false>(
+            workspace_, law, eigenstretch, at.displacement, largest_stretch, gradient, how);
+      });
 }
 
-Evaluation BondPasses::commit(std::span<const double> displacement, History& history,
+Evaluation BondPasses::commit(std::span<const double> displacement,
+                              const SharedEnvironment& environment, History& history,
                               std::span<double> gradient, Write how) {
-  if (!term_.can_fail()) return this->gradient({displacement, history}, gradient, how);
+  const StateView at{displacement, history, Damage::grows, environment};
+  if (!term_.can_fail()) return this->gradient(at, gradient, how);
   double* const largest_stretch = history.change(slot_).data();
-  return dispatch({displacement, history}, [&]<class P>(auto d, const P& law, const double*) {
+  return dispatch(at, [&]<class P>(auto d, const P& law, const double*, const auto& eigenstretch) {
     if constexpr (PotentialWithHistory<P>) {
       return BondKernels<decltype(d)::value>::template gradient<true>(
-          workspace_, law, displacement, largest_stretch, gradient, how);
+          workspace_, law, eigenstretch, displacement, largest_stretch, gradient, how);
     } else {
       return Evaluation{};
     }
@@ -68,9 +77,10 @@ Evaluation BondPasses::commit(std::span<const double> displacement, History& his
 
 DamageGrowth BondPasses::growth(const StateView& at) {
   if (!term_.can_fail()) return {};
-  return dispatch(at, [&]<class P>(auto d, const P& law, const double* largest_stretch) {
+  return dispatch(at, [&]<class P>(auto d, const P& law, const double* largest_stretch,
+                                   const auto& eigenstretch) {
     if constexpr (PotentialWithHistory<P>) {
-      return BondKernels<decltype(d)::value>::growth(workspace_, law, at.displacement,
+      return BondKernels<decltype(d)::value>::growth(workspace_, law, eigenstretch, at.displacement,
                                                      largest_stretch);
     } else {
       return DamageGrowth{};
@@ -104,53 +114,57 @@ void BondPasses::visit_tangent(const StateView& at, double projection, const Row
     longest = std::max(longest, offset[i] - offset[i - 1]);
   }
   const int threads = workspace_.threads.threads();
-  dispatch(at, [&](auto d, const auto& law, const double* largest_stretch) {
-    constexpr std::size_t entries = decltype(d)::value * decltype(d)::value;
-    std::vector<std::vector<double>> rows(std::size_t(threads),
-                                          std::vector<double>(std::size_t(longest) * entries));
-    BondKernels<decltype(d)::value>::template tangent<Tangent::Blocks::whole>(
-        workspace_, law, at.displacement, largest_stretch, projection,
-        [&](int thread, Index) { return rows[std::size_t(thread)].data(); },
-        [&](int thread, Index i) {
-          const std::size_t bonds = std::size_t(offset[i + 1] - offset[i]);
-          visit(thread, i, std::span(rows[std::size_t(thread)]).first(bonds * entries));
-        },
-        diagonal);
-  });
+  dispatch(at,
+           [&](auto d, const auto& law, const double* largest_stretch, const auto& eigenstretch) {
+             constexpr std::size_t entries = decltype(d)::value * decltype(d)::value;
+             std::vector<std::vector<double>> rows(
+                 std::size_t(threads), std::vector<double>(std::size_t(longest) * entries));
+             BondKernels<decltype(d)::value>::template tangent<Tangent::Blocks::whole>(
+                 workspace_, law, eigenstretch, at.displacement, largest_stretch, projection,
+                 [&](int thread, Index) { return rows[std::size_t(thread)].data(); },
+                 [&](int thread, Index i) {
+                   const std::size_t bonds = std::size_t(offset[i + 1] - offset[i]);
+                   visit(thread, i, std::span(rows[std::size_t(thread)]).first(bonds * entries));
+                 },
+                 diagonal);
+           });
 }
 
 void BondPasses::product(const StateView& at, std::span<const double> v, double projection,
                          std::span<double> product, Write how) {
-  dispatch(at, [&](auto d, const auto& law, const double* largest_stretch) {
-    BondKernels<decltype(d)::value>::product(workspace_, law, at.displacement, largest_stretch, v,
-                                             projection, product, how);
-  });
+  dispatch(
+      at, [&](auto d, const auto& law, const double* largest_stretch, const auto& eigenstretch) {
+        BondKernels<decltype(d)::value>::product(workspace_, law, eigenstretch, at.displacement,
+                                                 largest_stretch, v, projection, product, how);
+      });
 }
 
 void BondPasses::point_energies(const StateView& at, std::span<double> energies, Write how) {
-  dispatch(at, [&](auto d, const auto& law, const double* largest_stretch) {
-    BondKernels<decltype(d)::value>::point_energies(workspace_, law, at.displacement,
-                                                    largest_stretch, energies, how);
-  });
+  dispatch(at,
+           [&](auto d, const auto& law, const double* largest_stretch, const auto& eigenstretch) {
+             BondKernels<decltype(d)::value>::point_energies(
+                 workspace_, law, eigenstretch, at.displacement, largest_stretch, energies, how);
+           });
 }
 
 void BondPasses::write_tangent(const StateView& at, double projection, Tangent& tangent) {
-  dispatch(at, [&](auto d, const auto& law, const double* largest_stretch) {
-    using Kernels = BondKernels<decltype(d)::value>;
-    const auto blocks_of = [&](int, Index i) {
-      return &tangent.off_diagonal[std::size_t(pattern_.offset[i]) * tangent.block_size()];
-    };
-    const auto done = [](int, Index) {};
-    if (tangent.blocks == Tangent::Blocks::whole) {
-      Kernels::template tangent<Tangent::Blocks::whole>(workspace_, law, at.displacement,
-                                                        largest_stretch, projection, blocks_of,
-                                                        done, tangent.diagonal);
-    } else {
-      Kernels::template tangent<Tangent::Blocks::upper_halves>(workspace_, law, at.displacement,
-                                                               largest_stretch, projection,
-                                                               blocks_of, done, tangent.diagonal);
-    }
-  });
+  dispatch(at,
+           [&](auto d, const auto& law, const double* largest_stretch, const auto& eigenstretch) {
+             using Kernels = BondKernels<decltype(d)::value>;
+             const auto blocks_of = [&](int, Index i) {
+               return &tangent.off_diagonal[std::size_t(pattern_.offset[i]) * tangent.block_size()];
+             };
+             const auto done = [](int, Index) {};
+             if (tangent.blocks == Tangent::Blocks::whole) {
+               Kernels::template tangent<Tangent::Blocks::whole>(
+                   workspace_, law, eigenstretch, at.displacement, largest_stretch, projection,
+                   blocks_of, done, tangent.diagonal);
+             } else {
+               Kernels::template tangent<Tangent::Blocks::upper_halves>(
+                   workspace_, law, eigenstretch, at.displacement, largest_stretch, projection,
+                   blocks_of, done, tangent.diagonal);
+             }
+           });
 }
 
 }  // namespace peristat

@@ -13,8 +13,8 @@ class BondPasses : public TermPasses {
   BondPasses(const BondTerm& term, const TermSetting& setting);
 
   Evaluation gradient(const StateView& at, std::span<double> gradient, Write how) override;
-  Evaluation commit(std::span<const double> displacement, History& history,
-                    std::span<double> gradient, Write how) override;
+  Evaluation commit(std::span<const double> displacement, const SharedEnvironment& environment,
+                    History& history, std::span<double> gradient, Write how) override;
   DamageGrowth growth(const StateView& at) override;
   void tangent(const StateView& at, double projection, Tangent& tangent, Write how) override;
   void visit_tangent(const StateView& at, double projection, const RowVisitor& visit,
@@ -24,8 +24,8 @@ class BondPasses : public TermPasses {
   void point_energies(const StateView& at, std::span<double> energies, Write how) override;
 
  private:
-  /// Calls body(dimension, law, history of the bonds) with the dimension as a compile-time constant
-  /// and the potential as its own type.
+  /// Calls body(dimension, law, history of the bonds, eigenstretch) with the dimension as a
+  /// compile-time constant, the potential as its own type, and one for no eigenstretch.
   template <class Body>
   auto dispatch(const StateView& at, const Body& body) const;
 

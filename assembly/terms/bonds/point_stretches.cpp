@@ -16,6 +16,7 @@ void find_largest(const Points& points, const Model& model, const StateView& at,
                   std::span<double> stretches) {
   const std::vector<char> broken = broken_bonds(model, at.history);
   const Bonds& bonds = model.bonds();
+  const std::span<const double> eigenstretch = at.eigenstretch();
   const auto difference = [](std::span<const double> field, Index i, Index j) {
     Vector<D, double> result;
     for (int c = 0; c < D; ++c) {
@@ -27,10 +28,12 @@ void find_largest(const Points& points, const Model& model, const StateView& at,
     for (Offset bond = bonds.offset[i]; bond < bonds.offset[i + 1]; ++bond) {
       if (!broken.empty() && broken[bond]) continue;
       const Index j = bonds.partner[bond];
+      const double free = eigenstretch.empty() ? 0.0 : 0.5 * (eigenstretch[i] + eigenstretch[j]);
       const double stretch =
           Length::at<D, double>(bonds.inverse_length(bond), {difference(points.reference, i, j)},
                                 {difference(at.displacement, i, j)})
-              .relative_change;
+              .relative_change -
+          free;
       stretches[i] = std::max(stretches[i], stretch);
       stretches[j] = std::max(stretches[j], stretch);
     }

@@ -12,10 +12,11 @@
 
 namespace peristat {
 
-/// What is left of bonds; both empty: all are whole.
-struct Integrity {
-  std::span<const double> of_bond;
-  std::span<const double> of_point;  ///< the least of its bonds
+/// What the energies of triangles and tetrahedra depend on beside places; empty: nothing of it.
+struct Influences {
+  std::span<const double> of_bond;       ///< what is left of bonds
+  std::span<const double> of_point;      ///< the least of its bonds
+  std::span<const double> eigenstretch;  ///< of points
 };
 
 /// What a thread adds up over the interactions of one point with the partners above it. Everything
@@ -40,7 +41,7 @@ struct LocalWorkspace {
   InteractionScratch scratch;
 
   /// Takes up the integrities of the bonds among the point and its partners.
-  void find_integrity(const Integrity& integrity, Offset first_bond, bool pairs_are_known) {
+  void find_integrity(const Influences& integrity, Offset first_bond, bool pairs_are_known) {
     const std::span<const Index> partners = local.upper.points();
     const std::span<const double> of_bond = integrity.of_bond, of_point = integrity.of_point;
     is_degraded_ =
@@ -55,7 +56,7 @@ struct LocalWorkspace {
     }
   }
 
-  /// Integrity of a block's interactions: the product of those of the bonds that they stand on.
+  /// Influences of a block's interactions: the product of those of the bonds that they stand on.
   template <class Group>
   [[nodiscard]] Lanes integrity_of(const Group& group, const InteractionBlock& block) const {
     if (!is_degraded_) return 1.0;
@@ -70,6 +71,29 @@ struct LocalWorkspace {
       for (std::size_t q = p + 1; q < fixed.size(); ++q) product *= row[fixed[q]];
     }
     return product;
+  }
+
+  /// Takes up the eigenstretches of the point and its partners.
+  void find_eigenstretch(std::span<const double> of_point) {
+    has_eigenstretch_ = !of_point.empty();
+    if (!has_eigenstretch_) return;
+    const std::span<const Index> partners = local.upper.points();
+    own_eigenstretch_ = of_point[std::size_t(local.upper.own())];
+    eigenstretch_.resize(stride_, 0.0);
+    for (std::size_t k = 0; k < partners.size(); ++k) eigenstretch_[k] = of_point[partners[k]];
+  }
+
+  /// Takes off what a block's interactions would have grown by if nothing held them: m to m (1 +
+  /// s)^n, s the mean of their points'.
+  template <class MeasureAt, class Fixed>
+  void relieve(MeasureAt& measure, const Fixed& fixed, const InteractionBlock& block) const {
+    if (!has_eigenstretch_) return;
+    double known = own_eigenstretch_;
+    for (const int partner : fixed) known += eigenstretch_[std::size_t(partner)];
+    const Lanes last(&eigenstretch_[std::size_t(block.first)], std::experimental::element_aligned);
+    constexpr int arms = MeasureAt::arms;
+    const Lanes mean = (known + last) / double(arms + 1);
+    measure.relative_change -= arms == 2 ? mean * (2.0 + mean) : mean * (3.0 + mean * (3.0 + mean));
   }
 
   void clear(int width) {
@@ -163,7 +187,9 @@ struct LocalWorkspace {
   }
 
   std::size_t stride_;
-  bool is_degraded_ = false;
+  bool is_degraded_ = false, has_eigenstretch_ = false;
+  double own_eigenstretch_ = 0.0;
+  std::vector<double> eigenstretch_;    // of the partners
   std::vector<double> own_integrity_;   // of the bonds to the partners
   std::vector<double> pair_integrity_;  // of those between partners a < b
   AlignedVector<double> of_fixed_;      // [partner][width][lane]

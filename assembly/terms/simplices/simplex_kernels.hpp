@@ -20,7 +20,8 @@ class BatchArms {
   static constexpr int count = Measure::arms, last = count - 1;
 
   template <class Group>
-  BatchArms(const LocalWorkspace<D>& workspace, const Group& group) : workspace_(workspace) {
+  BatchArms(const LocalWorkspace<D>& workspace, const Group& group)
+      : workspace_(workspace), fixed_(group.partners) {
     for (int p = 0; p < last; ++p) {
       reference_[p] = workspace.local.reference.one(group.partners[p]);
       displacement_[p] = workspace.displacement.one(group.partners[p]);
@@ -40,9 +41,11 @@ class BatchArms {
         fill_empty(block, workspace_.displacement.one(repeated), displacement_[last]);
       }
     }
-    return Measure::template at<D, Lanes>(
+    auto result = Measure::template at<D, Lanes>(
         Lanes(block.inverse_reference, std::experimental::element_aligned), reference_,
         displacement_);
+    workspace_.relieve(result, fixed_, block);
+    return result;
   }
 
  private:
@@ -54,6 +57,7 @@ class BatchArms {
   }
 
   const LocalWorkspace<D>& workspace_;
+  const std::array<std::int32_t, std::size_t(last)>& fixed_;
   Arms<count, D, Lanes> reference_, displacement_;
 };
 
@@ -83,10 +87,11 @@ struct SimplexKernels {
   }
 
   static void move_to(const SimplexWorkspace<D>& a, LocalWorkspace<D>& w, Index i,
-                      Span displacement, const Integrity& integrity, bool find_pairs) {
+                      Span displacement, const Influences& influences, bool find_pairs) {
     w.local.move_to(i);
     if (find_pairs) w.local.upper.find_pairs();
-    w.find_integrity(integrity, a.term.bonds().offset[i], find_pairs);
+    w.find_integrity(influences, a.term.bonds().offset[i], find_pairs);
+    w.find_eigenstretch(influences.eigenstretch);
     assign_relative(w, displacement, w.displacement);
   }
 
@@ -121,8 +126,8 @@ struct SimplexKernels {
     for (int c = 0; c < width; ++c) row[c] += own[c];
   }
 
-  static Evaluation gradient(SimplexWorkspace<D>& a, Span displacement, const Integrity& integrity,
-                             std::span<double> result) {
+  static Evaluation gradient(SimplexWorkspace<D>& a, Span displacement,
+                             const Influences& influences, std::span<double> result) {
     const bool energy_only = result.empty();
     const bool find_pairs = must_find(a.term);
     constexpr int stride = vector_width(D);
@@ -131,7 +136,7 @@ struct SimplexKernels {
       Lanes smallest_measure = std::numeric_limits<double>::infinity();
       double energy = 0.0;
       for (Index i = range.first; i < range.last; ++i) {
-        move_to(a, w, i, displacement, integrity, find_pairs);
+        move_to(a, w, i, displacement, influences, find_pairs);
         w.clear(D);
         Lanes row_energy = 0.0;
         for_each_kind(a.term, [&](auto kind, const auto& interactions, const auto& potential) {
@@ -170,14 +175,14 @@ struct SimplexKernels {
     return a.threads.total_evaluation();
   }
 
-  static void product(SimplexWorkspace<D>& a, Span displacement, const Integrity& integrity, Span v,
-                      std::span<double> result) {
+  static void product(SimplexWorkspace<D>& a, Span displacement, const Influences& influences,
+                      Span v, std::span<double> result) {
     const bool find_pairs = must_find(a.term);
     constexpr int stride = vector_width(D);
     const auto body = [&](int thread, RowRange range, double* sums) {
       LocalWorkspace<D>& w = *a.local[std::size_t(thread)];
       for (Index i = range.first; i < range.last; ++i) {
-        move_to(a, w, i, displacement, integrity, find_pairs);
+        move_to(a, w, i, displacement, influences, find_pairs);
         assign_relative(w, v, w.vector);
         w.clear(D);
         for_each_kind(a.term, [&](auto kind, const auto& interactions, const auto& potential) {
@@ -210,13 +215,13 @@ struct SimplexKernels {
   }
 
   /// Shares every interaction's energy equally among its points.
-  static void point_energies(SimplexWorkspace<D>& a, Span displacement, const Integrity& integrity,
-                             std::span<double> energies) {
+  static void point_energies(SimplexWorkspace<D>& a, Span displacement,
+                             const Influences& influences, std::span<double> energies) {
     const bool find_pairs = must_find(a.term);
     const auto body = [&](int thread, RowRange range, double* sums) {
       LocalWorkspace<D>& w = *a.local[std::size_t(thread)];
       for (Index i = range.first; i < range.last; ++i) {
-        move_to(a, w, i, displacement, integrity, find_pairs);
+        move_to(a, w, i, displacement, influences, find_pairs);
         w.clear(1);
         Lanes own = 0.0;
         for_each_kind(a.term, [&](auto kind, const auto& interactions, const auto& potential) {
@@ -363,7 +368,7 @@ struct SimplexKernels {
     });
   }
 
-  static void tangent(SimplexWorkspace<D>& a, Span displacement, const Integrity& integrity,
+  static void tangent(SimplexWorkspace<D>& a, Span displacement, const Influences& influences,
                       double projection, Tangent& result) {
     const Bonds& bonds = a.term.bonds();
     constexpr int stride = block_width(D), entries = D * D;
@@ -378,7 +383,7 @@ struct SimplexKernels {
                                     : &beyond[std::size_t(place - first_beyond) * entries];
       };
       for (Index i = range.first; i < range.last; ++i) {
-        move_to(a, w, i, displacement, integrity, true);
+        move_to(a, w, i, displacement, influences, true);
         w.clear(half_entries);
         w.clear_hessian();
         for_each_kind(a.term, [&](auto kind, const auto& interactions, const auto& potential) {

@@ -23,17 +23,20 @@ class SimplexPasses : public TermPasses {
 
   Evaluation gradient(const StateView& at, std::span<double> gradient, Write how) override {
     if (how == Write::over) clear(gradient);
-    return Kernels::gradient(workspace_, at.displacement, integrity_after(at.history), gradient);
+    return Kernels::gradient(workspace_, at.displacement, influences_at(at), gradient);
   }
 
-  Evaluation commit(std::span<const double> displacement, History& history,
-                    std::span<double> gradient, Write how) override {
+  Evaluation commit(std::span<const double> displacement, const SharedEnvironment& environment,
+                    History& history, std::span<double> gradient, Write how) override {
     const History before = history;
     term_.follow(model_, history);
-    Evaluation found = this->gradient({displacement, history}, gradient, how);
+    const auto after = [&](const History& past) {
+      return StateView{displacement, past, Damage::grows, environment};
+    };
+    Evaluation found = this->gradient(after(history), gradient, how);
     found.moves_equilibrium = !std::ranges::equal(before.of(slot_), history.of(slot_));
     if (found.moves_equilibrium) {
-      const double energy = this->gradient({displacement, before}, {}, how).energy;
+      const double energy = this->gradient(after(before), {}, how).energy;
       // No integrity rises in a commit, but for the last digit of an exponential.
       found.released = std::max(energy - found.energy, 0.0);
     }
@@ -45,7 +48,7 @@ class SimplexPasses : public TermPasses {
       throw std::logic_error("the blocks of triangles and tetrahedra are not symmetric");
     }
     if (how == Write::over) tangent.clear();
-    Kernels::tangent(workspace_, at.displacement, integrity_after(at.history), projection, tangent);
+    Kernels::tangent(workspace_, at.displacement, influences_at(at), projection, tangent);
   }
 
   void product(const StateView& at, std::span<const double> v, double projection,
@@ -54,22 +57,22 @@ class SimplexPasses : public TermPasses {
       throw std::logic_error("triangles and tetrahedra have no projected product");
     }
     if (how == Write::over) clear(product);
-    Kernels::product(workspace_, at.displacement, integrity_after(at.history), v, product);
+    Kernels::product(workspace_, at.displacement, influences_at(at), v, product);
   }
 
   void point_energies(const StateView& at, std::span<double> energies, Write how) override {
     if (how == Write::over) clear(energies);
-    Kernels::point_energies(workspace_, at.displacement, integrity_after(at.history), energies);
+    Kernels::point_energies(workspace_, at.displacement, influences_at(at), energies);
   }
 
  private:
   using Kernels = SimplexKernels<D>;
 
-  [[nodiscard]] Integrity integrity_after(const History& history) const {
-    const std::span<const double> integrity = history.of(slot_);
-    if (integrity.empty()) return {};
+  [[nodiscard]] Influences influences_at(const StateView& at) const {
+    const std::span<const double> integrity = at.history.of(slot_);
+    if (integrity.empty()) return {{}, {}, at.eigenstretch()};
     const auto bonds = std::size_t(term_.bonds().count());
-    return {integrity.first(bonds), integrity.subspan(bonds)};
+    return {integrity.first(bonds), integrity.subspan(bonds), at.eigenstretch()};
   }
 
   const SimplexTerm& term_;

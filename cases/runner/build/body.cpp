@@ -59,6 +59,11 @@ Points make_points_of(const Case& from) {
       check_lattice(*lattice);  // first: what can't be used has no size
       require_memory_for_lattice(from, *lattice);
       points = make_points(*lattice);
+      if (lattice->perturbation == 0.0) {
+        const auto& periods = from.constraints.periods;
+        require_lattice_goes_on(points, from.constraints.symmetries,
+                                {periods.begin(), periods.end()});
+      }
     } else {
       const auto& source = std::get<PointSource>(from.body);
       std::optional<NeighbourFile> neighbours;
@@ -121,7 +126,9 @@ std::optional<Model> make_elastic_stand_in(const Case& from, const Body& body, i
     if (!free_motions(body.points, bonds, holding).empty())
       throw InputError(key, number_text(from.solver.elastic_horizon_ratio),
                        "leaves points that may move freely");
-    return make_elastic_bonds(body, std::move(bonds), setting);
+    Model stand_in = make_elastic_bonds(body, std::move(bonds), setting);
+    add_pressures(stand_in, body);
+    return stand_in;
   });
 }
 

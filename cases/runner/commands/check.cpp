@@ -1,10 +1,12 @@
 #include "cases/runner/commands/check.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include <fmt/format.h>
 
 #include "assembly/operators/constrained_tangent.hpp"
+#include "assembly/terms/pressure/pressure_term.hpp"
 #include "cases/runner/build/body.hpp"
 #include "cases/runner/build/solver_options.hpp"
 #include "solvers/linear/available_memory.hpp"
@@ -139,6 +141,31 @@ void print_regions(const Case& from, const Body& body) {
   if (count(-1) > 0) fmt::print("region      none, [material]: {} points\n", count(-1));
 }
 
+/// Loads that follow the deformation, and what the symmetric tangent leaves out of their stiffness.
+void print_pressures(const Body& body) {
+  for (const auto& term : body.model.terms()) {
+    const auto* const pressures = dynamic_cast<const PressureTerm*>(term.get());
+    if (!pressures) continue;
+    const Conditions& conditions = *body.conditions;
+    const double end = conditions.programme().end();
+    const std::vector<double> at_rest(body.points.reference.size(), 0.0);
+    const History history;
+    const auto [symmetric, left_out] = pressures->stiffness(
+        {at_rest, history, Damage::grows,
+         conditions.environment(conditions.control() ? LoadPoint(end, 1.0) : LoadPoint(end))},
+        conditions.prescribed());
+    const bool is_symmetric = left_out <= 1e-12 * symmetric;
+    fmt::print("pressure    {} faces, {:.6g} m2; {}\n", pressures->boundary().face.size(),
+               pressures->area(),
+               is_symmetric
+                   ? "closed or held: its stiffness is symmetric"
+                   : fmt::format("open or uneven: of its stiffness at the end of the load, {:.3g} "
+                                 "N/m, the tangent leaves out an unsymmetric part of {:.3g} N/m "
+                                 "(forces are exact)",
+                                 std::hypot(symmetric, left_out), left_out));
+  }
+}
+
 }  // namespace
 
 Exit check(const Case& from, int threads) {
@@ -167,6 +194,7 @@ Exit check(const Case& from, int threads) {
   for (const std::string& line : describe_constraints(body)) {
     fmt::print("constraint  {}\n", line);
   }
+  print_pressures(body);
   if (neighbours.isolated > 0) {
     fmt::print("isolated    {} points have no neighbour\n", neighbours.isolated);
   }

@@ -94,15 +94,22 @@ void fit_handles(const Constraints& constraints, const Points& points,
 /// The energy as a function of what follows nothing, without loads.
 class Reduced {
  public:
-  Reduced(Assembler& assembler, const Constraints& constraints)
-      : assembler_(assembler), constraints_(constraints) {}
+  Reduced(Assembler& assembler, const Constraints& constraints, const History& history,
+          SharedEnvironment environment)
+      : assembler_(assembler),
+        constraints_(constraints),
+        history_(history),
+        environment_(std::move(environment)) {}
+
+  [[nodiscard]] StateView at(const std::vector<double>& displacement) const {
+    return {displacement, history_, Damage::grows, environment_};
+  }
 
   /// Moves what follows, and finds the gradient, which is zero there.
-  Evaluation gradient(std::vector<double> displacement, const History& history,
-                      std::vector<double>& gradient) const {
-    if (constraints_.none()) return assembler_.gradient({displacement, history}, gradient);
+  Evaluation gradient(std::vector<double> displacement, std::vector<double>& gradient) const {
+    if (constraints_.none()) return assembler_.gradient(at(displacement), gradient);
     constraints_.move(displacement);
-    const Evaluation found = assembler_.gradient({displacement, history}, gradient);
+    const Evaluation found = assembler_.gradient(at(displacement), gradient);
     constraints_.fold(displacement, no_load(), gradient);
     for (std::size_t dof = 0; dof < gradient.size(); ++dof) {
       if (constraints_.dependent()[dof]) gradient[dof] = 0.0;
@@ -111,10 +118,9 @@ class Reduced {
   }
 
   /// Of rigid sets, at a displacement at which what follows has moved.
-  [[nodiscard]] std::vector<Tensor> curvature(const std::vector<double>& displacement,
-                                              const History& history) const {
+  [[nodiscard]] std::vector<Tensor> curvature(const std::vector<double>& displacement) const {
     std::vector<double> forces(displacement.size());
-    static_cast<void>(assembler_.gradient({displacement, history}, forces));
+    static_cast<void>(assembler_.gradient(at(displacement), forces));
     constraints_.fold(displacement, no_load(), forces);
     return constraints_.curvature(displacement, no_load(), forces);
   }
@@ -126,6 +132,8 @@ class Reduced {
 
   Assembler& assembler_;
   const Constraints& constraints_;
+  const History& history_;
+  SharedEnvironment environment_;
 };
 
 /// Fixed pseudo-random direction with entries of the size of the spacing.
@@ -296,10 +304,9 @@ std::vector<std::size_t> sampled_dofs(const Body& body, const std::vector<double
 
 /// Entries of the columns of some degrees of freedom in their own rows, by central differences of
 /// the gradient with steps h, h/2 and h/4 and Richardson's extrapolation: an error of order h^6.
-std::vector<double> differenced_block(const Reduced& body, const StateView& at,
+std::vector<double> differenced_block(const Reduced& body, const std::vector<double>& displacement,
                                       const std::vector<std::size_t>& dofs, double step) {
   const std::size_t count = dofs.size();
-  const std::span<const double> displacement = at.displacement;
   std::vector<double> block(count * count), shifted(displacement.begin(), displacement.end());
   std::vector<double> forward(displacement.size()), backward(displacement.size());
   constexpr double weights[] = {1.0 / 45.0, -20.0 / 45.0, 64.0 / 45.0};
@@ -307,9 +314,9 @@ std::vector<double> differenced_block(const Reduced& body, const StateView& at,
     double h = step;
     for (const double weight : weights) {
       shifted[dofs[j]] = displacement[dofs[j]] + h;
-      static_cast<void>(body.gradient(shifted, at.history, forward));
+      static_cast<void>(body.gradient(shifted, forward));
       shifted[dofs[j]] = displacement[dofs[j]] - h;
-      static_cast<void>(body.gradient(shifted, at.history, backward));
+      static_cast<void>(body.gradient(shifted, backward));
       for (std::size_t i = 0; i < count; ++i) {
         block[i * count + j] += weight * (forward[dofs[i]] - backward[dofs[i]]) / (2.0 * h);
       }
@@ -333,6 +340,12 @@ double asymmetry_of(const std::vector<double>& block, std::size_t count) {
   return largest > 0.0 ? difference / largest : 0.0;
 }
 
+/// Eigenstrains and pressures at the end of the load; under a control at the load 1.
+SharedEnvironment environment_at_end(const Conditions& conditions) {
+  const double end = conditions.programme().end();
+  return conditions.environment(conditions.control() ? LoadPoint(end, 1.0) : LoadPoint(end));
+}
+
 }  // namespace
 
 Exit check_tangent(const Case& from, const std::string& deformation, int threads) {
@@ -352,13 +365,15 @@ Exit check_tangent(const Case& from, const std::string& deformation, int threads
     constraints.move(displacement);
   }
   Assembler assembler(points, body.model, threads);
-  const Reduced reduced(assembler, constraints);
   const std::size_t dofs = displacement.size();
   std::vector<double> gradient(dofs), image(dofs), shifted(dofs), forward(dofs), backward(dofs);
   const History history = assembler.initial_history();
-  std::vector<double> internal_force(points.reference.size());  // folded onto nothing
-  static_cast<void>(assembler.gradient({displacement, history}, internal_force));
-  const Evaluation found = reduced.gradient(displacement, history, gradient);
+  const SharedEnvironment environment = environment_at_end(*body.conditions);
+  const Reduced reduced(assembler, constraints, history, environment);
+  const StateView at = reduced.at(displacement);
+  std::vector<double> internal_force(dofs);  // folded onto nothing
+  static_cast<void>(assembler.gradient(at, internal_force));
+  const Evaluation found = reduced.gradient(displacement, gradient);
   if (found.degenerate) {
     throw InputError("--deformation", '"' + text + '"', "collapses a bond to zero length");
   }
@@ -366,14 +381,18 @@ Exit check_tangent(const Case& from, const std::string& deformation, int threads
       constraints.none() ? std::make_unique<Tangent>(assembler)
                          : std::make_unique<ConstrainedTangent>(assembler, constraints);
   Tangent& tangent = *made_tangent;
-  const std::vector<Tensor> of_rigid_sets = reduced.curvature(displacement, history);
-  StateView state(displacement, history);
+  const std::vector<Tensor> of_rigid_sets = reduced.curvature(displacement);
+  StateView state = at;
   state.curvature = of_rigid_sets;
   tangent.linearise(assembler, state, 0.0);
   std::vector<double> direction = test_direction(points, constraints.dependent());
   const double largest_step = keep_off_kinks(body, displacement, gradient, direction, 0.05);
   tangent.multiply(direction, image);
-  const double slope = dot(gradient, direction), curvature = dot(image, direction);
+  // Forces that follow the deformation have no part in the energy.
+  std::vector<double> follower_force(dofs);
+  assembler.follower_force(at, follower_force);
+  const double slope = dot(gradient, direction) + dot(follower_force, direction);
+  const double curvature = dot(image, direction);
   // At a state without forces the slope is round-off: there the energy of a unit step is the scale.
   constexpr double no_slope = 1e-10;
   const double energy_scale =
@@ -389,10 +408,10 @@ Exit check_tangent(const Case& from, const std::string& deformation, int threads
   for (int k = 0; k < halvings; ++k, step *= 0.5) {
     shifted = displacement;
     add_scaled(shifted, step, direction);
-    const double energy_forward = reduced.gradient(shifted, history, forward).energy;
+    const double energy_forward = reduced.gradient(shifted, forward).energy;
     shifted = displacement;
     add_scaled(shifted, -step, direction);
-    const double energy_backward = reduced.gradient(shifted, history, backward).energy;
+    const double energy_backward = reduced.gradient(shifted, backward).energy;
     const double difference = (energy_forward - energy_backward) / (2.0 * step);
     residual_errors.push_back(std::abs(difference - slope) / energy_scale);
     add_scaled(forward, -1.0, backward);
@@ -404,8 +423,8 @@ Exit check_tangent(const Case& from, const std::string& deformation, int threads
   double fastest = 0.0;
   for (const double entry : direction) fastest = std::max(fastest, std::abs(entry));
   const double sample_step = std::min(0.01 * points.spacing, 0.25 * largest_step * fastest);
-  const double asymmetry = asymmetry_of(
-      differenced_block(reduced, {displacement, history}, sample, sample_step), sample.size());
+  const double asymmetry =
+      asymmetry_of(differenced_block(reduced, displacement, sample, sample_step), sample.size());
 
   const Convergence of_residual = convergence_of(residual_errors);
   const Convergence of_tangent = convergence_of(tangent_errors);

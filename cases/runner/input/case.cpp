@@ -58,6 +58,14 @@ const std::map<std::string, std::string>& keys_of_members() {
       {"file", "points.file"},
       {"supports", "support"},
       {"loads", "load"},
+      {"regions", "region"},
+      {"interfaces", "interface"},
+      {"rigid_sets", "rigid"},
+      {"rollers", "roller"},
+      {"linear", "constraint"},
+      {"symmetries", "symmetry"},
+      {"periods", "period"},
+      {"eigenstrains", "eigenstrain"},
       {"directory", "output.directory"},
       {"controls", "control"},
       {"programme", "loading.table"}};
@@ -83,10 +91,7 @@ std::string key_of(const Case& from, std::string member) {
     const std::size_t number = std::stoul(member.substr(end + 1));
     member.replace(at + 2, part.size() - 2, key_of_element(number));
   };
-  replace("].value", [&](std::size_t k) {
-    return from.loads.at(k).kind == LoadSpecification::Kind::body_force ? "body_force"
-                                                                        : "total_force";
-  });
+  replace("].value", [&](std::size_t k) { return std::string(load_key(from.loads.at(k).kind)); });
   replace("].action", [&](std::size_t k) {
     return lattice->shapes.at(k).action == ShapeStep::Action::add ? "add" : "subtract";
   });

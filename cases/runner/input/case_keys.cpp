@@ -88,10 +88,17 @@ Kind<Side> side() {
     const std::string chosen = at.from.one_of(at.key, sides);
     return Side{chosen[0] - 'x', chosen[1] == '+' ? 1 : -1};
   };
-  const auto text = [](const Side& side, const Case&) {
-    return toml_string(std::string(1, "xyz"[side.axis]) + (side.sign > 0 ? "+" : "-"));
-  };
+  const auto text = [](const Side& side, const Case&) { return toml_string(peristat::name(side)); };
   return {read, text, "`\"x-\"`, `\"x+\"`, and so on for y and z"};
+}
+
+Kind<std::optional<Side>> optional_side() {
+  const Kind<Side> kind = side();
+  return {[=](const Entry& at) { return std::optional(kind.read(at)); },
+          [=](const std::optional<Side>& side, const Case& from) {
+            return side ? kind.text(*side, from) : std::string();
+          },
+          kind.allowed};
 }
 
 Table<Layer> layer_keys() {
@@ -477,8 +484,10 @@ Table<MaterialSpecification> material_keys(const std::string& name) {
          "sums or integrals")
            .unless(of_bond, for_cpd)
            .unless(has_constants, with_moduli),
+       K("thermal_expansion", &Spec::thermal_expansion, between(-1.0, 1.0, "per K"),
+         "of lengths, α: for `[temperature]`"),
        K("density", &Spec::density, positive("kg/m3"),
-         "for dynamics only: dynamic relaxation has a density of its own"),
+         "for gravity: dynamic relaxation has a density of its own"),
        K("damage", &Spec::damage, damage_keys(name), "table `[material.damage]`")
            .default_words("no damage"),
        K("fibre", fibre_of, fibre_keys(name),
@@ -610,19 +619,109 @@ Table<SupportSpecification> support_keys() {
                .required()}};
 }
 
+/// A key that gives the value of a load of a kind.
+Key<LoadSpecification> load_value(LoadSpecification::Kind kind, const std::string& unit,
+                                  const std::string& meaning) {
+  using Spec = LoadSpecification;
+  return Key<Spec>(load_key(kind), &Spec::value,
+                   force_components(kind == Spec::Kind::total_force, unit), meaning)
+      .then([=](auto&, auto& load) { load.kind = kind; })
+      .written_if([=](auto& load, auto&) { return load.kind == kind; })
+      .one_of();
+}
+
+/// Where a load acts depends on its kind.
+void check_place_of_load(const Entry& at, const LoadSpecification& load) {
+  using Kind = LoadSpecification::Kind;
+  const bool is_on_boundary = load.kind == Kind::traction || load.kind == Kind::pressure;
+  if (!is_on_boundary && at.from.has("side"))
+    at.from.refuse("side", "is for a traction or a pressure");
+  if (load.kind != Kind::traction && at.from.has("depth"))
+    at.from.refuse("depth", "is for a traction");
+  const bool needs_set = load.kind == Kind::body_force || load.kind == Kind::total_force;
+  if (needs_set) static_cast<void>(at.from.string("set"));
+  if (is_on_boundary && load.set.empty() && !load.side)
+    at.refuse(std::string("a ") + load_key(load.kind) + " needs a side or a set that it acts on");
+}
+
 Table<LoadSpecification> load_keys() {
   using Spec = LoadSpecification;
   using K = Key<Spec>;
-  return {"load",
-          {K("set", &Spec::set, known_set(), "that is loaded").required().early(),
-           K("body_force", &Spec::value, force_components(false), "force density per component")
-               .written_if([](auto& load, auto&) { return load.kind == Spec::Kind::body_force; })
-               .one_of(),
-           K("total_force", &Spec::value, force_components(true),
-             "force on the whole set per component, spread in proportion to the volume")
-               .then([](auto&, auto& load) { load.kind = Spec::Kind::total_force; })
-               .written_if([](auto& load, auto&) { return load.kind == Spec::Kind::total_force; })
-               .one_of()}};
+  using Kind = Spec::Kind;
+  const auto is_traction = [](auto& load, auto&) { return load.kind == Kind::traction; };
+  constexpr auto pressure = [](auto& load) -> auto& { return load.value[0]; };
+  return {
+      "load",
+      {K("set", &Spec::set, known_set(), "that is loaded")
+           .early()
+           .written_if([](auto& load, auto&) { return !load.set.empty(); })
+           .default_words("required, but for `gravity`, which then acts on the whole body, and "
+                          "`traction` and `pressure` with a `side`"),
+       load_value(Kind::body_force, "N/m3", "force density per component"),
+       load_value(Kind::total_force, "N",
+                  "force on the whole set per component, spread in proportion to the volume"),
+       load_value(Kind::gravity, "m/s2",
+                  "acceleration per component, times `material.density`; layers weigh nothing"),
+       load_value(Kind::traction, "Pa",
+                  "force per area per component on a flat part of the boundary, which keeps "
+                  "its direction; on a lattice only"),
+       K("pressure", pressure, scalar_field("Pa"),
+         "on the exposed faces of the cells of the set's points, or of a side: it follows them "
+         "as they deform, and pushes where it is positive; on a lattice only")
+           .then([](auto&, auto& load) { load.kind = Kind::pressure; })
+           .written_if([](auto& load, auto&) { return load.kind == Kind::pressure; })
+           .one_of(),
+       K("side", &Spec::side, optional_side(),
+         "`traction`, `pressure`: the body's outermost plane of points on a side, as of "
+         "`[[lattice.layer]]`")
+           .written_if([](auto& load, auto&) { return load.side.has_value(); })
+           .default_words("`traction`, `pressure`: this or a `set` is required, for a traction "
+                          "one in one plane of points"),
+       K("depth", &Spec::depth, choice<Depth>({{"row", Depth::row}, {"horizon", Depth::horizon}}),
+         "`traction`: borne by the outermost row of points, or spread evenly over a horizon "
+         "below the boundary")
+           .written_if(is_traction)},
+      {},
+      check_place_of_load};
+}
+
+Table<EigenstrainSpecification> eigenstrain_keys() {
+  using Spec = EigenstrainSpecification;
+  using K = Key<Spec>;
+  return {"eigenstrain",
+          {K("set", &Spec::set, known_set(), "that is strained")
+               .written_if([](auto& strained, auto&) { return !strained.set.empty(); })
+               .default_words("all points"),
+           K("strain", &Spec::strain, scalar_field("1"),
+             "that a part which nothing held would have, the same in all directions: its length "
+             "over the one in the reference, less 1")
+               .moreover("above −1")
+               .required()}};
+}
+
+Table<Eigenstrains> temperature_keys() {
+  using K = Key<Eigenstrains>;
+  const auto change = [](auto& eigenstrains) -> auto& {
+    if constexpr (!std::is_const_v<std::remove_reference_t<decltype(eigenstrains)>>) {
+      if (!eigenstrains.temperature_change) eigenstrains.temperature_change.emplace();
+      return *eigenstrains.temperature_change;
+    } else {
+      static const std::string none;
+      return eigenstrains.temperature_change ? *eigenstrains.temperature_change : none;
+    }
+  };
+  return {"temperature",
+          {K("change", change, scalar_field("K"),
+             "of the temperature from that of the reference: with `material.thermal_expansion` an "
+             "eigenstrain α ΔT of all points")
+               .written_if([](auto& of, auto&) { return of.temperature_change.has_value(); })
+               .default_words("no change; required in the table")}};
+}
+
+/// A table without its only key is a slip.
+void check_temperature(const Entry& at, const Case& result) {
+  if (at.from.has("temperature") && !result.eigenstrains.temperature_change)
+    static_cast<void>(at.from.table("temperature").string("change"));
 }
 
 Table<ControlTerm> control_keys() {
@@ -759,6 +858,18 @@ void check_tangent(const Entry& at, const SolverSpecification& solver) {
         "does not go with this solver.linear or solver.preconditioner, which need the stored "
         "tangent");
   if (is_cpd(at.so_far)) at.refuse("is for material.model = \"bond\"");
+  for (const LoadSpecification& load : at.so_far.loads) {
+    if (load.kind == LoadSpecification::Kind::pressure)
+      at.refuse("does not go with a [[load]] pressure, whose stiffness has to be stored");
+  }
+}
+
+/// A piece that stays where it is would be torn by what it can't take up.
+void check_fragments(const Entry& at, const SolverSpecification& solver) {
+  if (solver.fragments == FragmentRemedy::remove && at.so_far.eigenstrains.are_there())
+    at.refuse(
+        "does not go with eigenstrains or a temperature: a piece that left the equations could not "
+        "grow or shrink; take \"hold\"");
 }
 
 void check_stand_in(const Entry& at, const SolverSpecification& solver) {
@@ -835,7 +946,9 @@ Table<SolverSpecification> solver_keys() {
                                  {"stop", FragmentRemedy::stop}}),
          "what becomes of pieces that come off: just enough of their degrees of freedom are pinned "
          "that they cannot move freely; they leave the equations and stay where they are; the run "
-         "ends with outcome `fragmented`"),
+         "ends with outcome `fragmented`")
+           .then(check_fragments)
+           .moreover("not `\"remove\"` with eigenstrains or a temperature"),
        K("elastic_horizon_ratio", &Spec::elastic_horizon_ratio, between(1.0, 1e3),
          "mode `adaptive`: horizon / spacing of an elastic body that stands in for the real one "
          "until damage begins; with model `bond`, `youngs_modulus` and a damage law")
@@ -1113,6 +1226,13 @@ Table<Case> all_keys() {
        K("period", in(&Case::constraints, &ConstraintSpecification::periods), period_keys(),
          "tables: sides across which the body repeats"),
        K("load", &Case::loads, load_keys(), "tables: forces"),
+       K("eigenstrain", in(&Case::eigenstrains, &Eigenstrains::given), eigenstrain_keys(),
+         "tables: strains that cost no energy"),
+       K("temperature", &Case::eigenstrains, temperature_keys(), "table: change of temperature")
+           .then(check_temperature)
+           .written_if([](auto& result, auto&) {
+             return result.eigenstrains.temperature_change.has_value();
+           }),
        K("control", &Case::controls, control_keys(),
          "tables: the displacement that is controlled in the place of `load`"),
        K("loading", &Case::loading, loading_keys(), "table: the way of the loads, and its steps")

@@ -310,7 +310,22 @@ Kind<std::string> expression(bool of_place, bool or_free) {
 Kind<std::string> expression_or_free() { return expression(true, true); }
 Kind<std::string> expression_of_load() { return expression(false, false); }
 
-Kind<std::array<std::string, 3>> force_components(bool is_total) {
+Kind<std::string> scalar_field(const std::string& unit) {
+  const auto read = [](const Entry& at) {
+    const std::string given = at.from.is_string(at.key)
+                                  ? at.from.string(at.key)
+                                  : toml_number(at.from.number(at.key, Range()));
+    try {
+      Expression(given, at.so_far.dimension, spacing_of(at.so_far), at.so_far.loading.parameters());
+    } catch (const InputError& error) {
+      at.refuse(error.allowed());
+    }
+    return given;
+  };
+  return {read, string_text, "number or expression of place and `load`", unit};
+}
+
+Kind<std::array<std::string, 3>> force_components(bool is_total, const std::string& unit) {
   const auto read = [=](const Entry& at) {
     std::array<std::string, 3> force = LoadSpecification().value;
     const auto components = at.from.components(at.key, dimension_of(at.so_far));
@@ -329,7 +344,7 @@ Kind<std::array<std::string, 3>> force_components(bool is_total) {
           },
           is_total ? "number or expression of `load` alone"
                    : "number or expression of place and `load`",
-          is_total ? "N" : "N/m3"};
+          unit};
 }
 
 }  // namespace peristat

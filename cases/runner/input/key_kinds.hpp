@@ -84,8 +84,11 @@ enum class Components { axes, rotations, of_load };
 [[nodiscard]] Kind<std::string> expression_or_free();
 /// An expression of load alone.
 [[nodiscard]] Kind<std::string> expression_of_load();
+/// An expression of place and load.
+[[nodiscard]] Kind<std::string> scalar_field(const std::string& unit);
 /// Per component an expression of load, and of place unless it is a total.
-[[nodiscard]] Kind<std::array<std::string, 3>> force_components(bool is_total);
+[[nodiscard]] Kind<std::array<std::string, 3>> force_components(bool is_total,
+                                                                const std::string& unit);
 
 /// "[a, b]"
 template <class Items, class Text>

@@ -61,6 +61,8 @@ void Recorder::accepted(StepRecord record, const AcceptedState& state) {
   const StateView at = state.trial.at();
   std::vector<double> force = state.trial.gradient;
   for (double& component : force) component = -component;
+  const std::vector<double>& follower_force = state.trial.follower_force;
+  for (std::size_t k = 0; k < follower_force.size(); ++k) force[k] -= follower_force[k];
   Fields made = fields(at, std::move(force), state.piece);
   record.max_stretch = *std::max_element(made.stretch.begin(), made.stretch.end());
   record.max_damage = made.max_damage;
@@ -104,8 +106,9 @@ void Recorder::go_on(const Checkpoint& checkpoint, const EarlierResults& earlier
   written_histories_.tell(is_unwritten ? std::span(checkpoint.unwritten.told_stretches)
                                        : bond_stretches(body_.model, path.accepted.history));
   if (is_unwritten) {
-    unwritten_ =
-        fields(StateView(path.accepted), checkpoint.unwritten.force, path.pins.found.piece);
+    State accepted = path.accepted;
+    accepted.environment = body_.conditions->environment({accepted.stage, accepted.load});
+    unwritten_ = fields(StateView(accepted), checkpoint.unwritten.force, path.pins.found.piece);
   }
 }
 

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+namespace peristat {
+
+/// What the load makes the energy itself depend on, beside displacement and history.
+struct Environment {
+  /// Per point, 0 at rest: by how much of its length the body around it would be longer if nothing
+  /// held it. Empty: none.
+  std::vector<double> eigenstretch{};
+  /// Per face of the boundary that pressures act on [Pa]; empty: none.
+  std::vector<double> pressure{};
+
+  friend bool operator==(const Environment&, const Environment&) = default;
+};
+
+/// Made once for a load point and shared by all states that are there; null where nothing of it is.
+using SharedEnvironment = std::shared_ptr<const Environment>;
+
+/// On the straight way from one to another of the same conditions.
+[[nodiscard]] SharedEnvironment between(const SharedEnvironment& from, const SharedEnvironment& to,
+                                        double share);
+
+}  // namespace peristat

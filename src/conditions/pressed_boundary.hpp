@@ -1,0 +1,34 @@
+#pragma once
+
+#include <array>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "src/conditions/specification.hpp"
+#include "src/geometry/points.hpp"
+
+namespace peristat {
+
+/// Exposed faces of the cells of a lattice body, to which pressures are applied. The corner of a
+/// face moves with points of the body around it, the same for all its faces, so that these stay
+/// together as the body deforms.
+struct PressedBoundary {
+  std::vector<Coordinates> corner;  ///< in the reference [m]
+  std::vector<std::vector<Index>>
+      adjacent;  ///< the body's points within a cell and a half of each corner
+  /// Corners of each face, seen from outside counter-clockwise: 1, 2 or 4 in 1D, 2D, 3D.
+  std::vector<std::array<Index, 4>> face;
+  std::vector<double> sign;         ///< 1D: of the outward normal, per face
+  std::vector<Coordinates> centre;  ///< of each face in the reference [m]
+  double cross_section = 1.0;       ///< 1D: area [m2]; 2D: thickness [m]
+};
+
+/// Adds the faces of a load's `side`, or the exposed faces of the points of its `set` (those on its
+/// side alone, if it has both), to a boundary.
+/// @param key of the load, for errors
+/// @throws InputError for points on no lattice, a side that is none, a set without exposed faces
+void add_pressed_faces(const Points& points, const LoadSpecification& load, const std::string& key,
+                       PressedBoundary& boundary);
+
+}  // namespace peristat

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "src/geometry/points.hpp"
+#include "src/geometry/side.hpp"
+
+namespace peristat {
+
+/// Place on the lattice, counted in spacings from its frame's origin; zero beyond the dimension.
+using LatticeCell = std::array<std::int64_t, 3>;
+
+/// The cells of the points of a body on a lattice, squares or cubes of a spacing: what is told of
+/// its boundary. Points of layers are not in the body.
+class BodyCells {
+ public:
+  /// @throws InputError (without a key) for points that stand on no lattice
+  explicit BodyCells(const Points& points);
+
+  [[nodiscard]] LatticeCell cell(Index point) const;
+  /// The body's point there, or -1.
+  [[nodiscard]] Index point(const LatticeCell& cell) const;
+  [[nodiscard]] bool is_exposed(Index point, const Side& side) const;
+
+  /// All points of the body, ascending.
+  [[nodiscard]] std::vector<Index> points() const;
+  /// The body's outermost plane of points on a side, ascending: what a layer stands in front of.
+  [[nodiscard]] std::vector<Index> outermost(const Side& side) const;
+
+  /// The sides on which points make one plane of cells that is exposed there.
+  [[nodiscard]] std::vector<Side> exposed_sides(std::span<const Index> points) const;
+
+ private:
+  const Points& of_;
+  std::vector<std::pair<LatticeCell, Index>> cells_;  // ascending
+};
+
+/// The place next to a cell on a side.
+[[nodiscard]] LatticeCell beside(LatticeCell cell, const Side& side);
+
+}  // namespace peristat

@@ -1,0 +1,93 @@
+"""A ring under pressure in the continuum limit of bonds in plane stress: Lamé's solution, and at any strain the
+solution of the ring's ordinary differential equation with the energy of its bonds as an integral over directions.
+
+With rings of stretches (a, b) along radius and circumference a bond at the angle t to the radius has the stretch
+s = sqrt(a2 cos2 t + b2 sin2 t) - 1, and c s2 L / 2 summed over half of all bonds in a plane disk is
+
+    W = 3 E / (4 pi) int_0^2pi s2 dt,
+
+9/16 E e2 for a uniaxial small strain e, as it has to be at Poisson's ratio 1/3.
+"""
+
+import numpy
+
+ANGLES = numpy.arange(64) * 2 * numpy.pi / 64  # the trapezoidal rule is exact to round-off for what is periodic
+COS, SIN = numpy.cos(ANGLES) ** 2, numpy.sin(ANGLES) ** 2
+
+
+def lame(radius, inner, outer, pressure, modulus, poisson=1 / 3):
+    """Displacement along the radius, plane stress."""
+    factor = pressure * inner**2 / (modulus * (outer**2 - inner**2))
+    return factor * ((1 - poisson) * radius + (1 + poisson) * outer**2 / radius)
+
+
+def stresses(a, b, modulus):
+    """dW/da, dW/db and d2W/da2: first Piola-Kirchhoff stresses and the stiffness along the radius."""
+    length = numpy.sqrt(a * a * COS + b * b * SIN)
+    scale = 3 * modulus / (4 * numpy.pi) * 2 * numpy.pi / len(ANGLES)
+    relative = 1 - 1 / length  # s / (1 + s)
+    along = scale * (2 * relative * a * COS).sum()
+    around = scale * (2 * relative * b * SIN).sum()
+    stiffness = scale * (2 * relative * COS + 2 * (a * COS) ** 2 / length**3).sum()
+    return along, around, stiffness
+
+
+def radial_stretch(stress, b, modulus, start=1.0):
+    a = start
+    for _ in range(60):
+        found, _, stiffness = stresses(a, b, modulus)
+        change = (found - stress) / stiffness
+        a -= change
+        if abs(change) < 1e-14:
+            return a
+    raise ValueError("no stretch has this stress")
+
+
+def stress_outside(bore, inner, outer, pressure, modulus, steps):
+    """Shoots from the bore's present radius: P at the outer radius, and present radii on the way."""
+    radii = numpy.linspace(inner, outer, steps + 1)
+    width = radii[1] - radii[0]
+    start = 1.0
+
+    def rate(radius, state):
+        nonlocal start
+        place, stress = state
+        around = place / radius
+        start = radial_stretch(stress, around, modulus, start)
+        return numpy.array([start, (stresses(start, around, modulus)[1] - stress) / radius])
+
+    state = numpy.array([bore, -pressure * bore / inner])
+    places = [bore]
+    for radius in radii[:-1]:
+        k1 = rate(radius, state)
+        k2 = rate(radius + width / 2, state + width / 2 * k1)
+        k3 = rate(radius + width / 2, state + width / 2 * k2)
+        k4 = rate(radius + width, state + width * k3)
+        state = state + width / 6 * (k1 + 2 * k2 + 2 * k3 + k4)
+        places.append(state[0])
+    return state[1], radii, numpy.array(places)
+
+
+def solve(inner, outer, pressure, modulus, steps=200):
+    """Reference radii and displacements of the ring under a pressure that follows its bore."""
+    small = lame(inner, inner, outer, pressure, modulus)
+    low, high = inner + 0.5 * small, inner + 1.02 * small
+
+    def excess(bore):
+        return stress_outside(bore, inner, outer, pressure, modulus, steps)[0]
+
+    at_low, at_high = excess(low), excess(high)
+    while at_low * at_high > 0:
+        high += 0.1 * small
+        at_high = excess(high)
+    for _ in range(100):
+        middle = (low + high) / 2
+        value = excess(middle)
+        if value * at_low > 0:
+            low, at_low = middle, value
+        else:
+            high = middle
+        if high - low < 1e-14 * inner:
+            break
+    _, radii, places = stress_outside((low + high) / 2, inner, outer, pressure, modulus, steps)
+    return radii, places - radii

@@ -1,0 +1,408 @@
+"""Gravity, tractions, eigenstrains and pressures: against sums, closed forms and tests/reference."""
+
+import pathlib
+import tempfile
+import unittest
+
+import h5py
+import numpy
+
+from tests.reference import ring
+from tests.reference.case import Case
+from tests.reference.program import peristat
+from tests.reference.verify import Verification
+
+PLATE = """
+dimension = 2
+[lattice]
+spacing = 1e-3
+thickness = 2e-3
+shape = [{ add = "box", min = [0, 0], max = [0.02, 0.01] }]
+layer = [{ name = "left", side = "x-" }]
+[[set]]
+name = "corner"
+where = "x > 0 && x < 1e-3 && y < 1e-3"
+[[set]]
+name = "foot"
+where = "x > 0.019 && y < 1e-3"
+[[set]]
+name = "right"
+where = "x > 0.019"
+[material]
+youngs_modulus = 1e9
+density = 2000.0
+thermal_expansion = 1e-3
+[[support]]
+set = "left"
+displacement = [0, 0]
+"""
+# Two points in the corners hold a plate without layers so that it may grow.
+FREE = (
+    PLATE.replace('layer = [{ name = "left", side = "x-" }]\n', "")
+    .replace('set = "left"\ndisplacement = [0, 0]', 'set = "corner"\ndisplacement = [0, 0]')
+    + '[[support]]\nset = "foot"\ndisplacement = ["free", 0]\n'
+)
+HEATED = FREE + '[temperature]\nchange = "200*load"\n'
+
+
+class Loads(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory(prefix="peristat_loads_")
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+
+    def write(self, text):
+        path = self.folder / "case.toml"
+        path.write_text(text)
+        return path
+
+    def run_case(self, text, *settings, code=0, judged=True):
+        """Runs and judges by tests/reference; returns the results."""
+        path, output = self.write(text), self.folder / "out"
+        words = [word for setting in settings for word in ("--set", setting)]
+        run = peristat("run", path, "--quiet", "--no-plots", "--overwrite", "--output", output, *words)
+        self.assertEqual(run.code, code, run.said)
+        if code:
+            return run
+        verification = Verification(output, Case(self.resolved(output), self.folder))
+        if judged:
+            self.assertEqual(verification.run(), [])
+        return verification.results
+
+    @staticmethod
+    def resolved(output):
+        with h5py.File(output / "results.h5") as file:
+            text = file["case/as_resolved"][()]
+        return text.decode() if isinstance(text, bytes) else str(text)
+
+
+class DeadLoads(Loads):
+    def test_the_reactions_bear_the_weight(self):
+        results = self.run_case(PLATE + '[[load]]\ngravity = ["3*load", "-9.81*load"]\n')
+        weight = 2000 * 0.02 * 0.01 * 2e-3
+        reaction = results.summary["reactions"]["left"]
+        # Newton's last step is quadratic, so that what is left is the round-off of sums over 3000 bonds.
+        self.assertAlmostEqual(reaction[0] / (-3 * weight), 1, delta=1e-10)
+        self.assertAlmostEqual(reaction[1] / (9.81 * weight), 1, delta=1e-10)
+        self.assertEqual(self.run_case(PLATE + "[[load]]\ngravity = [0, 1]\n", 'material={youngs_modulus=1e9}',
+                                       code=2).code, 2)  # fmt: skip
+
+    def test_a_traction_adds_up_to_stress_times_area(self):
+        for place in ('side = "x+"', 'set = "right"'):
+            for depth in ("row", "horizon"):
+                with self.subTest(place=place, depth=depth):
+                    load = f'[[load]]\n{place}\ndepth = "{depth}"\ntraction = ["1e6*load", "2e5*load"]\n'
+                    reaction = self.run_case(PLATE + load).summary["reactions"]["left"]
+                    self.assertAlmostEqual(reaction[0] / (-1e6 * 0.01 * 2e-3), 1, delta=1e-9)
+                    self.assertAlmostEqual(reaction[1] / (-2e5 * 0.01 * 2e-3), 1, delta=1e-9)
+
+    def test_places_that_bear_no_traction_are_refused(self):
+        for load, told in (
+            ('traction = [0, 1]', "needs a side or a set"),
+            ('set = "left"\ntraction = [0, 1]', "nothing beyond it"),
+            ('set = "foot"\ntraction = [0, 1]', "more than one side"),
+            ('side = "z+"\ntraction = [0, 1]', "allowed: x-, x+, y-, y+"),
+            ('side = "x+"\nbody_force = [0, 1]\nset = "foot"', "is for a traction"),
+            ('side = "x+"\npressure = 1\ndepth = "row"', "is for a traction"),
+            ("body_force = [0, 1]", "missing"),
+        ):
+            with self.subTest(load=load):
+                run = peristat("check", self.write(PLATE + "[[load]]\n" + load + "\n"))
+                self.assertEqual(run.code, 2, run.said)
+                self.assertIn(told, run.said)
+
+
+class Heated(Loads):
+    def assert_grown(self, results, by):
+        """No stress and a growth of all lengths, to the digits of displacements."""
+        step = results.steps[-1]
+        start = results.reference[results.sets["corner"]][0]
+        growth = by * (results.reference - start)
+        self.assertLess(numpy.abs(step.displacement - growth).max(), 1e-9 * numpy.abs(growth).max())
+        held = step.stretch.max()
+        self.assertLess(abs(held), 1e-8 * by)
+
+    def test_a_free_plate_grows_without_stress_however_it_is_solved(self):
+        one = 'loading.steps=1'
+        for settings in ((one,), ('loading.steps=7',), (one, 'solver.linear=pcg', 'solver.tangent=matrix_free'),
+                         ('solver.mode=arc_length', 'loading.steps=3'),
+                         ('loading.table=[0, 1, 1]', 'loading.steps=2'),
+                         ('control=[{set="right", weights=[1, 0]}]', 'loading.table=[0, 3.7e-3]'),
+                         (one, 'eigenstrain=[{strain="0.2*load"}]', 'temperature.change=0'),
+                         ('loading.table=[0, 0, 1]', 'loading.table2=[0, 1, 1]',
+                          'temperature.change="100*load+100*load2"')):  # fmt: skip
+            with self.subTest(settings=settings):
+                # What is free of stress has no forces to measure the last digits of stretches and work by.
+                results = self.run_case(HEATED, *settings, judged=False)
+                x = results.reference[:, 0]
+                by = 3.7e-3 / (x.max() - x.min()) if "control" in settings[0] else 0.2
+                self.assert_grown(results, by)
+
+    def test_relaxation_finds_it_too_and_its_energies_add_up(self):
+        results = self.run_case(HEATED, "solver.mode=relaxation", "loading.steps=2", judged=False)
+        step, row = results.steps[-1], results.table("history")[-1]
+        growth = 0.2 * (results.reference - results.reference[results.sets["corner"]][0])
+        self.assertLess(numpy.abs(step.displacement - growth).max(), 1e-5 * numpy.abs(growth).max())
+        self.assertLess(abs(row["balance_error"]), 1e-6 * row["drained_energy"])
+
+    def test_a_plate_that_is_held_all_round_bears_what_it_cannot_grow(self):
+        """s = -alpha dT in every bond: energy and mean stress of the strain -alpha dT, and no displacement."""
+        held = HEATED.replace('set = "corner"', 'set = "all"').replace(
+            "[material]", '[[set]]\nname = "all"\nwhere = "x < 1e-3 || x > 0.019 || y < 1e-3 || y > 0.009"\n[material]'
+        ).replace('[[support]]\nset = "foot"\ndisplacement = ["free", 0]\n', "")  # fmt: skip
+        held += '[quadrature]\nsurface_correction = "energy"\n'
+        results = self.run_case(held, "temperature.change=\"2*load\"", "loading.steps=2")
+        inside = numpy.abs(results.reference - [0.01, 0.005]).max(axis=1) < 1e-3
+        # 2 * 1/2 E e2 / (1 - nu) = 3/2 E e2; the energy correction sets W of one strain at a time, which in the
+        # bulk of this lattice leaves 2 % to two of them at once.
+        density = results.steps[-1].energy_density[inside].mean()
+        self.assertAlmostEqual(density / (1.5 * 1e9 * 2e-3**2), 1, delta=0.03)
+        row = results.table("history")[-1]
+        # Points near the edges move; the trapezoidal rule errs by a small part of the strain.
+        self.assertAlmostEqual(row["external_work"], row["stored_energy"], delta=2e-5 * row["stored_energy"])
+
+    def test_a_clamped_bar_has_the_stress_E_alpha_dT(self):
+        bar = """
+dimension = 1
+[lattice]
+spacing = 1e-3
+horizon_ratio = 3
+area = 1e-6
+shape = [{ add = "box", min = [0], max = [0.1] }]
+layer = [{ name = "left", side = "x-" }, { name = "right", side = "x+" }]
+[quadrature]
+volume_correction = "linear"
+[material]
+youngs_modulus = 2e11
+thermal_expansion = 1e-5
+support = []
+[temperature]
+change = "100*load"
+"""
+        bar = bar.replace("support = []\n", "") + '[[support]]\nset = "left"\ndisplacement = [0]\n'
+        bar += '[[support]]\nset = "right"\ndisplacement = [0]\n'
+        results = self.run_case(bar)
+        reaction = results.summary["reactions"]["left"][0]
+        # With the linear volume correction the sum of a bulk point is that of the continuum, (1 + 1/(2 m^2)) of it
+        # for m = 3 spacings: the stress of bonds that cross a section.
+        stress = self.section_stress(results, -1e-3)
+        self.assertAlmostEqual(stress / (-2e11 * 1e-5 * 100), 1, delta=0.06)
+        self.assertAlmostEqual(results.summary["reactions"]["right"][0], -reaction, delta=1e-9 * abs(reaction))
+
+    def section_stress(self, results, strain):
+        """Of all bonds across the middle of a bar of which each has one strain."""
+        horizon, spacing, c = 3e-3, 1e-3, 2 * 2e11 / (1e-6 * 9e-6)
+        force = 0.0
+        for reach in (1, 2, 3):
+            share = 0.5 if reach == 3 else 1.0
+            force += reach * c * strain * (spacing * 1e-6) ** 2 * share
+        return force / 1e-6
+
+    def test_a_linear_temperature_bends_with_little_stress(self):
+        """Stretches are left of second order in the growth only: a tenth of it leaves a hundredth of them."""
+        left = []
+        for change in (2.0, 0.2):
+            results = self.run_case(HEATED, f'temperature.change="{change}*load*y/0.01"', "loading.steps=1", judged=False)
+            left.append(numpy.abs(results.steps[-1].stretch).max() / (1e-3 * change))
+        self.assertLess(left[0], 0.01)
+        self.assertAlmostEqual(left[1] / left[0], 0.1, delta=0.02)
+
+    def test_bonds_break_by_the_stretch_that_is_left(self):
+        held = HEATED.replace("[temperature]", '[material.damage]\nlaw = "critical_stretch"\ncritical = 0.01\n[temperature]')
+        free = self.run_case(held, "loading.steps=2", judged=False)
+        self.assertEqual(free.summary["broken_bonds"], 0)  # at a growth of 20 critical stretches
+        ends = held.replace('set = "corner"\ndisplacement = [0, 0]', 'set = "right"\ndisplacement = [0, 0]')
+        ends = ends.replace('set = "foot"\ndisplacement = ["free", 0]', 'set = "start"\ndisplacement = [0, 0]')
+        ends = ends.replace("[material]", '[[set]]\nname = "start"\nwhere = "x < 1e-3"\n[material]')
+        cold = self.run_case(ends, 'temperature.change="-30*load"', "solver.mode=adaptive", "loading.steps=2",
+                             "relaxation.steps=10")  # fmt: skip
+        self.assertGreater(cold.summary["broken_bonds"], 0)  # cooled between its ends by three of them
+        row = cold.table("history")[-1]
+        self.assertLess(abs(row["balance_error"]), 0.05 * row["external_work"])
+
+    def test_cpd_grows_in_two_and_three_dimensions(self):
+        for dimension in (2, 3):
+            with self.subTest(dimension=dimension):
+                third = ", 0.004" if dimension == 3 else ""
+                zeros = ", 0" * (dimension - 1)
+                text = f"""
+dimension = {dimension}
+[lattice]
+spacing = 1e-3
+horizon_ratio = 2.05
+shape = [{{ add = "box", min = [0, 0{', 0' * (dimension - 2)}], max = [0.005, 0.004{third}] }}]
+[[set]]
+name = "corner"
+where = "x < 1e-3"
+[material]
+model = "cpd"
+c1 = 1e15
+c2 = 2e20
+{"c3 = 1e26" if dimension == 3 else ""}
+[[support]]
+set = "corner"
+displacement = [{", ".join(f'"0.2*load*({c} - 0.0005)"' for c in "xyz"[:dimension])}]
+[[eigenstrain]]
+strain = "0.2*load"
+"""
+                results = self.run_case(text, judged=False)
+                growth = 0.2 * (results.reference - 0.0005)
+                error = numpy.abs(results.steps[-1].displacement - growth).max()
+                self.assertLess(error, 1e-9 * numpy.abs(growth).max(), zeros)
+                told = peristat("check-tangent", self.folder / "case.toml").json()
+                self.assertLess(max(told["residual_error"], told["tangent_error"]), 1e-6)
+                self.assertLess(max(told["force_sum"], told["moment_sum"]), 1e-12)
+
+    def test_what_is_interrupted_goes_on_under_the_same_temperature(self):
+        text = HEATED.replace('set = "corner"\ndisplacement = [0, 0]', 'set = "right"\ndisplacement = [0, 0]')
+        whole = self.run_case(text, "loading.steps=4", "temperature.change=\"20*load*x/0.02\"", judged=True)
+        path = self.folder / "case.toml"
+        run = peristat("run", path, "--quiet", "--no-plots", "--output", self.folder / "part", "--stop-after", "2",
+                       "--set", "loading.steps=4", "--set", 'temperature.change="20*load*x/0.02"')  # fmt: skip
+        self.assertEqual(run.code, 130, run.said)
+        run = peristat("resume", self.folder / "part", "--quiet", "--no-plots")
+        self.assertEqual(run.code, 0, run.said)
+        self.assertEqual((self.folder / "part/history.csv").read_text(), (self.folder / "out/history.csv").read_text())
+        self.assertEqual(len(whole.steps), 4)
+
+    def test_slips_are_told(self):
+        for text, settings, told in (
+            (HEATED.replace("thermal_expansion = 1e-3\n", ""), (), "material.thermal_expansion"),
+            (HEATED, ('temperature.change="-1000*load"',), "must be above -1"),
+            (HEATED.replace('change = "200*load"', ""), (), "temperature.change"),
+            (HEATED, ('temperature.change="200*lod"',), "temperature.change"),
+            (HEATED, ("solver.fragments=remove",), "could not grow or shrink"),
+        ):
+            with self.subTest(told=told):
+                words = [word for setting in settings for word in ("--set", setting)]
+                run = peristat("check", self.write(text), *words)
+                self.assertEqual(run.code, 2, run.said)
+                self.assertIn(told, run.said)
+
+
+RING = """
+dimension = 2
+[lattice]
+spacing = {spacing}
+thickness = 0.1
+origin = "nodes"
+shape = [{{ add = "disk", centre = [0, 0], radius = 1.0 }}, {{ subtract = "disk", centre = [0, 0], radius = 0.5 }}]
+[[set]]
+name = "on_x"
+where = "abs(y) < spacing/4"
+[[set]]
+name = "on_y"
+where = "abs(x) < spacing/4"
+[[set]]
+name = "rim"
+where = "sqrt(x^2 + y^2) < 0.5 + 1.5*spacing"
+[quadrature]
+surface_correction = "energy"
+volume_correction = "linear"
+[material]
+youngs_modulus = 1e9
+[[support]]
+set = "on_x"
+displacement = ["free", 0]
+[[support]]
+set = "on_y"
+displacement = [0, "free"]
+[[load]]
+set = "rim"
+pressure = "{pressure}*load"
+"""
+
+
+class Pressed(Loads):
+    def growth(self, results):
+        """Mean displacement along the radius, at radii within a spacing of 3/4."""
+        step, radius = results.steps[-1], numpy.sqrt((results.reference**2).sum(axis=1))
+        middle = numpy.abs(radius - 0.75) < 0.05
+        along = (step.displacement * results.reference).sum(axis=1) / radius
+        return along[middle].mean(), radius[middle]
+
+    def test_a_ring_grows_as_lame_says(self):
+        errors = []
+        for spacing in (0.1, 0.05, 0.025):
+            results = self.run_case(RING.format(spacing=spacing, pressure=1e4), judged=spacing > 0.04)
+            found, radius = self.growth(results)
+            errors.append(found / ring.lame(radius, 0.5, 1, 1e4, 1e9).mean() - 1)
+        self.assertLess(abs(errors[-1]), 0.05)
+        self.assertLess(abs(errors[-1]), abs(errors[0]))
+
+    def test_a_ring_at_large_strain(self):
+        results = self.run_case(RING.format(spacing=0.05, pressure=0.1e9), "loading.steps=4")
+        found, radius = self.growth(results)
+        radii, displacement = ring.solve(0.5, 1.0, 0.1e9, 1e9)
+        expected = numpy.interp(radius, radii, displacement).mean()
+        linear = ring.lame(radius, 0.5, 1, 0.1e9, 1e9).mean()
+        small, radius = self.growth(self.run_case(RING.format(spacing=0.05, pressure=1e4)))
+        of_lattice = small / ring.lame(radius, 0.5, 1, 1e4, 1e9).mean()
+        # What the lattice errs by at small strain it also does at large ones, to a tenth of the difference that the
+        # strain makes.
+        self.assertGreater(expected / linear, 1.15)
+        self.assertAlmostEqual(found / expected / of_lattice, 1, delta=0.03)
+        iterations = results.table("history")
+        self.assertLess(max(row["newton_iterations"] for row in iterations), 7)
+
+    def test_pressure_on_a_closed_boundary_has_no_resultant(self):
+        told = peristat("check-tangent", self.write(RING.format(spacing=0.1, pressure=5e8))).json()
+        self.assertLess(max(told["force_sum"], told["moment_sum"]), 1e-12)
+        self.assertLess(max(told["residual_error"], told["tangent_error"]), 1e-6)
+        run = peristat("check", self.folder / "case.toml")
+        self.assertIn("closed or held", run.said)
+
+    def test_in_space_too(self):
+        text = """
+dimension = 3
+[lattice]
+spacing = 0.1
+horizon_ratio = 2.1
+shape = [{ add = "box", min = [0, 0, 0], max = [0.5, 0.4, 0.4] }]
+[[set]]
+name = "all"
+where = "1"
+[[set]]
+name = "corner"
+where = "x < 0.1 && y < 0.2 && z < 0.2"
+[material]
+youngs_modulus = 1e6
+[[support]]
+set = "corner"
+displacement = [0, 0, 0]
+[[load]]
+set = "all"
+pressure = "5e4*load"
+"""
+        told = peristat("check-tangent", self.write(text)).json()
+        self.assertLess(max(told["force_sum"], told["moment_sum"]), 1e-12)
+        self.assertLess(max(told["residual_error"], told["tangent_error"]), 1e-6)
+        results = self.run_case(text)
+        self.assertLess(results.steps[-1].stretch.min(), -0.01)
+
+    def test_an_open_boundary_is_told_and_forces_are_exact(self):
+        load = '[[load]]\nside = "y+"\npressure = "2e7*load"\n'
+        run = peristat("check", self.write(PLATE + load))
+        self.assertEqual(run.code, 0, run.said)
+        self.assertIn("open or uneven", run.said)
+        for settings in ((), ("loading.steps=3",), ("solver.mode=relaxation",)):
+            with self.subTest(settings=settings):
+                results = self.run_case(PLATE + load, *settings)
+                self.assertGreater(numpy.abs(results.steps[-1].displacement).max(), 1e-3)  # it has turned
+        row = results.table("history")[-1]
+        self.assertLess(abs(row["balance_error"]), 1e-6 * row["external_work"])
+
+    def test_what_cannot_be_is_refused(self):
+        path = self.write(PLATE + '[[load]]\nside = "y+"\npressure = 1\n')
+        run = peristat("check", path, "--set", "solver.tangent=matrix_free")
+        self.assertEqual(run.code, 2, run.said)
+        self.assertIn("pressure", run.said)
+        path = self.write(PLATE.replace("[material]", '[[set]]\nname = "inside"\nwhere = "abs(x-0.01) < 2e-3 && '
+                                        'abs(y-0.005) < 2e-3"\n[material]') + '[[load]]\nset = "inside"\npressure = 1\n')  # fmt: skip
+        run = peristat("check", path)
+        self.assertEqual(run.code, 2, run.said)
+        self.assertIn("no boundary", run.said)
+
+
+if __name__ == "__main__":
+    unittest.main()
