@@ -39,11 +39,15 @@ class Way {
     for (std::size_t dof = 0; dof < displacement0_.size(); ++dof) {
       const bool is_free = problem.free.equation[dof] != FreeDofs::none;
       if (!is_free && !dependent[dof]) prescribed_.push_back(Index(dof));
-      has_loads_ |= force0_[dof] != 0.0 || force1_[dof] != 0.0;
+      const bool is_loaded = force0_[dof] != 0.0 || force1_[dof] != 0.0;
+      has_loads_ |= is_loaded;
+      if (is_loaded && dependent[dof]) loaded_followers_.push_back(Index(dof));
     }
   }
 
   [[nodiscard]] const std::vector<Index>& prescribed() const { return prescribed_; }
+  /// Degrees of freedom that are loaded, and follow others.
+  [[nodiscard]] const std::vector<Index>& loaded_followers() const { return loaded_followers_; }
   [[nodiscard]] bool has_loads() const { return has_loads_; }
   [[nodiscard]] const std::vector<double>& end_displacement() const { return displacement1_; }
   [[nodiscard]] const std::vector<double>& end_force() const { return force1_; }
@@ -65,7 +69,7 @@ class Way {
  private:
   std::vector<double> displacement0_, displacement1_, force0_, force1_;
   SharedEnvironment environment0_, environment1_;
-  std::vector<Index> prescribed_;
+  std::vector<Index> prescribed_, loaded_followers_;
   bool has_loads_ = false;
 };
 
@@ -104,7 +108,7 @@ class Relaxation {
   /// Forces, residual and damage at the present displacement.
   void evaluate() {
     Assembler& assembler = problem_.assembler;
-    move_followers(problem_, at_);
+    add_work_on_followers();
     const Evaluation found =
         options_.breaking == Breaking::transient
             ? assembler.commit(at_.displacement, at_.history, at_.gradient, at_.environment)
@@ -284,6 +288,21 @@ class Relaxation {
     return c > 2.0 ? largest_damping : c;
   }
 
+  /// Moves what follows, and adds what its loads do on the way.
+  void add_work_on_followers() {
+    const std::vector<Index>& loaded = way_.loaded_followers();
+    std::vector<double> before;
+    for (const Index dof : loaded) before.push_back(at_.displacement[dof]);
+    move_followers(problem_, at_);
+    last_load_on_followers_.resize(loaded.size(), 0.0);
+    for (std::size_t k = 0; k < loaded.size(); ++k) {
+      const double load = result_.external_force[loaded[k]];
+      result_.external_work +=
+          0.5 * (last_load_on_followers_[k] + load) * (at_.displacement[loaded[k]] - before[k]);
+      last_load_on_followers_[k] = load;
+    }
+  }
+
   void add_half_work_of_loads() {
     if (!way_.has_loads()) return;
     const std::vector<double>& force = result_.external_force;
@@ -304,7 +323,8 @@ class Relaxation {
   std::vector<double> last_reaction_;             // dE/dx on prescribed degrees of freedom
   SharedEnvironment last_environment_;
   std::vector<double> last_follower_force_, last_displacement_;  // before the last move
-  double quotient_ = 0.0;                                        // U.K1 U / U.U
+  std::vector<double> last_load_on_followers_;
+  double quotient_ = 0.0;  // U.K1 U / U.U
   double kinetic_energy_ = 0.0, relative_change_ = 1.0;
   double mean_speed_ = 0.0;  // root mean square of the velocities of the last move
   double share_ = 0.0, share_change_ = 0.0;

@@ -228,7 +228,6 @@ void check_horizon(const BodySpecification& of, const Points& points) {
                    of.horizon / points.spacing);
 }
 
-/// Volumes, spacing and cross-section are not independent of each other.
 /// Refuses what would come on top of given shares, or has nothing to do with them.
 void check_neighbours(const BodySpecification& of, const Points& points) {
   if (points.neighbours.empty()) return;
@@ -242,6 +241,7 @@ void check_neighbours(const BodySpecification& of, const Points& points) {
       "add up to inside a body; give \"energy\" or \"none\"");
 }
 
+/// Volumes, spacing and cross-section are not independent of each other.
 void check_cross_section(const BodySpecification& of, const Points& points) {
   const double has = points.cross_section();
   const double given = points.dimension == 3 ? 1.0 : of.cross_section;
@@ -305,13 +305,41 @@ void require_whole_square_cells(const Points& points) {
           "give volumes = \"cells\", or model = \"bond\"");
 }
 
+namespace {
+
+/// A plane of symmetry mirrors the fibres, too: beyond it they run otherwise, unless along an axis.
+void check_mirrored_fibres(const BodySpecification& of, int dimension) {
+  if (of.constraints.symmetries.empty()) return;
+  const auto check = [&](const MaterialSpecification& material, const std::string& key) {
+    if (!material.fibre) return;
+    const Coordinates& along = material.fibre->direction;
+    const bool is_along_axis = dimension == 3 ? std::count(along.begin(), along.end(), 0.0) == 2
+                                              : std::remainder(material.fibre->angle, 90.0) == 0.0;
+    require(is_along_axis, key + (dimension == 3 ? ".fibre.direction" : ".fibre.angle"), "",
+            "must be along an axis where there are planes of symmetry: these mirror the fibres");
+  };
+  check(of.material, "material");
+  for (std::size_t k = 0; k < of.regions.size(); ++k) {
+    check(of.regions[k].material, "regions[" + std::to_string(k) + "].material");
+  }
+  for (std::size_t k = 0; k < of.interfaces.size(); ++k) {
+    if (of.interfaces[k].material) {
+      check(*of.interfaces[k].material, "interfaces[" + std::to_string(k) + "].material");
+    }
+  }
+}
+
+}  // namespace
+
 void check_specification(const BodySpecification& of, const Points& points) {
   check_horizon(of, points);
   check_cross_section(of, points);
+  check_neighbours(of, points);
   const bool has_rest = of.regions.empty() || of.material.has_constants();
   if (has_rest) check_material(of.material, "material", points.dimension);
   check_weights(of, points);
   check_regions(of, points.dimension);
+  check_mirrored_fibres(of, points.dimension);
   for (std::size_t k = 0; k < of.cracks.size(); ++k)
     check_crack(of.cracks[k], points.dimension, "cracks[" + std::to_string(k) + "]");
 }

@@ -20,6 +20,7 @@ ROOMS = [
     "src/neighbourhood",
     "src/connectivity",
     "src/materials",
+    "src/constraints",
     "src/conditions",
     "assembly/energy",
     "assembly/operators",
