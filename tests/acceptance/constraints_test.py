@@ -2,14 +2,17 @@
 
 import json
 import math
+import pathlib
 
 import h5py
 import numpy
 
+from benchmarks import specimens
 from tests.acceptance.programme_test import Programmes
 from tests.reference.body import ball_volume, lattice_ball, micromodulus_factor
 from tests.reference.program import peristat
 
+CASES = pathlib.Path(__file__).resolve().parents[2] / "cases"
 # Two numberings of one system agree to the round-off of its solution: the condition of these small
 # bodies, 1e3, times that of a double.
 SAME_BODY = 1e-12
@@ -362,3 +365,32 @@ class Rigid(Constrained):
                 ended = peristat("check", self.case(text))
                 self.assertEqual(ended.code, 2, ended.said)
                 self.assertIn(words, ended.said)
+
+
+class Specimens(Constrained):
+    """The shipped cases beside ASTM E399, the compliances of benchmarks/specimens.py."""
+
+    def last(self, text, name):
+        return self.run_case(text.partition("\ntitle")[2].partition("\n")[2], name=name)[-1]
+
+    def test_a_beam_on_rollers(self):
+        row = self.last((CASES / "three_point_bending/rollers.toml").read_text(), "beam")
+        self.assertAlmostEqual(row["mouth_x"] / -row["reaction_y:load"] / specimens.bend_compliance(), 1, delta=0.05)
+        self.assertAlmostEqual(row["reaction_y:left"] / -row["reaction_y:load"], 0.5, delta=1e-6)
+
+    def test_compact_tension_on_pins_is_that_of_its_half(self):
+        text = (CASES / "compact_tension/pins.toml").read_text()
+        whole = self.last(text, "whole")
+        self.assertAlmostEqual(whole["mouth_y"] / whole["reaction_y:upper"] / specimens.tension_compliance(), 1, delta=0.08)
+        self.assertLess(abs(whole["moment_z:upper"]), 1e-9 * whole["reaction_y:upper"] * 5e-3)
+        self.assertAlmostEqual(whole["rotation_z:upper"], -whole["rotation_z:lower"], delta=1e-9)
+        half = text.replace("min = [-0.010, -0.024]", "min = [-0.010, 0.0]")
+        for table, name in (("[[set]]", "lower"), ("[[set]]", "mouth_below"), ("[[rigid]]", "lower")):
+            start = half.index(f'{table}\n{"name" if table == "[[set]]" else "set"} = "{name}"')
+            half = half[:start] + half[half.index("\n\n", start) + 2 :]
+        half = half[: half.index("[[probe]]")] + '[[probe]]\nname = "mouth"\nset = "mouth_above"\n[[symmetry]]\naxis = "y"\n'
+        part = self.last(half, "half")
+        # Both solve to a residual of 1e-10 of the pin's force, by systems of another size.
+        self.assertAlmostEqual(part["reaction_y:upper"] / whole["reaction_y:upper"], 1, delta=1e-8)
+        self.assertAlmostEqual(part["rotation_z:upper"] / whole["rotation_z:upper"], 1, delta=1e-8)
+        self.assertAlmostEqual(2 * part["mouth_y"] / whole["mouth_y"], 1, delta=1e-8)

@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include "src/measures/small_algebra.hpp"
+
 namespace peristat {
 namespace {
 
