@@ -219,8 +219,8 @@ void require_lattice_goes_on(const Points& lattice, const std::vector<SymmetryPl
     require_axis(planes[k].axis, lattice.dimension, "symmetries[" + std::to_string(k) + "].axis");
     static_cast<void>(side_of(lattice, planes[k], "symmetries[" + std::to_string(k) + "]"));
     const Extent extent = extent_along(lattice, planes[k].axis);
-    const double away = std::min(std::abs(extent.least - planes[k].at),
-                                 std::abs(extent.most - planes[k].at));
+    const double away =
+        std::min(std::abs(extent.least - planes[k].at), std::abs(extent.most - planes[k].at));
     require("symmetries[" + std::to_string(k) + "].at", planes[k].axis, away, 0.5);
   }
   for (std::size_t k = 0; k < periods.size(); ++k) {

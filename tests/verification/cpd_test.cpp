@@ -174,7 +174,8 @@ double measured_poisson_ratio(const SolvedCase& solved) {
 double axis_poisson_ratio(const SolvedCase& solved) {
   const Points& points = solved.body->points;
   const BondSetting& setting = solved.body->setting;
-  const CpdConstants constants = cpd_constants_of(solved.from, points, setting);
+  const CpdConstants constants =
+      cpd_constants_of(solved.from.material, "material", points, setting);
   return lattice_stiffness(points.dimension, points.spacing, setting.horizon, setting.cross_section)
       .elasticity(constants)
       .axis_poisson_ratio(points.dimension);
