@@ -157,26 +157,38 @@ void Constraints::fold_images(std::span<double> gradient) const {
   }
 }
 
+void Constraints::fold_point(Index point, const std::vector<Dependence>& masters, double sign,
+                             std::span<const double> external_force,
+                             std::span<double> gradient) const {
+  for (const Dependence& on : masters) {
+    for (int c = 0; c < dimension_; ++c) {
+      double sum = 0.0;
+      for (int r = 0; r < dimension_; ++r) {
+        sum += on.block[std::size_t(r)][std::size_t(c)] *
+               (gradient[dof(point, r)] - external_force[dof(point, r)]);
+      }
+      gradient[dof(on.master, c)] += sign * sum;
+    }
+  }
+}
+
+void Constraints::unfold(std::span<const double> external_force, std::span<double> gradient) const {
+  for (const Follower& follower : followers_) {
+    fold_point(follower.point, follower.masters, -1.0, external_force, gradient);
+  }
+}
+
 void Constraints::fold(std::span<const double> displacement, std::span<const double> external_force,
                        std::span<double> gradient) const {
   for (std::size_t k = dof(points_); k < dofs(); ++k) gradient[k] = 0.0;
   fold_images(gradient);
-  const auto fold_point = [&](Index point, const std::vector<Dependence>& masters) {
-    for (const Dependence& on : masters) {
-      for (int c = 0; c < dimension_; ++c) {
-        double sum = 0.0;
-        for (int r = 0; r < dimension_; ++r) {
-          sum += on.block[std::size_t(r)][std::size_t(c)] *
-                 (gradient[dof(point, r)] - external_force[dof(point, r)]);
-        }
-        gradient[dof(on.master, c)] += sum;
-      }
-    }
-  };
-  for (const Follower& follower : followers_) fold_point(follower.point, follower.masters);
+  for (const Follower& follower : followers_) {
+    fold_point(follower.point, follower.masters, 1.0, external_force, gradient);
+  }
   for (const RigidSet& set : rigid_) {
     const Rotation turned(rotation(set, displacement));
-    for (const Index member : set.members) fold_point(member, of_rigid(set, turned, member));
+    for (const Index member : set.members)
+      fold_point(member, of_rigid(set, turned, member), 1.0, external_force, gradient);
   }
 }
 

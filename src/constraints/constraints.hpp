@@ -85,6 +85,10 @@ class Constraints {
   void fold(std::span<const double> displacement, std::span<const double> external_force,
             std::span<double> gradient) const;
 
+  /// Internal forces again from a folded gradient, where points follow others directly; forces on
+  /// images stay with their sources.
+  void unfold(std::span<const double> external_force, std::span<double> gradient) const;
+
   /// The rows of J of a point: itself as far as it does not follow, and its masters.
   [[nodiscard]] std::vector<Dependence> dependences(Index point,
                                                     std::span<const double> displacement) const;
@@ -119,6 +123,8 @@ class Constraints {
   [[nodiscard]] Coordinates moved_by(const std::vector<Dependence>& masters,
                                      std::span<const double> displacement) const;
   void move_followers(std::span<double> displacement) const;
+  void fold_point(Index point, const std::vector<Dependence>& masters, double sign,
+                  std::span<const double> external_force, std::span<double> gradient) const;
   void move_images(std::span<double> displacement) const;
   void fold_images(std::span<double> gradient) const;
 

@@ -11,6 +11,7 @@ from benchmarks import specimens
 from tests.acceptance.programme_test import Programmes
 from tests.reference.body import ball_volume, lattice_ball, micromodulus_factor
 from tests.reference.program import peristat
+from tests.reference.verify import verify
 
 CASES = pathlib.Path(__file__).resolve().parents[2] / "cases"
 # Two numberings of one system agree to the round-off of its solution: the condition of these small
@@ -365,6 +366,57 @@ class Rigid(Constrained):
                 ended = peristat("check", self.case(text))
                 self.assertEqual(ended.code, 2, ended.said)
                 self.assertIn(words, ended.said)
+
+
+BAR = """\
+dimension = 3
+[lattice]
+spacing = 1e-3
+horizon_ratio = 2.5
+[[lattice.shape]]
+add = "box"
+min = [0.0, 0.0, 0.0]
+max = [0.014, 0.004, 0.004]
+[[set]]
+name = "left"
+where = "x < 0.002"
+[[set]]
+name = "right"
+where = "x > 0.012"
+[material]
+youngs_modulus = 2e11
+"""
+TWISTED = ('[[rigid]]\nset = "left"\ndisplacement = [0, 0, 0]\nrotation = [0, 0, 0]\n'
+           '[[rigid]]\nset = "right"\ndisplacement = ["free", 0, 0]\nrotation = ["1.5*load", 0, "free"]\n[loading]\nsteps = 2\n')  # fmt: skip
+
+
+def line(name, x, z, more=""):
+    return f'[[roller]]\nname = "{name}"\nat = [{x}, 0.0, {z}]\nto = [{x}, 0.004, {z}]\nnormal = [0, 0, 1]\n{more}'
+
+
+LINES = (line("a", 0.0025, 0.0) + line("b", 0.0115, 0.0) + line("c", 0.007, 0.004, 'displacement = "-1e-5*load"\n')
+         + '[[roller]]\nname = "x"\nat = [0.007, 0.002, 0.004]\nnormal = [1, 0, 0]\n'
+         + "".join(f'[[roller]]\nname = "{name}"\nat = [{x}, 0.002, 0.0]\nnormal = [0, 1, 0]\n' for name, x in (("y", 0.0025), ("yy", 0.0115))))  # fmt: skip
+
+
+class Judged(Constrained):
+    """By the reference, which knows no generalised coordinates (tests/reference/ties.py)."""
+
+    def test_runs_are_what_the_reference_says(self):
+        heavy = '[[load]]\nset = "{}"\nbody_force = ["{}*load", "1e9*load"]\n'
+        slope = '[[roller]]\nset = "left"\nnormal = [1, 2]\n' + heavy.format("right", 0)
+        shared = '[[roller]]\nset = "right"\nnormal = [2, -1]\ndisplacement = "free"\n' + heavy.format("pin", 0) + heavy.format("right", "1e9")
+        tied = ('[[constraint]]\nname = "tie"\ndisplacement = "1e-4*load"\n[[constraint.term]]\nset = "left"\nweights = [1, 0.5]\n'
+                '[[constraint.term]]\nset = "right"\nweights = [-1, 2]\n' + heavy.format("left", "-1e9"))  # fmt: skip
+        bodies = {"pin": BODY + PIN + LIFTED + ROLLER + "[loading]\nsteps = 3\n", "slope": BODY + PIN + slope, "shared": BODY + PIN + shared,
+                  "tied": BODY + PIN + tied, "loaded pin": BODY + PIN + LIFTED + ROLLER + heavy.format("pin", "2e8"),
+                  "twisted": BAR + TWISTED, "lines": BAR + LINES}  # fmt: skip
+        for name, text in bodies.items():
+            with self.subTest(name):
+                self.run_case(text, name=name)
+                complaints, worst = verify(self.folder / name, text)
+                self.assertEqual(complaints, [])
+                self.assertIn("ties", worst)
 
 
 class Specimens(Constrained):

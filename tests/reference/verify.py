@@ -11,6 +11,7 @@ from tests.reference.case import Case, Conditions
 from tests.reference.mechanics import Mechanics
 from tests.reference.pieces import unheld_points
 from tests.reference.results import Results
+from tests.reference.ties import Ties
 
 UNIT_ROUND_OFF = 2.0**-53
 # Sums of energies and forces over up to 10^6 interactions in another order: errors grow like the
@@ -33,6 +34,7 @@ class Verification:
         more = {"sets": sets, "factors": self.results.factors}
         self.mechanics = Mechanics(Body(self.case, reference, volume, **more))
         self.mechanics.spare(sets)
+        self.ties = Ties(self.case, reference, volume, sets, self.conditions.prescribed)
         self.first_real_step = 0
         self.stand_in = None
         if "elastic_horizon_ratio" in self.case["solver"]:
@@ -112,7 +114,9 @@ class Verification:
         self.compare(step, "force", step.force, -gradient, largest)
         target = self.conditions.displacement(step.load)
         reach = max(numpy.abs(target).max(), 1e-300)
-        self.compare(step, "prescribed displacement", step.displacement[prescribed], target[prescribed], reach, 1e-12)
+        if prescribed.any():
+            self.compare(step, "prescribed displacement", step.displacement[prescribed], target[prescribed], reach, 1e-12)
+        self.compare(step, "ties", self.ties.errors(step.displacement, step.load), 0.0, max(reach, numpy.abs(step.displacement).max()), 1e-11)
         external = self.external(step.load, step.displacement)
         unheld = self.unheld(step, old)
         self.judge_residual(mechanics, step, row, old, history, gradient - external, magnitude, unheld)
@@ -147,7 +151,7 @@ class Verification:
         return self.last_unheld
 
     def judge_residual(self, mechanics, step, row, old, history, out_of_balance, magnitude, unheld):
-        free = ~self.conditions.prescribed & ~unheld[:, None]
+        free = ~self.conditions.prescribed & ~unheld[:, None] & ~self.ties.follows
         if not free.any():
             return
         jumped = old.displacement.copy()
@@ -159,13 +163,15 @@ class Verification:
         reactions = mechanics.gradient(old.displacement, past) - self.external(old.load, old.displacement)
         mechanics.eigenstretch = self.conditions.eigenstretch(step.load)
         # Reactions of both states: Newton's method that finishes a relaxed step starts from the latter.
-        norms = [numpy.linalg.norm(part) for part in (external, reactions[prescribed], out_of_balance[prescribed])]
+        held = prescribed | self.ties.follows
+        norms = [numpy.linalg.norm(part) for part in (external, reactions[held], out_of_balance[held])]
         # The jump that a step begins with is measured with the damage held.
         norms.append(numpy.linalg.norm((mechanics.gradient(jumped, past, held=True) - external)[~prescribed]))
         norms.append(numpy.linalg.norm(self.of_environment(mechanics, step, old, past)))
         scale = max(norms)
         floor = 8 * UNIT_ROUND_OFF * (numpy.linalg.norm(magnitude) + self.whole_force(mechanics, step))
-        residual = numpy.linalg.norm(out_of_balance[free])
+        along_ties = self.ties.out_of_balance(step.displacement, out_of_balance)
+        residual = numpy.hypot(numpy.linalg.norm(out_of_balance[free]), numpy.linalg.norm(along_ties))
         # A tenth more: the program's scale has the same three norms in its own rounding and its own
         # idea of the jump that a cut or relaxed step begins with.
         allowed = 1.1 * self.case["solver"]["relative_tolerance"] * scale + floor
@@ -205,8 +211,18 @@ class Verification:
                 computed = reaction[held[:, axis], axis].sum()
                 scale = largest * max(1, held[:, axis].sum())
                 self.compare(step, "reaction", row[f"reaction_{'xyz'[axis]}:{name}"], computed, scale)
-        total = reaction[self.conditions.prescribed | unheld[:, None]].sum() + external.sum()
-        rest = reaction[~(self.conditions.prescribed | unheld[:, None])]
+        reactions, moments = self.ties.reactions(step.displacement, reaction)
+        scale = largest * max(1, self.ties.follows.any(axis=1).sum())
+        for name, force in reactions.items():
+            for axis, component in zip("xyz", force):
+                self.compare(step, "reaction", row[f"reaction_{axis}:{name}"], component, scale)
+        size = numpy.abs(self.results.reference).max() + numpy.abs(step.displacement).max()
+        for name, about in moments.items():
+            for axis, component in zip("z" if len(about) == 1 else "xyz", about):
+                self.compare(step, "moment", row[f"moment_{axis}:{name}"], component, scale * size)
+        borne = self.conditions.prescribed | unheld[:, None] | self.ties.follows
+        total = reaction[borne].sum() + external.sum()
+        rest = reaction[~borne]
         allowed = numpy.abs(rest).sum() + AGREEMENT * largest * len(reaction)
         if not abs(total) <= allowed:
             self.complain(step, f"reactions and loads differ by {total:.4g} N")
@@ -264,6 +280,7 @@ class Verification:
         heating = mechanics.heating_work((old.displacement, past), (step.displacement, history), mechanics.eigenstretch, here)
         pull = numpy.where(prescribed, before + gradient, self.external(old.load, old.displacement) + external) / 2
         work = float((pull * (step.displacement - old.displacement)).sum()) + heating
+        work += self.ties.work(old, step, before - self.external(old.load, old.displacement), gradient - external)
         scale = max(abs(row["external_work"]), numpy.abs(pull * (step.displacement - old.displacement)).sum())
         scale += 1e-5 * self.whole_force(mechanics, step) * numpy.abs(step.displacement).max()
         self.compare(step, "work", row["external_work"] - old.external_work, work, scale)

@@ -60,6 +60,7 @@ Recorder::Fields Recorder::fields(const StateView& at, std::vector<double> force
 void Recorder::accepted(StepRecord record, const AcceptedState& state) {
   const StateView at = state.trial.at();
   std::vector<double> force = state.trial.gradient;
+  body_.conditions->constraints().unfold(state.external_force, force);
   for (double& component : force) component = -component;
   const std::vector<double>& follower_force = state.trial.follower_force;
   for (std::size_t k = 0; k < follower_force.size(); ++k) force[k] -= follower_force[k];

@@ -1,0 +1,202 @@
+"""Rigid sets, rollers and linear constraints (docs/theory.md), judged without generalised coordinates: whether the
+displacements are as they may be, and whether the forces that hold them are of the kind that may."""
+
+import numpy
+
+from tests.reference.case import evaluate
+
+WITHOUT_PLACE = numpy.zeros((1, 3))
+
+
+class RigidMotion:
+    """The rigid motion nearest to the displacements of some points, about a centre (Kabsch)."""
+
+    def __init__(self, arms, displacement):
+        moved = arms + displacement
+        middle, moved_middle = arms.mean(axis=0), moved.mean(axis=0)
+        left, _, right = numpy.linalg.svd((arms - middle).T @ (moved - moved_middle))
+        mirror = numpy.diag([1.0] * (arms.shape[1] - 1) + [numpy.sign(numpy.linalg.det(left @ right))])
+        self.turn = (left @ mirror @ right).T
+        self.centre = moved_middle - self.turn @ middle  # displacement of the centre
+        self.error = numpy.abs(self.centre + arms @ self.turn.T - moved).max()
+
+    def rotation(self):
+        """Rotation vector, below half a turn; in a plane its one component."""
+        if len(self.turn) == 2:
+            return numpy.array([numpy.arctan2(self.turn[1, 0], self.turn[0, 0])])
+        axis = numpy.array([self.turn[2, 1] - self.turn[1, 2], self.turn[0, 2] - self.turn[2, 0], self.turn[1, 0] - self.turn[0, 1]])
+        sine, cosine = numpy.linalg.norm(axis) / 2, (numpy.trace(self.turn) - 1) / 2
+        return axis / 2 if sine == 0 else axis / (2 * sine) * numpy.arctan2(sine, cosine)
+
+
+def spin_rates(rotation):
+    """Columns: the spin by the rate of each component of a rotation vector."""
+    if len(rotation) == 1:
+        return numpy.eye(1)
+    angle = numpy.linalg.norm(rotation)
+    if angle == 0:
+        return numpy.eye(3)
+    x, y, z = rotation
+    skew = numpy.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
+    return (numpy.eye(3) + (1 - numpy.cos(angle)) / angle**2 * skew + (angle - numpy.sin(angle)) / angle**3 * skew @ skew)
+
+
+def moment(arms, forces):
+    turned = numpy.cross(arms, forces)
+    return numpy.atleast_1d(turned.sum(axis=0))
+
+
+class Ties:
+    """What a case ties. Works for dead loads and for any state; `follows` marks degrees of freedom without an equation."""
+
+    def __init__(self, case, reference, volume, sets, prescribed):
+        for name in ("symmetry", "period"):
+            if case.get(name):
+                raise NotImplementedError(f"[[{name}]] is not judged: compare with the whole body")
+        self.case, self.reference, self.sets, self.prescribed = case, reference, sets, prescribed
+        self.spacing = case.spacing(volume)
+        self.volume = volume
+        self.follows = numpy.zeros(reference.shape, bool)
+        self.rigid, self.slopes, self.rows = [], [], []
+        for table in case.get("rigid"):
+            members = numpy.flatnonzero(sets[table["set"]])
+            centre = table.get("centre", numpy.average(reference[members], axis=0, weights=volume[members]))
+            self.rigid.append((table, members, reference[members] - numpy.asarray(centre)))
+            self.follows[members] = True
+        for table in case.get("roller"):
+            normal = numpy.asarray(table["normal"], float) / numpy.linalg.norm(table["normal"])
+            if "set" in table:
+                members = numpy.flatnonzero(sets[table["set"]])
+                self.slopes.append((table, members, normal))
+                self.follows[members] = True
+            else:
+                self.add_touching(table, normal)
+        for table in case.get("constraint"):
+            row = numpy.zeros(reference.shape)
+            for term in table["term"]:
+                inside = sets[term["set"]]
+                row[inside] += numpy.asarray(term["weights"], float) / inside.sum()
+            self.rows.append((table["name"], row, table.get("displacement", 0), None, None))
+        for _, row, *_ in self.rows:
+            self.follows |= (row != 0) & ~prescribed
+
+    def add_touching(self, table, normal):
+        start = numpy.asarray(table["at"], float)
+        along = numpy.asarray(table.get("to", start), float) - start
+        stations = max(1, round(numpy.linalg.norm(along) / self.spacing))
+        for station in range(stations):
+            place = start + (station + 0.5) / stations * along
+            arm = self.reference - place
+            across = numpy.abs(arm @ normal)
+            weight = numpy.ones(len(arm))
+            for tangent in self.tangents(normal):
+                weight *= numpy.clip(1 - numpy.abs(arm @ tangent) / self.spacing, 0, None)
+            near = (weight > 1e-9) & (across <= 2 * self.spacing)
+            weight[~near | (across > across[near].min() + self.spacing / 2)] = 0
+            row = numpy.outer(weight / weight.sum(), normal)
+            self.rows.append((table["name"], row, table.get("displacement", 0), place, normal))
+
+    def tangents(self, normal):
+        if len(normal) == 2:
+            return [numpy.array([-normal[1], normal[0]])]
+        axis = numpy.eye(3)[numpy.abs(normal).argmin()]
+        first = numpy.cross(normal, axis) / numpy.linalg.norm(numpy.cross(normal, axis))
+        return [first, numpy.cross(normal, first)]
+
+    def value(self, expression, load, place=None):
+        return float(evaluate(expression, WITHOUT_PLACE if place is None else place[None], load, self.spacing)[0])
+
+    def errors(self, displacement, load):
+        """Distances of the displacements from what the ties allow [m]."""
+        found = [0.0]
+        for table, members, arms in self.rigid:
+            motion = RigidMotion(arms, displacement[members])
+            found.append(motion.error)
+            for given, is_now in ((table.get("displacement", ()), motion.centre),):
+                found += [abs(is_now[c] - self.value(e, load)) for c, e in enumerate(given) if e != "free"]
+            turns = table.get("rotation", ())
+            if turns and all(e != "free" for e in turns):
+                wanted = [self.value(e, load) for e in turns]
+                found.append(numpy.abs(rotated(arms, wanted) - arms @ motion.turn.T).max())
+        for table, members, normal in self.slopes:
+            along = displacement[members] @ normal
+            wanted = table.get("displacement", 0)
+            target = along.mean() if wanted == "free" else evaluate(wanted, self.reference[members], load, self.spacing)
+            found.append(numpy.abs(along - target).max())
+        for _, row, wanted, place, _ in self.rows:
+            found.append(abs((row * displacement).sum() - self.value(wanted, load, place)))
+        return max(found)
+
+    def out_of_balance(self, displacement, forces):
+        """Forces that nothing is there to bear [N]: those along what the ties leave free."""
+        left = []
+        for table, members, arms in self.rigid:
+            motion = RigidMotion(arms, displacement[members])
+            given, turns = table.get("displacement", ()), table.get("rotation", ())
+            size = numpy.abs(arms).max()
+            left += [r for c, r in enumerate(forces[members].sum(axis=0)) if not given or given[c] == "free"]
+            rates = spin_rates(motion.rotation()).T @ moment(arms @ motion.turn.T, forces[members])
+            left += [m / size for c, m in enumerate(rates) if not turns or turns[c] == "free"]
+        for table, members, normal in self.slopes:
+            along = forces[members] @ normal
+            left += list((forces[members] - numpy.outer(along, normal)).ravel())
+            if table.get("displacement", 0) == "free":
+                left.append(along.sum())
+        if self.rows:
+            rest, _ = self.multipliers(forces)
+            left += list(rest)
+        return numpy.array(left)
+
+    def multipliers(self, forces):
+        inside = numpy.any([row != 0 for _, row, *_ in self.rows], axis=0) & ~self.prescribed
+        matrix = numpy.array([row[inside] for _, row, *_ in self.rows]).T
+        found = numpy.linalg.lstsq(matrix, forces[inside], rcond=None)[0]
+        return forces[inside] - matrix @ found, found
+
+    def work(self, old, new, before, after):
+        """Of what moves the ties, by the trapezoidal rule in their own coordinates [J]: centres and rotation vectors of
+        rigid sets, displacements along normals, values of linear constraints."""
+        work = 0.0
+        for table, members, arms in self.rigid:
+            one, other = (RigidMotion(arms, state.displacement[members]) for state in (old, new))
+            sums = before[members].sum(axis=0) + after[members].sum(axis=0)
+            work += sums @ (other.centre - one.centre) / 2
+            pulls = [spin_rates(motion.rotation()).T @ moment(arms @ motion.turn.T, forces[members])
+                     for motion, forces in ((one, before), (other, after))]  # fmt: skip
+            work += sum(pulls) @ (other.rotation() - one.rotation()) / 2
+        for _, members, normal in self.slopes:
+            moved = (new.displacement - old.displacement)[members]
+            work += ((before + after)[members] @ normal) @ (moved @ normal) / 2
+        if self.rows:
+            forces = self.multipliers(before)[1] + self.multipliers(after)[1]
+            moved = new.displacement - old.displacement
+            work += sum(force * (row * moved).sum() for force, (_, row, *_) in zip(forces, self.rows)) / 2
+        return work
+
+    def reactions(self, displacement, forces):
+        """By name, and moments of rigid sets about their present centres."""
+        reactions, moments = {}, {}
+        for table, members, arms in self.rigid:
+            motion = RigidMotion(arms, displacement[members])
+            reactions[table["set"]] = forces[members].sum(axis=0)
+            moments[table["set"]] = moment(arms @ motion.turn.T, forces[members])
+        for table, members, normal in self.slopes:
+            reactions[table["set"]] = (forces[members] @ normal).sum() * normal
+        if self.rows:
+            _, found = self.multipliers(forces)
+            for (name, row, _, _, normal), force in zip(self.rows, found):
+                direction = numpy.eye(row.shape[1])[0] if normal is None else normal
+                reactions[name] = reactions.get(name, 0) + force * direction
+        return reactions, moments
+
+
+def rotated(arms, rotation):
+    if len(rotation) == 1:
+        sine, cosine = numpy.sin(rotation[0]), numpy.cos(rotation[0])
+        return arms @ numpy.array([[cosine, -sine], [sine, cosine]]).T
+    angle = numpy.linalg.norm(rotation)
+    if angle == 0:
+        return arms
+    axis = numpy.asarray(rotation) / angle
+    return (arms * numpy.cos(angle) + numpy.cross(axis, arms) * numpy.sin(angle)
+            + numpy.outer(arms @ axis, axis) * (1 - numpy.cos(angle)))  # fmt: skip
