@@ -199,7 +199,10 @@ std::unique_ptr<const Body> make_body(Points points, const BodySpecification& of
   body.specification = of;
   body.points = std::move(points);
   const std::vector<Period> periods(of.constraints.periods.begin(), of.constraints.periods.end());
-  add_images(body.points, of.constraints.symmetries, periods, of.horizon);
+  // A partial volume reaches half a cell beyond the horizon.
+  const bool is_whole = of.volume_correction == VolumeCorrection::none;
+  const double reach = of.horizon + (is_whole ? 0.0 : body.points.spacing.largest());
+  add_images(body.points, of.constraints.symmetries, periods, reach);
   body.setting = setting_of(of, body.points);
   require_resolved(body.points, body.setting.horizon);
   BodySize expected = size_of(body.points);

@@ -156,7 +156,7 @@ std::vector<AxisImage> images_along(const Points& points, int axis,
 }  // namespace
 
 void add_images(Points& points, const std::vector<SymmetryPlane>& planes,
-                const std::vector<Period>& periods, double horizon) {
+                const std::vector<Period>& periods, double reach_of_body) {
   if (planes.empty() && periods.empty()) return;
   const std::string first = planes.empty() ? "periods[0].axis" : "symmetries[0].axis";
   if (!points.neighbours.empty()) {
@@ -171,7 +171,7 @@ void add_images(Points& points, const std::vector<SymmetryPlane>& planes,
     const std::size_t c = std::size_t(axis);
     extents[c] = extent_along(points, axis);
     std::vector<ImageKind> with_axis;
-    for (const AxisImage& along : images_along(points, axis, planes, periods, horizon)) {
+    for (const AxisImage& along : images_along(points, axis, planes, periods, reach_of_body)) {
       for (ImageKind kind : kinds) {
         kind.mirror[c] = along.mirror;
         kind.shift[c] = along.shift;
@@ -182,8 +182,8 @@ void add_images(Points& points, const std::vector<SymmetryPlane>& planes,
     kinds = std::move(with_axis);
   }
   const Index own = points.count();
-  // A little more than the horizon: which pairs are bonded the search decides.
-  const double reach = 1.001 * horizon;
+  // A little more: which pairs are bonded the search decides.
+  const double reach = 1.001 * reach_of_body;
   for (const ImageKind& kind : kinds) {
     const bool is_identity = kind.mirror == ImageKind{}.mirror && kind.shift == Coordinates{};
     if (is_identity) continue;

@@ -41,12 +41,12 @@ struct Images {
   std::vector<std::size_t> kind;  ///< of each image
 };
 
-/// Adds the images that lie within a horizon of the body's points.
+/// Adds the images that lie within a distance of the body's points.
 /// @throws InputError ("symmetries[k].…", "periods[k].…") for a plane that runs through points or
 ///         does not mirror the lattice, points on both sides of it, points beyond a period, or two
 ///         that share an axis
 void add_images(Points& points, const std::vector<SymmetryPlane>& planes,
-                const std::vector<Period>& periods, double horizon);
+                const std::vector<Period>& periods, double reach);
 
 /// Refuses planes that do not mirror a lattice onto itself, and periods that do not continue it.
 /// @throws InputError as add_images does

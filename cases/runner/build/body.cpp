@@ -117,6 +117,12 @@ std::optional<Model> make_elastic_stand_in(const Case& from, const Body& body, i
     if (from.solver.elastic_horizon_ratio * body.points.spacing < body.points.spacing.largest())
       throw InputError(key, number_text(from.solver.elastic_horizon_ratio),
                        "gives a horizon smaller than the largest spacing");
+    if (body.points.own() < body.points.count() &&
+        from.solver.elastic_horizon_ratio > from.horizon_ratio) {
+      throw InputError(key, number_text(from.solver.elastic_horizon_ratio),
+                       "must not exceed horizon_ratio where there are planes of symmetry or "
+                       "periods: the body's images reach no farther");
+    }
     BondSetting setting = body.setting;
     setting.horizon = from.solver.elastic_horizon_ratio * body.points.spacing;
     Bonds bonds = make_bonds(body.points, from.surface_correction, setting, threads);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include <fmt/format.h>
 
@@ -27,14 +28,16 @@ struct NeighbourCounts {
   double mean = 0.0;
 };
 
-NeighbourCounts count_neighbours(const Bonds& bonds) {
-  const std::vector<std::int32_t> neighbours = neighbour_counts(bonds);
+/// Of the points that stand for themselves.
+NeighbourCounts count_neighbours(const Bonds& bonds, Index own) {
+  std::vector<std::int32_t> neighbours = neighbour_counts(bonds);
+  neighbours.resize(std::size_t(own));
   NeighbourCounts counts;
   const auto [least, most] = std::minmax_element(neighbours.begin(), neighbours.end());
   counts.least = *least;
   counts.most = *most;
   counts.isolated = static_cast<Index>(std::count(neighbours.begin(), neighbours.end(), 0));
-  counts.mean = 2.0 * double(bonds.count()) / double(bonds.points());
+  counts.mean = std::accumulate(neighbours.begin(), neighbours.end(), 0.0) / own;
   return counts;
 }
 
@@ -172,11 +175,10 @@ Exit check(const Case& from, int threads) {
   const std::unique_ptr<const Body> made = make_body(from, threads);
   const Body& body = *made;
   const Points& points = body.points;
-  const NeighbourCounts neighbours = count_neighbours(body.model.bonds());
+  const NeighbourCounts neighbours = count_neighbours(body.model.bonds(), points.own());
   fmt::print("case        {}\n", from.title.empty() ? from.file : from.title);
-  fmt::print("points      {} in {}D, spacing {}, horizon {:g} m ({:.4g} spacings)\n",
-             points.count(), points.dimension, spacing_text(points), body.setting.horizon,
-             body.horizon_ratio());
+  fmt::print("points      {} in {}D, spacing {}, horizon {:g} m ({:.4g} spacings)\n", points.own(),
+             points.dimension, spacing_text(points), body.setting.horizon, body.horizon_ratio());
   fmt::print("bonds       {}; neighbours per point {} to {}, {:.1f} on average\n",
              body.model.bonds().count(), neighbours.least, neighbours.most, neighbours.mean);
   for (const std::string& line : describe_interactions(body)) {
