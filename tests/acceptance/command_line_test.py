@@ -271,7 +271,7 @@ class CommandLine(unittest.TestCase):
                 self.assertLess(abs(told["asymmetry"]), 1e-9)
                 self.assertLess(abs(told["force_sum"]), 1e-11)
                 self.assertLess(abs(told["moment_sum"]), 1e-11)
-                if case.parent.name == "bar":  # quadratic energy: differences are exact at any step
+                if case.parent.name == "bar" or case.name == "bimaterial.toml":  # quadratic energy: differences are exact at any step
                     self.assertIsNone(told["residual_order"])
                     continue
                 self.assertAlmostEqual(told["residual_order"], 2.0, delta=0.1)

@@ -1,6 +1,7 @@
 #include "cases/runner/commands/check_tangent.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <memory>
@@ -220,17 +221,26 @@ struct Convergence {
   }
 };
 
+/// The smallest error or, as it may be small by chance, the middle one of it and its neighbours.
+double round_off_of(const std::vector<double>& errors) {
+  const auto least = std::min_element(errors.begin(), errors.end());
+  if (least == errors.begin() || least + 1 == errors.end()) return *least;
+  std::array<double, 3> around{*(least - 1), *least, *(least + 1)};
+  std::sort(around.begin(), around.end());
+  return around[1];
+}
+
 /// Smallest error, and the order at the smallest step whose error still stands clear of round-off:
-/// of 100 times the smallest error or, where no step's does, of 15 times, which leaves an order of
-/// 2 an error of up to 0.1.
+/// of 100 times what round-off leaves or, where no step's does, of 15 times, which leaves an order
+/// of 2 an error of up to 0.1.
 Convergence convergence_of(const std::vector<double>& errors) {
   Convergence result;
   result.error = *std::min_element(errors.begin(), errors.end());
+  const double round_off = round_off_of(errors);
   for (const double clear_of_round_off : {100.0, 15.0}) {
     for (std::size_t k = 0; k + 1 < errors.size() && !result.order; ++k) {
-      const bool is_last =
-          k + 2 == errors.size() || errors[k + 2] < clear_of_round_off * result.error;
-      if (errors[k + 1] < clear_of_round_off * result.error) break;
+      const bool is_last = k + 2 == errors.size() || errors[k + 2] < clear_of_round_off * round_off;
+      if (errors[k + 1] < clear_of_round_off * round_off) break;
       if (is_last) result.order = std::log2(errors[k] / errors[k + 1]);
     }
   }
