@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 #include <omp.h>
 
+#include "assembly/terms/foundation/foundation_term.hpp"
 #include "assembly/terms/pressure/pressure_term.hpp"
 #include "solvers/linear/available_memory.hpp"
 #include "solvers/study/bond_potential.hpp"
@@ -214,17 +215,18 @@ std::unique_ptr<const Body> make_body(Points points, const BodySpecification& of
   body.conditions = std::make_unique<Conditions>(
       body.points, of.supports, of.loads,
       of.programme.empty() ? LoadingProgramme() : LoadingProgramme(of.programme), of.controls,
-      load_setting(of, body.points), of.eigenstrains, of.constraints);
-  add_pressures(body.model, body);
+      load_setting(of, body.points), of.eigenstrains, of.constraints, of.foundations);
+  add_terms_of_conditions(body.model, body);
   const Stopwatch watch(body.seconds_neighbourhood);
   store_interactions(body, threads);
   return owned;
 }
 
-void add_pressures(Model& model, const Body& body) {
+void add_terms_of_conditions(Model& model, const Body& body) {
   const PressedBoundary& boundary = body.conditions->pressed_boundary();
-  if (boundary.face.empty()) return;
-  model.add(std::make_shared<PressureTerm>(body.points, boundary));
+  if (!boundary.face.empty()) model.add(std::make_shared<PressureTerm>(body.points, boundary));
+  const Foundations& foundations = body.conditions->foundations();
+  if (!foundations.none()) model.add(std::make_shared<FoundationTerm>(body.points, foundations));
 }
 
 BodySize size_of(const Points& points) {
@@ -283,6 +285,10 @@ std::vector<std::string> describe_interactions(const Body& body) {
 
 std::vector<std::string> describe_constraints(const Body& body) {
   std::vector<std::string> lines;
+  for (const Foundations::Summary& of : body.conditions->foundations().summaries()) {
+    lines.push_back(fmt::format("{}: {} springs, {} N/m in all", of.name, of.springs,
+                                place_text(of.stiffness, body.points.dimension)));
+  }
   std::size_t rigid = 0;
   const auto& sets = body.conditions->constraints().rigid_sets();
   for (const Restraint& restraint : body.conditions->restraints()) {

@@ -112,6 +112,7 @@ struct BodySpecification {
   std::vector<InterfaceSpecification> interfaces{};
   std::vector<SupportSpecification> supports{};
   std::vector<LoadSpecification> loads{};
+  std::vector<FoundationSpecification> foundations{};
   ConstraintSpecification constraints{};
   Eigenstrains eigenstrains{};
   /// In the place of `load`, see DisplacementControl; none: the programme's own.

@@ -9,6 +9,7 @@
 
 #include "src/conditions/points_of_set.hpp"
 #include "src/conditions/traction.hpp"
+#include "src/conditions/with_key.hpp"
 #include "src/core/input_error.hpp"
 #include "src/core/number_text.hpp"
 #include "src/geometry/body_cells.hpp"
@@ -16,26 +17,6 @@
 
 namespace peristat {
 namespace {
-
-/// Runs `make` and gives its input errors the key that they concern.
-template <class Make>
-auto with_key(const std::string& key, const Make& make) {
-  try {
-    return make();
-  } catch (const InputError& error) {
-    throw InputError(key, error.value(), error.allowed());
-  }
-}
-
-/// Gives input errors that have no key that of the table.
-template <class Make>
-auto with_table(const std::string& table, const Make& make) {
-  try {
-    return make();
-  } catch (const InputError& error) {
-    throw InputError(error.key().empty() ? table : error.key(), error.value(), error.allowed());
-  }
-}
 
 std::vector<Index> all_points(const Points& points) {
   std::vector<Index> all(std::size_t(points.own()));
@@ -61,7 +42,8 @@ std::vector<Index> points_of_body(const Points& points) {
 Conditions::Conditions(const Points& points, const std::vector<SupportSpecification>& supports,
                        const std::vector<LoadSpecification>& loads, LoadingProgramme programme,
                        const std::vector<ControlTerm>& control, const LoadSetting& setting,
-                       const Eigenstrains& eigenstrains, const ConstraintSpecification& constraints)
+                       const Eigenstrains& eigenstrains, const ConstraintSpecification& constraints,
+                       const std::vector<FoundationSpecification>& foundations)
     : points_(points),
       programme_(std::move(programme)),
       prescribed_(points.reference.size(), 0),
@@ -98,9 +80,9 @@ Conditions::Conditions(const Points& points, const std::vector<SupportSpecificat
     }
   }
   add_eigenstrains(eigenstrains, setting);
+  foundations_ = Foundations(points, foundations, parameters);
   made_ = make_constraints(points, constraints, prescribed_, parameters);
   refuse_shared_names();
-  refuse_loads_beside_constraints(loads);
   hold_periodic_cell(constraints);
   prescribe_handles();
   if (!control.empty()) {
@@ -115,39 +97,17 @@ Conditions::Conditions(const Points& points, const std::vector<SupportSpecificat
   try_stages();
 }
 
-void Conditions::refuse_loads_beside_constraints(
-    const std::vector<LoadSpecification>& loads) const {
-  if (constraints().none()) return;
-  for (std::size_t k = 0; k < loads.size(); ++k) {
-    const std::string key = indexed("loads", k) + ".value";
-    if (loads[k].kind == LoadSpecification::Kind::pressure) {
-      throw InputError(key, "",
-                       "a pressure beside rigid sets, rollers, linear constraints, planes of "
-                       "symmetry or periods can't be used");
-    }
-    const bool is_traction = loads[k].kind == LoadSpecification::Kind::traction;
-    if (is_traction && points_.own() < points_.count() && loads[k].side) {
-      const std::size_t axis = std::size_t(loads[k].side->axis);
-      for (Index image = points_.own(); image < points_.count(); ++image) {
-        const double away =
-            points_.position(image)[axis] - points_.position(points_.source(image))[axis];
-        if (away * loads[k].side->sign > 0.0) {
-          throw InputError(key, "", "on this side the body goes on beyond a plane or period");
-        }
-      }
-    }
-  }
-}
-
 void Conditions::refuse_shared_names() const {
   std::set<std::string> names;
   for (const Prescription& prescription : prescriptions_) names.insert(prescription.set);
-  for (const Restraint& restraint : made_.restraints) {
-    if (names.insert(restraint.name).second) continue;
-    throw InputError(restraint.key, '"' + restraint.name + '"',
-                     "there is a support or constraint of this name already, whose reaction could "
-                     "not be told from this one's");
-  }
+  const auto add = [&names](const std::string& name, const std::string& key) {
+    if (names.insert(name).second) return;
+    throw InputError(key, '"' + name + '"',
+                     "there is a support, constraint or foundation of this name already, whose "
+                     "reaction could not be told from this one's");
+  };
+  for (const Restraint& restraint : made_.restraints) add(restraint.name, restraint.key);
+  for (const auto& of : foundations_.summaries()) add(of.name, of.key);
 }
 
 void Conditions::prescribe_handles() {
@@ -180,7 +140,7 @@ void Conditions::hold_periodic_cell(const ConstraintSpecification& constraints) 
         std::any_of(constraints.symmetries.begin(), constraints.symmetries.end(),
                     [c](const SymmetryPlane& plane) { return plane.axis == c; });
     const std::size_t dof = std::size_t(nearest) * points_.dimension + std::size_t(c);
-    if (!is_mirrored) made_.unused.push_back(dof);
+    if (!is_mirrored && !foundations_.hold(c)) made_.unused.push_back(dof);
   }
 }
 
@@ -246,9 +206,11 @@ void Conditions::add_eigenstrains(const Eigenstrains& eigenstrains, const LoadSe
 }
 
 SharedEnvironment Conditions::environment(const LoadPoint& at) const {
-  if (eigenstretches_.empty() && pressures_.empty()) return nullptr;
+  const bool ground_moves = foundations_.ground_moves();
+  if (eigenstretches_.empty() && pressures_.empty() && !ground_moves) return nullptr;
   const std::vector<double> loads = parameters(at);
   auto made = std::make_shared<Environment>();
+  if (ground_moves) made->ground = foundations_.ground(loads);
   for (const auto& [key, first, last, value] : pressures_) {
     with_key(key, [&] {
       for (std::size_t face = first; face < last; ++face) {
@@ -371,8 +333,9 @@ void Conditions::external_force(const LoadPoint& at, std::span<double> force) co
   }
 }
 
-std::map<std::string, Coordinates> Conditions::reactions(std::span<const double> gradient,
-                                                         std::span<const double> external) const {
+std::map<std::string, Coordinates> Conditions::reactions(
+    std::span<const double> gradient, std::span<const double> external,
+    std::span<const double> displacement, const SharedEnvironment& environment) const {
   std::map<std::string, Coordinates> sums;
   std::set<std::pair<std::string, int>> summed;  // two supports may hold one set in one component
   for (const Prescription& prescription : prescriptions_) {
@@ -386,6 +349,7 @@ std::map<std::string, Coordinates> Conditions::reactions(std::span<const double>
   for (const Restraint& restraint : made_.restraints) {
     sums[restraint.name] = reaction_of(restraint, gradient);
   }
+  sums.merge(foundations_.forces(displacement, environment));
   return sums;
 }
 
@@ -470,6 +434,20 @@ Holding Conditions::holding(std::span<const double> displacement) const {
     for (std::size_t c = 0; c < d; ++c) at[c] += displacement[std::size_t(row) * d + c];
     return at;
   };
+  for (const Spring& spring : foundations_.springs()) {
+    for (std::size_t c = 0; c < d; ++c) {
+      const std::size_t dof = std::size_t(spring.point) * d + c;
+      if (!(spring.stiffness[c] > 0.0)) continue;
+      if (!constraints().dependent()[dof]) {
+        holding.prescribed[dof] = 1;
+        continue;
+      }
+      Coordinates axis{};
+      axis[c] = 1.0;
+      holding.motions.push_back(
+          {spring.point, axis, cross(place(spring.point, points_.position(spring.point)), axis)});
+    }
+  }
   for (const HeldSum& sum : made_.held_sums) {
     HeldMotion motion{sum.front().first, {}, {}};
     for (const auto& [point, weight] : sum) {

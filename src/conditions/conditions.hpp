@@ -9,6 +9,7 @@
 
 #include "src/conditions/displacement_control.hpp"
 #include "src/conditions/environment.hpp"
+#include "src/conditions/foundations.hpp"
 #include "src/conditions/load_point.hpp"
 #include "src/conditions/loading_programme.hpp"
 #include "src/conditions/make_constraints.hpp"
@@ -49,8 +50,8 @@ class Conditions {
   Conditions(const Points& points, const std::vector<SupportSpecification>& supports,
              const std::vector<LoadSpecification>& loads, LoadingProgramme programme = {},
              const std::vector<ControlTerm>& control = {}, const LoadSetting& setting = {},
-             const Eigenstrains& eigenstrains = {},
-             const ConstraintSpecification& constraints = {});
+             const Eigenstrains& eigenstrains = {}, const ConstraintSpecification& constraints = {},
+             const std::vector<FoundationSpecification>& foundations = {});
 
   [[nodiscard]] int dimension() const { return points_.dimension; }
   [[nodiscard]] const LoadingProgramme& programme() const { return programme_; }
@@ -79,9 +80,11 @@ class Conditions {
   void external_force(const LoadPoint& at, std::span<double> force) const;
 
   /// What the load makes of the energy there; null where there are neither eigenstrains nor
-  /// pressures.
+  /// pressures, nor a ground that moves.
   /// @throws InputError if one is not finite, or leaves nothing of a length
   [[nodiscard]] SharedEnvironment environment(const LoadPoint& at) const;
+
+  [[nodiscard]] const Foundations& foundations() const { return foundations_; }
 
   /// Faces that pressures act on, in the order of Environment::pressure.
   [[nodiscard]] const PressedBoundary& pressed_boundary() const { return pressed_; }
@@ -90,10 +93,11 @@ class Conditions {
   /// supports add to hold them, dE/dx - external force. Points of two sets count in both. Likewise
   /// of the restraints: what rigid sets and rollers add, what the part of the body beyond a plane
   /// of symmetry or a period does, and, in its first component, the multiplier of a linear
-  /// constraint.
+  /// constraint; and of the foundations.
   /// @param gradient folded, see Constraints
   [[nodiscard]] std::map<std::string, Coordinates> reactions(
-      std::span<const double> gradient, std::span<const double> external) const;
+      std::span<const double> gradient, std::span<const double> external,
+      std::span<const double> displacement, const SharedEnvironment& environment) const;
 
   /// Moment about the present centre of each rigid set [N m] that it adds.
   [[nodiscard]] std::map<std::string, Coordinates> moments(std::span<const double> displacement,
@@ -144,7 +148,6 @@ class Conditions {
 
   [[nodiscard]] std::vector<double> parameters(const LoadPoint& at) const;
   void refuse_shared_names() const;
-  void refuse_loads_beside_constraints(const std::vector<LoadSpecification>& loads) const;
   void prescribe_handles();
   void hold_periodic_cell(const ConstraintSpecification& constraints);
   void prescribe_handles_at(std::span<const double> loads, std::span<double> displacement) const;
@@ -166,6 +169,7 @@ class Conditions {
   std::vector<Eigenstretch> eigenstretches_;
   PressedBoundary pressed_;
   std::vector<Pressure> pressures_;
+  Foundations foundations_;
   std::vector<char> prescribed_;
   MadeConstraints made_;
   std::optional<DisplacementControl> control_;

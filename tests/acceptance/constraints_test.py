@@ -401,6 +401,177 @@ LINES = (line("a", 0.0025, 0.0) + line("b", 0.0115, 0.0) + line("c", 0.007, 0.00
          + "".join(f'[[roller]]\nname = "{name}"\nat = [{x}, 0.002, 0.0]\nnormal = [0, 1, 0]\n' for name, x in (("y", 0.0025), ("yy", 0.0115))))  # fmt: skip
 
 
+RING = """\
+dimension = 2
+[lattice]
+spacing = 0.05
+thickness = 0.1
+shape = [
+  {{ add = "disk", centre = [0, 0], radius = 1.0 }},
+  {{ subtract = "disk", centre = [0, 0], radius = 0.5 }},
+  {cut}
+]
+[[set]]
+name = "all"
+where = "1"
+[[set]]
+name = "rim"
+where = "sqrt(x^2 + y^2) < 0.56"
+[[set]]
+name = "right"
+where = "x > 0.8"
+[material]
+youngs_modulus = 1e9
+[quadrature]
+surface_correction = "energy"
+volume_correction = "linear"
+[[load]]
+set = "rim"
+pressure = "{pressure}*load"
+[solver]
+relative_tolerance = 1e-12
+{held}
+"""
+LEFT = '{ subtract = "box", min = [-1.1, -1.1], max = [0, 1.1] },'
+BELOW = '{ subtract = "box", min = [-1.1, -1.1], max = [1.1, 0] },'
+
+
+def mean_is_zero(name, *terms):
+    tables = "".join(f'[[constraint.term]]\nset = "{set}"\nweights = {weights}\n' for set, weights in terms)
+    return f'[[constraint]]\nname = "{name}"\n' + tables
+
+
+HELD_X, HELD_Y = (mean_is_zero(f"held_{axis}", ("all", weights)) for axis, weights in (("x", [1, 0]), ("y", [0, 1])))
+HELD_ROUND = mean_is_zero("held_round", ("right", [0, 1]), ("all", [0, -1]))
+
+
+class Pressed(Constrained):
+    """Pressures that follow what follows others."""
+
+    def assert_part_of(self, whole, part):
+        of_place = {tuple(numpy.rint(place * 40).astype(int)): i for i, place in enumerate(whole[0])}
+        twins = [of_place[tuple(numpy.rint(place * 40).astype(int))] for place in part[0]]
+        for name, field in part[1].items():
+            size = max(numpy.abs(whole[1][name]).max(), 1e-300)
+            self.assertLess(numpy.abs(field - whole[1][name][twins]).max() / size, 1e-11, name)
+
+    def test_parts_of_a_ring_are_the_whole(self):
+        for pressure, steps in ((1e5, 1), (0.1e9, 4)):
+            bodies = {"whole": RING.format(cut="", held=HELD_X + HELD_Y + HELD_ROUND, pressure=pressure),
+                      "half": RING.format(cut=LEFT, held=plane("x") + HELD_Y, pressure=pressure),
+                      "quarter": RING.format(cut=LEFT + BELOW, held=plane("x") + plane("y"), pressure=pressure)}  # fmt: skip
+            rows = {name: self.run_case(text, f"loading.steps={steps}", name=name)[-1] for name, text in bodies.items()}
+            for name, share in (("half", 0.5), ("quarter", 0.25)):
+                with self.subTest(name, pressure=pressure):
+                    self.assert_part_of(self.fields("whole"), self.fields(name))
+                    for energy in ("stored_energy", "external_work"):
+                        self.assertAlmostEqual(rows[name][energy] / share / rows["whole"][energy], 1, delta=1e-10)
+            # Half of the ring is torn off by the pressure on the projection of its bore, which has widened.
+            _, fields = self.fields("quarter")
+            self.assertGreater(-rows["quarter"]["reaction_x:symmetry_x"], 0.5 * 0.1 * pressure)
+            self.assertLess(-rows["quarter"]["reaction_x:symmetry_x"], (0.5 + numpy.abs(fields["displacement"]).max() + 0.05) * 0.1 * pressure)
+
+    def test_what_check_tells_of_a_part_is_that_of_the_whole(self):
+        """A closed bore: nothing is left out of the stiffness."""
+        for cut, held in (("", HELD_X + HELD_Y + HELD_ROUND), (LEFT + BELOW, plane("x") + plane("y"))):
+            ended = peristat("check", self.case(RING.format(cut=cut, held=held, pressure=1e5)))
+            self.assertEqual(ended.code, 0, ended.said)
+            self.assertIn("closed or held", ended.said)
+
+    def test_relaxation_finds_the_same(self):
+        text = RING.format(cut=LEFT + BELOW, held=plane("x") + plane("y"), pressure=1e7)
+        newton = self.run_case(text, name="newton")[-1]
+        relaxed = self.run_case(text, "solver.mode=relaxation", "solver.relative_tolerance=1e-10", name="relaxed")[-1]
+        for energy in ("stored_energy", "external_work"):
+            self.assertAlmostEqual(relaxed[energy] / newton[energy], 1, delta=1e-4)
+
+    def test_tangents_are_those_of_the_energy(self):
+        for cut, held in ((LEFT + BELOW, plane("x") + plane("y")), (LEFT, plane("x") + HELD_Y)):
+            told = peristat("check-tangent", self.case(RING.format(cut=cut, held=held, pressure=1e8))).json()
+            self.assertLess(max(told["residual_error"], told["tangent_error"], told["asymmetry"]), 1e-6, told)
+
+    def test_a_rigid_body_hands_on_the_pressure_as_it_turns(self):
+        """A rigid block under pressure on one side: p A along the normal, which turns with the block."""
+        force = 1e10 * 0.01 * 1e-3
+        with_it, without = (self.run_case(BLOCK_UNDER_PRESSURE.replace("1e10*load", pressure), name=pressure[:4])[-1]
+                            for pressure in ("1e10*load", "0*load"))  # fmt: skip
+        added = {column: with_it[column] - without[column] for column in with_it if column.endswith(":block")}
+        self.assertAlmostEqual(added["reaction_x:block"] / (force * math.cos(0.5)), 1, delta=1e-8)
+        self.assertAlmostEqual(added["reaction_y:block"] / (force * math.sin(0.5)), 1, delta=1e-8)
+        self.assertAlmostEqual(added["moment_z:block"] / (force * 0.01), 0, delta=1e-8)
+
+    def test_a_strip_is_pressed_as_a_long_plate(self):
+        """One period of a plate that rests on its lower side."""
+        text = STRIP_UNDER_PRESSURE
+        row = self.run_case(text)[-1]
+        self.assertAlmostEqual(row["reaction_y:bottom"] / (1e6 * 0.01 * 1e-3), 1, delta=1e-9)
+        reference, fields = self.fields("out")
+        rows = {round(y, 6): fields["displacement"][numpy.abs(reference[:, 1] - y) < 1e-6] for y in reference[:, 1]}
+        for displacement in rows.values():  # nothing changes along the plate
+            self.assertLess(numpy.ptp(displacement, axis=0).max(), 1e-12 * numpy.abs(fields["displacement"]).max())
+
+    def test_on_a_side_where_the_body_goes_on_it_is_refused(self):
+        for side, told in (("x-", "beyond a plane"), ("x+", "")):
+            text = plate("x", more=f'[[load]]\nside = "{side}"\npressure = "1e6*load"\n')
+            ended = peristat("check", self.case(text))
+            self.assertEqual(ended.code, 2 if told else 0, ended.said)
+            self.assertIn(told, ended.said)
+
+
+
+BLOCK_UNDER_PRESSURE = """\
+dimension = 2
+[lattice]
+spacing = 1e-3
+thickness = 1e-3
+shape = [{ add = "box", min = [0, 0], max = [0.02, 0.01] }]
+[[set]]
+name = "block"
+where = "x > 0.01"
+[[set]]
+name = "left"
+where = "x < 2e-3"
+[material]
+youngs_modulus = 200e9
+[[support]]
+set = "left"
+displacement = [0, 0]
+[[rigid]]
+set = "block"
+displacement = ["-1e-3*load", "2e-3*load"]
+rotation = ["0.5*load"]
+[[load]]
+side = "x+"
+pressure = "1e10*load"
+[loading]
+steps = 4
+"""
+STRIP_UNDER_PRESSURE = """\
+dimension = 2
+[lattice]
+spacing = 1e-3
+thickness = 1e-3
+shape = [{ add = "box", min = [0, 0], max = [0.01, 0.012] }]
+[[set]]
+name = "bottom"
+where = "y < 2e-3"
+[material]
+youngs_modulus = 200e9
+[[support]]
+set = "bottom"
+displacement = [0, 0]
+[[period]]
+axis = "x"
+from = 0
+to = 0.01
+[[load]]
+side = "y+"
+pressure = "1e6*load"
+[solver]
+relative_tolerance = 1e-12
+"""
+
+
 class Judged(Constrained):
     """By the reference, which knows no generalised coordinates (tests/reference/ties.py)."""
 

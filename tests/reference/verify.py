@@ -8,6 +8,7 @@ import numpy
 
 from tests.reference.body import Body
 from tests.reference.case import Case, Conditions
+from tests.reference.foundations import Foundations
 from tests.reference.mechanics import Mechanics
 from tests.reference.pieces import unheld_points
 from tests.reference.results import Results
@@ -31,6 +32,7 @@ class Verification:
         self.rows = {int(row["step"]): row for row in self.results.table("history")}
         reference, volume, sets = self.results.reference, self.results.volume, self.results.sets
         self.conditions = Conditions(self.case, reference, volume, sets)
+        self.foundations = Foundations(self.case, self.conditions)
         more = {"sets": sets, "factors": self.results.factors}
         self.mechanics = Mechanics(Body(self.case, reference, volume, **more))
         self.mechanics.spare(sets)
@@ -117,6 +119,7 @@ class Verification:
         if prescribed.any():
             self.compare(step, "prescribed displacement", step.displacement[prescribed], target[prescribed], reach, 1e-12)
         self.compare(step, "ties", self.ties.errors(step.displacement, step.load), 0.0, max(reach, numpy.abs(step.displacement).max()), 1e-11)
+        loads = self.loads(step.load, step.displacement)
         external = self.external(step.load, step.displacement)
         unheld = self.unheld(step, old)
         self.judge_residual(mechanics, step, row, old, history, gradient - external, magnitude, unheld)
@@ -124,11 +127,15 @@ class Verification:
         self.judge_energies(mechanics, step, row, old, history)
         if mechanics is self.mechanics:
             self.judge_damage(mechanics, step, row, history)
-        self.judge_work(mechanics, step, row, old, history, gradient, external)
+        self.judge_work(mechanics, step, row, old, history, gradient, external, loads)
 
-    def external(self, load, displacement):
+    def loads(self, load, displacement):
         """Dead loads, and those that follow the deformation [N]."""
         return self.conditions.force(load) + self.conditions.follower_force(load, displacement)
+
+    def external(self, load, displacement):
+        """Loads, and the springs of foundations, whose energy is stored [N]."""
+        return self.loads(load, displacement) + self.foundations.force(displacement, load)
 
     def whole_force(self, mechanics, step):
         """What a whole bond would bear at the largest displacement [N]: rounding of displacements
@@ -189,7 +196,9 @@ class Verification:
         kept, mechanics.eigenstretch = mechanics.eigenstretch, None
         without = mechanics.gradient(old.displacement, past, held=True)
         mechanics.eigenstretch = kept
-        return under - without - self.conditions.follower_force(step.load, old.displacement)
+        resting = numpy.zeros(old.displacement.shape)
+        springs = self.foundations.force(resting, step.load)  # of the ground alone
+        return under - without - self.conditions.follower_force(step.load, old.displacement) - springs
 
     def judge_pins(self, step, row, on_unheld, allowed):
         """Nothing but pins may bear a force on points that nothing holds, and all of it is told."""
@@ -216,6 +225,10 @@ class Verification:
         for name, force in reactions.items():
             for axis, component in zip("xyz", force):
                 self.compare(step, "reaction", row[f"reaction_{axis}:{name}"], component, scale)
+        for name, force in self.foundations.forces(step.displacement, step.load).items():
+            scale = max(largest, numpy.abs(force).max()) * len(force)
+            for axis, component in zip("xyz", force.sum(axis=0)):
+                self.compare(step, "reaction", row[f"reaction_{axis}:{name}"], component, scale)
         size = numpy.abs(self.results.reference).max() + numpy.abs(step.displacement).max()
         for name, about in moments.items():
             for axis, component in zip("z" if len(about) == 1 else "xyz", about):
@@ -229,7 +242,8 @@ class Verification:
 
     def judge_energies(self, mechanics, step, row, old, history):
         energies = mechanics.energies(step.displacement, history)
-        stored = sum(part.sum() for part in energies.values())
+        of_springs = self.foundations.energy(step.displacement, step.load)
+        stored = sum(part.sum() for part in energies.values()) + of_springs.sum()
         scale = max(abs(stored), abs(row["external_work"]), abs(row["dissipated_energy"]))
         scale += 1e-5 * self.whole_force(mechanics, step) * numpy.abs(step.displacement).max()
         self.compare(step, "stored energy", row["stored_energy"], stored, scale)
@@ -241,7 +255,7 @@ class Verification:
             self.complain(step, f"dissipated {row['dissipated_energy']:.6g} J, its bonds alone {dissipated:.6g} J")
         if row["dissipated_energy"] < old.dissipated - AGREEMENT * scale:
             self.complain(step, f"dissipated energy falls from {old.dissipated:.6g} to {row['dissipated_energy']:.6g} J")
-        density = numpy.zeros(len(self.results.volume))
+        density = of_springs
         for order, part in energies.items():
             for k in range(order + 1):
                 density += numpy.bincount(mechanics.body.tuples[order][:, k], part / (order + 1), minlength=len(density))
@@ -266,7 +280,7 @@ class Verification:
         largest = whole.max() if len(whole) else 0.0
         self.compare(step, "max_stretch", row["max_stretch"], largest, max(abs(stretch).max(), 1e-300))
 
-    def judge_work(self, mechanics, step, row, old, history, gradient, external):
+    def judge_work(self, mechanics, step, row, old, history, gradient, external, loads):
         """External work by the trapezoidal rule over the accepted steps; implicit ones add no other."""
         if old.mechanics not in (None, mechanics) or old.number + 1 != step.number:
             return
@@ -278,9 +292,11 @@ class Verification:
         mechanics.eigenstretch = self.conditions.eigenstretch(old.load)
         before = mechanics.gradient(old.displacement, past)
         heating = mechanics.heating_work((old.displacement, past), (step.displacement, history), mechanics.eigenstretch, here)
-        pull = numpy.where(prescribed, before + gradient, self.external(old.load, old.displacement) + external) / 2
+        at_first, now = (before - self.external(old.load, old.displacement), gradient - external)
+        loads_before = self.loads(old.load, old.displacement)
+        pull = (loads_before + loads + numpy.where(prescribed, at_first + now, 0)) / 2
         work = float((pull * (step.displacement - old.displacement)).sum()) + heating
-        work += self.ties.work(old, step, before - self.external(old.load, old.displacement), gradient - external)
+        work += self.ties.work(old, step, at_first, now) + self.foundations.work(old, step)
         scale = max(abs(row["external_work"]), numpy.abs(pull * (step.displacement - old.displacement)).sum())
         scale += 1e-5 * self.whole_force(mechanics, step) * numpy.abs(step.displacement).max()
         self.compare(step, "work", row["external_work"] - old.external_work, work, scale)

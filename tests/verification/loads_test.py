@@ -330,6 +330,16 @@ class Pressed(Loads):
         self.assertLess(abs(errors[-1]), 0.05)
         self.assertLess(abs(errors[-1]), abs(errors[0]))
 
+    def test_the_continuum_at_large_strain_is_that_of_finite_elements(self):
+        radii, exact = ring.solve(0.5, 1.0, 0.1e9, 1e9)
+        errors = []
+        for elements in (25, 50, 100):
+            nodes, found = ring.finite_elements(0.5, 1.0, 0.1e9, 1e9, elements)
+            errors.append(numpy.abs(found - numpy.interp(nodes, radii, exact)).max() / exact.max())
+        self.assertLess(errors[-1], 1e-4)
+        for coarse, fine in zip(errors, errors[1:]):  # linear elements: second order
+            self.assertAlmostEqual(numpy.log2(coarse / fine), 2, delta=0.1)
+
     def test_a_ring_at_large_strain(self):
         results = self.run_case(RING.format(spacing=0.05, pressure=0.1e9), "loading.steps=4")
         found, radius = self.growth(results)

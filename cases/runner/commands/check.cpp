@@ -151,12 +151,12 @@ void print_pressures(const Body& body) {
     if (!pressures) continue;
     const Conditions& conditions = *body.conditions;
     const double end = conditions.programme().end();
-    const std::vector<double> at_rest(body.points.reference.size(), 0.0);
+    const std::vector<double> at_rest(conditions.constraints().dofs(), 0.0);
     const History history;
     const auto [symmetric, left_out] = pressures->stiffness(
         {at_rest, history, Damage::grows,
          conditions.environment(conditions.control() ? LoadPoint(end, 1.0) : LoadPoint(end))},
-        conditions.prescribed());
+        conditions.constraints(), conditions.prescribed());
     const bool is_symmetric = left_out <= 1e-12 * symmetric;
     fmt::print("pressure    {} faces, {:.6g} m2; {}\n", pressures->boundary().face.size(),
                pressures->area(),

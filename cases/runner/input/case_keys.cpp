@@ -80,27 +80,6 @@ Table<ShapeStep> shape_step_keys() {
                .one_of()}};
 }
 
-Kind<Side> side() {
-  const auto read = [](const Entry& at) {
-    std::vector<std::string> sides;
-    for (int axis = 0; axis < at.so_far.dimension; ++axis)
-      for (const char sign : {'-', '+'}) sides.push_back({"xyz"[axis], sign});
-    const std::string chosen = at.from.one_of(at.key, sides);
-    return Side{chosen[0] - 'x', chosen[1] == '+' ? 1 : -1};
-  };
-  const auto text = [](const Side& side, const Case&) { return toml_string(peristat::name(side)); };
-  return {read, text, "`\"x-\"`, `\"x+\"`, and so on for y and z"};
-}
-
-Kind<std::optional<Side>> optional_side() {
-  const Kind<Side> kind = side();
-  return {[=](const Entry& at) { return std::optional(kind.read(at)); },
-          [=](const std::optional<Side>& side, const Case& from) {
-            return side ? kind.text(*side, from) : std::string();
-          },
-          kind.allowed};
-}
-
 Table<Layer> layer_keys() {
   using K = Key<Layer>;
   return {"lattice.layer",
@@ -858,6 +837,8 @@ void check_tangent(const Entry& at, const SolverSpecification& solver) {
         "does not go with this solver.linear or solver.preconditioner, which need the stored "
         "tangent");
   if (is_cpd(at.so_far)) at.refuse("is for material.model = \"bond\"");
+  if (!at.so_far.foundations.empty())
+    at.refuse("does not go with a [[foundation]], which the tangent is stored with");
   for (const LoadSpecification& load : at.so_far.loads) {
     if (load.kind == LoadSpecification::Kind::pressure)
       at.refuse("does not go with a [[load]] pressure, whose stiffness has to be stored");
@@ -1226,6 +1207,8 @@ Table<Case> all_keys() {
        K("period", in(&Case::constraints, &ConstraintSpecification::periods), period_keys(),
          "tables: sides across which the body repeats"),
        K("load", &Case::loads, load_keys(), "tables: forces"),
+       K("foundation", &Case::foundations, foundation_keys(),
+         "tables: springs between a part of the body and a ground"),
        K("eigenstrain", in(&Case::eigenstrains, &Eigenstrains::given), eigenstrain_keys(),
          "tables: strains that cost no energy"),
        K("temperature", &Case::eigenstrains, temperature_keys(), "table: change of temperature")

@@ -60,10 +60,13 @@ Recorder::Fields Recorder::fields(const StateView& at, std::vector<double> force
 void Recorder::accepted(StepRecord record, const AcceptedState& state) {
   const StateView at = state.trial.at();
   std::vector<double> force = state.trial.gradient;
-  body_.conditions->constraints().unfold(state.external_force, force);
+  const Constraints& constraints = body_.conditions->constraints();
+  constraints.unfold(state.external_force, force);
   for (double& component : force) component = -component;
-  const std::vector<double>& follower_force = state.trial.follower_force;
+  std::vector<double> follower_force = state.trial.follower_force;
+  if (!follower_force.empty()) constraints.fold_images(follower_force);
   for (std::size_t k = 0; k < follower_force.size(); ++k) force[k] -= follower_force[k];
+  body_.conditions->foundations().add_force(at.displacement, at.environment, -1.0, force);
   Fields made = fields(at, std::move(force), state.piece);
   record.max_stretch = *std::max_element(made.stretch.begin(), made.stretch.end());
   record.max_damage = made.max_damage;
