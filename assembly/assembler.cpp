@@ -105,4 +105,9 @@ void Assembler::point_energies(const StateView& at, std::span<double> energies) 
   for_each_term([&](TermPasses& term, Write how) { term.point_energies(at, energies, how); });
 }
 
+void Assembler::virials(const StateView& at, std::span<double> virials) {
+  std::fill(virials.begin(), virials.end(), 0.0);
+  for_each_term([&](TermPasses& term, Write) { term.add_virials(at, virials); });
+}
+
 }  // namespace peristat

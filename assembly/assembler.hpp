@@ -61,6 +61,11 @@ class Assembler : public Energy {
   /// Energy of each point, an equal share of its interactions' [J].
   void point_energies(const StateView& at, std::span<double> energies);
 
+  /// Virial of each point, an equal share of its interactions' [J]: points x dimension x dimension,
+  /// see TermPasses::add_virials. Over its volume it is the derivative of the energy density with
+  /// respect to a homogeneous deformation gradient.
+  void virials(const StateView& at, std::span<double> virials);
+
   [[nodiscard]] const Model& model() const { return model_; }
   [[nodiscard]] const Points& points() const override { return points_; }
   [[nodiscard]] const BlockPattern& pattern() const override { return pattern_; }

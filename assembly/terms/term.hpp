@@ -60,6 +60,11 @@ class TermPasses {
 
   /// An equal share of its interactions' energy for each of their points [J].
   virtual void point_energies(const StateView& at, std::span<double> energies, Write how) = 0;
+
+  /// Adds to every point its equal share of the virials of its interactions, sum_a dE/dx_a (x) A_a
+  /// with the reference arms A_a to their other points [J]: points x dimension x dimension, row
+  /// major, the first index that of the force. Loads and supports have none.
+  virtual void add_virials(const StateView&, std::span<double> /*virials*/) {}
 };
 
 /// Where the passes of a term are to work; everything outlives them.

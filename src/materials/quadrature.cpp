@@ -48,19 +48,26 @@ Bonds given_bonds(const Points& points) {
   return bonds;
 }
 
+/// Mean share of each other's volume that the points of a bond count.
+double partial_share(const Points& points, const Kernel& kernel, Index i, Index j, double length) {
+  if (!points.neighbours.empty()) {
+    const auto given =
+        std::lower_bound(points.neighbours.begin(), points.neighbours.end(), std::pair(i, j),
+                         [](const NeighbourShares& pair, const auto& ends) {
+                           return std::pair(pair.i, pair.j) < ends;
+                         });
+    return 0.5 * (given->of_j + given->of_i);
+  }
+  if (kernel.volume_correction == VolumeCorrection::none) return 1.0;
+  const double size_i = cell_size(points, i, kernel.cross_section);
+  const double size_j = cell_size(points, j, kernel.cross_section);
+  return 0.5 * (kernel.partial_volume(length, size_i) + kernel.partial_volume(length, size_j));
+}
+
 void weigh_volumes(Bonds& bonds, const Points& points, const Kernel& kernel) {
   bonds.set_weights([&](Index i, Offset bond) {
     const Index j = bonds.partner[bond];
-    double share = 1.0;
-    if (!points.neighbours.empty()) {
-      const NeighbourShares& given = points.neighbours[std::size_t(bond)];
-      share = 0.5 * (given.of_j + given.of_i);
-    } else if (kernel.volume_correction != VolumeCorrection::none) {
-      const double size_i = cell_size(points, i, kernel.cross_section);
-      const double size_j = cell_size(points, j, kernel.cross_section);
-      share = 0.5 * (kernel.partial_volume(bonds.length(bond), size_i) +
-                     kernel.partial_volume(bonds.length(bond), size_j));
-    }
+    const double share = partial_share(points, kernel, i, j, bonds.length(bond));
     return share * points.volume[i] * points.volume[j] * kernel.influence_at(bonds.length(bond));
   });
 }
@@ -173,6 +180,25 @@ Bonds make_bonds(const Points& points, SurfaceCorrection surface, const BondSett
     apply_energy_method(bonds, points, setting);
   }
   return bonds;
+}
+
+std::vector<double> seen_volumes(const Points& points, const Bonds& bonds, const Kernel& kernel,
+                                 std::span<const char> broken) {
+  std::vector<double> seen(points.volume.size(), 0.0);
+  for_each_bond(bonds, [&](Index i, Offset bond) {
+    if (!broken.empty() && broken[std::size_t(bond)]) return;
+    const Index j = bonds.partner[bond];
+    // A bond across a plane of symmetry has a twin, as in share_with_images.
+    const int own = int(!points.is_image(i)) + int(!points.is_image(j));
+    if (own == 0) return;
+    const double length = bonds.length(bond);
+    const double share =
+        0.5 * own * partial_share(points, kernel, i, j, length) * kernel.influence_at(length);
+    seen[std::size_t(i)] += share * points.volume[std::size_t(j)];
+    seen[std::size_t(j)] += share * points.volume[std::size_t(i)];
+  });
+  gather_images(points, seen, [](double& sum, double more) { sum += more; });
+  return seen;
 }
 
 double confined_energy_error(const Points& points, const Bonds& bonds, const BondSetting& setting) {

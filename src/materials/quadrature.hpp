@@ -1,5 +1,8 @@
 #pragma once
 
+#include <span>
+#include <vector>
+
 #include "src/geometry/points.hpp"
 #include "src/materials/bond_constants.hpp"
 #include "src/neighbourhood/bonds.hpp"
@@ -31,6 +34,13 @@ void drop_weightless(Bonds& bonds);
 ///            classical was tried: it makes bending softer again, not better.
 [[nodiscard]] Bonds make_bonds(const Points& points, SurfaceCorrection surface,
                                const BondSetting& setting, int threads);
+
+/// Volume that every point sees through its bonds, sum_j 1/2 (nu_ij + nu_ji) omega_ij V_j [m3]:
+/// that of a point inside a lattice is `setting.lattice_moment(0, spacing)`. Of images that of
+/// their sources.
+/// @param broken per bond, whether it does not count; empty: all count
+[[nodiscard]] std::vector<double> seen_volumes(const Points& points, const Bonds& bonds,
+                                               const Kernel& kernel, std::span<const char> broken);
 
 /// Largest deviation from 1 of (discrete energy density / classical) over points and axes under a
 /// confined unit strain: the error of the quadrature, and what a surface correction leaves of it.

@@ -440,6 +440,40 @@ struct BondKernels {
     a.threads.sum_rows<1>(body,
                           [&](Index i, const double* total) { put<1>(how, total, &energies[i]); });
   }
+
+  /// Half of every bond's force (x) reference arm to each of its ends. A pass per component of the
+  /// force, whose rows fit into the sums that forces are added up in.
+  template <class P, class E>
+  static void add_virials(BondWorkspace& a, const P& potential, const E& eigenstretch,
+                          Span displacement, const double* largest_stretch,
+                          std::span<double> virials) {
+    a.pack<D>(a.points.reference, displacement);
+    constexpr int width = vector_width(D);
+    for (int component = 0; component < D; ++component) {
+      const auto body = [&](int, RowRange range, double* sums) {
+        for (Index i = range.first; i < range.last; ++i) {
+          Vector<D, Lanes> own;
+          own.fill(Lanes(0.0));
+          for_each_batch<D>(
+              a.bonds, a.rows.data(), i, [&](const Batch<D>& batch) __attribute__((always_inline)) {
+                auto measure =
+                    Length::at<D, Lanes>(batch.inverse_length, {batch.vector0}, {batch.vector1});
+                relieve(measure, eigenstretch, i, batch);
+                const auto psi = interaction_energy(
+                    batch.weight, at_history(largest_stretch, potential, batch.first), measure);
+                const Lanes half = 0.5 * energy_gradient(psi, measure)[0][component];
+                const Vector<D, Lanes> row = scaled<D>(half, batch.vector0);
+                for (int c = 0; c < D; ++c) own[c] += row[c];
+                add_to_partners<D>(sums, batch.partner, row);
+              });
+          for (int c = 0; c < D; ++c) sums[std::ptrdiff_t(i) * width + c] += sum(own[c]);
+        }
+      };
+      a.threads.sum_rows<width>(body, [&](Index i, const double* total) {
+        put<D>(Write::onto, total, &virials[std::size_t(i) * D * D + std::size_t(component) * D]);
+      });
+    }
+  }
 };
 
 }  // namespace peristat

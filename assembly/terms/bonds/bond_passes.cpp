@@ -147,6 +147,14 @@ void BondPasses::point_energies(const StateView& at, std::span<double> energies,
            });
 }
 
+void BondPasses::add_virials(const StateView& at, std::span<double> virials) {
+  dispatch(at,
+           [&](auto d, const auto& law, const double* largest_stretch, const auto& eigenstretch) {
+             BondKernels<decltype(d)::value>::add_virials(
+                 workspace_, law, eigenstretch, at.displacement, largest_stretch, virials);
+           });
+}
+
 void BondPasses::write_tangent(const StateView& at, double projection, Tangent& tangent) {
   dispatch(at,
            [&](auto d, const auto& law, const double* largest_stretch, const auto& eigenstretch) {

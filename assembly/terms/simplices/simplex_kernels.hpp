@@ -48,6 +48,9 @@ class BatchArms {
     return result;
   }
 
+  /// Reference arm of the interactions whose measure was asked for last.
+  [[nodiscard]] const Vector<D, Lanes>& reference(int arm) const { return reference_[arm]; }
+
  private:
   static void fill_empty(const InteractionBlock& block, const Vector<D, Lanes>& with,
                          Vector<D, Lanes>& arm) {
@@ -249,6 +252,61 @@ struct SimplexKernels {
     };
     a.threads.template sum_rows<1>(body,
                                    [&](Index i, const double* total) { energies[i] += *total; });
+  }
+
+  /// Adds an equal share of every interaction's virial to each of its points: a pass per component
+  /// of the force, as for bonds.
+  static void add_virials(SimplexWorkspace<D>& a, Span displacement, const Influences& influences,
+                          std::span<double> virials) {
+    for (std::size_t component = 0; component < D; ++component) {
+      add_virial_rows(a, displacement, influences, component, virials);
+    }
+  }
+
+  static void add_virial_rows(SimplexWorkspace<D>& a, Span displacement,
+                              const Influences& influences, std::size_t component,
+                              std::span<double> virials) {
+    const bool find_pairs = must_find(a.term);
+    constexpr int stride = vector_width(D);
+    const auto body = [&](int thread, RowRange range, double* sums) {
+      LocalWorkspace<D>& w = *a.local[std::size_t(thread)];
+      for (Index i = range.first; i < range.last; ++i) {
+        move_to(a, w, i, displacement, influences, find_pairs);
+        w.clear(D);
+        Vector<D, Lanes> own{};
+        for_each_kind(a.term, [&](auto kind, const auto& interactions, const auto& potential) {
+          using Measure = decltype(kind);
+          constexpr double share = 1.0 / (Measure::arms + 1);
+          interactions.template for_each_group<D>(w.local, w.scratch, [&](const auto& group) {
+            BatchArms<Measure, D> arms(w, group);
+            Vector<D, Lanes> of_group{};
+            for (const InteractionBlock& block : group.blocks) {
+              const auto measure = arms.measure(block);
+              const auto psi = interaction_energy(weight_of(w, group, block), potential, measure);
+              const auto force = energy_gradient(psi, measure);
+              Vector<D, Lanes> row{};
+              for (int p = 0; p < Measure::arms; ++p) {
+                row = plus<D>(row, scaled<D>(share * force[p][component], arms.reference(p)));
+              }
+              of_group = plus<D>(of_group, row);
+              w.template add_to_last<D>(block.first, row);
+            }
+            for (int partner : group.partners) w.template add_to_fixed<D>(partner, of_group);
+            own = plus<D>(own, of_group);
+          });
+        });
+        const std::span<const Index> partner = w.local.upper.points();
+        for (int k = 0; k < w.local.upper.count(); ++k) {
+          const auto total = w.template total_of<D>(k);
+          for (int c = 0; c < D; ++c) sums[std::ptrdiff_t(partner[k]) * stride + c] += total[c];
+        }
+        for (int c = 0; c < D; ++c) sums[std::ptrdiff_t(i) * stride + c] += sum(own[c]);
+      }
+    };
+    a.threads.template sum_rows<stride>(body, [&](Index i, const double* total) {
+      double* row = &virials[(std::size_t(i) * D + component) * D];
+      for (int c = 0; c < D; ++c) row[c] += total[c];
+    });
   }
 
   // ---- Tangent

@@ -65,6 +65,10 @@ class SimplexPasses : public TermPasses {
     Kernels::point_energies(workspace_, at.displacement, influences_at(at), energies);
   }
 
+  void add_virials(const StateView& at, std::span<double> virials) override {
+    Kernels::add_virials(workspace_, at.displacement, influences_at(at), virials);
+  }
+
  private:
   using Kernels = SimplexKernels<D>;
 

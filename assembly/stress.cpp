@@ -1,0 +1,97 @@
+#include "assembly/stress.hpp"
+
+#include <cmath>
+
+#include <Eigen/Eigenvalues>
+
+#include "assembly/terms/bonds/deformation_gradients.hpp"
+#include "src/geometry/image_tensors.hpp"
+
+namespace peristat {
+namespace {
+
+template <int D>
+using TensorOf = Eigen::Matrix<double, D, D, Eigen::RowMajor>;
+
+/// sqrt(3/2 s:s) with the deviator s of the stress in space.
+template <int D>
+double von_mises(const TensorOf<D>& in_plane, double out_of_plane) {
+  TensorOf<3> stress = TensorOf<3>::Zero();
+  stress.template topLeftCorner<D, D>() = in_plane;
+  if (D == 2) stress(2, 2) = out_of_plane * in_plane.trace();
+  const TensorOf<3> deviator = stress - stress.trace() / 3.0 * TensorOf<3>::Identity();
+  return std::sqrt(1.5) * deviator.norm();
+}
+
+/// Principal values, descending, and directions, whose largest component is positive.
+template <int D>
+void find_principal(const TensorOf<D>& stress, double* values, double* directions) {
+  const Eigen::SelfAdjointEigenSolver<TensorOf<D>> spectrum(stress);
+  for (int k = 0; k < D; ++k) {
+    const int place = D - 1 - k;
+    values[k] = spectrum.eigenvalues()(place);
+    Eigen::Matrix<double, D, 1> direction = spectrum.eigenvectors().col(place);
+    int largest = 0;
+    direction.cwiseAbs().maxCoeff(&largest);
+    if (direction(largest) < 0.0) direction = -direction;
+    for (int c = 0; c < D; ++c) directions[k * D + c] = direction(c);
+  }
+}
+
+template <int D>
+Stress stress_from(const Points& points, DeformationGradients gradients,
+                   std::vector<double> virials, double out_of_plane) {
+  using Tensor = TensorOf<D>;
+  const auto own = std::size_t(points.own());
+  constexpr std::size_t entries = std::size_t(D) * D;
+  virials.resize(own * entries);
+  Stress found{std::move(gradients.displacement),
+               std::vector<double>(own * entries),
+               std::move(virials),
+               std::vector<double>(own * entries),
+               std::vector<double>(own),
+               std::vector<double>(own * D),
+               std::vector<double>(own * entries),
+               std::move(gradients.is_determined)};
+  for (std::size_t i = 0; i < own; ++i) {
+    Eigen::Map<Tensor> F(&found.deformation_gradient[i * entries]), E(&found.strain[i * entries]);
+    Eigen::Map<Tensor> P(&found.first_piola[i * entries]), sigma(&found.cauchy[i * entries]);
+    P /= points.volume[i];
+    const Tensor H = F;
+    F += Tensor::Identity();
+    const double volume_ratio = F.determinant();
+    found.is_determined[i] = found.is_determined[i] && volume_ratio > 0.0;
+    if (found.is_determined[i]) {
+      // Of H, not of F^T F - I: small strains keep their digits.
+      E = 0.5 * (H + H.transpose() + H.transpose() * H);
+      sigma = P * F.transpose() / volume_ratio;
+    } else {
+      F.setIdentity();
+    }
+    const Tensor symmetric = 0.5 * (sigma + sigma.transpose());
+    found.von_mises[i] = von_mises<D>(symmetric, out_of_plane);
+    find_principal<D>(symmetric, &found.principal[i * D], &found.principal_direction[i * entries]);
+  }
+  return found;
+}
+
+}  // namespace
+
+Stress find_stress(Assembler& assembler, const StateView& at, double out_of_plane) {
+  const Points& points = assembler.points();
+  std::vector<double> virials(std::size_t(points.count()) *
+                              std::size_t(points.dimension * points.dimension));
+  assembler.virials(at, virials);
+  gather_image_tensors(points, virials);
+  DeformationGradients gradients = deformation_gradients(points, assembler.model(), at);
+  switch (points.dimension) {
+    case 1:
+      return stress_from<1>(points, std::move(gradients), std::move(virials), out_of_plane);
+    case 2:
+      return stress_from<2>(points, std::move(gradients), std::move(virials), out_of_plane);
+    default:
+      return stress_from<3>(points, std::move(gradients), std::move(virials), out_of_plane);
+  }
+}
+
+}  // namespace peristat

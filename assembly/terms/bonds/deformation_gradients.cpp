@@ -1,0 +1,86 @@
+#include "assembly/terms/bonds/deformation_gradients.hpp"
+
+#include <Eigen/Eigenvalues>
+
+#include "assembly/terms/damage.hpp"
+#include "src/geometry/image_tensors.hpp"
+
+namespace peristat {
+namespace {
+
+/// Least share of the largest second moment of a neighbourhood that the smallest must have: below
+/// it the bonds lie in a line or plane but for round-off.
+constexpr double flat = 1e-10;
+
+struct Moments {
+  std::vector<double> reference;     // sum w xi (x) xi per point
+  std::vector<double> displacement;  // sum w eta (x) xi
+};
+
+template <int D>
+Moments moments(const Points& points, const Model& model, const StateView& at) {
+  const std::size_t entries = std::size_t(points.count()) * D * D;
+  Moments sums{std::vector<double>(entries), std::vector<double>(entries)};
+  const std::vector<char> broken = broken_bonds(model, at.history);
+  const Bonds& bonds = model.bonds();
+  for (Index i = 0; i < bonds.points(); ++i) {
+    for (Offset bond = bonds.offset[i]; bond < bonds.offset[i + 1]; ++bond) {
+      if (!broken.empty() && broken[bond]) continue;
+      const Index ends[] = {i, bonds.partner[bond]};
+      const double weight = bonds.weight(bond);
+      double xi[D], eta[D];
+      for (int c = 0; c < D; ++c) {
+        const std::size_t from = std::size_t(ends[0]) * D + c, to = std::size_t(ends[1]) * D + c;
+        xi[c] = points.reference[to] - points.reference[from];
+        eta[c] = at.displacement[to] - at.displacement[from];
+      }
+      for (const Index point : ends) {
+        for (int r = 0; r < D; ++r) {
+          for (int c = 0; c < D; ++c) {
+            const std::size_t entry = (std::size_t(point) * D + r) * D + c;
+            sums.reference[entry] += weight * xi[r] * xi[c];
+            sums.displacement[entry] += weight * eta[r] * xi[c];
+          }
+        }
+      }
+    }
+  }
+  gather_image_tensors(points, sums.reference);
+  gather_image_tensors(points, sums.displacement);
+  return sums;
+}
+
+template <int D>
+DeformationGradients solve(const Points& points, const Moments& sums) {
+  using Tensor = Eigen::Matrix<double, D, D, Eigen::RowMajor>;
+  const auto own = std::size_t(points.own());
+  DeformationGradients found{std::vector<double>(own * D * D), std::vector<char>(own)};
+  for (std::size_t i = 0; i < own; ++i) {
+    const Tensor reference = Eigen::Map<const Tensor>(&sums.reference[i * D * D]);
+    const Eigen::SelfAdjointEigenSolver<Tensor> spectrum(reference);
+    const auto& moment = spectrum.eigenvalues();
+    found.is_determined[i] = moment(0) > flat * moment(D - 1);
+    if (!found.is_determined[i]) continue;
+    const Tensor& axes = spectrum.eigenvectors();
+    Eigen::Map<Tensor>(&found.displacement[i * D * D]) =
+        Eigen::Map<const Tensor>(&sums.displacement[i * D * D]) * axes *
+        moment.cwiseInverse().asDiagonal() * axes.transpose();
+  }
+  return found;
+}
+
+}  // namespace
+
+DeformationGradients deformation_gradients(const Points& points, const Model& model,
+                                           const StateView& at) {
+  switch (points.dimension) {
+    case 1:
+      return solve<1>(points, moments<1>(points, model, at));
+    case 2:
+      return solve<2>(points, moments<2>(points, model, at));
+    default:
+      return solve<3>(points, moments<3>(points, model, at));
+  }
+}
+
+}  // namespace peristat

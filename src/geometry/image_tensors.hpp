@@ -1,0 +1,14 @@
+#pragma once
+
+#include <vector>
+
+#include "src/geometry/points.hpp"
+
+namespace peristat {
+
+/// Adds what images have of a tensor per point to their sources, seen from there: M T M with the
+/// mirror M of a plane of symmetry.
+/// @param tensors points x dimension x dimension, row major
+void gather_image_tensors(const Points& points, std::vector<double>& tensors);
+
+}  // namespace peristat
