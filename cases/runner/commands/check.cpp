@@ -14,6 +14,7 @@
 #include "solvers/linear/make_linear_solver.hpp"
 #include "solvers/study/bond_materials.hpp"
 #include "solvers/study/cpd_model.hpp"
+#include "solvers/study/crack_tips.hpp"
 #include "solvers/study/found_loads.hpp"
 #include "solvers/study/linear_systems.hpp"
 #include "solvers/study/rest_stability.hpp"
@@ -225,6 +226,7 @@ Exit check(const Case& from, int threads) {
     refuse_unheld_bodies(body);
     refuse_unstable_rest(body, options);
     if (finds_loads(options, *body.conditions)) static_cast<void>(Study(body, options).analyze());
+    static_cast<void>(make_crack_tips(body, from.crack_tips, options));
   });
   return Exit::done;
 }

@@ -14,6 +14,7 @@
 #include "cases/runner/build/solver_options.hpp"
 #include "cases/runner/process/failure.hpp"
 #include "cases/runner/process/interruption.hpp"
+#include "cases/runner/results/crack_tip_columns.hpp"
 #include "cases/runner/results/dossier.hpp"
 #include "cases/runner/results/probe.hpp"
 #include "cases/runner/results/recorder.hpp"
@@ -201,6 +202,7 @@ class CaseRun {
         results_(results),
         support_sets_(support_sets(from)) {
     for (const auto& probe : from.probes) probes_.push_back(columns_of(probe, from.dimension));
+    for (ProbeColumns& columns : crack_tip_columns(from)) probes_.push_back(std::move(columns));
     for (ProbeColumns& columns : rigid_set_columns(from)) probes_.push_back(std::move(columns));
   }
 
@@ -236,6 +238,8 @@ class CaseRun {
     // Loads that can't be found are refused before results are touched.
     if (finds_loads(study_->options(), *body_->conditions)) study_->analyze();
     progress_.follow_to(body_->conditions->programme().end());
+    crack_tips_ = located_errors(
+        from_, [&] { return make_crack_tips(*body_, from_.crack_tips, study_->options()); });
   }
 
   /// @throws InputError if the body is another one
@@ -259,14 +263,14 @@ class CaseRun {
     if (earlier_) {
       results_.emplace(*earlier_, earlier_results_, without_images(body_->points), text,
                        support_sets_, probes_);
-      recorder_.emplace(from_, *body_, assembler, *results_, progress_);
+      recorder_.emplace(from_, *body_, assembler, *results_, progress_, crack_tips_);
       recorder_->go_on(earlier_->checkpoint(), earlier_results_, support_sets_, probes_);
       earlier_results_ = {};
       tell_beginning();
     } else {
       results_.emplace(from_.output.directory, without_images(body_->points), text, support_sets_,
                        probes_, constant_fields_of(*body_), options_.overwrite);
-      recorder_.emplace(from_, *body_, assembler, *results_, progress_);
+      recorder_.emplace(from_, *body_, assembler, *results_, progress_, crack_tips_);
     }
     leave_note(from_.output.directory);
   }
@@ -382,6 +386,7 @@ class CaseRun {
   std::optional<Study> study_;
   std::optional<Model> stand_in_;
   std::unique_ptr<SolvedModel> standing_in_;
+  std::vector<CrackTip> crack_tips_;
   std::optional<Recorder> recorder_;
 };
 

@@ -1121,6 +1121,44 @@ Table<OutputSpecification> output_keys() {
              "so that the crack shows in the pictures from the start")}};
 }
 
+Table<CrackTipSpecification> crack_tip_keys() {
+  using Spec = CrackTipSpecification;
+  using K = Key<Spec>;
+  return {"crack_tip",
+          {K("name", &Spec::name, name(), "with which its columns begin")
+               .then([](auto& at, auto& tip) {
+                 for (const auto& other : at.so_far.crack_tips)
+                   if (other.name == tip.name) at.refuse("another crack tip has this name");
+               })
+               .moreover("no other crack tip has it")
+               .required(),
+           K("at", &Spec::at, coordinates(), "of the tip; 3D: any place on its straight front")
+               .required(),
+           K("direction", &Spec::direction, coordinates(""),
+             "in which the crack would go on, of any length")
+               .moreover("not all zero")
+               .required(),
+           K("front", &Spec::front, coordinates(""),
+             "3D: along the front, of any length; it goes through the whole body")
+               .moreover("at a right angle on `direction`")
+               .unless(in_dimension<2>, "is for dimension 3")
+               .default_words("`[0, 0, 1]`"),
+           K("inner", &Spec::inner, positive("m"), "inner radius of the ring of the integrals")
+               .moreover("2 horizons at least")
+               .written_if([](auto& tip, auto&) { return tip.inner > 0.0; })
+               .default_words("2 horizons"),
+           K("outer", &Spec::outer, positive("m"), "its outer radius")
+               .moreover("a horizon more at least")
+               .written_if([](auto& tip, auto&) { return tip.outer > 0.0; })
+               .default_words("4 horizons, or twice `inner`"),
+           K("cut", &Spec::cut, positive("m"),
+             "length of a cut ahead of the tip, by which energy release rates are found, too: one "
+             "more system of equations in every step")
+               .moreover("a horizon at least")
+               .written_if([](auto& tip, auto&) { return tip.cut > 0.0; })
+               .default_words("none")}};
+}
+
 Table<ProbeSpecification> probe_keys() {
   using Spec = ProbeSpecification;
   using K = Key<Spec>;
@@ -1225,7 +1263,9 @@ Table<Case> all_keys() {
        K("arc_length", &Case::solver, arc_length_keys(), "table: steps in mode `arc_length`")
            .then(check_found_loads),
        K("output", &Case::output, output_keys(), "table: results folder"),
-       K("probe", &Case::probes, probe_keys(), "tables: values that enter the history")}};
+       K("probe", &Case::probes, probe_keys(), "tables: values that enter the history"),
+       K("crack_tip", &Case::crack_tips, crack_tip_keys(),
+         "tables: J, stress intensity factors and T-stress in the history")}};
 }
 
 }  // namespace

@@ -32,7 +32,9 @@ Table<RollerSpecification> roller_keys() {
   using K = Key<Spec>;
   return {
       "roller",
-      {K("set", &Spec::set, known_set(), "each of whose points slides across the normal").one_of(),
+      {K("set", &Spec::set, known_set(), "each of whose points slides across the normal")
+           .written_if([](auto& roller, auto&) { return !roller.at; })
+           .one_of(),
        K("at", &Spec::at, coordinates(),
          "where a roller touches the body: the points next to it are held in the mean, weighted so "
          "that it is the displacement there")

@@ -6,6 +6,7 @@
 
 #include "assembly/terms/bonds/point_stretches.hpp"
 #include "assembly/terms/damage.hpp"
+#include "cases/runner/results/crack_tip_columns.hpp"
 #include "cases/runner/results/record_tables.hpp"
 #include "cases/runner/results/rigid_set_columns.hpp"
 
@@ -75,6 +76,7 @@ void Recorder::accepted(StepRecord record, const AcceptedState& state) {
   for (const ProbeSpecification& probe : case_.probes) {
     record.probes[probe.name] = probe_values(probe, points_, view, separated_);
   }
+  add_crack_tip_values(case_, crack_tips_, assembler_, state.trial, record.stage, record.probes);
   add_rigid_set_values(*body_.conditions, state.trial, state.external_force, record.probes);
   const bool write_fields = record.step % case_.output.every == 0;
   results_.add(record, write_fields ? std::optional(view) : std::nullopt);

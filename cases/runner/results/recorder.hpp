@@ -11,6 +11,7 @@
 #include "cases/runner/results/probe.hpp"
 #include "cases/runner/results/results.hpp"
 #include "solvers/drivers/load_stepping.hpp"
+#include "solvers/study/crack_tips.hpp"
 
 namespace peristat {
 
@@ -19,7 +20,7 @@ namespace peristat {
 class Recorder {
  public:
   Recorder(const Case& from, const Body& body, Assembler& assembler, Results& results,
-           Progress& progress)
+           Progress& progress, const std::vector<CrackTip>& crack_tips)
       : case_(from),
         points_(body.points),
         own_(std::size_t(body.points.own())),
@@ -27,6 +28,7 @@ class Recorder {
         results_(results),
         progress_(progress),
         body_(body),
+        crack_tips_(crack_tips),
         separated_(body.cut_bonds) {}
 
   /// Knows what it knew when the checkpoint was made.
@@ -70,6 +72,7 @@ class Recorder {
   Results& results_;
   Progress& progress_;
   const Body& body_;
+  const std::vector<CrackTip>& crack_tips_;
   std::optional<Fields> unwritten_;    // of the last step, if it only entered the history
   std::vector<char> broken_;           // per bond, in the last accepted state
   DamageHistories written_histories_;  // in the last state that was written with fields
