@@ -343,6 +343,23 @@ class Rigid(Constrained):
         for column in ("reaction_x:left", "reaction_y:left", "stored_energy", "external_work"):
             self.assertAlmostEqual(rigid[column], held[column], delta=1e-9 * abs(held["reaction_y:left"]))
 
+    def test_check_tells_what_is_prescribed_and_what_follows(self):
+        def line(text):
+            ended = peristat("check", self.case(text))
+            self.assertEqual(ended.code, 0, ended.said)
+            return next(line for line in ended.output.splitlines() if line.startswith("supports"))
+
+        # 600 points, of which the pin has 32 and each end a column of 20; images have no degrees of freedom of their own.
+        pin, ends = 2 * 32, 2 * 20
+        self.assertEqual(line(BODY + '[[support]]\nset = "left"\ndisplacement = [0, 0]\n'),
+                         f"supports    {ends} prescribed and {1200 - ends} free degrees of freedom")  # fmt: skip
+        self.assertEqual(line(BODY + PIN + LIFTED + ROLLER),
+                         f"supports    {ends // 2} prescribed, {pin + 1} that follow constraints, and "
+                         f"{1200 - ends // 2 - pin - 1} free degrees of freedom; 1 free ones of constraints")  # fmt: skip
+        self.assertEqual(line(CELL.format(material=BONDS, x=["1e-3*load", 0], y=[0, "free"])),
+                         "supports    2 prescribed and 94 free degrees of freedom; 1 free ones of constraints")  # fmt: skip
+        self.assertEqual(line(plate("xy")), "supports    48 prescribed and 288 free degrees of freedom")
+
     def test_a_rotation_is_a_rigid_motion(self):
         """Two rigid sets that turn by the same finite angle about one centre carry the body along."""
         turned = "".join(f'[[rigid]]\nset = "{name}"\ncentre = [0.0, 0.0]\ndisplacement = [0, 0]\nrotation = ["2.5*load"]\n'
