@@ -80,9 +80,31 @@ class Constrained(Programmes):
             step = file["steps"][sorted(file["steps"])[-1]]
             return file["points/reference"][...], {key: step[key][...] for key in ("displacement", "force", "energy_density", "damage")}
 
+    def bonds(self, name, rows):
+        """Places of both ends, in half spacings, of bonds that rows (first, second, image) tell."""
+        with h5py.File(self.folder / name / "results.h5") as file:
+            places = file["points/reference"][...]
+            kinds = [file[f"points/images/{part}"][...] for part in ("mirror", "shift")] if "images" in file["points"] else [[], []]
+        found = []
+        for first, second, image in rows:
+            end = places[second] if image == 0 else kinds[0][image - 1] * places[second] + kinds[1][image - 1]
+            found.append(tuple(sorted(tuple(numpy.rint(place * 2e3).astype(int).tolist()) for place in (places[first], end))))
+        return found
+
     def broken(self, name):
         rows = (self.folder / name / "broken_bonds.csv").read_text().splitlines()[1:]
-        return [tuple(map(int, row.split(",")[2:4])) for row in rows]
+        return self.bonds(name, [map(int, row.split(",")[2:5]) for row in rows])
+
+    def damaged(self, name):
+        """Largest stretch of every bond that has one."""
+        stretches = {}
+        with h5py.File(self.folder / name / "results.h5") as file:
+            for step in file["steps"].values():
+                told = step["history"]
+                images = told["second_image"] if "second_image" in told else numpy.zeros(len(told["first_point"]), int)
+                bonds = self.bonds(name, zip(told["first_point"], told["second_point"], images))
+                stretches |= dict(zip(bonds, told["largest_stretch"][...].tolist()))
+        return stretches
 
 
 class Symmetry(Constrained):
@@ -124,17 +146,14 @@ class Symmetry(Constrained):
         whole = self.run_case(plate("", **text, more=notch), *settings, name="whole")
         part = self.run_case(plate("x", **text, more=notch), *settings, name="part")
         self.assertGreater(whole[-1]["broken_bonds"], 50)
-        places = {name: self.fields(name)[0] for name in ("whole", "part")}
-
-        def bonds(name):
-            """By the magnitudes of their ends' places: twins are one."""
-            found = set()
-            for ends in self.broken(name):
-                ends = [tuple(numpy.rint(places[name][end] * 2e3).astype(int) * [1 if name == "whole" else 1, 1]) for end in ends]
-                found.add(tuple(sorted((abs(x), y) for x, y in ends)))
-            return found
-
-        self.assertEqual(bonds("whole"), bonds("part"))
+        part_bonds = self.broken("part")
+        self.assertEqual(len(part_bonds), part[-1]["broken_bonds"])
+        self.assertEqual(len(set(part_bonds)), len(part_bonds))
+        twins = [tuple(sorted((-x, y) for x, y in ends)) for ends in part_bonds]
+        self.assertEqual(sorted(self.broken("whole")), sorted({*part_bonds, *twins}))
+        whole_stretch = self.damaged("whole")
+        for bond, stretch in self.damaged("part").items():
+            self.assertAlmostEqual(stretch, whole_stretch[bond], delta=1e-9)
         self.assertAlmostEqual(part[-1]["reaction_y:top"], 0.5 * whole[-1]["reaction_y:top"], delta=1e-6 * max(abs(row["reaction_y:top"]) for row in whole))
 
     def test_planes_that_are_none_are_refused(self):
@@ -193,6 +212,39 @@ def lattice_stress(gradient, youngs_modulus=200e9, spacing=1e-3, ratio=3.015):
 
 
 class Periodic(Constrained):
+    def torn(self, crack):
+        """A cell of 24 x 12 points, longer than 20, in which a crack begins to run."""
+        softening = 'law = "tanh_continuous"\nonset = 0.003\ncritical = 0.008\n'
+        text = CELL.format(material=BONDS + "[material.damage]\n" + softening, x=[0, 0], y=[0, "3e-3*load"])
+        text = text.replace("0.008, 0.006]", "0.024, 0.012]").replace("to = 0.008", "to = 0.024").replace("to = 0.006", "to = 0.012")
+        text += f"[[crack]]\nfrom = [-0.004, {crack}]\nto = [0.004, {crack}]\n"
+        text += '[[set]]\nname = "all"\nwhere = "1"\n[[probe]]\nname = "crack"\nset = "all"\nfield = "crack_length"\n'
+        return self.run_case(text, "loading.steps=6", name=f"y{crack}")
+
+    def test_a_crack_on_the_side_of_a_cell_is_that_within_it(self):
+        """Where the same lattice is cut into cells changes nothing, to the round-off of softening bonds."""
+        within, on_side = self.torn(0.003), self.torn(0.0)
+        self.assertGreater(within[-1]["broken_bonds"], 5)
+        for column in ("stored_energy", "dissipated_energy", "reaction_y:period_y", "max_damage"):
+            self.assertAlmostEqual(within[-1][column] / on_side[-1][column], 1, delta=1e-8)
+        self.assertEqual([round(row["crack"], 12) for row in within], [round(row["crack"], 12) for row in on_side])
+        self.assertAlmostEqual(within[0]["crack"], 8e-3, delta=1e-12)
+        self.assertGreater(within[-1]["crack"], 9e-3)
+
+        def of_crack(name, crack):
+            """Bonds by where their middles are, over a whole period, and how they lie; in half spacings."""
+            found = []
+            for (x, y), (other_x, other_y) in self.broken(name):
+                lies = max((other_x - x, other_y - y), (x - other_x, y - other_y))
+                found.append(((x + other_x) % 96, (y + other_y - round(4000 * crack)) % 48, *lies))
+            return found
+
+        inside, on_side = of_crack("y0.003", 0.003), of_crack("y0.0", 0.0)
+        self.assertEqual(sorted(inside), sorted(set(on_side)))
+        # Those across the side are there at both of its ends.
+        across = sum(min(y, 48 - y) < abs(high) for _, y, _, high in inside)
+        self.assertEqual(len(on_side), len(inside) + across)
+
     def test_a_cell_has_the_stress_of_its_lattice(self):
         for gradient in ([[1e-4, 0], [0, 0]], [[0.02, 0.01], [-0.03, 0.05]]):
             text = CELL.format(material=BONDS, x=[gradient[0][0], gradient[1][0]], y=[gradient[0][1], gradient[1][1]])
@@ -290,6 +342,23 @@ class Rigid(Constrained):
         held = self.run_case(BODY + '[[support]]\nset = "left"\ndisplacement = ["0", "1e-5*load"]\n' + LIFTED, name="held")[-1]
         for column in ("reaction_x:left", "reaction_y:left", "stored_energy", "external_work"):
             self.assertAlmostEqual(rigid[column], held[column], delta=1e-9 * abs(held["reaction_y:left"]))
+
+    def test_check_tells_what_is_prescribed_and_what_follows(self):
+        def line(text):
+            ended = peristat("check", self.case(text))
+            self.assertEqual(ended.code, 0, ended.said)
+            return next(line for line in ended.output.splitlines() if line.startswith("supports"))
+
+        # 600 points, of which the pin has 32 and each end a column of 20; images have no degrees of freedom of their own.
+        pin, ends = 2 * 32, 2 * 20
+        self.assertEqual(line(BODY + '[[support]]\nset = "left"\ndisplacement = [0, 0]\n'),
+                         f"supports    {ends} prescribed and {1200 - ends} free degrees of freedom")  # fmt: skip
+        self.assertEqual(line(BODY + PIN + LIFTED + ROLLER),
+                         f"supports    {ends // 2} prescribed, {pin + 1} that follow constraints, and "
+                         f"{1200 - ends // 2 - pin - 1} free degrees of freedom; 1 free ones of constraints")  # fmt: skip
+        self.assertEqual(line(CELL.format(material=BONDS, x=["1e-3*load", 0], y=[0, "free"])),
+                         "supports    2 prescribed and 94 free degrees of freedom; 1 free ones of constraints")  # fmt: skip
+        self.assertEqual(line(plate("xy")), "supports    48 prescribed and 288 free degrees of freedom")
 
     def test_a_rotation_is_a_rigid_motion(self):
         """Two rigid sets that turn by the same finite angle about one centre carry the body along."""

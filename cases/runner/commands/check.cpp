@@ -145,6 +145,28 @@ void print_regions(const Case& from, const Body& body) {
   if (count(-1) > 0) fmt::print("region      none, [material]: {} points\n", count(-1));
 }
 
+/// What becomes of the degrees of freedom: those of the points that stand for themselves, and the
+/// unknowns that constraints bring along.
+void print_supports(const Body& body) {
+  const std::vector<char>& prescribed = body.conditions->prescribed();
+  const std::vector<char>& follows = body.conditions->constraints().dependent();
+  const std::size_t own = std::size_t(body.points.own()) * std::size_t(body.points.dimension);
+  std::size_t following = 0, free = 0, of_constraints = 0;
+  for (std::size_t dof = 0; dof < prescribed.size(); ++dof) {
+    if (dof >= own) {
+      of_constraints += !prescribed[dof];
+    } else {
+      following += follows[dof];
+      free += !prescribed[dof];
+    }
+  }
+  std::string text = fmt::format("{} prescribed", own - following - free);
+  text += following > 0 ? fmt::format(", {} that follow constraints,", following) : "";
+  text += fmt::format(" and {} free degrees of freedom", free);
+  if (of_constraints > 0) text += fmt::format("; {} free ones of constraints", of_constraints);
+  fmt::print("supports    {}\n", text);
+}
+
 /// Loads that follow the deformation, and what the symmetric tangent leaves out of their stiffness.
 void print_pressures(const Body& body) {
   for (const auto& term : body.model.terms()) {
@@ -190,10 +212,7 @@ Exit check(const Case& from, int threads) {
   for (const auto& [set, members] : points.sets) {
     fmt::print("set         {}: {} points\n", set, members.size());
   }
-  const auto& prescribed = body.conditions->prescribed();
-  const auto held = std::count(prescribed.begin(), prescribed.end(), 1);
-  fmt::print("supports    {} prescribed and {} free degrees of freedom\n", held,
-             std::int64_t(prescribed.size()) - held);
+  print_supports(body);
   for (const std::string& line : describe_constraints(body)) {
     fmt::print("constraint  {}\n", line);
   }
@@ -202,7 +221,7 @@ Exit check(const Case& from, int threads) {
     fmt::print("isolated    {} points have no neighbour\n", neighbours.isolated);
   }
 
-  const FreeDofs free(prescribed, points.dimension);
+  const FreeDofs free(body.conditions->prescribed(), points.dimension);
   const Constraints& constraints = body.conditions->constraints();
   const BlockPattern pattern = constraints.none()
                                    ? body.model.pattern()

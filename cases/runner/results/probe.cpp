@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <utility>
 
 #include <Eigen/QR>
 
@@ -58,6 +58,28 @@ std::vector<double> mean_of(const std::vector<double>& values, const std::vector
   return mean;
 }
 
+/// Length of the period across an axis [m]; 0: the body has none there.
+double period_along(const Points& points, std::size_t axis) {
+  for (const ImageKind& kind : points.images.kinds) {
+    if (kind.periods[axis] == 1) return kind.shift[axis];
+  }
+  return 0.0;
+}
+
+/// Length of the shortest interval that holds all places, on a line or, with a period, a circle.
+double extent_of(std::vector<double> places, double period) {
+  if (period > 0.0) {
+    for (double& place : places) place -= period * std::floor(place / period);
+  }
+  std::sort(places.begin(), places.end());
+  const double extent = places.back() - places.front();
+  double left_out = period - extent;
+  for (std::size_t k = 1; k < places.size() && period > 0.0; ++k) {
+    left_out = std::max(left_out, places[k] - places[k - 1]);
+  }
+  return period > 0.0 ? period - left_out : extent;
+}
+
 /// Extent along the axis of the middles of the separated bonds that run across it and have an end
 /// in the set; each stands for a strip of one spacing. Only bonds across the axis, because where
 /// along an inclined one the crack passes is not known.
@@ -69,14 +91,14 @@ double crack_length(const ProbeSpecification& probe, const Points& points,
   };
   const double spacing =
       points.angle == 0.0 ? points.spacing.along(probe.axis) : double(points.spacing);
-  double least = std::numeric_limits<double>::infinity(), most = -least;
+  std::vector<double> middles;
   for (const auto& [i, j] : separated) {
     const double a = points.position(i)[probe.axis], b = points.position(j)[probe.axis];
     if (std::abs(b - a) > 0.5 * spacing || !(is_member(i) || is_member(j))) continue;
-    least = std::min(least, 0.5 * (a + b));
-    most = std::max(most, 0.5 * (a + b));
+    middles.push_back(0.5 * (a + b));
   }
-  return most < least ? 0.0 : most - least + spacing;
+  if (middles.empty()) return 0.0;
+  return extent_of(std::move(middles), period_along(points, std::size_t(probe.axis))) + spacing;
 }
 
 }  // namespace

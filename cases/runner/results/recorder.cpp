@@ -33,15 +33,15 @@ Recorder::Fields Recorder::fields(const StateView& at, std::vector<double> force
   const std::size_t points = points_.volume.size();
   const std::ptrdiff_t dofs = std::ptrdiff_t(own_) * points_.dimension;
   force.resize(std::size_t(dofs));
-  Fields made{
-      {at.displacement.begin(), at.displacement.begin() + dofs},
-      std::move(force),
-      std::vector<double>(points),
-      std::vector<double>(points),
-      std::vector<double>(points),
-      std::vector<double>(own_, 0.0),
-      0.0,
-      written_histories_.changes(body_.model.bonds(), bond_stretches(body_.model, at.history))};
+  Fields made{{at.displacement.begin(), at.displacement.begin() + dofs},
+              std::move(force),
+              std::vector<double>(points),
+              std::vector<double>(points),
+              std::vector<double>(points),
+              std::vector<double>(own_, 0.0),
+              0.0,
+              written_histories_.changes(points_, body_.model.bonds(),
+                                         bond_stretches(body_.model, at.history))};
   assembler_.point_energies(at, made.energy_density);
   for (std::size_t i = own_; i < points; ++i) {
     made.energy_density[std::size_t(points_.source(Index(i)))] += made.energy_density[i];
@@ -101,13 +101,9 @@ void Recorder::go_on(const Checkpoint& checkpoint, const EarlierResults& earlier
                      const std::vector<std::string>& support_sets,
                      const std::vector<ProbeColumns>& probes) {
   const PathState& path = checkpoint.path;
-  for (const Row& row : earlier.broken_bonds) {
-    const BrokenBondRecord broken = read_broken_bond(row);
-    separated_.push_back({broken.first_point, broken.second_point});
-  }
   for (const Row& row : earlier.decisions) decisions_.push_back(read_decision(row));
   if (!earlier.history.empty()) last_ = read_step(earlier.history.back(), support_sets, probes);
-  broken_ = broken_bonds(body_.model, path.accepted.history);
+  for (const BondEnds& ends : newly_broken(path.accepted.history)) separated_.push_back(ends);
   const bool is_unwritten = !checkpoint.unwritten.force.empty();
   written_histories_.tell(is_unwritten ? std::span(checkpoint.unwritten.told_stretches)
                                        : bond_stretches(body_.model, path.accepted.history));
@@ -138,21 +134,30 @@ void Recorder::finish() {
   if (unwritten_) results_.add_fields(*last_, unwritten_->view());
 }
 
-void Recorder::record_broken_bonds(const StepRecord& record, const History& history) {
+std::vector<BondEnds> Recorder::newly_broken(const History& history) {
   std::vector<char> broken = broken_bonds(body_.model, history);
-  if (broken.empty()) return;
+  std::vector<BondEnds> ends;
+  if (broken.empty()) return ends;
   broken_.resize(broken.size(), 0);
-  std::vector<BrokenBondRecord> records;
   const Bonds& bonds = body_.model.bonds();
   for (Index i = 0; i < bonds.points(); ++i) {
     for (Offset bond = bonds.offset[i]; bond < bonds.offset[i + 1]; ++bond) {
       if (!broken[bond] || broken_[bond] || bonds.weight(bond) == 0.0) continue;
-      records.push_back({record.step, record.load_factor, points_.source(i),
-                         points_.source(bonds.partner[bond])});
-      separated_.push_back({i, bonds.partner[bond]});
+      ends.push_back({i, bonds.partner[bond]});
     }
   }
   broken_ = std::move(broken);
+  return ends;
+}
+
+void Recorder::record_broken_bonds(const StepRecord& record, const History& history) {
+  std::vector<BrokenBondRecord> records;
+  for (const BondEnds& ends : newly_broken(history)) {
+    const auto [i, j] = ends;
+    records.push_back(
+        {record.step, record.load_factor, i, points_.source(j), image_number(points_, j)});
+    separated_.push_back(ends);
+  }
   results_.add(records);
 }
 

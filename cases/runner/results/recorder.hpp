@@ -62,6 +62,8 @@ class Recorder {
   /// @param force minus its gradient [N], of more than these points
   [[nodiscard]] Fields fields(const StateView& at, std::vector<double> force,
                               std::span<const std::int32_t> piece) const;
+  /// The bonds that have broken since it was asked last.
+  [[nodiscard]] std::vector<BondEnds> newly_broken(const History& history);
   /// Adds the bonds that have broken since the last step to the results.
   void record_broken_bonds(const StepRecord& record, const History& history);
 

@@ -84,6 +84,25 @@ TEST(CrackLength, IsFoundOnAPerturbedLattice) {
   EXPECT_NEAR(length_of(cut.ends, body.points), 2.0, 1.5 * spacing);
 }
 
+TEST(CrackLength, GoesOnOverAPeriod) {
+  tests::BoxSetting box = tests::small_box(2);
+  box.extent = {40, 12, 0};
+  box.spacing = spacing;
+  box.horizon_ratio = 3.015;
+  Points cell = tests::box_points(box);
+  cell.sets["all"].resize(cell.volume.size());
+  std::iota(cell.sets["all"].begin(), cell.sets["all"].end(), 0);
+  add_images(cell, {}, {{0, 0.0, 4.0}}, 3.015 * spacing);
+  const BoxBody body(std::move(cell), box);
+  // Over the side, inside, through the whole cell, and farther than that.
+  for (const auto& [low, high] :
+       {std::pair(-0.52, 0.71), {3.6, 4.9}, {0.77, 2.52}, {0.0, 4.0}, {-1.0, 5.0}}) {
+    Bonds bonds = body.model.bonds();
+    const CutBonds cut = cut_bonds(bonds, body.points, {crack(2, low, high)});
+    EXPECT_NEAR(length_of(cut.ends, body.points), std::min(high - low, 4.0), spacing) << low;
+  }
+}
+
 TEST(CrackLength, LeavesOtherSetsAlone) {
   BoxBody body = plate(2, 3.015);
   Bonds bonds = body.model.bonds();
