@@ -12,6 +12,7 @@
 #include "src/core/input_error.hpp"
 #include "src/core/number_text.hpp"
 #include "src/geometry/point_file.hpp"
+#include "src/geometry/points_on_line.hpp"
 
 namespace peristat {
 namespace {
@@ -85,6 +86,9 @@ Points make_points_of(const Case& from) {
       };
       require(".set", probe.set);
       require(".other", probe.other);
+      if (probe.from && points_on_line(points, *probe.from, *probe.to).empty()) {
+        throw InputError(table + ".from", "", "no point lies within half a spacing of this line");
+      }
     }
     return points;
   });

@@ -11,14 +11,16 @@
 
 namespace peristat {
 
-StepFields Recorder::Fields::view() const {
-  return {&displacement,
-          &force,
-          &damage,
-          &energy_density,
-          &stretch,
-          &fragment,
-          histories ? &*histories : nullptr};
+StepFields Recorder::Fields::view(bool with_stress) const {
+  StepFields fields{&displacement,
+                    &force,
+                    &damage,
+                    &energy_density,
+                    &stretch,
+                    &fragment,
+                    histories ? &*histories : nullptr};
+  if (stress && with_stress) stress->show_in(fields);
+  return fields;
 }
 
 void Recorder::iteration(const IterationRecord& record) {
@@ -54,6 +56,7 @@ Recorder::Fields Recorder::fields(const StateView& at, std::vector<double> force
           .max_damage;
   for (auto* field : {&made.damage, &made.energy_density, &made.stretch}) field->resize(own_);
   std::copy_n(piece.begin(), std::min(piece.size(), own_), made.fragment.begin());
+  if (is_stress_needed(case_)) made.stress = make_stress_fields(body_, assembler_, at);
   return made;
 }
 
@@ -68,11 +71,15 @@ void Recorder::accepted(StepRecord record, const AcceptedState& state) {
   record.max_stretch = *std::max_element(made.stretch.begin(), made.stretch.end());
   record.max_damage = made.max_damage;
   record_broken_bonds(record, at.history);
-  const StepFields view = made.view();
+  const StepFields all = made.view(true), view = made.view(case_.output.stress);
   for (const ProbeSpecification& probe : case_.probes) {
-    record.probes[probe.name] = probe_values(probe, points_, view, separated_);
+    if (probe.from) continue;
+    record.probes[probe.name] = probe_values(probe, points_, all, separated_);
   }
   add_rigid_set_values(*body_.conditions, state.trial, state.external_force, record.probes);
+  for (const LineProbe& line : lines_) {
+    results_.add_line(line.table().name, line.rows(record, all));
+  }
   const bool write_fields = record.step % case_.output.every == 0;
   results_.add(record, write_fields ? std::optional(view) : std::nullopt);
   if (write_fields) written_histories_.tell(bond_stretches(body_.model, at.history));
@@ -130,7 +137,7 @@ void Recorder::changed_solver(const std::string& reason) {
 }
 
 void Recorder::finish() {
-  if (unwritten_) results_.add_fields(*last_, unwritten_->view());
+  if (unwritten_) results_.add_fields(*last_, unwritten_->view(case_.output.stress));
 }
 
 void Recorder::record_broken_bonds(const StepRecord& record, const History& history) {
