@@ -1204,9 +1204,10 @@ Table<ProbeSpecification> probe_keys() {
            })
            .early(),
        K("to", &Spec::to, coordinates(), "end of the line")
-           .unless([](auto& probe, auto&) { return !probe.from; }, "goes with from")
-           .required("required with `from`")
+           .default_words("required with `from`")
            .then([](auto& at, auto& probe) {
+             if (probe.to && !probe.from) at.refuse("goes with from");
+             if (probe.from && !probe.to) at.from.refuse("", "a line from a place needs to");
              if (probe.from && *probe.to == *probe.from) at.refuse("is where the line begins");
            }),
        K("component", &Spec::component, one_of(probe_component_names()),
@@ -1220,9 +1221,12 @@ Table<ProbeSpecification> probe_keys() {
          choice<Statistic>(
              {{"mean", Statistic::mean}, {"max", Statistic::max}, {"min", Statistic::min}}),
          "over the points of the set, of each component; the mean counts every point alike")
-           .unless(
-               [](auto& probe, auto& from) { return probe.set.empty() || is_whole(probe, from); },
-               "is for a field over a set"),
+           .written_if(
+               [](auto& probe, auto& from) { return !probe.set.empty() && !is_whole(probe, from); })
+           .then([](auto& at, auto& probe) {
+             if (at.from.has(at.key) && (probe.set.empty() || is_whole(probe, at.so_far)))
+               at.refuse("is for a field over a set");
+           }),
        K("axis", &Spec::axis, axis(),
          "`poisson_ratio`: direction of the pull; `crack_length`: direction in which the crack "
          "runs")
