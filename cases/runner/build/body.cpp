@@ -17,6 +17,13 @@
 namespace peristat {
 namespace {
 
+/// Strain and stress of a point, and what they are found from: five tensors that are told and three
+/// beside them, symmetric halves of two, principal values and scalars.
+double stress_bytes_per_point(int dimension) {
+  const double d = dimension;
+  return sizeof(double) * (8.0 * d * d + d * (d + 1.0) + d + 2.0);
+}
+
 /// Input errors of `make` speak of keys inside a table.
 template <class Make>
 auto errors_in_table(const std::string& table, const Make& make) {
@@ -96,7 +103,9 @@ Points make_points_of(const Case& from) {
 
 std::unique_ptr<const Body> make_body(const Case& from, int threads) {
   Points points = make_points_of(from);
-  return located_errors(from, [&] { return make_body(std::move(points), from, threads); });
+  BodySpecification of = from;
+  if (tells_stress(from)) of.evaluation_bytes_per_point = stress_bytes_per_point(from.dimension);
+  return located_errors(from, [&] { return make_body(std::move(points), of, threads); });
 }
 
 std::optional<Model> make_elastic_stand_in(const Case& from, const Body& body, int threads) {

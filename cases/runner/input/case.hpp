@@ -118,6 +118,12 @@ struct Case : BodySpecification {
   std::map<std::string, CaseLocation> locations;
 };
 
+/// Whether the probe needs strain or stress.
+[[nodiscard]] bool needs_stress(const ProbeSpecification& probe);
+
+/// Whether the results or a probe of the case tell strain or stress.
+[[nodiscard]] bool tells_stress(const Case& from);
+
 /// Reads and checks a case file.
 /// @param overrides a value that is no TOML is taken as a string
 /// @throws InputError whose place is "FILE:LINE:COLUMN", "--set KEY=VALUE" or, if the file can't be

@@ -140,11 +140,6 @@ std::vector<double> values_at(const ProbeSpecification& probe, int dimension,
   return {of_point[std::ranges::find(components, probe.component) - components.begin()]};
 }
 
-bool needs_stress(const ProbeSpecification& probe) {
-  const ProbeField* const field = probe_field(probe.field);
-  return field != nullptr && field->is_of_stress;
-}
-
 ProbeColumns columns_of(const ProbeSpecification& probe, int dimension) {
   if (probe.field == "poisson_ratio") return {probe.name, 1, "1"};
   if (probe.field == "crack_length") return {probe.name, 1, "m"};

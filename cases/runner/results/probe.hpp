@@ -17,9 +17,6 @@ namespace peristat {
 [[nodiscard]] std::vector<double> values_at(const ProbeSpecification& probe, int dimension,
                                             const StepFields& fields, Index point);
 
-/// Whether the probe needs strain or stress.
-[[nodiscard]] bool needs_stress(const ProbeSpecification& probe);
-
 /// Columns that a probe of a set or a point adds to the history.
 [[nodiscard]] ProbeColumns columns_of(const ProbeSpecification& probe, int dimension);
 

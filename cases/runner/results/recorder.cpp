@@ -56,7 +56,7 @@ Recorder::Fields Recorder::fields(const StateView& at, std::vector<double> force
           .max_damage;
   for (auto* field : {&made.damage, &made.energy_density, &made.stretch}) field->resize(own_);
   std::copy_n(piece.begin(), std::min(piece.size(), own_), made.fragment.begin());
-  if (is_stress_needed(case_)) made.stress = make_stress_fields(body_, assembler_, at);
+  if (tells_stress(case_)) made.stress = make_stress_fields(body_, assembler_, at);
   return made;
 }
 

@@ -1,10 +1,8 @@
 #include "cases/runner/results/stress_fields.hpp"
 
-#include <algorithm>
 #include <array>
 
 #include "assembly/terms/damage.hpp"
-#include "cases/runner/results/probe.hpp"
 #include "src/materials/bond_constants.hpp"
 #include "src/materials/quadrature.hpp"
 
@@ -65,10 +63,6 @@ void StressFields::show_in(StepFields& fields) const {
   fields.principal_stress = &found.principal;
   fields.principal_direction = &found.principal_direction;
   fields.missing_neighbourhood = &missing_neighbourhood;
-}
-
-bool is_stress_needed(const Case& from) {
-  return from.output.stress || std::ranges::any_of(from.probes, needs_stress);
 }
 
 StressFields make_stress_fields(const Body& body, Assembler& assembler, const StateView& at) {

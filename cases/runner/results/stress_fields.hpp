@@ -4,7 +4,6 @@
 
 #include "assembly/assembler.hpp"
 #include "assembly/stress.hpp"
-#include "cases/runner/input/case.hpp"
 #include "solvers/problem/records.hpp"
 #include "solvers/study/body.hpp"
 
@@ -19,9 +18,6 @@ struct StressFields {
 
   void show_in(StepFields& fields) const;
 };
-
-/// Whether the results or a probe of the case tell any of it.
-[[nodiscard]] bool is_stress_needed(const Case& from);
 
 [[nodiscard]] StressFields make_stress_fields(const Body& body, Assembler& assembler,
                                               const StateView& at);
