@@ -110,6 +110,17 @@ struct StepFields {
   const std::vector<double>* fragment = nullptr;  ///< per point, number of its floating piece or 0
   /// Those that have changed since the last step that was written; null without damage.
   const BondHistories* histories = nullptr;
+  /// Strain and stress, where they are asked for; tensors are count x dimension x dimension.
+  const std::vector<double>* deformation_gradient = nullptr;
+  const std::vector<double>* green_lagrange_strain = nullptr;
+  const std::vector<double>* first_piola_stress = nullptr;   ///< [Pa]
+  const std::vector<double>* cauchy_stress = nullptr;        ///< [Pa]
+  const std::vector<double>* strain = nullptr;               ///< symmetric: xx, yy, zz, xy, yz, xz
+  const std::vector<double>* stress = nullptr;               ///< likewise, Cauchy [Pa]
+  const std::vector<double>* von_mises = nullptr;            ///< [Pa]
+  const std::vector<double>* principal_stress = nullptr;     ///< count x dimension [Pa]
+  const std::vector<double>* principal_direction = nullptr;  ///< rows in its order
+  const std::vector<double>* missing_neighbourhood = nullptr;
 };
 
 /// A bond that has broken (a row of broken_bonds.csv).

@@ -258,6 +258,8 @@ MemoryEstimate estimate_memory(const Body& body) {
   size.free_dofs = double(std::count(prescribed.begin(), prescribed.end(), 0));
   MemoryEstimate estimate = estimate_memory(size);
   for (const auto& term : body.model.terms()) estimate.body_bytes += term->stored_bytes();
+  estimate.body_bytes +=
+      body.specification.evaluation_bytes_per_point * double(body.points.count());
   if (body.specification.eigenstrains.are_there()) {
     estimate.body_bytes += states_with_environment * sizeof(double) * double(body.points.count());
   }

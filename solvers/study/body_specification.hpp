@@ -120,6 +120,8 @@ struct BodySpecification {
   /// Tables of the load parameters `load`, `load2`, …, see LoadingProgramme; none: `load` from 0 to
   /// 1. With controls the first table is of the controlled displacement [m].
   std::vector<std::vector<double>> programme{};
+  /// Memory that is to be left for what is found of a state beside the search for it [bytes].
+  double evaluation_bytes_per_point = 0.0;
 
   /// Whether all bonds follow from one micromodulus and one law.
   [[nodiscard]] bool is_uniform() const {

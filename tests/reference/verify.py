@@ -6,6 +6,7 @@ follow forces, energies, reactions and damage, and these must be those that were
 
 import numpy
 
+from tests.reference import stress
 from tests.reference.body import Body
 from tests.reference.case import Case, Conditions
 from tests.reference.foundations import Foundations
@@ -127,6 +128,8 @@ class Verification:
         self.judge_energies(mechanics, step, row, old, history)
         if mechanics is self.mechanics:
             self.judge_damage(mechanics, step, row, history)
+            everywhere = getattr(step, "everywhere", step.displacement)
+            stress.judge(self, step, mechanics, everywhere, history, self.whole_force(mechanics, step))
         self.judge_work(mechanics, step, row, old, history, gradient, external, loads)
 
     def loads(self, load, displacement):

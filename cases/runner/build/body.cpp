@@ -12,9 +12,17 @@
 #include "src/core/input_error.hpp"
 #include "src/core/number_text.hpp"
 #include "src/geometry/point_file.hpp"
+#include "src/geometry/points_on_line.hpp"
 
 namespace peristat {
 namespace {
+
+/// Strain and stress of a point, and what they are found from: five tensors that are told and three
+/// beside them, symmetric halves of two, principal values and scalars.
+double stress_bytes_per_point(int dimension) {
+  const double d = dimension;
+  return sizeof(double) * (8.0 * d * d + d * (d + 1.0) + d + 2.0);
+}
 
 /// Input errors of `make` speak of keys inside a table.
 template <class Make>
@@ -85,6 +93,9 @@ Points make_points_of(const Case& from) {
       };
       require(".set", probe.set);
       require(".other", probe.other);
+      if (probe.from && points_on_line(points, *probe.from, *probe.to).empty()) {
+        throw InputError(table + ".from", "", "no point lies within half a spacing of this line");
+      }
     }
     return points;
   });
@@ -92,7 +103,9 @@ Points make_points_of(const Case& from) {
 
 std::unique_ptr<const Body> make_body(const Case& from, int threads) {
   Points points = make_points_of(from);
-  return located_errors(from, [&] { return make_body(std::move(points), from, threads); });
+  BodySpecification of = from;
+  if (tells_stress(from)) of.evaluation_bytes_per_point = stress_bytes_per_point(from.dimension);
+  return located_errors(from, [&] { return make_body(std::move(points), of, threads); });
 }
 
 std::optional<Model> make_elastic_stand_in(const Case& from, const Body& body, int threads) {

@@ -105,6 +105,14 @@ std::vector<PointCounts> constant_fields_of(const Body& body) {
   return counts;
 }
 
+std::vector<LineTable> lines_of(const Case& from, const Points& points) {
+  std::vector<LineTable> lines;
+  for (const ProbeSpecification& probe : from.probes) {
+    if (probe.from) lines.push_back(LineProbe(probe, points).table());
+  }
+  return lines;
+}
+
 /// What is known of a run before its first step.
 void count(const Body& body, const FreeDofs& free, const RunOptions& options, Summary& summary) {
   summary.points = body.points.own();
@@ -201,7 +209,9 @@ class CaseRun {
         summary_(summary),
         results_(results),
         support_sets_(support_sets(from)) {
-    for (const auto& probe : from.probes) probes_.push_back(columns_of(probe, from.dimension));
+    for (const auto& probe : from.probes) {
+      if (!probe.from) probes_.push_back(columns_of(probe, from.dimension));
+    }
     for (ProbeColumns& columns : crack_tip_columns(from)) probes_.push_back(std::move(columns));
     for (ProbeColumns& columns : rigid_set_columns(from)) probes_.push_back(std::move(columns));
   }
@@ -223,10 +233,11 @@ class CaseRun {
   /// Body, equations and their solver; refuses what can't be run.
   void make() {
     body_ = make_body(from_, options_.threads);
+    further_ = {from_.output.stress, lines_of(from_, body_->points)};
     study_.emplace(*body_, study_options(from_, options_.threads),
                    [this](const std::string& reason) { recorder_->changed_solver(reason); });
     if (earlier_) {
-      earlier_results_ = earlier_->results(support_sets_, probes_);
+      earlier_results_ = earlier_->results(support_sets_, probes_, further_.lines);
       require_body_of(*earlier_);
     }
     const Index points = body_->points.own();
@@ -262,14 +273,14 @@ class CaseRun {
                         versions(),    identity(from_.file), from_.settings};
     if (earlier_) {
       results_.emplace(*earlier_, earlier_results_, without_images(body_->points), text,
-                       support_sets_, probes_);
+                       support_sets_, probes_, further_);
       recorder_.emplace(from_, *body_, assembler, *results_, progress_, crack_tips_);
       recorder_->go_on(earlier_->checkpoint(), earlier_results_, support_sets_, probes_);
       earlier_results_ = {};
       tell_beginning();
     } else {
       results_.emplace(from_.output.directory, without_images(body_->points), text, support_sets_,
-                       probes_, constant_fields_of(*body_), options_.overwrite);
+                       probes_, constant_fields_of(*body_), options_.overwrite, further_);
       recorder_.emplace(from_, *body_, assembler, *results_, progress_, crack_tips_);
     }
     leave_note(from_.output.directory);
@@ -378,6 +389,7 @@ class CaseRun {
   std::optional<Results>& results_;
   const std::vector<std::string> support_sets_;
   std::vector<ProbeColumns> probes_;
+  FurtherOutput further_;
   const Clock::time_point start_ = Clock::now();
   EarlierResults earlier_results_;  // until they are taken up
   double seconds_of_checkpoints_ = 0.0;

@@ -4,6 +4,7 @@
 
 #include "cases/runner/input/case_file.hpp"
 #include "cases/runner/input/key_table.hpp"
+#include "cases/runner/input/probe_fields.hpp"
 #include "cases/runner/input/toml_table.hpp"
 #include "src/conditions/loading_programme.hpp"
 #include "src/core/input_error.hpp"
@@ -149,6 +150,15 @@ InputError located(const Case& from, const InputError& error) {
   const std::string value =
       key == "lattice.horizon_ratio" ? number_text(from.horizon_ratio) : error.value();
   return InputError(key, value, error.allowed(), location_of(from, key).text(from.file));
+}
+
+bool needs_stress(const ProbeSpecification& probe) {
+  const ProbeField* const field = probe_field(probe.field);
+  return field != nullptr && field->is_of_stress;
+}
+
+bool tells_stress(const Case& from) {
+  return from.output.stress || std::ranges::any_of(from.probes, needs_stress);
 }
 
 }  // namespace peristat

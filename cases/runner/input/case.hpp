@@ -77,13 +77,22 @@ struct OutputSpecification {
   std::filesystem::path directory;  ///< default results/FOLDER_STEM of the case file
   int every = 1;                    ///< fields of every n-th accepted step; the last always
   bool count_cracks = false;        ///< whether bonds that a pre-crack has cut count as damage
+  bool stress = false;              ///< whether strain and stress are among the fields
 };
 
-/// Mean of a field over a set, reported at every accepted step.
+/// What becomes of a field's values over a set.
+enum class Statistic { mean, max, min };
+
+/// A number of a field at every accepted step: over a set, at the point nearest to a place, or of
+/// every point along a line, which makes a table of its own. Exactly one of `set`, `at` and `from`
+/// is given.
 struct ProbeSpecification {
   std::string name, set;
-  /// displacement, force, damage, stretch, energy_density, poisson_ratio, opening, or crack_length
+  std::optional<Coordinates> at{}, from{}, to{};  ///< [m]
+  /// One of ProbeField, or poisson_ratio, opening or crack_length of a set
   std::string field = "displacement";
+  std::string component;  ///< of a vector or tensor; empty: all
+  Statistic statistic = Statistic::mean;
   int axis = 0;       ///< poisson_ratio: direction that is pulled; crack_length: of the crack
   std::string other;  ///< opening: set whose mean displacement is taken off
 };
@@ -110,6 +119,12 @@ struct Case : BodySpecification {
   /// Places of every key, table and array element by dotted key, e.g. "support[1].displacement[0]".
   std::map<std::string, CaseLocation> locations;
 };
+
+/// Whether the probe needs strain or stress.
+[[nodiscard]] bool needs_stress(const ProbeSpecification& probe);
+
+/// Whether the results or a probe of the case tell strain or stress.
+[[nodiscard]] bool tells_stress(const Case& from);
 
 /// Reads and checks a case file.
 /// @param overrides a value that is no TOML is taken as a string

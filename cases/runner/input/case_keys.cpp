@@ -9,6 +9,7 @@
 
 #include "cases/runner/input/constraint_keys.hpp"
 #include "cases/runner/input/key_kinds.hpp"
+#include "cases/runner/input/probe_fields.hpp"
 #include "cases/runner/input/shape_keys.hpp"
 #include "solvers/drivers/drivers.hpp"
 #include "src/conditions/loading_programme.hpp"
@@ -1118,7 +1119,34 @@ Table<OutputSpecification> output_keys() {
                .extends(),
            K("count_cracks", &Spec::count_cracks, boolean(),
              "whether bonds that a `[[crack]]` has cut count as lost in `damage` and `max_damage`, "
-             "so that the crack shows in the pictures from the start")}};
+             "so that the crack shows in the pictures from the start"),
+           K("stress", &Spec::stress, boolean(),
+             "whether strain and stress are among the fields: deformation gradient, strain, first "
+             "Piola–Kirchhoff and Cauchy stress, von Mises' stress, principal values and "
+             "directions ([theory](theory.md#strain-and-stress)); they take several times the room "
+             "of the others")}};
+}
+
+/// Of fields that are looked at as a whole, over a set.
+bool is_whole(const ProbeSpecification& probe, const Case&) {
+  return probe_field(probe.field) == nullptr;
+}
+
+/// Whether a probe's component is one of its field's, and is there where it has to be.
+void check_component(const Entry& at, const ProbeSpecification& probe) {
+  const ProbeField* field = probe_field(probe.field);
+  if (field == nullptr) return;
+  const auto components = field->components(at.so_far.dimension);
+  if (probe.component.empty()) {
+    const bool must_choose = field->kind != ProbeField::Kind::scalar &&
+                             field->kind != ProbeField::Kind::vector && !probe.from;
+    if (must_choose)
+      at.from.refuse("", "needs a component of " + probe.field + ": one of " + listed(components));
+    return;
+  }
+  if (components.empty()) at.refuse(probe.field + " has no components");
+  if (std::ranges::find(components, probe.component) == components.end())
+    at.refuse("is none of " + probe.field + ", which has " + listed(components));
 }
 
 Table<CrackTipSpecification> crack_tip_keys() {
@@ -1176,16 +1204,48 @@ Table<ProbeSpecification> probe_keys() {
            .moreover("no other probe has it")
            .required()
            .early(),
-       K("set", &Spec::set, known_set(), "over whose points").required().early(),
-       K("field", &Spec::field,
-         one_of({"displacement", "force", "damage", "stretch", "energy_density", "poisson_ratio",
-                 "opening", "crack_length"}),
-         "displacement, opening and length in m, force in N, energy density in J/m³")
+       K("set", &Spec::set, known_set(), "over whose points")
+           .written_if([](auto& probe, auto&) { return !probe.set.empty(); })
+           .one_of(),
+       K("at", &Spec::at, coordinates(), "place whose nearest point is looked at")
+           .unless(is_whole, "is for a field that every point has")
+           .one_of(),
+       K("from", &Spec::from, coordinates(),
+         "begin of a line: the points within half a spacing of it make a table, `line_NAME.csv`")
+           .unless(is_whole, "is for a field that every point has")
+           .one_of(),
+       K("field", &Spec::field, one_of(probe_field_names()),
+         "displacement, opening and length in m, force in N, energy density in J/m³, stress in Pa; "
+         "`stress` is Cauchy's, `strain` Green and Lagrange's")
            .then([](auto& at, auto& probe) {
              if (probe.field == "poisson_ratio" && at.so_far.dimension == 1)
                at.refuse("there is no Poisson's ratio in dimension 1");
            })
            .early(),
+       K("to", &Spec::to, coordinates(), "end of the line")
+           .default_words("required with `from`")
+           .then([](auto& at, auto& probe) {
+             if (probe.to && !probe.from) at.refuse("goes with from");
+             if (probe.from && !probe.to) at.from.refuse("", "a line from a place needs to");
+             if (probe.from && *probe.to == *probe.from) at.refuse("is where the line begins");
+           }),
+       K("component", &Spec::component, one_of(probe_component_names()),
+         "of a vector (`x`), a tensor (`xy`; of a stress or a deformation gradient first the "
+         "component, then the reference direction) or `principal_stress` (`1`: the largest)")
+           .unless(is_whole, "is for a field that every point has")
+           .default_words("all of a vector; required for `set` and `at` with others")
+           .written_if([](auto& probe, auto&) { return !probe.component.empty(); })
+           .then(check_component),
+       K("statistic", &Spec::statistic,
+         choice<Statistic>(
+             {{"mean", Statistic::mean}, {"max", Statistic::max}, {"min", Statistic::min}}),
+         "over the points of the set, of each component; the mean counts every point alike")
+           .written_if(
+               [](auto& probe, auto& from) { return !probe.set.empty() && !is_whole(probe, from); })
+           .then([](auto& at, auto& probe) {
+             if (at.from.has(at.key) && (probe.set.empty() || is_whole(probe, at.so_far)))
+               at.refuse("is for a field over a set");
+           }),
        K("axis", &Spec::axis, axis(),
          "`poisson_ratio`: direction of the pull; `crack_length`: direction in which the crack "
          "runs")

@@ -180,7 +180,8 @@ def _turned(found: tuple[str, np.ndarray], of_set: str | None) -> Abscissa:
 def _probe_of(results, name, axis: int) -> tuple[str, np.ndarray] | None:
     """A probe of the displacement of a set that moves in a component: words (with a place for its sign) and values."""
     for probe in results.tables("probe"):
-        if probe.get("set") != name or probe.get("field", "displacement") != "displacement":
+        is_mean = "set" in probe and probe.get("statistic", "mean") == "mean"
+        if not is_mean or probe["set"] != name or probe.get("field", "displacement") != "displacement":
             continue
         own = str(probe.get("name"))
         values = results.numbers(own if results.dimension == 1 else f"{own}_{AXES[axis]}")

@@ -69,6 +69,10 @@ def _draw_fields(results: ResultsFolder):
             yield "middle_plane", section_pictures.draw_middle_plane(results, step)
         if step.damage.max() > 0.0:
             yield "damage", solid_pictures.draw_damaged_solid(results, step)
+    if results.dimension > 1:
+        import stress_pictures
+
+        yield from stress_pictures.draw_stresses(results, step)
 
 
 def _draw_fracture(results: ResultsFolder, step):

@@ -147,6 +147,18 @@ class ResultsFolder:
                 values("fragment", (count,), expected=False),
             )
 
+    def field(self, number: int, name: str, *width: int) -> np.ndarray | None:
+        """A field that a step may have, count x width; nothing if it has none, or one that is not finite."""
+        with _reading(self.path) as file:
+            path = f"steps/{number:06d}/{name}"
+            if path not in file:
+                return None
+            array = file.numbers(path, (len(self.volume), *width))
+        if np.isfinite(array).all():
+            return array
+        self._report(f"{name} of step {number} has values that are not finite (not drawn)")
+        return None
+
     def displacement(self, number: int) -> np.ndarray:
         """Displacement of a step alone, count x dimension [m]."""
         with _reading(self.path) as file:

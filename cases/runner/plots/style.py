@@ -55,7 +55,7 @@ def scaled(unit: str):
 
 
 LENGTHS = (("km", 1e3), *scaled("m")[4:])
-FORCES, ENERGIES, ENERGY_DENSITIES = scaled("N"), scaled("J"), scaled("J/m³")
+FORCES, ENERGIES, ENERGY_DENSITIES, STRESSES = scaled("N"), scaled("J"), scaled("J/m³"), scaled("Pa")
 
 
 def unit_for(largest: float, units, least: float = 0.3) -> tuple[str, float]:

@@ -134,14 +134,17 @@ void EarlierRun::read(Generation which, const std::string& program) {
 bool EarlierRun::is_concluded() const { return is_gathered_ && fs::exists(folder_.summary()); }
 
 EarlierResults EarlierRun::results(const std::vector<std::string>& support_sets,
-                                   const std::vector<ProbeColumns>& probes) const {
-  const auto fault = fault_aside([&] { try_to_copy(folder_, read_results(support_sets, probes)); });
+                                   const std::vector<ProbeColumns>& probes,
+                                   const std::vector<LineTable>& lines) const {
+  const auto fault =
+      fault_aside([&] { try_to_copy(folder_, read_results(support_sets, probes, lines)); });
   if (fault) throw refusal("its results are damaged: " + *fault);
-  return read_results(support_sets, probes);
+  return read_results(support_sets, probes, lines);
 }
 
 EarlierResults EarlierRun::read_results(const std::vector<std::string>& support_sets,
-                                        const std::vector<ProbeColumns>& probes) const {
+                                        const std::vector<ProbeColumns>& probes,
+                                        const std::vector<LineTable>& lines) const {
   const auto file = Hdf5File::open_for_reading(results_);
   const TableRows& rows = checkpoint_.rows;
   EarlierResults earlier{
@@ -151,6 +154,14 @@ EarlierResults EarlierRun::read_results(const std::vector<std::string>& support_
       first_rows(file, "/broken_bonds", broken_bond_columns(), rows.broken_bonds),
       place_of(file, results_, "/points"),
       {}};
+  const std::int64_t last =
+      earlier.history.empty() ? 0 : read_step(earlier.history.back(), support_sets, probes).step;
+  for (const LineTable& line : lines) {
+    std::vector<Row>& of_line = earlier.lines[line.name];
+    of_line = file.rows("/lines/" + line.name, line.columns);
+    std::erase_if(of_line,
+                  [&](const Row& row) { return std::get<std::int64_t>(row.front()) > last; });
+  }
   const bool has_views = file.has("/xdmf");
   for (const Row& row : earlier.history) {
     const StepRecord record = read_step(row, support_sets, probes);

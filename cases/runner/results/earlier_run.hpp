@@ -1,12 +1,14 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "cases/runner/input/settings.hpp"
 #include "cases/runner/results/checkpoint.hpp"
+#include "cases/runner/results/line_table.hpp"
 #include "cases/runner/results/probe_columns.hpp"
 #include "cases/runner/results/results_folder.hpp"
 #include "cases/runner/results/step_part.hpp"
@@ -21,6 +23,7 @@ struct EarlierResults {
   std::vector<Row> history, iterations, decisions, broken_bonds;
   ObjectInFile points;
   std::vector<WrittenStep> steps;
+  std::map<std::string, std::vector<Row>> lines{};  ///< by name
 };
 
 /// A run that has left its results and a checkpoint in a folder, which nobody else writes as long
@@ -46,7 +49,8 @@ class EarlierRun {
 
   /// @throws InputError if something of it is damaged
   [[nodiscard]] EarlierResults results(const std::vector<std::string>& support_sets,
-                                       const std::vector<ProbeColumns>& probes) const;
+                                       const std::vector<ProbeColumns>& probes,
+                                       const std::vector<LineTable>& lines = {}) const;
   /// Whether the run was one of these points.
   [[nodiscard]] bool has_points(const Points& points) const;
 
@@ -61,7 +65,8 @@ class EarlierRun {
 
   void read(Generation which, const std::string& program);
   [[nodiscard]] EarlierResults read_results(const std::vector<std::string>& support_sets,
-                                            const std::vector<ProbeColumns>& probes) const;
+                                            const std::vector<ProbeColumns>& probes,
+                                            const std::vector<LineTable>& lines) const;
   [[nodiscard]] InputError refusal(const std::string& reason) const;
 
   ResultsFolder folder_;

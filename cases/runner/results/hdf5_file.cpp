@@ -240,12 +240,13 @@ void Hdf5File::write(const std::string& path, const std::string& text, const Dat
 }
 
 void Hdf5File::write_padded_view(const std::string& path, const std::string& source,
-                                 std::uint64_t count, std::uint64_t dimension,
-                                 const DatasetLabel& label) {
-  const Handle view = dataspace({count, 3});
-  const Handle whole = dataspace({count, dimension});
-  const hsize_t start[] = {0, 0}, extent[] = {count, dimension};
-  checked(H5Sselect_hyperslab(view, H5S_SELECT_SET, start, nullptr, extent, nullptr),
+                                 const Shape& shape, const DatasetLabel& label) {
+  const bool is_tensor = shape.size() == 3;
+  const Handle view = dataspace({shape[0], is_tensor ? std::uint64_t(9) : std::uint64_t(3)});
+  const Handle whole = dataspace(shape);
+  const hsize_t start[] = {0, 0}, stride[] = {1, 3}, block[] = {1, shape.back()},
+                blocks[] = {shape[0], is_tensor ? shape[1] : 1};
+  checked(H5Sselect_hyperslab(view, H5S_SELECT_SET, start, stride, blocks, block),
           "select columns of " + path);
   const Handle creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose, "prepare " + path);
   const double zero = 0.0;

@@ -58,10 +58,11 @@ class Hdf5File {
              const DatasetLabel& label);
   /// A single text.
   void write(const std::string& path, const std::string& text, const DatasetLabel& label);
-  /// A virtual dataset, count x 3, that shows the dataset `source` (count x dimension) of this file
-  /// with zeros in the further columns; takes no space.
-  void write_padded_view(const std::string& path, const std::string& source, std::uint64_t count,
-                         std::uint64_t dimension, const DatasetLabel& label);
+  /// A virtual dataset that shows vectors (count x dimension) of this file as count x 3, or tensors
+  /// (count x dimension x dimension) as count x 9, with zeros beyond the dimension; takes no space.
+  /// @param shape of the dataset `source`
+  void write_padded_view(const std::string& path, const std::string& source, const Shape& shape,
+                         const DatasetLabel& label);
 
   void set_attribute(const std::string& path, const std::string& name, double value);
   void set_attribute(const std::string& path, const std::string& name, std::int64_t value);

@@ -2,25 +2,51 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <map>
+#include <string>
 #include <utility>
 
 #include <Eigen/QR>
 
+#include "cases/runner/input/probe_fields.hpp"
+
 namespace peristat {
 namespace {
 
-struct ProbedField {
-  const std::vector<double>* StepFields::*field;
-  bool is_vector;
-  const char* unit;
-};
+/// Values of a field, as many per point as it has components.
+const std::vector<double>& values_of(const ProbeField& field, const StepFields& fields) {
+  static const std::map<std::string, const std::vector<double> * StepFields::*> members{
+      {"displacement", &StepFields::displacement},
+      {"force", &StepFields::force},
+      {"damage", &StepFields::damage},
+      {"stretch", &StepFields::stretch},
+      {"energy_density", &StepFields::energy_density},
+      {"deformation_gradient", &StepFields::deformation_gradient},
+      {"strain", &StepFields::strain},
+      {"first_piola_stress", &StepFields::first_piola_stress},
+      {"stress", &StepFields::stress},
+      {"von_mises", &StepFields::von_mises},
+      {"principal_stress", &StepFields::principal_stress},
+      {"missing_neighbourhood", &StepFields::missing_neighbourhood}};
+  return *(fields.*members.at(field.name));
+}
 
-ProbedField field_of(const std::string& name) {
-  if (name == "displacement") return {&StepFields::displacement, true, "m"};
-  if (name == "force") return {&StepFields::force, true, "N"};
-  if (name == "damage") return {&StepFields::damage, false, "1"};
-  if (name == "stretch") return {&StepFields::stretch, false, "1"};
-  return {&StepFields::energy_density, false, "J/m3"};
+/// Number of the point that stands for itself and is nearest to a place.
+Index nearest_point(const Points& points, const Coordinates& place) {
+  // As near but for round-off is as near: the lowest number is taken on every machine.
+  const double slack = 1e-9 * points.spacing;
+  Index nearest = 0;
+  double least = std::numeric_limits<double>::infinity();
+  for (Index point = 0; point < points.own(); ++point) {
+    const Coordinates at = points.position(point);
+    const double distance = std::hypot(at[0] - place[0], at[1] - place[1], at[2] - place[2]);
+    if (distance < least - slack) {
+      least = distance;
+      nearest = point;
+    }
+  }
+  return nearest;
 }
 
 /// Poisson's ratio of the homogeneous deformation that fits the displacements of a set best (least
@@ -80,6 +106,23 @@ double extent_of(std::vector<double> places, double period) {
   return period > 0.0 ? period - left_out : extent;
 }
 
+std::vector<double> over_set(const ProbeSpecification& probe, const Points& points,
+                             const StepFields& fields) {
+  const std::vector<Index>& members = points.sets.at(probe.set);
+  std::vector<double> total = values_at(probe, points.dimension, fields, members.front());
+  for (auto member = members.begin() + 1; member != members.end(); ++member) {
+    const std::vector<double> more = values_at(probe, points.dimension, fields, *member);
+    for (std::size_t c = 0; c < total.size(); ++c) {
+      total[c] = probe.statistic == Statistic::mean  ? total[c] + more[c]
+                 : probe.statistic == Statistic::max ? std::max(total[c], more[c])
+                                                     : std::min(total[c], more[c]);
+    }
+  }
+  if (probe.statistic != Statistic::mean) return total;
+  for (double& value : total) value /= double(members.size());
+  return total;
+}
+
 /// Extent along the axis of the middles of the separated bonds that run across it and have an end
 /// in the set; each stands for a strip of one spacing. Only bonds across the axis, because where
 /// along an inclined one the crack passes is not known.
@@ -103,12 +146,29 @@ double crack_length(const ProbeSpecification& probe, const Points& points,
 
 }  // namespace
 
+std::vector<std::string> chosen_components(const ProbeSpecification& probe, int dimension) {
+  const auto components = probe_field(probe.field)->components(dimension);
+  if (components.empty()) return {""};
+  return probe.component.empty() ? components : std::vector<std::string>{probe.component};
+}
+
+std::vector<double> values_at(const ProbeSpecification& probe, int dimension,
+                              const StepFields& fields, Index point) {
+  const ProbeField& field = *probe_field(probe.field);
+  const std::vector<double>& values = values_of(field, fields);
+  const auto components = field.components(dimension);
+  const std::size_t width = std::max<std::size_t>(components.size(), 1);
+  const double* const of_point = &values[std::size_t(point) * width];
+  if (probe.component.empty()) return {of_point, of_point + width};
+  return {of_point[std::ranges::find(components, probe.component) - components.begin()]};
+}
+
 ProbeColumns columns_of(const ProbeSpecification& probe, int dimension) {
   if (probe.field == "poisson_ratio") return {probe.name, 1, "1"};
   if (probe.field == "crack_length") return {probe.name, 1, "m"};
   if (probe.field == "opening") return {probe.name, dimension, "m"};
-  const ProbedField field = field_of(probe.field);
-  return {probe.name, field.is_vector ? dimension : 1, field.unit};
+  return {probe.name, int(chosen_components(probe, dimension).size()),
+          probe_field(probe.field)->unit};
 }
 
 std::vector<double> probe_values(const ProbeSpecification& probe, const Points& points,
@@ -117,6 +177,9 @@ std::vector<double> probe_values(const ProbeSpecification& probe, const Points& 
     return {fitted_poisson_ratio(probe, points, *fields.displacement)};
   }
   if (probe.field == "crack_length") return {crack_length(probe, points, separated)};
+  if (probe.at) {
+    return values_at(probe, points.dimension, fields, nearest_point(points, *probe.at));
+  }
   const std::vector<Index>& members = points.sets.at(probe.set);
   if (probe.field == "opening") {
     std::vector<double> opening = mean_of(*fields.displacement, members, points.dimension);
@@ -125,8 +188,7 @@ std::vector<double> probe_values(const ProbeSpecification& probe, const Points& 
     for (std::size_t c = 0; c < opening.size(); ++c) opening[c] -= other[c];
     return opening;
   }
-  const ProbedField field = field_of(probe.field);
-  return mean_of(*(fields.*(field.field)), members, field.is_vector ? points.dimension : 1);
+  return over_set(probe, points, fields);
 }
 
 }  // namespace peristat

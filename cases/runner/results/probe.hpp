@@ -9,10 +9,20 @@
 
 namespace peristat {
 
-/// Columns that a probe adds to the history.
+/// Components that a probe looks at; one without a name of a scalar.
+[[nodiscard]] std::vector<std::string> chosen_components(const ProbeSpecification& probe,
+                                                         int dimension);
+
+/// The components that a probe of a field looks at, of a point.
+[[nodiscard]] std::vector<double> values_at(const ProbeSpecification& probe, int dimension,
+                                            const StepFields& fields, Index point);
+
+/// Columns that a probe of a set or a point adds to the history.
 [[nodiscard]] ProbeColumns columns_of(const ProbeSpecification& probe, int dimension);
 
-/// Mean of the probe's field over the points of its set, one value per component; for
+/// Mean, largest or smallest value of the probe's field over the points of its set, or its value at
+/// the point nearest to a place (of points as near the one with the lowest number), one value per
+/// component; for
 /// "poisson_ratio" that of the homogeneous deformation that fits the set best, for "opening" the
 /// mean displacement of the set minus that of the other, and for "crack_length" the extent along
 /// the axis of the bonds across it that are broken or cut.

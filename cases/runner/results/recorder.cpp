@@ -12,14 +12,16 @@
 
 namespace peristat {
 
-StepFields Recorder::Fields::view() const {
-  return {&displacement,
-          &force,
-          &damage,
-          &energy_density,
-          &stretch,
-          &fragment,
-          histories ? &*histories : nullptr};
+StepFields Recorder::Fields::view(bool with_stress) const {
+  StepFields fields{&displacement,
+                    &force,
+                    &damage,
+                    &energy_density,
+                    &stretch,
+                    &fragment,
+                    histories ? &*histories : nullptr};
+  if (stress && with_stress) stress->show_in(fields);
+  return fields;
 }
 
 void Recorder::iteration(const IterationRecord& record) {
@@ -55,6 +57,7 @@ Recorder::Fields Recorder::fields(const StateView& at, std::vector<double> force
           .max_damage;
   for (auto* field : {&made.damage, &made.energy_density, &made.stretch}) field->resize(own_);
   std::copy_n(piece.begin(), std::min(piece.size(), own_), made.fragment.begin());
+  if (tells_stress(case_)) made.stress = make_stress_fields(body_, assembler_, at);
   return made;
 }
 
@@ -72,12 +75,16 @@ void Recorder::accepted(StepRecord record, const AcceptedState& state) {
   record.max_stretch = *std::max_element(made.stretch.begin(), made.stretch.end());
   record.max_damage = made.max_damage;
   record_broken_bonds(record, at.history);
-  const StepFields view = made.view();
+  const StepFields all = made.view(true), view = made.view(case_.output.stress);
   for (const ProbeSpecification& probe : case_.probes) {
-    record.probes[probe.name] = probe_values(probe, points_, view, separated_);
+    if (probe.from) continue;
+    record.probes[probe.name] = probe_values(probe, points_, all, separated_);
   }
   add_crack_tip_values(case_, crack_tips_, assembler_, state.trial, record.stage, record.probes);
   add_rigid_set_values(*body_.conditions, state.trial, state.external_force, record.probes);
+  for (const LineProbe& line : lines_) {
+    results_.add_line(line.table().name, line.rows(record, all));
+  }
   const bool write_fields = record.step % case_.output.every == 0;
   results_.add(record, write_fields ? std::optional(view) : std::nullopt);
   if (write_fields) written_histories_.tell(bond_stretches(body_.model, at.history));
@@ -131,7 +138,7 @@ void Recorder::changed_solver(const std::string& reason) {
 }
 
 void Recorder::finish() {
-  if (unwritten_) results_.add_fields(*last_, unwritten_->view());
+  if (unwritten_) results_.add_fields(*last_, unwritten_->view(case_.output.stress));
 }
 
 std::vector<BondEnds> Recorder::newly_broken(const History& history) {

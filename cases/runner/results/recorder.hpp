@@ -8,8 +8,10 @@
 #include "cases/runner/input/case.hpp"
 #include "cases/runner/process/progress.hpp"
 #include "cases/runner/results/damage_histories.hpp"
+#include "cases/runner/results/line_probe.hpp"
 #include "cases/runner/results/probe.hpp"
 #include "cases/runner/results/results.hpp"
+#include "cases/runner/results/stress_fields.hpp"
 #include "solvers/drivers/load_stepping.hpp"
 #include "solvers/study/crack_tips.hpp"
 
@@ -29,7 +31,11 @@ class Recorder {
         progress_(progress),
         body_(body),
         crack_tips_(crack_tips),
-        separated_(body.cut_bonds) {}
+        separated_(body.cut_bonds) {
+    for (const ProbeSpecification& probe : from.probes) {
+      if (probe.from) lines_.emplace_back(probe, body.points);
+    }
+  }
 
   /// Knows what it knew when the checkpoint was made.
   void go_on(const Checkpoint& checkpoint, const EarlierResults& earlier,
@@ -55,7 +61,9 @@ class Recorder {
     std::vector<double> displacement, force, damage, energy_density, stretch, fragment;
     double max_damage = 0.0;
     std::optional<BondHistories> histories;
-    [[nodiscard]] StepFields view() const;
+    std::optional<StressFields> stress{};  ///< where a probe or the results need it
+    /// @param with_stress whether strain and stress are shown
+    [[nodiscard]] StepFields view(bool with_stress) const;
   };
 
   /// Fields of a state.
@@ -78,7 +86,8 @@ class Recorder {
   std::optional<Fields> unwritten_;    // of the last step, if it only entered the history
   std::vector<char> broken_;           // per bond, in the last accepted state
   DamageHistories written_histories_;  // in the last state that was written with fields
-  std::vector<BondEnds> separated_;    // by pre-cracks, and broken until the last accepted state
+  std::vector<LineProbe> lines_;
+  std::vector<BondEnds> separated_;  // by pre-cracks, and broken until the last accepted state
   double relative_residual_ = 0.0;
   std::optional<StepRecord> last_;
   std::vector<DecisionRecord> decisions_;

@@ -1,5 +1,6 @@
 #include "cases/runner/results/results.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <exception>
 #include <fstream>
@@ -58,7 +59,14 @@ std::string version_of(const CaseText& text) {
   return version == text.versions.end() ? "" : version->second;
 }
 
-RunIdentity identity(const CaseText& text) { return {version_of(text), text.title, text.file, {}}; }
+/// Of a run whose further tables are files of its own, too.
+RunIdentity identity(const CaseText& text, const FurtherOutput& further) {
+  RunIdentity run{version_of(text), text.title, text.file, {}};
+  for (const LineTable& line : further.lines) run.files.push_back(file_of_line(line.name));
+  return run;
+}
+
+std::string group_of_line(const std::string& name) { return "/lines/" + name; }
 
 /// Path of a file relative to the results folder, as links name it.
 std::string name_in(const ResultsFolder& folder, const std::filesystem::path& file) {
@@ -111,7 +119,7 @@ struct Beginning {
 struct Results::Files {
   Files(Beginning beginning, const Points& points, const CaseText& text,
         const std::vector<std::string>& sets, const std::vector<ProbeColumns>& probe_columns,
-        const std::vector<PointCounts>& counts);
+        const std::vector<PointCounts>& counts, const FurtherOutput& further);
 
   void describe(const CaseText& text);
   void go_on(const EarlierResults& earlier, const Checkpoint& checkpoint);
@@ -134,6 +142,13 @@ struct Results::Files {
   ClaimedFolder claimed;
   const ResultsFolder& folder;
   CsvTable history, iterations, decisions, broken_bonds;
+  /// A table of values along a line, and its rows that results.h5 does not have yet.
+  struct Line {
+    LineTable table;
+    std::unique_ptr<CsvTable> file;
+    std::vector<Row> pending;
+  };
+  std::vector<Line> lines;
   Hdf5File master;  ///< results.h5 with links to the parts; lives in memory
   XdmfSeries xdmf;
   std::string program;  ///< version
@@ -155,8 +170,8 @@ struct Results::Files {
 Results::Files::Files(Beginning beginning, const Points& points, const CaseText& text,
                       const std::vector<std::string>& sets,
                       const std::vector<ProbeColumns>& probe_columns,
-                      const std::vector<PointCounts>& counts)
-    : shape{points.count(), points.dimension},
+                      const std::vector<PointCounts>& counts, const FurtherOutput& further)
+    : shape{points.count(), points.dimension, further.has_stress},
       support_sets(sets),
       probes(probe_columns),
       history_header(history_columns(sets, probe_columns)),
@@ -176,6 +191,13 @@ Results::Files::Files(Beginning beginning, const Points& points, const CaseText&
       points_part{name_in(folder, folder.points()), "/points"} {
   write_file(temporary(folder.summary()), "");
   reserve_file(temporary(folder.summary()), room_for_summary(sets, probe_columns));
+  for (const LineTable& line : further.lines) {
+    std::vector<Row> rows_so_far;
+    if (beginning.earlier) rows_so_far = beginning.earlier->lines.at(line.name);
+    auto file = std::make_unique<CsvTable>(folder.directory / file_of_line(line.name), line.columns,
+                                           rows_so_far);
+    lines.push_back({line, std::move(file), std::move(rows_so_far)});
+  }
   describe(text);
   if (beginning.earlier) {
     go_on(*beginning.earlier, *beginning.checkpoint);
@@ -204,6 +226,10 @@ void Results::Files::describe(const CaseText& text) {
   master.make_table("/iterations", iteration_columns());
   master.make_table("/decisions", decision_columns());
   master.make_table("/broken_bonds", broken_bond_columns());
+  if (!lines.empty()) master.make_group("/lines");
+  for (const Line& line : lines) {
+    master.make_table(group_of_line(line.table.name), line.table.columns);
+  }
   master.make_group("/steps");
   if (shape.has_views()) master.make_group("/xdmf");
 }
@@ -215,6 +241,7 @@ void Results::Files::go_on(const EarlierResults& earlier, const Checkpoint& chec
   master.append("/iterations", iteration_columns(), earlier.iterations);
   master.append("/decisions", decision_columns(), earlier.decisions);
   master.append("/broken_bonds", broken_bond_columns(), earlier.broken_bonds);
+  append_pending();  // the lines
   rows = checkpoint.rows;
   auto iteration = earlier.iterations.begin();
   for (const Row& row : earlier.history) {
@@ -240,6 +267,10 @@ void Results::Files::append_pending() {
   pending_decisions.clear();
   master.append("/broken_bonds", broken_bond_columns(), pending_broken_bonds);
   pending_broken_bonds.clear();
+  for (Line& line : lines) {
+    master.append(group_of_line(line.table.name), line.table.columns, line.pending);
+    line.pending.clear();
+  }
 }
 
 void Results::Files::publish() { publish_file(folder.results(), master.image()); }
@@ -357,29 +388,29 @@ void Results::Files::gather_parts() {
 Results::Results(const std::filesystem::path& directory, const Points& points, const CaseText& text,
                  const std::vector<std::string>& support_sets,
                  const std::vector<ProbeColumns>& probes, const std::vector<PointCounts>& counts,
-                 bool overwrite) {
+                 bool overwrite, const FurtherOutput& further) {
   double seconds = 0.0;
   {
     const Stopwatch stopwatch(seconds);
     // A probe that is refused leaves the folder alone.
     static_cast<void>(history_columns(support_sets, probes));
     files_ = std::make_unique<Files>(
-        Beginning{claim_results_folder(directory, identity(text), overwrite)}, points, text,
-        support_sets, probes, counts);
+        Beginning{claim_results_folder(directory, identity(text, further), overwrite)}, points,
+        text, support_sets, probes, counts, further);
   }
   files_->seconds = seconds;
 }
 
 Results::Results(EarlierRun& run, EarlierResults& earlier, const Points& points,
                  const CaseText& text, const std::vector<std::string>& support_sets,
-                 const std::vector<ProbeColumns>& probes) {
+                 const std::vector<ProbeColumns>& probes, const FurtherOutput& further) {
   double seconds = run.checkpoint().costs.seconds.output;
   {
     const Stopwatch stopwatch(seconds);
-    ClaimedFolder folder = run.take_over(identity(text), earlier);
+    ClaimedFolder folder = run.take_over(identity(text, further), earlier);
     files_ =
         std::make_unique<Files>(Beginning{std::move(folder), &earlier, &run.checkpoint()}, points,
-                                text, support_sets, probes, std::vector<PointCounts>());
+                                text, support_sets, probes, std::vector<PointCounts>(), further);
   }
   files_->seconds = seconds;
 }
@@ -419,6 +450,18 @@ void Results::add(const std::vector<BrokenBondRecord>& records) {
     files_->broken_bonds.append(row);
     files_->pending_broken_bonds.push_back(std::move(row));
     ++files_->rows.broken_bonds;
+  }
+}
+
+void Results::add_line(const std::string& name, const std::vector<Row>& rows) {
+  const Stopwatch stopwatch(files_->seconds);
+  if (files_->closed) throw std::logic_error("results: closed");
+  const auto line = std::ranges::find_if(
+      files_->lines, [&](const auto& known) { return known.table.name == name; });
+  if (line == files_->lines.end()) throw std::logic_error("results: no line " + name);
+  for (const Row& row : rows) {
+    line->file->append(row);
+    line->pending.push_back(row);
   }
 }
 

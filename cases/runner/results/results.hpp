@@ -27,6 +27,12 @@ struct CaseText {
   Settings settings{};           ///< what `--set` has given
 };
 
+/// What a run writes beside what every run does.
+struct FurtherOutput {
+  bool has_stress = false;  ///< tensors are among the fields
+  std::vector<LineTable> lines{};
+};
+
 /// Writer of a results folder (docs/results.md): results.h5, results.xdmf, history.csv,
 /// iterations.csv, decisions.csv, broken_bonds.csv, summary.json, dossier.txt, and peristat.json,
 /// which it holds locked: a folder has one writer.
@@ -51,13 +57,15 @@ class Results {
   /// @throws OutputError if the disk is full, or the like
   Results(const std::filesystem::path& directory, const Points& points, const CaseText& text,
           const std::vector<std::string>& support_sets, const std::vector<ProbeColumns>& probes,
-          const std::vector<PointCounts>& counts = {}, bool overwrite = false);
+          const std::vector<PointCounts>& counts = {}, bool overwrite = false,
+          const FurtherOutput& further = {});
   /// Goes on with the results of an earlier run from its checkpoint. What it holds beyond that, and
   /// what tells how it ended, is dropped.
   /// @param earlier what it holds up to there; its files are named anew where they move
   /// @throws OutputError
   Results(EarlierRun& run, EarlierResults& earlier, const Points& points, const CaseText& text,
-          const std::vector<std::string>& support_sets, const std::vector<ProbeColumns>& probes);
+          const std::vector<std::string>& support_sets, const std::vector<ProbeColumns>& probes,
+          const FurtherOutput& further = {});
   ~Results();
   Results(const Results&) = delete;
   Results& operator=(const Results&) = delete;
@@ -66,6 +74,8 @@ class Results {
   void add(const DecisionRecord& record);
   /// Bonds that the step added next has broken.
   void add(const std::vector<BrokenBondRecord>& records);
+  /// Rows of a line of the step added next.
+  void add_line(const std::string& name, const std::vector<Row>& rows);
   /// Adds an accepted step and publishes it, together with the iterations and decisions so far.
   /// `fields` is empty for steps that only enter the history. Step numbers ascend; the record holds
   /// a reaction of every support set and every probe.

@@ -141,7 +141,7 @@ ClaimedFolder claim(const fs::path& directory, RunIdentity run, bool overwrite) 
   require_plain(folder, old);
   ResultsMarker marker = earlier ? std::move(*earlier) : ResultsMarker::create(folder.directory);
   remove(folder, old);
-  run.files = own_files;
+  run.files.insert(run.files.end(), own_files.begin(), own_files.end());
   marker.write(run);
   fs::create_directory(folder.parts());
   return {folder, std::move(marker)};
@@ -150,7 +150,7 @@ ClaimedFolder claim(const fs::path& directory, RunIdentity run, bool overwrite) 
 }  // namespace
 
 void go_on_in_results_folder(const ResultsFolder& folder, ResultsMarker& marker, RunIdentity run) {
-  run.files = own_files;
+  run.files.insert(run.files.end(), own_files.begin(), own_files.end());
   marker.write(run);
   std::error_code ignored;  // what can't be removed is written anew at the end
   for (const fs::path& file : {folder.summary(), folder.dossier(), folder.convergence()}) {

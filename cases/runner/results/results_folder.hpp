@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 
 #include "cases/runner/results/results_marker.hpp"
 
@@ -36,6 +37,11 @@ struct ResultsFolder {
   static constexpr const char* picture_list = ".pictures";
 };
 
+/// Table of the values along a line, in the results folder.
+[[nodiscard]] inline std::string file_of_line(const std::string& name) {
+  return "line_" + name + ".csv";
+}
+
 /// A results folder that this run alone writes, as long as the marker lives.
 struct ClaimedFolder {
   ResultsFolder paths;
@@ -46,7 +52,7 @@ struct ClaimedFolder {
 /// same case from it, and creates parts/. The marker's list says what the earlier run's files are,
 /// plots/.pictures which pictures; nothing else is removed, and no link is followed below the
 /// folder.
-/// @param run   its list of files is filled in
+/// @param run   its list of files holds those of its own, and is completed
 /// @param overwrite also an earlier run of another case, or of version 1, which left no marker
 /// @throws InputError ("directory") before anything is changed: the folder can't be
 ///         written, holds files but no earlier run (it may be somebody's home folder), an earlier

@@ -8,34 +8,94 @@
 namespace peristat {
 namespace {
 
+/// How many numbers a point has of a field: one, one per axis, one per pair of axes, or the latter
+/// without those that symmetry repeats.
+enum class Rank { scalar, vector, tensor, symmetric };
+
 /// A field that a step may have.
 struct FieldKind {
   std::string name;
   DatasetLabel label;
-  bool is_vector;
+  Rank rank;
   const std::vector<double>* StepFields::*values;
+
+  [[nodiscard]] Hdf5File::Shape shape(StepShape of) const {
+    const auto points = static_cast<std::uint64_t>(of.points);
+    const auto d = static_cast<std::uint64_t>(of.dimension);
+    if (rank == Rank::vector) return {points, d};
+    if (rank == Rank::tensor) return {points, d, d};
+    if (rank == Rank::symmetric) return {points, d * (d + 1) / 2};
+    return {points};
+  }
+  /// Whether results.xdmf needs a view of it.
+  [[nodiscard]] bool has_view(StepShape of) const {
+    return rank == Rank::tensor || (rank == Rank::vector && of.dimension < 3);
+  }
 };
 
 const std::vector<FieldKind>& field_kinds() {
   static const std::vector<FieldKind> kinds{
-      {"displacement", {"m", "displacement of each point"}, true, &StepFields::displacement},
+      {"displacement",
+       {"m", "displacement of each point"},
+       Rank::vector,
+       &StepFields::displacement},
       {"force",
        {"N", "internal force on each point: minus the derivative of the stored energy"},
-       true,
+       Rank::vector,
        &StepFields::force},
-      {"damage", {"1", "damage of each point, 0 intact to 1"}, false, &StepFields::damage},
+      {"damage", {"1", "damage of each point, 0 intact to 1"}, Rank::scalar, &StepFields::damage},
       {"energy_density",
        {"J/m3", "stored energy per volume of each point"},
-       false,
+       Rank::scalar,
        &StepFields::energy_density},
       {"stretch",
        {"1", "largest stretch of the unbroken bonds of each point: current / reference length - 1"},
-       false,
+       Rank::scalar,
        &StepFields::stretch},
       {"fragment",
        {"1", "number of the floating piece that the point belongs to; 0: held by the supports"},
-       false,
-       &StepFields::fragment}};
+       Rank::scalar,
+       &StepFields::fragment},
+      {"deformation_gradient",
+       {"1", "F of the unbroken bonds of each point, least squares; identity where they give none"},
+       Rank::tensor,
+       &StepFields::deformation_gradient},
+      {"green_lagrange_strain",
+       {"1", "strain E = (F^T F - I) / 2"},
+       Rank::tensor,
+       &StepFields::green_lagrange_strain},
+      {"first_piola_stress",
+       {"Pa", "first Piola-Kirchhoff stress P, the virial of each point over its volume"},
+       Rank::tensor,
+       &StepFields::first_piola_stress},
+      {"cauchy_stress",
+       {"Pa", "Cauchy stress P F^T / det F; 0 where the unbroken bonds give no F"},
+       Rank::tensor,
+       &StepFields::cauchy_stress},
+      {"strain",
+       {"1", "green_lagrange_strain: xx, or xx, yy, xy, or xx, yy, zz, xy, yz, xz"},
+       Rank::symmetric,
+       &StepFields::strain},
+      {"stress",
+       {"Pa", "symmetric part of cauchy_stress: xx, or xx, yy, xy, or xx, yy, zz, xy, yz, xz"},
+       Rank::symmetric,
+       &StepFields::stress},
+      {"von_mises", {"Pa", "von Mises stress"}, Rank::scalar, &StepFields::von_mises},
+      {"principal_stress",
+       {"Pa", "principal values of the Cauchy stress, the largest first"},
+       Rank::vector,
+       &StepFields::principal_stress},
+      {"principal_direction",
+       {"1", "unit vectors of the principal stresses, a row each"},
+       Rank::tensor,
+       &StepFields::principal_direction},
+      {"missing_neighbourhood",
+       {"1",
+        "share of a neighbourhood inside the lattice that each point lacks, by surfaces, cracks "
+        "and "
+        "broken bonds; 1 where the unbroken bonds give no F"},
+       Rank::scalar,
+       &StepFields::missing_neighbourhood}};
   return kinds;
 }
 
@@ -46,7 +106,9 @@ const FieldKind& kind_of(const std::string& field) {
 }
 
 void check(const FieldKind& kind, const std::vector<double>& values, StepShape shape) {
-  if (values.size() != std::size_t(shape.points) * (kind.is_vector ? shape.dimension : 1)) {
+  std::uint64_t count = 1;
+  for (const std::uint64_t extent : kind.shape(shape)) count *= extent;
+  if (values.size() != count) {
     throw std::logic_error("results: " + kind.name + " has the wrong number of values");
   }
   if (!std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); })) {
@@ -98,17 +160,13 @@ std::uint64_t StepPart::bytes() const {
 }
 
 void StepPart::write(Hdf5File& file, const WrittenStep& step) const {
-  const auto points = static_cast<std::uint64_t>(shape_.points);
-  const auto dimension = static_cast<std::uint64_t>(shape_.dimension);
   file.make_group(step.group);
   file.set_attribute(step.group, "step", std::int64_t{step.step});
   file.set_attribute(step.group, "load_factor", step.load_factor);
   file.set_attribute(step.group, "mode", step.mode);
   for (const std::string& name : names_) {
     const FieldKind& kind = kind_of(name);
-    file.write(step.group + "/" + name, *(fields_.*kind.values),
-               kind.is_vector ? Hdf5File::Shape{points, dimension} : Hdf5File::Shape{points},
-               kind.label);
+    file.write(step.group + "/" + name, *(fields_.*kind.values), kind.shape(shape_), kind.label);
   }
   if (fields_.histories) write_histories(file, step.group + "/history", *fields_.histories);
   if (shape_.has_views()) write_views(file, step.views, step.group, names_, shape_);
@@ -130,10 +188,9 @@ void write_views(Hdf5File& file, const std::string& views, const std::string& gr
   file.make_group(views);
   for (const std::string& name : fields) {
     const FieldKind& kind = kind_of(name);
-    if (!kind.is_vector) continue;
+    if (!kind.has_view(shape)) continue;
     file.write_padded_view(
-        views + "/" + name, group + "/" + name, static_cast<std::uint64_t>(shape.points),
-        static_cast<std::uint64_t>(shape.dimension),
+        views + "/" + name, group + "/" + name, kind.shape(shape),
         {kind.label.unit, name + " with zeros beyond the dimension, for results.xdmf"});
   }
 }
@@ -141,9 +198,11 @@ void write_views(Hdf5File& file, const std::string& views, const std::string& gr
 std::vector<XdmfSeries::Field> shown_fields(const WrittenStep& step, StepShape shape) {
   std::vector<XdmfSeries::Field> shown;
   for (const std::string& name : step.fields) {
-    const bool is_vector = kind_of(name).is_vector;
-    const std::string group = is_vector && shape.has_views() ? "/xdmf/" : "/steps/";
-    shown.push_back({name, group + step.name() + "/" + name, is_vector});
+    const FieldKind& kind = kind_of(name);
+    if (kind.rank == Rank::symmetric) continue;  // shown as the tensor that it is of
+    const std::string group = kind.has_view(shape) ? "/xdmf/" : "/steps/";
+    shown.push_back({name, group + step.name() + "/" + name, kind.rank == Rank::vector, false,
+                     kind.rank == Rank::tensor});
   }
   return shown;
 }

@@ -14,9 +14,10 @@ namespace peristat {
 struct StepShape {
   Index points = 0;
   int dimension = 0;
+  bool has_tensors = false;
 
-  /// Whether vectors need views of three components (see XdmfSeries).
-  [[nodiscard]] bool has_views() const { return dimension < 3; }
+  /// Whether vectors need views of three components (see XdmfSeries), or tensors of nine.
+  [[nodiscard]] bool has_views() const { return dimension < 3 || has_tensors; }
 };
 
 /// A step whose fields are written, and where.
@@ -25,7 +26,7 @@ struct WrittenStep {
   double load_factor = 0.0;
   std::string mode;
   std::string file;                 ///< relative to the results folder
-  std::string group, views;         ///< in it; `views` may be missing in 3D
+  std::string group, views;         ///< in it; `views` may be empty in 3D
   std::vector<std::string> fields;  ///< names
 
   /// "000001"
@@ -56,7 +57,7 @@ class StepPart {
 /// Names of the fields that a step's group holds.
 [[nodiscard]] std::vector<std::string> field_names(const Hdf5File& file, const std::string& group);
 
-/// Writes views of the vectors of the step in `group` as the group `views`.
+/// Writes views of the vectors and tensors of the step in `group` as the group `views`.
 void write_views(Hdf5File& file, const std::string& views, const std::string& group,
                  const std::vector<std::string>& fields, StepShape shape);
 

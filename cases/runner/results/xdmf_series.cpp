@@ -35,10 +35,12 @@ std::string escaped(const std::string& text) {
 }  // namespace
 
 std::string XdmfSeries::attribute(const Field& field) const {
-  return "<Attribute Name=\"" + escaped(field.name) + "\" AttributeType=\"" +
-         (field.is_vector ? "Vector" : "Scalar") + "\" Center=\"Node\">" +
-         data_item(field.is_flag ? flag_type : double_type,
-                   field.is_vector ? points_ + " 3" : points_, escaped(field.dataset)) +
+  const char* const type = field.is_tensor ? "Tensor" : field.is_vector ? "Vector" : "Scalar";
+  const char* const width = field.is_tensor ? " 9" : field.is_vector ? " 3" : "";
+  return "<Attribute Name=\"" + escaped(field.name) + "\" AttributeType=\"" + type +
+         "\" Center=\"Node\">" +
+         data_item(field.is_flag ? flag_type : double_type, points_ + width,
+                   escaped(field.dataset)) +
          "</Attribute>\n";
 }
 

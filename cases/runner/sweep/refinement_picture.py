@@ -6,12 +6,12 @@ from pathlib import Path
 
 import numpy as np
 from refinement import Refinement
-from style import ENERGIES, FORCES, GHOST, LENGTHS, LINES, WARNING, heading, new_figure, number, unit_for
+from style import ENERGIES, FORCES, GHOST, LENGTHS, LINES, STRESSES, WARNING, heading, new_figure, number, unit_for
 from table import FIELD_UNITS
 
 MOST_PANELS = 6
 COLUMNS = 3
-UNITS = {"m": LENGTHS, "N": FORCES, "J": ENERGIES}  # that are scaled
+UNITS = {"m": LENGTHS, "N": FORCES, "J": ENERGIES, "Pa": STRESSES}  # that are scaled
 
 
 def draw_refinements(case: Path, rows: list[tuple[tuple[str, ...], Refinement]]):

@@ -8,14 +8,14 @@ import numpy as np
 from matplotlib import colormaps
 from matplotlib.ticker import MaxNLocator
 from results_folder import NotAResultsFolder, ResultsFolder, read_results_folder
-from style import ENERGY_DENSITIES, FORCES, GHOST, LENGTHS, LINES, WARNING, heading, new_figure, number, unit_for
+from style import ENERGY_DENSITIES, FORCES, GHOST, LENGTHS, LINES, STRESSES, WARNING, heading, new_figure, number, unit_for
 from table import FIELD_UNITS
 
 DASHES = ["-", (0, (5, 2)), (0, (1.2, 1.5)), (0, (7, 2, 1.5, 2))]
 MOST_LABELS = 24  # entries of the legend
 LONGEST_LABEL = 30  # characters
 MOST_QUANTITIES = 4  # panels of what came out
-UNITS = {"m": LENGTHS, "N": FORCES, "J/m³": ENERGY_DENSITIES}  # that are scaled
+UNITS = {"m": LENGTHS, "N": FORCES, "J/m³": ENERGY_DENSITIES, "Pa": STRESSES}  # that are scaled
 
 
 @dataclass

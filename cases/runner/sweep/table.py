@@ -14,7 +14,10 @@ ENERGIES = {
     "energy_stored": "stored", "energy_dissipated": "dissipated", "energy_drained": "drained",
     "external_work": "external_work", "balance_error": "balance_error",
 }  # fmt: skip
-FIELD_UNITS = {"displacement": "m", "opening": "m", "crack_length": "m", "force": "N", "energy_density": "J/m³"}
+FIELD_UNITS = {
+    "displacement": "m", "opening": "m", "crack_length": "m", "force": "N", "energy_density": "J/m³",
+    "first_piola_stress": "Pa", "stress": "Pa", "von_mises": "Pa", "principal_stress": "Pa",
+}  # fmt: skip
 COSTS = ["seconds_total", "peak_memory_bytes"]
 
 

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <vector>
+
+#include "cases/runner/input/case.hpp"
+#include "cases/runner/results/line_table.hpp"
+#include "solvers/problem/records.hpp"
+#include "src/geometry/points_on_line.hpp"
+
+namespace peristat {
+
+/// Points of a body along a line, in their order, for a probe that has one.
+class LineProbe {
+ public:
+  LineProbe(const ProbeSpecification& probe, const Points& points);
+
+  /// step, load_factor, point, distance from the begin of the line, x, y, z, and the values.
+  [[nodiscard]] LineTable table() const;
+  /// A row per point.
+  [[nodiscard]] std::vector<Row> rows(const StepRecord& record, const StepFields& fields) const;
+
+ private:
+  const ProbeSpecification& probe_;
+  const Points& points_;
+  std::vector<PointOnLine> places_;
+};
+
+}  // namespace peristat

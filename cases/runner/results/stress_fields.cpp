@@ -1,0 +1,77 @@
+#include "cases/runner/results/stress_fields.hpp"
+
+#include <array>
+
+#include "assembly/terms/damage.hpp"
+#include "src/materials/bond_constants.hpp"
+#include "src/materials/quadrature.hpp"
+
+namespace peristat {
+namespace {
+
+/// Entries of the upper half of a tensor, in the order of results: xx, yy, zz, xy, yz, xz.
+std::vector<std::array<std::size_t, 2>> upper_half(std::size_t dimension) {
+  if (dimension == 1) return {{0, 0}};
+  if (dimension == 2) return {{0, 0}, {1, 1}, {0, 1}};
+  return {{0, 0}, {1, 1}, {2, 2}, {0, 1}, {1, 2}, {0, 2}};
+}
+
+/// Of the tensors' symmetric parts.
+std::vector<double> symmetric(const std::vector<double>& tensors, std::size_t d) {
+  const auto entries = upper_half(d);
+  std::vector<double> halves;
+  halves.reserve(tensors.size() / (d * d) * entries.size());
+  for (std::size_t at = 0; at < tensors.size(); at += d * d) {
+    for (const auto& [r, c] : entries) {
+      halves.push_back(0.5 * (tensors[at + r * d + c] + tensors[at + c * d + r]));
+    }
+  }
+  return halves;
+}
+
+/// Stress across a plane body over the sum of those in it. Model "cpd" is purely two-dimensional:
+/// nothing is across it.
+double out_of_plane(const Body& body) {
+  const bool is_bond = body.specification.material.model == MaterialModel::bond;
+  const bool is_plane_strain =
+      is_bond && body.points.dimension == 2 && body.setting.plane == PlaneState::strain;
+  return is_plane_strain ? poisson_ratio(body.setting) : 0.0;
+}
+
+std::vector<double> missing_neighbourhood(const Body& body, const StateView& at,
+                                          const std::vector<char>& is_determined) {
+  const double whole = body.setting.lattice_moment(0, body.points.spacing);
+  std::vector<double> missing = seen_volumes(body.points, body.model.bonds(), body.setting,
+                                             broken_bonds(body.model, at.history));
+  missing.resize(is_determined.size());
+  for (std::size_t i = 0; i < missing.size(); ++i) {
+    missing[i] = is_determined[i] ? 1.0 - missing[i] / whole : 1.0;
+  }
+  return missing;
+}
+
+}  // namespace
+
+void StressFields::show_in(StepFields& fields) const {
+  fields.deformation_gradient = &found.deformation_gradient;
+  fields.green_lagrange_strain = &found.strain;
+  fields.first_piola_stress = &found.first_piola;
+  fields.cauchy_stress = &found.cauchy;
+  fields.strain = &strain;
+  fields.stress = &stress;
+  fields.von_mises = &found.von_mises;
+  fields.principal_stress = &found.principal;
+  fields.principal_direction = &found.principal_direction;
+  fields.missing_neighbourhood = &missing_neighbourhood;
+}
+
+StressFields make_stress_fields(const Body& body, Assembler& assembler, const StateView& at) {
+  StressFields made{find_stress(assembler, at, out_of_plane(body)), {}, {}, {}};
+  const auto d = std::size_t(body.points.dimension);
+  made.strain = symmetric(made.found.strain, d);
+  made.stress = symmetric(made.found.cauchy, d);
+  made.missing_neighbourhood = missing_neighbourhood(body, at, made.found.is_determined);
+  return made;
+}
+
+}  // namespace peristat

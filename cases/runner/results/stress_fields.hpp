@@ -1,0 +1,25 @@
+#pragma once
+
+#include <vector>
+
+#include "assembly/assembler.hpp"
+#include "assembly/stress.hpp"
+#include "solvers/problem/records.hpp"
+#include "solvers/study/body.hpp"
+
+namespace peristat {
+
+/// Strain and stress of a state as results tell them, of the points that stand for themselves.
+struct StressFields {
+  Stress found;
+  std::vector<double> strain, stress;  ///< without what symmetry repeats: xx, yy, zz, xy, yz, xz
+  /// Share of a neighbourhood inside the lattice that a point lacks; 1 where its bonds give no F.
+  std::vector<double> missing_neighbourhood;
+
+  void show_in(StepFields& fields) const;
+};
+
+[[nodiscard]] StressFields make_stress_fields(const Body& body, Assembler& assembler,
+                                              const StateView& at);
+
+}  // namespace peristat
