@@ -38,7 +38,7 @@ TEST(FractureData, OfABrittleBondGiveItsStretch) {
 
 TEST(FractureData, OfEveryLawThatSoftensComeBack) {
   for (const DamageLaw of : softening) {
-    for (const double share : {0.55, 0.7, 0.83}) {
+    for (const double share : {0.7, 0.83, 0.95}) {
       DamageSpecification damage = law(of);
       damage.fracture_energy = energy;
       damage.strength = share * brittle * scale.youngs_modulus;

@@ -43,9 +43,14 @@ ForceEnvelope example<ForceEnvelope>() {
 }
 
 /// Numerical integral of T phi_0' from a to b by the composite midpoint rule with Richardson's
-/// extrapolation; neither end nor the points meet a jump of T.
+/// extrapolation; neither end nor the points meet a jump of T, nor cells a kink.
 template <class Law, class Whole = Harmonic>
 double work_between(const Law& law, double a, double b, const Whole& whole = {1.0}) {
+  if constexpr (requires { law.peak(); }) {
+    const double kink = law.peak();
+    if (a < kink && kink < b)
+      return work_between(law, a, kink, whole) + work_between(law, kink, b, whole);
+  }
   const auto midpoint = [&](int cells) {
     double sum = 0.0;
     for (int k = 0; k < cells; ++k) {
