@@ -13,6 +13,7 @@
 #include "solvers/linear/available_memory.hpp"
 #include "solvers/study/bond_potential.hpp"
 #include "solvers/study/cpd_model.hpp"
+#include "solvers/study/fracture_data.hpp"
 #include "src/connectivity/fragments.hpp"
 #include "src/connectivity/free_motion.hpp"
 #include "src/core/input_error.hpp"
@@ -36,6 +37,7 @@ BondSetting setting_of(const BodySpecification& of, const Points& points) {
   setting.cross_section = points.dimension == 3     ? 1.0
                           : of.cross_section == 0.0 ? points.cross_section()
                                                     : of.cross_section;
+  if (points.lattice) setting.lattice = {points.spacing, points.angle, of.surface_correction};
   return setting;
 }
 
@@ -197,7 +199,6 @@ std::unique_ptr<const Body> make_body(Points points, const BodySpecification& of
   check_specification(of, points);
   auto owned = std::make_unique<Body>();
   Body& body = *owned;
-  body.specification = of;
   body.points = std::move(points);
   const std::vector<Period> periods(of.constraints.periods.begin(), of.constraints.periods.end());
   // A partial volume reaches half a cell beyond the horizon.
@@ -205,6 +206,7 @@ std::unique_ptr<const Body> make_body(Points points, const BodySpecification& of
   const double reach = of.horizon + (is_whole ? 0.0 : body.points.spacing.largest());
   add_images(body.points, of.constraints.symmetries, periods, reach);
   body.setting = setting_of(of, body.points);
+  body.specification = with_stretches(of, body.setting, body.points.spacing);
   require_resolved(body.points, body.setting.horizon);
   BodySize expected = size_of(body.points);
   expected.horizon_ratio = body.horizon_ratio();

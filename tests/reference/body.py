@@ -7,6 +7,7 @@ import numpy
 
 from tests.reference.case import read_neighbours, read_points
 from tests.reference.materials import Materials
+from tests.reference.sheets import resolve
 
 HORIZON_TOLERANCE = 1e-8
 
@@ -102,6 +103,7 @@ class Body:
         self.spacing = case.spacing(volume)
         self.cross_section = case.cross_section
         self.is_cpd = case["material"]["model"] == "cpd"
+        resolve(case)
         self.materials = Materials(case, sets or {}, len(self.volume), factors)
         self.tuples, self.weight = {}, {}
         self.flatness, self.factor_sums = {}, {}  # cpd: g of interactions, and their sums at points

@@ -9,7 +9,7 @@ import numpy
 
 DEFAULTS = {
     "quadrature": {"volume_correction": "none", "weights": "mean", "surface_correction": "none"},
-    "material": {"model": "bond", "plane": "stress", "calibration": "lattice"},
+    "material": {"model": "bond", "plane": "stress"},
     "loading": {"steps": 1, "adaptive": True, "smallest_step": 1e-6},
     "solver": {"mode": "newton", "relative_tolerance": 1e-10, "fragments": "hold"},
     "relaxation": {"load": "fixed", "displacement_tolerance": 0.0},

@@ -16,6 +16,7 @@
 #include "solvers/study/cpd_model.hpp"
 #include "solvers/study/crack_tips.hpp"
 #include "solvers/study/found_loads.hpp"
+#include "solvers/study/fracture_data.hpp"
 #include "solvers/study/linear_systems.hpp"
 #include "solvers/study/rest_stability.hpp"
 #include "solvers/study/study.hpp"
@@ -84,6 +85,25 @@ void print_bond_constants(const PointMaterials::Material& of, const std::string&
              poisson_ratio(setting));
 }
 
+/// What a law of damage makes of a tear and of a pull.
+void print_fracture(const PointMaterials::Material& of, const std::string& name,
+                    const BondSetting& setting, double spacing) {
+  const DamageSpecification& damage = of.of->damage;
+  if (damage.law == DamageLaw::none || of.of->fibre || of.of->model != MaterialModel::bond) return;
+  const FractureScale scale = FractureScale::of(*of.of, of.key, setting, spacing);
+  const double per_area = scale.micromodulus * total_work(damage);
+  std::string spread;
+  if (setting.lattice && setting.dimension > 1) {
+    const DirectionalSpread crossing = BulkBonds(setting).crossing();
+    spread = fmt::format(" in the mean over the directions of a crack ({:.4g} to {:.4g})",
+                         per_area * crossing.least, per_area * crossing.most);
+  }
+  const std::string begin = damage.softens() ? fmt::format("onset {:.6g}, ", damage.onset) : "";
+  fmt::print("{} {}critical stretch {:.6g}: fracture energy {:.6g} J/m2{}, strength {:.6g} Pa\n",
+             heading("fracture", name), begin, damage.critical, per_area * scale.crossing, spread,
+             scale.youngs_modulus * peak_force(damage));
+}
+
 void print_cpd_constants(const PointMaterials::Material& of, const std::string& name,
                          const Body& body) {
   const int dimension = body.points.dimension;
@@ -120,8 +140,9 @@ void print_quadrature(const Case& from, const Body& body, int threads) {
 }
 
 void print_constants(const Case& from, const Body& body, int threads) {
-  const PointMaterials materials(from, body.points);
-  const auto all = all_materials(from, materials);
+  const BodySpecification& of = body.specification;  // its stretches are found
+  const PointMaterials materials(of, body.points);
+  const auto all = all_materials(of, materials);
   const bool is_bond = from.material.model == MaterialModel::bond;
   for (const auto& material : all) {
     const std::string name = from.regions.empty() ? "" : material.name;
@@ -131,6 +152,10 @@ void print_constants(const Case& from, const Body& body, int threads) {
       print_cpd_constants(material, name, body);
   }
   if (is_bond) print_quadrature(from, body, threads);
+  for (const auto& material : all) {
+    print_fracture(material, from.regions.empty() ? "" : material.name, body.setting,
+                   body.points.spacing);
+  }
 }
 
 /// How many points each material has.

@@ -280,43 +280,93 @@ Table<DamageSpecification> damage_keys(const std::string& material) {
   using Spec = DamageSpecification;
   using K = Key<Spec>;
   const auto is_whole = [](auto& damage, auto&) { return damage.law == DamageLaw::none; };
-  const auto is_sudden = [](auto& damage, auto&) {
-    return damage.law == DamageLaw::critical_stretch;
+  const auto is_sudden = [](auto& damage, auto&) { return !damage.softens(); };
+  const auto has_no_rate = [](auto& damage, auto&) { return !damage.has_rate(); };
+  const auto is_not_blended = [](auto& damage, auto&) { return damage.law != DamageLaw::blended; };
+  const auto is_sized = [](auto& damage, auto&) {
+    return damage.fracture_energy || (damage.strength && !damage.softens());
   };
-  return {material + ".damage",
-          {K("law", &Spec::law,
-             choice<DamageLaw>({{"none", DamageLaw::none},
-                                {"critical_stretch", DamageLaw::critical_stretch},
-                                {"tanh", DamageLaw::tanh},
-                                {"tanh_continuous", DamageLaw::tanh_continuous}}),
-             "no damage; whole up to `critical` and then broken; softening from `onset` to "
-             "`critical` as published in [ADAPT], which jumps by (1 − tanh `rate`)/2 at both ends; "
-             "the same law rescaled so that it does not jump")
-               .early(),
-           K("critical", &Spec::critical, between(1e-9, 1e3, "1"),
-             "stretch $s_c$ from which on a bond is broken")
-               .unless(is_whole, "")
-               .required("required with a law"),
-           K("onset", &Spec::onset, between(1e-9, 1e3, "1"),
-             "tanh laws: stretch $s_m$ beyond which a bond loses stiffness")
-               .unless(is_whole, "")
-               .unless(is_sudden, "is for the tanh laws")
-               .then([](auto& at, auto& damage) {
-                 if (!(damage.onset < damage.critical * (1.0 - 1e-9)))
-                   at.refuse("must be smaller than critical");
-               })
-               .moreover("below `critical`")
-               .required("required with a tanh law"),
-           K("rate", &Spec::rate, between(0.1, 50.0, "1"),
-             "tanh laws: $\\beta$, how much of the softening falls on the middle between the two "
-             "stretches")
-               .unless(is_whole, "")
-               .unless(is_sudden, "is for the tanh laws"),
-           K("no_fail", &Spec::no_fail, known_sets(),
-             "sets whose points' bonds stay elastic at any stretch, also those to points outside "
-             "the sets")
-               .written_if([](auto& damage, auto&) { return damage.law != DamageLaw::none; })
-               .early()}};
+  const auto begins_by_strength = [](auto& damage, auto&) {
+    return damage.strength && damage.law != DamageLaw::blended;
+  };
+  // Asking for what is not there tells that it is missing.
+  const auto require_key = [](auto lacks) {
+    return [=](const Entry& at, const Spec& damage) {
+      if (lacks(damage)) static_cast<void>(at.from.number(at.key, Range()));
+    };
+  };
+  const std::string for_softening = "is for the laws that soften",
+                    for_blended = "is for the law \"blended\"";
+  return {
+      material + ".damage",
+      {K("law", &Spec::law,
+         choice<DamageLaw>({{"none", DamageLaw::none},
+                            {"critical_stretch", DamageLaw::critical_stretch},
+                            {"tanh", DamageLaw::tanh},
+                            {"tanh_continuous", DamageLaw::tanh_continuous},
+                            {"linear", DamageLaw::linear},
+                            {"exponential", DamageLaw::exponential},
+                            {"blended", DamageLaw::blended}}),
+         "no damage; whole up to `critical` and then broken; softening from `onset` to "
+         "`critical` as published in [ADAPT], which jumps by (1 − tanh `rate`)/2 at both ends; "
+         "the same law rescaled so that it does not jump; force falling linearly from `onset` "
+         "to zero at `critical`; exponentially, without a jump at `critical`; rising on a "
+         "lower slope from `onset` to `peak`, and then falling linearly")
+           .early(),
+       K("fracture_energy", &Spec::fracture_energy, positive("J/m2"),
+         "$G_c$ of a plane crack, the mean over its directions on this lattice; `critical` "
+         "follows. Model `bond`")
+           .unless(is_whole, "")
+           .early(),
+       K("strength", &Spec::strength, positive("Pa"),
+         "$f_t$ = `youngs_modulus` × the stretch at which the force of a bond is largest "
+         "(more exactly: the largest force over $c$); `onset` follows, `peak` of `blended`, "
+         "`critical` of `critical_stretch`")
+           .unless(is_whole, "")
+           .early(),
+       K("critical", &Spec::critical, stretch(), "stretch $s_c$ from which on a bond is broken")
+           .unless(is_whole, "")
+           .unless(is_sized, "follows from fracture_energy or strength; give one of them")
+           .then(require_key([](auto& damage) { return damage.critical == 0.0; }))
+           .default_words("this or `fracture_energy` is required with a law"),
+       K("onset", &Spec::onset, stretch(),
+         "laws that soften: stretch $s_m$ beyond which a bond loses stiffness")
+           .unless(is_whole, "")
+           .unless(is_sudden, for_softening)
+           .unless(begins_by_strength, "follows from strength; give one of them")
+           .then(require_key(
+               [](auto& damage) { return damage.onset == 0.0 && !damage.is_by_data(); }))
+           .written_if([](auto& damage, auto&) { return damage.onset != 0.0; })
+           .moreover("below `critical`")
+           .default_words("required without `strength`; with `fracture_energy` half the "
+                          "stretch of a brittle bond of that energy, a quarter of `blended`"),
+       K("peak", &Spec::peak, stretch(), "`blended`: stretch $s_p$ at which the force is largest")
+           .unless(is_whole, "")
+           .unless(is_not_blended, for_blended)
+           .unless([](auto& damage, auto&) { return damage.strength.has_value(); },
+                   "follows from strength; give one of them")
+           .then(require_key([](auto& damage) {
+             return damage.peak == 0.0 && (damage.onset != 0.0 || !damage.fracture_energy);
+           }))
+           .written_if([](auto& damage, auto&) { return damage.peak != 0.0; })
+           .moreover("from `onset` to below `critical`")
+           .default_words("required without `strength`; without any of the three the largest "
+                          "force is half that of a brittle bond of that `fracture_energy`"),
+       K("hardening", &Spec::hardening, between(0.0, 0.99, "1"),
+         "`blended`: slope of the force between `onset` and `peak` over that of the whole "
+         "bond")
+           .unless(is_whole, "")
+           .unless(is_not_blended, for_blended),
+       K("rate", &Spec::rate, between(0.1, 50.0, "1"),
+         "tanh laws: $\\beta$, how much of the softening falls on the middle between the two "
+         "stretches; `exponential`: how much steeper the force falls at first")
+           .unless(is_whole, "")
+           .unless(has_no_rate, "is for the tanh laws and \"exponential\""),
+       K("no_fail", &Spec::no_fail, known_sets(),
+         "sets whose points' bonds stay elastic at any stretch, also those to points outside "
+         "the sets")
+           .written_if([](auto& damage, auto&) { return damage.law != DamageLaw::none; })
+           .early()}};
 }
 
 /// A stiffness may be negative (auxetic bodies have such), but not remotely large.
@@ -392,6 +442,9 @@ Table<MaterialSpecification> material_keys(const std::string& name) {
   const auto of_bond = [](auto& material, auto&) { return material.model == MaterialModel::bond; };
   const auto has_moduli = [](auto& material, auto&) { return material.youngs_modulus.has_value(); };
   const auto has_constants = [](auto& material, auto&) { return material.c1.has_value(); };
+  const auto has_micromodulus = [](auto& material, auto&) {
+    return material.micromodulus.has_value();
+  };
   constexpr auto fibre_of = [](auto& material) -> auto& {
     if constexpr (std::is_const_v<std::remove_reference_t<decltype(material)>>) {
       static const FibreSpecification none;
@@ -460,10 +513,11 @@ Table<MaterialSpecification> material_keys(const std::string& name) {
        K("calibration", &Spec::calibration,
          choice<Calibration>(
              {{"lattice", Calibration::lattice}, {"continuum", Calibration::continuum}}),
-         "`cpd`, with `youngs_modulus`: what the constants reproduce the moduli on, this lattice's "
-         "sums or integrals")
-           .unless(of_bond, for_cpd)
-           .unless(has_constants, with_moduli),
+         "with `youngs_modulus`: what the constants reproduce the moduli on, this lattice's sums "
+         "with their corrections (`bond`: in the mean over all directions) or integrals")
+           .unless(has_constants, with_moduli)
+           .unless(has_micromodulus, "goes with youngs_modulus, not with micromodulus")
+           .default_words("`\"lattice\"` with `cpd`, `\"continuum\"` with `bond`"),
        K("thermal_expansion", &Spec::thermal_expansion, between(-1.0, 1.0, "per K"),
          "of lengths, α: for `[temperature]`"),
        K("density", &Spec::density, positive("kg/m3"),

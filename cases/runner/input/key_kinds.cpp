@@ -345,6 +345,29 @@ Kind<std::string> expression(bool of_place, bool or_free) {
 Kind<std::string> expression_or_free() { return expression(true, true); }
 Kind<std::string> expression_of_load() { return expression(false, false); }
 
+Kind<double> stretch() {
+  const Range range = Range::between(1e-9, 1e3);
+  const auto read = [=](const Entry& at) {
+    if (!at.from.is_string(at.key)) return at.from.number(at.key, range);
+    const auto* lattice = std::get_if<Lattice>(&at.so_far.body);
+    const double horizon = lattice != nullptr ? at.so_far.horizon_ratio * lattice->spacing
+                                              : std::get<PointSource>(at.so_far.body).horizon;
+    double value = 0.0;
+    try {
+      const Expression of(at.from.string(at.key), 0,
+                          lattice != nullptr ? lattice->spacing : Spacing(), {"horizon"});
+      value = of({}, std::array{horizon});
+    } catch (const InputError& error) {
+      at.refuse(error.allowed());
+    }
+    if (!(value >= 1e-9 && value <= 1e3))
+      at.refuse("is " + number_text(value) + "; must be between 1e-09 and 1000");
+    return value;
+  };
+  return {read, [](double value, const Case&) { return toml_number(value); },
+          "1e-09 to 1000, or an expression of `horizon` and `spacing`", "1"};
+}
+
 Kind<std::string> scalar_field(const std::string& unit) {
   const auto read = [](const Entry& at) {
     const std::string given = at.from.is_string(at.key)
