@@ -140,12 +140,25 @@ def face_forces(places):
 class Conditions:
     """What holds and loads the points."""
 
-    def __init__(self, case, reference, volume, sets):
+    def __init__(self, case, reference, volume, sets, beyond=None):
         self.case, self.reference, self.volume, self.sets = case, reference, volume, sets
+        self.beyond = beyond  # None: nothing
         self.spacing = case.spacing(volume)
         self.prescribed = numpy.zeros(reference.shape, bool)
         for support in case.get("support"):
             self.prescribed |= self.held_by(support)
+        self.cell_held = self.middle_of_cell()
+
+    def middle_of_cell(self):
+        """Degrees of freedom at which a cell that nothing holds is held: those of the point next to its middle, but for
+        what planes of symmetry hold."""
+        mask = numpy.zeros(self.reference.shape, bool)
+        is_held = self.prescribed.any() or any(self.case.get(name) for name in ("rigid", "roller", "constraint"))
+        if self.case.get("period") and not is_held:
+            away = ((self.reference - self.reference.mean(axis=0)) ** 2).sum(axis=1)
+            mirrored = [axis in [table["axis"] for table in self.case.get("symmetry")] for axis in "xyz"]
+            mask[away.argmin()] = ~numpy.array(mirrored[: self.reference.shape[1]])
+        return mask
 
     def held_by(self, support):
         """Degrees of freedom that one support prescribes."""
@@ -255,8 +268,12 @@ class Conditions:
 
     def traction_areas(self, table, members):
         """Per point: the loaded faces of cells, each shared by the points below it as far as the depth reaches."""
-        cell = numpy.rint((self.reference - self.reference.min(axis=0)) / self.spacing).astype(int)
-        body = {tuple(c): k for k, c in enumerate(cell) if self.is_in_body()[k]}
+        inside = self.is_in_body()
+        places = self.reference if self.beyond is None else self.beyond.places
+        source = numpy.arange(len(places)) if self.beyond is None else self.beyond.source
+        cell = numpy.rint((places - self.reference.min(axis=0)) / self.spacing).astype(int)
+        body = {tuple(c): k for c, k in zip(cell, source) if inside[k]}
+        own = {k: tuple(c) for k, c in enumerate(cell[: len(inside)]) if inside[k]}
         sides = [(axis, sign) for axis in range(cell.shape[1]) for sign in (-1, 1)]
         if "side" in table:
             sides = [("xyz".index(table["side"][0]), 1 if table["side"][1] == "+" else -1)]
@@ -265,7 +282,7 @@ class Conditions:
             return (*place[:axis], place[axis] + step, *place[axis + 1 :])
 
         for axis, sign in sides:
-            along = {k: sign * place[axis] for place, k in body.items()}
+            along = {k: sign * place[axis] for k, place in own.items()}
             row = [k for k in along if members[k] and ("set" in table or along[k] == max(along.values()))]
             if len({along[k] for k in row}) == 1 and not any(beside(cell[k], axis, sign) in body for k in row):
                 break

@@ -36,6 +36,9 @@ class Results:
             ids = file["points/set_ids"]
             names = [name.decode() if isinstance(name, bytes) else str(name) for name in ids.attrs.get("sets", [])]
             self.sets = {name: ids[:, k] == 1 for k, name in enumerate(names)}
+            self.images = (numpy.zeros(0, int), numpy.zeros((0, self.reference.shape[1])))
+            if "points/images" in file:
+                self.images = (file["points/images/source"][...], file["points/images/reference"][...])
             names = [name for name in ("stiffness", "strength") if f"points/{name}_factor" in file]
             self.factors = {name: file[f"points/{name}_factor"][...] for name in names}
             self.steps = [Step(group) for _, group in sorted(file["steps"].items())] if "steps" in file else []

@@ -50,9 +50,6 @@ class Ties:
     """What a case ties. Works for dead loads and for any state; `follows` marks degrees of freedom without an equation."""
 
     def __init__(self, case, reference, volume, sets, prescribed):
-        for name in ("symmetry", "period"):
-            if case.get(name):
-                raise NotImplementedError(f"[[{name}]] is not judged: compare with the whole body")
         self.case, self.reference, self.sets, self.prescribed = case, reference, sets, prescribed
         self.spacing = case.spacing(volume)
         self.volume = volume

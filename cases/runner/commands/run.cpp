@@ -14,11 +14,11 @@
 #include "cases/runner/build/solver_options.hpp"
 #include "cases/runner/process/failure.hpp"
 #include "cases/runner/process/interruption.hpp"
+#include "cases/runner/results/constraint_columns.hpp"
 #include "cases/runner/results/dossier.hpp"
 #include "cases/runner/results/probe.hpp"
 #include "cases/runner/results/recorder.hpp"
 #include "cases/runner/results/results.hpp"
-#include "cases/runner/results/rigid_set_columns.hpp"
 #include "solvers/linear/cholesky.hpp"
 #include "solvers/study/found_loads.hpp"
 #include "solvers/study/study.hpp"
@@ -54,11 +54,11 @@ std::vector<std::string> support_sets(const Case& from) {
   for (const auto& set : constraints.rigid_sets) sets.push_back(set.set);
   for (const auto& roller : constraints.rollers) sets.push_back(roller.name());
   for (const auto& linear : constraints.linear) sets.push_back(linear.name);
-  for (const auto& plane : constraints.symmetries) {
-    sets.push_back(std::string("symmetry_") + "xyz"[plane.axis]);
+  for (std::size_t k = 0; k < constraints.symmetries.size(); ++k) {
+    sets.push_back(name_of_plane(constraints.symmetries, k));
   }
   for (const auto& period : constraints.periods) {
-    sets.push_back(std::string("period_") + "xyz"[period.axis]);
+    sets.push_back(name_of_period(period));
   }
   return sets;
 }
@@ -200,7 +200,7 @@ class CaseRun {
         results_(results),
         support_sets_(support_sets(from)) {
     for (const auto& probe : from.probes) probes_.push_back(columns_of(probe, from.dimension));
-    for (ProbeColumns& columns : rigid_set_columns(from)) probes_.push_back(std::move(columns));
+    for (ProbeColumns& columns : constraint_columns(from)) probes_.push_back(std::move(columns));
   }
 
   Exit run() {
@@ -256,15 +256,14 @@ class CaseRun {
     const CaseText text{from_.as_read, from_.as_resolved,    from_.title,
                         versions(),    identity(from_.file), from_.settings};
     if (earlier_) {
-      results_.emplace(*earlier_, earlier_results_, without_images(body_->points), text,
-                       support_sets_, probes_);
+      results_.emplace(*earlier_, earlier_results_, body_->points, text, support_sets_, probes_);
       recorder_.emplace(from_, *body_, assembler, *results_, progress_);
       recorder_->go_on(earlier_->checkpoint(), earlier_results_, support_sets_, probes_);
       earlier_results_ = {};
       tell_beginning();
     } else {
-      results_.emplace(from_.output.directory, without_images(body_->points), text, support_sets_,
-                       probes_, constant_fields_of(*body_), options_.overwrite);
+      results_.emplace(from_.output.directory, body_->points, text, support_sets_, probes_,
+                       constant_fields_of(*body_), options_.overwrite);
       recorder_.emplace(from_, *body_, assembler, *results_, progress_);
     }
     leave_note(from_.output.directory);

@@ -66,7 +66,26 @@ bool holds_neighbours(const Hdf5File& file, const std::string& group, const Poin
 
 std::string flags_of(const std::string& set) { return "/points/sets/" + name_of_flags(set); }
 
-void write_points(Hdf5File& file, const Points& points, const std::vector<PointCounts>& counts) {
+namespace {
+
+/// What stands beyond planes of symmetry and periods.
+void write_images(Hdf5File& file, const Points& points) {
+  const auto count = static_cast<std::uint64_t>(points.images.source.size());
+  if (count == 0) return;
+  const auto own = std::ptrdiff_t(points.own()) * points.dimension;
+  file.make_group("/points/images");
+  const std::vector<double> places(points.reference.begin() + own, points.reference.end());
+  file.write("/points/images/reference", places,
+             {count, static_cast<std::uint64_t>(points.dimension)},
+             {"m", "reference position of each image, whose numbers follow those of the points"});
+  file.write("/points/images/source", points.images.source, {count},
+             {"1", "point that each image stands for"});
+}
+
+}  // namespace
+
+void write_points(Hdf5File& file, const Points& of_body, const std::vector<PointCounts>& counts) {
+  const Points points = without_images(of_body);
   const auto count = static_cast<std::uint64_t>(points.count());
   const auto dimension = static_cast<std::uint64_t>(points.dimension);
   file.make_group("/points");
@@ -102,6 +121,7 @@ void write_points(Hdf5File& file, const Points& points, const std::vector<PointC
                {"1", "share of the volume of j that i counts, and of i that j counts"});
   }
 
+  write_images(file, of_body);
   for (const PointCounts& of_points : counts) {
     std::visit(
         [&](const auto& values) {

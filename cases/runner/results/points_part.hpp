@@ -20,7 +20,7 @@ struct PointCounts {
 /// Path of a set's flags, one per point.
 [[nodiscard]] std::string flags_of(const std::string& set);
 
-/// Writes the group /points.
+/// Writes the group /points, which tells images apart.
 void write_points(Hdf5File& file, const Points& points, const std::vector<PointCounts>& counts);
 
 /// Bytes of what it writes.

@@ -6,8 +6,8 @@
 
 #include "assembly/terms/bonds/point_stretches.hpp"
 #include "assembly/terms/damage.hpp"
+#include "cases/runner/results/constraint_columns.hpp"
 #include "cases/runner/results/record_tables.hpp"
-#include "cases/runner/results/rigid_set_columns.hpp"
 
 namespace peristat {
 
@@ -72,7 +72,7 @@ void Recorder::accepted(StepRecord record, const AcceptedState& state) {
   for (const ProbeSpecification& probe : case_.probes) {
     record.probes[probe.name] = probe_values(probe, points_, view, separated_);
   }
-  add_rigid_set_values(*body_.conditions, state.trial, state.external_force, record.probes);
+  add_constraint_values(*body_.conditions, state.trial, state.external_force, record.probes);
   const bool write_fields = record.step % case_.output.every == 0;
   results_.add(record, write_fields ? std::optional(view) : std::nullopt);
   if (write_fields) written_histories_.tell(bond_stretches(body_.model, at.history));
@@ -96,13 +96,17 @@ void Recorder::go_on(const Checkpoint& checkpoint, const EarlierResults& earlier
                      const std::vector<std::string>& support_sets,
                      const std::vector<ProbeColumns>& probes) {
   const PathState& path = checkpoint.path;
-  for (const Row& row : earlier.broken_bonds) {
-    const BrokenBondRecord broken = read_broken_bond(row);
-    separated_.push_back({broken.first_point, broken.second_point});
-  }
   for (const Row& row : earlier.decisions) decisions_.push_back(read_decision(row));
   if (!earlier.history.empty()) last_ = read_step(earlier.history.back(), support_sets, probes);
   broken_ = broken_bonds(body_.model, path.accepted.history);
+  const Bonds& bonds = body_.model.bonds();
+  for (Index i = 0; i < bonds.points() && !broken_.empty(); ++i) {
+    for (Offset bond = bonds.offset[i]; bond < bonds.offset[i + 1]; ++bond) {
+      if (broken_[bond] && bonds.weight(bond) != 0.0) {
+        separated_.push_back({i, bonds.partner[bond]});
+      }
+    }
+  }
   const bool is_unwritten = !checkpoint.unwritten.force.empty();
   written_histories_.tell(is_unwritten ? std::span(checkpoint.unwritten.told_stretches)
                                        : bond_stretches(body_.model, path.accepted.history));
@@ -142,8 +146,9 @@ void Recorder::record_broken_bonds(const StepRecord& record, const History& hist
   for (Index i = 0; i < bonds.points(); ++i) {
     for (Offset bond = bonds.offset[i]; bond < bonds.offset[i + 1]; ++bond) {
       if (!broken[bond] || broken_[bond] || bonds.weight(bond) == 0.0) continue;
-      records.push_back({record.step, record.load_factor, points_.source(i),
-                         points_.source(bonds.partner[bond])});
+      const auto [first, second] =
+          std::minmax({points_.source(i), points_.source(bonds.partner[bond])});
+      records.push_back({record.step, record.load_factor, first, second});
       separated_.push_back({i, bonds.partner[bond]});
     }
   }

@@ -156,7 +156,7 @@ Results::Files::Files(Beginning beginning, const Points& points, const CaseText&
                       const std::vector<std::string>& sets,
                       const std::vector<ProbeColumns>& probe_columns,
                       const std::vector<PointCounts>& counts)
-    : shape{points.count(), points.dimension},
+    : shape{points.own(), points.dimension},
       support_sets(sets),
       probes(probe_columns),
       history_header(history_columns(sets, probe_columns)),
@@ -169,7 +169,7 @@ Results::Files::Files(Beginning beginning, const Points& points, const CaseText&
       broken_bonds(folder.broken_bonds(), broken_bond_columns(),
                    beginning.rows(&EarlierResults::broken_bonds)),
       master(Hdf5File::in_memory(folder.results().string() + " (in memory)", master_growth)),
-      xdmf(points.count(), constant_fields(points)),
+      xdmf(points.own(), constant_fields(points)),
       program(version_of(text)),
       checkpoints(folder.parts()),
       safe_copy(folder),
