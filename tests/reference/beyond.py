@@ -56,6 +56,7 @@ class Beyond:
 
     def __init__(self, case, reference, spacing, reach):
         self.case, self.own, self.spacing = case, len(reference), spacing
+        self.in_expressions = case.spacing_in_expressions if case.is_lattice else spacing
         self.axes = "xyz"[: reference.shape[1]]
         each = [maps_along(axis, case, reach) for axis in self.axes]
         self.maps = list(itertools.product(*each))
@@ -143,7 +144,7 @@ class Beyond:
             for c, gradient in enumerate(table.get("gradient", [0] * len(self.axes))):
                 free[axis, c] = gradient == "free"
                 if not free[axis, c]:
-                    jump[axis, c] = evaluate(gradient, WITHOUT_PLACE, load, self.spacing)[0] * self.lengths()[table["axis"]]
+                    jump[axis, c] = evaluate(gradient, WITHOUT_PLACE, load, self.in_expressions)[0] * self.lengths()[table["axis"]]
         return jump, free
 
     def told_jump(self, row):

@@ -231,6 +231,16 @@ class Mechanics:
             matrix[:, column] = self.gradient(moved.reshape(u.shape), history).imag.ravel() / STEP
         return matrix
 
+    def bears(self):
+        """Largest sum of the magnitudes of a point's forces if all its interactions were whole and changed by 1 [N]."""
+        total = numpy.zeros(self.body.reference.shape)
+        for order, reference in self.reference_arms.items():
+            slope = (self.body.constants[order] * self.body.weight[order])[:, None]
+            for k, pull in enumerate(measure_gradients(reference), start=1):
+                add_at(total, self.body.tuples[order][:, k], slope * numpy.abs(pull))
+                add_at(total, self.body.tuples[order][:, 0], slope * numpy.abs(pull))
+        return total.max()
+
     # ---- what damage has done --------------------------------------------------------------------
 
     def dissipated(self, history):

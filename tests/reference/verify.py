@@ -26,7 +26,8 @@ class Verification:
     def __init__(self, folder, case_text, case_folder="."):
         self.case = case_text if isinstance(case_text, Case) else Case(case_text, case_folder)
         self.results = Results(folder)
-        self.complaints, self.worst = [], {}
+        self.complaints, self.worst, self.bears = [], {}, {}
+        self.broken_across = 0  # bonds to what lies beyond that are broken in the end
         self.broken_when_looked_for, self.last_unheld = 0, None
         self.rows = {int(row["step"]): row for row in self.results.table("history")}
         self.listed_bonds = self.results.table("broken_bonds")
@@ -81,7 +82,7 @@ class Verification:
     def histories_are_known(self):
         """They are written, or follow from the accepted states."""
         steps = self.results.steps
-        if not self.case.has_damage or any(step.history is not None for step in steps):
+        if not self.case.has_damage or not steps or any(step.history is not None for step in steps):
             return True
         relaxed = self.case["solver"]["mode"] != "newton"
         path_is_written = self.case["output"]["every"] == 1 and not self.mechanics.body.is_cpd
@@ -127,6 +128,7 @@ class Verification:
         old = Old(self.results.reference.shape, self.mechanics)
         for step in self.results.steps:
             mechanics = self.mechanics if step.number >= self.first_real_step else self.stand_in
+            step.loads = self.case.loads(self.rows[step.number]["stage"], step.load)
             step.jump = self.jump(self.rows[step.number])
             step.everywhere = mechanics.body.beyond.spread(step.displacement, step.jump)
             history = self.next_history(step, old.history)
@@ -137,20 +139,20 @@ class Verification:
 
     def judge(self, mechanics, step, old, history):
         row, prescribed = self.rows[step.number], self.conditions.prescribed
-        mechanics.eigenstretch = self.conditions.eigenstretch(step.load)
+        mechanics.eigenstretch = self.conditions.eigenstretch(step.loads)
         gradient = mechanics.gradient(step.everywhere, history)
         magnitude = mechanics.gradient(step.everywhere, history, absolute=True)
-        largest = magnitude.max() + 1e-4 * self.whole_force(mechanics, step)
+        largest = magnitude.max() + 1e-4 * self.whole_forces(mechanics, step)
         if "control" in row:
             self.judge_control(step, row)
         self.compare(step, "force", step.force, -gradient, largest)
-        target = self.conditions.displacement(step.load)
+        target = self.conditions.displacement(step.loads)
         reach = max(numpy.abs(target).max(), 1e-300)
         if prescribed.any():
             self.compare(step, "prescribed displacement", step.displacement[prescribed], target[prescribed], reach, 1e-12)
-        self.compare(step, "ties", self.ties.errors(step.displacement, step.load), 0.0, max(reach, numpy.abs(step.displacement).max()), 1e-11)
+        self.compare(step, "ties", self.ties.errors(step.displacement, step.loads), 0.0, max(reach, numpy.abs(step.displacement).max()), 1e-11)
         self.judge_jump(mechanics, step)
-        external = self.external(step.load, step.displacement)
+        external = self.external(step.loads, step.displacement)
         unheld = self.unheld(step, old)
         self.judge_residual(mechanics, step, row, old, history, gradient - external, magnitude, unheld)
         self.judge_reactions(step, row, gradient - external, largest, unheld, external)
@@ -170,6 +172,18 @@ class Verification:
         body = mechanics.body
         reach = min(numpy.abs(step.displacement).max() / body.lengths.min(), 1.0)
         return body.constants[1] * body.weight[1].max() * reach
+
+    def reach(self, mechanics, step):
+        """Stretch whose rounding is that of displacements and eigenstrains."""
+        reach = numpy.abs(step.everywhere).max() / mechanics.body.lengths.min()
+        eigenstretch = 0.0 if mechanics.eigenstretch is None else numpy.abs(mechanics.eigenstretch).max()
+        return min(reach, 1.0) + eigenstretch
+
+    def whole_forces(self, mechanics, step):
+        """Likewise of all interactions of a point [N], for sums."""
+        if mechanics not in self.bears:
+            self.bears[mechanics] = mechanics.bears()
+        return self.bears[mechanics] * self.reach(mechanics, step)
 
     def unheld(self, step, old):
         """Points that may be pinned or have left the equations in this step: those that nothing held
@@ -192,13 +206,13 @@ class Verification:
             return
         jumped = old.displacement.copy()
         prescribed = self.conditions.prescribed
-        jumped[prescribed] = self.conditions.displacement(step.load)[prescribed]
+        jumped[prescribed] = self.conditions.displacement(step.loads)[prescribed]
         past = old.history if mechanics is self.mechanics else history
-        external = self.external(step.load, jumped)
-        mechanics.eigenstretch = self.conditions.eigenstretch(old.load)
-        reactions = mechanics.gradient(old.everywhere, past) - self.external(old.load, old.displacement)
+        external = self.external(step.loads, jumped)
+        mechanics.eigenstretch = self.conditions.eigenstretch(old.loads)
+        reactions = mechanics.gradient(old.everywhere, past) - self.external(old.loads, old.displacement)
         beyond = self.forces_beyond(mechanics, old, past)
-        mechanics.eigenstretch = self.conditions.eigenstretch(step.load)
+        mechanics.eigenstretch = self.conditions.eigenstretch(step.loads)
         # Reactions of both states: Newton's method that finishes a relaxed step starts from the latter.
         held = prescribed | self.ties.follows
         norms = [numpy.linalg.norm(external), numpy.hypot(numpy.linalg.norm(reactions[held]), beyond)]
@@ -243,7 +257,7 @@ class Verification:
         kept, mechanics.eigenstretch = mechanics.eigenstretch, None
         added = under - mechanics.gradient_of_shares(old.everywhere, past, held=True)
         mechanics.eigenstretch = kept
-        added[: mechanics.body.own] -= self.conditions.follower_force(step.load, old.displacement)
+        added[: mechanics.body.own] -= self.conditions.follower_force(step.loads, old.displacement)
         return added
 
     def judge_pins(self, step, row, on_unheld, allowed):
@@ -288,7 +302,9 @@ class Verification:
 
     def judge_jump(self, mechanics, step):
         """What the displacement gains over a period, as far as it is given."""
-        jump, free = mechanics.body.beyond.given_jump(step.load)
+        jump, free = mechanics.body.beyond.given_jump(step.loads)
+        if free.all():
+            return
         reach = max(numpy.abs(jump).max(), numpy.abs(step.jump).max())
         self.compare(step, "jump over a period", step.jump[~free], jump[~free], reach, 1e-12)
 
@@ -313,7 +329,7 @@ class Verification:
         energies = mechanics.energies(step.everywhere, history)
         stored = mechanics.energy(step.everywhere, history)
         scale = max(abs(stored), abs(row["external_work"]), abs(row["dissipated_energy"]))
-        scale += 1e-5 * self.whole_force(mechanics, step) * numpy.abs(step.displacement).max()
+        scale += 1e-5 * self.whole_forces(mechanics, step) * numpy.abs(step.everywhere).max()
         self.compare(step, "stored energy", row["stored_energy"], stored, scale)
         dissipated = mechanics.dissipated(history)
         brittle_cpd = mechanics.body.is_cpd and mechanics.law.onset.min() < numpy.inf
@@ -348,11 +364,13 @@ class Verification:
         self.compare(step, "max_damage", row["max_damage"], damage.max(), 1.0)
         whole = stretch[~broken]
         largest = whole.max() if len(whole) else 0.0
-        self.compare(step, "max_stretch", row["max_stretch"], largest, max(abs(stretch).max(), 1e-300))
+        scale = max(abs(stretch).max(), 1e-5 * self.reach(mechanics, step), 1e-300)
+        self.compare(step, "max_stretch", row["max_stretch"], largest, scale)
 
     def judge_broken_bonds(self, step, broken):
         """Those listed so far: points beyond have the numbers of their sources."""
         body = self.mechanics.body
+        self.broken_across = int((body.bonds[broken] >= body.own).any(axis=1).sum())
         ends = numpy.sort(body.source[body.bonds[broken]], axis=1)
         listed = [row for row in self.listed_bonds if row["step"] <= step.number]
         written = [(int(row["first_point"]), int(row["second_point"])) for row in listed]
@@ -367,19 +385,19 @@ class Verification:
             self.complain(step, f"numerical work {row['numerical_work']} in an implicit step, {old.numerical_work} before it")
         prescribed = self.conditions.prescribed
         past = old.history if mechanics is self.mechanics else mechanics.no_history()
-        here = self.conditions.eigenstretch(step.load)
-        mechanics.eigenstretch = self.conditions.eigenstretch(old.load)
+        here = self.conditions.eigenstretch(step.loads)
+        mechanics.eigenstretch = self.conditions.eigenstretch(old.loads)
         before = mechanics.gradient(old.everywhere, past)
         pull = mechanics.pull_of_periods(old.everywhere, past)
         heating = mechanics.heating_work((old.everywhere, past), (step.everywhere, history), mechanics.eigenstretch, here)
         pull = (pull + mechanics.pull_of_periods(step.everywhere, history)) / 2
         over_periods = numpy.where(self.jump_is_free, 0, pull * (step.jump - old.jump))
-        pull = numpy.where(prescribed, before + gradient, self.external(old.load, old.displacement) + external) / 2
+        pull = numpy.where(prescribed, before + gradient, self.external(old.loads, old.displacement) + external) / 2
         work = float((pull * (step.displacement - old.displacement)).sum()) + over_periods.sum() + heating
-        work += self.ties.work(old, step, before - self.external(old.load, old.displacement), gradient - external)
+        work += self.ties.work(old, step, before - self.external(old.loads, old.displacement), gradient - external)
         scale = max(abs(row["external_work"]), numpy.abs(pull * (step.displacement - old.displacement)).sum())
         scale += numpy.abs(over_periods).sum()
-        scale += 1e-5 * self.whole_force(mechanics, step) * numpy.abs(step.displacement).max()
+        scale += 1e-5 * self.whole_forces(mechanics, step) * numpy.abs(step.everywhere).max()
         self.compare(step, "work", row["external_work"] - old.external_work, work, scale)
 
     def judge_summary(self, old):
@@ -425,6 +443,7 @@ class Old:
     def __init__(self, shape, mechanics):
         self.number, self.load, self.mechanics = 0, 0.0, None
         self.displacement, self.history = numpy.zeros(shape), mechanics.no_history()
+        self.loads = {f"load{k}": 0.0 for k in ("", 2, 3, 4)}
         self.everywhere, self.jump = numpy.zeros(mechanics.body.reference.shape), numpy.zeros((shape[1],) * 2)
         self.dissipated = self.external_work = self.numerical_work = 0.0
 
@@ -432,7 +451,7 @@ class Old:
         new = Old.__new__(Old)
         new.number, new.load, new.mechanics = step.number, step.load, mechanics
         new.displacement, new.history = step.displacement, history
-        new.everywhere, new.jump = step.everywhere, step.jump
+        new.everywhere, new.jump, new.loads = step.everywhere, step.jump, step.loads
         new.dissipated, new.external_work = row["dissipated_energy"], row["external_work"]
         new.numerical_work = row["numerical_work"]
         return new
