@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
+#include <set>
 
 #include "src/conditions/points_of_set.hpp"
 #include "src/core/input_error.hpp"
@@ -44,24 +44,14 @@ Face face_of(const Points& points, const BodyCells& cells, const LoadSpecificati
                        "; take the outermost row alone, or a pressure for a curved boundary");
 }
 
-/// Points by their cells of what lies beyond planes of symmetry and periods, in the place of which
-/// the points they stand for bear forces.
-std::map<LatticeCell, Index> cells_beyond(const Points& points, const BodyCells& cells) {
-  std::map<LatticeCell, Index> beyond;
+/// Cells beyond planes of symmetry and periods in which the body goes on.
+std::set<LatticeCell> cells_beyond(const Points& points, const BodyCells& cells) {
+  std::set<LatticeCell> beyond;
   for (Index image = points.own(); image < points.count(); ++image) {
     const Index source = points.source(image);
-    const bool is_of_body = cells.point(cells.cell(source)) == source;
-    if (is_of_body) beyond.emplace(cells.cell(image), source);
+    if (cells.point(cells.cell(source)) == source) beyond.insert(cells.cell(image));
   }
   return beyond;
-}
-
-void refuse_inner_face(const Face& face, const BodyCells& cells,
-                       const std::map<LatticeCell, Index>& beyond, const std::string& key) {
-  for (const Index point : face.row) {
-    if (!beyond.contains(beside(cells.cell(point), face.side))) continue;
-    throw InputError(key, "", "on this side the body goes on beyond a plane or period");
-  }
 }
 
 }  // namespace
@@ -71,17 +61,25 @@ TractionAreas traction_areas(const Points& points, const LoadSpecification& load
   const BodyCells cells(points);
   const Face face = face_of(points, cells, load, key);
   const auto& [row, side] = face;
-  const std::map<LatticeCell, Index> beyond = cells_beyond(points, cells);
-  refuse_inner_face(face, cells, beyond, key + (load.set.empty() ? ".side" : ".set"));
+  const std::set<LatticeCell> beyond = cells_beyond(points, cells);
   const double depth = load.depth == Depth::row ? 1.0 : std::max(1.0, horizon / points.spacing);
   TractionAreas areas;
   for (const Index outermost : row) {
     const std::size_t first = areas.points.size();
     double whole = 0.0;
     LatticeCell cell = cells.cell(outermost);
+    if (beyond.contains(beside(cell, side))) {
+      throw InputError(key + (load.set.empty() ? ".side" : ".set"), "",
+                       "on this side the body goes on beyond a plane or period");
+    }
     for (double above = 0.0; depth - above > least_part; above += 1.0) {
-      Index point = cells.point(cell);
-      if (const auto image = beyond.find(cell); image != beyond.end()) point = image->second;
+      const Index point = cells.point(cell);
+      if (beyond.contains(cell)) {
+        throw InputError(
+            key + ".depth", "\"horizon\"",
+            "below this side the body is less deep than a horizon and goes on beyond a "
+            "plane of symmetry; use \"row\"");
+      }
       if (point < 0) break;
       areas.points.push_back(point);
       areas.area.push_back(std::min(1.0, depth - above));

@@ -4,7 +4,6 @@ import itertools
 import json
 import math
 import pathlib
-import re
 
 import h5py
 import numpy
@@ -154,22 +153,11 @@ class Symmetry(Constrained):
                 self.assertAlmostEqual(strip["reaction_x:symmetry_x-"] / force, -1, delta=1e-9)
                 self.assertAlmostEqual(2 * strip["stored_energy"] / cell["stored_energy"], 1, delta=1e-11)
 
-    def test_a_traction_spread_over_a_horizon_goes_on_beyond_a_plane(self):
-        """A body that is less deep than the horizon: what the traction on the other half bears belongs to it, too."""
-        load = '[[load]]\nside = "y+"\ntraction = ["1e6*load", "2e6*load"]\ndepth = "horizon"\n'
-        other = load.replace('"y+"', '"y-"').replace('"2e6*load"', '"-2e6*load"')
-        held = '[[set]]\nname = "end"\nwhere = "x < -0.011"\n[[support]]\nset = "end"\ndisplacement = [0, "free"]\n'
-        centred = '[[constraint]]\nname = "centre"\n[[constraint.term]]\nset = "end"\nweights = [0, 1]\n'
-        bodies = {"": held + centred + load + other, "y": held + load}  # 2 rows in the half, 3 in the horizon
-        for part, more in bodies.items():
-            text = plate(part, more=more).replace("max = [0.012, 0.012", "max = [0.012, 0.002").replace("-0.012]", "-0.002]")
-            for name in ("top", "bottom"):
-                text = re.sub(rf'\[\[(lattice.layer|support)\]\]\n(name|set) = "{name}"\n.*\n(thickness.*\n)?', "", text)
-            self.run_case(text, name=f"part_{part}")
-        self.assert_part_of(self.fields("part_"), self.fields("part_y"))
-
     def test_what_a_part_is_not_is_refused(self):
         inner = '[[set]]\nname = "inner"\nwhere = "x < 1e-3 && abs(y) < 0.0119"\n[[load]]\nset = "inner"\ntraction = ["1e6*load", 0]\n'
+        deep = '[[load]]\nside = "x+"\ntraction = ["1e6*load", 0]\ndepth = "horizon"\n'
+        for text, code in ((plate("x") + deep, 0), (plate("x").replace("max = [0.012", "max = [0.003") + deep, 2)):
+            self.assertEqual(peristat("check", self.case(text)).code, code)
         side = '[[load]]\nside = "x-"\ntraction = ["1e6*load", 0]\n'
         pin = '[[set]]\nname = "pin"\nwhere = "x^2 + y^2 < 0.003^2"\n[[rigid]]\nset = "pin"\n'
         for more, words in ((inner, "goes on beyond"), (side, "goes on beyond"), (pin, "along x must be 0"),

@@ -177,9 +177,8 @@ def face_forces(places):
 class Conditions:
     """What holds and loads the points."""
 
-    def __init__(self, case, reference, volume, sets, beyond=None):
+    def __init__(self, case, reference, volume, sets):
         self.case, self.reference, self.volume, self.sets = case, reference, volume, sets
-        self.beyond = beyond  # None: nothing
         self.spacing = case.spacing(volume)
         self.spacings = case.spacing_in_expressions if case.is_lattice else self.spacing
         self.prescribed = numpy.zeros(reference.shape, bool)
@@ -314,11 +313,8 @@ class Conditions:
     def traction_areas(self, table, members):
         """Per point: the loaded faces of cells, each shared by the points below it as far as the depth reaches."""
         inside = self.is_in_body()
-        places = self.reference if self.beyond is None else self.beyond.places
-        source = numpy.arange(len(places)) if self.beyond is None else self.beyond.source
-        cell = numpy.rint((places - self.reference.min(axis=0)) / self.spacing).astype(int)
-        body = {tuple(c): k for c, k in zip(cell, source) if inside[k]}
-        own = {k: tuple(c) for k, c in enumerate(cell[: len(inside)]) if inside[k]}
+        cell = numpy.rint((self.reference - self.reference.min(axis=0)) / self.spacing).astype(int)
+        body = {tuple(c): k for k, c in enumerate(cell) if inside[k]}
         sides = [(axis, sign) for axis in range(cell.shape[1]) for sign in (-1, 1)]
         if "side" in table:
             sides = [("xyz".index(table["side"][0]), 1 if table["side"][1] == "+" else -1)]
@@ -327,7 +323,7 @@ class Conditions:
             return (*place[:axis], place[axis] + step, *place[axis + 1 :])
 
         for axis, sign in sides:
-            along = {k: sign * place[axis] for k, place in own.items()}
+            along = {k: sign * place[axis] for place, k in body.items()}
             row = [k for k in along if members[k] and ("set" in table or along[k] == max(along.values()))]
             if len({along[k] for k in row}) == 1 and not any(beside(cell[k], axis, sign) in body for k in row):
                 break

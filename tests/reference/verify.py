@@ -35,7 +35,7 @@ class Verification:
         more = {"sets": sets, "factors": self.results.factors}
         self.mechanics = Mechanics(Body(self.case, reference, volume, **more))
         self.mechanics.spare(sets)
-        self.conditions = Conditions(self.case, reference, volume, sets, self.mechanics.body.beyond)
+        self.conditions = Conditions(self.case, reference, volume, sets)
         self.ties = Ties(self.case, reference, volume, sets, self.conditions.prescribed)
         self.jump_is_free = self.mechanics.body.beyond.given_jump(0.0)[1]
         self.first_real_step = 0
