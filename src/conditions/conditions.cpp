@@ -125,6 +125,10 @@ void Conditions::hold_periodic_cell(const ConstraintSpecification& constraints) 
   const bool is_held = !prescriptions_.empty() || !constraints.rigid_sets.empty() ||
                        !constraints.rollers.empty() || !constraints.linear.empty();
   if (constraints.periods.empty() || is_held) return;
+  for (int c = 0; c < points_.dimension; ++c) floats_[std::size_t(c)] = !foundations_.hold(c);
+  for (const SymmetryPlane& plane : constraints.symmetries) {
+    floats_[std::size_t(plane.axis)] = false;
+  }
   Coordinates middle{};
   for (Index i = 0; i < points_.own(); ++i) {
     middle = plus<3>(middle, scaled<3>(1.0 / points_.own(), points_.position(i)));
@@ -135,12 +139,28 @@ void Conditions::hold_periodic_cell(const ConstraintSpecification& constraints) 
     const Coordinates arm = minus<3>(points_.position(i), middle);
     if (dot<3>(arm, arm) < least) least = dot<3>(arm, arm), nearest = i;
   }
-  for (int c = 0; c < points_.dimension; ++c) {
-    const bool is_mirrored =
-        std::any_of(constraints.symmetries.begin(), constraints.symmetries.end(),
-                    [c](const SymmetryPlane& plane) { return plane.axis == c; });
-    const std::size_t dof = std::size_t(nearest) * points_.dimension + std::size_t(c);
-    if (!is_mirrored && !foundations_.hold(c)) made_.unused.push_back(dof);
+  for (std::size_t c = 0; c < std::size_t(points_.dimension); ++c) {
+    const std::size_t dof = std::size_t(nearest) * std::size_t(points_.dimension) + c;
+    if (floats_[c]) made_.unused.push_back(dof);
+  }
+}
+
+void Conditions::require_balance(std::span<const double> force, const std::string& key) const {
+  constexpr double round_off = 1e-9;
+  const std::size_t d = std::size_t(points_.dimension);
+  for (std::size_t c = 0; c < d; ++c) {
+    double sum = 0.0, sum_of_magnitudes = 0.0;
+    for (std::size_t dof = c; floats_[c] && dof < force.size(); dof += d) {
+      sum += force[dof];
+      sum_of_magnitudes += std::abs(force[dof]);
+    }
+    if (std::abs(sum) <= round_off * sum_of_magnitudes) continue;
+    throw InputError(
+        key, "",
+        "the loads on a cell that nothing holds add up to " + number_text(sum) + " N along " +
+            "xyz"[c] +
+            ", for which a body that repeats has no equilibrium. Balance them, or hold "
+            "the cell by a support");
   }
 }
 
@@ -261,10 +281,16 @@ void Conditions::find_shared() {
 }
 
 void Conditions::try_stages() {
-  std::vector<double> values(prescribed_.size(), 0.0);
+  std::vector<double> values(prescribed_.size(), 0.0), force(prescribed_.size());
   const auto try_at = [&](const LoadPoint& at) {
     prescribe(at, values);
-    static_cast<void>(environment(at));
+    const bool floats = floats_ != std::array<bool, 3>{};
+    if (floats) external_force(at, force);
+    const SharedEnvironment there = environment(at);
+    if (floats && !pressures_.empty()) {
+      require_balance(face_forces(pressed_, there->pressure, points_.dimension),
+                      pressures_.front().key);
+    }
     for (const double value : values) largest_ = std::max(largest_, std::abs(value));
   };
   if (control_) return try_at({0.0, 0.0});  // nobody knows where its loads will go
@@ -331,6 +357,7 @@ void Conditions::external_force(const LoadPoint& at, std::span<double> force) co
       }
     });
   }
+  if (!loads_.empty()) require_balance(force, loads_.front().key);
 }
 
 std::map<std::string, Coordinates> Conditions::reactions(
@@ -353,6 +380,21 @@ std::map<std::string, Coordinates> Conditions::reactions(
   return sums;
 }
 
+namespace {
+
+/// How far images of a kind move when a plane of symmetry moves by 1.
+double follows_plane(const ImageKind& kind, const Restraint& plane) {
+  const std::size_t axis = std::size_t(plane.axis);
+  const bool is_mirrored = kind.mirror[axis] < 0.0;
+  if (!plane.opposite) return is_mirrored ? 2.0 : 0.0;
+  // Reflections in two planes repeat after twice their distance.
+  const double shift = kind.shift[axis] - (is_mirrored ? 2.0 * plane.at : 0.0);
+  const double repeats = std::round(shift / (2.0 * (*plane.opposite - plane.at)));
+  return (is_mirrored ? 2.0 : 0.0) - 2.0 * repeats;
+}
+
+}  // namespace
+
 Coordinates Conditions::reaction_of(const Restraint& restraint,
                                     std::span<const double> gradient) const {
   const std::size_t d = std::size_t(points_.dimension);
@@ -360,8 +402,10 @@ Coordinates Conditions::reaction_of(const Restraint& restraint,
   switch (restraint.kind) {
     case Restraint::Kind::rigid_set:
     case Restraint::Kind::period:
-      for (std::size_t c = 0; c < d; ++c) {
-        sum[c] = gradient[std::size_t(restraint.handles.front()) * d + c];
+      for (const Index handle : restraint.handles) {
+        for (std::size_t c = 0; c < d; ++c) {
+          if (!restraint.is_mirrored[c]) sum[c] = gradient[std::size_t(handle) * d + c];
+        }
       }
       break;
     case Restraint::Kind::rollers:
@@ -373,14 +417,11 @@ Coordinates Conditions::reaction_of(const Restraint& restraint,
       sum[0] = gradient[std::size_t(restraint.handles.front()) * d];
       break;
     case Restraint::Kind::symmetry:
-      // The bonds across the plane count half, and act on images and on their sources.
+      // What it takes to move the plane, and with it all that is mirrored in it.
       for (Index image = points_.own(); image < points_.count(); ++image) {
         const std::size_t axis = std::size_t(restraint.axis);
-        const ImageKind& kind = points_.image_kind(image);
-        const double beyond = points_.position(image)[axis] - restraint.at;
-        const double before = points_.position(points_.source(image))[axis] - restraint.at;
-        if (kind.mirror[axis] > 0.0 || beyond * before > 0.0) continue;
-        sum[axis] += 2.0 * gradient[std::size_t(image) * d + axis];
+        sum[axis] += follows_plane(points_.image_kind(image), restraint) *
+                     gradient[std::size_t(image) * d + axis];
       }
       break;
   }
@@ -397,6 +438,22 @@ std::map<std::string, Coordinates> Conditions::rotations(
         constraints().rotation(constraints().rigid_sets()[k++], displacement);
   }
   return rotations;
+}
+
+std::map<std::string, Coordinates> Conditions::mean_gradients(
+    std::span<const double> displacement) const {
+  std::map<std::string, Coordinates> gradients;
+  const std::size_t d = std::size_t(points_.dimension);
+  for (const Restraint& restraint : made_.restraints) {
+    if (restraint.kind != Restraint::Kind::period) continue;
+    Coordinates& gradient = gradients[restraint.name];
+    for (const Index handle : restraint.handles) {
+      for (std::size_t c = 0; c < d; ++c) {
+        gradient[c] = displacement[std::size_t(handle) * d + c] / restraint.length;
+      }
+    }
+  }
+  return gradients;
 }
 
 std::map<std::string, Coordinates> Conditions::moments(std::span<const double> displacement,

@@ -104,6 +104,11 @@ class Conditions {
                                                            std::span<const double> gradient,
                                                            std::span<const double> external) const;
 
+  /// Mean displacement gradient along each period, du/dx of its axis; 0 where the body does not
+  /// reach over it.
+  [[nodiscard]] std::map<std::string, Coordinates> mean_gradients(
+      std::span<const double> displacement) const;
+
   /// Rotation vector of each rigid set [rad].
   [[nodiscard]] std::map<std::string, Coordinates> rotations(
       std::span<const double> displacement) const;
@@ -150,6 +155,8 @@ class Conditions {
   void refuse_shared_names() const;
   void prescribe_handles();
   void hold_periodic_cell(const ConstraintSpecification& constraints);
+  /// Refuses forces that would have to be borne where a cell is held that nothing holds.
+  void require_balance(std::span<const double> force, const std::string& key) const;
   void prescribe_handles_at(std::span<const double> loads, std::span<double> displacement) const;
   [[nodiscard]] Coordinates reaction_of(const Restraint& restraint,
                                         std::span<const double> gradient) const;
@@ -175,7 +182,8 @@ class Conditions {
   std::optional<DisplacementControl> control_;
   /// First of the prescriptions of each degree of freedom; empty if none has more than one.
   std::vector<const Prescription*> first_;
-  double largest_ = 0.0;  ///< displacement at the stages that were tried [m]
+  std::array<bool, 3> floats_{};  ///< components in which nothing holds a cell
+  double largest_ = 0.0;          ///< displacement at the stages that were tried [m]
 };
 
 }  // namespace peristat

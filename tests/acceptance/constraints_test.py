@@ -1,5 +1,6 @@
 """Planes of symmetry, periodic cells, rigid sets, rollers and linear constraints."""
 
+import itertools
 import json
 import math
 import pathlib
@@ -156,6 +157,41 @@ class Symmetry(Constrained):
             self.assertAlmostEqual(stretch, whole_stretch[bond], delta=1e-9)
         self.assertAlmostEqual(part[-1]["reaction_y:top"], 0.5 * whole[-1]["reaction_y:top"], delta=1e-6 * max(abs(row["reaction_y:top"]) for row in whole))
 
+    def test_two_planes_across_one_axis_are_half_a_period(self):
+        """A strip between two planes, also one that is thinner than the horizon, beside the cell that both repeat."""
+        for material, width in itertools.product((BONDS, CPD_2D), (0.006, 0.002)):
+            with self.subTest(material=material, width=width):
+                strip = plate("x", material=material).replace("max = [0.012", f"max = [{width}")
+                strip = self.run_case(strip + f'[[symmetry]]\naxis = "x"\nat = {width}\n', name="strip")[-1]
+                cell = plate("", material=material).replace("min = [-0.012", f"min = [{-width}").replace("max = [0.012", f"max = [{width}")
+                cell += f'[[period]]\naxis = "x"\nfrom = {-width}\nto = {width}\n'
+                cell = self.run_case(cell, name="cell")[-1]
+                force = cell["reaction_x:period_x"]
+                self.assertGreater(force, 0.1 * cell["reaction_y:top"] * 0.02 / width)
+                self.assertAlmostEqual(strip["reaction_x:symmetry_x+"] / force, 1, delta=1e-9)
+                self.assertAlmostEqual(strip["reaction_x:symmetry_x-"] / force, -1, delta=1e-9)
+                self.assertAlmostEqual(2 * strip["stored_energy"] / cell["stored_energy"], 1, delta=1e-11)
+
+    def test_what_a_part_is_not_is_refused(self):
+        inner = '[[set]]\nname = "inner"\nwhere = "x < 1e-3 && abs(y) < 0.0119"\n[[load]]\nset = "inner"\ntraction = ["1e6*load", 0]\n'
+        deep = '[[load]]\nside = "x+"\ntraction = ["1e6*load", 0]\ndepth = "horizon"\n'
+        for text, code in ((plate("x") + deep, 0), (plate("x").replace("max = [0.012", "max = [0.003") + deep, 2)):
+            self.assertEqual(peristat("check", self.case(text)).code, code)
+        side = '[[load]]\nside = "x-"\ntraction = ["1e6*load", 0]\n'
+        pin = '[[set]]\nname = "pin"\nwhere = "x^2 + y^2 < 0.003^2"\n[[rigid]]\nset = "pin"\n'
+        for more, words in ((inner, "goes on beyond"), (side, "goes on beyond"), (pin, "along x must be 0"),
+                            (pin + 'displacement = [0, "free"]\n', "rotation")):  # fmt: skip
+            with self.subTest(more):
+                ended = peristat("check", self.case(plate("x") + more))
+                self.assertEqual(ended.code, 2, ended.said)
+                self.assertIn(words, ended.said)
+
+    def test_a_rigid_set_that_a_plane_cuts_is_that_of_the_whole(self):
+        pin = '[[set]]\nname = "pin"\nwhere = "x^2 + y^2 < 0.003^2"\n[[rigid]]\nset = "pin"\ndisplacement = [0, "free"]\nrotation = [0]\n'
+        self.run_case(plate("", more=pin), name="whole")
+        self.run_case(plate("x", more=pin), name="part")
+        self.assert_part_of(self.fields("whole"), self.fields("part"))
+
     def test_planes_that_are_none_are_refused(self):
         for text, words in ((plate("x") + plane("x"), "already"),
                             (plate("x").replace('axis = "x"', 'axis = "x"\nat = 5e-4'), "runs through points"),
@@ -259,12 +295,14 @@ class Periodic(Constrained):
         strain = 1e-3
         row = self.run_case(CELL.format(material=BONDS, x=[strain, 0], y=[0, "free"]))[-1]
         self.assertLess(abs(row["reaction_y:period_y"]), 1e-11 * row["reaction_x:period_x"])
+        self.assertAlmostEqual(row["gradient_x:period_x"] / strain, 1, delta=1e-14)
         low, high = -strain, 0.0
         for _ in range(60):  # the contraction at which the lattice has no stress across
             middle = 0.5 * (low + high)
             low, high = (middle, high) if lattice_stress([[strain, 0], [0, middle]])[1, 1] < 0 else (low, middle)
         stress = lattice_stress([[strain, 0], [0, high]])[0, 0]
         self.assertAlmostEqual(row["reaction_x:period_x"] / (0.006 * 1e-3) / stress, 1, delta=1e-11)
+        self.assertAlmostEqual(row["gradient_y:period_y"] / high, 1, delta=1e-9)
 
     def test_a_cell_of_cpd_has_the_energy_of_its_lattice(self):
         gradient = numpy.array([[0.02, 0.01], [-0.03, 0.05]])
@@ -284,6 +322,40 @@ class Periodic(Constrained):
         pair = around**2 / (2 * len(area))
         triangles = (2 * volume * pair * 0.5 * 3e30 * numpy.abs(area) * (ratio - 1) ** 2).sum() / 3
         self.assertAlmostEqual(stored / (48 * (bonds + triangles)), 1, delta=1e-12)
+
+    def test_what_a_cell_is_not_is_refused(self):
+        heavy = BONDS + "density = 1000.0\n"
+        gravity = '[[load]]\ngravity = ["0", "-9.81*load"]\n'
+        sheared = CELL[: CELL.index('[[period]]\naxis = "y"')] + '[[symmetry]]\naxis = "y"\n'
+        for text, words in ((CELL.format(material=heavy, x=[0, 0], y=[0, 0]) + gravity, "along y"),
+                            (sheared.format(material=BONDS, x=["0", "1e-3*load"]), "leaves no jump"),
+                            (sheared.format(material=BONDS, x=["0", "free"]), "leaves no jump")):  # fmt: skip
+            with self.subTest(text):
+                ended = peristat("check", self.case(text))
+                self.assertEqual(ended.code, 2, ended.said)
+                self.assertIn(words, ended.said)
+
+    def test_loads_that_get_out_of_balance_end_the_run(self):
+        sets = '[[set]]\nname = "low"\nwhere = "y < 0.003"\n[[set]]\nname = "high"\nwhere = "y > 0.003"\n'
+        loads = '[[load]]\nset = "low"\ntotal_force = [0, "-load"]\n[[load]]\nset = "high"\ntotal_force = [0, "{}"]\n'
+        text = CELL.format(material=BONDS, x=[0, 0], y=[0, 0]) + sets
+        balanced = self.run_case(text + loads.format("load"), "loading.steps=4", name="balanced")
+        self.assertGreater(balanced[-1]["stored_energy"], 0)
+        kink = "load + 16*load*(load - 0.5)*(load - 1)*(load > 0.2 ? 0 : 1)"  # 0 at the ends and in the middle
+        self.run_case(text + loads.format(kink), "loading.steps=10", name="kinked", expected=3)
+        self.assertIn("add up to", (self.folder / "kinked/decisions.csv").read_text())
+
+    def test_cells_may_have_many_points(self):
+        """A gap of one spacing between a cell and the next is a small part of a large one."""
+        text = CELL.format(material=BONDS, x=["1e-3*load", "0"], y=["0", "0"]).replace("0.008", "0.06")
+        row = self.run_case(text)[-1]
+        stress = lattice_stress([[1e-3, 0], [0, 0]])
+        self.assertAlmostEqual(row["reaction_x:period_x"] / (0.006 * 1e-3) / stress[0, 0], 1, delta=1e-12)
+
+    def test_points_at_both_sides_are_refused(self):
+        ended = peristat("check", self.case(CELL.format(material=BONDS, x=[0, 0], y=[0, 0]).replace("to = 0.008", "to = 0.0075")))
+        self.assertEqual(ended.code, 2, ended.said)
+        self.assertIn("does not go on", ended.said)
 
     def test_a_cell_that_may_turn_is_refused(self):
         ended = peristat("check", self.case(CELL.format(material=BONDS, x=["1e-3*load", "free"], y=["free", 0])))
@@ -578,6 +650,13 @@ class Pressed(Constrained):
         rows = {round(y, 6): fields["displacement"][numpy.abs(reference[:, 1] - y) < 1e-6] for y in reference[:, 1]}
         for displacement in rows.values():  # nothing changes along the plate
             self.assertLess(numpy.ptp(displacement, axis=0).max(), 1e-12 * numpy.abs(fields["displacement"]).max())
+
+    def test_a_cell_that_nothing_holds_needs_balanced_pressures(self):
+        floating = STRIP_UNDER_PRESSURE.replace('[[support]]\nset = "bottom"\ndisplacement = [0, 0]\n', "")
+        ended = peristat("check", self.case(floating))
+        self.assertEqual(ended.code, 2, ended.said)
+        self.assertIn("no equilibrium", ended.said)
+        self.run_case(floating + '[[load]]\nside = "y-"\npressure = "1e6*load"\n')
 
     def test_on_a_side_where_the_body_goes_on_it_is_refused(self):
         for side, told in (("x-", "beyond a plane"), ("x+", "")):

@@ -39,4 +39,4 @@ class Foundations:
 
     def work(self, old, new):
         """Of the ground from one step to another, by half of what it adds to the energy of each [J]."""
-        return sum((self.energy(u, new.load) - self.energy(u, old.load)).sum() / 2 for u in (old.displacement, new.displacement))
+        return sum((self.energy(u, new.loads) - self.energy(u, old.loads)).sum() / 2 for u in (old.displacement, new.displacement))

@@ -228,7 +228,8 @@ Exit check(const Case& from, int threads) {
   fmt::print("points      {} in {}D, spacing {}, horizon {:g} m ({:.4g} spacings)\n", points.own(),
              points.dimension, spacing_text(points), body.setting.horizon, body.horizon_ratio());
   fmt::print("bonds       {}; neighbours per point {} to {}, {:.1f} on average\n",
-             body.model.bonds().count(), neighbours.least, neighbours.most, neighbours.mean);
+             weighted_bonds(body.model.bonds()), neighbours.least, neighbours.most,
+             neighbours.mean);
   for (const std::string& line : describe_interactions(body)) {
     fmt::print("interaction {}\n", line);
   }

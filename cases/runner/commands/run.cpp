@@ -14,12 +14,12 @@
 #include "cases/runner/build/solver_options.hpp"
 #include "cases/runner/process/failure.hpp"
 #include "cases/runner/process/interruption.hpp"
+#include "cases/runner/results/constraint_columns.hpp"
 #include "cases/runner/results/crack_tip_columns.hpp"
 #include "cases/runner/results/dossier.hpp"
 #include "cases/runner/results/probe.hpp"
 #include "cases/runner/results/recorder.hpp"
 #include "cases/runner/results/results.hpp"
-#include "cases/runner/results/rigid_set_columns.hpp"
 #include "solvers/linear/cholesky.hpp"
 #include "solvers/study/found_loads.hpp"
 #include "solvers/study/study.hpp"
@@ -56,11 +56,11 @@ std::vector<std::string> support_sets(const Case& from) {
   for (const auto& set : constraints.rigid_sets) sets.push_back(set.set);
   for (const auto& roller : constraints.rollers) sets.push_back(roller.name());
   for (const auto& linear : constraints.linear) sets.push_back(linear.name);
-  for (const auto& plane : constraints.symmetries) {
-    sets.push_back(std::string("symmetry_") + "xyz"[plane.axis]);
+  for (std::size_t k = 0; k < constraints.symmetries.size(); ++k) {
+    sets.push_back(name_of_plane(constraints.symmetries, k));
   }
   for (const auto& period : constraints.periods) {
-    sets.push_back(std::string("period_") + "xyz"[period.axis]);
+    sets.push_back(name_of_period(period));
   }
   return sets;
 }
@@ -213,7 +213,7 @@ class CaseRun {
       if (!probe.from) probes_.push_back(columns_of(probe, from.dimension));
     }
     for (ProbeColumns& columns : crack_tip_columns(from)) probes_.push_back(std::move(columns));
-    for (ProbeColumns& columns : rigid_set_columns(from)) probes_.push_back(std::move(columns));
+    for (ProbeColumns& columns : constraint_columns(from)) probes_.push_back(std::move(columns));
   }
 
   Exit run() {

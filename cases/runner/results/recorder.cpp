@@ -6,9 +6,9 @@
 
 #include "assembly/terms/bonds/point_stretches.hpp"
 #include "assembly/terms/damage.hpp"
+#include "cases/runner/results/constraint_columns.hpp"
 #include "cases/runner/results/crack_tip_columns.hpp"
 #include "cases/runner/results/record_tables.hpp"
-#include "cases/runner/results/rigid_set_columns.hpp"
 
 namespace peristat {
 
@@ -81,7 +81,7 @@ void Recorder::accepted(StepRecord record, const AcceptedState& state) {
     record.probes[probe.name] = probe_values(probe, points_, all, separated_);
   }
   add_crack_tip_values(case_, crack_tips_, assembler_, state.trial, record.stage, record.probes);
-  add_rigid_set_values(*body_.conditions, state.trial, state.external_force, record.probes);
+  add_constraint_values(*body_.conditions, state.trial, state.external_force, record.probes);
   for (const LineProbe& line : lines_) {
     results_.add_line(line.table().name, line.rows(record, all));
   }
