@@ -1245,7 +1245,8 @@ Table<ProbeSpecification> probe_keys() {
   using Spec = ProbeSpecification;
   using K = Key<Spec>;
   const auto has_no_axis = [](auto& probe, auto&) {
-    return probe.field != "poisson_ratio" && probe.field != "crack_length";
+    return probe.field != "poisson_ratio" && probe.field != "crack_length" &&
+           probe.field != "crack_begin" && probe.field != "crack_end";
   };
   const auto has_no_other = [](auto& probe, auto&) { return probe.field != "opening"; };
   return {
@@ -1269,11 +1270,15 @@ Table<ProbeSpecification> probe_keys() {
            .unless(is_whole, "is for a field that every point has")
            .one_of(),
        K("field", &Spec::field, one_of(probe_field_names()),
-         "displacement, opening and length in m, force in N, energy density in J/m³, stress in Pa; "
+         "displacement, opening, length and place in m, area in m², force in N, energy density in "
+         "J/m³, stress in Pa, work of fracture in J/m²; "
          "`stress` is Cauchy's, `strain` Green and Lagrange's")
            .then([](auto& at, auto& probe) {
              if (probe.field == "poisson_ratio" && at.so_far.dimension == 1)
                at.refuse("there is no Poisson's ratio in dimension 1");
+             const bool has_area = probe.field == "crack_area" || probe.field == "work_of_fracture";
+             if (has_area && !std::holds_alternative<Lattice>(at.so_far.body))
+               at.refuse("is for points on a lattice, which have faces between them");
            })
            .early(),
        K("to", &Spec::to, coordinates(), "end of the line")
@@ -1301,9 +1306,11 @@ Table<ProbeSpecification> probe_keys() {
                at.refuse("is for a field over a set");
            }),
        K("axis", &Spec::axis, axis(),
-         "`poisson_ratio`: direction of the pull; `crack_length`: direction in which the crack "
-         "runs")
-           .unless(has_no_axis, "is for fields \"poisson_ratio\" and \"crack_length\""),
+         "`poisson_ratio`: direction of the pull; `crack_length`, `crack_begin`, `crack_end`: "
+         "direction in which the crack runs")
+           .unless(has_no_axis,
+                   "is for fields \"poisson_ratio\", \"crack_length\", \"crack_begin\" and "
+                   "\"crack_end\""),
        K("other", &Spec::other, known_set(), "`opening`: the set on the other side of the crack")
            .unless(has_no_other, "is for field \"opening\"")
            .required("required with it")}};

@@ -10,6 +10,7 @@
 #include <Eigen/QR>
 
 #include "cases/runner/input/probe_fields.hpp"
+#include "cases/runner/results/crack_measures.hpp"
 
 namespace peristat {
 namespace {
@@ -84,28 +85,6 @@ std::vector<double> mean_of(const std::vector<double>& values, const std::vector
   return mean;
 }
 
-/// Length of the period across an axis [m]; 0: the body has none there.
-double period_along(const Points& points, std::size_t axis) {
-  for (const ImageKind& kind : points.images.kinds) {
-    if (kind.periods[axis] == 1) return kind.shift[axis];
-  }
-  return 0.0;
-}
-
-/// Length of the shortest interval that holds all places, on a line or, with a period, a circle.
-double extent_of(std::vector<double> places, double period) {
-  if (period > 0.0) {
-    for (double& place : places) place -= period * std::floor(place / period);
-  }
-  std::sort(places.begin(), places.end());
-  const double extent = places.back() - places.front();
-  double left_out = period - extent;
-  for (std::size_t k = 1; k < places.size() && period > 0.0; ++k) {
-    left_out = std::max(left_out, places[k] - places[k - 1]);
-  }
-  return period > 0.0 ? period - left_out : extent;
-}
-
 std::vector<double> over_set(const ProbeSpecification& probe, const Points& points,
                              const StepFields& fields) {
   const std::vector<Index>& members = points.sets.at(probe.set);
@@ -121,27 +100,6 @@ std::vector<double> over_set(const ProbeSpecification& probe, const Points& poin
   if (probe.statistic != Statistic::mean) return total;
   for (double& value : total) value /= double(members.size());
   return total;
-}
-
-/// Extent along the axis of the middles of the separated bonds that run across it and have an end
-/// in the set; each stands for a strip of one spacing. Only bonds across the axis, because where
-/// along an inclined one the crack passes is not known.
-double crack_length(const ProbeSpecification& probe, const Points& points,
-                    std::span<const BondEnds> separated) {
-  const std::vector<Index>& members = points.sets.at(probe.set);
-  const auto is_member = [&](Index point) {
-    return std::binary_search(members.begin(), members.end(), point);
-  };
-  const double spacing =
-      points.angle == 0.0 ? points.spacing.along(probe.axis) : double(points.spacing);
-  std::vector<double> middles;
-  for (const auto& [i, j] : separated) {
-    const double a = points.position(i)[probe.axis], b = points.position(j)[probe.axis];
-    if (std::abs(b - a) > 0.5 * spacing || !(is_member(i) || is_member(j))) continue;
-    middles.push_back(0.5 * (a + b));
-  }
-  if (middles.empty()) return 0.0;
-  return extent_of(std::move(middles), period_along(points, std::size_t(probe.axis))) + spacing;
 }
 
 }  // namespace
@@ -165,18 +123,22 @@ std::vector<double> values_at(const ProbeSpecification& probe, int dimension,
 
 ProbeColumns columns_of(const ProbeSpecification& probe, int dimension) {
   if (probe.field == "poisson_ratio") return {probe.name, 1, "1"};
-  if (probe.field == "crack_length") return {probe.name, 1, "m"};
+  if (const CrackMeasure* measure = crack_measure(probe.field)) {
+    return {probe.name, 1, measure->unit};
+  }
   if (probe.field == "opening") return {probe.name, dimension, "m"};
   return {probe.name, int(chosen_components(probe, dimension).size()),
           probe_field(probe.field)->unit};
 }
 
 std::vector<double> probe_values(const ProbeSpecification& probe, const Points& points,
-                                 const StepFields& fields, std::span<const BondEnds> separated) {
+                                 const StepFields& fields, const CrackState& crack) {
   if (probe.field == "poisson_ratio") {
     return {fitted_poisson_ratio(probe, points, *fields.displacement)};
   }
-  if (probe.field == "crack_length") return {crack_length(probe, points, separated)};
+  if (const CrackMeasure* measure = crack_measure(probe.field)) {
+    return {measure->value(points, points.sets.at(probe.set), probe.axis, crack)};
+  }
   if (probe.at) {
     return values_at(probe, points.dimension, fields, nearest_point(points, *probe.at));
   }

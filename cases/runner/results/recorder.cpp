@@ -76,9 +76,11 @@ void Recorder::accepted(StepRecord record, const AcceptedState& state) {
   record.max_damage = made.max_damage;
   record_broken_bonds(record, at.history);
   const StepFields all = made.view(true), view = made.view(case_.output.stress);
+  const CrackState crack{separated_, body_.cut_bonds.size(),
+                         record.external_work + record.numerical_work - record.stored_energy};
   for (const ProbeSpecification& probe : case_.probes) {
     if (probe.from) continue;
-    record.probes[probe.name] = probe_values(probe, points_, all, separated_);
+    record.probes[probe.name] = probe_values(probe, points_, all, crack);
   }
   add_crack_tip_values(case_, crack_tips_, assembler_, state.trial, record.stage, record.probes);
   add_constraint_values(*body_.conditions, state.trial, state.external_force, record.probes);
