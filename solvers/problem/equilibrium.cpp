@@ -104,6 +104,17 @@ std::string explanation(Outcome outcome) {
   return "";
 }
 
+void share_out_jump(const EquilibriumProblem& problem, std::span<const double> from,
+                    std::span<double> displacement) {
+  const Constraints& constraints = problem.conditions.constraints();
+  if (constraints.none()) return;
+  std::vector<char> stays(displacement.size());
+  for (std::size_t dof = 0; dof < stays.size(); ++dof) {
+    stays[dof] = problem.free.equation[dof] == FreeDofs::none;
+  }
+  constraints.share_out_jump(from, stays, displacement);
+}
+
 void move_followers(const EquilibriumProblem& problem, Trial& trial) {
   const Constraints& constraints = problem.conditions.constraints();
   if (!constraints.none()) constraints.move(trial.displacement);

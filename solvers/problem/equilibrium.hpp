@@ -70,6 +70,11 @@ struct Trial {
 /// Where its supports and loads are.
 [[nodiscard]] inline LoadPoint load_point(const State& state) { return {state.stage, state.load}; }
 
+/// Takes a displacement to the state right after a jump of the prescribed ones, which are in it
+/// already.
+/// @param from before the jump
+void share_out_jump(const EquilibriumProblem& problem, std::span<const double> from,
+                    std::span<double> displacement);
 /// Moves what follows other degrees of freedom to where these have taken it.
 void move_followers(const EquilibriumProblem& problem, Trial& trial);
 /// Folds the gradient that the assembler has found onto what is followed.

@@ -337,6 +337,7 @@ double scale_of_step(const EquilibriumProblem& problem, const Way& way, const Tr
   for (const Index dof : way.prescribed()) {
     after_jump.displacement[dof] = way.end_displacement()[dof];
   }
+  share_out_jump(problem, start.displacement, after_jump.displacement);
   after_jump.environment = way.end_environment();
   // A jump that tears bonds would leave no residual to measure against.
   evaluate(problem, way.end_force(), after_jump, Damage::held);

@@ -51,6 +51,7 @@ class NewtonSearch {
     // Where they may break, nothing would be left to measure the residual against, and the search
     // would begin in a torn body: damage is held until the predictor has spread the jump.
     problem.conditions.prescribe(stage, current_.displacement);
+    share_out_jump(problem, from.displacement, current_.displacement);
     evaluate(problem, external_force_, current_, damage_);
     result_.scale = options.scale > 0.0
                         ? options.scale

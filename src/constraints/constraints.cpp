@@ -115,6 +115,34 @@ void Constraints::move(std::span<double> displacement) const {
   move_images(displacement);
 }
 
+void Constraints::share_out_jump(std::span<const double> from, std::span<const char> stays,
+                                 std::span<double> displacement) const {
+  const auto for_each = [&](const Follower& follower, std::size_t component, const auto& visit) {
+    for (const Dependence& on : follower.masters) {
+      for (int c = 0; c < dimension_; ++c) {
+        visit(on.master, dof(on.master, c), on.block[component][std::size_t(c)]);
+      }
+    }
+  };
+  for (const Follower& follower : followers_) {
+    for (std::size_t component = 0; component < std::size_t(dimension_); ++component) {
+      if (!follower.follows[component]) continue;
+      double jump = 0.0, squares = 1.0;
+      for_each(follower, component, [&](Index master, std::size_t at, double coefficient) {
+        if (master >= points_) {
+          jump += coefficient * (displacement[at] - from[at]);
+        } else if (!stays[at]) {
+          squares += coefficient * coefficient;
+        }
+      });
+      if (jump == 0.0) continue;
+      for_each(follower, component, [&](Index master, std::size_t at, double coefficient) {
+        if (master < points_ && !stays[at]) displacement[at] -= coefficient * jump / squares;
+      });
+    }
+  }
+}
+
 void Constraints::extend(std::span<const double> displacement, std::span<double> rate) const {
   move_followers(rate);
   for (const RigidSet& set : rigid_) {

@@ -76,6 +76,13 @@ class Constraints {
   /// Moves whatever follows.
   void move(std::span<double> displacement) const;
 
+  /// Shares out what handles have moved since `from` among all points that a follower's equation
+  /// names, each by its coefficient, in the place of leaving it to the follower: one point of many
+  /// would jump by as many times the displacement that their mean is given.
+  /// @param stays per degree of freedom, whether it is none that can take a share
+  void share_out_jump(std::span<const double> from, std::span<const char> stays,
+                      std::span<double> displacement) const;
+
   /// Lets a rate of displacements include what follows: J times that of the others.
   void extend(std::span<const double> displacement, std::span<double> rate) const;
 

@@ -75,8 +75,9 @@ class Ties:
                 inside = sets[term["set"]]
                 row[inside] += numpy.asarray(term["weights"], float) / inside.sum()
             self.rows.append((table["name"], row, table.get("displacement", 0), None, None))
-        for _, row, *_ in self.rows:
-            self.follows |= (row != 0) & ~prescribed
+        if self.rows:
+            self.eliminate()
+            self.follows |= self.in_rows
 
     def add_touching(self, table, normal):
         start = numpy.asarray(table["at"], float)
@@ -125,13 +126,39 @@ class Ties:
             found.append(abs((row * displacement).sum() - self.value(wanted, load, place)))
         return max(found)
 
+    def after_jump(self, displacement, loads):
+        """The displacement with all that is given moved to its new value, nothing else: sums of displacements by the
+        least change of those in them."""
+        moved = displacement.copy()
+        for table, members, arms in self.rigid:
+            motion = RigidMotion(arms, displacement[members])
+            centre = self.given(table.get("displacement", ()), loads, motion.centre)
+            turn = self.given(table.get("rotation", ()), loads, motion.rotation())
+            moved[members] = centre + rotated(arms, turn) - arms
+        for table, members, normal in self.slopes:
+            wanted = table.get("displacement", 0)
+            if wanted != "free":
+                target = evaluate(wanted, self.reference[members], loads, self.spacings)
+                moved[members] += numpy.outer(target - moved[members] @ normal, normal)
+        if self.rows:
+            free = self.in_rows
+            wanted = numpy.array([self.value(value, loads, place) for _, _, value, place, _ in self.rows])
+            lacking = wanted - numpy.array([(row * moved).sum() for _, row, *_ in self.rows])
+            moved[free] += numpy.linalg.lstsq(self.coefficients, lacking, rcond=None)[0]
+        return moved
+
+    def given(self, expressions, loads, now):
+        """Components that are given, and what they are now where they are not."""
+        expressions = expressions or ["free"] * len(now)
+        return numpy.array([is_now if e == "free" else self.value(e, loads) for e, is_now in zip(expressions, now)])
+
     def out_of_balance(self, displacement, forces):
         """Forces that nothing is there to bear [N]: those along what the ties leave free."""
         left = []
         for table, members, arms in self.rigid:
             motion = RigidMotion(arms, displacement[members])
             given, turns = table.get("displacement", ()), table.get("rotation", ())
-            size = numpy.abs(arms).max()
+            size = numpy.sqrt((arms**2).sum(axis=1)).max()
             left += [r for c, r in enumerate(forces[members].sum(axis=0)) if not given or given[c] == "free"]
             rates = spin_rates(motion.rotation()).T @ moment(arms @ motion.turn.T, forces[members])
             left += [m / size for c, m in enumerate(rates) if not turns or turns[c] == "free"]
@@ -141,15 +168,31 @@ class Ties:
             if table.get("displacement", 0) == "free":
                 left.append(along.sum())
         if self.rows:
-            rest, _ = self.multipliers(forces)
-            left += list(rest)
+            left += list(self.slides.T @ forces[self.in_rows])
         return numpy.array(left)
 
+    def eliminate(self):
+        """Each row has a pivot, the displacement with its largest coefficient, which follows the others: `slides` are
+        motions of one of these and of the pivots that break no row, `leans` of pivots that one row alone answers to."""
+        self.in_rows = numpy.any([row != 0 for _, row, *_ in self.rows], axis=0) & ~self.prescribed
+        self.coefficients = numpy.array([row[self.in_rows] for _, row, *_ in self.rows])
+        solved, pivots = self.coefficients.copy(), []
+        for k in range(len(solved)):
+            pivots.append(int(numpy.abs(solved[k] * (1 - 1e-9 * numpy.arange(solved.shape[1]) / solved.shape[1])).argmax()))
+            solved[k] /= solved[k, pivots[k]]
+            for other in range(len(solved)):
+                if other != k:
+                    solved[other] -= solved[other, pivots[k]] * solved[k]
+        others = numpy.setdiff1d(numpy.arange(solved.shape[1]), pivots)
+        self.slides = numpy.zeros((solved.shape[1], len(others)))
+        self.slides[others, numpy.arange(len(others))] = 1
+        self.slides[pivots] = -solved[:, others]
+        self.leans = numpy.linalg.inv(self.coefficients[:, pivots])
+        self.pivots = pivots
+
     def multipliers(self, forces):
-        inside = numpy.any([row != 0 for _, row, *_ in self.rows], axis=0) & ~self.prescribed
-        matrix = numpy.array([row[inside] for _, row, *_ in self.rows]).T
-        found = numpy.linalg.lstsq(matrix, forces[inside], rcond=None)[0]
-        return forces[inside] - matrix @ found, found
+        """What each row bears [N]: its work as its value changes and the pivots follow."""
+        return self.leans.T @ forces[self.in_rows][self.pivots]
 
     def work(self, old, new, before, after):
         """Of what moves the ties, by the trapezoidal rule in their own coordinates [J]: centres and rotation vectors of
@@ -158,15 +201,18 @@ class Ties:
         for table, members, arms in self.rigid:
             one, other = (RigidMotion(arms, state.displacement[members]) for state in (old, new))
             sums = before[members].sum(axis=0) + after[members].sum(axis=0)
-            work += sums @ (other.centre - one.centre) / 2
             pulls = [spin_rates(motion.rotation()).T @ moment(arms @ motion.turn.T, forces[members])
                      for motion, forces in ((one, before), (other, after))]  # fmt: skip
-            work += sum(pulls) @ (other.rotation() - one.rotation()) / 2
-        for _, members, normal in self.slopes:
+            for given, pull, moved in ((table.get("displacement", ()), sums, other.centre - one.centre),
+                                       (table.get("rotation", ()), sum(pulls), other.rotation() - one.rotation())):  # fmt: skip
+                work += sum(pull[c] * moved[c] / 2 for c, e in enumerate(given) if e != "free")
+        for table, members, normal in self.slopes:
+            if table.get("displacement", 0) == "free":
+                continue
             moved = (new.displacement - old.displacement)[members]
             work += ((before + after)[members] @ normal) @ (moved @ normal) / 2
         if self.rows:
-            forces = self.multipliers(before)[1] + self.multipliers(after)[1]
+            forces = self.multipliers(before) + self.multipliers(after)
             moved = new.displacement - old.displacement
             work += sum(force * (row * moved).sum() for force, (_, row, *_) in zip(forces, self.rows)) / 2
         return work
@@ -181,7 +227,7 @@ class Ties:
         for table, members, normal in self.slopes:
             reactions[table["set"]] = (forces[members] @ normal).sum() * normal
         if self.rows:
-            _, found = self.multipliers(forces)
+            found = self.multipliers(forces)
             for (name, row, _, _, normal), force in zip(self.rows, found):
                 direction = numpy.eye(row.shape[1])[0] if normal is None else normal
                 reactions[name] = reactions.get(name, 0) + force * direction

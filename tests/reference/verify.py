@@ -209,6 +209,7 @@ class Verification:
         jumped = old.displacement.copy()
         prescribed = self.conditions.prescribed
         jumped[prescribed] = self.conditions.displacement(step.loads)[prescribed]
+        jumped = self.ties.after_jump(jumped, step.loads)
         past = old.history if mechanics is self.mechanics else history
         external = self.external(step.loads, jumped)
         mechanics.eigenstretch = self.conditions.eigenstretch(old.loads)
@@ -217,13 +218,17 @@ class Verification:
         mechanics.eigenstretch = self.conditions.eigenstretch(step.loads)
         # Reactions of both states: Newton's method that finishes a relaxed step starts from the latter.
         held = prescribed | self.ties.follows
-        norms = [numpy.linalg.norm(external), numpy.hypot(numpy.linalg.norm(reactions[held]), beyond)]
+        of_ties = self.norm_of_ties(old, reactions)
+        norms = [numpy.linalg.norm(external), numpy.linalg.norm([numpy.linalg.norm(reactions[held]), beyond, of_ties])]
         beyond = self.forces_beyond(mechanics, step, history)
-        norms.append(numpy.hypot(numpy.linalg.norm(out_of_balance[held]), beyond))
+        of_ties = self.norm_of_ties(step, out_of_balance)
+        norms.append(numpy.linalg.norm([numpy.linalg.norm(out_of_balance[held]), beyond, of_ties]))
         # The jump that a step begins with is measured with the damage held.
         jump = numpy.where(self.jump_is_free, old.jump, step.jump)
         everywhere = mechanics.body.beyond.spread(jumped, jump)
-        on_points = (mechanics.gradient(everywhere, past, held=True) - external)[~prescribed]
+        after_jump = mechanics.gradient(everywhere, past, held=True) - external
+        along_ties = self.ties.out_of_balance(jumped, after_jump)
+        on_points = numpy.concatenate([after_jump[~held], along_ties])
         on_jumps = mechanics.pull_of_periods(everywhere, past, held=True)[self.jump_is_free]
         norms.append(numpy.hypot(numpy.linalg.norm(on_points), numpy.linalg.norm(on_jumps)))
         norms.append(numpy.linalg.norm(self.of_environment(mechanics, step, old, past)))
@@ -246,6 +251,13 @@ class Verification:
         if not residual <= allowed:
             self.complain(step, f"not in equilibrium: residual {residual:.4g} N, {allowed:.4g} N is allowed "
                                 f"(relative {residual / scale if scale else numpy.inf:.3g})")  # fmt: skip
+
+    def norm_of_ties(self, state, forces):
+        """Of what ties bear in their own coordinates [N]: it counts among the reactions."""
+        reactions, moments = self.ties.reactions(state.displacement, forces)
+        sizes = {table["set"]: numpy.sqrt((arms**2).sum(axis=1)).max() for table, _, arms in self.ties.rigid}
+        turns = [numpy.linalg.norm(about) / sizes[name] for name, about in moments.items()]
+        return numpy.linalg.norm([*(numpy.linalg.norm(force) for force in reactions.values()), *turns])
 
     @staticmethod
     def forces_beyond(mechanics, state, history):
