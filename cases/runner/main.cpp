@@ -35,6 +35,8 @@ struct CommandLine {
   bool quiet = false, overwrite = false;
   bool no_plots = false;  // taken by the launcher, which draws
   CalibrationQuestion calibration;
+  MaterialModel calibrated_model = MaterialModel::cpd;
+  BondCalibrationQuestion bond_calibration;
 };
 
 /// "key=value" taken apart.
@@ -90,7 +92,7 @@ void add_calibration(CLI::App& command, CommandLine& line) {
       command.add_option("case", line.case_file, "case file: its lattice and material");
   add_settings(command, line);
   CalibrationQuestion& asked = line.calibration;
-  command.add_option("--dimension", asked.dimension, "2 or 3")->excludes(file);
+  command.add_option("--dimension", asked.dimension, "2 or 3; of bonds also 1")->excludes(file);
   command.add_option("--spacing", asked.spacing, "of the lattice [m]")->excludes(file);
   command.add_option("--horizon-ratio", asked.horizon_ratio, "horizon / spacing")->excludes(file);
   command.add_option("--thickness", asked.thickness, "2D [m] (default: 1)")->excludes(file);
@@ -106,6 +108,56 @@ void add_calibration(CLI::App& command, CommandLine& line) {
   add("--c3", asked.c3, "[N/m14], three-neighbour constant, 3D");
 }
 
+/// Names of an option's values.
+template <class Value>
+CLI::CheckedTransformer names(const std::vector<std::pair<std::string, Value>>& values) {
+  return CLI::CheckedTransformer(values);
+}
+
+void add_bond_calibration(CLI::App& command, CommandLine& line) {
+  CLI::Option* file = command.get_option("case");
+  BondCalibrationQuestion& asked = line.bond_calibration;
+  MaterialSpecification& material = asked.material;
+  DamageSpecification& damage = material.damage;
+  const auto add = [&](const char* name, auto& value, const char* text) {
+    return command.add_option(name, value, text)->excludes(file);
+  };
+  using Volume = VolumeCorrection;
+  using Surface = SurfaceCorrection;
+  using Law = DamageLaw;
+  add("--model", line.calibrated_model, "cpd (default) or bond")
+      ->transform(
+          names<MaterialModel>({{"cpd", MaterialModel::cpd}, {"bond", MaterialModel::bond}}));
+  add("--area", asked.area, "bond, 1D [m2] (default: 1)");
+  add("--angle", asked.angle, "bond: of the lattice [degrees]");
+  add("--volume-correction", asked.volume_correction, "bond: none (default) or linear")
+      ->transform(names<Volume>({{"none", Volume::none}, {"linear", Volume::linear}}));
+  add("--surface-correction", asked.surface_correction, "bond: none (default), volume or energy")
+      ->transform(names<Surface>(
+          {{"none", Surface::none}, {"volume", Surface::volume}, {"energy", Surface::energy}}));
+  add("--plane", material.plane, "bond, 2D: stress (default) or strain")
+      ->transform(
+          names<PlaneState>({{"stress", PlaneState::stress}, {"strain", PlaneState::strain}}));
+  add("--calibration", material.calibration, "bond: continuum (default) or lattice")
+      ->transform(names<Calibration>(
+          {{"continuum", Calibration::continuum}, {"lattice", Calibration::lattice}}));
+  add("--micromodulus", material.micromodulus, "bond: c [N/m6]");
+  add("--law", damage.law, "bond: of damage, as in case files")
+      ->transform(names<Law>({{"critical_stretch", Law::critical_stretch},
+                              {"tanh", Law::tanh},
+                              {"tanh_continuous", Law::tanh_continuous},
+                              {"linear", Law::linear},
+                              {"exponential", Law::exponential},
+                              {"blended", Law::blended}}));
+  add("--fracture-energy", damage.fracture_energy, "bond [J/m2]");
+  add("--strength", damage.strength, "bond [Pa]");
+  add("--critical", damage.critical, "bond: stretch");
+  add("--onset", damage.onset, "bond: stretch");
+  add("--peak", damage.peak, "bond, blended: stretch");
+  add("--hardening", damage.hardening, "bond, blended");
+  add("--rate", damage.rate, "bond, tanh laws and exponential");
+}
+
 RunOptions run_options(const CommandLine& line, int threads) {
   return {threads, line.quiet, line.log_file, line.overwrite, line.steps};
 }
@@ -116,7 +168,11 @@ Exit execute(const CLI::App& program, const CommandLine& line, int threads) {
     return resume(line.results, overrides(line), run_options(line, threads));
   }
   const bool is_calibration = program.got_subcommand("calibrate");
-  if (is_calibration && line.case_file.empty()) return calibrate(line.calibration);
+  if (is_calibration && line.case_file.empty()) {
+    return line.calibrated_model == MaterialModel::bond
+               ? calibrate(line.calibration, line.bond_calibration)
+               : calibrate(line.calibration);
+  }
   const Case from = read_case(line.case_file, overrides(line));
   if (is_calibration) return calibrate(from);
   if (program.got_subcommand("check")) return check(from, threads);
@@ -186,9 +242,10 @@ int main(int count, char** arguments) try {
   program.add_subcommand("keys", "keys of case files, as tables in markdown")
       ->add_option("table", line.table,
                    "one table, such as solver or lattice.shape (default: all)");
-  add_calibration(
-      *program.add_subcommand("calibrate", "constants of cpd from moduli and back; prints JSON"),
-      line);
+  CLI::App* const calibration = program.add_subcommand(
+      "calibrate", "constants from moduli and data of fracture, and back; prints JSON");
+  add_calibration(*calibration, line);
+  add_bond_calibration(*calibration, line);
   try {
     program.parse(count, arguments);
   } catch (const CLI::ExtrasError&) {

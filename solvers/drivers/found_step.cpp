@@ -28,7 +28,8 @@ void complete_record(const Path& path, const Attempt& attempt, FoundStep& found)
   record.balance_error = found.ledger.balance_error();
   record.pin_force = path.state().pins.force(attempt.state, attempt.external_force);
   record.reactions =
-      path.setting().conditions.reactions(attempt.state.gradient, attempt.external_force);
+      path.setting().conditions.reactions(attempt.state.gradient, attempt.external_force,
+                                          attempt.state.displacement, attempt.state.environment);
 }
 
 /// Pins what has come free.

@@ -74,8 +74,10 @@ void ImplicitStepping::establish(ImplicitStep& step) {
       NewtonOptions again = path_.setting().newton_options;
       again.scale = attempt.scale;
       const int before = attempt.iterations;
+      const bool unstable_start = attempt.unstable_start;  // of the step, which decides about cuts
       attempt = path_.search(from, from.stage, again);
       attempt.iterations += before;
+      attempt.unstable_start = unstable_start;
       return attempt.outcome;
     });
   }

@@ -35,11 +35,13 @@ struct Resultants {
   double reach = 0.0;  ///< largest distance of a point from the centre [m]
 };
 
-/// dE/dx as the interactions have it, folded onto nothing.
+/// dE/dx of the interactions between points, folded onto nothing.
 std::vector<double> internal_forces(const EquilibriumProblem& problem, const Trial& trial) {
-  if (problem.conditions.constraints().none()) return trial.gradient;
-  std::vector<double> gradient(trial.gradient.size());
-  static_cast<void>(problem.assembler.gradient(trial.at(), gradient));
+  std::vector<double> gradient = trial.gradient;
+  if (!problem.conditions.constraints().none()) {
+    static_cast<void>(problem.assembler.gradient(trial.at(), gradient));
+  }
+  problem.conditions.foundations().add_force(trial.displacement, trial.environment, 1.0, gradient);
   return gradient;
 }
 
@@ -100,7 +102,9 @@ std::string check_resultants(const EquilibriumProblem& problem, const TangentOpe
   for (std::size_t i = 0; i < tangent.diagonal.size(); i += d * d) {
     for (std::size_t c = 0; c < d; ++c) trace += std::abs(tangent.diagonal[i + c * (d + 1)]);
   }
-  const double forces = std::sqrt(2.0 * std::abs(found.after.stored) * trace);
+  // Where all has come apart forces may vanish, and the energy, their square, before them.
+  const double energy = std::max(std::abs(found.after.stored), std::numeric_limits<double>::min());
+  const double forces = std::sqrt(2.0 * energy * trace);
   const double round_off = safety * std::numeric_limits<double>::epsilon() * forces;
   const Resultants sums = resultants_of(problem, found.trial);
   const double force = std::hypot(sums.force[0], sums.force[1], sums.force[2]);
@@ -142,7 +146,9 @@ std::string check_energies(const Balances& owed, const FoundState& found) {
 
 std::string check_magnitude(const FoundState& found) {
   const double forces = norm(found.trial.gradient), moved = norm(found.trial.displacement);
-  if (forces == 0.0 || moved == 0.0 || forces * moved >= smallest_energy) return {};
+  // What has come apart may be left without forces.
+  const bool has_worked = std::abs(found.after.external_work) >= smallest_energy;
+  if (has_worked || forces == 0.0 || moved == 0.0 || forces * moved >= smallest_energy) return {};
   return "forces and displacements are so small that their products vanish in double precision; "
          "use units of the body's own size";
 }

@@ -97,6 +97,7 @@ struct DecisionRecord {
 struct BondHistories {
   std::vector<Index> first_point, second_point;
   std::vector<double> largest_stretch;
+  std::vector<Index> second_image{};  ///< as in BrokenBondRecord; empty for a body without images
 };
 
 /// State that an accepted step writes; arrays are views and count x dimension (row major) or count.
@@ -127,6 +128,8 @@ struct BrokenBondRecord {
   int step = 0;
   double load_factor = 0.0;
   Index first_point = 0, second_point = 0;
+  /// Which of the body's kinds of images of the second point it ends at, from 1; 0: at itself.
+  Index second_image = 0;
 };
 
 }  // namespace peristat

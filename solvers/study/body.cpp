@@ -8,10 +8,12 @@
 #include <fmt/format.h>
 #include <omp.h>
 
+#include "assembly/terms/foundation/foundation_term.hpp"
 #include "assembly/terms/pressure/pressure_term.hpp"
 #include "solvers/linear/available_memory.hpp"
 #include "solvers/study/bond_potential.hpp"
 #include "solvers/study/cpd_model.hpp"
+#include "solvers/study/fracture_data.hpp"
 #include "src/connectivity/fragments.hpp"
 #include "src/connectivity/free_motion.hpp"
 #include "src/core/input_error.hpp"
@@ -35,6 +37,7 @@ BondSetting setting_of(const BodySpecification& of, const Points& points) {
   setting.cross_section = points.dimension == 3     ? 1.0
                           : of.cross_section == 0.0 ? points.cross_section()
                                                     : of.cross_section;
+  if (points.lattice) setting.lattice = {points.spacing, points.angle, of.surface_correction};
   return setting;
 }
 
@@ -196,7 +199,6 @@ std::unique_ptr<const Body> make_body(Points points, const BodySpecification& of
   check_specification(of, points);
   auto owned = std::make_unique<Body>();
   Body& body = *owned;
-  body.specification = of;
   body.points = std::move(points);
   const std::vector<Period> periods(of.constraints.periods.begin(), of.constraints.periods.end());
   // A partial volume reaches half a cell beyond the horizon.
@@ -204,6 +206,7 @@ std::unique_ptr<const Body> make_body(Points points, const BodySpecification& of
   const double reach = of.horizon + (is_whole ? 0.0 : body.points.spacing.largest());
   add_images(body.points, of.constraints.symmetries, periods, reach);
   body.setting = setting_of(of, body.points);
+  body.specification = with_stretches(of, body.setting, body.points.spacing);
   require_resolved(body.points, body.setting.horizon);
   BodySize expected = size_of(body.points);
   expected.horizon_ratio = body.horizon_ratio();
@@ -214,17 +217,18 @@ std::unique_ptr<const Body> make_body(Points points, const BodySpecification& of
   body.conditions = std::make_unique<Conditions>(
       body.points, of.supports, of.loads,
       of.programme.empty() ? LoadingProgramme() : LoadingProgramme(of.programme), of.controls,
-      load_setting(of, body.points), of.eigenstrains, of.constraints);
-  add_pressures(body.model, body);
+      load_setting(of, body.points), of.eigenstrains, of.constraints, of.foundations);
+  add_terms_of_conditions(body.model, body);
   const Stopwatch watch(body.seconds_neighbourhood);
   store_interactions(body, threads);
   return owned;
 }
 
-void add_pressures(Model& model, const Body& body) {
+void add_terms_of_conditions(Model& model, const Body& body) {
   const PressedBoundary& boundary = body.conditions->pressed_boundary();
-  if (boundary.face.empty()) return;
-  model.add(std::make_shared<PressureTerm>(body.points, boundary));
+  if (!boundary.face.empty()) model.add(std::make_shared<PressureTerm>(body.points, boundary));
+  const Foundations& foundations = body.conditions->foundations();
+  if (!foundations.none()) model.add(std::make_shared<FoundationTerm>(body.points, foundations));
 }
 
 BodySize size_of(const Points& points) {
@@ -285,6 +289,10 @@ std::vector<std::string> describe_interactions(const Body& body) {
 
 std::vector<std::string> describe_constraints(const Body& body) {
   std::vector<std::string> lines;
+  for (const Foundations::Summary& of : body.conditions->foundations().summaries()) {
+    lines.push_back(fmt::format("{}: {} springs, {} N/m in all", of.name, of.springs,
+                                place_text(of.stiffness, body.points.dimension)));
+  }
   std::size_t rigid = 0;
   const auto& sets = body.conditions->constraints().rigid_sets();
   for (const Restraint& restraint : body.conditions->restraints()) {

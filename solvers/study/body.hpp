@@ -55,8 +55,9 @@ struct Body {
 /// @throws InputError as make_body does
 [[nodiscard]] Model make_elastic_bonds(const Body& body, Bonds bonds, const BondSetting& setting);
 
-/// Adds the pressures of the body's loads to a model of its points: its own has them.
-void add_pressures(Model& model, const Body& body);
+/// Adds pressures and foundations, which the body's conditions have, to a model of its points: its
+/// own has them.
+void add_terms_of_conditions(Model& model, const Body& body);
 
 /// Number of threads to run on.
 /// @param asked_for 0: as many as OpenMP takes by itself

@@ -33,20 +33,60 @@ void require_within(double value, double least, double most, const std::string& 
           "must be from " + number_text(least) + " to " + number_text(most));
 }
 
-void check_damage(const DamageSpecification& damage, const std::string& table) {
-  const bool is_tanh = damage.law == DamageLaw::tanh || damage.law == DamageLaw::tanh_continuous;
-  if (damage.law == DamageLaw::none)
-    require_absent(damage.critical != 0.0, table + "critical", "needs a law");
-  else
-    require_within(damage.critical, 1e-9, 1e3, table + "critical");
-  if (!is_tanh) {
-    require_absent(damage.onset != 0.0, table + "onset", "is for the tanh laws");
+/// Refuses a law with too little or too much to find its stretches from.
+void check_data(const DamageSpecification& damage, const std::string& table) {
+  const auto is_given = [](double stretch) { return stretch != 0.0; };
+  require_positive(damage.fracture_energy, table + "fracture_energy");
+  require_positive(damage.strength, table + "strength");
+  if (damage.law == DamageLaw::none) {
+    require_absent(damage.fracture_energy.has_value(), table + "fracture_energy", "needs a law");
+    require_absent(damage.strength.has_value(), table + "strength", "needs a law");
+    require_absent(is_given(damage.critical), table + "critical", "needs a law");
     return;
   }
-  require_within(damage.onset, 1e-9, 1e3, table + "onset");
-  require(damage.onset < damage.critical * (1.0 - 1e-9), table + "onset", number_text(damage.onset),
-          "must be smaller than critical");
-  require_within(damage.rate, 0.1, 50.0, table + "rate");
+  const bool is_blended = damage.law == DamageLaw::blended;
+  const bool is_sized =
+      damage.fracture_energy || (damage.law == DamageLaw::critical_stretch && damage.strength);
+  require(is_given(damage.critical) != is_sized, table + "critical", "",
+          is_sized ? "stands beside fracture_energy or strength, from which it follows"
+                   : "is missing; give it, or a fracture_energy");
+  require_absent(
+      is_given(damage.peak) && (!is_blended || damage.strength), table + "peak",
+      is_blended ? "stands beside strength, from which it follows" : "is for the law blended");
+  if (!damage.softens()) {
+    require_absent(is_given(damage.onset), table + "onset", "is for the laws that soften");
+    return;
+  }
+  require_absent(is_given(damage.onset) && damage.strength && !is_blended, table + "onset",
+                 "stands beside strength, from which it follows");
+  require(is_given(damage.onset) || damage.is_by_data(), table + "onset", "",
+          "is missing; give it, or a strength");
+  require(!is_blended || is_given(damage.peak) || damage.strength ||
+              (damage.fracture_energy && !is_given(damage.onset)),
+          table + "peak", "", "is missing; give it, or a strength");
+}
+
+void check_damage(const DamageSpecification& damage, const std::string& table) {
+  check_data(damage, table);
+  if (damage.law == DamageLaw::none) return;
+  const auto check_stretch = [&](double stretch, const char* key) {
+    if (stretch != 0.0) require_within(stretch, 1e-9, 1e3, table + key);
+  };
+  check_stretch(damage.critical, "critical");
+  if (!damage.softens()) return;
+  check_stretch(damage.onset, "onset");
+  if (damage.has_rate()) require_within(damage.rate, 0.1, 50.0, table + "rate");
+  if (damage.critical != 0.0) {
+    require(damage.onset < damage.critical * (1.0 - 1e-9), table + "onset",
+            number_text(damage.onset), "must be smaller than critical");
+  }
+  if (damage.law != DamageLaw::blended) return;
+  require_within(damage.hardening, 0.0, 0.99, table + "hardening");
+  if (damage.peak == 0.0) return;
+  require(damage.onset <= damage.peak, table + "peak", number_text(damage.peak),
+          "must be at least onset");
+  require(damage.critical == 0.0 || damage.peak < damage.critical * (1.0 - 1e-9), table + "peak",
+          number_text(damage.peak), "must be smaller than critical");
 }
 
 void check_bond_material(const MaterialSpecification& material, const std::string& key) {
@@ -58,6 +98,8 @@ void check_bond_material(const MaterialSpecification& material, const std::strin
   require_absent(material.c1.has_value(), key + ".c1", for_cpd);
   require_absent(material.c2 != 0.0, key + ".c2", for_cpd);
   require_absent(material.c3 != 0.0, key + ".c3", for_cpd);
+  require_absent(material.calibration && !material.youngs_modulus, key + ".calibration",
+                 "goes with youngs_modulus");
 }
 
 void check_cpd_material(const MaterialSpecification& material, const std::string& key,
@@ -66,6 +108,9 @@ void check_cpd_material(const MaterialSpecification& material, const std::string
   require(material.youngs_modulus.has_value() != material.c1.has_value(), key, "",
           "needs a youngs_modulus with a poisson_ratio, or c1, and not both");
   require_absent(material.micromodulus.has_value(), key + ".micromodulus", "is for the model bond");
+  require_absent(material.damage.fracture_energy.has_value(), key + ".damage.fracture_energy",
+                 "is for the model bond: what cpd dissipates with the triangles and tetrahedra of "
+                 "broken bonds has no formula; give critical");
   require(material.poisson_ratio.has_value() == material.youngs_modulus.has_value(),
           key + ".poisson_ratio", "", "goes with youngs_modulus");
   require(std::isfinite(material.c2), key + ".c2", number_text(material.c2), "must be finite");
@@ -102,6 +147,11 @@ void check_fibre(const MaterialSpecification& material, const std::string& key, 
   }
   require_positive(fibre.transverse_modulus, table + ".transverse_modulus");
   require_positive(fibre.shear_modulus, table + ".shear_modulus");
+  require_absent(material.damage.is_by_data(), key + ".damage",
+                 "with fibres toughness and strength depend on the direction; give critical and "
+                 "fibre.transverse_critical");
+  require_absent(material.calibration == Calibration::lattice, key + ".calibration",
+                 "\"lattice\" is for materials without fibres");
   if (!fibre.transverse_critical) return;
   require_absent(material.damage.law == DamageLaw::none, table + ".transverse_critical",
                  "needs a law of damage");
@@ -125,6 +175,8 @@ void check_scatter(const MaterialSpecification& material, const std::string& key
   }
 }
 
+}  // namespace
+
 void check_material(const MaterialSpecification& material, const std::string& key, int dimension) {
   if (material.model == MaterialModel::bond)
     check_bond_material(material, key);
@@ -138,6 +190,8 @@ void check_material(const MaterialSpecification& material, const std::string& ke
   check_fibre(material, key, dimension);
   check_scatter(material, key);
 }
+
+namespace {
 
 /// Materials of regions and interfaces are of the body's model.
 void require_of_body(const MaterialSpecification& material, const std::string& key,
@@ -331,12 +385,34 @@ void check_mirrored_fibres(const BodySpecification& of, int dimension) {
 
 }  // namespace
 
+namespace {
+
+/// Bonds of a cloud have no lattice that they could be calibrated on.
+void require_lattice_to_calibrate_on(const BodySpecification& of, const Points& points) {
+  const auto check = [&](const MaterialSpecification& material, const std::string& key) {
+    require(material.model != MaterialModel::bond || material.calibration != Calibration::lattice ||
+                points.lattice.has_value(),
+            key + ".calibration", "\"lattice\"", "needs points on a lattice");
+  };
+  check(of.material, "material");
+  for (std::size_t k = 0; k < of.regions.size(); ++k) {
+    check(of.regions[k].material, "regions[" + std::to_string(k) + "].material");
+  }
+  for (std::size_t k = 0; k < of.interfaces.size(); ++k) {
+    if (!of.interfaces[k].material) continue;
+    check(*of.interfaces[k].material, "interfaces[" + std::to_string(k) + "].material");
+  }
+}
+
+}  // namespace
+
 void check_specification(const BodySpecification& of, const Points& points) {
   check_horizon(of, points);
   check_cross_section(of, points);
   check_neighbours(of, points);
   const bool has_rest = of.regions.empty() || of.material.has_constants();
   if (has_rest) check_material(of.material, "material", points.dimension);
+  require_lattice_to_calibrate_on(of, points);
   check_weights(of, points);
   check_regions(of, points.dimension);
   check_mirrored_fibres(of, points.dimension);

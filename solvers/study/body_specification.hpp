@@ -26,14 +26,45 @@ enum class MaterialModel { bond, cpd };
 enum class Calibration { lattice, continuum };
 
 /// How bonds fail.
-enum class DamageLaw { none, critical_stretch, tanh, tanh_continuous };
+enum class DamageLaw {
+  none,
+  critical_stretch,
+  tanh,
+  tanh_continuous,
+  linear,
+  exponential,
+  blended
+};
 
 struct DamageSpecification {
   DamageLaw law = DamageLaw::none;
-  double onset = 0.0;                  ///< s_m, of the tanh laws
+  double onset = 0.0;                  ///< s_m, of the laws that soften
   double critical = 0.0;               ///< s_c
-  double rate = 3.0;                   ///< beta, of the tanh laws
+  double rate = 3.0;                   ///< beta of the tanh laws, a of the exponential one
   std::vector<std::string> no_fail{};  ///< sets whose points' bonds never fail
+  double peak = 0.0;                   ///< s_p, of the blended law
+  double hardening = 0.5;              ///< h, of the blended law
+  /// In the place of `critical`: of a plane crack, the mean over its directions [J/m2].
+  std::optional<double> fracture_energy{};
+  /// In the place of `onset` (of `critical`, of the law critical_stretch): E times the largest
+  /// force of a bond over c [Pa].
+  std::optional<double> strength{};
+
+  /// Whether some stretches are still to be found.
+  [[nodiscard]] bool is_by_data() const { return fracture_energy || strength; }
+
+  /// Whether stiffness is lost over a range of stretches.
+  [[nodiscard]] bool softens() const {
+    return law != DamageLaw::none && law != DamageLaw::critical_stretch;
+  }
+  /// Whether a rate is part of the law.
+  [[nodiscard]] bool has_rate() const {
+    return softens() && law != DamageLaw::linear && law != DamageLaw::blended;
+  }
+  /// Share of the range from onset to critical over which the force rises.
+  [[nodiscard]] double rise() const {
+    return law == DamageLaw::blended ? (peak - onset) / (critical - onset) : 0.0;
+  }
 };
 
 /// Fibres, along which the moduli and stretches of the material hold; bonds across them have these.
@@ -65,7 +96,7 @@ struct MaterialSpecification {
   std::optional<double> c1{};             ///< C1 [N/m6]
   double c2 = 0.0;                        ///< C2 [N/m10]; in 2D not with youngs_modulus
   double c3 = 0.0;                        ///< C3 [N/m14]; with c1 only
-  Calibration calibration = Calibration::lattice;
+  std::optional<Calibration> calibration{};   ///< none: see calibrated_on
   std::optional<double> thermal_expansion{};  ///< [1/K]
   std::optional<double> density{};            ///< [kg/m3], for gravity and dynamics
   DamageSpecification damage{};
@@ -73,6 +104,11 @@ struct MaterialSpecification {
   std::vector<ScatterSpecification> scatter{};
 
   [[nodiscard]] bool has_constants() const { return youngs_modulus || micromodulus || c1; }
+  /// Bonds alone have the published constants of the continuum unless told otherwise.
+  [[nodiscard]] Calibration calibrated_on() const {
+    const bool is_cpd = model == MaterialModel::cpd;
+    return calibration.value_or(is_cpd ? Calibration::lattice : Calibration::continuum);
+  }
 };
 
 /// The points of a set are of a material of their own.
@@ -112,6 +148,7 @@ struct BodySpecification {
   std::vector<InterfaceSpecification> interfaces{};
   std::vector<SupportSpecification> supports{};
   std::vector<LoadSpecification> loads{};
+  std::vector<FoundationSpecification> foundations{};
   ConstraintSpecification constraints{};
   Eigenstrains eigenstrains{};
   /// In the place of `load`, see DisplacementControl; none: the programme's own.
@@ -132,6 +169,11 @@ struct BodySpecification {
 /// finite or positive, a set with a number that is no point's.
 /// @throws InputError ("points.…")
 void check_points(const Points& points);
+
+/// Refuses a material that contradicts itself or lacks something.
+/// @param key of the material, for errors
+/// @throws InputError
+void check_material(const MaterialSpecification& material, const std::string& key, int dimension);
 
 /// Refuses what contradicts itself, lacks something or would be overlooked, like a Poisson ratio
 /// given to bonds alone.

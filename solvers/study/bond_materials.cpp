@@ -11,6 +11,7 @@
 #include "solvers/study/bond_potential.hpp"
 #include "src/core/input_error.hpp"
 #include "src/core/number_text.hpp"
+#include "src/materials/bulk_bonds.hpp"
 
 namespace peristat {
 namespace {
@@ -40,24 +41,26 @@ Coordinates direction_of(const FibreSpecification& fibre, int dimension) {
                        : "no shear_modulus does with the first two"));
 }
 
+/// Whether laws are the same but for the stretches that they begin and end at.
 bool same_law(const DamageSpecification& one, const DamageSpecification& other) {
-  const bool is_sudden = one.law == DamageLaw::critical_stretch;
-  return one.law == other.law && (is_sudden || one.rate == other.rate);
+  if (one.law != other.law) return false;
+  switch (one.law) {
+    case DamageLaw::tanh:
+    case DamageLaw::tanh_continuous:
+    case DamageLaw::exponential:
+      return one.rate == other.rate;
+    case DamageLaw::blended:
+      return one.hardening == other.hardening && one.rise() == other.rise();
+    case DamageLaw::critical_stretch:
+    case DamageLaw::linear:
+    case DamageLaw::none:
+      break;
+  }
+  return true;
 }
 
 bool is_same(const DamageSpecification& one, const DamageSpecification& other) {
   return same_law(one, other) && one.onset == other.onset && one.critical == other.critical;
-}
-
-AnyLaw law_of(const DamageSpecification& damage) {
-  switch (damage.law) {
-    case DamageLaw::tanh:
-      return {TanhDegradation{damage.onset, damage.critical, damage.rate}};
-    case DamageLaw::tanh_continuous:
-      return {TanhDegradation::continuous(damage.onset, damage.critical, damage.rate)};
-    default:
-      return {CriticalStretch{damage.critical}};
-  }
 }
 
 }  // namespace
@@ -65,7 +68,9 @@ AnyLaw law_of(const DamageSpecification& damage) {
 DirectedConstant micromodulus_of(const MaterialSpecification& material, const std::string& key,
                                  const BondSetting& setting) {
   if (!material.fibre) {
+    const bool is_of_lattice = material.calibrated_on() == Calibration::lattice;
     const double c = material.micromodulus ? *material.micromodulus
+                     : is_of_lattice       ? bulk_micromodulus(*material.youngs_modulus, setting)
                                            : micromodulus(*material.youngs_modulus, setting);
     return {{c, 0.0, 0.0}, {}};
   }

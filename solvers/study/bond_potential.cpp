@@ -2,7 +2,6 @@
 
 #include <optional>
 #include <stdexcept>
-#include <tuple>
 #include <utility>
 #include <variant>
 
@@ -14,22 +13,35 @@ namespace {
 
 template <class Whole>
 BondPotential with_damage(const Whole& whole, const DamageSpecification& damage) {
-  const auto [onset, critical, rate] = std::tuple(damage.onset, damage.critical, damage.rate);
-  switch (damage.law) {
-    case DamageLaw::none:
-      return whole;
-    case DamageLaw::critical_stretch:
-      return Degraded<CriticalStretch, Whole>{whole.modulus, {critical}};
-    case DamageLaw::tanh:
-      return Degraded<TanhDegradation, Whole>{whole.modulus, {onset, critical, rate}};
-    case DamageLaw::tanh_continuous:
-      break;
-  }
-  return Degraded<TanhDegradation, Whole>{whole.modulus,
-                                          TanhDegradation::continuous(onset, critical, rate)};
+  if (damage.law == DamageLaw::none) return whole;
+  return std::visit(
+      [&]<class Law>(const Law& law) -> BondPotential {
+        return Degraded<Law, Whole>{whole.modulus, law};
+      },
+      law_of(damage).law);
 }
 
 }  // namespace
+
+AnyLaw law_of(const DamageSpecification& damage) {
+  const double onset = damage.onset, critical = damage.critical, rate = damage.rate;
+  switch (damage.law) {
+    case DamageLaw::tanh:
+      return {TanhDegradation{onset, critical, rate}};
+    case DamageLaw::tanh_continuous:
+      return {TanhDegradation::continuous(onset, critical, rate)};
+    case DamageLaw::linear:
+      return {ForceEnvelope{onset, critical}};
+    case DamageLaw::exponential:
+      return {ForceEnvelope{onset, critical, rate}};
+    case DamageLaw::blended:
+      return {ForceEnvelope{onset, critical, 0.0, damage.rise(), damage.hardening}};
+    case DamageLaw::critical_stretch:
+    case DamageLaw::none:
+      break;
+  }
+  return {CriticalStretch{critical}};
+}
 
 BondPotential bond_potential(const MaterialSpecification& material, double micromodulus) {
   std::optional<BondPotential> result;

@@ -11,6 +11,9 @@
 
 namespace peristat {
 
+/// The law of damage by its numbers; without one, that of a bond that is broken from the start.
+[[nodiscard]] AnyLaw law_of(const DamageSpecification& damage);
+
 /// Potential of the bonds of a body.
 /// @param micromodulus c, or C1 of cpd [N/m6]
 [[nodiscard]] BondPotential bond_potential(const MaterialSpecification& material,

@@ -51,7 +51,7 @@ Simplices<Measure> make_simplices(const BodySpecification& from, const Points& p
 
 CpdStiffness stiffness_of(const MaterialSpecification& material, const Points& points,
                           const BondSetting& setting) {
-  return material.calibration == Calibration::lattice
+  return material.calibrated_on() == Calibration::lattice
              ? lattice_stiffness(points.dimension, points.spacing, setting.horizon,
                                  setting.cross_section)
              : continuum_stiffness(points.dimension, setting.horizon, setting.cross_section);

@@ -9,6 +9,7 @@
 
 #include "src/conditions/points_of_set.hpp"
 #include "src/conditions/traction.hpp"
+#include "src/conditions/with_key.hpp"
 #include "src/core/input_error.hpp"
 #include "src/core/number_text.hpp"
 #include "src/geometry/body_cells.hpp"
@@ -16,26 +17,6 @@
 
 namespace peristat {
 namespace {
-
-/// Runs `make` and gives its input errors the key that they concern.
-template <class Make>
-auto with_key(const std::string& key, const Make& make) {
-  try {
-    return make();
-  } catch (const InputError& error) {
-    throw InputError(key, error.value(), error.allowed());
-  }
-}
-
-/// Gives input errors that have no key that of the table.
-template <class Make>
-auto with_table(const std::string& table, const Make& make) {
-  try {
-    return make();
-  } catch (const InputError& error) {
-    throw InputError(error.key().empty() ? table : error.key(), error.value(), error.allowed());
-  }
-}
 
 std::vector<Index> all_points(const Points& points) {
   std::vector<Index> all(std::size_t(points.own()));
@@ -61,7 +42,8 @@ std::vector<Index> points_of_body(const Points& points) {
 Conditions::Conditions(const Points& points, const std::vector<SupportSpecification>& supports,
                        const std::vector<LoadSpecification>& loads, LoadingProgramme programme,
                        const std::vector<ControlTerm>& control, const LoadSetting& setting,
-                       const Eigenstrains& eigenstrains, const ConstraintSpecification& constraints)
+                       const Eigenstrains& eigenstrains, const ConstraintSpecification& constraints,
+                       const std::vector<FoundationSpecification>& foundations)
     : points_(points),
       programme_(std::move(programme)),
       prescribed_(points.reference.size(), 0),
@@ -98,9 +80,9 @@ Conditions::Conditions(const Points& points, const std::vector<SupportSpecificat
     }
   }
   add_eigenstrains(eigenstrains, setting);
+  foundations_ = Foundations(points, foundations, parameters);
   made_ = make_constraints(points, constraints, prescribed_, parameters);
   refuse_shared_names();
-  refuse_loads_beside_constraints(loads);
   hold_periodic_cell(constraints);
   prescribe_handles();
   if (!control.empty()) {
@@ -115,39 +97,17 @@ Conditions::Conditions(const Points& points, const std::vector<SupportSpecificat
   try_stages();
 }
 
-void Conditions::refuse_loads_beside_constraints(
-    const std::vector<LoadSpecification>& loads) const {
-  if (constraints().none()) return;
-  for (std::size_t k = 0; k < loads.size(); ++k) {
-    const std::string key = indexed("loads", k) + ".value";
-    if (loads[k].kind == LoadSpecification::Kind::pressure) {
-      throw InputError(key, "",
-                       "a pressure beside rigid sets, rollers, linear constraints, planes of "
-                       "symmetry or periods can't be used");
-    }
-    const bool is_traction = loads[k].kind == LoadSpecification::Kind::traction;
-    if (is_traction && points_.own() < points_.count() && loads[k].side) {
-      const std::size_t axis = std::size_t(loads[k].side->axis);
-      for (Index image = points_.own(); image < points_.count(); ++image) {
-        const double away =
-            points_.position(image)[axis] - points_.position(points_.source(image))[axis];
-        if (away * loads[k].side->sign > 0.0) {
-          throw InputError(key, "", "on this side the body goes on beyond a plane or period");
-        }
-      }
-    }
-  }
-}
-
 void Conditions::refuse_shared_names() const {
   std::set<std::string> names;
   for (const Prescription& prescription : prescriptions_) names.insert(prescription.set);
-  for (const Restraint& restraint : made_.restraints) {
-    if (names.insert(restraint.name).second) continue;
-    throw InputError(restraint.key, '"' + restraint.name + '"',
-                     "there is a support or constraint of this name already, whose reaction could "
-                     "not be told from this one's");
-  }
+  const auto add = [&names](const std::string& name, const std::string& key) {
+    if (names.insert(name).second) return;
+    throw InputError(key, '"' + name + '"',
+                     "there is a support, constraint or foundation of this name already, whose "
+                     "reaction could not be told from this one's");
+  };
+  for (const Restraint& restraint : made_.restraints) add(restraint.name, restraint.key);
+  for (const auto& of : foundations_.summaries()) add(of.name, of.key);
 }
 
 void Conditions::prescribe_handles() {
@@ -165,6 +125,10 @@ void Conditions::hold_periodic_cell(const ConstraintSpecification& constraints) 
   const bool is_held = !prescriptions_.empty() || !constraints.rigid_sets.empty() ||
                        !constraints.rollers.empty() || !constraints.linear.empty();
   if (constraints.periods.empty() || is_held) return;
+  for (int c = 0; c < points_.dimension; ++c) floats_[std::size_t(c)] = !foundations_.hold(c);
+  for (const SymmetryPlane& plane : constraints.symmetries) {
+    floats_[std::size_t(plane.axis)] = false;
+  }
   Coordinates middle{};
   for (Index i = 0; i < points_.own(); ++i) {
     middle = plus<3>(middle, scaled<3>(1.0 / points_.own(), points_.position(i)));
@@ -175,12 +139,28 @@ void Conditions::hold_periodic_cell(const ConstraintSpecification& constraints) 
     const Coordinates arm = minus<3>(points_.position(i), middle);
     if (dot<3>(arm, arm) < least) least = dot<3>(arm, arm), nearest = i;
   }
-  for (int c = 0; c < points_.dimension; ++c) {
-    const bool is_mirrored =
-        std::any_of(constraints.symmetries.begin(), constraints.symmetries.end(),
-                    [c](const SymmetryPlane& plane) { return plane.axis == c; });
-    const std::size_t dof = std::size_t(nearest) * points_.dimension + std::size_t(c);
-    if (!is_mirrored) made_.unused.push_back(dof);
+  for (std::size_t c = 0; c < std::size_t(points_.dimension); ++c) {
+    const std::size_t dof = std::size_t(nearest) * std::size_t(points_.dimension) + c;
+    if (floats_[c]) made_.unused.push_back(dof);
+  }
+}
+
+void Conditions::require_balance(std::span<const double> force, const std::string& key) const {
+  constexpr double round_off = 1e-9;
+  const std::size_t d = std::size_t(points_.dimension);
+  for (std::size_t c = 0; c < d; ++c) {
+    double sum = 0.0, sum_of_magnitudes = 0.0;
+    for (std::size_t dof = c; floats_[c] && dof < force.size(); dof += d) {
+      sum += force[dof];
+      sum_of_magnitudes += std::abs(force[dof]);
+    }
+    if (std::abs(sum) <= round_off * sum_of_magnitudes) continue;
+    throw InputError(
+        key, "",
+        "the loads on a cell that nothing holds add up to " + number_text(sum) + " N along " +
+            "xyz"[c] +
+            ", for which a body that repeats has no equilibrium. Balance them, or hold "
+            "the cell by a support");
   }
 }
 
@@ -246,9 +226,11 @@ void Conditions::add_eigenstrains(const Eigenstrains& eigenstrains, const LoadSe
 }
 
 SharedEnvironment Conditions::environment(const LoadPoint& at) const {
-  if (eigenstretches_.empty() && pressures_.empty()) return nullptr;
+  const bool ground_moves = foundations_.ground_moves();
+  if (eigenstretches_.empty() && pressures_.empty() && !ground_moves) return nullptr;
   const std::vector<double> loads = parameters(at);
   auto made = std::make_shared<Environment>();
+  if (ground_moves) made->ground = foundations_.ground(loads);
   for (const auto& [key, first, last, value] : pressures_) {
     with_key(key, [&] {
       for (std::size_t face = first; face < last; ++face) {
@@ -299,10 +281,16 @@ void Conditions::find_shared() {
 }
 
 void Conditions::try_stages() {
-  std::vector<double> values(prescribed_.size(), 0.0);
+  std::vector<double> values(prescribed_.size(), 0.0), force(prescribed_.size());
   const auto try_at = [&](const LoadPoint& at) {
     prescribe(at, values);
-    static_cast<void>(environment(at));
+    const bool floats = floats_ != std::array<bool, 3>{};
+    if (floats) external_force(at, force);
+    const SharedEnvironment there = environment(at);
+    if (floats && !pressures_.empty()) {
+      require_balance(face_forces(pressed_, there->pressure, points_.dimension),
+                      pressures_.front().key);
+    }
     for (const double value : values) largest_ = std::max(largest_, std::abs(value));
   };
   if (control_) return try_at({0.0, 0.0});  // nobody knows where its loads will go
@@ -369,10 +357,12 @@ void Conditions::external_force(const LoadPoint& at, std::span<double> force) co
       }
     });
   }
+  if (!loads_.empty()) require_balance(force, loads_.front().key);
 }
 
-std::map<std::string, Coordinates> Conditions::reactions(std::span<const double> gradient,
-                                                         std::span<const double> external) const {
+std::map<std::string, Coordinates> Conditions::reactions(
+    std::span<const double> gradient, std::span<const double> external,
+    std::span<const double> displacement, const SharedEnvironment& environment) const {
   std::map<std::string, Coordinates> sums;
   std::set<std::pair<std::string, int>> summed;  // two supports may hold one set in one component
   for (const Prescription& prescription : prescriptions_) {
@@ -386,8 +376,24 @@ std::map<std::string, Coordinates> Conditions::reactions(std::span<const double>
   for (const Restraint& restraint : made_.restraints) {
     sums[restraint.name] = reaction_of(restraint, gradient);
   }
+  sums.merge(foundations_.forces(displacement, environment));
   return sums;
 }
+
+namespace {
+
+/// How far images of a kind move when a plane of symmetry moves by 1.
+double follows_plane(const ImageKind& kind, const Restraint& plane) {
+  const std::size_t axis = std::size_t(plane.axis);
+  const bool is_mirrored = kind.mirror[axis] < 0.0;
+  if (!plane.opposite) return is_mirrored ? 2.0 : 0.0;
+  // Reflections in two planes repeat after twice their distance.
+  const double shift = kind.shift[axis] - (is_mirrored ? 2.0 * plane.at : 0.0);
+  const double repeats = std::round(shift / (2.0 * (*plane.opposite - plane.at)));
+  return (is_mirrored ? 2.0 : 0.0) - 2.0 * repeats;
+}
+
+}  // namespace
 
 Coordinates Conditions::reaction_of(const Restraint& restraint,
                                     std::span<const double> gradient) const {
@@ -396,8 +402,10 @@ Coordinates Conditions::reaction_of(const Restraint& restraint,
   switch (restraint.kind) {
     case Restraint::Kind::rigid_set:
     case Restraint::Kind::period:
-      for (std::size_t c = 0; c < d; ++c) {
-        sum[c] = gradient[std::size_t(restraint.handles.front()) * d + c];
+      for (const Index handle : restraint.handles) {
+        for (std::size_t c = 0; c < d; ++c) {
+          if (!restraint.is_mirrored[c]) sum[c] = gradient[std::size_t(handle) * d + c];
+        }
       }
       break;
     case Restraint::Kind::rollers:
@@ -409,14 +417,11 @@ Coordinates Conditions::reaction_of(const Restraint& restraint,
       sum[0] = gradient[std::size_t(restraint.handles.front()) * d];
       break;
     case Restraint::Kind::symmetry:
-      // The bonds across the plane count half, and act on images and on their sources.
+      // What it takes to move the plane, and with it all that is mirrored in it.
       for (Index image = points_.own(); image < points_.count(); ++image) {
         const std::size_t axis = std::size_t(restraint.axis);
-        const ImageKind& kind = points_.image_kind(image);
-        const double beyond = points_.position(image)[axis] - restraint.at;
-        const double before = points_.position(points_.source(image))[axis] - restraint.at;
-        if (kind.mirror[axis] > 0.0 || beyond * before > 0.0) continue;
-        sum[axis] += 2.0 * gradient[std::size_t(image) * d + axis];
+        sum[axis] += follows_plane(points_.image_kind(image), restraint) *
+                     gradient[std::size_t(image) * d + axis];
       }
       break;
   }
@@ -433,6 +438,22 @@ std::map<std::string, Coordinates> Conditions::rotations(
         constraints().rotation(constraints().rigid_sets()[k++], displacement);
   }
   return rotations;
+}
+
+std::map<std::string, Coordinates> Conditions::mean_gradients(
+    std::span<const double> displacement) const {
+  std::map<std::string, Coordinates> gradients;
+  const std::size_t d = std::size_t(points_.dimension);
+  for (const Restraint& restraint : made_.restraints) {
+    if (restraint.kind != Restraint::Kind::period) continue;
+    Coordinates& gradient = gradients[restraint.name];
+    for (const Index handle : restraint.handles) {
+      for (std::size_t c = 0; c < d; ++c) {
+        gradient[c] = displacement[std::size_t(handle) * d + c] / restraint.length;
+      }
+    }
+  }
+  return gradients;
 }
 
 std::map<std::string, Coordinates> Conditions::moments(std::span<const double> displacement,
@@ -470,6 +491,20 @@ Holding Conditions::holding(std::span<const double> displacement) const {
     for (std::size_t c = 0; c < d; ++c) at[c] += displacement[std::size_t(row) * d + c];
     return at;
   };
+  for (const Spring& spring : foundations_.springs()) {
+    for (std::size_t c = 0; c < d; ++c) {
+      const std::size_t dof = std::size_t(spring.point) * d + c;
+      if (!(spring.stiffness[c] > 0.0)) continue;
+      if (!constraints().dependent()[dof]) {
+        holding.prescribed[dof] = 1;
+        continue;
+      }
+      Coordinates axis{};
+      axis[c] = 1.0;
+      holding.motions.push_back(
+          {spring.point, axis, cross(place(spring.point, points_.position(spring.point)), axis)});
+    }
+  }
   for (const HeldSum& sum : made_.held_sums) {
     HeldMotion motion{sum.front().first, {}, {}};
     for (const auto& [point, weight] : sum) {

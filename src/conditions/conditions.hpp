@@ -9,6 +9,7 @@
 
 #include "src/conditions/displacement_control.hpp"
 #include "src/conditions/environment.hpp"
+#include "src/conditions/foundations.hpp"
 #include "src/conditions/load_point.hpp"
 #include "src/conditions/loading_programme.hpp"
 #include "src/conditions/make_constraints.hpp"
@@ -49,8 +50,8 @@ class Conditions {
   Conditions(const Points& points, const std::vector<SupportSpecification>& supports,
              const std::vector<LoadSpecification>& loads, LoadingProgramme programme = {},
              const std::vector<ControlTerm>& control = {}, const LoadSetting& setting = {},
-             const Eigenstrains& eigenstrains = {},
-             const ConstraintSpecification& constraints = {});
+             const Eigenstrains& eigenstrains = {}, const ConstraintSpecification& constraints = {},
+             const std::vector<FoundationSpecification>& foundations = {});
 
   [[nodiscard]] int dimension() const { return points_.dimension; }
   [[nodiscard]] const LoadingProgramme& programme() const { return programme_; }
@@ -79,9 +80,11 @@ class Conditions {
   void external_force(const LoadPoint& at, std::span<double> force) const;
 
   /// What the load makes of the energy there; null where there are neither eigenstrains nor
-  /// pressures.
+  /// pressures, nor a ground that moves.
   /// @throws InputError if one is not finite, or leaves nothing of a length
   [[nodiscard]] SharedEnvironment environment(const LoadPoint& at) const;
+
+  [[nodiscard]] const Foundations& foundations() const { return foundations_; }
 
   /// Faces that pressures act on, in the order of Environment::pressure.
   [[nodiscard]] const PressedBoundary& pressed_boundary() const { return pressed_; }
@@ -90,15 +93,21 @@ class Conditions {
   /// supports add to hold them, dE/dx - external force. Points of two sets count in both. Likewise
   /// of the restraints: what rigid sets and rollers add, what the part of the body beyond a plane
   /// of symmetry or a period does, and, in its first component, the multiplier of a linear
-  /// constraint.
+  /// constraint; and of the foundations.
   /// @param gradient folded, see Constraints
   [[nodiscard]] std::map<std::string, Coordinates> reactions(
-      std::span<const double> gradient, std::span<const double> external) const;
+      std::span<const double> gradient, std::span<const double> external,
+      std::span<const double> displacement, const SharedEnvironment& environment) const;
 
   /// Moment about the present centre of each rigid set [N m] that it adds.
   [[nodiscard]] std::map<std::string, Coordinates> moments(std::span<const double> displacement,
                                                            std::span<const double> gradient,
                                                            std::span<const double> external) const;
+
+  /// Mean displacement gradient along each period, du/dx of its axis; 0 where the body does not
+  /// reach over it.
+  [[nodiscard]] std::map<std::string, Coordinates> mean_gradients(
+      std::span<const double> displacement) const;
 
   /// Rotation vector of each rigid set [rad].
   [[nodiscard]] std::map<std::string, Coordinates> rotations(
@@ -144,9 +153,10 @@ class Conditions {
 
   [[nodiscard]] std::vector<double> parameters(const LoadPoint& at) const;
   void refuse_shared_names() const;
-  void refuse_loads_beside_constraints(const std::vector<LoadSpecification>& loads) const;
   void prescribe_handles();
   void hold_periodic_cell(const ConstraintSpecification& constraints);
+  /// Refuses forces that would have to be borne where a cell is held that nothing holds.
+  void require_balance(std::span<const double> force, const std::string& key) const;
   void prescribe_handles_at(std::span<const double> loads, std::span<double> displacement) const;
   [[nodiscard]] Coordinates reaction_of(const Restraint& restraint,
                                         std::span<const double> gradient) const;
@@ -166,12 +176,14 @@ class Conditions {
   std::vector<Eigenstretch> eigenstretches_;
   PressedBoundary pressed_;
   std::vector<Pressure> pressures_;
+  Foundations foundations_;
   std::vector<char> prescribed_;
   MadeConstraints made_;
   std::optional<DisplacementControl> control_;
   /// First of the prescriptions of each degree of freedom; empty if none has more than one.
   std::vector<const Prescription*> first_;
-  double largest_ = 0.0;  ///< displacement at the stages that were tried [m]
+  std::array<bool, 3> floats_{};  ///< components in which nothing holds a cell
+  double largest_ = 0.0;          ///< displacement at the stages that were tried [m]
 };
 
 }  // namespace peristat

@@ -51,6 +51,17 @@ struct PeriodSpecification : Period {
   std::array<std::optional<std::string>, 3> gradient{"0", "0", "0"};
 };
 
+/// Another plane of symmetry across the axis of one of them, on the body's other side.
+[[nodiscard]] const SymmetryPlane* opposite(const std::vector<SymmetryPlane>& planes,
+                                            std::size_t of);
+
+/// What reactions of a plane are told by: "symmetry_x", or, of two, "symmetry_x-" of the lower one
+/// and "symmetry_x+".
+[[nodiscard]] std::string name_of_plane(const std::vector<SymmetryPlane>& planes, std::size_t of);
+
+/// What a period is told by: "period_x".
+[[nodiscard]] std::string name_of_period(const Period& period);
+
 struct ConstraintSpecification {
   std::vector<RigidSetSpecification> rigid_sets{};
   std::vector<RollerSpecification> rollers{};

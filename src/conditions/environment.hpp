@@ -12,6 +12,9 @@ struct Environment {
   std::vector<double> eigenstretch{};
   /// Per face of the boundary that pressures act on [Pa]; empty: none.
   std::vector<double> pressure{};
+  /// Displacement of the ground below each spring of the foundations, springs x dimension [m].
+  /// Empty: none.
+  std::vector<double> ground{};
 
   friend bool operator==(const Environment&, const Environment&) = default;
 };

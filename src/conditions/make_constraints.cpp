@@ -46,13 +46,15 @@ class Maker {
   [[nodiscard]] MadeConstraints make() {
     for (std::size_t k = 0; k < of_.symmetries.size(); ++k) {
       const SymmetryPlane& plane = of_.symmetries[k];
+      const SymmetryPlane* const other = opposite(of_.symmetries, k);
       made_.restraints.push_back({Restraint::Kind::symmetry,
                                   indexed("symmetries", k) + ".axis",
-                                  std::string("symmetry_") + "xyz" [plane.axis],
+                                  name_of_plane(of_.symmetries, k),
                                   {},
                                   {},
                                   plane.axis,
-                                  plane.at});
+                                  plane.at,
+                                  other ? std::optional(other->at) : std::nullopt});
     }
     for (std::size_t k = 0; k < of_.periods.size(); ++k) make_period(k);
     for (std::size_t k = 0; k < of_.rigid_sets.size(); ++k) make_rigid_set(k);
@@ -103,19 +105,61 @@ class Maker {
   void make_period(std::size_t k) {
     const PeriodSpecification& period = of_.periods[k];
     const Index handle = made_.constraints.period_handle(period.axis);
-    if (handle < 0) return;  // the body is farther from its images than a horizon
-    for (int c = 0; c < dimension(); ++c) {
+    Restraint restraint{Restraint::Kind::period,
+                        indexed("periods", k) + ".axis",
+                        name_of_period(period),
+                        {},
+                        {},
+                        period.axis,
+                        period.from};
+    restraint.length = period.to - period.from;
+    for (int c = 0; c < dimension(); ++c) restraint.is_mirrored[std::size_t(c)] = is_mirrored(c);
+    // Otherwise the body is farther from its images than a horizon.
+    if (handle >= 0) restraint.handles.push_back(handle);
+    for (int c = 0; c < dimension() && handle >= 0; ++c) {
       const auto& text = period.gradient[std::size_t(c)];
       const std::string key = indexed(indexed("periods", k) + ".gradient", std::size_t(c));
-      if (text) prescribe(key, *text, dof(handle, c), period.to - period.from);
+      if (is_mirrored(c) && text != "0") {
+        throw InputError(key, text ? '"' + *text + '"' : "\"free\"",
+                         std::string("must be 0: a plane of symmetry across ") + "xyz"[c] +
+                             " leaves no jump along it");
+      }
+      if (text) prescribe(key, *text, dof(handle, c), restraint.length);
     }
-    made_.restraints.push_back({Restraint::Kind::period,
-                                indexed("periods", k) + ".axis",
-                                std::string("period_") + "xyz" [period.axis],
-                                { handle },
-                                {},
-                                period.axis,
-                                period.from});
+    made_.restraints.push_back(std::move(restraint));
+  }
+
+  [[nodiscard]] bool is_mirrored(int component) const {
+    return std::ranges::any_of(of_.symmetries, [component](const SymmetryPlane& plane) {
+      return plane.axis == component;
+    });
+  }
+
+  /// Refuses sets that a plane of symmetry cuts, and whose two halves might move apart.
+  void refuse_cut_sets(const RigidSetSpecification& spec, const Constraints::RigidSet& set,
+                       const std::string& table) const {
+    for (const SymmetryPlane& plane : of_.symmetries) {
+      const bool is_cut = std::ranges::any_of(set.members, [&](Index member) {
+        const double away = points_.position(member)[std::size_t(plane.axis)] - plane.at;
+        return std::abs(away) < points_.spacing.along(plane.axis);
+      });
+      if (!is_cut) continue;
+      const std::string by = "the plane of symmetry across " + std::string(1, "xyz"[plane.axis]) +
+                             " cuts the rigid set " + spec.set + ": ";
+      if (!spec.displacement[std::size_t(plane.axis)]) {
+        throw InputError(table + ".displacement", "\"free\"",
+                         by + "along " + "xyz"[plane.axis] + " must be 0");
+      }
+      for (int c = 0; c < (dimension() == 3 ? 3 : 1); ++c) {
+        if ((dimension() == 3 && c == plane.axis) || spec.rotation[std::size_t(c)]) continue;
+        throw InputError(table + ".rotation", "\"free\"",
+                         by +
+                             (dimension() == 3 ? std::string("about other axes than ") +
+                                                     "xyz"[plane.axis] + " it"
+                                               : "it") +
+                             " must be 0");
+      }
+    }
   }
 
   void make_rigid_set(std::size_t k) {
@@ -128,6 +172,7 @@ class Maker {
     }
     set.centre = spec.centre ? *spec.centre : centre_of(set.members);
     set.size = size_of(set, table + ".set", spec.set);
+    refuse_cut_sets(spec, set, table);
     set.translation = made_.constraints.add_handle(set.centre);
     for (int c = 0; c < dimension(); ++c) {
       const auto& text = spec.displacement[std::size_t(c)];

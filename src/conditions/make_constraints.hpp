@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -22,10 +24,15 @@ struct HandlePrescription {
 struct Restraint {
   enum class Kind { rigid_set, rollers, linear, symmetry, period } kind;
   std::string key, name;
-  std::vector<Index> handles{};  ///< rigid set: its translation; rollers and linear: of each value
+  std::vector<Index> handles{};  ///< rigid set: its translation; rollers and linear: of each value;
+                                 ///< period: the jump over it, if the body reaches over it
   Coordinates direction{};       ///< rollers: their normal
   int axis = 0;                  ///< symmetry, period
   double at = 0.0;               ///< symmetry [m]
+  std::optional<double> opposite{};  ///< symmetry: where another plane crosses the axis [m]
+  double length = 0.0;               ///< period [m]
+  std::array<bool, 3>
+      is_mirrored{};  ///< period: components of which beyond a plane is the opposite
 };
 
 /// A sum of displacements, weighted by vectors, that a roller or linear constraint holds.

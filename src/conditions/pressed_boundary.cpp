@@ -7,6 +7,7 @@
 #include "src/conditions/points_of_set.hpp"
 #include "src/core/input_error.hpp"
 #include "src/geometry/body_cells.hpp"
+#include "src/measures/small_algebra.hpp"
 
 namespace peristat {
 namespace {
@@ -102,6 +103,27 @@ class Faces {
 };
 
 }  // namespace
+
+std::vector<double> face_forces(const PressedBoundary& boundary, std::span<const double> pressure,
+                                int dimension) {
+  std::vector<double> forces;
+  for (std::size_t f = 0; f < boundary.face.size(); ++f) {
+    const auto place = [&](std::size_t k) {
+      return boundary.corner[std::size_t(boundary.face[f][k])];
+    };
+    Coordinates area{boundary.sign[f], 0.0, 0.0};
+    if (dimension == 2) {
+      const Coordinates edge = minus<3>(place(1), place(0));
+      area = {edge[1], -edge[0], 0.0};
+    } else if (dimension == 3) {
+      area = scaled<3>(0.5, cross(minus<3>(place(2), place(0)), minus<3>(place(3), place(1))));
+    }
+    for (std::size_t c = 0; c < std::size_t(dimension); ++c) {
+      forces.push_back(-pressure[f] * boundary.cross_section * area[c]);
+    }
+  }
+  return forces;
+}
 
 void add_pressed_faces(const Points& points, const LoadSpecification& load, const std::string& key,
                        PressedBoundary& boundary) {

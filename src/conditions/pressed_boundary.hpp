@@ -31,4 +31,8 @@ struct PressedBoundary {
 void add_pressed_faces(const Points& points, const LoadSpecification& load, const std::string& key,
                        PressedBoundary& boundary);
 
+/// Forces on the faces in the reference, faces x dimension [N].
+[[nodiscard]] std::vector<double> face_forces(const PressedBoundary& boundary,
+                                              std::span<const double> pressure, int dimension);
+
 }  // namespace peristat

@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 
+#include "src/core/types.hpp"
 #include "src/geometry/side.hpp"
 
 namespace peristat {
@@ -31,6 +32,17 @@ struct LoadSpecification {
   std::array<std::string, 3> value{"0", "0", "0"};
   std::optional<Side> side{};
   Depth depth = Depth::row;
+};
+
+/// Springs along the axes between points and a ground that may move: a modulus [N/m3] on a flat
+/// part of a lattice body's boundary, given like that of a traction, or a stiffness [N/m] of all
+/// springs of a set together, spread in proportion to the volume. One of the two is not zero.
+struct FoundationSpecification {
+  std::string name{};
+  std::string set{};
+  std::optional<Side> side{};
+  Coordinates modulus{}, stiffness{};
+  std::array<std::string, 3> displacement{"0", "0", "0"};  ///< of the ground, an expression [m]
 };
 
 /// Isotropic strain that a set, or without one the body, would have if nothing held it: length over

@@ -58,6 +58,11 @@ TractionAreas traction_areas(const Points& points, const LoadSpecification& load
     for (double above = 0.0; depth - above > least_part; above += 1.0) {
       const Index point = cells.point(cell);
       if (point < 0) break;
+      if (points.is_image(point)) {
+        throw InputError(key + ".depth", "\"horizon\"",
+                         "the horizon below this side reaches beyond a plane of symmetry or a "
+                         "period; take the row");
+      }
       areas.points.push_back(point);
       areas.area.push_back(std::min(1.0, depth - above));
       whole += areas.area.back();

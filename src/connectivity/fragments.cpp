@@ -225,13 +225,17 @@ Fragments find_fragments(const Points& points, const Bonds& bonds, std::span<con
   Web web(bonds, broken, d, std::move(positions));
 
   const Holding holding = with_images(of_body, points, bonds, broken, web.positions());
+  std::vector<char> held = prescribed;  // springs of a foundation hold, too
+  for (std::size_t dof = 0; dof < holding.prescribed.size(); ++dof) {
+    held[dof] |= holding.prescribed[dof];
+  }
   Fragments fragments;
   fragments.pinned.assign(prescribed.size(), 0);
   std::vector<std::vector<Index>> cores =
       connected_components(bonds, broken, holding.links).members();
   number_pieces(cores, points, web.positions(), holding, fragments);
 
-  std::vector<Support> support = supports_of(web, points.count(), prescribed);
+  std::vector<Support> support = supports_of(web, points.count(), held);
   fragments.loose = strip(web, support);
   if (!fragments.loose.empty()) {
     std::vector<char> is_loose(std::size_t(points.count()), 0);
@@ -244,7 +248,7 @@ Fragments find_fragments(const Points& points, const Bonds& bonds, std::span<con
     if (points.is_image(core.front())) continue;
     const RigidMotions free = free_rigid_motions(d, web.positions(), core, holding.prescribed,
                                                  points.spacing, holding.motions);
-    for (std::size_t dof : determinate_pins(free, web.positions(), core, prescribed)) {
+    for (std::size_t dof : determinate_pins(free, web.positions(), core, held)) {
       fragments.pinned[dof] = 1;
     }
   }

@@ -17,7 +17,8 @@ struct HeldMotion {
 
 /// What holds pieces beside their prescribed degrees of freedom.
 struct Holding {
-  /// Per degree of freedom of the points: prescribed by a support. What only follows others is not.
+  /// Per degree of freedom of the points: prescribed by a support, or on a spring. What only
+  /// follows others is not.
   std::vector<char> prescribed;
   std::vector<HeldMotion> motions{};
   std::vector<BondEnds> links{};  ///< points that move together, bonded or not

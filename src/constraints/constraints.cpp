@@ -142,16 +142,16 @@ void Constraints::move_images(std::span<double> displacement) const {
   }
 }
 
-void Constraints::fold_images(std::span<double> gradient) const {
+void Constraints::fold_images(std::span<double> force) const {
   for (Index image = body_->own(); image < points_; ++image) {
     const ImageKind& kind = body_->image_kind(image);
     const Index source = body_->source(image);
     for (int c = 0; c < dimension_; ++c) {
-      const double force = gradient[dof(image, c)];
-      gradient[dof(source, c)] += kind.mirror[std::size_t(c)] * force;
+      const double of_image = force[dof(image, c)];
+      force[dof(source, c)] += kind.mirror[std::size_t(c)] * of_image;
       for (int axis = 0; axis < dimension_; ++axis) {
         const int periods = kind.periods[std::size_t(axis)];
-        if (periods != 0) gradient[dof(period_handle(axis), c)] += periods * force;
+        if (periods != 0) force[dof(period_handle(axis), c)] += periods * of_image;
       }
     }
   }

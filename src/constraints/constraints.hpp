@@ -89,6 +89,9 @@ class Constraints {
   /// images stay with their sources.
   void unfold(std::span<const double> external_force, std::span<double> gradient) const;
 
+  /// Adds forces on images to their sources and the jumps over periods.
+  void fold_images(std::span<double> force) const;
+
   /// The rows of J of a point: itself as far as it does not follow, and its masters.
   [[nodiscard]] std::vector<Dependence> dependences(Index point,
                                                     std::span<const double> displacement) const;
@@ -126,7 +129,6 @@ class Constraints {
   void fold_point(Index point, const std::vector<Dependence>& masters, double sign,
                   std::span<const double> external_force, std::span<double> gradient) const;
   void move_images(std::span<double> displacement) const;
-  void fold_images(std::span<double> gradient) const;
 
   const Points* body_;
   int dimension_;

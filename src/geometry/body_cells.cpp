@@ -21,8 +21,9 @@ BodyCells::BodyCells(const Points& points) : of_(points) {
   for (const std::string& layer : points.lattice->layers) {
     for (const Index point : points.sets.at(layer)) is_outside[point] = 1;
   }
-  for (Index i = 0; i < points.own(); ++i) {
-    if (!is_outside[i]) cells_.emplace_back(cell(i), i);
+  for (Index i = 0; i < points.count(); ++i) {
+    const Index own = points.is_image(i) ? points.source(i) : i;
+    if (!is_outside[own]) cells_.emplace_back(cell(i), i);
   }
   std::sort(cells_.begin(), cells_.end());
 }
@@ -45,13 +46,6 @@ bool BodyCells::is_exposed(Index point, const Side& side) const {
   return this->point(beside(cell(point), side)) < 0;
 }
 
-std::vector<Index> BodyCells::points() const {
-  std::vector<Index> all;
-  for (const auto& [cell, point] : cells_) all.push_back(point);
-  std::sort(all.begin(), all.end());
-  return all;
-}
-
 std::vector<Index> BodyCells::outermost(const Side& side) const {
   const auto along = [&](const auto& entry) { return side.sign * entry.first[side.axis]; };
   const auto last =
@@ -59,7 +53,10 @@ std::vector<Index> BodyCells::outermost(const Side& side) const {
                        [&](const auto& a, const auto& b) { return along(a) < along(b); });
   std::vector<Index> row;
   for (const auto& entry : cells_) {
-    if (along(entry) == along(*last)) row.push_back(entry.second);
+    if (along(entry) == along(*last) && !of_.is_image(entry.second)) row.push_back(entry.second);
+  }
+  if (row.empty()) {
+    throw InputError("", name(side), "on this side the body goes on beyond a plane or period");
   }
   std::sort(row.begin(), row.end());
   return row;

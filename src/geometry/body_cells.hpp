@@ -26,9 +26,8 @@ class BodyCells {
   [[nodiscard]] Index point(const LatticeCell& cell) const;
   [[nodiscard]] bool is_exposed(Index point, const Side& side) const;
 
-  /// All points of the body, ascending.
-  [[nodiscard]] std::vector<Index> points() const;
   /// The body's outermost plane of points on a side, ascending: what a layer stands in front of.
+  /// @throws InputError (without a key) where the body goes on beyond a plane or period
   [[nodiscard]] std::vector<Index> outermost(const Side& side) const;
 
   /// The sides on which points make one plane of cells that is exposed there.

@@ -115,7 +115,7 @@ std::vector<AxisImage> repeated(const Points& points, const Period& period,
   }
   const Extent extent = extent_along(points, period.axis);
   if (extent.least < period.from || extent.most > period.to ||
-      extent.most - extent.least > (1.0 - on_plane) * length + on_plane * points.spacing) {
+      extent.most - extent.least > length - on_plane * points.spacing) {
     throw InputError(table + ".to", number_text(period.to),
                      "points lie between " + number_text(extent.least) + " and " +
                          number_text(extent.most) + " m along " + axis_name(period.axis) +
@@ -233,7 +233,7 @@ void require_lattice_goes_on(const Points& lattice, const std::vector<SymmetryPl
 
 Points without_images(const Points& points) {
   Points own = points;
-  own.images = {};
+  own.images = {points.images.kinds, {}, {}};
   own.volume.resize(std::size_t(points.own()));
   own.reference.resize(std::size_t(points.own()) * std::size_t(points.dimension));
   return own;

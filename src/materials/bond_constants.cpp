@@ -6,35 +6,38 @@
 namespace peristat {
 namespace {
 
-/// Means over all directions n in 1D, 2D and 3D.
-constexpr double mean_of_fourth_power[] = {1.0, 3.0 / 8.0, 1.0 / 5.0};            // n_x^4
-constexpr double mean_of_magnitude[] = {1.0, 2.0 / std::numbers::pi, 1.0 / 2.0};  // |n_x|
-
-double micromodulus_of_moment(double youngs_modulus, const BondSetting& setting,
-                              double first_moment) {
-  const double mean = mean_of_fourth_power[setting.dimension - 1];
-  return 4.0 * confined_energy_per_modulus(setting) * youngs_modulus / (mean * first_moment);
-}
+/// Mean of n_x^4 over all directions n in 1D, 2D and 3D.
+constexpr double mean_of_fourth_power[] = {1.0, 3.0 / 8.0, 1.0 / 5.0};
 
 double critical_stretch_of_moment(double fracture_energy, double micromodulus, int dimension,
                                   double second_moment) {
-  const double mean = mean_of_magnitude[dimension - 1];
+  const double mean = mean_of_magnitude(dimension);
   return std::sqrt(4.0 * fracture_energy / (micromodulus * mean * second_moment));
 }
 
 }  // namespace
 
+double mean_of_magnitude(int dimension) {
+  constexpr double means[] = {1.0, 2.0 / std::numbers::pi, 1.0 / 2.0};
+  return means[dimension - 1];
+}
+
+double micromodulus(double youngs_modulus, const BondSetting& setting, double first_moment) {
+  const double mean = mean_of_fourth_power[setting.dimension - 1];
+  return 4.0 * confined_energy_per_modulus(setting) * youngs_modulus / (mean * first_moment);
+}
+
 double micromodulus(double youngs_modulus, const BondSetting& setting) {
-  return micromodulus_of_moment(youngs_modulus, setting, setting.moment(1));
+  return micromodulus(youngs_modulus, setting, setting.moment(1));
 }
 
 double lattice_micromodulus(double youngs_modulus, const BondSetting& setting,
                             const Spacing& spacing) {
-  return micromodulus_of_moment(youngs_modulus, setting, setting.lattice_moment(1, spacing));
+  return micromodulus(youngs_modulus, setting, setting.lattice_moment(1, spacing));
 }
 
 double youngs_modulus_of(double micromodulus, const BondSetting& setting) {
-  return micromodulus / micromodulus_of_moment(1.0, setting, setting.moment(1));
+  return micromodulus / peristat::micromodulus(1.0, setting, setting.moment(1));
 }
 
 double critical_stretch(double fracture_energy, double micromodulus, const Kernel& kernel) {

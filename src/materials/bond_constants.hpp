@@ -1,5 +1,8 @@
 #pragma once
 
+#include <optional>
+
+#include "src/materials/bulk_lattice.hpp"
 #include "src/neighbourhood/kernel.hpp"
 
 namespace peristat {
@@ -10,6 +13,7 @@ enum class PlaneState { stress, strain };
 /// What the constants of a bond-based model depend on besides the modulus.
 struct BondSetting : Kernel {
   PlaneState plane = PlaneState::stress;  ///< 2D only
+  std::optional<BulkLattice> lattice{};   ///< nothing for a cloud of points
 };
 
 /// Micromodulus c [N/m6] of the bond force density c omega s for Young's modulus E [Pa], from the
@@ -25,6 +29,10 @@ struct BondSetting : Kernel {
 /// (eq. 3 of [ADAPT], whose 1D constant has a pi too many: the energy of a bar under uniform
 /// strain, c A d^2 / 4 per volume, must be E/2.)
 [[nodiscard]] double micromodulus(double youngs_modulus, const BondSetting& setting);
+
+/// The same for any first moment of the bonds [m4].
+[[nodiscard]] double micromodulus(double youngs_modulus, const BondSetting& setting,
+                                  double first_moment);
 
 /// The same with the moment of a lattice: right in the mean over all directions of its axes.
 [[nodiscard]] double lattice_micromodulus(double youngs_modulus, const BondSetting& setting,
@@ -47,6 +55,9 @@ struct BondSetting : Kernel {
 /// The same with the moment of a lattice: the mean over all directions of the crack.
 [[nodiscard]] double lattice_critical_stretch(double fracture_energy, double micromodulus,
                                               const Kernel& kernel, const Spacing& spacing);
+
+/// Mean of |n_x| over all directions: 1 | 2/pi | 1/2 in 1D | 2D | 3D.
+[[nodiscard]] double mean_of_magnitude(int dimension);
 
 /// Poisson's ratio that central forces impose: 1/3 in plane stress, 1/4 in plane strain and 3D,
 /// 0 in 1D.

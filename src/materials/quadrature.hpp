@@ -9,9 +9,6 @@
 
 namespace peristat {
 
-/// Repair of the missing neighbours near surfaces; see make_bonds.
-enum class SurfaceCorrection { none, volume, energy };
-
 /// Takes out bonds that store no energy.
 void drop_weightless(Bonds& bonds);
 

@@ -44,7 +44,7 @@ struct InteractionScratch {
 /// Unique triangles (Measure = Area) or tetrahedra (Volume) of a body: points with all mutual
 /// distances within the horizon ([CPD] sec. 3.1 after eqs. 32 and 34), as far as they are not flat:
 /// each is weighted by its flatness_factor. Each is visited once, at its lowest point, with its
-/// other points in ascending order.
+/// other points in ascending order. Those of images alone belong to others.
 ///
 /// They are found anew at every visit from the bond graph, or, once stored, read back: 72 bytes for
 /// a block of up to four.
@@ -115,6 +115,7 @@ class Interactions {
   void apply_factors(const UpperNeighbourhood& upper, const Group& group,
                      InteractionBlock& block) const;
 
+  Index own_ = 0;  // points that are no images, the lowest ones
   Offset count_ = 0;
   Offset blocks_ = 0, groups_ = 0;
   std::vector<std::int32_t> per_point_;
@@ -197,6 +198,7 @@ template <int D, class Visit>
 void Interactions<Measure>::find_groups(const LocalNeighbourhood<D>& local,
                                         InteractionScratch& scratch, const Visit& visit) const {
   const UpperNeighbourhood& upper = local.upper;
+  if (upper.own() >= own_) return;
   scratch.of_partners.assign(upper.count(), [&](int a, int c) {
     return (c == 0 ? shares_ : cell_shares_)[upper.points()[a]];
   });

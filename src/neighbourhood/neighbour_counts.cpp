@@ -13,4 +13,10 @@ std::vector<std::int32_t> neighbour_counts(const Bonds& bonds) {
   return count;
 }
 
+Offset weighted_bonds(const Bonds& bonds) {
+  Offset count = 0;
+  for (Offset bond = 0; bond < bonds.count(); ++bond) count += bonds.weight(bond) != 0.0;
+  return count;
+}
+
 }  // namespace peristat

@@ -3,6 +3,7 @@
 #include <variant>
 
 #include "src/potentials/critical_stretch.hpp"
+#include "src/potentials/force_envelope.hpp"
 #include "src/potentials/harmonic.hpp"
 #include "src/potentials/tanh_degradation.hpp"
 
@@ -11,7 +12,7 @@ namespace peristat {
 /// One of the laws of damage, chosen where it is evaluated: for bonds that fail in different ways.
 /// See Degraded for what its members mean.
 struct AnyLaw {
-  std::variant<CriticalStretch, TanhDegradation> law;
+  std::variant<CriticalStretch, TanhDegradation, ForceEnvelope> law;
 
   [[nodiscard]] double onset() const {
     return std::visit([](const auto& one) { return one.onset(); }, law);

@@ -8,6 +8,7 @@
 #include "src/core/lanes.hpp"
 #include "src/potentials/critical_stretch.hpp"
 #include "src/potentials/degraded.hpp"
+#include "src/potentials/force_envelope.hpp"
 #include "src/potentials/harmonic.hpp"
 #include "src/potentials/tanh_degradation.hpp"
 
@@ -39,7 +40,8 @@ concept PotentialWithHistory = requires(const P potential, Offset bond, double n
 template <Potential... Whole>
 struct BondPotentials {
   using Any = std::variant<Whole..., Degraded<CriticalStretch, Whole>...,
-                           Degraded<TanhDegradation, Whole>..., DegradedByBond<Whole>...>;
+                           Degraded<TanhDegradation, Whole>..., Degraded<ForceEnvelope, Whole>...,
+                           DegradedByBond<Whole>...>;
 
   /// Calls visit(potential) for each of them, with the modulus 1.
   template <class Visit>

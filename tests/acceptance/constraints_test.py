@@ -1,5 +1,6 @@
 """Planes of symmetry, periodic cells, rigid sets, rollers and linear constraints."""
 
+import itertools
 import json
 import math
 import pathlib
@@ -80,9 +81,31 @@ class Constrained(Programmes):
             step = file["steps"][sorted(file["steps"])[-1]]
             return file["points/reference"][...], {key: step[key][...] for key in ("displacement", "force", "energy_density", "damage")}
 
+    def bonds(self, name, rows):
+        """Places of both ends, in half spacings, of bonds that rows (first, second, image) tell."""
+        with h5py.File(self.folder / name / "results.h5") as file:
+            places = file["points/reference"][...]
+            kinds = [file[f"points/images/{part}"][...] for part in ("mirror", "shift")] if "images" in file["points"] else [[], []]
+        found = []
+        for first, second, image in rows:
+            end = places[second] if image == 0 else kinds[0][image - 1] * places[second] + kinds[1][image - 1]
+            found.append(tuple(sorted(tuple(numpy.rint(place * 2e3).astype(int).tolist()) for place in (places[first], end))))
+        return found
+
     def broken(self, name):
         rows = (self.folder / name / "broken_bonds.csv").read_text().splitlines()[1:]
-        return [tuple(map(int, row.split(",")[2:4])) for row in rows]
+        return self.bonds(name, [map(int, row.split(",")[2:5]) for row in rows])
+
+    def damaged(self, name):
+        """Largest stretch of every bond that has one."""
+        stretches = {}
+        with h5py.File(self.folder / name / "results.h5") as file:
+            for step in file["steps"].values():
+                told = step["history"]
+                images = told["second_image"] if "second_image" in told else numpy.zeros(len(told["first_point"]), int)
+                bonds = self.bonds(name, zip(told["first_point"], told["second_point"], images))
+                stretches |= dict(zip(bonds, told["largest_stretch"][...].tolist()))
+        return stretches
 
 
 class Symmetry(Constrained):
@@ -124,18 +147,50 @@ class Symmetry(Constrained):
         whole = self.run_case(plate("", **text, more=notch), *settings, name="whole")
         part = self.run_case(plate("x", **text, more=notch), *settings, name="part")
         self.assertGreater(whole[-1]["broken_bonds"], 50)
-        places = {name: self.fields(name)[0] for name in ("whole", "part")}
-
-        def bonds(name):
-            """By the magnitudes of their ends' places: twins are one."""
-            found = set()
-            for ends in self.broken(name):
-                ends = [tuple(numpy.rint(places[name][end] * 2e3).astype(int) * [1 if name == "whole" else 1, 1]) for end in ends]
-                found.add(tuple(sorted((abs(x), y) for x, y in ends)))
-            return found
-
-        self.assertEqual(bonds("whole"), bonds("part"))
+        part_bonds = self.broken("part")
+        self.assertEqual(len(part_bonds), part[-1]["broken_bonds"])
+        self.assertEqual(len(set(part_bonds)), len(part_bonds))
+        twins = [tuple(sorted((-x, y) for x, y in ends)) for ends in part_bonds]
+        self.assertEqual(sorted(self.broken("whole")), sorted({*part_bonds, *twins}))
+        whole_stretch = self.damaged("whole")
+        for bond, stretch in self.damaged("part").items():
+            self.assertAlmostEqual(stretch, whole_stretch[bond], delta=1e-9)
         self.assertAlmostEqual(part[-1]["reaction_y:top"], 0.5 * whole[-1]["reaction_y:top"], delta=1e-6 * max(abs(row["reaction_y:top"]) for row in whole))
+
+    def test_two_planes_across_one_axis_are_half_a_period(self):
+        """A strip between two planes, also one that is thinner than the horizon, beside the cell that both repeat."""
+        for material, width in itertools.product((BONDS, CPD_2D), (0.006, 0.002)):
+            with self.subTest(material=material, width=width):
+                strip = plate("x", material=material).replace("max = [0.012", f"max = [{width}")
+                strip = self.run_case(strip + f'[[symmetry]]\naxis = "x"\nat = {width}\n', name="strip")[-1]
+                cell = plate("", material=material).replace("min = [-0.012", f"min = [{-width}").replace("max = [0.012", f"max = [{width}")
+                cell += f'[[period]]\naxis = "x"\nfrom = {-width}\nto = {width}\n'
+                cell = self.run_case(cell, name="cell")[-1]
+                force = cell["reaction_x:period_x"]
+                self.assertGreater(force, 0.1 * cell["reaction_y:top"] * 0.02 / width)
+                self.assertAlmostEqual(strip["reaction_x:symmetry_x+"] / force, 1, delta=1e-9)
+                self.assertAlmostEqual(strip["reaction_x:symmetry_x-"] / force, -1, delta=1e-9)
+                self.assertAlmostEqual(2 * strip["stored_energy"] / cell["stored_energy"], 1, delta=1e-11)
+
+    def test_what_a_part_is_not_is_refused(self):
+        inner = '[[set]]\nname = "inner"\nwhere = "x < 1e-3 && abs(y) < 0.0119"\n[[load]]\nset = "inner"\ntraction = ["1e6*load", 0]\n'
+        deep = '[[load]]\nside = "x+"\ntraction = ["1e6*load", 0]\ndepth = "horizon"\n'
+        for text, code in ((plate("x") + deep, 0), (plate("x").replace("max = [0.012", "max = [0.003") + deep, 2)):
+            self.assertEqual(peristat("check", self.case(text)).code, code)
+        side = '[[load]]\nside = "x-"\ntraction = ["1e6*load", 0]\n'
+        pin = '[[set]]\nname = "pin"\nwhere = "x^2 + y^2 < 0.003^2"\n[[rigid]]\nset = "pin"\n'
+        for more, words in ((inner, "goes on beyond"), (side, "goes on beyond"), (pin, "along x must be 0"),
+                            (pin + 'displacement = [0, "free"]\n', "rotation")):  # fmt: skip
+            with self.subTest(more):
+                ended = peristat("check", self.case(plate("x") + more))
+                self.assertEqual(ended.code, 2, ended.said)
+                self.assertIn(words, ended.said)
+
+    def test_a_rigid_set_that_a_plane_cuts_is_that_of_the_whole(self):
+        pin = '[[set]]\nname = "pin"\nwhere = "x^2 + y^2 < 0.003^2"\n[[rigid]]\nset = "pin"\ndisplacement = [0, "free"]\nrotation = [0]\n'
+        self.run_case(plate("", more=pin), name="whole")
+        self.run_case(plate("x", more=pin), name="part")
+        self.assert_part_of(self.fields("whole"), self.fields("part"))
 
     def test_planes_that_are_none_are_refused(self):
         for text, words in ((plate("x") + plane("x"), "already"),
@@ -193,6 +248,39 @@ def lattice_stress(gradient, youngs_modulus=200e9, spacing=1e-3, ratio=3.015):
 
 
 class Periodic(Constrained):
+    def torn(self, crack):
+        """A cell of 24 x 12 points, longer than 20, in which a crack begins to run."""
+        softening = 'law = "tanh_continuous"\nonset = 0.003\ncritical = 0.008\n'
+        text = CELL.format(material=BONDS + "[material.damage]\n" + softening, x=[0, 0], y=[0, "3e-3*load"])
+        text = text.replace("0.008, 0.006]", "0.024, 0.012]").replace("to = 0.008", "to = 0.024").replace("to = 0.006", "to = 0.012")
+        text += f"[[crack]]\nfrom = [-0.004, {crack}]\nto = [0.004, {crack}]\n"
+        text += '[[set]]\nname = "all"\nwhere = "1"\n[[probe]]\nname = "crack"\nset = "all"\nfield = "crack_length"\n'
+        return self.run_case(text, "loading.steps=6", name=f"y{crack}")
+
+    def test_a_crack_on_the_side_of_a_cell_is_that_within_it(self):
+        """Where the same lattice is cut into cells changes nothing, to the round-off of softening bonds."""
+        within, on_side = self.torn(0.003), self.torn(0.0)
+        self.assertGreater(within[-1]["broken_bonds"], 5)
+        for column in ("stored_energy", "dissipated_energy", "reaction_y:period_y", "max_damage"):
+            self.assertAlmostEqual(within[-1][column] / on_side[-1][column], 1, delta=1e-8)
+        self.assertEqual([round(row["crack"], 12) for row in within], [round(row["crack"], 12) for row in on_side])
+        self.assertAlmostEqual(within[0]["crack"], 8e-3, delta=1e-12)
+        self.assertGreater(within[-1]["crack"], 9e-3)
+
+        def of_crack(name, crack):
+            """Bonds by where their middles are, over a whole period, and how they lie; in half spacings."""
+            found = []
+            for (x, y), (other_x, other_y) in self.broken(name):
+                lies = max((other_x - x, other_y - y), (x - other_x, y - other_y))
+                found.append(((x + other_x) % 96, (y + other_y - round(4000 * crack)) % 48, *lies))
+            return found
+
+        inside, on_side = of_crack("y0.003", 0.003), of_crack("y0.0", 0.0)
+        self.assertEqual(sorted(inside), sorted(set(on_side)))
+        # Those across the side are there at both of its ends.
+        across = sum(min(y, 48 - y) < abs(high) for _, y, _, high in inside)
+        self.assertEqual(len(on_side), len(inside) + across)
+
     def test_a_cell_has_the_stress_of_its_lattice(self):
         for gradient in ([[1e-4, 0], [0, 0]], [[0.02, 0.01], [-0.03, 0.05]]):
             text = CELL.format(material=BONDS, x=[gradient[0][0], gradient[1][0]], y=[gradient[0][1], gradient[1][1]])
@@ -207,12 +295,14 @@ class Periodic(Constrained):
         strain = 1e-3
         row = self.run_case(CELL.format(material=BONDS, x=[strain, 0], y=[0, "free"]))[-1]
         self.assertLess(abs(row["reaction_y:period_y"]), 1e-11 * row["reaction_x:period_x"])
+        self.assertAlmostEqual(row["gradient_x:period_x"] / strain, 1, delta=1e-14)
         low, high = -strain, 0.0
         for _ in range(60):  # the contraction at which the lattice has no stress across
             middle = 0.5 * (low + high)
             low, high = (middle, high) if lattice_stress([[strain, 0], [0, middle]])[1, 1] < 0 else (low, middle)
         stress = lattice_stress([[strain, 0], [0, high]])[0, 0]
         self.assertAlmostEqual(row["reaction_x:period_x"] / (0.006 * 1e-3) / stress, 1, delta=1e-11)
+        self.assertAlmostEqual(row["gradient_y:period_y"] / high, 1, delta=1e-9)
 
     def test_a_cell_of_cpd_has_the_energy_of_its_lattice(self):
         gradient = numpy.array([[0.02, 0.01], [-0.03, 0.05]])
@@ -232,6 +322,40 @@ class Periodic(Constrained):
         pair = around**2 / (2 * len(area))
         triangles = (2 * volume * pair * 0.5 * 3e30 * numpy.abs(area) * (ratio - 1) ** 2).sum() / 3
         self.assertAlmostEqual(stored / (48 * (bonds + triangles)), 1, delta=1e-12)
+
+    def test_what_a_cell_is_not_is_refused(self):
+        heavy = BONDS + "density = 1000.0\n"
+        gravity = '[[load]]\ngravity = ["0", "-9.81*load"]\n'
+        sheared = CELL[: CELL.index('[[period]]\naxis = "y"')] + '[[symmetry]]\naxis = "y"\n'
+        for text, words in ((CELL.format(material=heavy, x=[0, 0], y=[0, 0]) + gravity, "along y"),
+                            (sheared.format(material=BONDS, x=["0", "1e-3*load"]), "leaves no jump"),
+                            (sheared.format(material=BONDS, x=["0", "free"]), "leaves no jump")):  # fmt: skip
+            with self.subTest(text):
+                ended = peristat("check", self.case(text))
+                self.assertEqual(ended.code, 2, ended.said)
+                self.assertIn(words, ended.said)
+
+    def test_loads_that_get_out_of_balance_end_the_run(self):
+        sets = '[[set]]\nname = "low"\nwhere = "y < 0.003"\n[[set]]\nname = "high"\nwhere = "y > 0.003"\n'
+        loads = '[[load]]\nset = "low"\ntotal_force = [0, "-load"]\n[[load]]\nset = "high"\ntotal_force = [0, "{}"]\n'
+        text = CELL.format(material=BONDS, x=[0, 0], y=[0, 0]) + sets
+        balanced = self.run_case(text + loads.format("load"), "loading.steps=4", name="balanced")
+        self.assertGreater(balanced[-1]["stored_energy"], 0)
+        kink = "load + 16*load*(load - 0.5)*(load - 1)*(load > 0.2 ? 0 : 1)"  # 0 at the ends and in the middle
+        self.run_case(text + loads.format(kink), "loading.steps=10", name="kinked", expected=3)
+        self.assertIn("add up to", (self.folder / "kinked/decisions.csv").read_text())
+
+    def test_cells_may_have_many_points(self):
+        """A gap of one spacing between a cell and the next is a small part of a large one."""
+        text = CELL.format(material=BONDS, x=["1e-3*load", "0"], y=["0", "0"]).replace("0.008", "0.06")
+        row = self.run_case(text)[-1]
+        stress = lattice_stress([[1e-3, 0], [0, 0]])
+        self.assertAlmostEqual(row["reaction_x:period_x"] / (0.006 * 1e-3) / stress[0, 0], 1, delta=1e-12)
+
+    def test_points_at_both_sides_are_refused(self):
+        ended = peristat("check", self.case(CELL.format(material=BONDS, x=[0, 0], y=[0, 0]).replace("to = 0.008", "to = 0.0075")))
+        self.assertEqual(ended.code, 2, ended.said)
+        self.assertIn("does not go on", ended.said)
 
     def test_a_cell_that_may_turn_is_refused(self):
         ended = peristat("check", self.case(CELL.format(material=BONDS, x=["1e-3*load", "free"], y=["free", 0])))
@@ -290,6 +414,23 @@ class Rigid(Constrained):
         held = self.run_case(BODY + '[[support]]\nset = "left"\ndisplacement = ["0", "1e-5*load"]\n' + LIFTED, name="held")[-1]
         for column in ("reaction_x:left", "reaction_y:left", "stored_energy", "external_work"):
             self.assertAlmostEqual(rigid[column], held[column], delta=1e-9 * abs(held["reaction_y:left"]))
+
+    def test_check_tells_what_is_prescribed_and_what_follows(self):
+        def line(text):
+            ended = peristat("check", self.case(text))
+            self.assertEqual(ended.code, 0, ended.said)
+            return next(line for line in ended.output.splitlines() if line.startswith("supports"))
+
+        # 600 points, of which the pin has 32 and each end a column of 20; images have no degrees of freedom of their own.
+        pin, ends = 2 * 32, 2 * 20
+        self.assertEqual(line(BODY + '[[support]]\nset = "left"\ndisplacement = [0, 0]\n'),
+                         f"supports    {ends} prescribed and {1200 - ends} free degrees of freedom")  # fmt: skip
+        self.assertEqual(line(BODY + PIN + LIFTED + ROLLER),
+                         f"supports    {ends // 2} prescribed, {pin + 1} that follow constraints, and "
+                         f"{1200 - ends // 2 - pin - 1} free degrees of freedom; 1 free ones of constraints")  # fmt: skip
+        self.assertEqual(line(CELL.format(material=BONDS, x=["1e-3*load", 0], y=[0, "free"])),
+                         "supports    2 prescribed and 94 free degrees of freedom; 1 free ones of constraints")  # fmt: skip
+        self.assertEqual(line(plate("xy")), "supports    48 prescribed and 288 free degrees of freedom")
 
     def test_a_rotation_is_a_rigid_motion(self):
         """Two rigid sets that turn by the same finite angle about one centre carry the body along."""
@@ -399,6 +540,184 @@ def line(name, x, z, more=""):
 LINES = (line("a", 0.0025, 0.0) + line("b", 0.0115, 0.0) + line("c", 0.007, 0.004, 'displacement = "-1e-5*load"\n')
          + '[[roller]]\nname = "x"\nat = [0.007, 0.002, 0.004]\nnormal = [1, 0, 0]\n'
          + "".join(f'[[roller]]\nname = "{name}"\nat = [{x}, 0.002, 0.0]\nnormal = [0, 1, 0]\n' for name, x in (("y", 0.0025), ("yy", 0.0115))))  # fmt: skip
+
+
+RING = """\
+dimension = 2
+[lattice]
+spacing = 0.05
+thickness = 0.1
+shape = [
+  {{ add = "disk", centre = [0, 0], radius = 1.0 }},
+  {{ subtract = "disk", centre = [0, 0], radius = 0.5 }},
+  {cut}
+]
+[[set]]
+name = "all"
+where = "1"
+[[set]]
+name = "rim"
+where = "sqrt(x^2 + y^2) < 0.56"
+[[set]]
+name = "right"
+where = "x > 0.8"
+[material]
+youngs_modulus = 1e9
+[quadrature]
+surface_correction = "energy"
+volume_correction = "linear"
+[[load]]
+set = "rim"
+pressure = "{pressure}*load"
+[solver]
+relative_tolerance = 1e-12
+{held}
+"""
+LEFT = '{ subtract = "box", min = [-1.1, -1.1], max = [0, 1.1] },'
+BELOW = '{ subtract = "box", min = [-1.1, -1.1], max = [1.1, 0] },'
+
+
+def mean_is_zero(name, *terms):
+    tables = "".join(f'[[constraint.term]]\nset = "{set}"\nweights = {weights}\n' for set, weights in terms)
+    return f'[[constraint]]\nname = "{name}"\n' + tables
+
+
+HELD_X, HELD_Y = (mean_is_zero(f"held_{axis}", ("all", weights)) for axis, weights in (("x", [1, 0]), ("y", [0, 1])))
+HELD_ROUND = mean_is_zero("held_round", ("right", [0, 1]), ("all", [0, -1]))
+
+
+class Pressed(Constrained):
+    """Pressures that follow what follows others."""
+
+    def assert_part_of(self, whole, part):
+        of_place = {tuple(numpy.rint(place * 40).astype(int)): i for i, place in enumerate(whole[0])}
+        twins = [of_place[tuple(numpy.rint(place * 40).astype(int))] for place in part[0]]
+        for name, field in part[1].items():
+            size = max(numpy.abs(whole[1][name]).max(), 1e-300)
+            self.assertLess(numpy.abs(field - whole[1][name][twins]).max() / size, 1e-11, name)
+
+    def test_parts_of_a_ring_are_the_whole(self):
+        for pressure, steps in ((1e5, 1), (0.1e9, 4)):
+            bodies = {"whole": RING.format(cut="", held=HELD_X + HELD_Y + HELD_ROUND, pressure=pressure),
+                      "half": RING.format(cut=LEFT, held=plane("x") + HELD_Y, pressure=pressure),
+                      "quarter": RING.format(cut=LEFT + BELOW, held=plane("x") + plane("y"), pressure=pressure)}  # fmt: skip
+            rows = {name: self.run_case(text, f"loading.steps={steps}", name=name)[-1] for name, text in bodies.items()}
+            for name, share in (("half", 0.5), ("quarter", 0.25)):
+                with self.subTest(name, pressure=pressure):
+                    self.assert_part_of(self.fields("whole"), self.fields(name))
+                    for energy in ("stored_energy", "external_work"):
+                        self.assertAlmostEqual(rows[name][energy] / share / rows["whole"][energy], 1, delta=1e-10)
+            # Half of the ring is torn off by the pressure on the projection of its bore, which has widened.
+            _, fields = self.fields("quarter")
+            self.assertGreater(-rows["quarter"]["reaction_x:symmetry_x"], 0.5 * 0.1 * pressure)
+            self.assertLess(-rows["quarter"]["reaction_x:symmetry_x"], (0.5 + numpy.abs(fields["displacement"]).max() + 0.05) * 0.1 * pressure)
+
+    def test_what_check_tells_of_a_part_is_that_of_the_whole(self):
+        """A closed bore: nothing is left out of the stiffness."""
+        for cut, held in (("", HELD_X + HELD_Y + HELD_ROUND), (LEFT + BELOW, plane("x") + plane("y"))):
+            ended = peristat("check", self.case(RING.format(cut=cut, held=held, pressure=1e5)))
+            self.assertEqual(ended.code, 0, ended.said)
+            self.assertIn("closed or held", ended.said)
+
+    def test_relaxation_finds_the_same(self):
+        text = RING.format(cut=LEFT + BELOW, held=plane("x") + plane("y"), pressure=1e7)
+        newton = self.run_case(text, name="newton")[-1]
+        relaxed = self.run_case(text, "solver.mode=relaxation", "solver.relative_tolerance=1e-10", name="relaxed")[-1]
+        for energy in ("stored_energy", "external_work"):
+            self.assertAlmostEqual(relaxed[energy] / newton[energy], 1, delta=1e-4)
+
+    def test_tangents_are_those_of_the_energy(self):
+        for cut, held in ((LEFT + BELOW, plane("x") + plane("y")), (LEFT, plane("x") + HELD_Y)):
+            told = peristat("check-tangent", self.case(RING.format(cut=cut, held=held, pressure=1e8))).json()
+            self.assertLess(max(told["residual_error"], told["tangent_error"], told["asymmetry"]), 1e-6, told)
+
+    def test_a_rigid_body_hands_on_the_pressure_as_it_turns(self):
+        """A rigid block under pressure on one side: p A along the normal, which turns with the block."""
+        force = 1e10 * 0.01 * 1e-3
+        with_it, without = (self.run_case(BLOCK_UNDER_PRESSURE.replace("1e10*load", pressure), name=pressure[:4])[-1]
+                            for pressure in ("1e10*load", "0*load"))  # fmt: skip
+        added = {column: with_it[column] - without[column] for column in with_it if column.endswith(":block")}
+        self.assertAlmostEqual(added["reaction_x:block"] / (force * math.cos(0.5)), 1, delta=1e-8)
+        self.assertAlmostEqual(added["reaction_y:block"] / (force * math.sin(0.5)), 1, delta=1e-8)
+        self.assertAlmostEqual(added["moment_z:block"] / (force * 0.01), 0, delta=1e-8)
+
+    def test_a_strip_is_pressed_as_a_long_plate(self):
+        """One period of a plate that rests on its lower side."""
+        text = STRIP_UNDER_PRESSURE
+        row = self.run_case(text)[-1]
+        self.assertAlmostEqual(row["reaction_y:bottom"] / (1e6 * 0.01 * 1e-3), 1, delta=1e-9)
+        reference, fields = self.fields("out")
+        rows = {round(y, 6): fields["displacement"][numpy.abs(reference[:, 1] - y) < 1e-6] for y in reference[:, 1]}
+        for displacement in rows.values():  # nothing changes along the plate
+            self.assertLess(numpy.ptp(displacement, axis=0).max(), 1e-12 * numpy.abs(fields["displacement"]).max())
+
+    def test_a_cell_that_nothing_holds_needs_balanced_pressures(self):
+        floating = STRIP_UNDER_PRESSURE.replace('[[support]]\nset = "bottom"\ndisplacement = [0, 0]\n', "")
+        ended = peristat("check", self.case(floating))
+        self.assertEqual(ended.code, 2, ended.said)
+        self.assertIn("no equilibrium", ended.said)
+        self.run_case(floating + '[[load]]\nside = "y-"\npressure = "1e6*load"\n')
+
+    def test_on_a_side_where_the_body_goes_on_it_is_refused(self):
+        for side, told in (("x-", "beyond a plane"), ("x+", "")):
+            text = plate("x", more=f'[[load]]\nside = "{side}"\npressure = "1e6*load"\n')
+            ended = peristat("check", self.case(text))
+            self.assertEqual(ended.code, 2 if told else 0, ended.said)
+            self.assertIn(told, ended.said)
+
+
+
+BLOCK_UNDER_PRESSURE = """\
+dimension = 2
+[lattice]
+spacing = 1e-3
+thickness = 1e-3
+shape = [{ add = "box", min = [0, 0], max = [0.02, 0.01] }]
+[[set]]
+name = "block"
+where = "x > 0.01"
+[[set]]
+name = "left"
+where = "x < 2e-3"
+[material]
+youngs_modulus = 200e9
+[[support]]
+set = "left"
+displacement = [0, 0]
+[[rigid]]
+set = "block"
+displacement = ["-1e-3*load", "2e-3*load"]
+rotation = ["0.5*load"]
+[[load]]
+side = "x+"
+pressure = "1e10*load"
+[loading]
+steps = 4
+"""
+STRIP_UNDER_PRESSURE = """\
+dimension = 2
+[lattice]
+spacing = 1e-3
+thickness = 1e-3
+shape = [{ add = "box", min = [0, 0], max = [0.01, 0.012] }]
+[[set]]
+name = "bottom"
+where = "y < 2e-3"
+[material]
+youngs_modulus = 200e9
+[[support]]
+set = "bottom"
+displacement = [0, 0]
+[[period]]
+axis = "x"
+from = 0
+to = 0.01
+[[load]]
+side = "y+"
+pressure = "1e6*load"
+[solver]
+relative_tolerance = 1e-12
+"""
 
 
 class Judged(Constrained):

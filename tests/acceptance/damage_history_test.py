@@ -19,6 +19,9 @@ LAWS = (
     {"law": "tanh", "onset": 0.015, "critical": 0.05, "rate": 3.0},
     {"law": "tanh_continuous", "onset": 0.01, "critical": 0.05, "rate": 2.0},
     {"law": "tanh_continuous", "onset": 0.03, "critical": 0.031, "rate": 20.0},
+    {"law": "linear", "onset": 0.012, "critical": 0.05},
+    {"law": "exponential", "onset": 0.01, "critical": 0.045, "rate": 4.0},
+    {"law": "blended", "onset": 0.01, "peak": 0.025, "critical": 0.045, "hardening": 0.3},
 )
 MODES = ("newton", "relaxation", "adaptive")
 AXES = {1: ["x"], 2: ["x", "y"], 3: ["x", "y", "z"]}

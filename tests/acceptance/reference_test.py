@@ -1,16 +1,19 @@
 """The program beside the reference of tests/reference: energies, forces, tangents, runs."""
 
 import collections
+import csv
 import itertools
 import pathlib
+import shutil
 import tempfile
 import unittest
 
+import h5py
 import numpy
 
 from tests.reference.body import Body
 from tests.reference.case import Case, evaluate, read_points
-from tests.reference.clouds import LAWS, random_cloud, random_deformation
+from tests.reference.clouds import LAWS, random_cloud, random_deformation, random_places, toml, write_points
 from tests.reference.mechanics import STEP, Mechanics
 from tests.reference.program import peristat
 from tests.reference.verify import Verification
@@ -151,6 +154,207 @@ class Clouds(unittest.TestCase):
                     self.assertEqual(verification.run(), [])
                     judged += len(verification.results.steps)
         self.assertGreater(judged, 60)
+
+
+def plane(axis, at):
+    return {"axis": axis, "at": float(at)}
+
+
+def period(axis, length, gradient):
+    return {"axis": axis, "from": 0.0, "to": float(length), "gradient": gradient}
+
+
+class Beyond(unittest.TestCase):
+    """Planes of symmetry and periods: the reference continues the body, the program has images and folds forces."""
+
+    SIDE = {1: 12, 2: 6, 3: 4}  # points
+    PULL = {"bond": 0.12, "cpd": 0.1}  # strain
+
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory(prefix="peristat_beyond_")
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+        self.random = numpy.random.default_rng(21)
+
+    def arrangements(self, dimension):
+        """What is beyond, by name; the pull is along x, by supports or by the gradient of a period."""
+        side, still = self.SIDE[dimension], [0] * (dimension - 1)
+        last = "xyz"[dimension - 1]
+        found = {"a plane": {"symmetry": [plane("x", side)]}, "a strip": {"symmetry": [plane(last, 0), plane(last, side)]}}
+        if dimension > 1:
+            found["a quarter"] = {"symmetry": [plane("x", side), plane("y", 0)]}
+            found["a band"] = {"period": [period("y", side, ["0", "free", *still[1:]])]}
+            found["a half band"] = {"period": [period("y", side, ["0", "-0.02*load", *still[1:]])], "symmetry": [plane("x", side)]}
+        pulled = ["{}*load", "0.03*load", "0"][:dimension]
+        found["a cell"] = {"period": [period(axis, side, pulled if axis == "x" else ["0", "free", "0"][:dimension])
+                                      for axis in "xyz"[:dimension]]}  # fmt: skip
+        if dimension == 3:
+            found["a cell"]["period"].pop()
+            found["an eighth"] = {"symmetry": [plane(axis, side) for axis in "xyz"]}
+        return found
+
+    def body(self, dimension, model, law, beyond, is_lattice):
+        """Points in a cube of which a half may be another's continuation, stretched along x."""
+        side = self.SIDE[dimension]
+        case = {"dimension": dimension}
+        horizon = {"bond": (2.2, 3.015, 2.015), "cpd": (0, 2.3, 1.75)}[model][dimension - 1]
+        if is_lattice:
+            shape = [{"add": "box", "min": [0.0] * dimension, "max": [float(side)] * dimension}]
+            case["lattice"] = {"spacing": 1.0, "horizon_ratio": horizon, "shape": shape}
+            case["set"] = [{"name": "left", "where": "x < 1"}, {"name": "right", "where": f"x > {side - 1}"}]
+        else:
+            reference = random_places(self.random, side**dimension, dimension) + 0.5
+            x = reference[:, 0]
+            volume = self.random.uniform(0.7, 1.4, len(x))
+            write_points(self.folder / "cloud.csv", reference, volume, {"left": x < 1, "right": x > side - 1})
+            case["points"] = {"file": "cloud.csv", "horizon": horizon}
+        material = {"micromodulus": 50.0} if model == "bond" else {"model": "cpd", "c1": 50.0, "c2": 9.0}
+        if model == "cpd" and dimension == 3:
+            material["c3"] = 2.0
+        if LAWS[law]:
+            material["damage"] = LAWS[law]
+        case["material"] = material
+        if model == "bond":
+            case["quadrature"] = {"volume_correction": "linear", "surface_correction": "energy" if is_lattice else "volume"}
+        pull, still = self.PULL[model], [0] * (dimension - 1)
+        mirrored = any(table == plane("x", side) for table in beyond.get("symmetry", []))
+        is_cell = any(table["axis"] == "x" for table in beyond.get("period", []))
+        if not is_cell:
+            case["support"] = [{"set": "left", "displacement": [0, *still]}]
+            if mirrored:  # away from the plane
+                case["support"][0]["displacement"][0] = f"{-pull * side}*load"
+            else:
+                case["support"].append({"set": "right", "displacement": [f"{pull * side}*load", *still]})
+        else:
+            beyond["period"][0]["gradient"][0] = f"{pull}*load"
+        return case | beyond
+
+    def judged(self, case, name):
+        path = self.folder / "case.toml"
+        path.write_text(toml(case))
+        run = peristat("run", path, "--quiet", "--no-plots", "--threads", 1, "--output", self.folder / name)
+        self.assertIn(run.code, (0, 3), run.said)
+        return Verification(self.folder / name, path.read_text(), self.folder)
+
+    def test_runs_are_what_the_continued_body_says(self):
+        seen = collections.Counter()
+        kinds = [("bond", 1), ("bond", 2), ("bond", 3), ("cpd", 2), ("cpd", 3)]
+        for number, (model, dimension) in enumerate(kinds):
+            for count, (what, beyond) in enumerate(self.arrangements(dimension).items()):
+                for law in ("none", ("tanh_continuous", "critical_stretch")[count % 2]):
+                    is_lattice = (number + count + (law == "none")) % 2 == 0
+                    name = f"{model}_{dimension}_{what}_{law}".replace(" ", "_")
+                    with self.subTest(name, lattice=is_lattice):
+                        case = self.body(dimension, model, law, beyond, is_lattice)
+                        case["loading"] = {"steps": 3}
+                        case["relaxation"] = {"steps": 4, "max_iterations": 3000}
+                        case["solver"] = {"mode": "adaptive" if LAWS[law] else "newton", "relative_tolerance": 1e-9}
+                        verification = self.judged(case, name)
+                        self.assertEqual(verification.run(), [])
+                        body = verification.mechanics.body
+                        across = body.bonds[:, 1] >= body.own
+                        self.assertGreater(across.sum(), 0)
+                        seen["steps", model] += len(verification.results.steps)
+                        seen["planes"] += verification.worst.get("reaction of a plane") is not None
+                        seen["periods"] += verification.worst.get("reaction over a period") is not None
+                        seen["broken across", model] += verification.broken_across
+                        seen["clouds"] += not is_lattice
+        self.assertGreater(min(seen["steps", model] for model in ("bond", "cpd")), 80)
+        self.assertGreater(min(seen["broken across", model] for model in ("bond", "cpd")), 100)
+        self.assertGreater(min(seen[kind] for kind in ("planes", "periods", "clouds")), 20)
+
+    # ---- what is wrong is found ------------------------------------------------------------------
+
+    def changed_rows(self, folder, table, change):
+        path = folder / f"{table}.csv"
+        with open(path, newline="") as file:
+            rows = list(csv.DictReader(file))
+        fields = list(rows[0])
+        change(rows)
+        with open(path, "w", newline="") as file:
+            writer = csv.DictWriter(file, fields)
+            writer.writeheader()
+            writer.writerows(rows)
+
+    def scaled(self, column, factor):
+        def change(rows):
+            self.assertNotEqual(float(rows[-1][column]), 0)
+            rows[-1][column] = repr(float(rows[-1][column]) * factor)
+
+        return lambda folder: self.changed_rows(folder, "history", change)
+
+    def test_what_is_tampered_with_is_found(self):
+        case = self.body(2, "bond", "tanh_continuous", {"symmetry": [plane("x", 6)], "period": [period("y", 6, ["0", "free"])]}, True)
+        case["support"][0]["displacement"][0] = "-0.28*load"  # a part of the bonds breaks, the rest bears
+        case["loading"] = {"steps": 3}
+        case["solver"] = {"mode": "adaptive"}
+        case["relaxation"] = {"steps": 4}
+        right = self.judged(case, "right")
+        self.assertEqual(right.run(), [])
+        self.assertGreater(right.broken_across, 0)
+
+        def in_file(change):
+            def apply(folder):
+                with h5py.File(folder / "results.h5", "r+") as file:
+                    steps = sorted(file["steps"])
+                    change(file, file["steps"][steps[-1]])
+
+            return apply
+
+        def field(name, factor):
+            def change(_, step):
+                values = step[name][...]
+                values[numpy.unravel_index(numpy.abs(values).argmax(), values.shape)] *= factor
+                step[name][...] = values
+
+            return in_file(change)
+
+        def history_across(_, step):
+            """One of two twins alone."""
+            own = len(step["displacement"])
+            second, stretch = step["history/second_point"][...], step["history/largest_stretch"][...]
+            stretch[numpy.flatnonzero(second >= own)[0]] *= 1.001
+            step["history/largest_stretch"][...] = stretch
+
+        def other_source(file, _):
+            source = file["points/images/source"][...]
+            source[:] = source[::-1]
+            file["points/images/source"][...] = source
+
+        def other_place(file, _):
+            """As if the plane stood somewhere else."""
+            file["points/images/reference"][:, 0] += 0.5
+
+        tampered = {
+            "a displacement": (field("displacement", 1 + 1e-6), "force"),
+            "a force": (field("force", 1 + 1e-6), "force"),
+            "an energy density": (field("energy_density", 1 + 1e-6), "energy density"),
+            "a damage": (field("damage", 1 + 1e-6), "damage"),
+            "a history across": (in_file(history_across), "twin"),
+            "sources of images": (in_file(other_source), "image"),
+            "places of images": (in_file(other_place), "no bond"),
+            "the plane's reaction": (self.scaled("reaction_x:symmetry_x", 1 + 1e-6), "reaction of a plane"),
+            "the plane's other reaction": (lambda folder: self.changed_rows(folder, "history", lambda rows: rows[-1].update({"reaction_y:symmetry_x": "1e-3"})),
+                                           "reaction of a plane"),
+            "the free jump": (self.scaled("gradient_y:period_y", 1 + 1e-5), "force"),
+            "the given jump": (lambda folder: self.changed_rows(folder, "history", lambda rows: rows[-1].update({"gradient_x:period_y": "1e-6"})),
+                               "jump over a period"),
+            "the force over a period": (lambda folder: self.changed_rows(folder, "history", lambda rows: rows[-1].update({"reaction_y:period_y": "1e-3"})),
+                                        "reaction over a period"),
+            "the stored energy": (self.scaled("stored_energy", 1 + 1e-8), "stored energy"),
+            "the dissipated energy": (self.scaled("dissipated_energy", 1 + 1e-8), "dissipated energy"),
+            "twice the energy": (self.scaled("stored_energy", 2), "stored energy"),
+            "the work": (self.scaled("external_work", 1 + 1e-7), "ledger"),
+            "a broken bond": (lambda folder: self.changed_rows(folder, "broken_bonds", lambda rows: rows.pop()), "list of broken bonds"),
+        }  # fmt: skip
+        for what, (tamper, word) in tampered.items():
+            with self.subTest(what):
+                folder = self.folder / "tampered"
+                shutil.copytree(self.folder / "right", folder)
+                tamper(folder)
+                found = Verification(folder, toml(case), self.folder).run()
+                self.assertTrue(any(word in complaint for complaint in found), f"{word} is not among {found[:5]}")
+                shutil.rmtree(folder)
 
 
 if __name__ == "__main__":

@@ -20,6 +20,7 @@ from tests.reference.verify import Verification
 UNLIKE = {
     "alike": ("tanh", "tanh", "tanh"),
     "brittle and softening": ("critical_stretch", "tanh", "tanh_continuous"),
+    "enveloped": ("linear", "blended", "linear"),
     "one fails": ("none", "tanh_continuous", "none"),
     "none fails": ("none", "none", "none"),
 }

@@ -52,6 +52,46 @@ steps = 10
 [solver]
 mode = "adaptive"
 """  # fmt: skip
+# What is left of it where planes of symmetry, periods, rigid sets and loads other than supports come in.
+HALF = TORN.replace("[0.01, 0.006]", "[0.01, 0.008]") + '[[symmetry]]\naxis = "y"\n'
+CELL = """\
+dimension = 2
+[lattice]
+spacing = 1e-3
+thickness = 1e-3
+shape = [{ add = "box", min = [0, 0], max = [0.024, 0.012] }]
+[material]
+youngs_modulus = 200e9
+[material.damage]
+law = "critical_stretch"
+critical = 0.01
+[[crack]]
+from = [-0.003, 0]
+to = [0.004, 0]
+[[period]]
+axis = "x"
+from = 0
+to = 0.024
+gradient = [0, "free"]
+[[period]]
+axis = "y"
+from = 0
+to = 0.012
+gradient = ["1e-3*load", "8.5e-3*load"]
+[[set]]
+name = "all"
+where = "1"
+[[probe]]
+name = "crack"
+set = "all"
+field = "crack_length"
+[loading]
+steps = 6
+[solver]
+mode = "adaptive"
+"""
+RIGID = 'rigid=[{set="right", displacement=["3e-4*load", 0]}]'
+LEFT = 'support=[{set="left", displacement=[0, 0]}]'
 MODES = {
     "elastic": (PULLED, 0, ["loading.steps=6"]),
     "softening in implicit steps": (TORN, 3, ['solver.mode="newton"', "loading.smallest_step=1e-2",
@@ -68,6 +108,15 @@ MODES = {
     "fields now and then": (TORN, 0, ["output.every=4"]),
     "an iterative solver": (TORN, 0, ['solver.preconditioner="rigid_pieces"']),
     "a surrogate": (TORN, 0, ['solver.preconditioner="surrogate"']),
+    "a plane of symmetry": (HALF, 0, []),
+    "a cell": (CELL, 0, []),
+    "a cell whose fields are written now and then": (CELL, 0, ["output.every=3"]),
+    "a rigid set": (TORN, 0, [LEFT, RIGID]),
+    "a roller": (TORN, 0, ['support=[{set="right", displacement=["3e-4*load", "free"]}]',
+                           'rigid=[{set="left", displacement=[0, 0]}]',
+                           'roller=[{name="foot", at=[0.015, 0], normal=[0, 1]}]']),
+    "a temperature": (TORN, 0, ['temperature={change="-400*load*x/0.02"}', "material.thermal_expansion=1e-5"]),
+    "a pressure": (TORN, 0, ['load=[{side="y-", pressure="2e8*load"}]']),
 }  # fmt: skip
 
 
@@ -315,8 +364,8 @@ class Refused(Resumed):
 
     def test_an_older_layout(self):
         version = peristat("--version").output.split()[1]
-        self.change_checkpoint(lambda data: data.replace(f"checkpoint 2 {version}".encode(), b"checkpoint 0 0.0.7"))
-        self.refuses(["layout 0 of peristat 0.0.7", f"this is peristat {version}, which goes on from layout 2"])
+        self.change_checkpoint(lambda data: data.replace(f"checkpoint 3 {version}".encode(), b"checkpoint 0 0.0.7"))
+        self.refuses(["layout 0 of peristat 0.0.7", f"this is peristat {version}, which goes on from layout 3"])
 
     def test_points_that_are_others(self):
         with h5py.File(self.out / "results.h5", "r+") as file:

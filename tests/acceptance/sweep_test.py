@@ -230,6 +230,31 @@ class Sweep(unittest.TestCase):
             case = tomllib.loads(file["case/as_resolved"][()].decode())
         self.assertEqual(case["lattice"]["horizon_ratio"], 3.0)
 
+    def test_materials_of_regions_vary(self):
+        run = self.sweep("--vary", "region[0].material.youngs_modulus=70e9,140e9",
+                         "--with", "region[1].material.youngs_modulus:=3*region[0].material.youngs_modulus",
+                         "--vary", "interface[0].rule=harmonic,weaker", "--vary", "region[1].material.damage.critical=0.1,0.2",
+                         "--set", "region[1].material.damage.law=critical_stretch", case=ROOT / "cases/regions/bimaterial.toml")  # fmt: skip
+        self.assert_ends(run, 0, *8 * ["done"])
+        rows = self.rows()
+        soft, stiff = (next(row for row in rows if row["region[0].material.youngs_modulus"] == value) for value in ("70e9", "140e9"))
+        # F/A (0.5/E1 + 0.497/E2) of the joined bars, of which the interface's horizon of 6 mm is left out.
+        closed = 100.0 / 1e-4 * (0.5 / 70e9 + 0.497 / 210e9)
+        self.assertAlmostEqual(float(soft["probe:end"]) / closed, 1, delta=1e-3)
+        self.assertAlmostEqual(float(stiff["probe:end"]) / float(soft["probe:end"]), 0.5, delta=1e-9)
+        self.assertEqual(len({row["probe:end"] for row in rows if row["region[0].material.youngs_modulus"] == "70e9"}), 2)
+        (folder,) = self.out.glob("*youngs_modulus=140e9*weaker*critical=0.2*")
+        with h5py.File(folder / "results.h5") as file:
+            regions = tomllib.loads(file["case/as_resolved"][()].decode())["region"]
+        self.assertEqual([region["material"]["youngs_modulus"] for region in regions], [140e9, 420e9])
+        self.assertEqual(regions[1]["material"]["damage"]["critical"], 0.2)
+        for key, told in (("region[0].material.youngsmodulus=1e9", "did you mean youngs_modulus"),
+                          ("region[3].material.youngs_modulus=1e9", "region has 2 elements"),
+                          ("region[0].youngs_modulus=1e9", "region[0].youngs_modulus")):  # fmt: skip
+            refused = self.sweep("--vary", key, case=ROOT / "cases/regions/bimaterial.toml", output=("--output", "refused"))
+            self.assertEqual(refused.returncode, 2)
+            self.assertIn(told, refused.stderr)
+
     def test_a_refinement_is_extrapolated(self):
         # A bar whose surface effect falls with the spacing: to F L / (E A), by theory of first order.
         case = ROOT / "cases/bar/tension.toml"

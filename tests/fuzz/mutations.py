@@ -24,11 +24,11 @@ STRUCTURES = ["[]", "{}", "[[]]", "[1, 2]", "[1, 2, 3, 4]", "[1, \"a\"]", "[" * 
 WORDS = """dimension title lattice points spacing horizon_ratio thickness area origin perturbation seed shape layer add subtract min max
     centre radius axis length vertices name side where file horizon set crack from to quadrature volume_correction weights
     surface_correction material model plane youngs_modulus micromodulus poisson_ratio calibration c1 c2 c3 density damage law onset
-    critical rate no_fail support displacement load body_force total_force loading steps adaptive smallest_step largest_step
+    critical rate peak hardening fracture_energy strength no_fail support displacement load body_force total_force loading steps adaptive smallest_step largest_step
     max_broken_bonds solver mode linear preconditioner tangent predictor projection relative_tolerance max_iterations fragments
     elastic_horizon_ratio relaxation iterations ramp breaking damping mass_factor quiet_iterations displacement_tolerance output
     directory every count_cracks probe field other threshold control weights table table2 arc_length bifurcation""".split()
-CHOICES = """none linear exact volume energy mean bulk bond cpd stress strain lattice continuum critical_stretch tanh tanh_continuous newton
+CHOICES = """none linear exact volume energy mean bulk bond cpd stress strain lattice continuum critical_stretch tanh tanh_continuous linear exponential blended newton
     relaxation adaptive auto cholesky pcg minres gmres jacobi block_jacobi rigid_pieces surrogate riluk chebyshev multigrid stored
     matrix_free consistent never always hold remove stop fixed moving at_equilibrium transient kinetic cell_centres nodes box disk polygon
     cylinder sphere x- x+ y- y+ z- z+ displacement force damage stretch energy_density poisson_ratio opening crack_length

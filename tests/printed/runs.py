@@ -61,6 +61,11 @@ class Run:
         with h5py.File(self.folder / "results.h5") as file:
             return list(file["steps"].values())[-1][name][...]
 
+    def points(self, name):
+        """What the results tell of the points."""
+        with h5py.File(self.folder / "results.h5") as file:
+            return file["points"][name][...]
+
     def accepted_residuals(self):
         """Relative residual in which each accepted step ended."""
         last = {row["step"]: row["relative_residual"] for row in self.iterations}

@@ -5,17 +5,19 @@ import math
 
 import numpy
 
+from tests.reference.beyond import Beyond
 from tests.reference.case import read_neighbours, read_points
 from tests.reference.materials import Materials
+from tests.reference.sheets import resolve
 
 HORIZON_TOLERANCE = 1e-8
 
 
-def pairs_within(reference, radius):
-    """All pairs i < j no further apart than the radius."""
-    count, pairs = len(reference), []
+def pairs_within(reference, radius, first_points=None):
+    """All pairs i < j no further apart than the radius, i one of the first points if these are counted."""
+    count, pairs = len(reference) if first_points is None else first_points, []
     for first in range(0, count, 256):
-        rows = reference[first : first + 256]
+        rows = reference[first : min(first + 256, count)]
         squared = sum((rows[:, None, c] - reference[None, :, c]) ** 2 for c in range(reference.shape[1]))
         i, j = numpy.nonzero(squared <= (radius * (1 + HORIZON_TOLERANCE)) ** 2)
         keep = i + first < j
@@ -40,13 +42,13 @@ def arms_of(tuples, places):
     return [places[tuples[:, k]] - places[tuples[:, 0]] for k in range(1, tuples.shape[1])]
 
 
-def cliques(bonds, count, size):
-    """All tuples of `size` points that are bonded with one another, ascending."""
+def cliques(bonds, count, size, first_points=None):
+    """All tuples of `size` points that are bonded with one another, ascending; see pairs_within."""
     linked = [set() for _ in range(count)]
     for i, j in bonds.tolist():
         linked[i].add(j)
     found = []
-    for i in range(count):
+    for i in range(count if first_points is None else first_points):
         for others in itertools.combinations(sorted(linked[i]), size - 1):
             if all(b in linked[a] for a, b in itertools.combinations(others, 2)):
                 found.append((i, *others))
@@ -92,17 +94,26 @@ class Body:
     bonds, triangles, tetrahedra: (points, weight, reference measure), the measures with sign. Weights
     are relative to the constants of the first material.
 
-    sets: flags of the points by name, for regions; factors: random ones of the points, by name.
+    sets: flags of the points by name, for regions; factors: random ones of the points, by name. The arrays have more
+    points than these: after the `own` ones those beyond planes of symmetry and periods. Interactions are those that own
+    points have a part in; `share` is the part of each that belongs to the body.
     """
 
     def __init__(self, case, reference, volume, horizon_ratio=None, sets=None, factors=None):
         self.case, self.dimension = case, case.dimension
-        self.reference, self.volume = numpy.asarray(reference, float), numpy.asarray(volume, float)
         self.horizon = case.horizon(horizon_ratio)
         self.spacing = case.spacing(volume)
         self.cross_section = case.cross_section
         self.is_cpd = case["material"]["model"] == "cpd"
-        self.materials = Materials(case, sets or {}, len(self.volume), factors)
+        volume = numpy.asarray(volume, float)
+        largest = (volume.max() / self.cross_section) ** (1 / self.dimension)
+        self.beyond = Beyond(case, numpy.asarray(reference, float), self.spacing, self.horizon + largest)
+        self.reference, self.own, self.source = self.beyond.places, self.beyond.own, self.beyond.source
+        self.volume = volume[self.source]
+        self.sets = {name: flags[self.source] for name, flags in (sets or {}).items()}
+        factors = {name: values[self.source] for name, values in (factors or {}).items()}
+        resolve(case)
+        self.materials = Materials(case, self.sets, len(self.volume), factors)
         self.tuples, self.weight = {}, {}
         self.flatness, self.factor_sums = {}, {}  # cpd: g of interactions, and their sums at points
         if self.is_cpd:
@@ -111,6 +122,8 @@ class Body:
             self._make_bonds()
         self._cut()
         self.measure = {k: measure(arms_of(t, self.reference)) for k, t in self.tuples.items()}
+        self.share = {k: (t < self.own).mean(axis=1) for k, t in self.tuples.items()}
+        self._number_bonds()
 
     @property
     def bonds(self):
@@ -134,7 +147,7 @@ class Body:
         size = (self.volume / self.cross_section) ** (1 / self.dimension)
         linear = quadrature["volume_correction"] == "linear"
         given = self._given_pairs()
-        pairs = given[0] if given else pairs_within(self.reference, self.horizon + (size.max() / 2 if linear else 0))
+        pairs = given[0] if given else pairs_within(self.reference, self.horizon + (size.max() / 2 if linear else 0), self.own)
         i, j = pairs.T
         arm = self.reference[j] - self.reference[i]
         length = numpy.sqrt((arm**2).sum(axis=1))
@@ -197,7 +210,8 @@ class Body:
         return 1 / numpy.sqrt(inverse_square)
 
     def _sum_over(self, index, value):
-        return numpy.bincount(index, value, minlength=len(self.volume))
+        """At every point: what lies beyond has what its source has, whose neighbours alone are all there."""
+        return numpy.bincount(index, value, minlength=len(self.volume))[self.source]
 
     # ---- continuum-kinematics-inspired ----------------------------------------------------------
 
@@ -213,18 +227,19 @@ class Body:
         ball = lattice_ball(self.dimension, self.horizon / self.spacing) * self.spacing
         volume = ball_volume(self.dimension, self.horizon, self.cross_section)
         pairs = pairs_within(self.reference, self.horizon)
-        neighbours = numpy.bincount(pairs.ravel(), minlength=len(self.volume))
+        neighbours = self._sum_over(pairs.ravel(), numpy.ones(pairs.size))
         own_volume = volume * neighbours / len(ball)
         effective = numpy.full(len(self.volume), volume / len(ball))
-        self.tuples[1] = pairs
-        self.weight[1] = (self.volume * effective)[pairs].mean(axis=1)
+        bonds = pairs[pairs[:, 0] < self.own]
+        self.tuples[1] = bonds
+        self.weight[1] = (self.volume * effective)[bonds].mean(axis=1)
         if not self.materials.are_one:
-            own = self.materials.constants(pairs, "c1") * self.materials.factor("stiffness", pairs)
+            own = self.materials.constants(bonds, "c1") * self.materials.factor("stiffness", bonds)
             self.weight[1] = self.weight[1] * own / self.constants[1]
         for order, constant in ((2, 2), (3, 6)):
             if order > self.dimension or self.constants[order] == 0:
                 continue
-            tuples = cliques(pairs, len(self.volume), order + 1)
+            tuples = cliques(pairs, len(self.volume), order + 1, self.own)
             factor = self._flatness(tuples, self.reference, self.volume / self.cross_section)
             tuples, factor = tuples[factor > 0], factor[factor > 0]
             if bulk_weights:
@@ -266,20 +281,43 @@ class Body:
         self.cut_bonds = 0
         if not self.case.get("crack"):
             return
-        cut = numpy.zeros(len(self.bonds), bool)
-        for crack in self.case.get("crack"):
-            cut |= bonds_that_meet(crack, self.reference[self.bonds[:, 0]], self.reference[self.bonds[:, 1]])
+        cut = self._meets_crack(self.bonds)
         for end in (0, 1):
             self.cut_weight += self._sum_over(self.bonds[cut, end], self.weight[1][cut])
         self.cut_bonds = int(cut.sum())
-        lost = self.bonds[cut]
-        lost = set((lost[:, 0] * len(self.volume) + lost[:, 1]).tolist())
         for order, tuples in self.tuples.items():
             keep = numpy.ones(len(tuples), bool)
             for a, b in itertools.combinations(range(order + 1), 2):
-                code = tuples[:, a] * len(self.volume) + tuples[:, b]
-                keep &= ~numpy.isin(code, list(lost))
+                keep &= ~self._meets_crack(tuples[:, [a, b]])
             self.tuples[order], self.weight[order] = tuples[keep], self.weight[order][keep]
+
+    def _meets_crack(self, pairs):
+        meets = numpy.zeros(len(pairs), bool)
+        for crack in self.beyond.cracks():
+            meets |= bonds_that_meet(crack, *(self.reference[pairs[:, end]] for end in (0, 1)))
+        return meets
+
+    # ---- bonds by their points -------------------------------------------------------------------
+
+    def _number_bonds(self):
+        """Numbers of bonds by their points; bonds of two points beyond, which triangles and tetrahedra may stand on,
+        have that of the bond of own points that they are copies of."""
+        self.bond_number = {code: k for k, code in enumerate(self.codes(self.bonds).tolist())}
+        for tuples in self.tuples.values():
+            for a, b in itertools.combinations(range(tuples.shape[1]), 2):
+                outside = tuples[tuples[:, a] >= self.own][:, [a, b]]
+                for first, second in numpy.unique(outside, axis=0).tolist():
+                    number = self.twin(first, second)
+                    assert number is not None, "what lies beyond has no bonds of its own"
+                    self.bond_number[first * len(self.volume) + second] = number
+
+    def codes(self, pairs):
+        return pairs[..., 0] * len(self.volume) + pairs[..., 1]
+
+    def twin(self, first, second):
+        """Number of the bond that is the same as this one, seen from the second point's source; None: no bond."""
+        first, second = self.beyond.twin(first, second)
+        return None if second is None else self.bond_number.get(min(first, second) * len(self.volume) + max(first, second))
 
 
 def bonds_that_meet(crack, start, end):

@@ -1,6 +1,7 @@
 """A case file as docs/case-file.md explains it: defaults, expressions, sets."""
 
 import copy
+import functools
 import math
 import pathlib
 import tomllib
@@ -9,7 +10,7 @@ import numpy
 
 DEFAULTS = {
     "quadrature": {"volume_correction": "none", "weights": "mean", "surface_correction": "none"},
-    "material": {"model": "bond", "plane": "stress", "calibration": "lattice"},
+    "material": {"model": "bond", "plane": "stress"},
     "loading": {"steps": 1, "adaptive": True, "smallest_step": 1e-6},
     "solver": {"mode": "newton", "relative_tolerance": 1e-10, "fragments": "hold"},
     "relaxation": {"load": "fixed", "displacement_tolerance": 0.0},
@@ -72,6 +73,27 @@ class Case:
         return self.spacing(None) * (lattice.get("horizon_ratio", 3.015) if ratio is None else ratio)
 
     @property
+    def spacing_in_expressions(self):
+        """A number, or one per axis if they differ; a cloud's mean spacing is not known here."""
+        spacings = self.spacings
+        return spacings if len(set(spacings)) > 1 else float(spacings[0])
+
+    def loads(self, stage, load):
+        """Load parameters by their names; the first one may have been found."""
+        values = {"load": load}
+        for name in ("table2", "table3", "table4"):
+            if name in self["loading"]:
+                values["load" + name[-1]] = self.at_stage(self["loading"][name], stage)
+        return values
+
+    def at_stage(self, table, stage):
+        """Value of a table, which has one entry per stage."""
+        if isinstance(table, str):
+            number = numpy.arange(self["loading"]["steps"] + 1.0)
+            table = evaluate(table, numpy.zeros((len(number), 0)), {"step": number})
+        return float(numpy.interp(stage, numpy.arange(len(table)), table))
+
+    @property
     def has_damage(self):
         """Whether any of the materials fails."""
         materials = [self["material"]] + [t["material"] for t in self.get("region")]
@@ -93,9 +115,14 @@ def read_points(case):
     return reference, volume, sets
 
 
-FUNCTIONS = {name: getattr(numpy, name) for name in "sin cos tan sinh cosh tanh exp sqrt abs sign".split()}
-FUNCTIONS |= {"ln": numpy.log, "asin": numpy.arcsin, "acos": numpy.arccos, "atan": numpy.arctan}
-FUNCTIONS |= {"min": numpy.minimum, "max": numpy.maximum, "pi": math.pi}
+class NotUnderstood(Exception):
+    """What the program can read and the reference can't: an expression of muParser alone."""
+
+
+FUNCTIONS = {name: getattr(numpy, name) for name in "sin cos tan sinh cosh tanh exp sqrt abs sign log2 log10".split()}
+FUNCTIONS |= {"ln": numpy.log, "log": numpy.log, "asin": numpy.arcsin, "acos": numpy.arccos, "atan": numpy.arctan}
+FUNCTIONS |= {"min": lambda *values: functools.reduce(numpy.minimum, values), "atan2": numpy.arctan2,
+              "max": lambda *values: functools.reduce(numpy.maximum, values), "pi": math.pi}  # fmt: skip
 
 
 def read_neighbours(case):
@@ -112,14 +139,24 @@ def read_neighbours(case):
     return pairs, numpy.array([[shares[i, j], shares[j, i]] for i, j in pairs.tolist()])
 
 
-def evaluate(expression, reference, load=0.0, spacing=0.0):
-    """An expression of place and load at every point; only what Python and the program share."""
+def evaluate(expression, reference, loads=0.0, spacing=0.0):
+    """An expression of place and load parameters at every point; only what Python and the program share.
+
+    loads: values of the load parameters by their names, or of `load` alone; spacing: a number, or one per axis
+    """
     count = len(reference)
     if not isinstance(expression, str):
         return numpy.full(count, float(expression))
-    names = FUNCTIONS | {"load": load, "spacing": spacing} | dict(zip("xyz", reference.T))
-    value = eval(expression.replace("^", "**"), {"__builtins__": {}}, names)  # noqa: S307
-    return numpy.broadcast_to(numpy.asarray(value, float), (count,)).copy()
+    spacings = numpy.broadcast_to(spacing, 3) if numpy.ndim(spacing) == 0 else spacing
+    names = FUNCTIONS | {f"spacing_{axis}": size for axis, size in zip("xyz", spacings)}
+    if len(set(spacings)) == 1:
+        names["spacing"] = spacings[0]
+    names |= (loads if isinstance(loads, dict) else {"load": loads}) | dict(zip("xyz", reference.T))
+    try:
+        value = eval(expression.replace("^", "**"), {"__builtins__": {}}, names)  # noqa: S307
+        return numpy.broadcast_to(numpy.asarray(value, float), (count,)).copy()
+    except (SyntaxError, NameError, TypeError, ValueError, AttributeError, ArithmeticError, RecursionError, MemoryError) as error:
+        raise NotUnderstood(expression[:100]) from error
 
 
 def face_forces(places):
@@ -143,9 +180,22 @@ class Conditions:
     def __init__(self, case, reference, volume, sets):
         self.case, self.reference, self.volume, self.sets = case, reference, volume, sets
         self.spacing = case.spacing(volume)
+        self.spacings = case.spacing_in_expressions if case.is_lattice else self.spacing
         self.prescribed = numpy.zeros(reference.shape, bool)
         for support in case.get("support"):
             self.prescribed |= self.held_by(support)
+        self.cell_held = self.middle_of_cell()
+
+    def middle_of_cell(self):
+        """Degrees of freedom at which a cell that nothing holds is held: those of the point next to its middle, but for
+        what planes of symmetry hold."""
+        mask = numpy.zeros(self.reference.shape, bool)
+        is_held = self.prescribed.any() or any(self.case.get(name) for name in ("rigid", "roller", "constraint"))
+        if self.case.get("period") and not is_held:
+            away = ((self.reference - self.reference.mean(axis=0)) ** 2).sum(axis=1)
+            mirrored = [axis in [table["axis"] for table in self.case.get("symmetry")] for axis in "xyz"]
+            mask[away.argmin()] = ~numpy.array(mirrored[: self.reference.shape[1]])
+        return mask
 
     def held_by(self, support):
         """Degrees of freedom that one support prescribes."""
@@ -162,7 +212,7 @@ class Conditions:
             for axis, component in enumerate(support["displacement"]):
                 if component != "free":
                     inside = self.sets[support["set"]]
-                    value[inside, axis] = evaluate(component, self.reference, load, self.spacing)[inside]
+                    value[inside, axis] = evaluate(component, self.reference, load, self.spacings)[inside]
         return value
 
     def force(self, load):
@@ -173,7 +223,7 @@ class Conditions:
                 continue
             key, amount = self.amounts(table)
             for axis, component in enumerate(table[key]):
-                value[:, axis] += amount * evaluate(component, self.reference, load, self.spacing)
+                value[:, axis] += amount * evaluate(component, self.reference, load, self.spacings)
         return value
 
     def amounts(self, table):
@@ -181,7 +231,7 @@ class Conditions:
         members = self.sets[table["set"]] if "set" in table else numpy.ones(len(self.volume), bool)
         if "gravity" in table:
             inside = members if "set" in table else self.is_in_body()
-            return "gravity", numpy.where(inside, self.case["material"]["density"] * self.volume, 0)
+            return "gravity", numpy.where(inside, self.of_material("density") * self.volume, 0)
         if "traction" in table:
             return "traction", self.traction_areas(table, members)
         volume = numpy.where(members, self.volume, 0)
@@ -200,7 +250,7 @@ class Conditions:
             places = numpy.array([corner + weight @ displacement[points]
                                   for corner, weight, points in zip(corners, weights, around)])  # fmt: skip
             centres = numpy.array([corners[list(face)].mean(axis=0) for face, _ in faces])
-            pressures = evaluate(table["pressure"], centres, load, self.spacing) * self.case.cross_section
+            pressures = evaluate(table["pressure"], centres, load, self.spacings) * self.case.cross_section
             for (face, sign), pressure in zip(faces, pressures):
                 for corner, force in zip(face, face_forces(places[list(face)])):
                     total[around[corner]] -= sign * pressure * numpy.outer(weights[corner], force)
@@ -247,6 +297,13 @@ class Conditions:
                   for corner in numbers]  # fmt: skip
         return corners, faces, around
 
+    def of_material(self, quantity):
+        """That of every point's material."""
+        values = numpy.full(len(self.volume), float(self.case["material"].get(quantity, numpy.nan)))
+        for region in self.case.get("region"):
+            values[self.sets[region["set"]]] = region["material"][quantity]
+        return values
+
     def is_in_body(self):
         inside = numpy.ones(len(self.volume), bool)
         for layer in self.case.get("lattice", {}).get("layer", []):
@@ -255,8 +312,9 @@ class Conditions:
 
     def traction_areas(self, table, members):
         """Per point: the loaded faces of cells, each shared by the points below it as far as the depth reaches."""
+        inside = self.is_in_body()
         cell = numpy.rint((self.reference - self.reference.min(axis=0)) / self.spacing).astype(int)
-        body = {tuple(c): k for k, c in enumerate(cell) if self.is_in_body()[k]}
+        body = {tuple(c): k for k, c in enumerate(cell) if inside[k]}
         sides = [(axis, sign) for axis in range(cell.shape[1]) for sign in (-1, 1)]
         if "side" in table:
             sides = [("xyz".index(table["side"][0]), 1 if table["side"][1] == "+" else -1)]
@@ -290,8 +348,8 @@ class Conditions:
         total = numpy.zeros(len(self.volume))
         for table in strained:
             inside = self.sets[table["set"]] if "set" in table else slice(None)
-            total[inside] += evaluate(table["strain"], self.reference, load, self.spacing)[inside]
+            total[inside] += evaluate(table["strain"], self.reference, load, self.spacings)[inside]
         if temperature:
-            change = evaluate(temperature["change"], self.reference, load, self.spacing)
-            total += self.case["material"]["thermal_expansion"] * change
+            change = evaluate(temperature["change"], self.reference, load, self.spacings)
+            total += self.of_material("thermal_expansion") * change
         return total

@@ -11,6 +11,9 @@ LAWS = {
     "critical_stretch": {"law": "critical_stretch", "critical": 0.05},
     "tanh": {"law": "tanh", "onset": 0.02, "critical": 0.09, "rate": 3.0},
     "tanh_continuous": {"law": "tanh_continuous", "onset": 0.03, "critical": 0.08, "rate": 4.5},
+    "linear": {"law": "linear", "onset": 0.025, "critical": 0.09},
+    "exponential": {"law": "exponential", "onset": 0.02, "critical": 0.1, "rate": 2.5},
+    "blended": {"law": "blended", "onset": 0.02, "peak": 0.045, "critical": 0.085, "hardening": 0.4},
 }
 
 

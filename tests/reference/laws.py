@@ -13,38 +13,66 @@ SHARES = numpy.tile(WEIGHTS / 2 / PANELS, PANELS)
 class Law:
     """Laws of bonds: numbers for all of them, or arrays with an entry for each."""
 
-    def __init__(self, name, onset, critical, rate):
+    PARTS = ("name", "onset", "critical", "rate", "peak", "hardening")
+
+    def __init__(self, name, onset, critical, rate, peak=0.0, hardening=0.0):
         self.name, self.onset, self.critical, self.rate = name, onset, critical, rate
+        self.peak, self.hardening = peak, hardening
 
     @classmethod
     def of_table(cls, table):
         """By its table in the case file."""
         name, critical = table["law"], float(table["critical"])
-        return cls(name, critical if name == "critical_stretch" else float(table["onset"]), critical, float(table["rate"]))
+        return cls(name, critical if name == "critical_stretch" else float(table["onset"]), critical,
+                   float(table.get("rate", 3.0)), float(table.get("peak", 0.0)), float(table.get("hardening", 0.5)))  # fmt: skip
 
     @classmethod
     def elastic(cls):
         """No damage at any stretch."""
         return cls("none", numpy.inf, numpy.inf, 3.0)
 
+    @property
+    def parts(self):
+        return [getattr(self, part) for part in self.PARTS]
+
     def of(self, bonds):
         """Those of some of the bonds."""
-        parts = (self.name, self.onset, self.critical, self.rate)
-        return Law(*(part[bonds] if numpy.ndim(part) else part for part in parts))
+        return Law(*(part[bonds] if numpy.ndim(part) else part for part in self.parts))
 
     def spread(self, count):
         """An entry for each."""
-        return Law(*(numpy.broadcast_to(part, count) for part in (self.name, self.onset, self.critical, self.rate)))
+        return Law(*(numpy.broadcast_to(part, count) for part in self.parts))
+
+    def columns(self):
+        """To go with several stretches of each bond."""
+        return Law(*(part[:, None] for part in self.parts))
 
     def published(self, stretch):
         """Equation 12 of [ADAPT], between onset and critical stretch."""
         argument = self.rate * (self.onset + self.critical - 2 * stretch) / (self.onset - self.critical)
         return (1 - numpy.tanh(argument)) / 2
 
-    def softening(self, stretch):
+    def tanh(self, stretch):
         start, end = self.published(self.onset), self.published(self.critical)
         rescaled = (self.published(stretch) - end) / (start - end)
         return numpy.where(self.name == numpy.array("tanh"), self.published(stretch), rescaled)
+
+    def enveloped(self, stretch):
+        """Of the laws that are given by their force: that over the stretch."""
+        is_blended = self.name == numpy.array("blended")
+        peak = numpy.where(is_blended, self.peak, self.onset)
+        highest = self.onset + numpy.where(is_blended, self.hardening, 0.0) * (peak - self.onset)
+        fallen = (stretch - peak) / (self.critical - peak)
+        end = numpy.exp(-self.rate)
+        exponential = (numpy.exp(-self.rate * fallen) - end) / (1 - end)
+        left = numpy.where(self.name == numpy.array("exponential"), exponential, 1 - fallen)
+        rising = self.onset + self.hardening * (stretch - self.onset)
+        return numpy.where(numpy.real(stretch) < peak, rising, highest * left) / stretch
+
+    def softening(self, stretch):
+        is_tanh = numpy.char.startswith(numpy.array(self.name, "U20"), "tanh")
+        with numpy.errstate(all="ignore"):  # each of the two is nonsense for the other's laws
+            return numpy.where(is_tanh, self.tanh(stretch), self.enveloped(stretch))
 
     def integrity(self, stretch):
         """1 up to the onset, 0 from the critical stretch on; of a complex number by its real part."""
@@ -63,8 +91,14 @@ class Law:
         beyond = (real > self.onset) & (numpy.asarray(self.onset) < self.critical)
         if beyond.any():
             law = self.spread(real.shape).of(beyond)
-            rows = Law(law.name[:, None], law.onset[:, None], law.critical[:, None], law.rate[:, None])
-            span = top[beyond] - law.onset
-            at = rows.onset + span[:, None] * FRACTIONS
-            value[beyond] += span * (at * rows.softening(at) @ SHARES)
+            end = top[beyond]
+            # In two pieces: the force of the blended law has a kink at its peak.
+            kink = numpy.where(law.name == "blended", numpy.where(numpy.real(end) < law.peak, end, law.peak), law.onset)
+            value[beyond] += law.between(law.onset, kink) + law.between(kink, end)
         return value
+
+    def between(self, start, end):
+        """The integral of r T(r), T being smooth in between."""
+        span = end - start
+        at = start[:, None] + span[:, None] * FRACTIONS
+        return span * (at * self.columns().softening(at) @ SHARES)

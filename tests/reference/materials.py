@@ -102,12 +102,14 @@ class Materials:
         """The laws of bonds, and which of them have none."""
         first, second = numpy.sort(self.number[pairs], axis=1).T
         count = len(pairs)
-        law = Law(numpy.full(count, "none", "U20"), numpy.full(count, numpy.inf), numpy.full(count, numpy.inf),
-                  numpy.full(count, 3.0))  # fmt: skip
+        law = Law(numpy.full(count, "none", "U20"), *(numpy.full(count, value) for value in (numpy.inf, numpy.inf, 3.0, 0.0, 0.0)))
 
         def put(mask, table, onset, critical):
             law.name[mask], law.rate[mask] = table["law"], table["rate"]
             law.onset[mask], law.critical[mask] = onset[mask], critical[mask]
+            law.hardening[mask] = table["hardening"]
+            if table["law"] == "blended":
+                law.peak[mask] = law.onset[mask] + rise(table) * (critical - onset)[mask]
 
         for a, b in itertools.combinations_with_replacement(range(len(self.tables)), 2):
             mask, interface = (first == a) & (second == b), self.interface(a, b) if a != b else {}
@@ -125,7 +127,7 @@ class Materials:
             elif failing:
                 put(mask, *failing[0])
         factor = self.factor("strength", pairs)
-        law.onset, law.critical = law.onset * factor, law.critical * factor
+        law.onset, law.critical, law.peak = law.onset * factor, law.critical * factor, law.peak * factor
         return law
 
     @staticmethod
@@ -147,11 +149,20 @@ class Materials:
 
 def damage_of(table):
     damage = table.get("damage", {})
-    return {"rate": 3.0, "no_fail": []} | damage if damage.get("law", "none") != "none" else None
+    return {"rate": 3.0, "hardening": 0.5, "no_fail": []} | damage if damage.get("law", "none") != "none" else None
+
+
+def rise(damage):
+    """Share of the range from onset to critical over which the force of the blended law rises."""
+    return (damage["peak"] - damage["onset"]) / (damage["critical"] - damage["onset"])
 
 
 def like(one, other):
-    return one["law"] == other["law"] and (one["law"] == "critical_stretch" or one["rate"] == other["rate"])
+    if one["law"] != other["law"]:
+        return False
+    if one["law"] == "blended":
+        return one["hardening"] == other["hardening"] and rise(one) == rise(other)
+    return one["law"] in ("critical_stretch", "linear") or one["rate"] == other["rate"]
 
 
 def alignment(fibre, direction):

@@ -56,7 +56,7 @@ def measure_gradients(current):
 
 
 class Mechanics:
-    """A body with its law of damage; displacements u are count x dimension."""
+    """A body with its law of damage; displacements u are those of all its points, forces those on its own."""
 
     def __init__(self, body, elastic=False):
         self.body, self.case = body, body.case
@@ -71,7 +71,7 @@ class Mechanics:
     def spare(self, sets):
         """Bonds of the points of no-fail sets stay elastic."""
         for name in self.body.materials.no_fail:
-            self.fails &= ~sets[name][self.body.bonds].any(axis=1)
+            self.fails &= ~sets[name][self.body.source][self.body.bonds].any(axis=1)
 
     def no_history(self):
         return numpy.zeros(len(self.body.bonds))
@@ -81,7 +81,7 @@ class Mechanics:
         change = relative_change(self.reference_arms[order], arms_of(self.body.tuples[order], u))
         if self.eigenstretch is None:
             return change
-        mean = self.eigenstretch[self.body.tuples[order]].mean(axis=1)
+        mean = self.eigenstretch[self.body.source][self.body.tuples[order]].mean(axis=1)
         return change - {1: mean, 2: mean * (2 + mean), 3: mean * (3 + mean * (3 + mean))}[order]
 
     # ---- bonds and their histories ---------------------------------------------------------------
@@ -132,20 +132,18 @@ class Mechanics:
 
     def _kept(self, order, history):
         """Share of the stiffness that triangles and tetrahedra keep: product over their bonds."""
-        bonds, integrity = self.body.bonds, self.integrity(history)
-        count = len(self.body.volume)
-        table = dict(zip((bonds[:, 0] * count + bonds[:, 1]).tolist(), integrity.tolist()))
+        integrity, number = self.integrity(history), self.body.bond_number
         tuples = self.body.tuples[order]
         kept = numpy.ones(len(tuples))
         if (integrity < 1).any():
             for a, b in itertools.combinations(range(order + 1), 2):
-                kept *= [table[code] for code in (tuples[:, a] * count + tuples[:, b]).tolist()]
+                kept *= [integrity[number[code]] for code in self.body.codes(tuples[:, [a, b]]).tolist()]
         return kept
 
     # ---- sums over the body ----------------------------------------------------------------------
 
     def energies(self, u, history, held=False):
-        """What every interaction takes up [J], by order."""
+        """What every interaction takes up [J], by order, the whole of it."""
         energy = {}
         for order in self.reference_arms:
             change = self.change(order, u)
@@ -158,7 +156,28 @@ class Mechanics:
 
     def energy(self, u, history=None, held=False):
         history = self.no_history() if history is None else history
-        return sum(part.sum() for part in self.energies(u, history, held).values())
+        energies = self.energies(u, history, held)
+        return sum((self.body.share[order] * part).sum() for order, part in energies.items())
+
+    def slope(self, u, history, component, rate, held=False):
+        """Derivative of the energy along a motion of all points in one component: a complex step of it."""
+        if not rate.any():
+            return 0.0
+        moved = u.astype(complex)
+        moved[:, component] += 1j * STEP * rate
+        return self.energy(moved, history, held).imag / STEP
+
+    def pull_of_periods(self, u, history, held=False):
+        """Derivative of the energy by the jumps over the periods [N], axes x components."""
+        beyond, axes = self.body.beyond, range(self.body.dimension)
+        pull = numpy.array([[self.slope(u, history, c, beyond.periods[:, axis], held) for c in axes] for axis in axes])
+        pull[:, beyond.mirrored_axes()] = 0.0  # what acts beyond a plane of symmetry is the opposite
+        return pull
+
+    def pull_of_planes(self, u, history):
+        """Force of what lies beyond each plane of symmetry [N] by its name, and the plane's axis: what it takes to move
+        the plane, with all that is mirrored in it."""
+        return {name: (self.slope(u, history, axis, rate), axis) for name, axis, rate in self.body.beyond.planes()}
 
     def heating_work(self, old, new, before, after):
         """Half of what an eigenstretch going from before to after adds to the energy in each of two states, each
@@ -171,7 +190,14 @@ class Mechanics:
         return work
 
     def gradient(self, u, history=None, absolute=False, held=False):
-        """Derivative of the energy [N], count x dimension; or sums of magnitudes, for round-off."""
+        """Derivative of the energy [N], own points x dimension; or sums of magnitudes, for round-off."""
+        return self._sums(u, history, absolute, held)[: self.body.own]
+
+    def gradient_of_shares(self, u, history=None, held=False):
+        """On own points and on those beyond [N], of the parts of interactions that belong to the body."""
+        return self._sums(u, history, held=held, shared=True)
+
+    def _sums(self, u, history=None, absolute=False, held=False, shared=False):
         history = self.no_history() if history is None else history
         total = numpy.zeros(self.body.reference.shape, numpy.asarray(u).dtype)
         for order, reference in self.reference_arms.items():
@@ -184,6 +210,8 @@ class Mechanics:
                 slope = self._kept(order, history) * relative
             sign = numpy.sign(self.body.measure[order])
             slope = slope * self.body.constants[order] * self.body.weight[order] * sign
+            if shared:
+                slope = slope * self.body.share[order]
             pulls = measure_gradients([r + c for r, c in zip(reference, change)])
             for k, pull in enumerate(pulls, start=1):
                 force = slope[:, None] * pull
@@ -203,6 +231,16 @@ class Mechanics:
             matrix[:, column] = self.gradient(moved.reshape(u.shape), history).imag.ravel() / STEP
         return matrix
 
+    def bears(self):
+        """Largest sum of the magnitudes of a point's forces if all its interactions were whole and changed by 1 [N]."""
+        total = numpy.zeros(self.body.reference.shape)
+        for order, reference in self.reference_arms.items():
+            slope = (self.body.constants[order] * self.body.weight[order])[:, None]
+            for k, pull in enumerate(measure_gradients(reference), start=1):
+                add_at(total, self.body.tuples[order][:, k], slope * numpy.abs(pull))
+                add_at(total, self.body.tuples[order][:, 0], slope * numpy.abs(pull))
+        return total.max()
+
     # ---- what damage has done --------------------------------------------------------------------
 
     def dissipated(self, history):
@@ -210,7 +248,8 @@ class Mechanics:
         worn = history > 0
         past = history[worn]
         lost = self.law.of(worn).moment(past) - self.integrity(history)[worn] * past**2 / 2
-        return float((self.body.constants[1] * self.body.weight[1][worn] * self.body.lengths[worn] * lost).sum())
+        weight = (self.body.share[1] * self.body.weight[1])[worn]
+        return float((self.body.constants[1] * weight * self.body.lengths[worn] * lost).sum())
 
     def damage(self, history):
         """Per point: lost share of the weight of its bonds."""
@@ -221,4 +260,4 @@ class Mechanics:
             left += self.body._sum_over(self.body.bonds[:, end], kept)
         if self.case["output"]["count_cracks"]:
             whole = whole + self.body.cut_weight
-        return 1 - numpy.divide(left, whole, out=numpy.ones(len(whole)), where=whole > 0)
+        return 1 - numpy.divide(left, whole, out=numpy.ones(len(whole)), where=whole > 0)[: self.body.own]

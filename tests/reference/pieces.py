@@ -16,16 +16,18 @@ def symmetric_sums(index, direction, count):
     return total
 
 
-def loose_points(places, bonds, prescribed):
-    """Points on fewer independent directions than the dimension, stripped until none is left."""
-    count = len(places)
+def loose_points(places, bonds, prescribed, beyond):
+    """Own points on fewer independent directions than the dimension, stripped until none is left."""
+    count = beyond.own
+    is_shifted = (beyond.source[bonds[:, 1]] == bonds[:, 0]) & (beyond.mirror[bonds[:, 1]] == 1).all(axis=1)
+    bonds = bonds[~is_shifted]  # a point and its own copy move alike
     loose = numpy.zeros(count, bool)
     arms = places[bonds[:, 1]] - places[bonds[:, 0]]
     arms = arms / numpy.sqrt((arms**2).sum(axis=1))[:, None]
     while True:
         total = numpy.einsum("pa,ab->pab", prescribed.astype(float), numpy.eye(places.shape[1]))
         for here, there in ((0, 1), (1, 0)):
-            keep = ~loose[bonds[:, there]]
+            keep = (bonds[:, here] < count) & ~loose[beyond.source[bonds[:, there]]]
             total += symmetric_sums(bonds[keep, here], arms[keep], count)
         values = numpy.linalg.eigvalsh(total)
         stripped = values[:, 0] <= DEPENDENT * values[:, -1]
@@ -34,43 +36,103 @@ def loose_points(places, bonds, prescribed):
         loose |= stripped
 
 
-def pieces_of(count, bonds):
-    """A label per point, the same for points that bonds connect."""
-    label = numpy.arange(count)
-    while True:
-        least = label.copy()
-        numpy.minimum.at(least, bonds[:, 0], label[bonds[:, 1]])
-        numpy.minimum.at(least, bonds[:, 1], label[bonds[:, 0]])
-        least = least[least]
-        if (least == label).all():
-            return label
-        label = least
+class Copy:
+    """One of the copies of the body: x' = mirror x + shift + periods . jump."""
+
+    def __init__(self, mirror, shift, periods):
+        self.mirror, self.shift, self.periods = mirror, shift, periods
+
+    def after(self, first):
+        return Copy(self.mirror * first.mirror, self.mirror * first.shift + self.shift,
+                    self.mirror * first.periods + self.periods)  # fmt: skip
+
+    def is_as(self, other, spacing):
+        same = (self.mirror == other.mirror).all() and (self.periods == other.periods).all()
+        return same and numpy.abs(self.shift - other.shift).max() < 0.01 * spacing
 
 
-def rigid_motions(places):
-    """Columns: the infinitesimal rigid motions, count x dimension x motions."""
-    count, dimension = places.shape
-    centred = places - places.mean(axis=0)
-    motions = [numpy.tile(axis, (count, 1)) for axis in numpy.eye(dimension)]
+def pieces(count, bonds, beyond, skip):
+    """Connected parts of what is there without bounds: for each the copy of every own point that is in it, and pairs of
+    copies of one point that are both in it."""
+    neighbours = [[] for _ in range(count)]
+    for i, j in bonds.tolist():
+        s = int(beyond.source[j])
+        if skip[i] or skip[s]:
+            continue
+        there = Copy(beyond.mirror[j], beyond.shift[j], beyond.periods[j])
+        back = Copy(there.mirror, -there.mirror * there.shift, -there.mirror * there.periods)
+        neighbours[i].append((s, there))
+        neighbours[s].append((i, back))
+    placed, found = {}, []
+    still = numpy.zeros(beyond.places.shape[1])
+    for start in range(count):
+        if skip[start] or start in placed:
+            continue
+        placed[start] = Copy(still + 1, still, still)
+        members, twice, waiting = [start], [], [start]
+        while waiting:
+            i = waiting.pop()
+            for s, step in neighbours[i]:
+                copy = placed[i].after(step)
+                if s not in placed:
+                    placed[s] = copy
+                    members.append(s)
+                    waiting.append(s)
+                elif not copy.is_as(placed[s], beyond.spacing):
+                    twice.append((s, copy))
+        found.append(({m: placed[m] for m in members}, twice))
+    return found
+
+
+def motions_at(place, centre, size):
+    """Columns: velocities of a place by the infinitesimal rigid motions."""
+    dimension = len(place)
+    arm = (place - centre) / size
+    columns = list(numpy.eye(dimension))
     for a in range(dimension):
         for b in range(a + 1, dimension):
-            turn = numpy.zeros((count, dimension))
-            turn[:, a], turn[:, b] = -centred[:, b], centred[:, a]
-            motions.append(turn / max(numpy.abs(centred).max(), 1e-300))
-    return numpy.stack(motions, axis=-1)
+            turn = numpy.zeros(dimension)
+            turn[a], turn[b] = -arm[b], arm[a]
+            columns.append(turn)
+    return numpy.array(columns).T
 
 
-def unheld_points(places, bonds, prescribed):
-    """Loose points, and the pieces among the others that may move rigidly."""
-    loose = loose_points(places, bonds, prescribed)
-    keep = ~loose[bonds].any(axis=1)
-    label = pieces_of(len(places), bonds[keep])
-    unheld = loose.copy()
-    for piece in numpy.unique(label[~loose]):
-        inside = numpy.flatnonzero((label == piece) & ~loose)
-        motions = rigid_motions(places[inside])
-        held = motions[prescribed[inside]]
-        needed = numpy.linalg.matrix_rank(motions.reshape(-1, motions.shape[-1]))
-        if len(held) == 0 or numpy.linalg.matrix_rank(held, tol=1e-6) < needed:
-            unheld[inside] = True
+def may_move(members, twice, places, jump, prescribed, free_jump):
+    """Whether a piece has a rigid motion, with changes of the jumps that are free, that nothing forbids."""
+    dimension = places.shape[1]
+
+    def now(point, copy):
+        return copy.mirror * places[point] + copy.shift + copy.periods @ jump
+
+    held = {point: now(point, copy) for point, copy in members.items()}
+    centre = numpy.mean(list(held.values()), axis=0)
+    size = max(numpy.abs(numpy.array(list(held.values())) - centre).max(), 1e-300)
+    free = numpy.argwhere(free_jump)
+
+    def own_motion(point, copy):
+        """Of the own point, when this copy moves with the piece."""
+        of_jumps = numpy.zeros((dimension, len(free)))
+        for column, (axis, component) in enumerate(free):
+            of_jumps[component, column] = -copy.periods[axis]
+        return copy.mirror[:, None] * numpy.hstack([motions_at(now(point, copy), centre, size), of_jumps])
+
+    moved = {point: own_motion(point, copy) for point, copy in members.items()}
+    rows = [moved[point][c] for point in members for c in numpy.flatnonzero(prescribed[point])]
+    for point, copy in twice:
+        rows += list(moved[point] - own_motion(point, copy))
+    everything = numpy.vstack([*moved.values(), *rows])
+    held = numpy.linalg.matrix_rank(numpy.array(rows), tol=1e-6) if rows else 0
+    return held < numpy.linalg.matrix_rank(everything, tol=1e-6)
+
+
+def unheld_points(displacement, bonds, prescribed, beyond, jump, free_jump):
+    """Own points that are loose, and those of pieces of the others that may move rigidly.
+
+    displacement: of all points; bonds: those that are whole; prescribed: own points x dimension.
+    """
+    places = beyond.places + displacement
+    unheld = loose_points(places, bonds, prescribed, beyond)
+    for members, twice in pieces(beyond.own, bonds, beyond, unheld.copy()):
+        if may_move(members, twice, places, jump, prescribed, free_jump):
+            unheld[list(members)] = True
     return unheld

@@ -36,6 +36,9 @@ class Results:
             ids = file["points/set_ids"]
             names = [name.decode() if isinstance(name, bytes) else str(name) for name in ids.attrs.get("sets", [])]
             self.sets = {name: ids[:, k] == 1 for k, name in enumerate(names)}
+            self.image_kinds = ()  # mirrors and shifts of what stands beyond planes and periods
+            if "points/images" in file:
+                self.image_kinds = (file["points/images/mirror"][...], file["points/images/shift"][...])
             names = [name for name in ("stiffness", "strength") if f"points/{name}_factor" in file]
             self.factors = {name: file[f"points/{name}_factor"][...] for name in names}
             self.steps = [Step(group) for _, group in sorted(file["steps"].items())] if "steps" in file else []

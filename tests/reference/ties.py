@@ -50,11 +50,9 @@ class Ties:
     """What a case ties. Works for dead loads and for any state; `follows` marks degrees of freedom without an equation."""
 
     def __init__(self, case, reference, volume, sets, prescribed):
-        for name in ("symmetry", "period"):
-            if case.get(name):
-                raise NotImplementedError(f"[[{name}]] is not judged: compare with the whole body")
         self.case, self.reference, self.sets, self.prescribed = case, reference, sets, prescribed
         self.spacing = case.spacing(volume)
+        self.spacings = case.spacing_in_expressions if case.is_lattice else self.spacing
         self.volume = volume
         self.follows = numpy.zeros(reference.shape, bool)
         self.rigid, self.slopes, self.rows = [], [], []
@@ -104,7 +102,7 @@ class Ties:
         return [first, numpy.cross(normal, first)]
 
     def value(self, expression, load, place=None):
-        return float(evaluate(expression, WITHOUT_PLACE if place is None else place[None], load, self.spacing)[0])
+        return float(evaluate(expression, WITHOUT_PLACE if place is None else place[None], load, self.spacings)[0])
 
     def errors(self, displacement, load):
         """Distances of the displacements from what the ties allow [m]."""
@@ -121,7 +119,7 @@ class Ties:
         for table, members, normal in self.slopes:
             along = displacement[members] @ normal
             wanted = table.get("displacement", 0)
-            target = along.mean() if wanted == "free" else evaluate(wanted, self.reference[members], load, self.spacing)
+            target = along.mean() if wanted == "free" else evaluate(wanted, self.reference[members], load, self.spacings)
             found.append(numpy.abs(along - target).max())
         for _, row, wanted, place, _ in self.rows:
             found.append(abs((row * displacement).sum() - self.value(wanted, load, place)))

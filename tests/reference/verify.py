@@ -9,7 +9,8 @@ import numpy
 from tests.reference import stress
 from tests.reference.body import Body
 from tests.reference.case import Case, Conditions
-from tests.reference.mechanics import Mechanics
+from tests.reference.foundations import Foundations
+from tests.reference.mechanics import STEP, Mechanics
 from tests.reference.pieces import unheld_points
 from tests.reference.results import Results
 from tests.reference.ties import Ties
@@ -27,15 +28,19 @@ class Verification:
     def __init__(self, folder, case_text, case_folder="."):
         self.case = case_text if isinstance(case_text, Case) else Case(case_text, case_folder)
         self.results = Results(folder)
-        self.complaints, self.worst = [], {}
+        self.complaints, self.worst, self.bears = [], {}, {}
+        self.broken_across = 0  # bonds to what lies beyond that are broken in the end
         self.broken_when_looked_for, self.last_unheld = 0, None
         self.rows = {int(row["step"]): row for row in self.results.table("history")}
+        self.listed_bonds = self.results.table("broken_bonds")
         reference, volume, sets = self.results.reference, self.results.volume, self.results.sets
-        self.conditions = Conditions(self.case, reference, volume, sets)
         more = {"sets": sets, "factors": self.results.factors}
         self.mechanics = Mechanics(Body(self.case, reference, volume, **more))
         self.mechanics.spare(sets)
+        self.conditions = Conditions(self.case, reference, volume, sets)
+        self.foundations = Foundations(self.case, self.conditions)
         self.ties = Ties(self.case, reference, volume, sets, self.conditions.prescribed)
+        self.jump_is_free = self.mechanics.body.beyond.given_jump(0.0)[1]
         self.first_real_step = 0
         self.stand_in = None
         if "elastic_horizon_ratio" in self.case["solver"]:
@@ -43,8 +48,6 @@ class Verification:
             self.stand_in = Mechanics(body, elastic=True)
             handed = [r["step"] for r in self.results.table("decisions") if r["action"] == "hand over to relaxation"]
             self.first_real_step = int(handed[0]) if handed else 10**9
-        codes = self.mechanics.body.bonds[:, 0] * len(volume) + self.mechanics.body.bonds[:, 1]
-        self.bond_number = {code: k for k, code in enumerate(codes.tolist())}
 
     def complain(self, step, text):
         self.complaints.append(f"step {step.number} (load factor {step.load:.6g}): {text}")
@@ -57,13 +60,25 @@ class Verification:
                                 f"{computed if numpy.ndim(computed) == 0 else 'another'} is right "
                                 f"({error:.3g} of {scale:.4g})")  # fmt: skip
 
+    # ---- what lies beyond ------------------------------------------------------------------------
+
+    def number_of(self, source, kind):
+        """Of the image of a kind, from 1, of a point, or (0) the point itself; None: no own point sees it."""
+        if kind == 0:
+            return source
+        mirror, shift = (numbers[kind - 1] for numbers in self.results.image_kinds)
+        return self.mechanics.body.beyond.number(mirror * self.results.reference[source] + shift)
+
+    def jump(self, row):
+        return self.mechanics.body.beyond.told_jump(row)
+
     # ---- histories -------------------------------------------------------------------------------
 
     @property
     def histories_are_known(self):
         """They are written, or follow from the accepted states."""
         steps = self.results.steps
-        if not self.case.has_damage or any(step.history is not None for step in steps):
+        if not self.case.has_damage or not steps or any(step.history is not None for step in steps):
             return True
         relaxed = self.case["solver"]["mode"] != "newton"
         path_is_written = self.case["output"]["every"] == 1 and not self.mechanics.body.is_cpd
@@ -75,10 +90,12 @@ class Verification:
         if step.history is None:
             return self.mechanics.grown(history, step.displacement)
         history = history.copy()
-        ends = numpy.sort(numpy.stack([step.history["first_point"], step.history["second_point"]]), axis=0)
-        count = len(self.results.volume)
-        for first, second, stretch in zip(*ends.tolist(), step.history["largest_stretch"].tolist()):
-            bond = self.bond_number.get(first * count + second)
+        body = self.mechanics.body
+        kinds = step.history.get("second_image", numpy.zeros(len(step.history["first_point"]), int))
+        columns = [step.history[name].tolist() for name in ("first_point", "second_point", "largest_stretch")]
+        for first, second, stretch, kind in zip(*columns, kinds.tolist()):
+            end = self.number_of(second, kind)
+            bond = None if end is None else body.bond_number.get(int(body.codes(numpy.sort([first, end]))))
             if bond is None:
                 self.complain(step, f"there is a history of {first}-{second}, which is no bond")
             elif (stretch == NEVER_FAILS) == self.mechanics.fails[bond]:
@@ -87,7 +104,15 @@ class Verification:
                 if stretch < history[bond] or stretch <= self.mechanics.law.onset[bond]:
                     self.complain(step, f"history {stretch} of bond {first}-{second} after {history[bond]}")
                 history[bond] = stretch
+        self.judge_twins(step, history)
         return history
+
+    def judge_twins(self, step, history):
+        """A bond to a point beyond and the same bond as the other point sees it have one history."""
+        body = self.mechanics.body
+        for bond in numpy.flatnonzero(body.bonds[:, 1] >= body.own):
+            twin = body.twin(*body.bonds[bond])
+            self.compare(step, "history of a twin", history[bond], history[twin], self.mechanics.law.onset[bond], 1e-9)
 
     # ---- steps -----------------------------------------------------------------------------------
 
@@ -95,9 +120,12 @@ class Verification:
         """Judges every written step; returns the complaints."""
         if not self.histories_are_known:
             raise ValueError("the histories of the bonds are not known")
-        old = Old(self.results.reference.shape, self.mechanics.no_history())
+        old = Old(self.results.reference.shape, self.mechanics)
         for step in self.results.steps:
             mechanics = self.mechanics if step.number >= self.first_real_step else self.stand_in
+            step.loads = self.case.loads(self.rows[step.number]["stage"], step.load)
+            step.jump = self.jump(self.rows[step.number])
+            step.everywhere = mechanics.body.beyond.spread(step.displacement, step.jump)
             history = self.next_history(step, old.history)
             self.judge(mechanics, step, old, history if mechanics is self.mechanics else mechanics.no_history())
             old = old.followed_by(step, history, mechanics, self.rows[step.number])
@@ -106,32 +134,39 @@ class Verification:
 
     def judge(self, mechanics, step, old, history):
         row, prescribed = self.rows[step.number], self.conditions.prescribed
-        mechanics.eigenstretch = self.conditions.eigenstretch(step.load)
-        gradient = mechanics.gradient(step.displacement, history)
-        magnitude = mechanics.gradient(step.displacement, history, absolute=True)
-        largest = magnitude.max() + 1e-4 * self.whole_force(mechanics, step)
+        mechanics.eigenstretch = self.conditions.eigenstretch(step.loads)
+        gradient = mechanics.gradient(step.everywhere, history)
+        magnitude = mechanics.gradient(step.everywhere, history, absolute=True)
+        largest = magnitude.max() + 1e-4 * self.whole_forces(mechanics, step)
         if "control" in row:
             self.judge_control(step, row)
         self.compare(step, "force", step.force, -gradient, largest)
-        target = self.conditions.displacement(step.load)
+        target = self.conditions.displacement(step.loads)
         reach = max(numpy.abs(target).max(), 1e-300)
         if prescribed.any():
             self.compare(step, "prescribed displacement", step.displacement[prescribed], target[prescribed], reach, 1e-12)
-        self.compare(step, "ties", self.ties.errors(step.displacement, step.load), 0.0, max(reach, numpy.abs(step.displacement).max()), 1e-11)
-        external = self.external(step.load, step.displacement)
+        self.compare(step, "ties", self.ties.errors(step.displacement, step.loads), 0.0, max(reach, numpy.abs(step.displacement).max()), 1e-11)
+        self.judge_jump(mechanics, step)
+        loads = self.loads(step.loads, step.displacement)
+        external = self.external(step.loads, step.displacement)
         unheld = self.unheld(step, old)
         self.judge_residual(mechanics, step, row, old, history, gradient - external, magnitude, unheld)
         self.judge_reactions(step, row, gradient - external, largest, unheld, external)
+        self.judge_beyond(mechanics, step, row, history, gradient, largest)
         self.judge_energies(mechanics, step, row, old, history)
         if mechanics is self.mechanics:
             self.judge_damage(mechanics, step, row, history)
             everywhere = getattr(step, "everywhere", step.displacement)
             stress.judge(self, step, mechanics, everywhere, history, self.whole_force(mechanics, step))
-        self.judge_work(mechanics, step, row, old, history, gradient, external)
+        self.judge_work(mechanics, step, row, old, history, gradient, external, loads)
 
-    def external(self, load, displacement):
+    def loads(self, load, displacement):
         """Dead loads, and those that follow the deformation [N]."""
         return self.conditions.force(load) + self.conditions.follower_force(load, displacement)
+
+    def external(self, load, displacement):
+        """Loads, and the springs of foundations, whose energy is stored [N]."""
+        return self.loads(load, displacement) + self.foundations.force(displacement, load)
 
     def whole_force(self, mechanics, step):
         """What a whole bond would bear at the largest displacement [N]: rounding of displacements
@@ -139,6 +174,18 @@ class Verification:
         body = mechanics.body
         reach = min(numpy.abs(step.displacement).max() / body.lengths.min(), 1.0)
         return body.constants[1] * body.weight[1].max() * reach
+
+    def reach(self, mechanics, step):
+        """Stretch whose rounding is that of displacements and eigenstrains."""
+        reach = numpy.abs(step.everywhere).max() / mechanics.body.lengths.min()
+        eigenstretch = 0.0 if mechanics.eigenstretch is None else numpy.abs(mechanics.eigenstretch).max()
+        return min(reach, 1.0) + eigenstretch
+
+    def whole_forces(self, mechanics, step):
+        """Likewise of all interactions of a point [N], for sums."""
+        if mechanics not in self.bears:
+            self.bears[mechanics] = mechanics.bears()
+        return self.bears[mechanics] * self.reach(mechanics, step)
 
     def unheld(self, step, old):
         """Points that may be pinned or have left the equations in this step: those that nothing held
@@ -148,33 +195,44 @@ class Verification:
             return numpy.zeros(len(self.results.volume), bool)
         if old.number + 1 == step.number and broken.sum() == self.broken_when_looked_for:
             return self.last_unheld
-        places = self.results.reference + old.displacement
         self.broken_when_looked_for = broken.sum()
-        self.last_unheld = unheld_points(places, self.mechanics.body.bonds[~broken], self.conditions.prescribed)
+        held = self.conditions.prescribed | self.conditions.cell_held | self.ties.follows
+        body = self.mechanics.body
+        everywhere = body.beyond.spread(old.displacement, old.jump)
+        self.last_unheld = unheld_points(everywhere, body.bonds[~broken], held, body.beyond, old.jump, self.jump_is_free)
         return self.last_unheld
 
     def judge_residual(self, mechanics, step, row, old, history, out_of_balance, magnitude, unheld):
-        free = ~self.conditions.prescribed & ~unheld[:, None] & ~self.ties.follows
-        if not free.any():
+        free = ~self.conditions.prescribed & ~unheld[:, None] & ~self.ties.follows & ~self.conditions.cell_held
+        if not free.any() and not self.jump_is_free.any():
             return
         jumped = old.displacement.copy()
         prescribed = self.conditions.prescribed
-        jumped[prescribed] = self.conditions.displacement(step.load)[prescribed]
+        jumped[prescribed] = self.conditions.displacement(step.loads)[prescribed]
         past = old.history if mechanics is self.mechanics else history
-        external = self.external(step.load, jumped)
-        mechanics.eigenstretch = self.conditions.eigenstretch(old.load)
-        reactions = mechanics.gradient(old.displacement, past) - self.external(old.load, old.displacement)
-        mechanics.eigenstretch = self.conditions.eigenstretch(step.load)
+        external = self.external(step.loads, jumped)
+        mechanics.eigenstretch = self.conditions.eigenstretch(old.loads)
+        reactions = mechanics.gradient(old.everywhere, past) - self.external(old.loads, old.displacement)
+        beyond = self.forces_beyond(mechanics, old, past)
+        mechanics.eigenstretch = self.conditions.eigenstretch(step.loads)
         # Reactions of both states: Newton's method that finishes a relaxed step starts from the latter.
         held = prescribed | self.ties.follows
-        norms = [numpy.linalg.norm(part) for part in (external, reactions[held], out_of_balance[held])]
+        norms = [numpy.linalg.norm(external), numpy.hypot(numpy.linalg.norm(reactions[held]), beyond)]
+        beyond = self.forces_beyond(mechanics, step, history)
+        norms.append(numpy.hypot(numpy.linalg.norm(out_of_balance[held]), beyond))
         # The jump that a step begins with is measured with the damage held.
-        norms.append(numpy.linalg.norm((mechanics.gradient(jumped, past, held=True) - external)[~prescribed]))
+        jump = numpy.where(self.jump_is_free, old.jump, step.jump)
+        everywhere = mechanics.body.beyond.spread(jumped, jump)
+        on_points = (mechanics.gradient(everywhere, past, held=True) - external)[~prescribed]
+        on_jumps = mechanics.pull_of_periods(everywhere, past, held=True)[self.jump_is_free]
+        norms.append(numpy.hypot(numpy.linalg.norm(on_points), numpy.linalg.norm(on_jumps)))
         norms.append(numpy.linalg.norm(self.of_environment(mechanics, step, old, past)))
         scale = max(norms)
         floor = 8 * UNIT_ROUND_OFF * (numpy.linalg.norm(magnitude) + self.whole_force(mechanics, step))
+        floor += STEP * mechanics.body.constants[1] * mechanics.body.weight[1].sum()
         along_ties = self.ties.out_of_balance(step.displacement, out_of_balance)
-        residual = numpy.hypot(numpy.linalg.norm(out_of_balance[free]), numpy.linalg.norm(along_ties))
+        on_jumps = mechanics.pull_of_periods(step.everywhere, history)[self.jump_is_free]
+        residual = numpy.linalg.norm([numpy.linalg.norm(part) for part in (out_of_balance[free], along_ties, on_jumps)])
         # A tenth more: the program's scale has the same three norms in its own rounding and its own
         # idea of the jump that a cut or relaxed step begins with.
         allowed = 1.1 * self.case["solver"]["relative_tolerance"] * scale + floor
@@ -182,17 +240,29 @@ class Verification:
         if row["settled"]:  # owes no equilibrium
             return
         self.worst["residual / allowed"] = max(self.worst.get("residual / allowed", 0.0), residual / allowed)
+        on_cell = numpy.linalg.norm(out_of_balance[self.conditions.cell_held])
+        if not on_cell <= allowed * len(unheld) ** 0.5:
+            self.complain(step, f"{on_cell:.4g} N on the point at which the cell is held, though nothing holds it")
         if not residual <= allowed:
             self.complain(step, f"not in equilibrium: residual {residual:.4g} N, {allowed:.4g} N is allowed "
                                 f"(relative {residual / scale if scale else numpy.inf:.3g})")  # fmt: skip
 
+    @staticmethod
+    def forces_beyond(mechanics, state, history):
+        """Norm of what acts beyond planes and periods: it counts among the reactions."""
+        on_copies = numpy.linalg.norm(mechanics.gradient_of_shares(state.everywhere, history)[mechanics.body.own :])
+        return numpy.hypot(on_copies, numpy.linalg.norm(mechanics.pull_of_periods(state.everywhere, history)))
+
     def of_environment(self, mechanics, step, old, past):
         """What eigenstrains and pressures add to the forces of the old displacement."""
-        under = mechanics.gradient(old.displacement, past, held=True)
+        under = mechanics.gradient_of_shares(old.everywhere, past, held=True)
         kept, mechanics.eigenstretch = mechanics.eigenstretch, None
-        without = mechanics.gradient(old.displacement, past, held=True)
+        added = under - mechanics.gradient_of_shares(old.everywhere, past, held=True)
         mechanics.eigenstretch = kept
-        return under - without - self.conditions.follower_force(step.load, old.displacement)
+        added[: mechanics.body.own] -= self.conditions.follower_force(step.loads, old.displacement)
+        resting = numpy.zeros(old.displacement.shape)
+        added[: mechanics.body.own] -= self.foundations.force(resting, step.loads)  # of the ground alone
+        return added
 
     def judge_pins(self, step, row, on_unheld, allowed):
         """Nothing but pins may bear a force on points that nothing holds, and all of it is told."""
@@ -219,22 +289,56 @@ class Verification:
         for name, force in reactions.items():
             for axis, component in zip("xyz", force):
                 self.compare(step, "reaction", row[f"reaction_{axis}:{name}"], component, scale)
+        for name, force in self.foundations.forces(step.displacement, step.loads).items():
+            scale = max(largest, numpy.abs(force).max()) * len(force)
+            for axis, component in zip("xyz", force.sum(axis=0)):
+                self.compare(step, "reaction", row[f"reaction_{axis}:{name}"], component, scale)
         size = numpy.abs(self.results.reference).max() + numpy.abs(step.displacement).max()
         for name, about in moments.items():
             for axis, component in zip("z" if len(about) == 1 else "xyz", about):
                 self.compare(step, "moment", row[f"moment_{axis}:{name}"], component, scale * size)
         borne = self.conditions.prescribed | unheld[:, None] | self.ties.follows
-        total = reaction[borne].sum() + external.sum()
+        total = reaction[borne].sum() + external.sum() + self.sum_beyond(row)
         rest = reaction[~borne]
         allowed = numpy.abs(rest).sum() + AGREEMENT * largest * len(reaction)
         if not abs(total) <= allowed:
             self.complain(step, f"reactions and loads differ by {total:.4g} N")
 
+    def sum_beyond(self, row):
+        """Of the forces that planes of symmetry are written to bear."""
+        return sum(row[f"reaction_{'xyz'[axis]}:{name}"] for name, axis, _ in self.mechanics.body.beyond.planes())
+
+    def judge_jump(self, mechanics, step):
+        """What the displacement gains over a period, as far as it is given."""
+        jump, free = mechanics.body.beyond.given_jump(step.loads)
+        if free.all():
+            return
+        reach = max(numpy.abs(jump).max(), numpy.abs(step.jump).max())
+        self.compare(step, "jump over a period", step.jump[~free], jump[~free], reach, 1e-12)
+
+    def judge_beyond(self, mechanics, step, row, history, gradient, largest):
+        """Forces of what lies beyond planes and periods."""
+        beyond = mechanics.body.beyond
+        scale = largest * len(numpy.unique(beyond.source))
+        pull = mechanics.pull_of_periods(step.everywhere, history)
+        for axis in beyond.lengths():
+            for c, component in enumerate(beyond.axes):
+                written = row[f"reaction_{component}:period_{axis}"]
+                self.compare(step, "reaction over a period", written, pull[beyond.axes.index(axis), c], scale)
+        sums = -gradient.sum(axis=0)
+        for name, (force, axis) in mechanics.pull_of_planes(step.everywhere, history).items():
+            for component in "xyz":
+                right = force if component == "xyz"[axis] else 0.0
+                self.compare(step, "reaction of a plane", row[f"reaction_{component}:{name}"], right, scale)
+            sums[axis] -= row[f"reaction_{'xyz'[axis]}:{name}"]
+        self.compare(step, "forces from beyond", sums, 0.0, scale)
+
     def judge_energies(self, mechanics, step, row, old, history):
-        energies = mechanics.energies(step.displacement, history)
-        stored = sum(part.sum() for part in energies.values())
+        energies = mechanics.energies(step.everywhere, history)
+        of_springs = self.foundations.energy(step.displacement, step.loads)
+        stored = mechanics.energy(step.everywhere, history) + of_springs.sum()
         scale = max(abs(stored), abs(row["external_work"]), abs(row["dissipated_energy"]))
-        scale += 1e-5 * self.whole_force(mechanics, step) * numpy.abs(step.displacement).max()
+        scale += 1e-5 * self.whole_forces(mechanics, step) * numpy.abs(step.everywhere).max()
         self.compare(step, "stored energy", row["stored_energy"], stored, scale)
         dissipated = mechanics.dissipated(history)
         brittle_cpd = mechanics.body.is_cpd and mechanics.law.onset.min() < numpy.inf
@@ -244,10 +348,11 @@ class Verification:
             self.complain(step, f"dissipated {row['dissipated_energy']:.6g} J, its bonds alone {dissipated:.6g} J")
         if row["dissipated_energy"] < old.dissipated - AGREEMENT * scale:
             self.complain(step, f"dissipated energy falls from {old.dissipated:.6g} to {row['dissipated_energy']:.6g} J")
-        density = numpy.zeros(len(self.results.volume))
+        density = of_springs
         for order, part in energies.items():
             for k in range(order + 1):
-                density += numpy.bincount(mechanics.body.tuples[order][:, k], part / (order + 1), minlength=len(density))
+                on_points = numpy.bincount(mechanics.body.tuples[order][:, k], part / (order + 1), minlength=len(density))
+                density += on_points[: len(density)]
         if mechanics is self.mechanics:
             self.compare(step, "energy density", step.energy_density * self.results.volume, density, scale)
         rest = row["external_work"] + row["numerical_work"] - row["stored_energy"] - row["dissipated_energy"] - row["drained_energy"]
@@ -255,21 +360,33 @@ class Verification:
         self.compare(step, "ledger", row["balance_error"], rest, scale, 1e-12)
 
     def judge_damage(self, mechanics, step, row, history):
-        stretch, broken = mechanics.stretch(step.displacement), mechanics.is_broken(history)
+        stretch, broken = mechanics.stretch(step.everywhere), mechanics.is_broken(history)
         over = mechanics.fails & ~broken & (stretch > numpy.maximum(history, mechanics.law.onset) * (1 + 1e-12))
         if over.any():
             self.complain(step, f"{over.sum()} bonds are stretched beyond their history and the onset, "
                                 f"up to {stretch[over].max():.6g}")  # fmt: skip
         if int(row["broken_bonds"]) != broken.sum():
             self.complain(step, f"{row['broken_bonds']:.0f} broken bonds are written, {broken.sum()} are right")
+        self.judge_broken_bonds(step, broken)
         damage = mechanics.damage(history)
         self.compare(step, "damage", step.damage, damage, 1.0)
         self.compare(step, "max_damage", row["max_damage"], damage.max(), 1.0)
         whole = stretch[~broken]
         largest = whole.max() if len(whole) else 0.0
-        self.compare(step, "max_stretch", row["max_stretch"], largest, max(abs(stretch).max(), 1e-300))
+        scale = max(abs(stretch).max(), 1e-5 * self.reach(mechanics, step), 1e-300)
+        self.compare(step, "max_stretch", row["max_stretch"], largest, scale)
 
-    def judge_work(self, mechanics, step, row, old, history, gradient, external):
+    def judge_broken_bonds(self, step, broken):
+        """Those listed so far: points beyond have the numbers of their sources."""
+        body = self.mechanics.body
+        self.broken_across = int((body.bonds[broken] >= body.own).any(axis=1).sum())
+        ends = numpy.sort(body.source[body.bonds[broken]], axis=1)
+        listed = [row for row in self.listed_bonds if row["step"] <= step.number]
+        written = [(int(row["first_point"]), int(row["second_point"])) for row in listed]
+        if sorted(written) != sorted(map(tuple, ends.tolist())):
+            self.complain(step, "the list of broken bonds is not that of bonds whose history has come to an end")
+
+    def judge_work(self, mechanics, step, row, old, history, gradient, external, loads):
         """External work by the trapezoidal rule over the accepted steps; implicit ones add no other."""
         if old.mechanics not in (None, mechanics) or old.number + 1 != step.number:
             return
@@ -277,15 +394,21 @@ class Verification:
             self.complain(step, f"numerical work {row['numerical_work']} in an implicit step, {old.numerical_work} before it")
         prescribed = self.conditions.prescribed
         past = old.history if mechanics is self.mechanics else mechanics.no_history()
-        here = self.conditions.eigenstretch(step.load)
-        mechanics.eigenstretch = self.conditions.eigenstretch(old.load)
-        before = mechanics.gradient(old.displacement, past)
-        heating = mechanics.heating_work((old.displacement, past), (step.displacement, history), mechanics.eigenstretch, here)
-        pull = numpy.where(prescribed, before + gradient, self.external(old.load, old.displacement) + external) / 2
-        work = float((pull * (step.displacement - old.displacement)).sum()) + heating
-        work += self.ties.work(old, step, before - self.external(old.load, old.displacement), gradient - external)
+        here = self.conditions.eigenstretch(step.loads)
+        mechanics.eigenstretch = self.conditions.eigenstretch(old.loads)
+        before = mechanics.gradient(old.everywhere, past)
+        pull = mechanics.pull_of_periods(old.everywhere, past)
+        heating = mechanics.heating_work((old.everywhere, past), (step.everywhere, history), mechanics.eigenstretch, here)
+        pull = (pull + mechanics.pull_of_periods(step.everywhere, history)) / 2
+        over_periods = numpy.where(self.jump_is_free, 0, pull * (step.jump - old.jump))
+        at_first, now = (before - self.external(old.loads, old.displacement), gradient - external)
+        loads_before = self.loads(old.loads, old.displacement)
+        pull = (loads_before + loads + numpy.where(prescribed, at_first + now, 0)) / 2
+        work = float((pull * (step.displacement - old.displacement)).sum()) + over_periods.sum() + heating
+        work += self.ties.work(old, step, at_first, now) + self.foundations.work(old, step)
         scale = max(abs(row["external_work"]), numpy.abs(pull * (step.displacement - old.displacement)).sum())
-        scale += 1e-5 * self.whole_force(mechanics, step) * numpy.abs(step.displacement).max()
+        scale += numpy.abs(over_periods).sum()
+        scale += 1e-5 * self.whole_forces(mechanics, step) * numpy.abs(step.everywhere).max()
         self.compare(step, "work", row["external_work"] - old.external_work, work, scale)
 
     def judge_summary(self, old):
@@ -328,15 +451,18 @@ class Verification:
 class Old:
     """The last accepted state."""
 
-    def __init__(self, shape, history):
+    def __init__(self, shape, mechanics):
         self.number, self.load, self.mechanics = 0, 0.0, None
-        self.displacement, self.history = numpy.zeros(shape), history
+        self.displacement, self.history = numpy.zeros(shape), mechanics.no_history()
+        self.loads = {f"load{k}": 0.0 for k in ("", 2, 3, 4)}
+        self.everywhere, self.jump = numpy.zeros(mechanics.body.reference.shape), numpy.zeros((shape[1],) * 2)
         self.dissipated = self.external_work = self.numerical_work = 0.0
 
     def followed_by(self, step, history, mechanics, row):
         new = Old.__new__(Old)
         new.number, new.load, new.mechanics = step.number, step.load, mechanics
         new.displacement, new.history = step.displacement, history
+        new.everywhere, new.jump, new.loads = step.everywhere, step.jump, step.loads
         new.dissipated, new.external_work = row["dissipated_energy"], row["external_work"]
         new.numerical_work = row["numerical_work"]
         return new

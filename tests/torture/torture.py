@@ -143,13 +143,18 @@ class Generator:
             material["c2"] = self.choice(0.0, 0.3, 3.0) * self.modulus / plane
             if self.dimension == 3:
                 material["c3"] = self.choice(0.0, 0.5, 5.0) * self.modulus / horizon**12
-        law = self.choice("none", "critical_stretch", "tanh", "tanh_continuous", weights=(0.25, 0.25, 0.2, 0.3))
+        law = self.choice("none", "critical_stretch", "tanh", "tanh_continuous", "linear", "exponential", "blended",
+                          weights=(0.2, 0.2, 0.15, 0.2, 0.1, 0.1, 0.05))  # fmt: skip
         self.critical = self.power(-4, -1)
         if law != "none":
             damage = {"law": law, "critical": self.critical}
             if law != "critical_stretch":
                 damage["onset"] = self.critical * self.between(0.2, 0.95)
+            if law in ("tanh", "tanh_continuous", "exponential"):
                 damage["rate"] = self.power(-0.5, 1)
+            if law == "blended":
+                damage["peak"] = damage["onset"] + self.between(0.1, 0.9) * (self.critical - damage["onset"])
+                damage["hardening"] = self.between(0.1, 0.9)
             if self.chance(0.6):
                 damage["no_fail"] = ["left", "right"]
             material["damage"] = damage

@@ -28,6 +28,7 @@ ROOMS = [
     "assembly",
     "solvers/linear",
     "solvers/problem",
+    "solvers/fracture",
     "solvers/search",
     "solvers/drivers",
     "solvers/study",

@@ -8,8 +8,10 @@ import h5py
 import numpy
 
 from tests.reference import ring
+from tests.reference.body import lattice_ball, micromodulus_factor
 from tests.reference.case import Case
 from tests.reference.program import peristat
+from tests.reference.results import Results
 from tests.reference.verify import Verification
 
 PLATE = """
@@ -64,9 +66,10 @@ class Loads(unittest.TestCase):
         self.assertEqual(run.code, code, run.said)
         if code:
             return run
+        if not judged:
+            return Results(output)
         verification = Verification(output, Case(self.resolved(output), self.folder))
-        if judged:
-            self.assertEqual(verification.run(), [])
+        self.assertEqual(verification.run(), [])
         return verification.results
 
     @staticmethod
@@ -161,42 +164,76 @@ class Heated(Loads):
         # Points near the edges move; the trapezoidal rule errs by a small part of the strain.
         self.assertAlmostEqual(row["external_work"], row["stored_energy"], delta=2e-5 * row["stored_energy"])
 
-    def test_a_clamped_bar_has_the_stress_E_alpha_dT(self):
+    def test_a_clamped_bar_bears_the_bonds_across_a_section(self):
+        """Every point of a bar between two layers has as many neighbours on both sides, so that none moves, and every bond
+        has the stretch -alpha dT: k of the reach k cross a section. With half of the outermost neighbours' volume that sum
+        is E alpha dT, without a volume correction (m + 1)/m of it."""
         bar = """
 dimension = 1
 [lattice]
 spacing = 1e-3
-horizon_ratio = 3
+horizon_ratio = {reach}
 area = 1e-6
-shape = [{ add = "box", min = [0], max = [0.1] }]
-layer = [{ name = "left", side = "x-" }, { name = "right", side = "x+" }]
+shape = [{{ add = "box", min = [0], max = [0.1] }}]
+layer = [{{ name = "left", side = "x-", thickness = {reach} }}, {{ name = "right", side = "x+", thickness = {reach} }}]
 [quadrature]
-volume_correction = "linear"
+volume_correction = "{correction}"
 [material]
 youngs_modulus = 2e11
 thermal_expansion = 1e-5
-support = []
+[[support]]
+set = "left"
+displacement = [0]
+[[support]]
+set = "right"
+displacement = [0]
 [temperature]
 change = "100*load"
 """
-        bar = bar.replace("support = []\n", "") + '[[support]]\nset = "left"\ndisplacement = [0]\n'
-        bar += '[[support]]\nset = "right"\ndisplacement = [0]\n'
-        results = self.run_case(bar)
-        reaction = results.summary["reactions"]["left"][0]
-        # With the linear volume correction the sum of a bulk point is that of the continuum, (1 + 1/(2 m^2)) of it
-        # for m = 3 spacings: the stress of bonds that cross a section.
-        stress = self.section_stress(results, -1e-3)
-        self.assertAlmostEqual(stress / (-2e11 * 1e-5 * 100), 1, delta=0.06)
-        self.assertAlmostEqual(results.summary["reactions"]["right"][0], -reaction, delta=1e-9 * abs(reaction))
+        for reach in (1, 2, 3, 5):
+            for correction, of_outermost in (("linear", 0.5), ("none", 1.0)):
+                with self.subTest(reach=reach, correction=correction):
+                    results = self.run_case(bar.format(reach=reach, correction=correction))
+                    share = numpy.ones(reach)
+                    share[-1] = of_outermost
+                    factor = micromodulus_factor(1, None, reach * 1e-3, 1e-6)
+                    force = (numpy.arange(1, reach + 1) * share).sum() * factor * 2e11 * 1e-3 * 1e-9**2
+                    self.assertAlmostEqual(force / (2e11 * 1e-5 * 100 * 1e-6 * (1 if correction == "linear" else (reach + 1) / reach)), 1, delta=1e-14)
+                    for side, sign in (("left", 1), ("right", -1)):
+                        # Distances of points have the round-off of their places, 1e-14 of a spacing at the far end.
+                        self.assertAlmostEqual(sign * results.summary["reactions"][side][0] / force, 1, delta=1e-12)
+                    self.assertLess(numpy.abs(results.steps[-1].displacement).max(), 1e-12 * 0.1)
 
-    def section_stress(self, results, strain):
-        """Of all bonds across the middle of a bar of which each has one strain."""
-        horizon, spacing, c = 3e-3, 1e-3, 2 * 2e11 / (1e-6 * 9e-6)
-        force = 0.0
-        for reach in (1, 2, 3):
-            share = 0.5 if reach == 3 else 1.0
-            force += reach * c * strain * (spacing * 1e-6) ** 2 * share
-        return force / 1e-6
+    def test_a_heated_cell_has_the_stress_of_its_lattice(self):
+        """Held in its shape: every bond has the stretch -s, and the stress is the lattice's sum. Free: it grows by s."""
+        growth = 0.02
+        for dimension, ratio in ((2, 3.015), (3, 2.1)):
+            for is_free in (False, True):
+                with self.subTest(dimension=dimension, is_free=is_free):
+                    shape = [8e-3, 6e-3, 5e-3][:dimension]
+                    text = f"dimension = {dimension}\n[lattice]\nspacing = 1e-3\nhorizon_ratio = {ratio}\n"
+                    text += "thickness = 2e-3\n" * (dimension == 2)
+                    text += f'shape = [{{ add = "box", min = {[0.0] * dimension}, max = {shape} }}]\n'
+                    text += "[material]\nyoungs_modulus = 1e9\nthermal_expansion = 2e-4\n[temperature]\nchange = \"100*load\"\n"
+                    for axis in range(dimension):
+                        # Free to grow, and not to shear, by which it could turn.
+                        gradient = [("free" if k == axis and is_free else 0) for k in range(dimension)]
+                        text += f'[[period]]\naxis = "{"xyz"[axis]}"\nfrom = 0\nto = {shape[axis]}\ngradient = {gradient}\n'
+                    results = self.run_case(text, judged=False)
+                    bonds = lattice_ball(dimension, ratio) * 1e-3
+                    lengths = numpy.linalg.norm(bonds, axis=1)
+                    thickness, volume = (2e-3, 2e-9) if dimension == 2 else (1.0, 1e-9)
+                    modulus = micromodulus_factor(dimension, "stress", ratio * 1e-3, thickness) * 1e9
+                    expected = -0.5 * modulus * growth * volume * (bonds[:, 0] ** 2 / lengths).sum()
+                    for axis in range(dimension):
+                        area = volume / 1e-3**dimension * numpy.prod(numpy.delete(shape, axis))
+                        reaction = numpy.array(results.summary["reactions"][f"period_{'xyz'[axis]}"]) / area
+                        told = numpy.where(numpy.arange(3) == axis, 0.0 if is_free else expected, 0.0)
+                        self.assertLess(numpy.abs(reaction - told).max(), 1e-10 * abs(expected))
+                    moved = results.steps[-1].displacement
+                    centre = results.reference[numpy.linalg.norm(moved, axis=1).argmin()]
+                    grown = growth * is_free * (results.reference - centre)
+                    self.assertLess(numpy.abs(moved - grown).max(), 1e-11 * growth * shape[0])
 
     def test_a_linear_temperature_bends_with_little_stress(self):
         """Stretches are left of second order in the growth only: a tenth of it leaves a hundredth of them."""
@@ -329,6 +366,16 @@ class Pressed(Loads):
             errors.append(found / ring.lame(radius, 0.5, 1, 1e4, 1e9).mean() - 1)
         self.assertLess(abs(errors[-1]), 0.05)
         self.assertLess(abs(errors[-1]), abs(errors[0]))
+
+    def test_the_continuum_at_large_strain_is_that_of_finite_elements(self):
+        radii, exact = ring.solve(0.5, 1.0, 0.1e9, 1e9)
+        errors = []
+        for elements in (25, 50, 100):
+            nodes, found = ring.finite_elements(0.5, 1.0, 0.1e9, 1e9, elements)
+            errors.append(numpy.abs(found - numpy.interp(nodes, radii, exact)).max() / exact.max())
+        self.assertLess(errors[-1], 1e-4)
+        for coarse, fine in zip(errors, errors[1:]):  # linear elements: second order
+            self.assertAlmostEqual(numpy.log2(coarse / fine), 2, delta=0.1)
 
     def test_a_ring_at_large_strain(self):
         results = self.run_case(RING.format(spacing=0.05, pressure=0.1e9), "loading.steps=4")

@@ -10,9 +10,12 @@ import re
 import tempfile
 import unittest
 
+import numpy
+
 from tests.printed.comparison import PrintedTest
 from tests.printed.page import numbers
 from tests.printed.runs import calibrate, check, rows, run
+from tests.reference import ring
 from tests.reference.program import ROOT, peristat
 
 ENERGY = "quadrature.surface_correction=energy"
@@ -66,6 +69,53 @@ class Regions(PrintedTest):
             self.assertAlmostEqual(one / other, 1, delta=0.05)
 
 
+class Sheet(PrintedTest):
+    page = "cases/periodic/holes.toml"
+
+    def test_header(self):
+        sheet, whole = run("periodic/holes"), run("periodic/holes", "lattice.shape[1].radius=1e-6")
+        force = sheet.reaction("period_x")
+        self.prints("reaction_x:period_x {} N", force)
+        self.prints("a modulus of {} GPa", force / (0.1 * 1e-3) / 1e-4 / 1e9)
+        self.prints("it is {} N: the hole leaves {} of it", whole.reaction("period_x"), force / whole.reaction("period_x"))
+        self.prints("1 / (1 + 3 phi) = {}.", 1 / (1 + 3 * math.pi * 0.01**2 / 0.1**2))
+        for set, axis in (("period_y", "y"), ("period_y", "x"), ("period_x", "y")):
+            self.assertLess(abs(sheet.reaction(set, axis)), 1e-8 * force)  # the solver's tolerance, over the cell's points
+
+
+class Bimetal(PrintedTest):
+    page = "cases/thermal/bimetal.toml"
+
+    def test_header(self):
+        strip = run("thermal/bimetal")
+        height, n, strain = 2e-3, 100 / 200, (19e-6 - 12e-6) * 100
+        curvature = 6 * strain * 4 / (height * (3 * 4 + (1 + n) * (1 + 1 / n)))
+        self.prints("(m^2 + 1/(m n)))) = {} /m", curvature)
+        first, last = 0.5e-4, 0.04 - 0.5e-4  # points where the strip is held, and of the probe
+        closed = 0.5 * curvature * (last**2 - first**2)
+        self.prints("a deflection of {} m;", closed)
+        found = strip.summary["probes"]["tip"][1]
+        self.prints("probe tip_y {} m", found)
+        self.assertAlmostEqual(-found / closed, 1, delta=5e-3)
+        # The force that would hold the strip straight.
+        self.assertLess(abs(strip.reaction("symmetry_x")), 1e-6 * 200e9 * strain * height * 1e-3)
+
+
+class Ring(PrintedTest):
+    page = "cases/pressure/ring.toml"
+
+    def test_header(self):
+        pressed = run("pressure/ring")
+        self.prints("along the radius: {} m at", ring.lame(0.75, 0.5, 1.0, 1e6, 1e9))
+        place, moved = pressed.points("reference"), pressed.field("displacement")
+        radius = numpy.hypot(*place.T)
+        middle = (radius >= 0.7) & (radius <= 0.8)
+        along = ((place * moved).sum(axis=1) / radius)[middle].mean()
+        self.prints("from 0.7 to 0.8 m {} of it", along / ring.lame(radius[middle], 0.5, 1.0, 1e6, 1e9).mean())
+        self.prints('probe "middle": {} m', pressed.summary["probes"]["middle"][0])
+        self.assertIn("closed or held: its stiffness is symmetric", check("pressure/ring"))
+
+
 class Cantilever(PrintedTest):
     def test_plate(self):
         self.page = "cases/cantilever/plate.toml"
@@ -114,6 +164,16 @@ class ElasticPlate(PrintedTest):
         density = sorted(plate.field("energy_density"))  # of most points: the median
         self.prints("the strain is about {} times that far away", math.sqrt(density[-1] / density[len(density) // 2]))
         self.prints("E w h 1.333e-3 = {} N", 192e9 * 0.05 * 1e-3 * 0.2 / 150)
+
+    def test_quarter(self):
+        self.page = "cases/plate_with_hole/quarter.toml"
+        plate, quarter = run("plate_with_hole/elastic"), run("plate_with_hole/quarter")
+        self.prints("points: {} instead of {}.", quarter.summary["points"], plate.summary["points"])
+        self.prints('reaction on "right" {} N', quarter.reaction("right"))
+        # Both are solved to 1e-10 of their reactions.
+        self.assertAlmostEqual(2 * quarter.reaction("right") / plate.reaction("right"), 1, delta=1e-8)
+        self.assertAlmostEqual(quarter.reaction("symmetry_x") / quarter.reaction("right"), -1, delta=1e-9)
+        self.assertAlmostEqual(quarter.reaction("symmetry_y", "y") / quarter.reaction("right", "y"), -1, delta=1e-8)
 
     def test_linear_iterations_of_a_step(self):
         plate = run("plate_with_hole/elastic")

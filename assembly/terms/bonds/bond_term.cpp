@@ -43,7 +43,7 @@ Balances BondTerm::balances() const {
 }
 
 std::vector<InteractionCount> BondTerm::counts() const {
-  return {{"bonds", bonds_->count(), "neighbours", "neighbours within the horizon, #N1",
+  return {{"bonds", weighted_bonds(*bonds_), "neighbours", "neighbours within the horizon, #N1",
            neighbour_counts(*bonds_)}};
 }
 

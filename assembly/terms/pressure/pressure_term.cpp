@@ -152,6 +152,16 @@ std::vector<double> linear_weights(const Points& points, const std::vector<Index
   return weights;
 }
 
+/// (A^T B C)_rc
+double folded_entry(const Block& a, const Block& b, const Block& c, std::size_t row,
+                    std::size_t column) {
+  double sum = 0.0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    for (std::size_t l = 0; l < 3; ++l) sum += a[k][row] * b[k][l] * c[l][column];
+  }
+  return sum;
+}
+
 bool acts(const StateView& at) { return at.environment && !at.environment->pressure.empty(); }
 
 class PressurePasses : public TermPasses {
@@ -287,36 +297,38 @@ double PressureTerm::area() const {
          boundary_.cross_section;
 }
 
-PressureTerm::Stiffness PressureTerm::stiffness(const StateView& at,
+PressureTerm::Stiffness PressureTerm::stiffness(const StateView& at, const Constraints& constraints,
                                                 const std::vector<char>& prescribed) const {
   const auto d = std::size_t(points_.dimension);
-  std::map<std::pair<Index, Index>, std::pair<Block, Block>> blocks;
+  std::map<std::pair<std::size_t, std::size_t>, std::array<double, 2>> entries;  // of J^T K J
+  const auto add = [&](const Dependence& row, const Dependence& column, double share,
+                       const Block& block, std::size_t part) {
+    for (std::size_t r = 0; r < d; ++r) {
+      for (std::size_t c = 0; c < d; ++c) {
+        const std::size_t i = std::size_t(row.master) * d + r,
+                          j = std::size_t(column.master) * d + c;
+        if (!prescribed[i] && !prescribed[j]) {
+          entries[{i, j}][part] += share * folded_entry(row.block, block, column.block, r, c);
+        }
+      }
+    }
+  };
   for (const Element& element : elements_) {
     const ElementAt there(*this, element, at);
     for_each_pair(*this, element, [&](int x, int y, Index i, Index j, double share) {
-      auto& [symmetric, left_out] = blocks[{i, j}];
-      const Block of_symmetric = there.symmetric(x, y), of_rest = there.unsymmetric(x, y);
-      for (std::size_t r = 0; r < d; ++r) {
-        for (std::size_t c = 0; c < d; ++c) {
-          symmetric[r][c] += share * of_symmetric[r][c];
-          left_out[r][c] += share * of_rest[r][c];
+      for (const Dependence& row : constraints.dependences(i, at.displacement)) {
+        for (const Dependence& column : constraints.dependences(j, at.displacement)) {
+          add(row, column, share, there.symmetric(x, y), 0);
+          add(row, column, share, there.unsymmetric(x, y), 1);
         }
       }
     });
   }
-  Stiffness sums;
-  for (const auto& [pair, both] : blocks) {
-    for (std::size_t r = 0; r < d; ++r) {
-      for (std::size_t c = 0; c < d; ++c) {
-        const bool is_free = !prescribed[std::size_t(pair.first) * d + r] &&
-                             !prescribed[std::size_t(pair.second) * d + c];
-        if (!is_free) continue;
-        sums.symmetric += both.first[r][c] * both.first[r][c];
-        sums.left_out += both.second[r][c] * both.second[r][c];
-      }
-    }
+  std::array<double, 2> sums{};
+  for (const auto& [place, parts] : entries) {
+    for (std::size_t part = 0; part < 2; ++part) sums[part] += parts[part] * parts[part];
   }
-  return {std::sqrt(sums.symmetric), std::sqrt(sums.left_out)};
+  return {std::sqrt(sums[0]), std::sqrt(sums[1])};
 }
 
 }  // namespace peristat

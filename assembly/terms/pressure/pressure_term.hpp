@@ -6,6 +6,7 @@
 
 #include "assembly/terms/term.hpp"
 #include "src/conditions/pressed_boundary.hpp"
+#include "src/constraints/constraints.hpp"
 
 namespace peristat {
 
@@ -34,12 +35,13 @@ class PressureTerm : public Term {
   /// Of the faces in the reference [m2].
   [[nodiscard]] double area() const;
 
-  /// Frobenius norms of the load stiffness on the free degrees of freedom [N/m].
+  /// Frobenius norms of the load stiffness on the degrees of freedom that have an equation [N/m].
   struct Stiffness {
     double symmetric = 0.0, left_out = 0.0;
   };
-  /// @param prescribed per degree of freedom
-  [[nodiscard]] Stiffness stiffness(const StateView& at, const std::vector<char>& prescribed) const;
+  /// @param prescribed per degree of freedom: has no equation
+  [[nodiscard]] Stiffness stiffness(const StateView& at, const Constraints& constraints,
+                                    const std::vector<char>& prescribed) const;
 
   /// An edge or a triangle of a face; 1D: its only corner.
   struct Element {

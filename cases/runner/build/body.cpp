@@ -151,7 +151,7 @@ std::optional<Model> make_elastic_stand_in(const Case& from, const Body& body, i
       throw InputError(key, number_text(from.solver.elastic_horizon_ratio),
                        "leaves points that may move freely");
     Model stand_in = make_elastic_bonds(body, std::move(bonds), setting);
-    add_pressures(stand_in, body);
+    add_terms_of_conditions(stand_in, body);
     return stand_in;
   });
 }

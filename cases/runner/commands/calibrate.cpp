@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "cases/runner/build/body.hpp"
+#include "cases/runner/commands/calibrate_bonds.hpp"
 #include "solvers/study/bond_materials.hpp"
 #include "src/core/input_error.hpp"
 #include "src/core/number_text.hpp"
@@ -141,7 +142,73 @@ void require_representable(const CalibrationQuestion& question, const CpdStiffne
   }
 }
 
+void check_place(const CalibrationQuestion& where, const BondCalibrationQuestion& question) {
+  if (where.dimension < 1 || where.dimension > 3) {
+    throw InputError("--dimension", std::to_string(where.dimension), "must be 1, 2 or 3");
+  }
+  require_positive("spacing", where.spacing);
+  require_positive("thickness", where.thickness);
+  require_positive("area", question.area);
+  require_finite("angle", question.angle);
+  const double largest = where.dimension == 3 ? 100.0 : 1000.0;
+  if (!(where.horizon_ratio >= 1.0 && where.horizon_ratio <= largest)) {
+    throw InputError("--horizon-ratio", number_text(where.horizon_ratio),
+                     "must be between 1 and " + number_text(largest));
+  }
+  const auto refuse = [](const char* key, double value, const char* why) {
+    throw InputError(option(key), number_text(value), why);
+  };
+  if (where.dimension != 2 && where.thickness != 1.0)
+    refuse("thickness", where.thickness, "is for --dimension 2");
+  if (where.dimension != 1 && question.area != 1.0)
+    refuse("area", question.area, "is for --dimension 1");
+  for (const auto& [key, value] :
+       {std::pair("poisson_ratio", where.poisson_ratio), std::pair("lambda", where.lambda),
+        std::pair("mu", where.mu), std::pair("c1", where.c1), std::pair("c2", where.c2),
+        std::pair("c3", where.c3)}) {
+    if (value) refuse(key, *value, "is for --model cpd");
+  }
+}
+
+/// Answers for a case, of bonds.
+Exit calibrate_bonds(const Case& from) {
+  const auto body = make_body(from, 1);
+  located_errors(from, [&] {
+    const PointMaterials materials(body->specification, body->points);
+    const auto all = all_materials(body->specification, materials);
+    for (std::size_t k = 0; k < all.size(); ++k) {
+      if (all.size() > 1) fmt::print("{}\"{}\":\n", k == 0 ? "{" : ", ", all[k].name);
+      fmt::print("{}",
+                 bond_calibration(*all[k].of, all[k].key, body->setting, body->points.spacing));
+    }
+    if (all.size() > 1) fmt::print("}}\n");
+  });
+  return Exit::done;
+}
+
 }  // namespace
+
+Exit calibrate(const CalibrationQuestion& where, BondCalibrationQuestion question) {
+  check_place(where, question);
+  BondSetting setting;
+  setting.dimension = where.dimension;
+  setting.horizon = where.horizon_ratio * where.spacing;
+  setting.cross_section = where.dimension == 1 ? question.area : where.thickness;
+  setting.volume_correction = question.volume_correction;
+  setting.plane = question.material.plane;
+  setting.lattice = {where.spacing, question.angle, question.surface_correction};
+  question.material.youngs_modulus = where.youngs_modulus;
+  try {
+    check_material(question.material, "material", where.dimension);
+    fmt::print("{}", bond_calibration(question.material, "material", setting, where.spacing));
+  } catch (const InputError& error) {
+    const std::string& key = error.key();
+    const std::size_t dot = key.rfind('.');
+    throw InputError(dot == std::string::npos ? "" : option(key.substr(dot + 1)), error.value(),
+                     error.allowed());
+  }
+  return Exit::done;
+}
 
 Exit calibrate(const CalibrationQuestion& question) {
   check(question);
@@ -182,9 +249,7 @@ Exit calibrate(const CalibrationQuestion& question) {
 }
 
 Exit calibrate(const Case& from) {
-  if (from.material.model != MaterialModel::cpd) {
-    throw located(from, InputError("material.model", "\"bond\"", "calibrate is for model \"cpd\""));
-  }
+  if (from.material.model == MaterialModel::bond) return calibrate_bonds(from);
   const Points points = make_points_of(from);
   located_errors(from, [&] { require_whole_square_cells(points); });
   CalibrationQuestion question;

@@ -17,11 +17,25 @@ struct CalibrationQuestion {
   std::optional<double> youngs_modulus, poisson_ratio, lambda, mu, c1, c2, c3;
 };
 
+/// The same for bonds alone: lattice, corrections, and a material with its law of damage.
+struct BondCalibrationQuestion {
+  double area = 1.0;   ///< 1D [m2]
+  double angle = 0.0;  ///< of the lattice, which turns a correction by energy [degrees]
+  VolumeCorrection volume_correction = VolumeCorrection::none;
+  SurfaceCorrection surface_correction = SurfaceCorrection::none;
+  MaterialSpecification material{};
+};
+
 /// Prints constants and moduli, in the continuum and on the lattice's bulk sums, as JSON.
 /// @throws InputError with the command line's options as keys
 [[nodiscard]] Exit calibrate(const CalibrationQuestion& question);
 
-/// The same for the lattice and material of a case of model "cpd".
+/// Prints constants of bonds, see bond_calibration, as JSON.
+/// @param where dimension, spacing, horizon ratio, thickness and Young's modulus
+/// @throws InputError with the command line's options as keys
+[[nodiscard]] Exit calibrate(const CalibrationQuestion& where, BondCalibrationQuestion question);
+
+/// The same for the lattice and material of a case.
 [[nodiscard]] Exit calibrate(const Case& from);
 
 }  // namespace peristat

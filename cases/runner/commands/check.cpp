@@ -14,7 +14,9 @@
 #include "solvers/linear/make_linear_solver.hpp"
 #include "solvers/study/bond_materials.hpp"
 #include "solvers/study/cpd_model.hpp"
+#include "solvers/study/crack_tips.hpp"
 #include "solvers/study/found_loads.hpp"
+#include "solvers/study/fracture_data.hpp"
 #include "solvers/study/linear_systems.hpp"
 #include "solvers/study/rest_stability.hpp"
 #include "solvers/study/study.hpp"
@@ -83,6 +85,25 @@ void print_bond_constants(const PointMaterials::Material& of, const std::string&
              poisson_ratio(setting));
 }
 
+/// What a law of damage makes of a tear and of a pull.
+void print_fracture(const PointMaterials::Material& of, const std::string& name,
+                    const BondSetting& setting, double spacing) {
+  const DamageSpecification& damage = of.of->damage;
+  if (damage.law == DamageLaw::none || of.of->fibre || of.of->model != MaterialModel::bond) return;
+  const FractureScale scale = FractureScale::of(*of.of, of.key, setting, spacing);
+  const double per_area = scale.micromodulus * total_work(damage);
+  std::string spread;
+  if (setting.lattice && setting.dimension > 1) {
+    const DirectionalSpread crossing = BulkBonds(setting).crossing();
+    spread = fmt::format(" in the mean over the directions of a crack ({:.4g} to {:.4g})",
+                         per_area * crossing.least, per_area * crossing.most);
+  }
+  const std::string begin = damage.softens() ? fmt::format("onset {:.6g}, ", damage.onset) : "";
+  fmt::print("{} {}critical stretch {:.6g}: fracture energy {:.6g} J/m2{}, strength {:.6g} Pa\n",
+             heading("fracture", name), begin, damage.critical, per_area * scale.crossing, spread,
+             scale.youngs_modulus * peak_force(damage));
+}
+
 void print_cpd_constants(const PointMaterials::Material& of, const std::string& name,
                          const Body& body) {
   const int dimension = body.points.dimension;
@@ -119,8 +140,9 @@ void print_quadrature(const Case& from, const Body& body, int threads) {
 }
 
 void print_constants(const Case& from, const Body& body, int threads) {
-  const PointMaterials materials(from, body.points);
-  const auto all = all_materials(from, materials);
+  const BodySpecification& of = body.specification;  // its stretches are found
+  const PointMaterials materials(of, body.points);
+  const auto all = all_materials(of, materials);
   const bool is_bond = from.material.model == MaterialModel::bond;
   for (const auto& material : all) {
     const std::string name = from.regions.empty() ? "" : material.name;
@@ -130,6 +152,10 @@ void print_constants(const Case& from, const Body& body, int threads) {
       print_cpd_constants(material, name, body);
   }
   if (is_bond) print_quadrature(from, body, threads);
+  for (const auto& material : all) {
+    print_fracture(material, from.regions.empty() ? "" : material.name, body.setting,
+                   body.points.spacing);
+  }
 }
 
 /// How many points each material has.
@@ -144,6 +170,28 @@ void print_regions(const Case& from, const Body& body) {
   if (count(-1) > 0) fmt::print("region      none, [material]: {} points\n", count(-1));
 }
 
+/// What becomes of the degrees of freedom: those of the points that stand for themselves, and the
+/// unknowns that constraints bring along.
+void print_supports(const Body& body) {
+  const std::vector<char>& prescribed = body.conditions->prescribed();
+  const std::vector<char>& follows = body.conditions->constraints().dependent();
+  const std::size_t own = std::size_t(body.points.own()) * std::size_t(body.points.dimension);
+  std::size_t following = 0, free = 0, of_constraints = 0;
+  for (std::size_t dof = 0; dof < prescribed.size(); ++dof) {
+    if (dof >= own) {
+      of_constraints += !prescribed[dof];
+    } else {
+      following += follows[dof];
+      free += !prescribed[dof];
+    }
+  }
+  std::string text = fmt::format("{} prescribed", own - following - free);
+  text += following > 0 ? fmt::format(", {} that follow constraints,", following) : "";
+  text += fmt::format(" and {} free degrees of freedom", free);
+  if (of_constraints > 0) text += fmt::format("; {} free ones of constraints", of_constraints);
+  fmt::print("supports    {}\n", text);
+}
+
 /// Loads that follow the deformation, and what the symmetric tangent leaves out of their stiffness.
 void print_pressures(const Body& body) {
   for (const auto& term : body.model.terms()) {
@@ -151,12 +199,12 @@ void print_pressures(const Body& body) {
     if (!pressures) continue;
     const Conditions& conditions = *body.conditions;
     const double end = conditions.programme().end();
-    const std::vector<double> at_rest(body.points.reference.size(), 0.0);
+    const std::vector<double> at_rest(conditions.constraints().dofs(), 0.0);
     const History history;
     const auto [symmetric, left_out] = pressures->stiffness(
         {at_rest, history, Damage::grows,
          conditions.environment(conditions.control() ? LoadPoint(end, 1.0) : LoadPoint(end))},
-        conditions.prescribed());
+        conditions.constraints(), conditions.prescribed());
     const bool is_symmetric = left_out <= 1e-12 * symmetric;
     fmt::print("pressure    {} faces, {:.6g} m2; {}\n", pressures->boundary().face.size(),
                pressures->area(),
@@ -180,7 +228,8 @@ Exit check(const Case& from, int threads) {
   fmt::print("points      {} in {}D, spacing {}, horizon {:g} m ({:.4g} spacings)\n", points.own(),
              points.dimension, spacing_text(points), body.setting.horizon, body.horizon_ratio());
   fmt::print("bonds       {}; neighbours per point {} to {}, {:.1f} on average\n",
-             body.model.bonds().count(), neighbours.least, neighbours.most, neighbours.mean);
+             weighted_bonds(body.model.bonds()), neighbours.least, neighbours.most,
+             neighbours.mean);
   for (const std::string& line : describe_interactions(body)) {
     fmt::print("interaction {}\n", line);
   }
@@ -189,10 +238,7 @@ Exit check(const Case& from, int threads) {
   for (const auto& [set, members] : points.sets) {
     fmt::print("set         {}: {} points\n", set, members.size());
   }
-  const auto& prescribed = body.conditions->prescribed();
-  const auto held = std::count(prescribed.begin(), prescribed.end(), 1);
-  fmt::print("supports    {} prescribed and {} free degrees of freedom\n", held,
-             std::int64_t(prescribed.size()) - held);
+  print_supports(body);
   for (const std::string& line : describe_constraints(body)) {
     fmt::print("constraint  {}\n", line);
   }
@@ -201,7 +247,7 @@ Exit check(const Case& from, int threads) {
     fmt::print("isolated    {} points have no neighbour\n", neighbours.isolated);
   }
 
-  const FreeDofs free(prescribed, points.dimension);
+  const FreeDofs free(body.conditions->prescribed(), points.dimension);
   const Constraints& constraints = body.conditions->constraints();
   const BlockPattern pattern = constraints.none()
                                    ? body.model.pattern()
@@ -225,6 +271,7 @@ Exit check(const Case& from, int threads) {
     refuse_unheld_bodies(body);
     refuse_unstable_rest(body, options);
     if (finds_loads(options, *body.conditions)) static_cast<void>(Study(body, options).analyze());
+    static_cast<void>(make_crack_tips(body, from.crack_tips, options));
   });
   return Exit::done;
 }

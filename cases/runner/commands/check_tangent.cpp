@@ -111,11 +111,17 @@ class Reduced {
     if (constraints_.none()) return assembler_.gradient(at(displacement), gradient);
     constraints_.move(displacement);
     const Evaluation found = assembler_.gradient(at(displacement), gradient);
-    constraints_.fold(displacement, no_load(), gradient);
-    for (std::size_t dof = 0; dof < gradient.size(); ++dof) {
-      if (constraints_.dependent()[dof]) gradient[dof] = 0.0;
-    }
+    fold(displacement, gradient);
     return found;
+  }
+
+  /// Forces on followers onto what they follow.
+  void fold(const std::vector<double>& displacement, std::vector<double>& forces) const {
+    if (constraints_.none()) return;
+    constraints_.fold(displacement, no_load(), forces);
+    for (std::size_t dof = 0; dof < forces.size(); ++dof) {
+      if (constraints_.dependent()[dof]) forces[dof] = 0.0;
+    }
   }
 
   /// Of rigid sets, at a displacement at which what follows has moved.
@@ -350,7 +356,7 @@ double asymmetry_of(const std::vector<double>& block, std::size_t count) {
   return largest > 0.0 ? difference / largest : 0.0;
 }
 
-/// Eigenstrains and pressures at the end of the load; under a control at the load 1.
+/// Eigenstrains, pressures and the ground at the end of the load; under a control at the load 1.
 SharedEnvironment environment_at_end(const Conditions& conditions) {
   const double end = conditions.programme().end();
   return conditions.environment(conditions.control() ? LoadPoint(end, 1.0) : LoadPoint(end));
@@ -381,8 +387,9 @@ Exit check_tangent(const Case& from, const std::string& deformation, int threads
   const SharedEnvironment environment = environment_at_end(*body.conditions);
   const Reduced reduced(assembler, constraints, history, environment);
   const StateView at = reduced.at(displacement);
-  std::vector<double> internal_force(dofs);  // folded onto nothing
+  std::vector<double> internal_force(dofs);  // folded onto nothing, less that of a ground
   static_cast<void>(assembler.gradient(at, internal_force));
+  body.conditions->foundations().add_force(displacement, environment, 1.0, internal_force);
   const Evaluation found = reduced.gradient(displacement, gradient);
   if (found.degenerate) {
     throw InputError("--deformation", '"' + text + '"', "collapses a bond to zero length");
@@ -401,6 +408,7 @@ Exit check_tangent(const Case& from, const std::string& deformation, int threads
   // Forces that follow the deformation have no part in the energy.
   std::vector<double> follower_force(dofs);
   assembler.follower_force(at, follower_force);
+  reduced.fold(displacement, follower_force);
   const double slope = dot(gradient, direction) + dot(follower_force, direction);
   const double curvature = dot(image, direction);
   // At a state without forces the slope is round-off: there the energy of a unit step is the scale.

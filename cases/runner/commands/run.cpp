@@ -14,11 +14,12 @@
 #include "cases/runner/build/solver_options.hpp"
 #include "cases/runner/process/failure.hpp"
 #include "cases/runner/process/interruption.hpp"
+#include "cases/runner/results/constraint_columns.hpp"
+#include "cases/runner/results/crack_tip_columns.hpp"
 #include "cases/runner/results/dossier.hpp"
 #include "cases/runner/results/probe.hpp"
 #include "cases/runner/results/recorder.hpp"
 #include "cases/runner/results/results.hpp"
-#include "cases/runner/results/rigid_set_columns.hpp"
 #include "solvers/linear/cholesky.hpp"
 #include "solvers/study/found_loads.hpp"
 #include "solvers/study/study.hpp"
@@ -50,15 +51,16 @@ std::vector<std::string> support_sets(const Case& from) {
     const bool known = std::find(sets.begin(), sets.end(), support.set) != sets.end();
     if (holds && !known) sets.push_back(support.set);
   }
+  for (const auto& foundation : from.foundations) sets.push_back(foundation.name);
   const ConstraintSpecification& constraints = from.constraints;
   for (const auto& set : constraints.rigid_sets) sets.push_back(set.set);
   for (const auto& roller : constraints.rollers) sets.push_back(roller.name());
   for (const auto& linear : constraints.linear) sets.push_back(linear.name);
-  for (const auto& plane : constraints.symmetries) {
-    sets.push_back(std::string("symmetry_") + "xyz"[plane.axis]);
+  for (std::size_t k = 0; k < constraints.symmetries.size(); ++k) {
+    sets.push_back(name_of_plane(constraints.symmetries, k));
   }
   for (const auto& period : constraints.periods) {
-    sets.push_back(std::string("period_") + "xyz"[period.axis]);
+    sets.push_back(name_of_period(period));
   }
   return sets;
 }
@@ -210,7 +212,8 @@ class CaseRun {
     for (const auto& probe : from.probes) {
       if (!probe.from) probes_.push_back(columns_of(probe, from.dimension));
     }
-    for (ProbeColumns& columns : rigid_set_columns(from)) probes_.push_back(std::move(columns));
+    for (ProbeColumns& columns : crack_tip_columns(from)) probes_.push_back(std::move(columns));
+    for (ProbeColumns& columns : constraint_columns(from)) probes_.push_back(std::move(columns));
   }
 
   Exit run() {
@@ -246,6 +249,8 @@ class CaseRun {
     // Loads that can't be found are refused before results are touched.
     if (finds_loads(study_->options(), *body_->conditions)) study_->analyze();
     progress_.follow_to(body_->conditions->programme().end());
+    crack_tips_ = located_errors(
+        from_, [&] { return make_crack_tips(*body_, from_.crack_tips, study_->options()); });
   }
 
   /// @throws InputError if the body is another one
@@ -269,14 +274,14 @@ class CaseRun {
     if (earlier_) {
       results_.emplace(*earlier_, earlier_results_, without_images(body_->points), text,
                        support_sets_, probes_, further_);
-      recorder_.emplace(from_, *body_, assembler, *results_, progress_);
+      recorder_.emplace(from_, *body_, assembler, *results_, progress_, crack_tips_);
       recorder_->go_on(earlier_->checkpoint(), earlier_results_, support_sets_, probes_);
       earlier_results_ = {};
       tell_beginning();
     } else {
       results_.emplace(from_.output.directory, without_images(body_->points), text, support_sets_,
                        probes_, constant_fields_of(*body_), options_.overwrite, further_);
-      recorder_.emplace(from_, *body_, assembler, *results_, progress_);
+      recorder_.emplace(from_, *body_, assembler, *results_, progress_, crack_tips_);
     }
     leave_note(from_.output.directory);
   }
@@ -393,6 +398,7 @@ class CaseRun {
   std::optional<Study> study_;
   std::optional<Model> stand_in_;
   std::unique_ptr<SolvedModel> standing_in_;
+  std::vector<CrackTip> crack_tips_;
   std::optional<Recorder> recorder_;
 };
 

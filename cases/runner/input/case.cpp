@@ -61,6 +61,8 @@ const std::map<std::string, std::string>& keys_of_members() {
       {"loads", "load"},
       {"regions", "region"},
       {"interfaces", "interface"},
+      {"foundations", "foundation"},
+      {"crack_tips", "crack_tip"},
       {"rigid_sets", "rigid"},
       {"rollers", "roller"},
       {"linear", "constraint"},

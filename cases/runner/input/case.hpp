@@ -11,6 +11,7 @@
 #include "cases/runner/input/case_location.hpp"
 #include "cases/runner/input/settings.hpp"
 #include "solvers/drivers/load_stepping.hpp"
+#include "solvers/fracture/crack_tip.hpp"
 #include "solvers/linear/make_linear_solver.hpp"
 #include "solvers/study/body_specification.hpp"
 #include "src/core/input_error.hpp"
@@ -109,6 +110,7 @@ struct Case : BodySpecification {
   RelaxationSpecification relaxation;
   OutputSpecification output;
   std::vector<ProbeSpecification> probes;
+  std::vector<CrackTipSpecification> crack_tips;
 
   std::string file;         ///< as given by the person
   std::string as_read;      ///< text of the file

@@ -81,27 +81,6 @@ Table<ShapeStep> shape_step_keys() {
                .one_of()}};
 }
 
-Kind<Side> side() {
-  const auto read = [](const Entry& at) {
-    std::vector<std::string> sides;
-    for (int axis = 0; axis < at.so_far.dimension; ++axis)
-      for (const char sign : {'-', '+'}) sides.push_back({"xyz"[axis], sign});
-    const std::string chosen = at.from.one_of(at.key, sides);
-    return Side{chosen[0] - 'x', chosen[1] == '+' ? 1 : -1};
-  };
-  const auto text = [](const Side& side, const Case&) { return toml_string(peristat::name(side)); };
-  return {read, text, "`\"x-\"`, `\"x+\"`, and so on for y and z"};
-}
-
-Kind<std::optional<Side>> optional_side() {
-  const Kind<Side> kind = side();
-  return {[=](const Entry& at) { return std::optional(kind.read(at)); },
-          [=](const std::optional<Side>& side, const Case& from) {
-            return side ? kind.text(*side, from) : std::string();
-          },
-          kind.allowed};
-}
-
 Table<Layer> layer_keys() {
   using K = Key<Layer>;
   return {"lattice.layer",
@@ -301,43 +280,93 @@ Table<DamageSpecification> damage_keys(const std::string& material) {
   using Spec = DamageSpecification;
   using K = Key<Spec>;
   const auto is_whole = [](auto& damage, auto&) { return damage.law == DamageLaw::none; };
-  const auto is_sudden = [](auto& damage, auto&) {
-    return damage.law == DamageLaw::critical_stretch;
+  const auto is_sudden = [](auto& damage, auto&) { return !damage.softens(); };
+  const auto has_no_rate = [](auto& damage, auto&) { return !damage.has_rate(); };
+  const auto is_not_blended = [](auto& damage, auto&) { return damage.law != DamageLaw::blended; };
+  const auto is_sized = [](auto& damage, auto&) {
+    return damage.fracture_energy || (damage.strength && !damage.softens());
   };
-  return {material + ".damage",
-          {K("law", &Spec::law,
-             choice<DamageLaw>({{"none", DamageLaw::none},
-                                {"critical_stretch", DamageLaw::critical_stretch},
-                                {"tanh", DamageLaw::tanh},
-                                {"tanh_continuous", DamageLaw::tanh_continuous}}),
-             "no damage; whole up to `critical` and then broken; softening from `onset` to "
-             "`critical` as published in [ADAPT], which jumps by (1 − tanh `rate`)/2 at both ends; "
-             "the same law rescaled so that it does not jump")
-               .early(),
-           K("critical", &Spec::critical, between(1e-9, 1e3, "1"),
-             "stretch $s_c$ from which on a bond is broken")
-               .unless(is_whole, "")
-               .required("required with a law"),
-           K("onset", &Spec::onset, between(1e-9, 1e3, "1"),
-             "tanh laws: stretch $s_m$ beyond which a bond loses stiffness")
-               .unless(is_whole, "")
-               .unless(is_sudden, "is for the tanh laws")
-               .then([](auto& at, auto& damage) {
-                 if (!(damage.onset < damage.critical * (1.0 - 1e-9)))
-                   at.refuse("must be smaller than critical");
-               })
-               .moreover("below `critical`")
-               .required("required with a tanh law"),
-           K("rate", &Spec::rate, between(0.1, 50.0, "1"),
-             "tanh laws: $\\beta$, how much of the softening falls on the middle between the two "
-             "stretches")
-               .unless(is_whole, "")
-               .unless(is_sudden, "is for the tanh laws"),
-           K("no_fail", &Spec::no_fail, known_sets(),
-             "sets whose points' bonds stay elastic at any stretch, also those to points outside "
-             "the sets")
-               .written_if([](auto& damage, auto&) { return damage.law != DamageLaw::none; })
-               .early()}};
+  const auto begins_by_strength = [](auto& damage, auto&) {
+    return damage.strength && damage.law != DamageLaw::blended;
+  };
+  // Asking for what is not there tells that it is missing.
+  const auto require_key = [](auto lacks) {
+    return [=](const Entry& at, const Spec& damage) {
+      if (lacks(damage)) static_cast<void>(at.from.number(at.key, Range()));
+    };
+  };
+  const std::string for_softening = "is for the laws that soften",
+                    for_blended = "is for the law \"blended\"";
+  return {
+      material + ".damage",
+      {K("law", &Spec::law,
+         choice<DamageLaw>({{"none", DamageLaw::none},
+                            {"critical_stretch", DamageLaw::critical_stretch},
+                            {"tanh", DamageLaw::tanh},
+                            {"tanh_continuous", DamageLaw::tanh_continuous},
+                            {"linear", DamageLaw::linear},
+                            {"exponential", DamageLaw::exponential},
+                            {"blended", DamageLaw::blended}}),
+         "no damage; whole up to `critical` and then broken; softening from `onset` to "
+         "`critical` as published in [ADAPT], which jumps by (1 − tanh `rate`)/2 at both ends; "
+         "the same law rescaled so that it does not jump; force falling linearly from `onset` "
+         "to zero at `critical`; exponentially, without a jump at `critical`; rising on a "
+         "lower slope from `onset` to `peak`, and then falling linearly")
+           .early(),
+       K("fracture_energy", &Spec::fracture_energy, positive("J/m2"),
+         "$G_c$ of a plane crack, the mean over its directions on this lattice; `critical` "
+         "follows. Model `bond`")
+           .unless(is_whole, "")
+           .early(),
+       K("strength", &Spec::strength, positive("Pa"),
+         "$f_t$ = `youngs_modulus` × the stretch at which the force of a bond is largest "
+         "(more exactly: the largest force over $c$); `onset` follows, `peak` of `blended`, "
+         "`critical` of `critical_stretch`")
+           .unless(is_whole, "")
+           .early(),
+       K("critical", &Spec::critical, stretch(), "stretch $s_c$ from which on a bond is broken")
+           .unless(is_whole, "")
+           .unless(is_sized, "follows from fracture_energy or strength; give one of them")
+           .then(require_key([](auto& damage) { return damage.critical == 0.0; }))
+           .default_words("this or `fracture_energy` is required with a law"),
+       K("onset", &Spec::onset, stretch(),
+         "laws that soften: stretch $s_m$ beyond which a bond loses stiffness")
+           .unless(is_whole, "")
+           .unless(is_sudden, for_softening)
+           .unless(begins_by_strength, "follows from strength; give one of them")
+           .then(require_key(
+               [](auto& damage) { return damage.onset == 0.0 && !damage.is_by_data(); }))
+           .written_if([](auto& damage, auto&) { return damage.onset != 0.0; })
+           .moreover("below `critical`")
+           .default_words("required without `strength`; with `fracture_energy` half the "
+                          "stretch of a brittle bond of that energy, a quarter of `blended`"),
+       K("peak", &Spec::peak, stretch(), "`blended`: stretch $s_p$ at which the force is largest")
+           .unless(is_whole, "")
+           .unless(is_not_blended, for_blended)
+           .unless([](auto& damage, auto&) { return damage.strength.has_value(); },
+                   "follows from strength; give one of them")
+           .then(require_key([](auto& damage) {
+             return damage.peak == 0.0 && (damage.onset != 0.0 || !damage.fracture_energy);
+           }))
+           .written_if([](auto& damage, auto&) { return damage.peak != 0.0; })
+           .moreover("from `onset` to below `critical`")
+           .default_words("required without `strength`; without any of the three the largest "
+                          "force is half that of a brittle bond of that `fracture_energy`"),
+       K("hardening", &Spec::hardening, between(0.0, 0.99, "1"),
+         "`blended`: slope of the force between `onset` and `peak` over that of the whole "
+         "bond")
+           .unless(is_whole, "")
+           .unless(is_not_blended, for_blended),
+       K("rate", &Spec::rate, between(0.1, 50.0, "1"),
+         "tanh laws: $\\beta$, how much of the softening falls on the middle between the two "
+         "stretches; `exponential`: how much steeper the force falls at first")
+           .unless(is_whole, "")
+           .unless(has_no_rate, "is for the tanh laws and \"exponential\""),
+       K("no_fail", &Spec::no_fail, known_sets(),
+         "sets whose points' bonds stay elastic at any stretch, also those to points outside "
+         "the sets")
+           .written_if([](auto& damage, auto&) { return damage.law != DamageLaw::none; })
+           .early()}};
 }
 
 /// A stiffness may be negative (auxetic bodies have such), but not remotely large.
@@ -413,6 +442,9 @@ Table<MaterialSpecification> material_keys(const std::string& name) {
   const auto of_bond = [](auto& material, auto&) { return material.model == MaterialModel::bond; };
   const auto has_moduli = [](auto& material, auto&) { return material.youngs_modulus.has_value(); };
   const auto has_constants = [](auto& material, auto&) { return material.c1.has_value(); };
+  const auto has_micromodulus = [](auto& material, auto&) {
+    return material.micromodulus.has_value();
+  };
   constexpr auto fibre_of = [](auto& material) -> auto& {
     if constexpr (std::is_const_v<std::remove_reference_t<decltype(material)>>) {
       static const FibreSpecification none;
@@ -481,10 +513,11 @@ Table<MaterialSpecification> material_keys(const std::string& name) {
        K("calibration", &Spec::calibration,
          choice<Calibration>(
              {{"lattice", Calibration::lattice}, {"continuum", Calibration::continuum}}),
-         "`cpd`, with `youngs_modulus`: what the constants reproduce the moduli on, this lattice's "
-         "sums or integrals")
-           .unless(of_bond, for_cpd)
-           .unless(has_constants, with_moduli),
+         "with `youngs_modulus`: what the constants reproduce the moduli on, this lattice's sums "
+         "with their corrections (`bond`: in the mean over all directions) or integrals")
+           .unless(has_constants, with_moduli)
+           .unless(has_micromodulus, "goes with youngs_modulus, not with micromodulus")
+           .default_words("`\"lattice\"` with `cpd`, `\"continuum\"` with `bond`"),
        K("thermal_expansion", &Spec::thermal_expansion, between(-1.0, 1.0, "per K"),
          "of lengths, α: for `[temperature]`"),
        K("density", &Spec::density, positive("kg/m3"),
@@ -859,6 +892,8 @@ void check_tangent(const Entry& at, const SolverSpecification& solver) {
         "does not go with this solver.linear or solver.preconditioner, which need the stored "
         "tangent");
   if (is_cpd(at.so_far)) at.refuse("is for material.model = \"bond\"");
+  if (!at.so_far.foundations.empty())
+    at.refuse("does not go with a [[foundation]], which the tangent is stored with");
   for (const LoadSpecification& load : at.so_far.loads) {
     if (load.kind == LoadSpecification::Kind::pressure)
       at.refuse("does not go with a [[load]] pressure, whose stiffness has to be stored");
@@ -1168,11 +1203,50 @@ void check_component(const Entry& at, const ProbeSpecification& probe) {
     at.refuse("is none of " + probe.field + ", which has " + listed(components));
 }
 
+Table<CrackTipSpecification> crack_tip_keys() {
+  using Spec = CrackTipSpecification;
+  using K = Key<Spec>;
+  return {"crack_tip",
+          {K("name", &Spec::name, name(), "with which its columns begin")
+               .then([](auto& at, auto& tip) {
+                 for (const auto& other : at.so_far.crack_tips)
+                   if (other.name == tip.name) at.refuse("another crack tip has this name");
+               })
+               .moreover("no other crack tip has it")
+               .required(),
+           K("at", &Spec::at, coordinates(), "of the tip; 3D: any place on its straight front")
+               .required(),
+           K("direction", &Spec::direction, coordinates(""),
+             "in which the crack would go on, of any length")
+               .moreover("not all zero")
+               .required(),
+           K("front", &Spec::front, coordinates(""),
+             "3D: along the front, of any length; it goes through the whole body")
+               .moreover("at a right angle on `direction`")
+               .unless(in_dimension<2>, "is for dimension 3")
+               .default_words("`[0, 0, 1]`"),
+           K("inner", &Spec::inner, positive("m"), "inner radius of the ring of the integrals")
+               .moreover("2 horizons at least")
+               .written_if([](auto& tip, auto&) { return tip.inner > 0.0; })
+               .default_words("2 horizons"),
+           K("outer", &Spec::outer, positive("m"), "its outer radius")
+               .moreover("a horizon more at least")
+               .written_if([](auto& tip, auto&) { return tip.outer > 0.0; })
+               .default_words("4 horizons, or twice `inner`"),
+           K("cut", &Spec::cut, positive("m"),
+             "length of a cut ahead of the tip, by which energy release rates are found, too: one "
+             "more system of equations in every step")
+               .moreover("a horizon at least")
+               .written_if([](auto& tip, auto&) { return tip.cut > 0.0; })
+               .default_words("none")}};
+}
+
 Table<ProbeSpecification> probe_keys() {
   using Spec = ProbeSpecification;
   using K = Key<Spec>;
   const auto has_no_axis = [](auto& probe, auto&) {
-    return probe.field != "poisson_ratio" && probe.field != "crack_length";
+    return probe.field != "poisson_ratio" && probe.field != "crack_length" &&
+           probe.field != "crack_begin" && probe.field != "crack_end";
   };
   const auto has_no_other = [](auto& probe, auto&) { return probe.field != "opening"; };
   return {
@@ -1196,11 +1270,15 @@ Table<ProbeSpecification> probe_keys() {
            .unless(is_whole, "is for a field that every point has")
            .one_of(),
        K("field", &Spec::field, one_of(probe_field_names()),
-         "displacement, opening and length in m, force in N, energy density in J/m³, stress in Pa; "
+         "displacement, opening, length and place in m, area in m², force in N, energy density in "
+         "J/m³, stress in Pa, work of fracture in J/m²; "
          "`stress` is Cauchy's, `strain` Green and Lagrange's")
            .then([](auto& at, auto& probe) {
              if (probe.field == "poisson_ratio" && at.so_far.dimension == 1)
                at.refuse("there is no Poisson's ratio in dimension 1");
+             const bool has_area = probe.field == "crack_area" || probe.field == "work_of_fracture";
+             if (has_area && !std::holds_alternative<Lattice>(at.so_far.body))
+               at.refuse("is for points on a lattice, which have faces between them");
            })
            .early(),
        K("to", &Spec::to, coordinates(), "end of the line")
@@ -1228,9 +1306,11 @@ Table<ProbeSpecification> probe_keys() {
                at.refuse("is for a field over a set");
            }),
        K("axis", &Spec::axis, axis(),
-         "`poisson_ratio`: direction of the pull; `crack_length`: direction in which the crack "
-         "runs")
-           .unless(has_no_axis, "is for fields \"poisson_ratio\" and \"crack_length\""),
+         "`poisson_ratio`: direction of the pull; `crack_length`, `crack_begin`, `crack_end`: "
+         "direction in which the crack runs")
+           .unless(has_no_axis,
+                   "is for fields \"poisson_ratio\", \"crack_length\", \"crack_begin\" and "
+                   "\"crack_end\""),
        K("other", &Spec::other, known_set(), "`opening`: the set on the other side of the crack")
            .unless(has_no_other, "is for field \"opening\"")
            .required("required with it")}};
@@ -1286,6 +1366,8 @@ Table<Case> all_keys() {
        K("period", in(&Case::constraints, &ConstraintSpecification::periods), period_keys(),
          "tables: sides across which the body repeats"),
        K("load", &Case::loads, load_keys(), "tables: forces"),
+       K("foundation", &Case::foundations, foundation_keys(),
+         "tables: springs between a part of the body and a ground"),
        K("eigenstrain", in(&Case::eigenstrains, &Eigenstrains::given), eigenstrain_keys(),
          "tables: strains that cost no energy"),
        K("temperature", &Case::eigenstrains, temperature_keys(), "table: change of temperature")
@@ -1302,7 +1384,9 @@ Table<Case> all_keys() {
        K("arc_length", &Case::solver, arc_length_keys(), "table: steps in mode `arc_length`")
            .then(check_found_loads),
        K("output", &Case::output, output_keys(), "table: results folder"),
-       K("probe", &Case::probes, probe_keys(), "tables: values that enter the history")}};
+       K("probe", &Case::probes, probe_keys(), "tables: values that enter the history"),
+       K("crack_tip", &Case::crack_tips, crack_tip_keys(),
+         "tables: J, stress intensity factors and T-stress in the history")}};
 }
 
 }  // namespace

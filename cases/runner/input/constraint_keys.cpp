@@ -32,7 +32,9 @@ Table<RollerSpecification> roller_keys() {
   using K = Key<Spec>;
   return {
       "roller",
-      {K("set", &Spec::set, known_set(), "each of whose points slides across the normal").one_of(),
+      {K("set", &Spec::set, known_set(), "each of whose points slides across the normal")
+           .written_if([](auto& roller, auto&) { return !roller.at; })
+           .one_of(),
        K("at", &Spec::at, coordinates(),
          "where a roller touches the body: the points next to it are held in the mean, weighted so "
          "that it is the displacement there")
@@ -74,6 +76,42 @@ Table<LinearConstraintSpecification> linear_constraint_keys() {
           {},
           [](auto& at, auto& spec) {
             if (spec.terms.empty()) at.refuse("needs a [[constraint.term]] or more");
+          }};
+}
+
+Table<FoundationSpecification> foundation_keys() {
+  using Spec = FoundationSpecification;
+  using K = Key<Spec>;
+  const auto has_modulus = [](auto& of, auto&) { return of.modulus != Coordinates{}; };
+  const auto has_stiffness = [](auto& of, auto&) { return of.stiffness != Coordinates{}; };
+  return {"foundation",
+          {K("name", &Spec::name, name(), "that its force is told by").required(),
+           K("set", &Spec::set, known_set(),
+             "that stands on it; with `modulus` one plane of points on the boundary")
+               .written_if([](auto& of, auto&) { return !of.set.empty(); })
+               .default_words("required, but for `modulus` with a `side`"),
+           K("side", &Spec::side, optional_side(),
+             "`modulus`: the body's outermost plane of points on a side, or of several the one")
+               .written_if([](auto& of, auto&) { return of.side.has_value(); })
+               .default_words("none"),
+           K("modulus", &Spec::modulus, stiffnesses("N/m3"),
+             "traction per displacement along each axis, on a flat part of the boundary; on a "
+             "lattice only")
+               .written_if(has_modulus)
+               .one_of(),
+           K("stiffness", &Spec::stiffness, stiffnesses("N/m"),
+             "of all springs of the set together along each axis, spread in proportion to the "
+             "volume")
+               .written_if(has_stiffness)
+               .one_of(),
+           K("displacement", &Spec::displacement, displacement_components(),
+             "of the ground, per component")},
+          {},
+          [](auto& at, auto& of) {
+            const bool is_on_boundary = of.modulus != Coordinates{};
+            if (!is_on_boundary) static_cast<void>(at.from.string("set"));
+            if (!is_on_boundary && of.side) at.from.refuse("side", "is for a modulus");
+            if (of.set.empty() && !of.side) at.refuse("a modulus needs a side or a set");
           }};
 }
 

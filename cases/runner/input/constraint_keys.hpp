@@ -8,6 +8,7 @@ namespace peristat {
 [[nodiscard]] Table<RigidSetSpecification> rigid_set_keys();
 [[nodiscard]] Table<RollerSpecification> roller_keys();
 [[nodiscard]] Table<LinearConstraintSpecification> linear_constraint_keys();
+[[nodiscard]] Table<FoundationSpecification> foundation_keys();
 [[nodiscard]] Table<SymmetryPlane> symmetry_keys();
 [[nodiscard]] Table<PeriodSpecification> period_keys();
 

@@ -191,6 +191,41 @@ Kind<Coordinates> coordinates(std::string unit) {
           "a number per dimension", std::move(unit)};
 }
 
+Kind<Coordinates> stiffnesses(const std::string& unit) {
+  Kind<Coordinates> kind = coordinates(unit);
+  kind.read = [read = kind.read](const Entry& at) {
+    const Coordinates stiffness = read(at);
+    for (std::size_t c = 0; c < stiffness.size(); ++c) {
+      if (stiffness[c] < 0.0) at.from.refuse(at.key, c, "must be 0 or positive");
+    }
+    if (stiffness == Coordinates{}) at.refuse("is zero in every component: this holds nothing");
+    return stiffness;
+  };
+  kind.allowed = "numbers from 0, not all 0";
+  return kind;
+}
+
+Kind<Side> side() {
+  const auto read = [](const Entry& at) {
+    std::vector<std::string> sides;
+    for (int axis = 0; axis < at.so_far.dimension; ++axis)
+      for (const char sign : {'-', '+'}) sides.push_back({"xyz"[axis], sign});
+    const std::string chosen = at.from.one_of(at.key, sides);
+    return Side{chosen[0] - 'x', chosen[1] == '+' ? 1 : -1};
+  };
+  const auto text = [](const Side& side, const Case&) { return toml_string(peristat::name(side)); };
+  return {read, text, "`\"x-\"`, `\"x+\"`, and so on for y and z"};
+}
+
+Kind<std::optional<Side>> optional_side() {
+  const Kind<Side> kind = side();
+  return {[=](const Entry& at) { return std::optional(kind.read(at)); },
+          [=](const std::optional<Side>& side, const Case& from) {
+            return side ? kind.text(*side, from) : std::string();
+          },
+          kind.allowed};
+}
+
 Kind<std::vector<std::array<double, 2>>> pairs() {
   return {[](const Entry& at) { return at.from.pairs(at.key); }, tuples_text<2>,
           "3 or more pairs `[x, y]`", "m"};
@@ -310,6 +345,29 @@ Kind<std::string> expression(bool of_place, bool or_free) {
 Kind<std::string> expression_or_free() { return expression(true, true); }
 Kind<std::string> expression_of_load() { return expression(false, false); }
 
+Kind<double> stretch() {
+  const Range range = Range::between(1e-9, 1e3);
+  const auto read = [=](const Entry& at) {
+    if (!at.from.is_string(at.key)) return at.from.number(at.key, range);
+    const auto* lattice = std::get_if<Lattice>(&at.so_far.body);
+    const double horizon = lattice != nullptr ? at.so_far.horizon_ratio * lattice->spacing
+                                              : std::get<PointSource>(at.so_far.body).horizon;
+    double value = 0.0;
+    try {
+      const Expression of(at.from.string(at.key), 0,
+                          lattice != nullptr ? lattice->spacing : Spacing(), {"horizon"});
+      value = of({}, std::array{horizon});
+    } catch (const InputError& error) {
+      at.refuse(error.allowed());
+    }
+    if (!(value >= 1e-9 && value <= 1e3))
+      at.refuse("is " + number_text(value) + "; must be between 1e-09 and 1000");
+    return value;
+  };
+  return {read, [](double value, const Case&) { return toml_number(value); },
+          "1e-09 to 1000, or an expression of `horizon` and `spacing`", "1"};
+}
+
 Kind<std::string> scalar_field(const std::string& unit) {
   const auto read = [](const Entry& at) {
     const std::string given = at.from.is_string(at.key)
@@ -325,26 +383,40 @@ Kind<std::string> scalar_field(const std::string& unit) {
   return {read, string_text, "number or expression of place and `load`", unit};
 }
 
-Kind<std::array<std::string, 3>> force_components(bool is_total, const std::string& unit) {
+namespace {
+
+/// Per component an expression of load, and of place if it has one.
+Kind<std::array<std::string, 3>> located_components(bool has_place, const std::string& against_free,
+                                                    const std::string& unit) {
   const auto read = [=](const Entry& at) {
-    std::array<std::string, 3> force = LoadSpecification().value;
+    std::array<std::string, 3> values{"0", "0", "0"};
     const auto components = at.from.components(at.key, dimension_of(at.so_far));
     for (std::size_t c = 0; c < components.size(); ++c) {
-      if (components[c] == "free")
-        at.from.refuse(at.key, c,
-                       "only displacements of supports can be free; write 0 for no force");
-      check_component(at, c, components[c], is_total ? 0 : at.so_far.dimension);
-      force[c] = components[c];
+      if (components[c] == "free") at.from.refuse(at.key, c, against_free);
+      check_component(at, c, components[c], has_place ? at.so_far.dimension : 0);
+      values[c] = components[c];
     }
-    return force;
+    return values;
   };
   return {read,
-          [](const auto& force, const Case& from) {
-            return array_text(components_of(force, from), toml_string);
+          [](const auto& values, const Case& from) {
+            return array_text(components_of(values, from), toml_string);
           },
-          is_total ? "number or expression of `load` alone"
-                   : "number or expression of place and `load`",
+          has_place ? "number or expression of place and `load`"
+                    : "number or expression of `load` alone",
           unit};
+}
+
+}  // namespace
+
+Kind<std::array<std::string, 3>> displacement_components() {
+  return located_components(
+      true, "a foundation's ground has a place in every component; give no stiffness instead", "m");
+}
+
+Kind<std::array<std::string, 3>> force_components(bool is_total, const std::string& unit) {
+  return located_components(
+      !is_total, "only displacements of supports can be free; write 0 for no force", unit);
 }
 
 }  // namespace peristat

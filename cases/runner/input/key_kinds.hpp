@@ -11,6 +11,7 @@
 #include "cases/runner/input/toml_text.hpp"
 #include "src/core/spacing.hpp"
 #include "src/core/types.hpp"
+#include "src/geometry/side.hpp"
 
 namespace peristat {
 
@@ -68,8 +69,14 @@ template <class Value>
 [[nodiscard]] Kind<Coordinates> coordinates(std::string unit = "m");
 [[nodiscard]] Kind<std::vector<std::array<double, 2>>> pairs();
 [[nodiscard]] Kind<std::vector<std::array<double, 3>>> triples();
+/// A side of the dimension, by its name, "x-" for one.
+[[nodiscard]] Kind<Side> side();
+[[nodiscard]] Kind<std::optional<Side>> optional_side();
 /// A direction of the dimension, by its number.
 [[nodiscard]] Kind<int> axis();
+
+/// A component per dimension, none below zero and one above it.
+[[nodiscard]] Kind<Coordinates> stiffnesses(const std::string& unit);
 
 /// An expression that selects points.
 [[nodiscard]] Kind<std::string> condition();
@@ -84,8 +91,12 @@ enum class Components { axes, rotations, of_load };
 [[nodiscard]] Kind<std::string> expression_or_free();
 /// An expression of load alone.
 [[nodiscard]] Kind<std::string> expression_of_load();
+/// A stretch of a bond: a number, or an expression of `horizon` and, on a lattice, of `spacing`.
+[[nodiscard]] Kind<double> stretch();
 /// An expression of place and load.
 [[nodiscard]] Kind<std::string> scalar_field(const std::string& unit);
+/// Per component an expression of place and load.
+[[nodiscard]] Kind<std::array<std::string, 3>> displacement_components();
 /// Per component an expression of load, and of place unless it is a total.
 [[nodiscard]] Kind<std::array<std::string, 3>> force_components(bool is_total,
                                                                 const std::string& unit);

@@ -16,7 +16,7 @@ struct ProbeField {
 };
 
 /// Of a field, or null for what is no field but looks at a whole set (poisson_ratio, opening,
-/// crack_length).
+/// crack_length, …).
 [[nodiscard]] const ProbeField* probe_field(const std::string& name);
 
 /// What `[[probe]] field` may be.

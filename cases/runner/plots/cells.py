@@ -42,6 +42,7 @@ class Cells:
         """Numbers the cells of a dense grid; -1 is empty."""
         self.index = index
         self._parted = np.zeros((self.dimension, len(index)), dtype=bool)  # from the next one along the axis
+        self._open: dict = {}  # by axis and sign: cells that are parted from the body's images there
         self._strides = np.array([int(np.prod(self._shape[axis + 1 :])) for axis in range(self.dimension)])
         self._flat = (index + 1) @ self._strides
         self._grid = np.full(int(np.prod(self._shape)), -1, dtype=np.int64)
@@ -55,6 +56,10 @@ class Cells:
         """Parts cells from their next neighbours along an axis."""
         self._parted[axis, cells] = True
 
+    def part_from_images(self, axis: int, sign: int, cells: np.ndarray) -> None:
+        """Parts cells at the rim from what goes on beyond a plane of symmetry or a period."""
+        self._open[axis, sign] = cells
+
     def joined(self, axis: int, sign: int) -> np.ndarray:
         """Number of every cell's neighbour in a direction that it hangs together with, -1 where there is none."""
         other = self.neighbours(axis, sign)
@@ -62,8 +67,10 @@ class Cells:
         return np.where(self._parted[axis, lower], -1, other)
 
     def parted(self, axis: int, sign: int) -> np.ndarray:
-        """Whether every cell has a neighbour in a direction that it has been parted from."""
-        return (self.neighbours(axis, sign) >= 0) & (self.joined(axis, sign) < 0)
+        """Whether every cell has a neighbour, be it an image, in a direction that it has been parted from."""
+        parted = (self.neighbours(axis, sign) >= 0) & (self.joined(axis, sign) < 0)
+        parted[self._open.get((axis, sign), [])] = True
+        return parted
 
     @property
     def is_upright(self) -> bool:

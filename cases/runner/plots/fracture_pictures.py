@@ -10,7 +10,8 @@ from field_pictures import (
     DAMAGE_COLOURS, MOST_CELLS, SEAM,
     crack_lines, deformed_plate, draw_plane, exaggeration, exaggeration_words, framed, mark_pieces, rims,
 )  # fmt: skip
-from style import GHOST, INK, LENGTHS, bond_words, colour_bar, heading, new_figure, number, unit_for
+from images import ImageKinds
+from style import GHOST, INK, LENGTHS, PIECE, bond_words, colour_bar, heading, new_figure, number, unit_for
 
 OPENING = 0.05  # largest displacement over the body's size: a crack is seen to open, the body keeps its shape
 MOST_BONDS = 150_000  # more broken bonds are thinned out
@@ -67,29 +68,38 @@ def draw_damage_sequence(results, steps):
     return figure
 
 
-def draw_broken_bonds(results, ends: np.ndarray, steps: np.ndarray):
+def draw_broken_bonds(results, broken):
     """Bonds that broke as lines between their points in the reference configuration: the cracks' paths.
 
-    ends   count x 2, numbers of the points
-    steps  count, ascending; colours the lines
+    Those across a plane of symmetry or a period go to where the image stands.
     """
+    steps, kinds = broken.steps, results.image_kinds
+    ends = broken.ends(results.reference, kinds or ImageKinds.none(2))
     unit, size = unit_for(np.ptp(results.reference, axis=0).max(), LENGTHS)
     spacing, points = merged(results.reference, results.spacing, MOST_CELLS)
-    low, high = points.min(axis=0) - spacing, points.max(axis=0) + spacing
+    shown = np.concatenate([points, ends[:, 1]])
+    low, high = shown.min(axis=0) - spacing, shown.max(axis=0) + spacing
     figure, axes, bar_place = framed(low / size, high / size)
     inches = (axes.get_position().width * figure.get_size_inches()[0]) / (high - low)[0]
     dot = np.clip(0.45 * inches * spacing * 72.0, 0.6, 9.0)
     axes.scatter(*points.T / size, s=dot**2, color=POINT_COLOUR, linewidths=0, zorder=1)
-
+    if kinds:
+        images = kinds.all_places(points, low, high)
+        axes.scatter(*images.T / size, s=dot**2, facecolors="none", edgecolors=POINT_COLOUR, linewidths=0.6, zorder=1)
+    for place, (axis, at) in enumerate(results.sides):
+        draw = axes.axvline if axis == 0 else axes.axhline
+        draw(at / size, color=PIECE, linewidth=1.0, linestyle=(0, (9, 3, 2, 3)), zorder=1.5,
+             label="plane of symmetry, or side of the cell" if place == 0 else None)  # fmt: skip
     if results.cracks:
         axes.add_collection(LineCollection([crack / size for crack in results.cracks], colors=INK, linewidths=2.0,
                                            zorder=3, label="pre-crack"), autolim=False)  # fmt: skip
-        axes.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), fontsize=12, borderaxespad=0.1)
+    if results.cracks or results.sides:
+        axes.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), fontsize=12, borderaxespad=0.1, ncols=2)
     every = -(-len(steps) // MOST_BONDS)
     width = np.clip(0.10 * inches * results.spacing * 72.0, 0.35, 1.6)
     # A colour per step in which bonds broke: steps in between would only take colours away.
     distinct, rank = np.unique(steps, return_inverse=True)
-    lines = LineCollection(results.reference[ends[::every]] / size, array=rank[::every].astype(float),
+    lines = LineCollection(ends[::every] / size, array=rank[::every].astype(float),
                            norm=Normalize(-0.5, len(distinct) - 0.5), cmap=STEP_COLOURS, linewidths=width,
                            capstyle="round", zorder=2)  # fmt: skip
     axes.add_collection(lines, autolim=False)

@@ -77,16 +77,16 @@ def _draw_fields(results: ResultsFolder):
 
 def _draw_fracture(results: ResultsFolder, step):
     """Pictures of a plate that has damage or broken bonds."""
-    ends, steps = results.broken_bonds()
+    broken = results.broken_bonds()
     damaged = step.damage.max() > 0.0
-    if not (damaged or len(ends)):
+    if not (damaged or len(broken.steps)):
         return
     import fracture_pictures
 
     if damaged:
         yield "damage", fracture_pictures.draw_damaged_plane(results, step)
-    if len(ends):
-        yield "broken_bonds", fracture_pictures.draw_broken_bonds(results, ends, steps)
+    if len(broken.steps):
+        yield "broken_bonds", fracture_pictures.draw_broken_bonds(results, broken)
     if damaged and len(results.step_numbers) > 1:
         frames = [results.step(number) for number in chosen_frames(results)]
         yield "sequence", fracture_pictures.draw_damage_sequence(results, frames)

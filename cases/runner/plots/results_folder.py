@@ -13,11 +13,13 @@ from pathlib import Path
 import numpy as np
 
 from hdf5_reader import Damaged, Hdf5Reader, as_text, require_plain_file
+from images import BrokenBonds, ImageKinds, on_the_body
 
 MOST_TABLE = 1 << 30  # bytes of a CSV file
 MOST_SUMMARY = 64 << 20  # bytes of summary.json
 LONGEST_TITLE = 200  # characters
 MOST_SPACINGS = 1e7  # across a body
+MOST_IMAGE_KINDS = 1_000_000
 
 
 class NotAResultsFolder(Exception):
@@ -60,7 +62,8 @@ class ResultsFolder:
     summary: dict
     case: dict  # the resolved case
     missing: list[str] = field(default_factory=list)  # sentences for a person
-    _bonds: tuple | None = None  # broken ones, once they have been read
+    image_kinds: ImageKinds | None = None  # of a body with planes of symmetry or periods
+    _bonds: BrokenBonds | None = None  # broken ones, once they have been read
     lattice_edges: np.ndarray | None = None  # of a lattice that is turned or not of squares, a row per axis [m]
 
     @property
@@ -91,7 +94,8 @@ class ResultsFolder:
 
     @property
     def cracks(self) -> list[np.ndarray]:
-        """Pre-cracks as the case has them: the two ends of a segment, or the vertices of a polygon [m]."""
+        """Pre-cracks: the two ends of a segment, or the vertices of a polygon [m]. Those that the case has, and
+        their images where these reach the body."""
         cracks = []
         for table in self.tables("crack"):
             places = table.get("vertices") or [table.get("from"), table.get("to")]
@@ -101,7 +105,19 @@ class ResultsFolder:
                 continue
             if crack.ndim == 2 and crack.shape[1] == self.dimension and len(crack) > 1 and np.isfinite(crack).all():
                 cracks.append(crack)
-        return cracks
+        if self.image_kinds is None:
+            return cracks
+        edge = self.reach * self.spacing
+        return on_the_body(cracks, self.image_kinds, self.reference.min(axis=0) - edge, self.reference.max(axis=0) + edge)
+
+    @property
+    def sides(self) -> list[tuple[int, float]]:
+        """Axis and place of planes of symmetry and of the sides of periods [m]."""
+        places = [(table.get("axis"), _finite(table.get(key)))
+                  for name, keys in (("symmetry", ["at"]), ("period", ["from", "to"]))
+                  for table in self.tables(name) for key in keys]  # fmt: skip
+        axes = list("xyz"[: self.dimension])
+        return [(axes.index(axis), at) for axis, at in places if axis in axes and at is not None]
 
     def step(self, number: int) -> Step:
         """Fields of a step; values that are not finite are replaced by zero and reported."""
@@ -175,8 +191,7 @@ class ResultsFolder:
         rows = zip(self.history.get("step", []), self.history.get(column, []))
         return next((value for own, value in rows if own == step and isinstance(value, float)), None)
 
-    def broken_bonds(self) -> tuple[np.ndarray, np.ndarray]:
-        """Bonds that broke, in the order of breaking: their two points (count x 2) and the step (count)."""
+    def broken_bonds(self) -> BrokenBonds:
         if self._bonds is None:
             self._bonds = self._read_broken_bonds()
         return self._bonds
@@ -189,26 +204,29 @@ class ResultsFolder:
         with _reading(self.path) as file:
             return "broken_bonds/first_point" in file
 
-    def _read_broken_bonds(self) -> tuple[np.ndarray, np.ndarray]:
-        names = ("step", "first_point", "second_point")
+    def _read_broken_bonds(self) -> BrokenBonds:
+        names = ("step", "first_point", "second_point", "second_image")
         table = {}
         with _reading(self.path) as file:
-            if all(f"broken_bonds/{name}" in file for name in names):
-                table = {name: file.numbers(f"broken_bonds/{name}", kind=np.int64) for name in names}
+            if all(f"broken_bonds/{name}" in file for name in names[:3]):
+                there = [name for name in names if f"broken_bonds/{name}" in file]
+                table = {name: file.numbers(f"broken_bonds/{name}", kind=np.int64) for name in there}
         if not table and (self.path / "broken_bonds.csv").is_file():
             table = _table(self.path / "broken_bonds.csv", self.missing)
+        table.setdefault("second_image", [0] * len(table.get("step", [])))  # an older folder has none
         try:
-            step, first, second = (np.asarray(table.get(name, []), dtype=np.int64).ravel() for name in names)
+            step, first, second, image = (np.asarray(table.get(name, []), dtype=np.int64).ravel() for name in names)
             ends = np.stack([first, second], axis=1)
-            known = ((ends >= 0) & (ends < len(self.volume))).all(axis=1)
-            step, ends = step[: len(known)][known], ends[known]
+            kinds = len(self.image_kinds.mirror) if self.image_kinds else 0
+            known = ((ends >= 0) & (ends < len(self.volume))).all(axis=1) & (image >= 0) & (image <= kinds)
+            found = BrokenBonds(ends[known], image[known], step[: len(known)][known])
         except (ValueError, IndexError, OverflowError) as error:
             self._report(f"the broken bonds can't be read ({error})")
-            return np.zeros((0, 2), dtype=np.int64), np.zeros(0, dtype=np.int64)
+            return BrokenBonds(np.zeros((0, 2), dtype=np.int64), *np.zeros((2, 0), dtype=np.int64))
         if not known.all():
-            self._report("broken bonds of points that do not exist are left out")
-        order = np.argsort(step, kind="stable")
-        return ends[order], step[order]
+            self._report("broken bonds of points or images that do not exist are left out")
+        order = np.argsort(found.steps, kind="stable")
+        return BrokenBonds(*(values[order] for values in found))
 
     def _report(self, sentence: str) -> None:
         if sentence not in self.missing:
@@ -258,6 +276,7 @@ def read_results_folder(path: Path) -> ResultsFolder:
         along = [_finite(file.attribute("points", f"spacing_{axis}")) for axis in "xyz"[: reference.shape[1]]]
         angle = _finite(file.attribute("points", "angle"))
         step_numbers = _readable_steps(file, missing)
+        image_kinds = _image_kinds(file, reference.shape[1], missing)
     title = title or as_text(case.get("title", "")) or path.resolve().name
     title = "".join(c if c.isprintable() else " " for c in title)[:LONGEST_TITLE]
     lattice = case.get("lattice", {})
@@ -273,6 +292,7 @@ def read_results_folder(path: Path) -> ResultsFolder:
         _table(path / "decisions.csv", []), _orders(path / "convergence.csv"), _summary(path, missing), case, missing,
     )  # fmt: skip
     found.lattice_edges = _edges(spacing, along, angle)
+    found.image_kinds = image_kinds
     return found
 
 
@@ -286,6 +306,22 @@ def _edges(spacing: float, along: list, angle: float | None) -> np.ndarray | Non
         cosine, sine = np.cos(np.radians(angle)), np.sin(np.radians(angle))
         turn[:2, :2] = [[cosine, sine], [-sine, cosine]]
     return np.array(lengths)[:, None] * turn
+
+
+def _image_kinds(file, dimension: int, missing) -> ImageKinds | None:
+    """Nothing for a body without images, and for kinds that make no sense."""
+    if "points/images" not in file:
+        return None
+    try:
+        kinds = ImageKinds(*(file.numbers(f"points/images/{name}") for name in ("mirror", "shift")))
+        if kinds.mirror.shape != kinds.shift.shape or kinds.shift.shape[1:] != (dimension,):
+            raise Damaged(f"they have {kinds.mirror.shape} mirrors and {kinds.shift.shape} shifts")
+        if len(kinds.shift) > MOST_IMAGE_KINDS or not np.isfinite(np.concatenate(kinds)).all():
+            raise Damaged("they are too many or not finite")
+    except (Damaged, KeyError) as error:
+        missing.append(f"the images of points can't be read ({error})")
+        return None
+    return kinds
 
 
 def _finite(value) -> float | None:

@@ -6,6 +6,7 @@ from cells import Cells, at_the_rim, merged
 
 LOOSE_DAMAGE = 0.35  # a cell this damaged lies at a crack; it moves with its point alone if more isn't known
 LOST_DAMAGE = 0.65  # a cell this damaged has lost more than a crack takes from it, and moves with its point alone
+NEAR = 2  # cells over which bonds part or join two of them
 TOUCHING = 1e-9  # share of a length: a crack that only touches a bond cuts it
 
 
@@ -40,6 +41,64 @@ def separate(cells, reference: np.ndarray, cracks, broken: np.ndarray | None = N
             cell = cell[is_gone(cell, after[after[cell]])]
             cell = cell[is_gone(before[cell], after[cell])]
         cells.part(axis, cell)
+
+
+class _Beyond:
+    """The lattice places of a body's images, and which straight bonds to them are broken or cut."""
+
+    def __init__(self, results, cells, bonds):
+        self._reference, self._edges, self._cracks = results.reference, results.edges, results.cracks
+        self._index, inverse = cells.index, np.linalg.inv(results.edges)
+        self._shape = self._index.max(axis=0) + 1 + 2 * NEAR
+        phase = (self._reference @ inverse - self._index).mean(axis=0)
+        low, high = self._reference.min(axis=0), self._reference.max(axis=0)
+        edge = (NEAR + 0.5) * np.abs(results.edges).sum(axis=0)
+        images = results.image_kinds.all_places(self._reference, low - edge, high + edge)
+        self._images = np.unique(self._key(np.rint(images @ inverse - phase).astype(np.int64)))
+        across = bonds.image > 0
+        start, end = bonds.ends(self._reference, results.image_kinds)[across].transpose(1, 0, 2)
+        away = np.rint((end - start) @ inverse).astype(np.int64)
+        self._broken = []
+        for axis in range(cells.dimension):
+            straight = (np.delete(away, axis, axis=1) == 0).all(axis=1) & (np.abs(away[:, axis]) <= NEAR)
+            points = bonds.points[across, 0]
+            self._broken.append(np.unique(points[straight] * (2 * NEAR + 1) + away[straight, axis]))
+
+    def _key(self, index: np.ndarray) -> np.ndarray:
+        """A number of each lattice place; -1 of those that lie farther from the body."""
+        inside = ((index >= -NEAR) & (index < self._shape - NEAR)).all(axis=1)
+        return np.where(inside, np.ravel_multi_index((index + NEAR).T, self._shape, mode="clip"), -1)
+
+    def _place(self, cell, axis, away):
+        return self._index[cell] + away * np.eye(self._index.shape[1], dtype=np.int64)[axis]
+
+    def is_image(self, cell, axis, away) -> np.ndarray:
+        """Whether an image stands so many cells away from cells along an axis."""
+        return np.isin(self._key(self._place(cell, axis, away)), self._images)
+
+    def is_gone(self, cell, axis, away) -> np.ndarray:
+        """Whether there is no bond from cells to the image there, be it that there is none."""
+        gone = np.isin(cell * (2 * NEAR + 1) + away, self._broken[axis]) | ~self.is_image(cell, axis, away)
+        start = self._reference[cell]
+        for crack in self._cracks:
+            gone |= crosses(start, start + away * self._edges[axis], crack)
+        return gone
+
+
+def separate_from_images(results, cells, bonds) -> None:
+    """Parts cells at the rim from the body's images if no bond that goes straight to them is left, by the
+    rule of `separate`."""
+    beyond = _Beyond(results, cells, bonds)
+    for axis in range(cells.dimension):
+        for sign in (-1, 1):
+            cell = np.flatnonzero(cells.neighbours(axis, sign) < 0)
+            cell = cell[beyond.is_image(cell, axis, sign)]
+            cell = cell[beyond.is_gone(cell, axis, sign)]
+            if results.reach > 1:
+                cell = cell[beyond.is_gone(cell, axis, 2 * sign)]
+                behind = cells.neighbours(axis, -sign)[cell]
+                cell = cell[(behind < 0) | beyond.is_gone(behind, axis, 2 * sign)]
+            cells.part_from_images(axis, sign, cell)
 
 
 def crosses(start: np.ndarray, end: np.ndarray, crack: np.ndarray) -> np.ndarray:
@@ -107,8 +166,10 @@ def cells_of(results, step, limit: int, size: float, *fields: np.ndarray):
     floating = floating > 0.5
     cells = Cells(reference / size, edges / size)
     is_whole = len(reference) == len(results.reference) and results.tells_broken_bonds
-    ends, steps = results.broken_bonds() if is_whole else (None, None)
-    separate(cells, reference, results.cracks, ends[steps <= step.number] if is_whole else None, results.reach)
+    broken = results.broken_bonds().until(step.number) if is_whole else None
+    separate(cells, reference, results.cracks, broken.inner() if is_whole else None, results.reach)
+    if is_whole and results.image_kinds and cells.is_lattice:
+        separate_from_images(results, cells, broken)
     if is_whole:
         _separate_pieces(cells, np.rint(step.fragment))
     loose = damage > (LOST_DAMAGE if is_whole else LOOSE_DAMAGE)

@@ -2,19 +2,27 @@
 
 namespace peristat {
 
-std::optional<BondHistories> DamageHistories::changes(const Bonds& bonds,
+Index image_number(const Points& points, Index point) {
+  if (!points.is_image(point)) return 0;
+  return static_cast<Index>(points.images.kind[std::size_t(point - points.own())]) + 1;
+}
+
+std::optional<BondHistories> DamageHistories::changes(const Points& points, const Bonds& bonds,
                                                       std::span<const double> history) const {
   if (history.empty()) return std::nullopt;
+  const bool has_images = points.own() < points.count();
   BondHistories changed;
   auto known = known_.begin();
   for (Index i = 0; i < bonds.points(); ++i) {
     for (Offset bond = bonds.offset[i]; bond < bonds.offset[i + 1]; ++bond) {
       const bool is_known = known != known_.end() && known->first == bond;
       const double before = is_known ? (known++)->second : 0.0;
-      if (history[bond] == before) continue;
+      if (history[bond] == before || points.is_image(i)) continue;
+      const Index second = bonds.partner[bond];
       changed.first_point.push_back(i);
-      changed.second_point.push_back(bonds.partner[bond]);
+      changed.second_point.push_back(points.source(second));
       changed.largest_stretch.push_back(history[bond]);
+      if (has_images) changed.second_image.push_back(image_number(points, second));
     }
   }
   return changed;

@@ -6,16 +6,21 @@
 #include <vector>
 
 #include "solvers/problem/records.hpp"
+#include "src/geometry/points.hpp"
 #include "src/neighbourhood/bonds.hpp"
 
 namespace peristat {
+
+/// Which kind of images a point is of, from 1; 0: it stands for itself.
+[[nodiscard]] Index image_number(const Points& points, Index point);
 
 /// The histories of the bonds (bond_stretches) as a reader of the results knows them. Only
 /// those that differ from 0 are kept: nearly all bonds of a body are never damaged.
 class DamageHistories {
  public:
-  /// The bonds whose history is another one than the reader knows; none without histories.
-  [[nodiscard]] std::optional<BondHistories> changes(const Bonds& bonds,
+  /// The bonds whose history is another one than the reader knows; none without histories. Bonds
+  /// between two images, which repeat others, are left out.
+  [[nodiscard]] std::optional<BondHistories> changes(const Points& points, const Bonds& bonds,
                                                      std::span<const double> history) const;
 
   /// What the reader knows, of all bonds.

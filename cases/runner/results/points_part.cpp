@@ -62,6 +62,23 @@ bool holds_neighbours(const Hdf5File& file, const std::string& group, const Poin
          are_same(file.numbers(place + "/shares"), neighbour_shares(points));
 }
 
+/// How each kind of images follows its sources.
+void write_image_kinds(Hdf5File& file, const Points& points) {
+  const std::vector<ImageKind>& kinds = points.images.kinds;
+  if (kinds.empty()) return;
+  std::vector<double> mirror, shift;
+  for (const ImageKind& kind : kinds) {
+    mirror.insert(mirror.end(), kind.mirror.begin(), kind.mirror.begin() + points.dimension);
+    shift.insert(shift.end(), kind.shift.begin(), kind.shift.begin() + points.dimension);
+  }
+  const Hdf5File::Shape shape{kinds.size(), std::uint64_t(points.dimension)};
+  file.make_group("/points/images");
+  file.write("/points/images/mirror", mirror, shape,
+             {"1", "of each kind of images: an image of X stands at mirror X + shift"});
+  file.write("/points/images/shift", shift, shape,
+             {"m", "of each kind of images: an image of X stands at mirror X + shift"});
+}
+
 }  // namespace
 
 std::string flags_of(const std::string& set) { return "/points/sets/" + name_of_flags(set); }
@@ -102,6 +119,8 @@ void write_points(Hdf5File& file, const Points& points, const std::vector<PointC
                {"1", "share of the volume of j that i counts, and of i that j counts"});
   }
 
+  write_image_kinds(file, points);
+
   for (const PointCounts& of_points : counts) {
     std::visit(
         [&](const auto& values) {
@@ -127,7 +146,8 @@ std::uint64_t bytes_of(const Points& points, const std::vector<PointCounts>& cou
                                         (std::uint64_t(points.dimension) + 4) * sizeof(double) +
                                         sizeof(std::int32_t) + 2 * points.sets.size();
   const std::uint64_t bytes_per_pair = 2 * (sizeof(std::int32_t) + sizeof(double));
-  return points.volume.size() * bytes_per_point + points.neighbours.size() * bytes_per_pair;
+  return points.volume.size() * bytes_per_point + points.neighbours.size() * bytes_per_pair +
+         points.images.kinds.size() * 6 * sizeof(double);
 }
 
 bool holds_points(const Hdf5File& file, const std::string& group, const Points& points) {

@@ -5,10 +5,12 @@
 #include <limits>
 #include <map>
 #include <string>
+#include <utility>
 
 #include <Eigen/QR>
 
 #include "cases/runner/input/probe_fields.hpp"
+#include "cases/runner/results/crack_measures.hpp"
 #include "src/geometry/nearest_point.hpp"
 
 namespace peristat {
@@ -84,27 +86,6 @@ std::vector<double> over_set(const ProbeSpecification& probe, const Points& poin
   return total;
 }
 
-/// Extent along the axis of the middles of the separated bonds that run across it and have an end
-/// in the set; each stands for a strip of one spacing. Only bonds across the axis, because where
-/// along an inclined one the crack passes is not known.
-double crack_length(const ProbeSpecification& probe, const Points& points,
-                    std::span<const BondEnds> separated) {
-  const std::vector<Index>& members = points.sets.at(probe.set);
-  const auto is_member = [&](Index point) {
-    return std::binary_search(members.begin(), members.end(), point);
-  };
-  const double spacing =
-      points.angle == 0.0 ? points.spacing.along(probe.axis) : double(points.spacing);
-  double least = std::numeric_limits<double>::infinity(), most = -least;
-  for (const auto& [i, j] : separated) {
-    const double a = points.position(i)[probe.axis], b = points.position(j)[probe.axis];
-    if (std::abs(b - a) > 0.5 * spacing || !(is_member(i) || is_member(j))) continue;
-    least = std::min(least, 0.5 * (a + b));
-    most = std::max(most, 0.5 * (a + b));
-  }
-  return most < least ? 0.0 : most - least + spacing;
-}
-
 }  // namespace
 
 std::vector<std::string> chosen_components(const ProbeSpecification& probe, int dimension) {
@@ -126,18 +107,22 @@ std::vector<double> values_at(const ProbeSpecification& probe, int dimension,
 
 ProbeColumns columns_of(const ProbeSpecification& probe, int dimension) {
   if (probe.field == "poisson_ratio") return {probe.name, 1, "1"};
-  if (probe.field == "crack_length") return {probe.name, 1, "m"};
+  if (const CrackMeasure* measure = crack_measure(probe.field)) {
+    return {probe.name, 1, measure->unit};
+  }
   if (probe.field == "opening") return {probe.name, dimension, "m"};
   return {probe.name, int(chosen_components(probe, dimension).size()),
           probe_field(probe.field)->unit};
 }
 
 std::vector<double> probe_values(const ProbeSpecification& probe, const Points& points,
-                                 const StepFields& fields, std::span<const BondEnds> separated) {
+                                 const StepFields& fields, const CrackState& crack) {
   if (probe.field == "poisson_ratio") {
     return {fitted_poisson_ratio(probe, points, *fields.displacement)};
   }
-  if (probe.field == "crack_length") return {crack_length(probe, points, separated)};
+  if (const CrackMeasure* measure = crack_measure(probe.field)) {
+    return {measure->value(points, points.sets.at(probe.set), probe.axis, crack)};
+  }
   if (probe.at) {
     return values_at(probe, points.dimension, fields, nearest_point(points, *probe.at).point);
   }

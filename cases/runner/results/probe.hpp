@@ -1,11 +1,10 @@
 #pragma once
 
-#include <span>
 #include <vector>
 
 #include "cases/runner/input/case.hpp"
+#include "cases/runner/results/crack_measures.hpp"
 #include "cases/runner/results/results.hpp"
-#include "src/neighbourhood/bonds.hpp"
 
 namespace peristat {
 
@@ -22,13 +21,11 @@ namespace peristat {
 
 /// Mean, largest or smallest value of the probe's field over the points of its set, or its value at
 /// the point nearest to a place (of points as near the one with the lowest number), one value per
-/// component; for
-/// "poisson_ratio" that of the homogeneous deformation that fits the set best, for "opening" the
-/// mean displacement of the set minus that of the other, and for "crack_length" the extent along
-/// the axis of the bonds across it that are broken or cut.
-/// @param separated all bonds that have broken so far and those that pre-cracks have cut
+/// component; for "poisson_ratio" that of the homogeneous deformation that fits the set best, for
+/// "opening" the mean displacement of the set minus that of the other, and what a CrackMeasure
+/// tells.
 [[nodiscard]] std::vector<double> probe_values(const ProbeSpecification& probe,
                                                const Points& points, const StepFields& fields,
-                                               std::span<const BondEnds> separated);
+                                               const CrackState& crack);
 
 }  // namespace peristat

@@ -178,12 +178,14 @@ std::vector<Column> broken_bond_columns() {
   return {{integer, "step", "1", "step that broke the bond"},
           {number, "load_factor", "1", "load factor of the step"},
           {integer, "first_point", "1", "number of the bond's lower point"},
-          {integer, "second_point", "1", "number of its upper point"}};
+          {integer, "second_point", "1", "number of its other point"},
+          {integer, "second_image", "1",
+           "image of that point it ends at, row of /points/images from 1; 0: the point itself"}};
 }
 
 Row make_row(const BrokenBondRecord& record) {
   return {std::int64_t{record.step}, record.load_factor, std::int64_t{record.first_point},
-          std::int64_t{record.second_point}};
+          std::int64_t{record.second_point}, std::int64_t{record.second_image}};
 }
 
 Row make_row(const StepRecord& record, const std::vector<std::string>& support_sets,
@@ -245,13 +247,6 @@ DecisionRecord read_decision(const Row& row) {
   cells >> record.step >> record.load_factor >> record.increment >> record.outcome >> action >>
       record.next_increment >> record.reason >> record.stage;
   record.action = decision_named(action);
-  return record;
-}
-
-BrokenBondRecord read_broken_bond(const Row& row) {
-  Cells cells(row);
-  BrokenBondRecord record;
-  cells >> record.step >> record.load_factor >> record.first_point >> record.second_point;
   return record;
 }
 

@@ -32,7 +32,6 @@ namespace peristat {
 /// @throws std::exception if a row is none of these columns
 [[nodiscard]] IterationRecord read_iteration(const Row& row);
 [[nodiscard]] DecisionRecord read_decision(const Row& row);
-[[nodiscard]] BrokenBondRecord read_broken_bond(const Row& row);
 [[nodiscard]] StepRecord read_step(const Row& row, const std::vector<std::string>& support_sets,
                                    const std::vector<ProbeColumns>& probes);
 

@@ -6,8 +6,9 @@
 
 #include "assembly/terms/bonds/point_stretches.hpp"
 #include "assembly/terms/damage.hpp"
+#include "cases/runner/results/constraint_columns.hpp"
+#include "cases/runner/results/crack_tip_columns.hpp"
 #include "cases/runner/results/record_tables.hpp"
-#include "cases/runner/results/rigid_set_columns.hpp"
 
 namespace peristat {
 
@@ -34,15 +35,15 @@ Recorder::Fields Recorder::fields(const StateView& at, std::vector<double> force
   const std::size_t points = points_.volume.size();
   const std::ptrdiff_t dofs = std::ptrdiff_t(own_) * points_.dimension;
   force.resize(std::size_t(dofs));
-  Fields made{
-      {at.displacement.begin(), at.displacement.begin() + dofs},
-      std::move(force),
-      std::vector<double>(points),
-      std::vector<double>(points),
-      std::vector<double>(points),
-      std::vector<double>(own_, 0.0),
-      0.0,
-      written_histories_.changes(body_.model.bonds(), bond_stretches(body_.model, at.history))};
+  Fields made{{at.displacement.begin(), at.displacement.begin() + dofs},
+              std::move(force),
+              std::vector<double>(points),
+              std::vector<double>(points),
+              std::vector<double>(points),
+              std::vector<double>(own_, 0.0),
+              0.0,
+              written_histories_.changes(points_, body_.model.bonds(),
+                                         bond_stretches(body_.model, at.history))};
   assembler_.point_energies(at, made.energy_density);
   for (std::size_t i = own_; i < points; ++i) {
     made.energy_density[std::size_t(points_.source(Index(i)))] += made.energy_density[i];
@@ -63,20 +64,26 @@ Recorder::Fields Recorder::fields(const StateView& at, std::vector<double> force
 void Recorder::accepted(StepRecord record, const AcceptedState& state) {
   const StateView at = state.trial.at();
   std::vector<double> force = state.trial.gradient;
-  body_.conditions->constraints().unfold(state.external_force, force);
+  const Constraints& constraints = body_.conditions->constraints();
+  constraints.unfold(state.external_force, force);
   for (double& component : force) component = -component;
-  const std::vector<double>& follower_force = state.trial.follower_force;
+  std::vector<double> follower_force = state.trial.follower_force;
+  if (!follower_force.empty()) constraints.fold_images(follower_force);
   for (std::size_t k = 0; k < follower_force.size(); ++k) force[k] -= follower_force[k];
+  body_.conditions->foundations().add_force(at.displacement, at.environment, -1.0, force);
   Fields made = fields(at, std::move(force), state.piece);
   record.max_stretch = *std::max_element(made.stretch.begin(), made.stretch.end());
   record.max_damage = made.max_damage;
   record_broken_bonds(record, at.history);
   const StepFields all = made.view(true), view = made.view(case_.output.stress);
+  const CrackState crack{separated_, body_.cut_bonds.size(),
+                         record.external_work + record.numerical_work - record.stored_energy};
   for (const ProbeSpecification& probe : case_.probes) {
     if (probe.from) continue;
-    record.probes[probe.name] = probe_values(probe, points_, all, separated_);
+    record.probes[probe.name] = probe_values(probe, points_, all, crack);
   }
-  add_rigid_set_values(*body_.conditions, state.trial, state.external_force, record.probes);
+  add_crack_tip_values(case_, crack_tips_, assembler_, state.trial, record.stage, record.probes);
+  add_constraint_values(*body_.conditions, state.trial, state.external_force, record.probes);
   for (const LineProbe& line : lines_) {
     results_.add_line(line.table().name, line.rows(record, all));
   }
@@ -103,13 +110,9 @@ void Recorder::go_on(const Checkpoint& checkpoint, const EarlierResults& earlier
                      const std::vector<std::string>& support_sets,
                      const std::vector<ProbeColumns>& probes) {
   const PathState& path = checkpoint.path;
-  for (const Row& row : earlier.broken_bonds) {
-    const BrokenBondRecord broken = read_broken_bond(row);
-    separated_.push_back({broken.first_point, broken.second_point});
-  }
   for (const Row& row : earlier.decisions) decisions_.push_back(read_decision(row));
   if (!earlier.history.empty()) last_ = read_step(earlier.history.back(), support_sets, probes);
-  broken_ = broken_bonds(body_.model, path.accepted.history);
+  for (const BondEnds& ends : newly_broken(path.accepted.history)) separated_.push_back(ends);
   const bool is_unwritten = !checkpoint.unwritten.force.empty();
   written_histories_.tell(is_unwritten ? std::span(checkpoint.unwritten.told_stretches)
                                        : bond_stretches(body_.model, path.accepted.history));
@@ -140,21 +143,30 @@ void Recorder::finish() {
   if (unwritten_) results_.add_fields(*last_, unwritten_->view(case_.output.stress));
 }
 
-void Recorder::record_broken_bonds(const StepRecord& record, const History& history) {
+std::vector<BondEnds> Recorder::newly_broken(const History& history) {
   std::vector<char> broken = broken_bonds(body_.model, history);
-  if (broken.empty()) return;
+  std::vector<BondEnds> ends;
+  if (broken.empty()) return ends;
   broken_.resize(broken.size(), 0);
-  std::vector<BrokenBondRecord> records;
   const Bonds& bonds = body_.model.bonds();
   for (Index i = 0; i < bonds.points(); ++i) {
     for (Offset bond = bonds.offset[i]; bond < bonds.offset[i + 1]; ++bond) {
       if (!broken[bond] || broken_[bond] || bonds.weight(bond) == 0.0) continue;
-      records.push_back({record.step, record.load_factor, points_.source(i),
-                         points_.source(bonds.partner[bond])});
-      separated_.push_back({i, bonds.partner[bond]});
+      ends.push_back({i, bonds.partner[bond]});
     }
   }
   broken_ = std::move(broken);
+  return ends;
+}
+
+void Recorder::record_broken_bonds(const StepRecord& record, const History& history) {
+  std::vector<BrokenBondRecord> records;
+  for (const BondEnds& ends : newly_broken(history)) {
+    const auto [i, j] = ends;
+    records.push_back(
+        {record.step, record.load_factor, i, points_.source(j), image_number(points_, j)});
+    separated_.push_back(ends);
+  }
   results_.add(records);
 }
 

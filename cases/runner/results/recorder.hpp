@@ -13,6 +13,7 @@
 #include "cases/runner/results/results.hpp"
 #include "cases/runner/results/stress_fields.hpp"
 #include "solvers/drivers/load_stepping.hpp"
+#include "solvers/study/crack_tips.hpp"
 
 namespace peristat {
 
@@ -21,7 +22,7 @@ namespace peristat {
 class Recorder {
  public:
   Recorder(const Case& from, const Body& body, Assembler& assembler, Results& results,
-           Progress& progress)
+           Progress& progress, const std::vector<CrackTip>& crack_tips)
       : case_(from),
         points_(body.points),
         own_(std::size_t(body.points.own())),
@@ -29,6 +30,7 @@ class Recorder {
         results_(results),
         progress_(progress),
         body_(body),
+        crack_tips_(crack_tips),
         separated_(body.cut_bonds) {
     for (const ProbeSpecification& probe : from.probes) {
       if (probe.from) lines_.emplace_back(probe, body.points);
@@ -68,6 +70,8 @@ class Recorder {
   /// @param force minus its gradient [N], of more than these points
   [[nodiscard]] Fields fields(const StateView& at, std::vector<double> force,
                               std::span<const std::int32_t> piece) const;
+  /// The bonds that have broken since it was asked last.
+  [[nodiscard]] std::vector<BondEnds> newly_broken(const History& history);
   /// Adds the bonds that have broken since the last step to the results.
   void record_broken_bonds(const StepRecord& record, const History& history);
 
@@ -78,6 +82,7 @@ class Recorder {
   Results& results_;
   Progress& progress_;
   const Body& body_;
+  const std::vector<CrackTip>& crack_tips_;
   std::optional<Fields> unwritten_;    // of the last step, if it only entered the history
   std::vector<char> broken_;           // per bond, in the last accepted state
   DamageHistories written_histories_;  // in the last state that was written with fields

@@ -123,7 +123,11 @@ void write_histories(Hdf5File& file, const std::string& path, const BondHistorie
   file.write(path + "/first_point", changed.first_point, shape,
              {"1", "lower point of each bond whose history has changed since the step before"});
   file.write(path + "/second_point", changed.second_point, shape,
-             {"1", "upper point of each bond whose history has changed since the step before"});
+             {"1", "other point of each bond whose history has changed since the step before"});
+  if (!changed.second_image.empty()) {
+    file.write(path + "/second_image", changed.second_image, shape,
+               {"1", "image of that point it ends at, row of /points/images from 1; 0: itself"});
+  }
   file.write(path + "/largest_stretch", changed.largest_stretch, shape,
              {"1", "largest stretch that has damaged the bond; -1: the bond never fails"});
 }
@@ -150,7 +154,7 @@ std::uint64_t StepPart::bytes() const {
     bytes += (fields_.*kind_of(name).values)->size() * sizeof(double);
   }
   if (fields_.histories) {
-    bytes += fields_.histories->largest_stretch.size() * (sizeof(double) + 2 * sizeof(Index));
+    bytes += fields_.histories->largest_stretch.size() * (sizeof(double) + 3 * sizeof(Index));
   }
   return bytes;
 }

@@ -163,13 +163,19 @@ def labels(keys: list[str], values: list[tuple[str, ...]]) -> list[str]:
         several = [True] * len(keys)
     told = []
     for combination in values:
-        parts = [_cut(f"{name} = {value}") for name, value, shown in zip(names, combination, several) if shown]
+        parts = [_entry(name, value) for name, value, shown in zip(names, combination, several) if shown]
         line = ", ".join(parts)
         told.append((line if len(line) <= LONGEST_LABEL else "\n".join(parts)).replace("$", r"\$"))
     return told
 
 
-def _cut(text: str) -> str:
+def _entry(name: str, value: str) -> str:
+    """What is too long loses the middle of the key, which tells least, and then the end of the value."""
+    table, _, rest = name.partition(".")
+    room = LONGEST_LABEL - len(f"{table}… = {value}")
+    if 3 <= room < len(rest):
+        name = f"{table}…{rest[-room:]}"
+    text = f"{name} = {value}"
     return text if len(text) <= LONGEST_LABEL else text[: LONGEST_LABEL - 1] + "…"
 
 

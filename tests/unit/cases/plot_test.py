@@ -40,7 +40,7 @@ HISTORY = (
 ).split(",")
 ITERATIONS = "step,iteration,residual,relative_residual,energy,step_length,linear_iterations,changed_bonds".split(",")
 
-BROKEN_BONDS = ["step", "load_factor", "first_point", "second_point"]
+BROKEN_BONDS = ["step", "load_factor", "first_point", "second_point", "second_image"]
 PICTURES = {"deformed", "lateral", "middle_plane", "cut", "fields", "damage", "broken_bonds", "sequence",
             "load_displacement", "energies", "convergence"}  # fmt: skip
 CRACKED = ("deformed", "fields", "damage", "broken_bonds", "sequence", "load_displacement", "energies", "convergence")
@@ -126,7 +126,7 @@ def write_cracked_folder(folder: Path, counts: tuple[int, int], steps: int = 12)
             if end is not None and x[point] < 0.0 <= x[end]:
                 height = y[point] + (y[end] - y[point]) * x[point] / (x[point] - x[end])
                 step = next((k + 1 for k in range(steps) if tip[k] > height), None)
-                broken += [] if step is None else [(step, step / steps, point, end)]
+                broken += [] if step is None else [(step, step / steps, point, end, 0)]
     broken.sort()
     crumb = (x > 0.0) & (x < 6.0) & (abs(y - 0.4 * counts[1]) < 4.0)
 
@@ -281,14 +281,14 @@ class Pictures(unittest.TestCase):
     def test_broken_bonds_are_read_from_either_file(self):
         write_cracked_folder(self.folder, (20, 20), steps=6)
         results = read_results_folder(self.folder)
-        ends, steps = results.broken_bonds()
-        self.assertGreater(len(steps), 100)
-        self.assertTrue((np.diff(steps) >= 0).all())
-        x = results.reference[ends, 0]
+        broken = results.broken_bonds()
+        self.assertGreater(len(broken.steps), 100)
+        self.assertTrue((np.diff(broken.steps) >= 0).all())
+        x = results.reference[broken.points, 0]
         self.assertTrue(((x[:, 0] < 0.01) & (x[:, 1] > 0.01)).all())  # across the middle
         with h5py.File(self.folder / "results.h5", "a") as file:
             del file["broken_bonds"]
-        for one, other in zip((ends, steps), results.broken_bonds()):
+        for one, other in zip(broken, read_results_folder(self.folder).broken_bonds()):
             np.testing.assert_array_equal(one, other)
 
     def test_broken_bonds_that_cannot_be_are_reported(self):
@@ -300,6 +300,78 @@ class Pictures(unittest.TestCase):
             del file["broken_bonds/second_point"]
             file["broken_bonds/second_point"] = np.zeros(2, dtype=int)  # not as many as the others
         self.assertIn("broken bonds can't be read", self.plot())
+
+    def write_cell(self, crack=""):
+        """A plate of 8 x 6 points, half of one about y = 0 and a cell that repeats along x."""
+        write_folder(self.folder, lattice(8, 6), steps=1)
+        with h5py.File(self.folder / "results.h5", "a") as file:
+            kinds = [(mirror, period) for mirror in (1, -1) for period in (0, 1, -1) if (mirror, period) != (1, 0)]
+            file["points/images/mirror"] = np.array([[1.0, mirror] for mirror, _ in kinds])
+            file["points/images/shift"] = np.array([[8 * SPACING * period, 0.0] for _, period in kinds])
+            del file["case/as_resolved"]
+            file["case/as_resolved"] = (f"[lattice]\nspacing = {SPACING}\nhorizon_ratio = 3.015\n{crack}\n"
+                                        '[[symmetry]]\naxis = "y"\nat = 0.0\n'
+                                        f'[[period]]\naxis = "x"\nfrom = 0.0\nto = {8 * SPACING}\n')  # fmt: skip
+            file["steps/000001/damage"][:3] = 0.3
+        return {kind: number for number, kind in enumerate(kinds, 1)} | {(1, 0): 0}
+
+    def break_bonds(self, rows):
+        with h5py.File(self.folder / "results.h5", "a") as file:
+            names = ("step", "load_factor", "first_point", "second_point", "second_image")
+            for name, column in zip(names, np.array([(1, 1, *row) for row in rows]).T):
+                file[f"broken_bonds/{name}"] = column
+
+    def test_bonds_across_planes_and_periods_end_at_images(self):
+        kind = self.write_cell()
+        self.break_bonds([(0, 6, kind[-1, 0]), (1, 0, kind[-1, 0]), (42, 0, kind[1, 1]), (0, 42, kind[1, -1]), (0, 42, kind[-1, -1])])
+        results = read_results_folder(self.folder)
+        ends = results.broken_bonds().ends(results.reference, results.image_kinds) / SPACING
+        np.testing.assert_allclose(ends, [[[0.5, 0.5], [1.5, -0.5]], [[0.5, 1.5], [0.5, -0.5]], [[7.5, 0.5], [8.5, 0.5]],
+                                          [[0.5, 0.5], [-0.5, 0.5]], [[0.5, 0.5], [-0.5, -0.5]]])  # fmt: skip
+        self.assertEqual(results.sides, [(1, 0.0), (0, 0.0), (0, 8 * SPACING)])
+        self.assertIn("broken_bonds.png", self.plot())
+
+    def test_bonds_to_images_part_the_rim_and_no_neighbours(self):
+        kind = self.write_cell()
+        across = [(6 * i, 6 * i, kind[-1, 0]) for i in range(3)]  # one cell to its own image
+        behind = [(6 * i + a, 6 * i + b, kind[-1, 0]) for i in range(2) for a, b in ((0, 1), (1, 0))]
+        self.break_bonds(across + behind)
+        results = read_results_folder(self.folder)
+        step = results.step(1)
+        cells = deformed_plate(results, step, 1.0, step.damage).cells
+        self.assertEqual(np.flatnonzero(cells.parted(1, -1)).tolist(), [0, 6])  # of the third others hang on
+        self.assertEqual(sum(cells.parted(axis, sign).sum() for axis in (0, 1) for sign in (-1, 1)), 2)
+        with h5py.File(self.folder / "results.h5", "a") as file:
+            file["broken_bonds/second_image"][...] = 0  # bonds within the body: of points with themselves, and neighbours
+        results = read_results_folder(self.folder)
+        cells = deformed_plate(results, step, 1.0, step.damage).cells
+        self.assertEqual(cells.parted(1, -1).sum(), 0)
+
+    def test_a_crack_that_leaves_a_cell_comes_in_again(self):
+        self.write_cell(f"[[crack]]\nfrom = [{-2 * SPACING}, {2 * SPACING}]\nto = [{3 * SPACING}, {2 * SPACING}]")
+        results = read_results_folder(self.folder)
+        np.testing.assert_allclose([crack[:, 0] / SPACING for crack in results.cracks if crack[0, 1] > 0], [[-2, 3], [6, 11]])
+        step = results.step(1)
+        cells = deformed_plate(results, step, 1.0, step.damage).cells
+        x, y = results.reference.T / SPACING
+        np.testing.assert_array_equal(cells.parted(1, 1), (y == 1.5) & ((x < 3) | (x > 6)))
+
+    def test_a_pre_crack_on_a_side_parts_the_rim(self):
+        self.write_cell(f"[[crack]]\nfrom = [0.0, {-SPACING}]\nto = [0.0, {2 * SPACING}]")
+        (self.folder / "broken_bonds.csv").write_text(",".join(BROKEN_BONDS) + "\n")
+        results = read_results_folder(self.folder)
+        step = results.step(1)
+        cells = deformed_plate(results, step, 1.0, step.damage).cells
+        self.assertEqual(np.flatnonzero(cells.parted(0, -1)).tolist(), [0, 1])
+        self.assertEqual(np.flatnonzero(cells.parted(0, 1)).tolist(), [42, 43])  # the same crack, a period on
+
+    def test_images_that_make_no_sense_are_reported(self):
+        kind = self.write_cell()
+        self.break_bonds([(0, 6, kind[-1, 0]), (0, 6, len(kind))])
+        self.assertIn("broken bonds of points or images that do not exist", self.plot())
+        with h5py.File(self.folder / "results.h5", "a") as file:
+            file["points/images/shift"][0] = np.inf
+        self.assertIn("the images of points can't be read", self.plot())
 
     def test_plate_all_of_which_floats_far_away(self):
         write_cracked_folder(self.folder, (20, 20), steps=6)

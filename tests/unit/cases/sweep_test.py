@@ -274,6 +274,12 @@ class Picture(unittest.TestCase):
     def test_labels_are_short_where_they_are_clear(self):
         self.assertEqual(labels(["loading.steps", "title"], [("1", "x"), ("2", "x")]), ["steps = 1", "steps = 2"])
         self.assertEqual(labels(["a.x", "b.x"], [("1", "2")]), ["a.x = 1, b.x = 2"])
+        two = [f"region[{k}].material.youngs_modulus" for k in (0, 1)]
+        for label in labels(two, [("70e9", "140e9"), ("80e9", "210e9")]):
+            one, other = label.split("\n")
+            self.assertRegex(one, r"^region\[0\]….*modulus = [78]0e9$")
+            self.assertRegex(other, r"^region\[1\]….*modulus = (140|210)e9$")
+            self.assertLessEqual(max(len(one), len(other)), 30)
         (long,) = labels(["support[1].displacement"], [('["1e-5*load", "free"]',)])
         self.assertLessEqual(len(long), 30)
 

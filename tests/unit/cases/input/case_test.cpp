@@ -795,6 +795,8 @@ TEST_F(ShippedCases, AreRead) {
   for (const auto& entry : fs::recursive_directory_iterator(cases)) {
     if (entry.path().extension() != ".toml") continue;
     EXPECT_EQ(refusal_of_file(entry.path()), "");
+    const std::string resolved = read_case(entry.path()).as_resolved;
+    EXPECT_EQ(read_case(entry.path(), resolved, {}).as_resolved, resolved) << entry.path();
     directories.push_back(read_case(entry.path()).output.directory.string());
   }
   ASSERT_GE(directories.size(), 4u);

@@ -69,14 +69,15 @@ TEST(Checkpoint, IsRefusedWhereverABitIsAnotherOrItEnds) {
 
 TEST(Checkpoint, OfAnotherLayoutIsRefusedWithBothPrograms) {
   std::string bytes = encode(example(), "1.2.3");
-  bytes.replace(bytes.find("checkpoint 2"), 12, "checkpoint 0");
+  const std::string layout = std::to_string(checkpoint_layout), known = "checkpoint " + layout;
+  bytes.replace(bytes.find(known), known.size(), "checkpoint 0");
   try {
     (void)decode(bytes, "4.5.6");
     FAIL();
   } catch (const BadCheckpoint& error) {
-    EXPECT_STREQ(error.what(),
-                 "has layout 0 of peristat 1.2.3; this is peristat 4.5.6, which goes on from "
-                 "layout 2");
+    EXPECT_EQ(error.what(),
+              "has layout 0 of peristat 1.2.3; this is peristat 4.5.6, which goes on from layout " +
+                  layout);
   }
 }
 

@@ -1,5 +1,6 @@
 #include "cases/runner/results/probe.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <string>
@@ -41,7 +42,7 @@ double length_of(const std::vector<BondEnds>& separated, const Points& points, i
   probe.set = "all";
   probe.field = "crack_length";
   probe.axis = axis;
-  return probe_values(probe, points, {}, separated).at(0);
+  return probe_values(probe, points, {}, {separated}).at(0);
 }
 
 TEST(CrackLength, IsThatOfAStraightCrackWhateverTheHorizon) {
@@ -84,6 +85,25 @@ TEST(CrackLength, IsFoundOnAPerturbedLattice) {
   EXPECT_NEAR(length_of(cut.ends, body.points), 2.0, 1.5 * spacing);
 }
 
+TEST(CrackLength, GoesOnOverAPeriod) {
+  tests::BoxSetting box = tests::small_box(2);
+  box.extent = {40, 12, 0};
+  box.spacing = spacing;
+  box.horizon_ratio = 3.015;
+  Points cell = tests::box_points(box);
+  cell.sets["all"].resize(cell.volume.size());
+  std::iota(cell.sets["all"].begin(), cell.sets["all"].end(), 0);
+  add_images(cell, {}, {{0, 0.0, 4.0}}, 3.015 * spacing);
+  const BoxBody body(std::move(cell), box);
+  // Over the side, inside, through the whole cell, and farther than that.
+  for (const auto& [low, high] :
+       {std::pair(-0.52, 0.71), {3.6, 4.9}, {0.77, 2.52}, {0.0, 4.0}, {-1.0, 5.0}}) {
+    Bonds bonds = body.model.bonds();
+    const CutBonds cut = cut_bonds(bonds, body.points, {crack(2, low, high)});
+    EXPECT_NEAR(length_of(cut.ends, body.points), std::min(high - low, 4.0), spacing) << low;
+  }
+}
+
 TEST(CrackLength, LeavesOtherSetsAlone) {
   BoxBody body = plate(2, 3.015);
   Bonds bonds = body.model.bonds();
@@ -91,6 +111,74 @@ TEST(CrackLength, LeavesOtherSetsAlone) {
   auto& members = body.points.sets["all"];
   std::erase_if(members, [&](Index i) { return body.points.position(i)[0] > 1.0; });
   EXPECT_NEAR(length_of(cut.ends, body.points), 1.0, spacing);
+}
+
+double measured(const std::string& field, const CrackState& crack, const Points& points) {
+  ProbeSpecification probe;
+  probe.set = "all";
+  probe.field = field;
+  return probe_values(probe, points, {}, crack).at(0);
+}
+
+TEST(CrackMeasure, TellsWhereACrackBeginsAndEnds) {
+  const BoxBody body = plate(2, 3.015);
+  Bonds bonds = body.model.bonds();
+  const CutBonds cut = cut_bonds(bonds, body.points, {crack(2, 0.77, 2.52)});
+  EXPECT_NEAR(measured("crack_begin", {cut.ends}, body.points), 0.77, spacing);
+  EXPECT_NEAR(measured("crack_end", {cut.ends}, body.points), 2.52, spacing);
+  EXPECT_EQ(measured("crack_end", {}, body.points), 0.0);
+}
+
+TEST(CrackMeasure, AreaIsThatOfTheFacesBetweenTheCells) {
+  for (const int dimension : {2, 3}) {
+    for (const double horizon_ratio : {1.5, 3.015}) {
+      const BoxBody body = plate(dimension, horizon_ratio);
+      Bonds bonds = body.model.bonds();
+      const CutBonds cut = cut_bonds(bonds, body.points, {crack(dimension, -1.0, 2.0)});
+      const double width = dimension == 3 ? 3 * spacing : 0.5;  // three layers, or the thickness
+      EXPECT_NEAR(measured("crack_area", {cut.ends}, body.points), 2.0 * width, 1e-12);
+    }
+  }
+}
+
+TEST(CrackMeasure, AreaOfASlantingCrackIsThatOfItsProjections) {
+  const BoxBody body = plate(2, 3.015);
+  Bonds bonds = body.model.bonds();
+  const CutBonds cut =
+      cut_bonds(bonds, body.points, {CrackSegment{{1.0, 0.23, 0}, {1.7, 0.93, 0}}});
+  EXPECT_NEAR(measured("crack_area", {cut.ends}, body.points), (0.7 + 0.7) * 0.5,
+              2 * spacing * 0.5);
+}
+
+TEST(CrackMeasure, OverAPeriodAFaceCountsOnce) {
+  tests::BoxSetting box = tests::small_box(2);
+  box.extent = {40, 12, 0};
+  box.spacing = spacing;
+  box.horizon_ratio = 3.015;
+  Points cell = tests::box_points(box);
+  cell.sets["all"].resize(cell.volume.size());
+  std::iota(cell.sets["all"].begin(), cell.sets["all"].end(), 0);
+  add_images(cell, {}, {{1, 0.0, 1.2}}, 3.015 * spacing);
+  const BoxBody body(std::move(cell), box);
+  Bonds bonds = body.model.bonds();
+  const CutBonds cut = cut_bonds(bonds, body.points, {CrackSegment{{-1.0, 0.0, 0}, {2.0, 0.0, 0}}});
+  EXPECT_NEAR(measured("crack_area", {cut.ends}, body.points), 2.0 * 0.5, 1e-12);
+}
+
+TEST(CrackMeasure, WorkOfFractureIsOfTheAreaThatHasGrown) {
+  const BoxBody body = plate(2, 3.015);
+  const auto separated_by = [&](double low, double high) {
+    Bonds bonds = body.model.bonds();
+    return cut_bonds(bonds, body.points, {crack(2, low, high)}).ends;
+  };
+  std::vector<BondEnds> separated = separated_by(-1.0, 1.0);
+  const std::size_t cut = separated.size();
+  EXPECT_EQ(measured("work_of_fracture", {separated, cut, 3.0}, body.points), 0.0);
+  for (const BondEnds& broken : separated_by(1.0, 2.5)) {
+    if (std::ranges::find(separated, broken) == separated.end()) separated.push_back(broken);
+  }
+  EXPECT_NEAR(measured("work_of_fracture", {separated, cut, 3.0}, body.points), 3.0 / (1.5 * 0.5),
+              1e-9);
 }
 
 }  // namespace

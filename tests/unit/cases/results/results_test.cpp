@@ -660,7 +660,7 @@ TEST_F(ResultsTest, HistoriesOfBondsAreWrittenWithTheStep) {
   Results results = open_results(directory);
   const ExampleFields fields(1, 2);
   StepFields views = fields.views();
-  const BondHistories changed{{0, 3}, {2, 5}, {0.02, -1.0}}, none;
+  const BondHistories changed{{0, 3}, {2, 5}, {0.02, -1.0}, {}}, none;
   views.histories = &changed;
   results.add(example_step(1), views);
   views.histories = &none;
@@ -676,6 +676,28 @@ TEST_F(ResultsTest, HistoriesOfBondsAreWrittenWithTheStep) {
   expect_histories();
   results.close({});
   expect_histories();
+}
+
+TEST_F(ResultsTest, BondsToImagesAreTold) {
+  Points points = example_points(2);
+  points.images.kinds = {{{-1.0, 1.0, 1.0}, {4.0, 0.0, 0.0}, {}},
+                         {{1.0, 1.0, 1.0}, {0.0, -3.0, 0.0}, {0, -1, 0}}};
+  Results results(directory, points, case_text, support_sets, probes);
+  const ExampleFields fields(1, 2);
+  StepFields views = fields.views();
+  const BondHistories changed{{0, 3}, {0, 1}, {0.02, 0.01}, {2, 0}};
+  views.histories = &changed;
+  results.add({{1, 0.1, 0, 0, 2}, {1, 0.1, 3, 1, 0}});
+  results.add(example_step(1), views);
+  results.close({});
+  const Reader file(directory / "results.h5");
+  EXPECT_EQ(file.shape("/points/images/mirror"), (std::vector<hsize_t>{2, 2}));
+  EXPECT_EQ(file.numbers("/points/images/mirror"), (std::vector<double>{-1, 1, 1, 1}));
+  EXPECT_EQ(file.numbers("/points/images/shift"), (std::vector<double>{4, 0, 0, -3}));
+  EXPECT_EQ(file.numbers("/steps/000001/history/second_image"), (std::vector<double>{2, 0}));
+  EXPECT_EQ(file.numbers("/broken_bonds/second_image"), (std::vector<double>{2, 0}));
+  EXPECT_EQ(read_text(directory / "broken_bonds.csv"),
+            "step,load_factor,first_point,second_point,second_image\n1,0.1,0,0,2\n1,0.1,3,1,0\n");
 }
 
 TEST_F(ResultsTest, AnEmptyFolderIsAccepted) {

@@ -95,7 +95,7 @@ TEST(Conditions, ReactionsAreWhatTheSupportsAdd) {
                               {support("left", "0"), support("middle", std::nullopt, "load")}, {});
   const std::vector<double> gradient{1, 2, 4, 8, 16, 32, 64, 128};
   const std::vector<double> external{0.5, 0, 0.25, 0.125, 0, 0, 0, 0};
-  const auto reactions = conditions.reactions(gradient, external);
+  const auto reactions = conditions.reactions(gradient, external, {}, nullptr);
   ASSERT_EQ(reactions.size(), 2u);
   EXPECT_EQ(reactions.at("left"), (Coordinates{(1 - 0.5) + (4 - 0.25), 0, 0}));
   EXPECT_EQ(reactions.at("middle"), (Coordinates{0, (8 - 0.125) + 32, 0}));
@@ -106,7 +106,7 @@ TEST(Conditions, ReactionsOfASetThatIsSupportedTwiceCountOnce) {
   const std::vector<double> gradient{1, 2, 4, 8, 16, 32, 64, 128};
   const std::vector<double> external(8, 0.0);
   const auto reactions = [&](const std::vector<SupportSpecification>& supports) {
-    return Conditions(points, supports, {}).reactions(gradient, external);
+    return Conditions(points, supports, {}).reactions(gradient, external, {}, nullptr);
   };
   const auto once = reactions({support("left", "0", "0")});
   EXPECT_EQ(reactions({support("left", "0", "0"), support("left", "0", "0")}), once);

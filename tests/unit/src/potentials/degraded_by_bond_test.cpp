@@ -55,6 +55,15 @@ TEST(DegradedByBond, IsDegradedByEachBondsLaw) {
   EXPECT_GT(softened, 20);
 }
 
+TEST(BondLaws, ScaleAnEnvelopeAsAWhole) {
+  BondLaws laws({{ForceEnvelope{1.0, 3.0, 2.0, 0.25, 0.5}}}, 1);
+  laws.set(0, 0, 0.01, 0.03);
+  const auto law = std::get<ForceEnvelope>(laws.at(0).law);
+  EXPECT_DOUBLE_EQ(law.peak(), 0.015);
+  EXPECT_DOUBLE_EQ(law.peak_force(), 0.0125);
+  EXPECT_EQ(law.decay, 2.0);
+}
+
 TEST(DegradedByBond, IsTheSameOverLanes) {
   const Mixed mixed;
   const DegradedByBond<Harmonic> potential{5.0, mixed.laws};

@@ -37,10 +37,20 @@ TanhDegradation example<TanhDegradation>() {
   return {onset, critical, 3.0};
 }
 
+template <>
+ForceEnvelope example<ForceEnvelope>() {
+  return {onset, critical, 2.0, 0.3, 0.4};
+}
+
 /// Numerical integral of T phi_0' from a to b by the composite midpoint rule with Richardson's
-/// extrapolation; neither end nor the points meet a jump of T.
+/// extrapolation; neither end nor the points meet a jump of T, nor cells a kink.
 template <class Law, class Whole = Harmonic>
 double work_between(const Law& law, double a, double b, const Whole& whole = {1.0}) {
+  if constexpr (requires { law.peak(); }) {
+    const double kink = law.peak();
+    if (a < kink && kink < b)
+      return work_between(law, a, kink, whole) + work_between(law, kink, b, whole);
+  }
   const auto midpoint = [&](int cells) {
     double sum = 0.0;
     for (int k = 0; k < cells; ++k) {
@@ -65,8 +75,9 @@ class EveryDegradation<Degraded<Law, Whole>> : public ::testing::Test {
       0.0, 0.5 * onset, 0.0175, 0.999 * critical, 1.1 * critical, Degraded<Law>::never_fails};
 };
 using Degradations =
-    ::testing::Types<Degraded<CriticalStretch>, Degraded<TanhDegradation>,
-                     Degraded<CriticalStretch, Stiffening>, Degraded<TanhDegradation, Stiffening>>;
+    ::testing::Types<Degraded<CriticalStretch>, Degraded<TanhDegradation>, Degraded<ForceEnvelope>,
+                     Degraded<CriticalStretch, Stiffening>, Degraded<TanhDegradation, Stiffening>,
+                     Degraded<ForceEnvelope, Stiffening>>;
 TYPED_TEST_SUITE(EveryDegradation, Degradations);
 
 TYPED_TEST(EveryDegradation, FirstIsDerivativeOfValueInLoadingAndUnloading) {
@@ -206,6 +217,82 @@ TEST(TanhDegradation, TangentIsStronglyNegativeInTheMiddle) {
   // T' = -beta/(s_c - s_m), 1/2 - 0.018 * 3/0.004 = -13.
   const Degraded<TanhDegradation> potential{1.0, {onset, critical, 3.0}};
   EXPECT_NEAR(potential(0.018, 0.0).second, -13.0, 1e-12);
+}
+
+/// Laws whose force falls from the onset on, with every sort of tail, and one that rises first.
+const std::vector<ForceEnvelope> envelopes{{onset, critical},
+                                           {onset, critical, 0.1},
+                                           {onset, critical, 3.0},
+                                           {onset, critical, 50.0},
+                                           {onset, critical, 0.0, 0.5, 0.25},
+                                           {0.1 * onset, critical, 5.0, 0.9, 0.99}};
+
+TEST(ForceEnvelope, FallsLinearlyAndTakesHalfOfOnsetTimesCritical) {
+  const ForceEnvelope law{onset, critical};
+  for (const double x : {0.0, 0.25, 0.5, 0.75, 1.0}) {
+    const double s = onset + x * (critical - onset);
+    EXPECT_NEAR(s * law.integrity(s), onset * (1.0 - x), 1e-15) << x;
+  }
+  EXPECT_NEAR(law.work(Harmonic{1.0}, critical) / (0.5 * onset * critical), 1.0, 1e-14);
+  EXPECT_EQ(law.peak_force(), onset);
+}
+
+TEST(ForceEnvelope, FallsExponentially) {
+  const ForceEnvelope law{onset, critical, 3.0};
+  for (const double x : {0.1, 0.5, 0.9}) {
+    const double s = onset + x * (critical - onset);
+    const double expected = (std::exp(-3.0 * x) - std::exp(-3.0)) / (1.0 - std::exp(-3.0));
+    EXPECT_NEAR(s * law.integrity(s) / onset, expected, 1e-14) << x;
+  }
+}
+
+TEST(ForceEnvelope, TendsToTheLinearLawAsTheDecayVanishes) {
+  const ForceEnvelope linear{onset, critical}, nearly{onset, critical, 1e-6};
+  for (const double s : {0.0165, 0.018, 0.0199, critical}) {
+    EXPECT_NEAR(nearly.integrity(s), linear.integrity(s), 1e-6);
+    const double work = linear.work(Harmonic{1.0}, s);
+    EXPECT_NEAR(nearly.work(Harmonic{1.0}, s) / work, 1.0, 1e-6);
+  }
+}
+
+TEST(ForceEnvelope, RisesOnTheLowerSlopeToItsPeak) {
+  const ForceEnvelope law{onset, critical, 0.0, 0.5, 0.25};
+  EXPECT_DOUBLE_EQ(law.peak(), 0.018);
+  EXPECT_DOUBLE_EQ(law.peak_force(), 0.0165);
+  EXPECT_NEAR(0.017 * law.integrity(0.017), 0.01625, 1e-16);
+  EXPECT_NEAR(0.019 * law.integrity(0.019), 0.00825, 1e-16);
+  for (const double s : {0.0165, 0.0175, 0.0185, 0.0195}) {
+    EXPECT_LE(s * law.integrity(s), law.peak_force());
+  }
+}
+
+TEST(ForceEnvelope, WorkIsTheIntegralUpToEveryStretch) {
+  for (const ForceEnvelope& law : envelopes) {
+    // Between the kinks at onset, peak and critical stretch, where the midpoint rule converges.
+    double sum = 0.5 * law.onset() * law.onset(), before = law.onset();
+    for (const double s : {law.peak(), 0.5 * (law.peak() + critical), critical}) {
+      if (s > before) sum += work_between(law, before, s);
+      before = s;
+      // 1e-11: what Richardson's rule leaves of the steepest tail.
+      EXPECT_NEAR(law.work(Harmonic{1.0}, s) / sum, 1.0, 1e-11) << law.decay << " to " << s;
+    }
+    EXPECT_EQ(law.work(Harmonic{1.0}, 2.0 * critical), law.work(Harmonic{1.0}, critical));
+  }
+}
+
+TEST(ForceEnvelope, NeverJumpsAndLosesIntegrityAllTheWay) {
+  for (const ForceEnvelope& law : envelopes) {
+    for (const double s : {law.onset(), law.peak(), critical}) {
+      const double before = s * (1.0 - 1e-12), after = s * (1.0 + 1e-12);
+      EXPECT_NEAR(before * law.integrity(before), after * law.integrity(after), 1e-11) << s;
+    }
+    double last = 1.0;
+    for (int k = 1; k < 100; ++k) {
+      const double now = law.integrity(law.onset() + (critical - law.onset()) * k / 100.0);
+      EXPECT_LT(now, last);
+      last = now;
+    }
+  }
 }
 
 TEST(Degraded, ContinuousFormHasNoJumpOfForce) {

@@ -1,4 +1,4 @@
-#include "cases/runner/results/rigid_set_columns.hpp"
+#include "cases/runner/results/constraint_columns.hpp"
 
 namespace peristat {
 namespace {
@@ -15,7 +15,7 @@ std::string column(const char* quantity, int axis, const std::string& set) {
 
 }  // namespace
 
-std::vector<ProbeColumns> rigid_set_columns(const Case& from) {
+std::vector<ProbeColumns> constraint_columns(const Case& from) {
   std::vector<ProbeColumns> columns;
   for (const RigidSetSpecification& set : from.constraints.rigid_sets) {
     for (const int axis : axes_of(from.dimension)) {
@@ -23,18 +23,28 @@ std::vector<ProbeColumns> rigid_set_columns(const Case& from) {
       columns.push_back({column("rotation", axis, set.set), 1, "rad"});
     }
   }
+  for (const PeriodSpecification& period : from.constraints.periods) {
+    for (int c = 0; c < from.dimension; ++c) {
+      columns.push_back({column("gradient", c, name_of_period(period)), 1, "1"});
+    }
+  }
   return columns;
 }
 
-void add_rigid_set_values(const Conditions& conditions, const Trial& state,
-                          std::span<const double> external_force,
-                          std::map<std::string, std::vector<double>>& values) {
+void add_constraint_values(const Conditions& conditions, const Trial& state,
+                           std::span<const double> external_force,
+                           std::map<std::string, std::vector<double>>& values) {
   const auto moments = conditions.moments(state.displacement, state.gradient, external_force);
   const auto rotations = conditions.rotations(state.displacement);
   for (const auto& [set, moment] : moments) {
     for (const int axis : axes_of(conditions.dimension())) {
       values[column("moment", axis, set)] = {moment[std::size_t(axis)]};
       values[column("rotation", axis, set)] = {rotations.at(set)[std::size_t(axis)]};
+    }
+  }
+  for (const auto& [period, gradient] : conditions.mean_gradients(state.displacement)) {
+    for (int c = 0; c < conditions.dimension(); ++c) {
+      values[column("gradient", c, period)] = {gradient[std::size_t(c)]};
     }
   }
 }

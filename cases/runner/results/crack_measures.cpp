@@ -1,0 +1,121 @@
+#include "cases/runner/results/crack_measures.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace peristat {
+namespace {
+
+using Members = std::span<const Index>;
+
+bool touches(const BondEnds& ends, Members set) {
+  const auto [i, j] = ends;
+  return std::binary_search(set.begin(), set.end(), i) ||
+         std::binary_search(set.begin(), set.end(), j);
+}
+
+/// Length of the period across an axis [m]; 0: the body has none there.
+double period_along(const Points& points, std::size_t axis) {
+  for (const ImageKind& kind : points.images.kinds) {
+    if (kind.periods[axis] == 1) return kind.shift[axis];
+  }
+  return 0.0;
+}
+
+/// The shortest interval that holds all places, on a line or, with a period, a circle.
+std::array<double, 2> interval_of(std::vector<double> places, double period) {
+  if (period > 0.0) {
+    for (double& place : places) place -= period * std::floor(place / period);
+  }
+  std::sort(places.begin(), places.end());
+  std::array<double, 2> interval{places.front(), places.back()};
+  double left_out = period - (interval[1] - interval[0]);
+  for (std::size_t k = 1; k < places.size() && period > 0.0; ++k) {
+    if (places[k] - places[k - 1] <= left_out) continue;
+    left_out = places[k] - places[k - 1];
+    interval = {places[k], places[k - 1] + period};
+  }
+  return interval;
+}
+
+/// Where cracks begin and end along an axis; twice the same without one.
+std::array<double, 2> extent(const Points& points, Members set, int axis, const CrackState& crack) {
+  const double spacing = points.angle == 0.0 ? points.spacing.along(axis) : double(points.spacing);
+  std::vector<double> middles;
+  for (const BondEnds& ends : crack.separated) {
+    const auto [i, j] = ends;
+    const double a = points.position(i)[std::size_t(axis)],
+                 b = points.position(j)[std::size_t(axis)];
+    if (std::abs(b - a) <= 0.5 * spacing && touches(ends, set)) middles.push_back(0.5 * (a + b));
+  }
+  if (middles.empty()) return {0.0, 0.0};
+  const auto [begin, end] =
+      interval_of(std::move(middles), period_along(points, std::size_t(axis)));
+  return {begin - 0.5 * spacing, end + 0.5 * spacing};
+}
+
+/// Of the face between next neighbours on the lattice, or 0; half where a period has it twice.
+double face_between(const Points& points, const BondEnds& ends) {
+  const auto [i, j] = ends;
+  Coordinates arm{};
+  double length = 0.0, edge = 0.0;
+  int along = 0;
+  for (int c = 0; c < points.dimension; ++c) {
+    arm[std::size_t(c)] = points.position(j)[std::size_t(c)] - points.position(i)[std::size_t(c)];
+    length = std::hypot(length, arm[std::size_t(c)]);
+    if (std::abs(arm[std::size_t(c)]) > edge) edge = std::abs(arm[std::size_t(along = c)]);
+  }
+  const double spacing = points.angle == 0.0 ? points.spacing.along(along) : double(points.spacing);
+  constexpr double next = 1.25;  // between the spacing and a square's diagonal, also if perturbed
+  if (length > next * spacing) return 0.0;
+  const bool is_over_period =
+      points.is_image(j) && points.image_kind(j).periods != std::array<int, 3>{};
+  const double volume = 0.5 * (points.volume[points.source(i)] + points.volume[points.source(j)]);
+  return (is_over_period ? 0.5 : 1.0) * volume / spacing;
+}
+
+double area(const Points& points, Members set, std::span<const BondEnds> separated) {
+  double sum = 0.0;
+  for (const BondEnds& ends : separated) {
+    if (touches(ends, set)) sum += face_between(points, ends);
+  }
+  return sum;
+}
+
+const std::vector<CrackMeasure>& measures() {
+  static const std::vector<CrackMeasure> all{
+      {"crack_length", "m", true,
+       [](const Points& points, Members set, int axis, const CrackState& crack) {
+         const auto [begin, end] = extent(points, set, axis, crack);
+         return end - begin;
+       }},
+      {"crack_begin", "m", true,
+       [](const Points& points, Members set, int axis, const CrackState& crack) {
+         return extent(points, set, axis, crack)[0];
+       }},
+      {"crack_end", "m", true,
+       [](const Points& points, Members set, int axis, const CrackState& crack) {
+         return extent(points, set, axis, crack)[1];
+       }},
+      {"crack_area", "m2", false,
+       [](const Points& points, Members set, int, const CrackState& crack) {
+         return area(points, set, crack.separated);
+       }},
+      {"work_of_fracture", "J/m2", false,
+       [](const Points& points, Members set, int, const CrackState& crack) {
+         const double grown = area(points, set, crack.separated.subspan(crack.cut));
+         return grown > 0.0 ? crack.taken_up / grown : 0.0;
+       }}};
+  return all;
+}
+
+}  // namespace
+
+const CrackMeasure* crack_measure(const std::string& name) {
+  const auto found = std::ranges::find_if(
+      measures(), [&](const CrackMeasure& measure) { return measure.name == name; });
+  return found == measures().end() ? nullptr : &*found;
+}
+
+}  // namespace peristat

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "src/geometry/points.hpp"
+#include "src/neighbourhood/bonds.hpp"
+
+namespace peristat {
+
+/// How far cracks have come.
+struct CrackState {
+  std::span<const BondEnds> separated;  ///< bonds that pre-cracks have cut, then those that broke
+  std::size_t cut = 0;                  ///< how many of them pre-cracks have cut
+  double taken_up = 0.0;                ///< work that is not stored any more [J]
+};
+
+/// What a probe can tell of the cracks through a set: of the separated bonds that have an end in
+/// it.
+///
+/// - crack_length [m]: extent along the axis of the middles of those that run across it, whose ends
+///   are no more than half a spacing apart along it; each stands for a strip of one spacing. Only
+///   those, because where along an inclined bond the crack passes is not known.
+/// - crack_begin, crack_end [m]: where that extent begins and ends along the axis.
+/// - crack_area [m2]: of the cell faces between the points of those that join next neighbours, the
+///   crack's area by its projections on the axes of the lattice.
+/// - work_of_fracture [J/m2]: work that is not stored any more over the area that has grown since
+///   the start.
+///
+/// All are 0 without such a bond, work_of_fracture without an area that has grown.
+struct CrackMeasure {
+  std::string name, unit;
+  bool has_axis;
+  double (*value)(const Points& points, std::span<const Index> set, int axis,
+                  const CrackState& crack);
+};
+
+/// Of a name, or null.
+[[nodiscard]] const CrackMeasure* crack_measure(const std::string& name);
+
+}  // namespace peristat

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "cases/runner/input/case.hpp"
+#include "cases/runner/results/probe_columns.hpp"
+#include "solvers/study/crack_tips.hpp"
+
+namespace peristat {
+
+/// Columns NAME_J [J/m2], NAME_J_spread [1], and of isotropic materials NAME_K1, NAME_K2, in 3D
+/// NAME_K3 [Pa m^0.5], and NAME_T [Pa] of every crack tip; where a cut is asked for
+/// NAME_G_displacement and NAME_G_load [J/m2].
+[[nodiscard]] std::vector<ProbeColumns> crack_tip_columns(const Case& from);
+
+/// Their values in a state.
+void add_crack_tip_values(const Case& from, const std::vector<CrackTip>& tips, Assembler& assembler,
+                          const Trial& state, double stage,
+                          std::map<std::string, std::vector<double>>& values);
+
+}  // namespace peristat

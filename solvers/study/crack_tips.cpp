@@ -1,0 +1,113 @@
+#include "solvers/study/crack_tips.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "solvers/study/cpd_model.hpp"
+#include "solvers/study/point_materials.hpp"
+#include "src/conditions/points_of_set.hpp"
+#include "src/core/input_error.hpp"
+#include "src/core/number_text.hpp"
+#include "src/measures/small_algebra.hpp"
+
+namespace peristat {
+namespace {
+
+TipElasticity elasticity_of(const PointMaterials::Material& material, const Body& body) {
+  const int dimension = body.points.dimension;
+  const bool is_bond = material.of->model == MaterialModel::bond;
+  if (is_bond) {
+    const double modulus = youngs_modulus_of(
+        micromodulus_of(*material.of, material.key, body.setting).at(1.0), body.setting);
+    const double nu = poisson_ratio(body.setting);
+    const bool is_thin = dimension == 2 && body.setting.plane == PlaneState::stress;
+    return is_thin ? TipElasticity::plane_stress(modulus, nu)
+                   : TipElasticity::plane_strain(modulus, nu);
+  }
+  const BondSetting& setting = body.setting;
+  const CpdConstants constants = cpd_constants_of(*material.of, material.key, body.points, setting);
+  const CpdStiffness stiffness =
+      material.of->calibration == Calibration::lattice
+          ? lattice_stiffness(dimension, body.points.spacing, setting.horizon,
+                              setting.cross_section)
+          : continuum_stiffness(dimension, setting.horizon, setting.cross_section);
+  const LameModuli moduli = stiffness.moduli(constants);
+  const double modulus = youngs_modulus_of(moduli, dimension),
+               nu = poisson_ratio_of(moduli, dimension);
+  // In 2D nothing exists outside the plane: the moduli are those that plane stress would have.
+  return dimension == 2 ? TipElasticity::plane_stress(modulus, nu)
+                        : TipElasticity::plane_strain(modulus, nu);
+}
+
+/// The material of the points about a tip.
+std::size_t material_about(const Body& body, const PointMaterials& materials,
+                           const CrackTipIntegrals& tip, const std::string& key) {
+  const std::vector<Index> points = tip.points();
+  for (const Index point : points) {
+    if (materials.of(body.points.source(point)) == materials.of(body.points.source(points[0])))
+      continue;
+    throw InputError(key + ".outer", "",
+                     "the ring holds two materials; the flux of energy through it is not the tip's "
+                     "alone");
+  }
+  return materials.of(body.points.source(points.front()));
+}
+
+/// What a support does to a point within the ring would count as the tip's.
+void refuse_held_rings(const Body& body, const CrackTipIntegrals& tip, const std::string& key) {
+  const Conditions& conditions = *body.conditions;
+  const auto d = std::size_t(body.points.dimension);
+  for (const Index point : tip.points()) {
+    for (std::size_t dof = std::size_t(point) * d; dof < (std::size_t(point) + 1) * d; ++dof) {
+      if (body.points.is_image(point) || !conditions.prescribed()[dof]) continue;
+      throw InputError(key + ".outer", "",
+                       "a support or constraint holds a point within the ring, at " +
+                           place_text(body.points.position(point), body.points.dimension) + " m");
+    }
+  }
+}
+
+}  // namespace
+
+bool has_isotropic_materials(const BodySpecification& of) {
+  const auto is_isotropic = [](const MaterialSpecification& material) {
+    return !material.fibre &&
+           std::none_of(material.scatter.begin(), material.scatter.end(), [](const auto& scatter) {
+             return scatter.of == ScatterSpecification::Quantity::stiffness;
+           });
+  };
+  return is_isotropic(of.material) &&
+         std::all_of(of.regions.begin(), of.regions.end(), [&](const RegionSpecification& region) {
+           return is_isotropic(region.material);
+         });
+}
+
+std::vector<CrackTip> make_crack_tips(const Body& body,
+                                      const std::vector<CrackTipSpecification>& tips,
+                                      const StudyOptions& options) {
+  std::vector<CrackTip> made;
+  if (tips.empty()) return made;
+  const PointMaterials materials(body.specification, body.points);
+  for (std::size_t k = 0; k < tips.size(); ++k) {
+    const std::string key = indexed("crack_tips", k);
+    if (body.specification.eigenstrains.are_there()) {
+      throw InputError(key, "", "does not go with eigenstrains or a temperature");
+    }
+    CrackTip tip{{body.points, tips[k], {body.setting.horizon, body.setting.cross_section}, key},
+                 nullptr};
+    refuse_held_rings(body, tip.integrals, key);
+    const std::size_t material = material_about(body, materials, tip.integrals, key);
+    if (has_isotropic_materials(body.specification)) {
+      tip.integrals.set_elasticity(elasticity_of(materials.all()[material], body));
+    }
+    if (tips[k].cut > 0.0) {
+      tip.release =
+          std::make_unique<CutRelease>(body, tips[k], tip.integrals.share(), options, key + ".cut");
+    }
+    made.push_back(std::move(tip));
+  }
+  return made;
+}
+
+}  // namespace peristat

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "solvers/fracture/crack_tip.hpp"
+#include "solvers/study/study.hpp"
+
+namespace peristat {
+
+/// Energy release rates [J/m2] of a crack that grows at once by a length l, of linear elasticity:
+///
+///   at fixed displacement  (E_0 - E_1)/(B l)
+///   at fixed load          E_0 (E_0/E_1 - 1)/(B l)
+///
+/// with the stored energies E_0 before and E_1 after it at the same displacement of the supports.
+/// Of loads alone, with E_0 and E_1 at the same load, E_0 (1 - E_0/E_1)/(B l) and (E_1 - E_0)/(B
+/// l). They embrace the rate at the middle of the length.
+struct ReleaseRates {
+  double at_displacement = 0.0, at_load = 0.0;
+};
+
+/// A body like another, but for the bonds that a segment ahead of a crack's tip cuts.
+class CutRelease {
+ public:
+  /// @param share J per joule of the body: 1/B, twice as much for half a body
+  /// @throws InputError (key) for a length below the horizon or beyond the body, for loads beside
+  ///         supports that move, and for what the load makes of the energy itself
+  /// @throws what make_body and Study throw
+  CutRelease(const Body& body, const CrackTipSpecification& tip, double share,
+             const StudyOptions& options, const std::string& key);
+
+  /// Of a state in equilibrium, with damage held.
+  /// @throws std::runtime_error if the cut body finds no equilibrium
+  [[nodiscard]] ReleaseRates rates(const Trial& before, double stage);
+
+ private:
+  [[nodiscard]] History history_of(const History& before) const;
+
+  const Body& body_;
+  double length_, share_;
+  std::unique_ptr<const Body> cut_;
+  std::unique_ptr<Study> study_;
+};
+
+}  // namespace peristat

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <string>
+
+#include "solvers/study/body_specification.hpp"
+#include "src/materials/bulk_bonds.hpp"
+
+namespace peristat {
+
+/// What turns a fracture energy and a strength into stretches of bonds.
+struct FractureScale {
+  double youngs_modulus = 0.0;  ///< E [Pa]
+  double micromodulus = 0.0;    ///< c [N/m6]
+  double crossing = 0.0;        ///< A [m5], see BulkBonds; 0: a fracture energy has no formula
+  double spacing = 0.0;         ///< [m], for messages
+
+  /// Of a material without fibres. @throws InputError for a strength without Young's modulus
+  static FractureScale of(const MaterialSpecification& material, const std::string& key,
+                          const BondSetting& setting, double spacing);
+};
+
+/// The law with stretches in the place of fracture energy and strength. With the work W = int_0^s_c
+/// f ds of a bond's force c f(s) and its largest value f_p
+///
+///   G = c A W,   f_t = E f_p.
+///
+/// A law that softens with a fracture energy alone gets half the stretch of a brittle bond of that
+/// energy as onset (blended: a quarter, and a peak force of half).
+/// @param key of the material, for errors
+/// @throws InputError ("material.damage.strength", …) if there are no such stretches, with the
+///         largest spacing that has them
+[[nodiscard]] DamageSpecification with_stretches(const DamageSpecification& damage,
+                                                 const std::string& key,
+                                                 const FractureScale& scale);
+
+/// The same for all materials of a body, in whose lattice they are.
+[[nodiscard]] BodySpecification with_stretches(BodySpecification of, const BondSetting& setting,
+                                               double spacing);
+
+/// W of the whole law, for the modulus 1: c A W is the fracture energy.
+[[nodiscard]] double total_work(const DamageSpecification& damage);
+
+/// f_p, the largest force for the modulus 1: E f_p is the strength.
+[[nodiscard]] double peak_force(const DamageSpecification& damage);
+
+/// Largest spacing at the same horizon ratio with which a bond of this peak force can take this
+/// fracture energy, whatever the law: there it is brittle [m].
+[[nodiscard]] double largest_spacing(double fracture_energy, double strength,
+                                     const FractureScale& scale);
+
+}  // namespace peristat

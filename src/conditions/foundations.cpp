@@ -1,0 +1,156 @@
+#include "src/conditions/foundations.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "src/conditions/points_of_set.hpp"
+#include "src/conditions/traction.hpp"
+#include "src/conditions/with_key.hpp"
+#include "src/core/input_error.hpp"
+#include "src/core/number_text.hpp"
+#include "src/measures/small_algebra.hpp"
+
+namespace peristat {
+namespace {
+
+/// A stiffness per component, checked.
+Coordinates checked(const Coordinates& stiffness, int dimension, const std::string& key) {
+  bool holds = false;
+  for (std::size_t c = 0; c < std::size_t(dimension); ++c) {
+    if (!(stiffness[c] >= 0.0) || !std::isfinite(stiffness[c])) {
+      throw InputError(indexed(key, c), number_text(stiffness[c]), "must be 0 or positive");
+    }
+    holds |= stiffness[c] > 0.0;
+  }
+  if (!holds) throw InputError(key, "", "is zero in every component, so this holds nothing");
+  return stiffness;
+}
+
+std::vector<Spring> on_boundary(const Points& points, const FoundationSpecification& of,
+                                const std::string& table) {
+  const Coordinates modulus = checked(of.modulus, points.dimension, table + ".modulus");
+  LoadSpecification place;
+  place.kind = LoadSpecification::Kind::traction;
+  place.set = of.set;
+  place.side = of.side;
+  const TractionAreas areas =
+      with_table(table, [&] { return traction_areas(points, place, 0.0, table); });
+  std::vector<Spring> springs;
+  for (std::size_t k = 0; k < areas.points.size(); ++k) {
+    springs.push_back({areas.points[k], scaled<3>(areas.area[k], modulus)});
+  }
+  return springs;
+}
+
+std::vector<Spring> on_set(const Points& points, const FoundationSpecification& of,
+                           const std::string& table) {
+  const Coordinates stiffness = checked(of.stiffness, points.dimension, table + ".stiffness");
+  const std::vector<Index>& members = points_of_set(points, of.set, table + ".set");
+  double volume = 0.0;
+  for (const Index point : members) volume += points.volume[point];
+  std::vector<Spring> springs;
+  for (const Index point : members) {
+    springs.push_back({point, scaled<3>(points.volume[point] / volume, stiffness)});
+  }
+  return springs;
+}
+
+}  // namespace
+
+Foundations::Foundations(const Points& points,
+                         const std::vector<FoundationSpecification>& specifications,
+                         const std::vector<std::string>& parameters)
+    : dimension_(points.dimension) {
+  for (std::size_t k = 0; k < specifications.size(); ++k) {
+    const FoundationSpecification& of = specifications[k];
+    const std::string table = indexed("foundations", k);
+    const bool has_modulus = of.modulus != Coordinates{}, has_total = of.stiffness != Coordinates{};
+    if (has_modulus == has_total) {
+      throw InputError(table, "", "needs either a modulus or a stiffness");
+    }
+    const std::vector<Spring> springs =
+        has_modulus ? on_boundary(points, of, table) : on_set(points, of, table);
+    Foundation made{of.name, table, springs_.size(), springs_.size() + springs.size(), {}};
+    for (int c = 0; c < points.dimension; ++c) {
+      const std::string key = indexed(table + ".displacement", std::size_t(c));
+      made.ground.push_back(with_key(key, [&] {
+        return Expression(of.displacement[std::size_t(c)], points.dimension, points.spacing,
+                          parameters);
+      }));
+    }
+    foundations_.push_back(std::move(made));
+    springs_.insert(springs_.end(), springs.begin(), springs.end());
+    for (const Spring& spring : springs) place_.push_back(points.position(spring.point));
+  }
+}
+
+bool Foundations::hold(int axis) const {
+  return std::any_of(springs_.begin(), springs_.end(), [axis](const Spring& spring) {
+    return spring.stiffness[std::size_t(axis)] > 0.0;
+  });
+}
+
+std::vector<Foundations::Summary> Foundations::summaries() const {
+  std::vector<Summary> all;
+  for (const auto& [name, table, first, last, ground] : foundations_) {
+    Summary of{name, table + ".name", last - first, {}};
+    for (std::size_t k = first; k < last; ++k) {
+      of.stiffness = plus<3>(of.stiffness, springs_[k].stiffness);
+    }
+    all.push_back(std::move(of));
+  }
+  return all;
+}
+
+bool Foundations::ground_moves() const {
+  return std::any_of(foundations_.begin(), foundations_.end(), [](const Foundation& foundation) {
+    return std::any_of(foundation.ground.begin(), foundation.ground.end(),
+                       [](const Expression& ground) { return ground.text() != "0"; });
+  });
+}
+
+std::vector<double> Foundations::ground(std::span<const double> loads) const {
+  std::vector<double> ground;
+  for (const Foundation& foundation : foundations_) {
+    for (std::size_t k = foundation.first; k < foundation.last; ++k) {
+      for (std::size_t c = 0; c < foundation.ground.size(); ++c) {
+        with_key(indexed(foundation.table + ".displacement", c),
+                 [&] { ground.push_back(foundation.ground[c](place_[k], loads)); });
+      }
+    }
+  }
+  return ground;
+}
+
+double Foundations::energy(std::span<const double> displacement,
+                           const SharedEnvironment& environment) const {
+  double energy = 0.0;
+  for_each(displacement, environment, [&](std::size_t, double stiffness, double moved) {
+    energy += 0.5 * stiffness * moved * moved;
+  });
+  return energy;
+}
+
+void Foundations::add_force(std::span<const double> displacement,
+                            const SharedEnvironment& environment, double factor,
+                            std::span<double> force) const {
+  for_each(displacement, environment, [&](std::size_t dof, double stiffness, double moved) {
+    force[dof] -= factor * stiffness * moved;
+  });
+}
+
+std::map<std::string, Coordinates> Foundations::forces(std::span<const double> displacement,
+                                                       const SharedEnvironment& environment) const {
+  std::map<std::string, Coordinates> forces;
+  for (const Foundation& foundation : foundations_) {
+    Coordinates& sum = forces[foundation.name];
+    for_each(foundation.first, foundation.last, displacement, environment,
+             [&](std::size_t dof, double stiffness, double moved) {
+               sum[dof % std::size_t(dimension_)] -= stiffness * moved;
+             });
+  }
+  return forces;
+}
+
+}  // namespace peristat

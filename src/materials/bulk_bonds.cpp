@@ -1,0 +1,223 @@
+#include "src/materials/bulk_bonds.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include <Eigen/Dense>
+
+namespace peristat {
+namespace {
+
+using SymmetricTensor = std::vector<double>;  // symmetric, in Kelvin's notation
+
+double dot(const Coordinates& a, const Coordinates& b) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+Coordinates unit(const Coordinates& v) {
+  const double length = std::sqrt(dot(v, v));
+  return {v[0] / length, v[1] / length, v[2] / length};
+}
+
+/// n n^T
+SymmetricTensor dyad(const Coordinates& n, int dimension) {
+  SymmetricTensor result;
+  for (int a = 0; a < dimension; ++a) result.push_back(n[a] * n[a]);
+  for (int a = 0; a < dimension; ++a) {
+    for (int b = 0; b < a; ++b) result.push_back(std::numbers::sqrt2 * n[a] * n[b]);
+  }
+  return result;
+}
+
+double contract(const SymmetricTensor& a, const SymmetricTensor& b) {
+  double sum = 0.0;
+  for (std::size_t k = 0; k < a.size(); ++k) sum += a[k] * b[k];
+  return sum;
+}
+
+/// Normals of the lattice's planes of small indices, in its axes.
+std::vector<Coordinates> lattice_normals(const Spacing& spacing, int dimension) {
+  constexpr int most = 4;
+  std::vector<Coordinates> normals;
+  for (int h = -most; h <= most; ++h) {
+    for (int k = dimension > 1 ? -most : 0; k <= (dimension > 1 ? most : 0); ++k) {
+      for (int l = dimension > 2 ? -most : 0; l <= (dimension > 2 ? most : 0); ++l) {
+        if (std::array{h, k, l} <= std::array{0, 0, 0}) continue;  // one of two opposite ones
+        normals.push_back({h / spacing.along(0), k / spacing.along(1), l / spacing.along(2)});
+      }
+    }
+  }
+  return normals;
+}
+
+/// Directions spread evenly over half of the circle or the sphere.
+std::vector<Coordinates> even_directions(int dimension, int count) {
+  if (dimension == 1) return {};
+  std::vector<Coordinates> directions;
+  const double golden = std::numbers::pi * (3.0 - std::sqrt(5.0));
+  for (int k = 0; k < count; ++k) {
+    const double share = (k + 0.5) / count;
+    const double ring = std::sqrt(1.0 - share * share);
+    directions.push_back(dimension == 2 ? Coordinates{std::cos(std::numbers::pi * share),
+                                                      std::sin(std::numbers::pi * share), 0.0}
+                                        : Coordinates{ring * std::cos(golden * k),
+                                                      ring * std::sin(golden * k), share});
+  }
+  return directions;
+}
+
+}  // namespace
+
+BulkBonds::BulkBonds(const BondSetting& setting) : setting_(setting) {
+  const Spacing& spacing = setting.lattice.value().spacing;
+  std::array<int, 3> width{};
+  for (int c = 0; c < setting.dimension; ++c) {
+    width[c] = static_cast<int>(std::ceil(setting.search_radius(spacing) / spacing.along(c))) + 1;
+  }
+  const double cell = std::pow(spacing, setting.dimension) * setting.cross_section;
+  for (int x = 0; x <= width[0]; ++x) {
+    for (int y = -width[1]; y <= width[1]; ++y) {
+      for (int z = -width[2]; z <= width[2]; ++z) {
+        if (std::array{x, y, z} <= std::array{0, 0, 0}) continue;
+        const Coordinates along{x * spacing.along(0), y * spacing.along(1), z * spacing.along(2)};
+        const double length = spacing.is_square()
+                                  ? spacing * std::sqrt(double(x * x + y * y + z * z))
+                                  : std::hypot(along[0], along[1], along[2]);
+        const double share = setting.partial_volume(length, spacing);
+        if (share == 0.0) continue;
+        bonds_.push_back(
+            {unit(turned(along)), length, 2.0 * cell * share * setting.influence_at(length)});
+      }
+    }
+  }
+  if (setting.lattice->surface_correction == SurfaceCorrection::energy) correct_energy();
+  find_compliance();
+}
+
+Coordinates BulkBonds::turned(const Coordinates& v) const {
+  const double angle = setting_.lattice->angle * std::numbers::pi / 180.0;
+  const double c = std::cos(angle), s = std::sin(angle);
+  if (setting_.dimension == 1) return v;
+  return {c * v[0] - s * v[1], s * v[0] + c * v[1], v[2]};
+}
+
+/// As make_bonds does; inside a lattice all points have the same factors.
+void BulkBonds::correct_energy() {
+  const double full = 0.25 * micromodulus(1.0, setting_) / confined_energy_per_modulus(setting_);
+  Coordinates ratio{};  // discrete over classical energy, per axis
+  for (const Bond& bond : bonds_) {
+    for (int a = 0; a < setting_.dimension; ++a) {
+      ratio[a] += full * bond.weight * bond.length * std::pow(bond.direction[a], 4);
+    }
+  }
+  for (Bond& bond : bonds_) {
+    double sum = 0.0;
+    for (int a = 0; a < setting_.dimension; ++a) {
+      const double axis = ratio[a] > 0.0 ? ratio[a] : 1.0;
+      sum += std::pow(bond.direction[a] * axis, 2);
+    }
+    bond.weight /= std::sqrt(sum);
+  }
+}
+
+void BulkBonds::find_compliance() {
+  const auto size = std::ptrdiff_t(dyad({}, setting_.dimension).size());
+  Eigen::MatrixXd stiffness = Eigen::MatrixXd::Zero(size, size);
+  for (const Bond& bond : bonds_) {
+    const SymmetricTensor of = dyad(bond.direction, setting_.dimension);
+    const Eigen::Map<const Eigen::VectorXd> n(of.data(), size);
+    stiffness += 0.5 * bond.weight * bond.length * n * n.transpose();
+  }
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> modes(stiffness);
+  // Bonds along the axes alone resist no shear.
+  if (!(modes.eigenvalues()[0] > 1e-12 * modes.eigenvalues()[size - 1])) return;
+  const Eigen::MatrixXd inverse = stiffness.inverse();
+  compliance_.assign(inverse.data(), inverse.data() + inverse.size());
+}
+
+std::vector<double> BulkBonds::strain_of_pull(const Coordinates& direction) const {
+  const SymmetricTensor stress = dyad(unit(direction), setting_.dimension);
+  SymmetricTensor strain(stress.size(), 0.0);
+  for (std::size_t a = 0; a < stress.size(); ++a) {
+    for (std::size_t b = 0; b < stress.size(); ++b) {
+      strain[a] += compliance_[a * stress.size() + b] * stress[b];
+    }
+  }
+  // Of a pull whose plane is free to contract: E is (1 - nu^2) of what plane strain shows.
+  const bool is_confined = setting_.dimension == 2 && setting_.plane == PlaneState::strain;
+  const double nu = poisson_ratio(setting_);
+  for (double& part : strain) part *= is_confined ? 1.0 / (1.0 - nu * nu) : 1.0;
+  return strain;
+}
+
+double BulkBonds::moment(int k) const {
+  double sum = 0.0;
+  for (const Bond& bond : bonds_) sum += bond.weight * std::pow(bond.length, k);
+  return sum;
+}
+
+double BulkBonds::crossing(const Coordinates& normal) const {
+  const Coordinates n = unit(normal);
+  double sum = 0.0;
+  for (const Bond& bond : bonds_) {
+    sum += bond.weight * bond.length * bond.length * std::abs(dot(bond.direction, n));
+  }
+  return 0.5 * sum;
+}
+
+DirectionalSpread BulkBonds::crossing() const {
+  DirectionalSpread result = over_directions([&](const auto& n) { return crossing(n); });
+  result.mean = 0.5 * mean_of_magnitude(setting_.dimension) * moment(2);
+  return result;
+}
+
+double BulkBonds::youngs_modulus(const Coordinates& direction) const {
+  if (compliance_.empty()) return 0.0;
+  return 1.0 / contract(strain_of_pull(direction), dyad(unit(direction), setting_.dimension));
+}
+
+double BulkBonds::stress_at_unit_stretch(const Coordinates& direction) const {
+  if (compliance_.empty()) return 0.0;
+  const SymmetricTensor strain = strain_of_pull(direction);
+  double largest = 0.0;
+  for (const Bond& bond : bonds_) {
+    largest = std::max(largest, contract(strain, dyad(bond.direction, setting_.dimension)));
+  }
+  return 1.0 / largest;
+}
+
+DirectionalSpread BulkBonds::stress_at_unit_stretch() const {
+  return over_directions([&](const auto& n) { return stress_at_unit_stretch(n); });
+}
+
+template <class Quantity>
+DirectionalSpread BulkBonds::over_directions(const Quantity& of) const {
+  // Of long horizons, which are nearly the same in all directions, fewer are enough.
+  const int count = std::clamp(int(2e7 / double(bonds_.size())), 60, 2000);
+  const std::vector<Coordinates> even = even_directions(setting_.dimension, count);
+  std::vector<Coordinates> all = lattice_normals(setting_.lattice->spacing, setting_.dimension);
+  if (int(all.size()) > count) all.resize(std::size_t(count));
+  all.insert(all.end(), even.begin(), even.end());
+  DirectionalSpread result{0.0, of(turned(all.front())), 0.0};
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    const double value = of(turned(all[k]));
+    result.least = std::min(result.least, value);
+    result.most = std::max(result.most, value);
+    const bool counts = even.empty() || k >= all.size() - even.size();
+    if (counts) result.mean += value / double(even.empty() ? all.size() : even.size());
+  }
+  return result;
+}
+
+double bulk_micromodulus(double youngs_modulus, const BondSetting& setting) {
+  return micromodulus(youngs_modulus, setting, BulkBonds(setting).moment(1));
+}
+
+double mean_crossing(const BondSetting& setting) {
+  const double second = setting.lattice ? BulkBonds(setting).moment(2) : setting.moment(2);
+  return 0.5 * mean_of_magnitude(setting.dimension) * second;
+}
+
+}  // namespace peristat

@@ -1,0 +1,71 @@
+#pragma once
+
+#include <vector>
+
+#include "src/core/types.hpp"
+#include "src/materials/bond_constants.hpp"
+
+namespace peristat {
+
+/// A quantity over all directions.
+struct DirectionalSpread {
+  double mean = 0.0, least = 0.0, most = 0.0;
+};
+
+/// The bonds of a point deep inside a lattice, with the weights that make_bonds gives them, and
+/// what they make of a micromodulus c.
+class BulkBonds {
+ public:
+  /// @param setting with a lattice
+  explicit BulkBonds(const BondSetting& setting);
+
+  /// sum w r^k / V over the bonds of a point of volume V [m^(k+3)].
+  [[nodiscard]] double moment(int k) const;
+
+  /// What the bonds across a plane of normal n have of it: if each holds the energy density phi,
+  /// they hold A phi per area,
+  ///
+  ///   A(n) = 1/(2 V) sum w r^2 |n_bond . n|  [m^5].
+  [[nodiscard]] double crossing(const Coordinates& normal) const;
+  /// The mean over all planes is exact; least and most are those of many planes, the lattice's own
+  /// among them.
+  [[nodiscard]] DirectionalSpread crossing() const;
+
+  /// Young's modulus over c of a pull along a direction; 0 if nothing resists it.
+  [[nodiscard]] double youngs_modulus(const Coordinates& direction) const;
+
+  /// Stress over c of a pull along a direction under which the most stretched bond has the stretch
+  /// 1, as far as everything is linear. In plane strain the stress of the same pull where the plane
+  /// is free, as youngs_modulus.
+  [[nodiscard]] double stress_at_unit_stretch(const Coordinates& direction) const;
+  [[nodiscard]] DirectionalSpread stress_at_unit_stretch() const;
+
+  /// A direction (not of unit length) of the lattice's axes in those of the body.
+  [[nodiscard]] Coordinates turned(const Coordinates& of_lattice) const;
+
+ private:
+  struct Bond {
+    Coordinates direction;
+    double length, weight;  // w / V
+  };
+
+  template <class Quantity>
+  [[nodiscard]] DirectionalSpread over_directions(const Quantity& of) const;
+  void correct_energy();
+  void find_compliance();
+  [[nodiscard]] std::vector<double> strain_of_pull(const Coordinates& direction) const;
+
+  BondSetting setting_;
+  std::vector<Bond> bonds_;         // of each two opposite ones one, with both weights
+  std::vector<double> compliance_;  // times c, Kelvin's notation
+};
+
+/// Micromodulus for Young's modulus E [Pa]: right in the mean over all directions of the lattice
+/// with its corrections.
+[[nodiscard]] double bulk_micromodulus(double youngs_modulus, const BondSetting& setting);
+
+/// Mean over all planes of A [m^5], see BulkBonds::crossing: of the setting's lattice, or, where
+/// there is none, <|n_x|> m_2 / 2 of the continuum.
+[[nodiscard]] double mean_crossing(const BondSetting& setting);
+
+}  // namespace peristat

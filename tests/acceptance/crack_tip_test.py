@@ -1,0 +1,200 @@
+"""J integral, stress intensity factors and T-stress of [[crack_tip]]."""
+
+import math
+import pathlib
+
+import h5py
+import numpy
+
+from tests.acceptance.constraints_test import plane
+from tests.acceptance.programme_test import Programmes
+from tests.reference.case import Case
+from tests.reference.crack_tip import CrackTip, Elasticity
+from tests.reference.program import peristat
+from tests.reference.verify import Verification
+
+CASES = pathlib.Path(__file__).resolve().parents[2] / "cases"
+E = 200e9
+
+# A square whose rim moves as Williams' fields do.
+SQUARE = """\
+dimension = {dimension}
+[lattice]
+spacing = 1e-3
+horizon_ratio = 3.015
+{thickness}
+[[lattice.shape]]
+add = "box"
+min = [-0.02, {low}{bottom}]
+max = [0.02, 0.02{top}]
+[[set]]
+name = "rim"
+where = "max(abs(x), abs(y)) > 0.017"
+[[crack]]
+{crack}
+[material]
+{material}
+[[support]]
+set = "rim"
+displacement = [{displacement}]
+[[crack_tip]]
+name = "tip"
+at = [0, 0{middle}]
+direction = [1, 0{middle}]
+[solver]
+relative_tolerance = 1e-12
+"""
+
+
+def williams(mode, shear, kolosov):
+    """Components as expressions of place for the stress intensity 1e6 Pa m^1/2; the crack lies on negative x."""
+    size, half = f"1e6*load*sqrt(sqrt(x^2+y^2)/(2*pi))/(2*{shear})", "(atan2(y,x)/2)"
+    if mode == 0:
+        return (f"{size}*cos{half}*({kolosov}-1+2*sin{half}^2)", f"{size}*sin{half}*({kolosov}+1-2*cos{half}^2)", "0")
+    if mode == 1:
+        return (f"{size}*sin{half}*({kolosov}+1+2*cos{half}^2)", f"-{size}*cos{half}*({kolosov}-1-2*sin{half}^2)", "0")
+    return ("0", "0", f"4*{size}*sin{half}")
+
+
+def square(displacement, dimension=2, material=f'youngs_modulus = {E}\n[quadrature]\nvolume_correction = "linear"', low=-0.02, more=""):
+    is_plane = dimension == 2
+    crack = "from = [-0.03, 0]\nto = [0, 0]" if is_plane else "vertices = [[-0.03, 0, -1], [0, 0, -1], [0, 0, 1], [-0.03, 0, 1]]"
+    quoted = ", ".join(f'"{component}"' for component in displacement[:dimension])
+    return SQUARE.format(dimension=dimension, thickness="thickness = 1e-3" if is_plane else "", low=low, crack=crack,
+                         bottom="" if is_plane else ", 0", top="" if is_plane else ", 5e-3", middle="" if is_plane else ", 0",
+                         material=material, displacement=quoted) + more  # fmt: skip
+
+
+class CrackTips(Programmes):
+    def by_reference(self, name, elasticity, ring):
+        folder = self.folder / name
+        with h5py.File(folder / "results.h5") as file:
+            case = Case(file["case/as_resolved"][()].decode(), self.folder)
+        judged = Verification(folder, case)
+        tip = CrackTip(judged.mechanics, case.get("crack_tip")[0], elasticity, *ring)
+        return tip.values(judged.results.steps[-1].displacement)
+
+    def assert_same(self, row, expected):
+        largest = max(abs(value) for name, value in expected.items() if name.startswith("K"))
+        size = {"J": expected["J"], "T": largest / math.sqrt(2 * math.pi * 6e-3)}
+        for name, value in expected.items():
+            self.assertAlmostEqual(row[f"tip_{name}"], value, delta=1e-6 * size.get(name, largest), msg=name)
+
+    def test_williams_fields_have_their_factors(self):
+        """Up to the moduli of the lattice, 2 % in tension and 4 % in shear off the continuum's, and a tip that is nonlocal."""
+        thin = Elasticity(E, 1 / 3, True)
+        for mode, (name, other, error) in enumerate((("K1", "K2", 0.02), ("K2", "K1", 0.04))):
+            with self.subTest(name):
+                row = self.run_case(square(williams(mode, thin.shear, thin.kolosov)), "lattice.spacing=5e-4")[-1]
+                self.assertAlmostEqual(row[f"tip_{name}"] / 1e6, 1, delta=error)
+                self.assertLess(abs(row[f"tip_{other}"]), 1e-3 * 1e6)
+                self.assertAlmostEqual(row["tip_J"] / (row[f"tip_{name}"] ** 2 / E), 1, delta=0.03)
+                self.assertLess(row["tip_J_spread"], 0.01)
+
+    def test_what_is_told_is_what_the_reference_finds(self):
+        thin, ring = Elasticity(E, 1 / 3, True), (2 * 3.015e-3, 4 * 3.015e-3)
+        fields = [williams(mode, thin.shear, thin.kolosov) for mode in (0, 1)]
+        mixed = [f"{one}+0.5*({other})+1e-5*load*x*{axis == 0:d}" for axis, (one, other) in enumerate(zip(*fields))]
+        row = self.run_case(square(mixed))[-1]
+        self.assert_same(row, self.by_reference("out", thin, ring))
+
+    def test_t_stress_of_a_uniform_field(self):
+        """A stress along the crack loads no tip: T is that stress, and there is no K."""
+        strain = 1e-4
+        row = self.run_case(square([f"{strain}*load*x", f"-{strain}/3*load*y"]))[-1]
+        self.assertAlmostEqual(row["tip_T"] / (E * strain), 1, delta=0.02)
+        for name in ("K1", "K2"):
+            self.assertLess(abs(row[f"tip_{name}"]), 0.01 * E * strain * math.sqrt(math.pi * 0.01))
+
+    def test_half_a_square_is_the_whole(self):
+        thin = Elasticity(E, 1 / 3, True)
+        field = williams(0, thin.shear, thin.kolosov)
+        whole = self.run_case(square(field), name="whole")[-1]
+        half = self.run_case(square(field, low=0, more=plane("y")), name="half")[-1]
+        for name in ("J", "J_spread", "K1", "T"):
+            self.assertAlmostEqual(half[f"tip_{name}"] / whole[f"tip_{name}"], 1, delta=1e-6, msg=name)
+        self.assertEqual(half["tip_K2"], 0)
+
+    def test_in_space(self):
+        solid = Elasticity(E, 0.25, False)
+        for mode, name in ((0, "K1"), (2, "K3")):
+            with self.subTest(name):
+                text = square(williams(mode, solid.shear, solid.kolosov), 3)
+                row = self.run_case(text, name=name)[-1]
+                self.assert_same(row, self.by_reference(name, solid, (2 * 3.015e-3, 4 * 3.015e-3)))
+                # Its sides are free; one period of a thick plate has the factors of plane strain.
+                row = self.run_case(text + '[[period]]\naxis = "z"\nfrom = 0\nto = 5e-3\n')[-1]
+                self.assertAlmostEqual(row[f"tip_{name}"] / 1e6, 1, delta=0.06)
+
+    def test_cpd(self):
+        constants = {"c1": 1.2e22, "c2": 2e32}
+        told = peristat("calibrate", "--dimension", 2, "--spacing", 1e-3, "--horizon-ratio", 3.015, "--thickness", 1e-3,
+                        "--c1", constants["c1"], "--c2", constants["c2"]).json()["lattice"]  # fmt: skip
+        thin = Elasticity(told["youngs_modulus"], told["poisson_ratio"], True)
+        self.assertGreater(told["poisson_ratio"], 0.4)
+        material = 'model = "cpd"\n' + "".join(f"{name} = {value}\n" for name, value in constants.items())
+        row = self.run_case(square(williams(0, thin.shear, thin.kolosov), material=material))[-1]
+        self.assert_same(row, self.by_reference("out", thin, (2 * 3.015e-3, 4 * 3.015e-3)))
+        self.assertAlmostEqual(row["tip_K1"] / 1e6, 1, delta=0.03)
+
+    def test_a_cut_releases_what_j_says(self):
+        """The rates are those of a crack that ends in the middle of the cut, at the same displacement or load."""
+        text = (CASES / "three_point_bending/rollers.toml").read_text()
+        half = 1.6e-3  # a horizon is 1.5e-3
+        for at, cut, name in ((0.01 - half, 2 * half, "cut"), (0.01, 0, "middle")):
+            shorter = text.replace("to = [0.0, 0.01]", f"to = [0.0, {at}]").replace('title = "Notched beam on ideal rollers"', "")
+            tip = f'[[crack_tip]]\nname = "tip"\nat = [0, {at}]\ndirection = [0, 1]\n' + (f"cut = {cut}\n" if cut else "")
+            row = self.run_case(shorter + tip, name=name)[-1]
+            if name == "cut":
+                rates = row["tip_G_displacement"], row["tip_G_load"]
+                load = row["reaction_y:load"]
+        self.assertAlmostEqual(rates[0] / row["tip_J"], 1, delta=0.03)
+        self.assertAlmostEqual(rates[1] / (row["tip_J"] * (load / row["reaction_y:load"]) ** 2), 1, delta=0.03)
+
+    def test_a_cut_under_a_load_that_stays(self):
+        """Of loads alone: both rates from the energies at the same load."""
+        text = square(["0", "0"]).replace('where = "max(abs(x), abs(y)) > 0.017"', 'where = "x > 0.017"')
+        text += '[[set]]\nname = "up"\nwhere = "x < -0.018 && y > 0"\n[[set]]\nname = "down"\nwhere = "x < -0.018 && y < 0"\n'
+        text += "".join(f'[[load]]\nset = "{name}"\ntotal_force = [0, "{sign}*load"]\n' for name, sign in (("up", 1), ("down", -1)))
+        half = 2e-3
+        cut = self.run_case(text + "", "crack_tip[0].cut=4e-3", "crack_tip[0].at=[-2e-3, 0]", "crack[0].to=[-2e-3, 0]", name="cut")[-1]
+        middle = self.run_case(text, name="middle")[-1]
+        self.assertAlmostEqual(cut["tip_G_load"] / middle["tip_J"], 1, delta=0.03)
+        longer = self.run_case(text, f"crack[0].to=[{half}, 0]", f"crack_tip[0].at=[{half}, 0]", name="longer")[-1]
+        released = longer["stored_energy"] - cut["stored_energy"]
+        self.assertAlmostEqual(cut["tip_G_load"] / (released / (2 * half * 1e-3)), 1, delta=1e-6)
+
+    def test_a_beam_on_rollers_has_the_factor_of_the_handbook(self):
+        """ASTM E399; the horizon is 0.15 of the crack."""
+        text = (CASES / "three_point_bending/rollers.toml").read_text()
+        text = text.replace('title = "Notched beam on ideal rollers"', '')
+        row = self.run_case(text + '[[crack_tip]]\nname = "tip"\nat = [0, 0.01]\ndirection = [0, 1]\n')[-1]
+        a, width, span, thickness = 0.5, 0.02, 0.08, 0.01
+        shape = 3 * a**0.5 * (1.99 - a * (1 - a) * (2.15 - 3.93 * a + 2.7 * a**2)) / (2 * (1 + 2 * a) * (1 - a) ** 1.5)
+        expected = -row["reaction_y:load"] * span / (thickness * width**1.5) * shape
+        self.assertAlmostEqual(row["tip_K1"] / expected, 1, delta=0.05)
+        self.assertAlmostEqual(row["tip_K1"] / math.sqrt(E * row["tip_J"]), 1, delta=0.02)
+        self.assertLess(row["tip_J_spread"], 0.01)
+
+    def test_slips_are_told(self):
+        field = williams(0, 75e9, 2)
+        for words, told in (
+            ("crack_tip[0].outer=0.0195", "meets the body's edge"),
+            ("crack_tip[0].outer=0.018", "holds a point within the ring"),
+            ("crack_tip[0].at=[0.012, 0]", "meets the body's edge"),
+            ("crack_tip[0].inner=1e-3", "2 horizons"),
+            ("crack_tip[0].outer=7e-3", "a horizon more"),
+            ("crack_tip[0].direction=[0, 0]", "zero"),
+            ("crack_tip[0].front=[0, 0]", "dimension 3"),
+            ("crack_tip[1]={name=\"tip\", at=[0,0], direction=[1,0]}", "has this name"),
+            ("temperature={change=1}", "eigenstrains"),
+            ("crack_tip[0].cut=1e-3", "a horizon at least"),
+        ):
+            with self.subTest(words):
+                ended = peristat("check", self.case(square(field, material=f"youngs_modulus = {E}\nthermal_expansion = 1e-5")), "--set", words)
+                self.assertEqual(ended.code, 2, ended.said)
+                self.assertIn(told, ended.said)
+                self.assertIn("crack_tip", ended.said)
+        half = square(field, low=0, more=plane("y").replace("y", "x") + "at = -0.02\n")
+        ended = peristat("check", self.case(half.replace("at = [0, 0]", "at = [-0.008, 0.01]")))
+        self.assertEqual(ended.code, 2, ended.said)

@@ -1,0 +1,184 @@
+"""Fracture energy and strength: what a tear takes and a pull bears, beside what was asked for and foretold."""
+
+import json
+import math
+import pathlib
+import tempfile
+import unittest
+
+import numpy
+
+from tests.reference.case import Case
+from tests.reference.clouds import toml
+from tests.reference.program import peristat
+from tests.reference.sheets import Bulk, resolve
+
+LAWS = ("critical_stretch", "tanh", "tanh_continuous", "linear", "exponential", "blended")
+SPACING = 1e-3
+# Directions of the lattice in which it repeats, with the period in spacings.
+ANGLES = ((0.0, 1.0), (math.degrees(math.atan(0.5)), math.sqrt(5.0)), (45.0, math.sqrt(2.0)))
+CORRECTIONS = {"none": {}, "linear": {"volume_correction": "linear"},
+               "energy": {"volume_correction": "linear", "surface_correction": "energy"}}  # fmt: skip
+# Sums of a few hundred bonds by other means.
+ROUND_OFF = 1e-12
+
+
+class FractureEnergy(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory(prefix="peristat_tear_")
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+
+    def write(self, tables):
+        path = self.folder / "case.toml"
+        path.write_text(toml(tables))
+        return path
+
+    def strip(self, length, angle, ratio, material, quadrature):
+        """Two halves that are pulled apart as rigid blocks, until no bond joins them."""
+        half = (2 * ratio + 3) * SPACING
+        return {
+            "dimension": 2,
+            "lattice": {"spacing": SPACING, "horizon_ratio": ratio, "angle": angle, "thickness": 0.5,
+                        "shape": [{"add": "box", "min": [0, -half], "max": [length, half]}]},
+            "set": [{"name": "low", "where": "y < 1.23e-5"}, {"name": "high", "where": "y >= 1.23e-5"}],
+            "quadrature": quadrature, "material": material,
+            "support": [{"set": "low", "displacement": [0, 0]}, {"set": "high", "displacement": [0, f"{20 * ratio * SPACING}*load"]}],
+            "solver": {"mode": "relaxation"},
+        }  # fmt: skip
+
+    def dissipated(self, tables):
+        run = peristat("run", self.write(tables), "--quiet", "--overwrite", "--output", self.folder / "out")
+        self.assertEqual(run.code, 0, run.said)
+        return json.loads((self.folder / "out/summary.json").read_text())["energy"]["dissipated"]
+
+    def tear(self, angle, period, ratio, material, quadrature):
+        """Dissipated over area, of the middle of a strip: what a longer one has more than a shorter one."""
+        periods = math.ceil((4 * ratio + 3) / period)
+        lengths = [n * period * SPACING * (1 + 1e-12) for n in (periods, periods + 4)]
+        short, long = (self.dissipated(self.strip(length, angle, ratio, material, quadrature)) for length in lengths)
+        return (long - short) / (4 * period * SPACING * 0.5)
+
+    def test_a_straight_tear_takes_what_is_foretold_for_its_direction(self):
+        found = {}
+        tried = [(law, 3.015, "linear", "continuum") for law in LAWS]
+        tried += [("linear", 3.015, name, "lattice") for name in CORRECTIONS] + [("linear", 5.015, "linear", "continuum")]
+        for law, ratio, correction, calibration in tried:
+            material = {"youngs_modulus": 70e9, "calibration": calibration,
+                        "damage": {"law": law, "fracture_energy": 10.0}}  # fmt: skip
+            for angle, period in ANGLES:
+                with self.subTest(law=law, ratio=ratio, correction=correction, angle=angle, calibration=calibration):
+                    took = self.tear(angle, period, ratio, material, CORRECTIONS[correction])
+                    bulk = Bulk(Case(self.strip(1, angle, ratio, material, CORRECTIONS[correction])))
+                    foretold = 10.0 * bulk.crossing_of([0, 1]) / bulk.crossing
+                    self.assertAlmostEqual(took / foretold, 1.0, delta=1e-10)  # a difference of two sums
+                    found.setdefault((ratio, correction), {})[angle] = took
+        for (ratio, correction), by_angle in found.items():
+            # 0 and 45 degrees are the ends of the range of directions, 26.6 stands twice in it.
+            flat, between, diagonal = by_angle.values()
+            self.assertAlmostEqual((flat + 2 * between + diagonal) / 40, 1.0, delta=0.02 if correction == "none" else 0.01,
+                                   msg=f"{ratio} {correction}")  # fmt: skip
+
+    def test_calibrate_foretells_the_tears_along_and_across_the_lattice(self):
+        material = {"youngs_modulus": 70e9, "damage": {"law": "linear", "fracture_energy": 10.0, "strength": 8e6}}
+        for (angle, period), key in zip(ANGLES[::2], ("axes", "diagonals"), strict=True):
+            case = self.write(self.strip(0.03, 0.0, 3.015, material, CORRECTIONS["linear"]))
+            told = json.loads(peristat("calibrate", case).output)["damage"]["fracture_energy"]
+            took = self.tear(angle, period, 3.015, material, CORRECTIONS["linear"])
+            for value in told[key]:
+                self.assertAlmostEqual(value / took, 1.0, delta=1e-10)
+            self.assertLessEqual(told["least"], took * (1 + ROUND_OFF))
+            self.assertGreaterEqual(told["most"], took * (1 - ROUND_OFF))
+
+    def question(self, dimension, law, **more):
+        options = {"dimension": dimension, "spacing": 2e-4, "horizon-ratio": 3.015, "youngs-modulus": 30e9, "law": law} | more
+        if law == "blended":
+            options.setdefault("hardening", 0.8)
+        return [word for name, value in options.items() for word in (f"--{name}", repr(value) if isinstance(value, float) else str(value))]
+
+    def calibrated(self, dimension, law, **more):
+        run = peristat("calibrate", "--model", "bond", *self.question(dimension, law, **more))
+        self.assertEqual(run.code, 0, run.said)
+        return json.loads(run.output)
+
+    def test_calibrate_goes_there_and_back(self):
+        for dimension in (1, 2, 3):
+            for law in LAWS:
+                for calibration in ("continuum", "lattice"):
+                    with self.subTest(dimension=dimension, law=law, calibration=calibration):
+                        self.there_and_back(dimension, law, calibration)
+
+    def there_and_back(self, dimension, law, calibration):
+        data, strength = {"fracture-energy": 60.0}, 0.0
+        if law != "critical_stretch":
+            brittle = self.calibrated(dimension, "critical_stretch", calibration=calibration, **data)["damage"]
+            data["strength"] = strength = 0.8 * brittle["strength"]
+        there = self.calibrated(dimension, law, calibration=calibration, **data)["damage"]
+        self.assertAlmostEqual(there["fracture_energy"]["mean"] / 60, 1.0, delta=ROUND_OFF)
+        if law != "critical_stretch":
+            self.assertAlmostEqual(there["strength"] / strength, 1.0, delta=ROUND_OFF)
+        stretches = {key: there[key] for key in ("onset", "peak", "critical") if key in there}
+        back = self.calibrated(dimension, law, calibration=calibration, **stretches)["damage"]
+        for key in ("strength", "characteristic_length", "largest_spacing"):
+            self.assertAlmostEqual(back[key] / there[key], 1.0, delta=ROUND_OFF)
+        for key in ("mean", "least", "most"):
+            self.assertAlmostEqual(back["fracture_energy"][key] / there["fracture_energy"][key], 1.0, delta=ROUND_OFF)
+        # and beside the reference, whose bonds are those of a body
+        tables = {"dimension": dimension, "lattice": {"spacing": 2e-4, "horizon_ratio": 3.015},
+                  "material": {"youngs_modulus": 30e9, "calibration": calibration,
+                               "damage": {"law": law} | {key.replace("-", "_"): value for key, value in data.items()}}}  # fmt: skip
+        if law == "blended":
+            tables["material"]["damage"]["hardening"] = 0.8
+        case = Case(tables)
+        resolve(case)
+        for key, value in stretches.items():
+            # The largest force of a tanh law is flat there: its place is known to half of the digits only.
+            self.assertAlmostEqual(case["material"]["damage"][key] / value, 1.0, delta=1e-8 if law.startswith("tanh") else ROUND_OFF)
+
+    def test_moduli_of_the_lattice_are_right_in_the_mean(self):
+        for dimension in (1, 2, 3):
+            told = self.calibrated(dimension, "linear", **{"fracture-energy": 60.0}, calibration="lattice")
+            self.assertAlmostEqual(told["youngs_modulus"]["mean"] / 30e9, 1.0, delta=ROUND_OFF)
+            free = self.calibrated(dimension, "linear", **{"fracture-energy": 60.0})
+            self.assertGreater(abs(free["youngs_modulus"]["mean"] / 30e9 - 1), 1e-3)
+            if dimension > 1:
+                self.assertLess(min(*told["youngs_modulus"]["axes"], *list(told["youngs_modulus"].values())[-1]), 30e9)
+
+    def test_modulus_along_an_axis_is_that_of_a_pulled_body(self):
+        """A square cut along the axes, every point stretched as told; its inner points bear E."""
+        told = self.calibrated(2, "linear", **{"fracture-energy": 60.0, "horizon-ratio": 3.015})
+        bulk = Bulk(Case({"dimension": 2, "lattice": {"spacing": 2e-4, "horizon_ratio": 3.015}, "material": {"youngs_modulus": 30e9}}))
+        c = 30e9 * bulk.of_modulus
+        n, weight = bulk.direction, bulk.weight * bulk.length * c / 2
+        c11, c12 = (weight * n[:, 0] ** 4).sum(), (weight * n[:, 0] ** 2 * n[:, 1] ** 2).sum()
+        self.assertAlmostEqual(told["youngs_modulus"]["axes"][0] / (c11 - c12**2 / c11), 1.0, delta=ROUND_OFF)
+
+    def test_the_largest_spacing_is_where_a_law_is_refused(self):
+        data = {"fracture-energy": 60.0, "strength": 14e6}
+        largest = self.calibrated(2, "linear", **data)["damage"]["largest_spacing"]
+        self.assertEqual(self.calibrated(2, "linear", **data, spacing=largest * (1 - 1e-6))["damage"]["strength"], 14e6)
+        run = peristat("calibrate", "--model", "bond", *self.question(2, "linear", **data, spacing=largest * (1 + 1e-6)))
+        self.assertEqual(run.code, 2)
+        self.assertIn(f"a spacing below {largest:.4g} m resolves it", run.said)
+
+    def test_a_bar_bears_its_strength(self):
+        """Every bond of a bar under a homogeneous strain has the same stretch: the force is largest at the peak."""
+        for law in LAWS:
+            with self.subTest(law=law):
+                damage = {"law": law, "strength": 2e6} | ({} if law == "critical_stretch" else {"critical": 4e-3})
+                tables = {"dimension": 1, "lattice": {"spacing": 0.1, "horizon_ratio": 3.0, "shape": [{"add": "box", "min": [0], "max": [3]}]},
+                          "set": [{"name": "all", "where": "1"}], "material": {"youngs_modulus": 1e9, "calibration": "lattice", "damage": damage},
+                          "support": [{"set": "all", "displacement": ["4.0e-3*x*load"]}], "loading": {"steps": 400}}  # fmt: skip
+                run = peristat("run", self.write(tables), "--quiet", "--overwrite", "--output", self.folder / "out")
+                self.assertEqual(run.code, 0, run.said)
+                rows = (self.folder / "out/history.csv").read_text().splitlines()
+                column = rows[0].split(",").index("stored_energy")
+                stored = numpy.array([float(row.split(",")[column]) for row in rows[1:]])
+                strain = 4e-3 * numpy.arange(1, len(stored) + 1) / 400
+                # Of the inner points half the force times the strain is stored; the ends take away from all alike.
+                stress = stored / strain
+                self.assertAlmostEqual(stress.max() / stress[0] * strain[0] * 1e9 / 2e6, 1.0, delta=0.01)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,141 @@
+"""Moduli and data of fracture of a material as constants and stretches of its bonds (docs/theory.md)."""
+
+import itertools
+import math
+
+import numpy
+
+from tests.reference.laws import Law
+
+MEAN_OF_MAGNITUDE = {1: 1.0, 2: 2 / math.pi, 3: 0.5}
+MEAN_OF_FOURTH_POWER = {1: 1.0, 2: 3 / 8, 3: 1 / 5}
+
+
+def bulk_bonds(case):
+    """Directions, lengths and weights over the volume of the bonds of a point deep inside the lattice:
+    those of the midpoint of a patch, made like every other body."""
+    from tests.reference.body import Body
+    from tests.reference.case import Case
+
+    dimension, spacings = case.dimension, case.spacings
+    reach = case.horizon() + case.spacing(None) / 2
+    if case["quadrature"]["surface_correction"] != "none":
+        reach *= 2  # the neighbours have to be deep inside, too
+    counts = [math.ceil(reach / edge) + 1 for edge in spacings]
+    grid = numpy.array(list(itertools.product(*(range(-n, n + 1) for n in counts))), float)
+    middle = len(grid) // 2
+    places = grid * spacings
+    if dimension > 1:
+        angle = math.radians(case["lattice"].get("angle", 0.0))
+        turned = numpy.array([[math.cos(angle), -math.sin(angle)], [math.sin(angle), math.cos(angle)]])
+        places[:, :2] = places[:, :2] @ turned.T
+    tables = {name: case[name] for name in ("dimension", "lattice", "quadrature")}
+    tables["material"] = {"plane": case["material"]["plane"], "youngs_modulus": 1.0}
+    volume = numpy.prod(spacings) * case.cross_section
+    patch = Body(Case(tables), places, numpy.full(len(places), volume))
+    own = (patch.bonds == middle).any(axis=1)
+    arm = numpy.diff(places[patch.bonds[own]], axis=1)[:, 0]
+    length = numpy.sqrt((arm**2).sum(axis=1))
+    return arm / length[:, None], length, patch.weight[1][own] / volume
+
+
+class Bulk:
+    """What c / E and G / (c W) are, W the work of a bond of the modulus 1."""
+
+    def __init__(self, case):
+        from tests.reference.body import confined_modulus_factor, micromodulus_factor
+
+        d, horizon, section = case.dimension, case.horizon(), case.cross_section
+        self.of_modulus = micromodulus_factor(d, case["material"]["plane"], horizon, section)
+        if case.is_lattice:
+            self.direction, self.length, self.weight = bulk_bonds(case)
+            second = (self.weight * self.length**2).sum()
+            stiffness = 2 * confined_modulus_factor(d, case["material"]["plane"])
+            self.lattice_of_modulus = stiffness / MEAN_OF_FOURTH_POWER[d] / (self.weight * self.length).sum()
+        else:
+            second = {1: 2, 2: 2 * math.pi, 3: 4 * math.pi}[d] * section * horizon ** (d + 2) / (d + 2)
+        self.crossing = MEAN_OF_MAGNITUDE[d] * second / 2
+
+    def crossing_of(self, normal):
+        """The same for a plane of this normal instead of the mean."""
+        cosine = self.direction @ (numpy.asarray(normal) / numpy.linalg.norm(normal))
+        return (self.weight * self.length**2 * abs(cosine)).sum() / 2
+
+
+def root(rising, low, high):
+    for _ in range(200):
+        middle = (low + high) / 2
+        low, high = (middle, high) if rising(middle) < 0 else (low, middle)
+    return (low + high) / 2
+
+
+def total_work(damage):
+    return float(Law.of_table(damage).moment(numpy.array([float(damage["critical"])]))[0])
+
+
+def peak_force(damage):
+    law = Law.of_table(damage)
+    if damage["law"] == "critical_stretch":
+        return law.critical
+    low, high = law.onset, law.critical
+    for _ in range(12):  # a finer and finer grid about the largest
+        at = numpy.linspace(low, high, 2001)
+        force = at * law.integrity(at)
+        k = int(force.argmax())
+        low, high = at[max(k - 1, 0)], at[min(k + 1, 2000)]
+    return float(force.max())
+
+
+def with_critical(damage, work):
+    """The critical stretch at which the law takes that work."""
+    start = damage.get("peak", damage["onset"])
+    missing = lambda critical: total_work(damage | {"critical": critical}) - work
+    return damage | {"critical": root(missing, start * (1 + 1e-9), 4 * (start + work / start))}
+
+
+def with_stretches(damage, modulus, of_work):
+    """The table with stretches in the place of fracture energy and strength.
+
+    modulus: E [Pa]; of_work: G / W [J/m2]."""
+    damage = dict(damage)
+    work = damage.pop("fracture_energy", 0.0) / of_work
+    peak = damage.pop("strength", 0.0) / modulus
+    if not work and not peak:
+        return damage
+    if damage["law"] == "critical_stretch":
+        return damage | {"critical": math.sqrt(2 * work) if work else peak}
+    if damage["law"] == "blended":
+        hardening = damage.setdefault("hardening", 0.5)
+        peak = peak or (0.0 if "peak" in damage else math.sqrt(2 * work) / 2)
+        damage.setdefault("onset", peak / 2)
+        if peak:
+            damage["peak"] = damage["onset"] + (peak - damage["onset"]) / hardening
+    elif peak and damage["law"] in ("linear", "exponential"):
+        damage["onset"] = peak
+    elif peak:
+        complete = lambda onset: with_critical(damage | {"onset": onset}, work) if work else damage | {"onset": onset}
+        damage = complete(root(lambda onset: peak_force(complete(onset)) - peak, peak * 1e-3, peak))
+    else:
+        damage.setdefault("onset", math.sqrt(2 * work) / 2)
+    return with_critical(damage, work) if work else damage
+
+
+def resolve(case):
+    """Writes what bonds have into the tables of the materials, in the place of the data of a sheet."""
+    if case["material"].get("model", "bond") != "bond":
+        return
+    tables = [case["material"]] + [t["material"] for t in case.get("region")]
+    tables += [t["material"] for t in case.get("interface") if "material" in t]
+    asks = lambda t: "calibration" in t or {"fracture_energy", "strength"} & set(t.get("damage", {}))
+    tables = [table for table in tables if asks(table)]
+    bulk = Bulk(case) if tables else None
+    for table in tables:
+        on_lattice = table.pop("calibration", "continuum") == "lattice"
+        if on_lattice:
+            table["micromodulus"] = table["youngs_modulus"] * bulk.lattice_of_modulus
+        modulus = table.get("youngs_modulus") or table["micromodulus"] / bulk.of_modulus
+        if on_lattice:
+            del table["youngs_modulus"]
+        c = table.get("micromodulus") or modulus * bulk.of_modulus
+        if "damage" in table:
+            table["damage"] = with_stretches(table["damage"], modulus, c * bulk.crossing)

@@ -1,0 +1,152 @@
+#include "solvers/study/fracture_data.hpp"
+
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "src/core/input_error.hpp"
+
+namespace peristat {
+namespace {
+
+const FractureScale scale{70e9, 3e21, 1e-13, 1e-3};
+constexpr double energy = 10.0;
+const double unit = scale.micromodulus * scale.crossing;  // G over W
+const double brittle = std::sqrt(2.0 * energy / unit);
+
+const std::vector<DamageLaw> softening{DamageLaw::tanh, DamageLaw::tanh_continuous,
+                                       DamageLaw::linear, DamageLaw::exponential,
+                                       DamageLaw::blended};
+
+DamageSpecification law(DamageLaw of) {
+  DamageSpecification damage;
+  damage.law = of;
+  return damage;
+}
+
+TEST(FractureData, OfABrittleBondGiveItsStretch) {
+  DamageSpecification damage = law(DamageLaw::critical_stretch);
+  damage.fracture_energy = energy;
+  EXPECT_NEAR(with_stretches(damage, "m", scale).critical / brittle, 1.0, 1e-14);
+  damage.fracture_energy.reset();
+  damage.strength = 14e6;
+  EXPECT_NEAR(with_stretches(damage, "m", scale).critical, 2e-4, 1e-18);
+}
+
+TEST(FractureData, OfEveryLawThatSoftensComeBack) {
+  for (const DamageLaw of : softening) {
+    for (const double share : {0.7, 0.83, 0.95}) {
+      DamageSpecification damage = law(of);
+      damage.fracture_energy = energy;
+      damage.strength = share * brittle * scale.youngs_modulus;
+      if (of == DamageLaw::blended) damage.hardening = 0.9;
+      const DamageSpecification found = with_stretches(damage, "m", scale);
+      EXPECT_NEAR(unit * total_work(found) / energy, 1.0, 1e-12) << int(of);
+      EXPECT_NEAR(scale.youngs_modulus * peak_force(found) / *damage.strength, 1.0, 1e-12);
+      EXPECT_FALSE(found.is_by_data());
+      EXPECT_LT(found.onset, found.critical);
+    }
+  }
+}
+
+TEST(FractureData, WithAnOnsetOrAloneGiveTheFractureEnergy) {
+  for (const DamageLaw of : softening) {
+    DamageSpecification damage = law(of);
+    damage.fracture_energy = energy;
+    const DamageSpecification alone = with_stretches(damage, "m", scale);
+    EXPECT_NEAR(unit * total_work(alone) / energy, 1.0, 1e-12);
+    EXPECT_NEAR(alone.onset / brittle, of == DamageLaw::blended ? 0.25 : 0.5, 1e-14);
+    damage.onset = 0.3 * brittle;
+    if (of == DamageLaw::blended) damage.peak = 0.5 * brittle;
+    const DamageSpecification begun = with_stretches(damage, "m", scale);
+    EXPECT_NEAR(unit * total_work(begun) / energy, 1.0, 1e-12);
+    EXPECT_EQ(begun.onset, damage.onset);
+  }
+}
+
+TEST(FractureData, GiveTheOnsetOfACriticalStretchByTheStrength) {
+  for (const DamageLaw of : softening) {
+    DamageSpecification damage = law(of);
+    damage.critical = 4e-4;
+    damage.strength = 0.8 * 4e-4 * scale.youngs_modulus;
+    if (of == DamageLaw::blended) damage.hardening = 0.95;
+    const DamageSpecification found = with_stretches(damage, "m", scale);
+    EXPECT_EQ(found.critical, 4e-4);
+    EXPECT_NEAR(scale.youngs_modulus * peak_force(found) / *damage.strength, 1.0, 1e-12);
+  }
+}
+
+/// The closed forms: s_c = 2 W/s_m, and for the default s_m = s_0/2, s_c = 2 s_0.
+TEST(FractureData, OfTheLinearLawHaveAClosedForm) {
+  DamageSpecification damage = law(DamageLaw::linear);
+  damage.fracture_energy = energy;
+  EXPECT_NEAR(with_stretches(damage, "m", scale).critical / (2.0 * brittle), 1.0, 1e-14);
+  damage.strength = 7e6;
+  EXPECT_NEAR(with_stretches(damage, "m", scale).critical / (2.0 * energy / unit / 1e-4), 1.0,
+              1e-12);
+}
+
+std::string refusal(const DamageSpecification& damage) {
+  try {
+    static_cast<void>(with_stretches(damage, "m", scale));
+  } catch (const InputError& error) {
+    return error.key() + ": " + error.allowed();
+  }
+  return "not refused";
+}
+
+bool tells(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+TEST(FractureData, TooStrongForTheHorizonAreRefusedWithASpacingThatResolvesThem) {
+  for (const DamageLaw of : softening) {
+    DamageSpecification damage = law(of);
+    damage.fracture_energy = energy;
+    damage.strength = 2.0 * brittle * scale.youngs_modulus;
+    if (of == DamageLaw::blended) damage.onset = 1.999 * brittle;  // its rise takes next to nothing
+    const std::string told = refusal(damage);
+    EXPECT_TRUE(tells(told, "m.damage.strength: bonds of this horizon break")) << told;
+    EXPECT_TRUE(tells(told, "spacing below 0.000249") || tells(told, "spacing below 0.00025 m"))
+        << told;
+    // A little below that spacing it is found: W grows as the spacing falls.
+    FractureScale finer = scale;
+    finer.crossing *= 0.2487;
+    finer.spacing *= 0.2487;
+    EXPECT_LT(with_stretches(damage, "m", finer).onset,
+              with_stretches(damage, "m", finer).critical);
+  }
+  EXPECT_NEAR(largest_spacing(energy, 2.0 * brittle * scale.youngs_modulus, scale), 2.5e-4, 1e-16);
+}
+
+TEST(FractureData, ABrittleBondHasNotBoth) {
+  DamageSpecification damage = law(DamageLaw::critical_stretch);
+  damage.fracture_energy = energy;
+  damage.strength = 2.0 * brittle * scale.youngs_modulus;
+  const std::string told = refusal(damage);
+  EXPECT_TRUE(tells(told, "the fracture energy is 40 J/m2")) << told;  // as the square
+}
+
+TEST(FractureData, TooWeakForATanhLawAreRefused) {
+  DamageSpecification damage = law(DamageLaw::tanh);
+  damage.fracture_energy = energy;
+  damage.strength = 1e-3 * brittle * scale.youngs_modulus;
+  EXPECT_TRUE(tells(refusal(damage), "too small for a tanh law"));
+}
+
+TEST(FractureData, OfPlaneStressAreThoseOfTheBooks) {
+  BondSetting setting{{2, 3e-3, 2e-3}, PlaneState::stress};
+  MaterialSpecification material;
+  material.youngs_modulus = 70e9;
+  material.damage = law(DamageLaw::critical_stretch);
+  material.damage.fracture_energy = energy;
+  const FractureScale of = FractureScale::of(material, "m", setting, 1e-3);
+  const double book = std::sqrt(4.0 * std::numbers::pi * energy / (9.0 * 70e9 * 3e-3));
+  EXPECT_NEAR(with_stretches(material.damage, "m", of).critical / book, 1.0, 1e-14);
+}
+
+}  // namespace
+}  // namespace peristat
