@@ -371,6 +371,7 @@ class Probes(Stressed):
                             ('set = "top"\nto = [0.0, 0.0]\n', "goes with from"),
                             ('at = [0.0, 0.0]\nfield = "crack_length"\n', "every point"),
                             ('at = [0.0, 0.0]\nstatistic = "max"\n', "over a set"),
+                            ('at = [0.0, 0.1]\n', "within two spacings"),
                             ('from = [1.0, 0.0]\nto = [2.0, 0.0]\nfield = "damage"\n', "no point lies")):  # fmt: skip
             with self.subTest(wrong):
                 ended = peristat("check", self.case(plate("") + '[[probe]]\nname = "p"\n' + wrong))

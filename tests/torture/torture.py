@@ -34,7 +34,7 @@ REFUSALS = ("unstable at rest", "move freely", "held", "negative", "Poisson", "s
 
 def judge(path, folder):
     """Runs a case; returns the exit code, whether the reference has judged it, and complaints."""
-    run = peristat("run", path, "--quiet", "--threads", 1, "--output", folder / "out", folder=folder,
+    run = peristat("run", path, "--quiet", "--threads", 1, "--output", folder / "out", "--set", "output.stress=true", folder=folder,
                    seconds=10 * CPU_SECONDS, cpu_seconds=CPU_SECONDS)  # fmt: skip
     (folder / "said.txt").write_text(run.said)
     if run.code is None:

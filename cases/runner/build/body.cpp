@@ -11,6 +11,7 @@
 #include "src/connectivity/free_motion.hpp"
 #include "src/core/input_error.hpp"
 #include "src/core/number_text.hpp"
+#include "src/geometry/nearest_point.hpp"
 #include "src/geometry/point_file.hpp"
 #include "src/geometry/points_on_line.hpp"
 
@@ -93,6 +94,10 @@ Points make_points_of(const Case& from) {
       };
       require(".set", probe.set);
       require(".other", probe.other);
+      // A place off the body would be answered by what is far from it.
+      if (probe.at && nearest_point(points, *probe.at).distance > 2.0 * points.spacing.largest()) {
+        throw InputError(table + ".at", "", "no point lies within two spacings of this place");
+      }
       if (probe.from && points_on_line(points, *probe.from, *probe.to).empty()) {
         throw InputError(table + ".from", "", "no point lies within half a spacing of this line");
       }

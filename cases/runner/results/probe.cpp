@@ -11,6 +11,7 @@
 
 #include "cases/runner/input/probe_fields.hpp"
 #include "cases/runner/results/crack_measures.hpp"
+#include "src/geometry/nearest_point.hpp"
 
 namespace peristat {
 namespace {
@@ -31,23 +32,6 @@ const std::vector<double>& values_of(const ProbeField& field, const StepFields& 
       {"principal_stress", &StepFields::principal_stress},
       {"missing_neighbourhood", &StepFields::missing_neighbourhood}};
   return *(fields.*members.at(field.name));
-}
-
-/// Number of the point that stands for itself and is nearest to a place.
-Index nearest_point(const Points& points, const Coordinates& place) {
-  // As near but for round-off is as near: the lowest number is taken on every machine.
-  const double slack = 1e-9 * points.spacing;
-  Index nearest = 0;
-  double least = std::numeric_limits<double>::infinity();
-  for (Index point = 0; point < points.own(); ++point) {
-    const Coordinates at = points.position(point);
-    const double distance = std::hypot(at[0] - place[0], at[1] - place[1], at[2] - place[2]);
-    if (distance < least - slack) {
-      least = distance;
-      nearest = point;
-    }
-  }
-  return nearest;
 }
 
 /// Poisson's ratio of the homogeneous deformation that fits the displacements of a set best (least
@@ -140,7 +124,7 @@ std::vector<double> probe_values(const ProbeSpecification& probe, const Points& 
     return {measure->value(points, points.sets.at(probe.set), probe.axis, crack)};
   }
   if (probe.at) {
-    return values_at(probe, points.dimension, fields, nearest_point(points, *probe.at));
+    return values_at(probe, points.dimension, fields, nearest_point(points, *probe.at).point);
   }
   const std::vector<Index>& members = points.sets.at(probe.set);
   if (probe.field == "opening") {

@@ -1,0 +1,16 @@
+#pragma once
+
+#include "src/geometry/points.hpp"
+
+namespace peristat {
+
+struct NearestPoint {
+  Index point = 0;
+  double distance = 0.0;  ///< [m]
+};
+
+/// The point that stands for itself and is nearest to a place; of those as near but for round-off
+/// the one with the lowest number, on every machine.
+[[nodiscard]] NearestPoint nearest_point(const Points& points, const Coordinates& place);
+
+}  // namespace peristat
