@@ -23,6 +23,7 @@ thickness = 0.01
 [material]
 plane = "{plane}"
 youngs_modulus = {modulus}
+calibration = "lattice"
 [quadrature]
 surface_correction = "energy"
 volume_correction = "linear"
