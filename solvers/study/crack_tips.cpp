@@ -18,8 +18,10 @@ TipElasticity elasticity_of(const PointMaterials::Material& material, const Body
   const int dimension = body.points.dimension;
   const bool is_bond = material.of->model == MaterialModel::bond;
   if (is_bond) {
-    const double modulus = youngs_modulus_of(
+    // As given, be it on the lattice's sums or in the continuum; a micromodulus has the latter's.
+    const double of_continuum = youngs_modulus_of(
         micromodulus_of(*material.of, material.key, body.setting).at(1.0), body.setting);
+    const double modulus = material.of->youngs_modulus.value_or(of_continuum);
     const double nu = poisson_ratio(body.setting);
     const bool is_thin = dimension == 2 && body.setting.plane == PlaneState::stress;
     return is_thin ? TipElasticity::plane_stress(modulus, nu)
@@ -28,7 +30,7 @@ TipElasticity elasticity_of(const PointMaterials::Material& material, const Body
   const BondSetting& setting = body.setting;
   const CpdConstants constants = cpd_constants_of(*material.of, material.key, body.points, setting);
   const CpdStiffness stiffness =
-      material.of->calibration == Calibration::lattice
+      material.of->calibrated_on() == Calibration::lattice
           ? lattice_stiffness(dimension, body.points.spacing, setting.horizon,
                               setting.cross_section)
           : continuum_stiffness(dimension, setting.horizon, setting.cross_section);

@@ -288,7 +288,6 @@ class Cpd(unittest.TestCase):
         }.items():
             with self.subTest(arguments=arguments):
                 self.assert_refused(self.peristat("calibrate", *arguments), *words)
-        self.assert_refused(self.peristat("calibrate", CASES.parent / "bar/tension.toml"), "material", "cpd")
 
 
 if __name__ == "__main__":

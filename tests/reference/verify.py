@@ -393,13 +393,15 @@ class Verification:
         self.compare(step, "max_stretch", row["max_stretch"], largest, scale)
 
     def judge_broken_bonds(self, step, broken):
-        """Those listed so far: points beyond have the numbers of their sources."""
-        body = self.mechanics.body
-        self.broken_across = int((body.bonds[broken] >= body.own).any(axis=1).sum())
-        ends = numpy.sort(body.source[body.bonds[broken]], axis=1)
-        listed = [row for row in self.listed_bonds if row["step"] <= step.number]
-        written = [(int(row["first_point"]), int(row["second_point"])) for row in listed]
-        if sorted(written) != sorted(map(tuple, ends.tolist())):
+        """Those listed so far."""
+        bonds = self.mechanics.body.bonds[broken]
+        self.broken_across = int((bonds >= self.mechanics.body.own).any(axis=1).sum())
+        written = []
+        for row in self.listed_bonds:
+            if row["step"] <= step.number:
+                end = self.number_of(int(row["second_point"]), int(row.get("second_image", 0)))
+                written.append(sorted((int(row["first_point"]), -1 if end is None else end)))
+        if sorted(written) != sorted(numpy.sort(bonds, axis=1).tolist()):
             self.complain(step, "the list of broken bonds is not that of bonds whose history has come to an end")
 
     def judge_work(self, mechanics, step, row, old, history, gradient, external, loads):
