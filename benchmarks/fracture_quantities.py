@@ -1,4 +1,4 @@
-"""J, K and G of notched bodies over those of handbooks, for two horizons.
+"""J, K and G of notched bodies over those of handbooks, for two or three horizons.
 
   ./peristat build && /usr/bin/python3 -m benchmarks.fracture_quantities
 
@@ -23,6 +23,7 @@ thickness = 0.01
 [material]
 plane = "{plane}"
 youngs_modulus = {modulus}
+calibration = "lattice"
 [quadrature]
 surface_correction = "energy"
 volume_correction = "linear"
@@ -151,7 +152,7 @@ def main():
     print("| specimen | horizon / a | K_I | K_II | J | spread of J | G by a cut, over J |\n|---|---|---|---|---|---|---|")
     for name, specimen in SPECIMENS.items():
         length = 4 * A if specimen is cantilevers else A
-        for spacing in (1e-3 / 3, 1e-3 / 6):
+        for spacing in (1e-3 / 3, 1e-3 / 6, 1e-3 / 12)[: 2 if specimen is inclined else 3]:
             row, first, second = specimen(spacing)
             modulus = E if specimen is not nafems else 207e9 / (1 - 0.09)
             expected = (first**2 + second**2) / modulus

@@ -82,12 +82,10 @@ History CutRelease::history_of(const History& before) const {
   return study_->equations().assembler().history_of(kept);
 }
 
-ReleaseRates CutRelease::rates(const Trial& before, double stage) {
+std::optional<ReleaseRates> CutRelease::rates(const Trial& before, double stage) {
   const double energy = before.stored_energy;
-  if (!(energy > 0.0)) return {};
-  if (study_->analyze() != LinearOutcome::solved) {
-    throw std::runtime_error("the equations of the cut body can't be solved");
-  }
+  if (!(energy > 0.0)) return ReleaseRates{};
+  if (study_->analyze() != LinearOutcome::solved) return std::nullopt;
   const SolvedBody solved = study_->equations().solved();
   const EquilibriumProblem problem{solved.assembler, *cut_->conditions, study_->free()};
   NewtonOptions options = study_->options().newton;
@@ -96,14 +94,13 @@ ReleaseRates CutRelease::rates(const Trial& before, double stage) {
       newton(problem, solved.solver, solved.tangent,
              {before.displacement, stage, history_of(before.history), {}, before.environment},
              stage, options, {});
-  if (after.outcome != Outcome::converged) {
-    throw std::runtime_error("the body with a longer crack finds no equilibrium: " +
-                             explanation(after.outcome));
-  }
+  if (after.outcome != Outcome::converged) return std::nullopt;
   const double longer = after.state.stored_energy, scale = share_ / length_;
   const bool is_loaded = norm(after.external_force) > 0.0;
-  if (is_loaded) return {scale * energy * (1.0 - energy / longer), scale * (longer - energy)};
-  return {scale * (energy - longer), scale * energy * (energy / longer - 1.0)};
+  if (is_loaded) {
+    return ReleaseRates{scale * energy * (1.0 - energy / longer), scale * (longer - energy)};
+  }
+  return ReleaseRates{scale * (energy - longer), scale * energy * (energy / longer - 1.0)};
 }
 
 }  // namespace peristat

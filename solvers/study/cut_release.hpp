@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "solvers/fracture/crack_tip.hpp"
@@ -30,9 +31,8 @@ class CutRelease {
   CutRelease(const Body& body, const CrackTipSpecification& tip, double share,
              const StudyOptions& options, const std::string& key);
 
-  /// Of a state in equilibrium, with damage held.
-  /// @throws std::runtime_error if the cut body finds no equilibrium
-  [[nodiscard]] ReleaseRates rates(const Trial& before, double stage);
+  /// Of a state in equilibrium, with damage held; nothing if the cut body has no equilibrium there.
+  [[nodiscard]] std::optional<ReleaseRates> rates(const Trial& before, double stage);
 
  private:
   [[nodiscard]] History history_of(const History& before) const;

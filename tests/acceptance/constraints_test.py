@@ -179,7 +179,7 @@ class Symmetry(Constrained):
             self.assertEqual(peristat("check", self.case(text)).code, code)
         side = '[[load]]\nside = "x-"\ntraction = ["1e6*load", 0]\n'
         pin = '[[set]]\nname = "pin"\nwhere = "x^2 + y^2 < 0.003^2"\n[[rigid]]\nset = "pin"\n'
-        for more, words in ((inner, "goes on beyond"), (side, "goes on beyond"), (pin, "along x must be 0"),
+        for more, words in ((inner, "nothing beyond it"), (side, "goes on beyond"), (pin, "along x must be 0"),
                             (pin + 'displacement = [0, "free"]\n', "rotation")):  # fmt: skip
             with self.subTest(more):
                 ended = peristat("check", self.case(plate("x") + more))

@@ -91,11 +91,15 @@ class Verification:
             return self.mechanics.grown(history, step.displacement)
         history = history.copy()
         body = self.mechanics.body
-        kinds = step.history.get("second_image", numpy.zeros(len(step.history["first_point"]), int))
-        columns = [step.history[name].tolist() for name in ("first_point", "second_point", "largest_stretch")]
-        for first, second, stretch, kind in zip(*columns, kinds.tolist()):
-            end = self.number_of(second, kind)
-            bond = None if end is None else body.bond_number.get(int(body.codes(numpy.sort([first, end]))))
+        first_points, second_points = (step.history[name].astype(int) for name in ("first_point", "second_point"))
+        ends = second_points.copy()
+        for k in numpy.flatnonzero(step.history.get("second_image", 0)):
+            number = self.number_of(second_points[k], step.history["second_image"][k])
+            ends[k] = -1 if number is None else number  # the code of no bond
+        codes = body.codes(numpy.sort(numpy.stack([first_points, ends], axis=1), axis=1)).tolist()
+        columns = first_points.tolist(), second_points.tolist(), step.history["largest_stretch"].tolist(), codes
+        for first, second, stretch, code in zip(*columns):
+            bond = body.bond_number.get(code)
             if bond is None:
                 self.complain(step, f"there is a history of {first}-{second}, which is no bond")
             elif (stretch == NEVER_FAILS) == self.mechanics.fails[bond]:

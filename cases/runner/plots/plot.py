@@ -39,6 +39,10 @@ def draw_all(results: ResultsFolder):
 
     if has_lost_energy(results):
         yield "energies", draw_energies(results)
+    from crack_tip_picture import crack_tips, draw_crack_tips
+
+    if crack_tips(results):
+        yield "crack_tips", draw_crack_tips(results)
     from convergence_picture import draw_convergence, has_iterations
 
     if has_iterations(results):

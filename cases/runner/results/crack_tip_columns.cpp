@@ -27,9 +27,10 @@ std::vector<ProbeColumns> crack_tip_columns(const Case& from) {
   return columns;
 }
 
-void add_crack_tip_values(const Case& from, const std::vector<CrackTip>& tips, Assembler& assembler,
-                          const Trial& state, double stage,
-                          std::map<std::string, std::vector<double>>& values) {
+std::string add_crack_tip_values(const Case& from, const std::vector<CrackTip>& tips,
+                                 Assembler& assembler, const Trial& state, double stage,
+                                 std::map<std::string, std::vector<double>>& values) {
+  std::string without_release;
   for (std::size_t k = 0; k < tips.size(); ++k) {
     const std::string& name = from.crack_tips[k].name;
     const CrackTipValues found = tips[k].integrals.values(assembler, state.at());
@@ -40,10 +41,14 @@ void add_crack_tip_values(const Case& from, const std::vector<CrackTip>& tips, A
     }
     if (has_isotropic_materials(from)) values[name + "_T"] = {found.t_stress};
     if (!tips[k].release) continue;
-    const ReleaseRates rates = tips[k].release->rates(state, stage);
-    values[name + "_G_displacement"] = {rates.at_displacement};
-    values[name + "_G_load"] = {rates.at_load};
+    const std::optional<ReleaseRates> rates = tips[k].release->rates(state, stage);
+    if (!rates) {
+      without_release += (without_release.empty() ? "" : ", ") + name;
+    }
+    values[name + "_G_displacement"] = {rates.value_or(ReleaseRates{}).at_displacement};
+    values[name + "_G_load"] = {rates.value_or(ReleaseRates{}).at_load};
   }
+  return without_release;
 }
 
 }  // namespace peristat

@@ -16,8 +16,10 @@ namespace peristat {
 [[nodiscard]] std::vector<ProbeColumns> crack_tip_columns(const Case& from);
 
 /// Their values in a state.
-void add_crack_tip_values(const Case& from, const std::vector<CrackTip>& tips, Assembler& assembler,
-                          const Trial& state, double stage,
-                          std::map<std::string, std::vector<double>>& values);
+/// @return names of the tips whose cut body has no equilibrium, for a person; their rates are 0
+[[nodiscard]] std::string add_crack_tip_values(const Case& from, const std::vector<CrackTip>& tips,
+                                               Assembler& assembler, const Trial& state,
+                                               double stage,
+                                               std::map<std::string, std::vector<double>>& values);
 
 }  // namespace peristat

@@ -82,7 +82,13 @@ void Recorder::accepted(StepRecord record, const AcceptedState& state) {
     if (probe.from) continue;
     record.probes[probe.name] = probe_values(probe, points_, all, crack);
   }
-  add_crack_tip_values(case_, crack_tips_, assembler_, state.trial, record.stage, record.probes);
+  const std::string without_release = add_crack_tip_values(
+      case_, crack_tips_, assembler_, state.trial, record.stage, record.probes);
+  if (!without_release.empty()) {
+    progress_.problem("step " + std::to_string(record.step) +
+                      ": the body has no equilibrium with the cut ahead of " + without_release +
+                      "; its energy release rates are told as 0");
+  }
   add_constraint_values(*body_.conditions, state.trial, state.external_force, record.probes);
   for (const LineProbe& line : lines_) {
     results_.add_line(line.table().name, line.rows(record, all));

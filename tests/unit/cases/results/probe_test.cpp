@@ -31,6 +31,19 @@ BoxBody plate(int dimension, double horizon_ratio, double perturbation = 0.0) {
   return BoxBody(std::move(points), box);
 }
 
+/// The same plate as a cell that repeats over a period.
+BoxBody periodic_plate(const Period& period) {
+  tests::BoxSetting box = tests::small_box(2);
+  box.extent = {40, 12, 0};
+  box.spacing = spacing;
+  box.horizon_ratio = 3.015;
+  Points cell = tests::box_points(box);
+  cell.sets["all"].resize(cell.volume.size());
+  std::iota(cell.sets["all"].begin(), cell.sets["all"].end(), 0);
+  add_images(cell, {}, {period}, 3.015 * spacing);
+  return BoxBody(std::move(cell), box);
+}
+
 /// A straight crack at y = 0.6 from x = low to high, through all of z.
 Crack crack(int dimension, double low, double high) {
   if (dimension == 2) return CrackSegment{{low, 0.6, 0}, {high, 0.6, 0}};
@@ -86,15 +99,7 @@ TEST(CrackLength, IsFoundOnAPerturbedLattice) {
 }
 
 TEST(CrackLength, GoesOnOverAPeriod) {
-  tests::BoxSetting box = tests::small_box(2);
-  box.extent = {40, 12, 0};
-  box.spacing = spacing;
-  box.horizon_ratio = 3.015;
-  Points cell = tests::box_points(box);
-  cell.sets["all"].resize(cell.volume.size());
-  std::iota(cell.sets["all"].begin(), cell.sets["all"].end(), 0);
-  add_images(cell, {}, {{0, 0.0, 4.0}}, 3.015 * spacing);
-  const BoxBody body(std::move(cell), box);
+  const BoxBody body = periodic_plate({0, 0.0, 4.0});
   // Over the side, inside, through the whole cell, and farther than that.
   for (const auto& [low, high] :
        {std::pair(-0.52, 0.71), {3.6, 4.9}, {0.77, 2.52}, {0.0, 4.0}, {-1.0, 5.0}}) {
@@ -151,15 +156,7 @@ TEST(CrackMeasure, AreaOfASlantingCrackIsThatOfItsProjections) {
 }
 
 TEST(CrackMeasure, OverAPeriodAFaceCountsOnce) {
-  tests::BoxSetting box = tests::small_box(2);
-  box.extent = {40, 12, 0};
-  box.spacing = spacing;
-  box.horizon_ratio = 3.015;
-  Points cell = tests::box_points(box);
-  cell.sets["all"].resize(cell.volume.size());
-  std::iota(cell.sets["all"].begin(), cell.sets["all"].end(), 0);
-  add_images(cell, {}, {{1, 0.0, 1.2}}, 3.015 * spacing);
-  const BoxBody body(std::move(cell), box);
+  const BoxBody body = periodic_plate({1, 0.0, 1.2});
   Bonds bonds = body.model.bonds();
   const CutBonds cut = cut_bonds(bonds, body.points, {CrackSegment{{-1.0, 0.0, 0}, {2.0, 0.0, 0}}});
   EXPECT_NEAR(measured("crack_area", {cut.ends}, body.points), 2.0 * 0.5, 1e-12);
