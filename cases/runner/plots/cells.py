@@ -56,6 +56,10 @@ class Cells:
         """Parts cells from their next neighbours along an axis."""
         self._parted[axis, cells] = True
 
+    def join(self, axis: int, cells: np.ndarray) -> None:
+        """Takes back that cells are parted from their next neighbours along an axis."""
+        self._parted[axis, cells] = False
+
     def part_from_images(self, axis: int, sign: int, cells: np.ndarray) -> None:
         """Parts cells at the rim from what goes on beyond a plane of symmetry or a period."""
         self._open[axis, sign] = cells

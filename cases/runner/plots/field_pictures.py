@@ -129,10 +129,13 @@ def draw_plane(results, step, factor, values, value_range, label, colours, words
     return figure, axes, plate
 
 
-def framed(low, high):
-    """A figure whose axes show the box in true proportion: figure, axes, place of the colour bar."""
+def framed(low, high, right: float = 1.75):
+    """A figure whose axes show the box in true proportion: figure, axes, place of the colour bar.
+
+    right  margin for the colour bar [inch]
+    """
     width_of_body, height_of_body = high - low
-    left, right, bottom, top = 1.0, 1.75, 0.75, 1.25  # margins [inch]
+    left, bottom, top = 1.0, 0.75, 1.25  # margins [inch]
     width = 16.0 - left - right
     height = width * height_of_body / width_of_body
     if height > 9.5:

@@ -79,7 +79,7 @@ def draw_broken_bonds(results, broken):
     spacing, points = merged(results.reference, results.spacing, MOST_CELLS)
     shown = np.concatenate([points, ends[:, 1]])
     low, high = shown.min(axis=0) - spacing, shown.max(axis=0) + spacing
-    figure, axes, bar_place = framed(low / size, high / size)
+    figure, axes, bar_place = framed(low / size, high / size, right=2.05)
     inches = (axes.get_position().width * figure.get_size_inches()[0]) / (high - low)[0]
     dot = np.clip(0.45 * inches * spacing * 72.0, 0.6, 9.0)
     axes.scatter(*points.T / size, s=dot**2, color=POINT_COLOUR, linewidths=0, zorder=1)

@@ -347,6 +347,19 @@ class Pictures(unittest.TestCase):
         cells = deformed_plate(results, step, 1.0, step.damage).cells
         self.assertEqual(cells.parted(1, -1).sum(), 0)
 
+    def test_a_bond_over_the_rim_holds_cells_together(self):
+        for holds in (True, False):
+            with self.subTest(holds=holds):
+                self.folder = self.folder.with_name(f"rim_{holds}")
+                kind = self.write_cell()
+                # The cells next to both ends of a row from those behind them: in the row, and over the period.
+                rows = [(0, 6, 0), (0, 12, 0), (36, 42, 0), (30, 42, 0)]
+                self.break_bonds(rows if holds else [*rows, (6, 42, kind[1, -1]), (36, 0, kind[1, 1])])
+                results = read_results_folder(self.folder)
+                step = results.step(1)
+                cells = deformed_plate(results, step, 1.0, step.damage).cells
+                self.assertEqual(np.flatnonzero(cells.parted(0, 1)).tolist(), [] if holds else [0, 36])
+
     def test_a_crack_that_leaves_a_cell_comes_in_again(self):
         self.write_cell(f"[[crack]]\nfrom = [{-2 * SPACING}, {2 * SPACING}]\nto = [{3 * SPACING}, {2 * SPACING}]")
         results = read_results_folder(self.folder)
