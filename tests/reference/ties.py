@@ -79,6 +79,11 @@ class Ties:
             self.eliminate()
             self.follows |= self.in_rows
 
+    @property
+    def size(self):
+        """Of rigid sets [m]: their places are rounded."""
+        return max((numpy.abs(arms).max() for _, _, arms in self.rigid), default=0.0)
+
     def add_touching(self, table, normal):
         start = numpy.asarray(table["at"], float)
         along = numpy.asarray(table.get("to", start), float) - start
