@@ -195,10 +195,11 @@ class Verification:
         if old.number + 1 == step.number and broken.sum() == self.broken_when_looked_for:
             return self.last_unheld
         self.broken_when_looked_for = broken.sum()
-        held = self.conditions.prescribed | self.conditions.cell_held | self.ties.follows
+        held = self.conditions.prescribed | self.conditions.cell_held | self.ties.held
         body = self.mechanics.body
+        sums = [row for _, row, *_ in self.ties.rows]
         everywhere = body.beyond.spread(old.displacement, old.jump)
-        self.last_unheld = unheld_points(everywhere, body.bonds[~broken], held, body.beyond, old.jump, self.jump_is_free)
+        self.last_unheld = unheld_points(everywhere, body.bonds[~broken], held, body.beyond, old.jump, self.jump_is_free, sums)
         return self.last_unheld
 
     def judge_residual(self, mechanics, step, row, old, history, out_of_balance, magnitude, unheld):
@@ -238,13 +239,13 @@ class Verification:
         scale = max(norms)
         floor = 8 * UNIT_ROUND_OFF * (numpy.linalg.norm(magnitude) + self.whole_force(mechanics, step))
         floor += STEP * mechanics.body.constants[1] * mechanics.body.weight[1].sum()
-        along_ties = self.ties.out_of_balance(step.displacement, out_of_balance)
+        along_ties = self.ties.out_of_balance(step.displacement, out_of_balance, unheld)
         on_jumps = mechanics.pull_of_periods(step.everywhere, history)[self.jump_is_free]
         residual = numpy.linalg.norm([numpy.linalg.norm(part) for part in (out_of_balance[free], along_ties, on_jumps)])
         # A tenth more: the program's scale has the same three norms in its own rounding and its own
         # idea of the jump that a cut or relaxed step begins with.
         allowed = 1.1 * self.case["solver"]["relative_tolerance"] * scale + floor
-        self.judge_pins(step, row, numpy.linalg.norm(out_of_balance[unheld[:, None] & ~prescribed]), allowed)
+        self.judge_pins(step, row, self.ties.on_unheld(out_of_balance, unheld), allowed)
         if row["settled"]:  # owes no equilibrium
             return
         self.worst["residual / allowed"] = max(self.worst.get("residual / allowed", 0.0), residual / allowed)
@@ -381,8 +382,13 @@ class Verification:
         self.compare(step, "max_damage", row["max_damage"], damage.max(), 1.0)
         whole = stretch[~broken]
         largest = whole.max() if len(whole) else 0.0
+        of_points = numpy.full(len(mechanics.body.volume), -numpy.inf)
+        for end in (0, 1):
+            numpy.maximum.at(of_points, mechanics.body.bonds[~broken, end], whole)
+        of_points = numpy.where(numpy.isfinite(of_points), of_points, 0.0)[: mechanics.body.own]
         scale = max(abs(stretch).max(), 1e-5 * self.reach(mechanics, step), 1e-300)
         self.compare(step, "max_stretch", row["max_stretch"], largest, scale)
+        self.compare(step, "stretch", step.stretch, of_points, scale)
 
     def judge_broken_bonds(self, step, broken):
         """Those listed so far: points beyond have the numbers of their sources."""

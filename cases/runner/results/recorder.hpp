@@ -51,7 +51,7 @@ class Recorder {
  private:
   struct Fields {
     std::vector<double> displacement, force, damage, energy_density, stretch, fragment;
-    double max_damage = 0.0;
+    double max_damage = 0.0, max_stretch = 0.0;
     std::optional<BondHistories> histories;
     [[nodiscard]] StepFields view() const;
   };
