@@ -514,22 +514,32 @@ Holding Conditions::holding(std::span<const double> displacement) const {
     }
     holding.motions.push_back(motion);
   }
+  for (const Slide& slide : made_.slides) {
+    const Coordinates at = place(slide.member, points_.position(slide.member));
+    const HeldMotion motion{slide.member, slide.direction, cross(at, slide.direction)};
+    holding.handles.push_back({slide.dof, motion, true});
+  }
   for (const Constraints::RigidSet& set : constraints().rigid_sets()) {
     for (const Index member : set.members) {
       holding.links.push_back({set.members.front(), member});
     }
     const Coordinates centre = place(set.translation, set.centre);
-    const auto is_held = [&](Index handle, std::size_t c) {
-      return prescribed_[std::size_t(handle) * d + c] != 0;
-    };
     for (std::size_t c = 0; c < 3; ++c) {
       Coordinates axis{};
       axis[c] = 1.0;
-      if (c < d && is_held(set.translation, c)) {
-        holding.motions.push_back({set.members.front(), axis, cross(centre, axis)});
+      const auto hold = [&](std::size_t dof, const HeldMotion& motion) {
+        if (prescribed_[dof]) {
+          holding.motions.push_back(motion);
+        } else {
+          holding.handles.push_back({dof, motion});
+        }
+      };
+      const std::size_t turn = std::size_t(set.rotation) * d + (d == 3 ? c : 0);
+      if (c < d) {
+        hold(std::size_t(set.translation) * d + c,
+             {set.members.front(), axis, cross(centre, axis)});
       }
-      const bool is_about = d == 3 ? is_held(set.rotation, c) : c == 2 && is_held(set.rotation, 0);
-      if (is_about) holding.motions.push_back({set.members.front(), {}, axis});
+      if (d == 3 || c == 2) hold(turn, {set.members.front(), {}, axis});
     }
   }
   for (int axis = 0; axis < points_.dimension; ++axis) {

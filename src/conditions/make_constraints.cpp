@@ -264,6 +264,9 @@ class Maker {
       } else {
         made_.unused.push_back(dof(own, 0));
       }
+      for (int c = 1; c < dimension(); ++c) {
+        made_.slides.push_back({dof(own, c), member, basis[std::size_t(c)]});
+      }
       if (!is_free) {
         made_.held_sums.push_back({{member, basis[0]}});
       } else if (member != members.front()) {

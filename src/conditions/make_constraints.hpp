@@ -38,6 +38,13 @@ struct Restraint {
 /// A sum of displacements, weighted by vectors, that a roller or linear constraint holds.
 using HeldSum = std::vector<std::pair<Index, Coordinates>>;
 
+/// The component of a handle by which one point slides alone.
+struct Slide {
+  std::size_t dof;
+  Index member;
+  Coordinates direction;
+};
+
 /// Constraints with all that makes their handles move.
 struct MadeConstraints {
   Constraints constraints;
@@ -45,6 +52,7 @@ struct MadeConstraints {
   std::vector<std::size_t> unused{};  ///< components of handles that stand for nothing
   std::vector<Restraint> restraints{};
   std::vector<HeldSum> held_sums{};
+  std::vector<Slide> slides{};
 };
 
 /// @param points with their images

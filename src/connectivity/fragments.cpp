@@ -112,7 +112,8 @@ std::vector<int> missing_axes(const Support& support) {
   return axes;
 }
 
-std::vector<Support> supports_of(const Web& web, Index count, const std::vector<char>& prescribed) {
+std::vector<Support> supports_of(const Web& web, Index count, const std::vector<char>& prescribed,
+                                 const std::vector<FreeHandle>& handles) {
   const int d = web.dimension();
   std::vector<Support> support(std::size_t(count), Support::Zero());
   web.for_each_bond([&](Index i, Index j, Offset) {
@@ -124,6 +125,12 @@ std::vector<Support> supports_of(const Web& web, Index count, const std::vector<
     for (int c = 0; c < 3; ++c) {
       if (c >= d || prescribed[std::size_t(i) * d + c]) support[i](c, c) += 1.0;
     }
+  }
+  for (const FreeHandle& handle : handles) {
+    if (!handle.is_slide) continue;
+    const Coordinates& along = handle.moved_by.along;
+    const Eigen::Vector3d direction(along[0], along[1], along[2]);
+    support[handle.moved_by.member] -= direction * direction.transpose();
   }
   return support;
 }
@@ -150,9 +157,26 @@ std::vector<Index> strip(Web& web, std::vector<Support>& support) {
   return loose;
 }
 
+/// Degrees of freedom of a point that slides, the least supported first.
+std::vector<std::size_t> slides_of(Index point, const std::vector<FreeHandle>& handles,
+                                   const Support& support) {
+  std::vector<std::pair<double, std::size_t>> found;
+  for (const FreeHandle& handle : handles) {
+    if (!handle.is_slide || handle.moved_by.member != point) continue;
+    const Coordinates& along = handle.moved_by.along;
+    const Eigen::Vector3d direction(along[0], along[1], along[2]);
+    found.emplace_back(direction.dot(support * direction), handle.dof);
+  }
+  std::sort(found.begin(), found.end());
+  std::vector<std::size_t> dofs;
+  for (const auto& [held_by, dof] : found) dofs.push_back(dof);
+  return dofs;
+}
+
 /// Pins loose points one by one, those that need the fewest pins first (then the lowest); each then
 /// supports the others by its bonds. Leaves their support complete but for the pins.
-void pin_loose(const Web& web, const std::vector<Index>& loose, std::vector<Support>& support,
+void pin_loose(const Web& web, const std::vector<Index>& loose,
+               const std::vector<FreeHandle>& handles, std::vector<Support>& support,
                std::vector<char>& pinned) {
   constexpr std::size_t settled = 0;
   std::vector<std::size_t> rank(support.size(), settled);  // 1 + number of missing axes
@@ -166,8 +190,11 @@ void pin_loose(const Web& web, const std::vector<Index>& loose, std::vector<Supp
     const Index i = waiting.begin()->second;
     waiting.erase(waiting.begin());
     rank[i] = settled;
-    for (int axis : missing_axes(support[i])) {
-      pinned[std::size_t(i) * web.dimension() + axis] = 1;
+    const std::vector<int> axes = missing_axes(support[i]);
+    const std::vector<std::size_t> slides = slides_of(i, handles, support[i]);
+    for (std::size_t k = 0; k < axes.size(); ++k) {
+      const std::size_t own = std::size_t(i) * std::size_t(web.dimension()) + std::size_t(axes[k]);
+      pinned[k < slides.size() ? slides[k] : own] = 1;
     }
     web.for_each_partner(i, [&](Index j) {
       if (rank[j] == settled) return;
@@ -235,12 +262,12 @@ Fragments find_fragments(const Points& points, const Bonds& bonds, std::span<con
       connected_components(bonds, broken, holding.links).members();
   number_pieces(cores, points, web.positions(), holding, fragments);
 
-  std::vector<Support> support = supports_of(web, points.count(), held);
+  std::vector<Support> support = supports_of(web, points.count(), held, holding.handles);
   fragments.loose = strip(web, support);
   if (!fragments.loose.empty()) {
     std::vector<char> is_loose(std::size_t(points.count()), 0);
     for (Index i : fragments.loose) is_loose[i] = 1;
-    pin_loose(web, fragments.loose, support, fragments.pinned);
+    pin_loose(web, fragments.loose, holding.handles, support, fragments.pinned);
     std::sort(fragments.loose.begin(), fragments.loose.end());
     cores = cores_of(web, bonds, is_loose, holding.links);
   }
@@ -248,7 +275,7 @@ Fragments find_fragments(const Points& points, const Bonds& bonds, std::span<con
     if (points.is_image(core.front())) continue;
     const RigidMotions free = free_rigid_motions(d, web.positions(), core, holding.prescribed,
                                                  points.spacing, holding.motions);
-    for (std::size_t dof : determinate_pins(free, web.positions(), core, held)) {
+    for (std::size_t dof : determinate_pins(free, web.positions(), core, held, holding.handles)) {
       fragments.pinned[dof] = 1;
     }
   }

@@ -162,9 +162,11 @@ std::vector<std::string> motion_names(const RigidMotions& motions) {
 std::vector<std::size_t> determinate_pins(const RigidMotions& motions,
                                           std::span<const double> positions,
                                           std::span<const Index> members,
-                                          const std::vector<char>& prescribed) {
+                                          const std::vector<char>& prescribed,
+                                          std::span<const FreeHandle> handles) {
   // Displacements that differ by less than this fraction are alike: round-off must not choose.
   constexpr double alike = 1e-9;
+  constexpr double at_rest = 1e-6;
   if (motions.count == 0) return {};
   const int d = motions.dimension;
   const Eigen::Vector3d centre(motions.centre[0], motions.centre[1], motions.centre[2]);
@@ -176,8 +178,19 @@ std::vector<std::size_t> determinate_pins(const RigidMotions& motions,
     }
   }
   // Rows: how the free motions move each degree of freedom.
+  const Eigen::Index of_points = static_cast<Eigen::Index>(dofs.size());
+  std::vector<HeldMotion> of_handles;
+  for (const FreeHandle& handle : handles) {
+    if (!std::binary_search(members.begin(), members.end(), handle.moved_by.member)) continue;
+    dofs.push_back(handle.dof);
+    of_handles.push_back(handle.moved_by);
+  }
   Eigen::MatrixXd rows(static_cast<Eigen::Index>(dofs.size()), motions.count);
-  for (Eigen::Index k = 0; k < rows.rows(); ++k) {
+  for (Eigen::Index k = of_points; k < rows.rows(); ++k) {
+    rows.row(k) =
+        row_of(of_handles[std::size_t(k - of_points)], centre, d, motions.size) * basis_of(motions);
+  }
+  for (Eigen::Index k = 0; k < of_points; ++k) {
     const std::size_t dof = dofs[std::size_t(k)];
     const Eigen::Vector3d arm = vector_of(positions, static_cast<Index>(dof / d), d) - centre;
     rows.row(k) =
@@ -190,6 +203,7 @@ std::vector<std::size_t> determinate_pins(const RigidMotions& motions,
     for (Eigen::Index k = 1; k < rows.rows(); ++k) {
       if (rows.row(k).norm() > (1.0 + alike) * rows.row(most).norm()) most = k;
     }
+    if (rows.rows() == 0 || !(rows.row(most).norm() > at_rest)) break;
     pins.push_back(dofs[std::size_t(most)]);
     const Eigen::RowVectorXd direction = rows.row(most).normalized();
     rows -= ((rows * direction.transpose()) * direction).eval();

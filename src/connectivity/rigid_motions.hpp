@@ -42,10 +42,13 @@ struct RigidMotions {
 /// As many degrees of freedom as there are free motions, none of them prescribed, that suppress all
 /// of them when they are pinned: statically determinate. Chosen one by one where the motions that
 /// the former ones leave move most, so that they lie far apart and do so at right angles; where
-/// several move alike, the lowest. Parameters as in free_rigid_motions, which gave the motions.
+/// several move alike, the lowest. Fewer if nothing more can be pinned. Parameters as in
+/// free_rigid_motions, which gave the motions.
+/// @param handles that may be pinned, too
 [[nodiscard]] std::vector<std::size_t> determinate_pins(const RigidMotions& motions,
                                                         std::span<const double> positions,
                                                         std::span<const Index> members,
-                                                        const std::vector<char>& prescribed);
+                                                        const std::vector<char>& prescribed,
+                                                        std::span<const FreeHandle> handles = {});
 
 }  // namespace peristat

@@ -90,7 +90,7 @@ class Input:
             return
         found = NOT_A_NUMBER.search(run.said)
         typed = " ".join([*run.command, *(t.read_text(errors="replace") for t in self.folder.glob("*.*")
-                                          if t.suffix in (".toml", ".csv"))])  # fmt: skip
+                                          if t.suffix in (".toml", ".csv", ".txt"))])  # fmt: skip
         if found and not NOT_A_NUMBER.search(typed) and found[1].lower() not in typed.lower():
             raise Finding(f"says {found[0]!r}", run)
 
@@ -107,7 +107,8 @@ class Input:
 
     def write_corpus(self, case):
         self.write("case.toml", self.texts[case])
-        self.write("cloud.csv", self.texts["cloud.csv"])
+        for name in ("cloud.csv", "neighbours.txt"):
+            self.write(name, self.texts[name])
 
     def try_case(self):
         case = self.random.choice(self.cases)
@@ -134,8 +135,12 @@ class Input:
         self.try_commands(overrides)
 
     def try_points(self):
-        self.write_corpus("cloud.toml")
-        self.write("cloud.csv", mutations.mutated_points(self.random, self.texts["cloud.csv"]))
+        if self.random.random() < 0.3:
+            self.write_corpus("listed.toml")
+            self.write("neighbours.txt", mutations.mutated_neighbours(self.random, self.texts["neighbours.txt"]))
+        else:
+            self.write_corpus("cloud.toml")
+            self.write("cloud.csv", mutations.mutated_points(self.random, self.texts["cloud.csv"]))
         self.try_commands()
 
     def try_commands(self, overrides=()):
@@ -199,9 +204,16 @@ class Input:
             past = row["dissipated_energy"]
             if not 0 <= row["max_damage"] <= 1:
                 raise Finding(f"damage {row['max_damage']}", run)
+        rows = {int(row["step"]): row for row in results.table("history")}
         for step in results.steps:
-            largest, total = abs(step.force).max(), abs(step.force.sum(axis=0)).max()
-            if total > 1e-9 * largest * len(step.force):
+            total = step.force.sum(axis=0)
+            for axis in range(len(total)):  # what the body beyond planes of symmetry pulls with
+                name = f"reaction_{'xyz'[axis]}:symmetry_"
+                total[axis] -= sum(value for key, value in rows[step.number].items() if key.startswith(name))
+            largest, total = abs(step.force).max(), abs(total).max()
+            reactions = [abs(value) for key, value in rows[step.number].items() if key.startswith("reaction_")]
+            beyond = max(reactions, default=0.0)  # of planes and periods also where points bear nothing
+            if total > 1e-9 * largest * len(step.force) + 1e-12 * beyond:
                 raise Finding(f"internal forces of step {step.number} sum up to {total:.3g} N of {largest:.3g} N", run)
 
     def judge_by_reference(self, run, results):

@@ -27,12 +27,15 @@ WORDS = """dimension title lattice points spacing horizon_ratio thickness area o
     critical rate peak hardening fracture_energy strength no_fail support displacement load body_force total_force loading steps adaptive smallest_step largest_step
     max_broken_bonds solver mode linear preconditioner tangent predictor projection relative_tolerance max_iterations fragments
     elastic_horizon_ratio relaxation iterations ramp breaking damping mass_factor quiet_iterations displacement_tolerance output
-    directory every count_cracks probe field other threshold control weights table table2 arc_length bifurcation""".split()
+    directory every count_cracks probe field other threshold control weights table table2 arc_length bifurcation region interface between
+    rule fibre angle direction transverse_modulus shear_modulus transverse_critical scatter of distribution weibull_modulus
+    correlation_length rigid roller at normal constraint term symmetry period gradient rotation gravity traction pressure depth eigenstrain
+    strain temperature change thermal_expansion volumes neighbours""".split()
 CHOICES = """none linear exact volume energy mean bulk bond cpd stress strain lattice continuum critical_stretch tanh tanh_continuous linear exponential blended newton
     relaxation adaptive auto cholesky pcg minres gmres jacobi block_jacobi rigid_pieces surrogate riluk chebyshev multigrid stored
     matrix_free consistent never always hold remove stop fixed moving at_equilibrium transient kinetic cell_centres nodes box disk polygon
     cylinder sphere x- x+ y- y+ z- z+ displacement force damage stretch energy_density poisson_ratio opening crack_length
-    arc_length branch straight""".split()
+    arc_length branch straight cells fractional harmonic arithmetic weaker stiffness strength weibull row horizon x y z""".split()
 KEYS = """dimension lattice.spacing lattice.horizon_ratio lattice.thickness lattice.area lattice.origin lattice.perturbation lattice.seed
     lattice.shape[0].min lattice.shape[0].max lattice.shape[0].add lattice.shape[1].radius lattice.shape[9].add lattice.layer[0].thickness
     lattice.layer[0].where points.horizon points.file set[0].where crack[0].from crack[0].to quadrature.volume_correction
@@ -44,7 +47,15 @@ KEYS = """dimension lattice.spacing lattice.horizon_ratio lattice.thickness latt
     solver.relative_tolerance solver.max_iterations solver.fragments solver.elastic_horizon_ratio relaxation.steps relaxation.load
     relaxation.iterations relaxation.ramp relaxation.breaking relaxation.damping relaxation.mass_factor relaxation.max_iterations
     control[0].weights control[0].set control[1].set loading.table loading.table2 arc_length.steps arc_length.largest_step
-    arc_length.bifurcation relaxation.quiet_iterations relaxation.displacement_tolerance output.every output.count_cracks probe[0].field probe[0].set probe[0]
+    arc_length.bifurcation lattice.angle lattice.volumes points.neighbours material.fibre.angle material.fibre.transverse_modulus
+    material.fibre.shear_modulus material.scatter[0].weibull_modulus material.scatter[0].correlation_length material.scatter[0].seed
+    material.thermal_expansion material.density region[0].set region[0].material.youngs_modulus region[0].material.c1
+    region[0].material.damage.critical interface[0].rule interface[0].between rigid[0].set rigid[0].centre rigid[0].displacement
+    rigid[0].rotation roller[0].at roller[0].normal roller[0].displacement roller[1].normal constraint[0].displacement
+    constraint[0].term[0].weights constraint[0].term[1].set symmetry[0].axis symmetry[0].at symmetry[1].at symmetry[1].axis period[0].from
+    period[0].to period[0].gradient period[1].gradient period[1].axis load[0].gravity load[0].traction load[0].depth load[0].side
+    load[0].pressure load[1].pressure load[1].total_force eigenstrain[0].strain eigenstrain[0].set temperature.change
+    relaxation.quiet_iterations relaxation.displacement_tolerance output.every output.count_cracks probe[0].field probe[0].set probe[0]
     [[ ]. .. a.b.c lattice lattice. .lattice support[-1].set support[99999999999].set support[0]""".split()
 
 
@@ -148,6 +159,28 @@ def mutated_bytes(random, data):
     else:
         data[at:at] = data[max(0, at - 200) : at] * random.choice((1, 100))
     return bytes(data)
+
+
+def mutated_neighbours(random, text):
+    """A file of given neighbours spoilt in one to three places, as bytes."""
+    lines = text.splitlines()
+    for _ in range(random.choice((1, 1, 2, 3))):
+        k = random.randrange(len(lines))
+        kind = random.randrange(4)
+        if kind == 0:
+            cells = lines[k].split(",")
+            cells[random.randrange(len(cells))] = random.choice([*NUMBERS, "i", "w_ij", "", "24", "25", "0.0", "A" * 10000])
+            lines[k] = ",".join(cells)
+        elif kind == 1:
+            lines.insert(random.randrange(len(lines) + 1), lines[k])
+        elif kind == 2:
+            del lines[k : k + random.choice((1, 1, 5, 50))]
+        else:
+            lines[k] = lines[k].rpartition(",")[0] if random.random() < 0.7 else lines[k].replace(",", random.choice((" ", ";", "\t")))
+        if not lines:
+            lines = [""]
+    data = ("\n".join(lines) + "\n").encode()
+    return mutated_bytes(random, data) if random.random() < 0.15 else data
 
 
 def mutated_points(random, text):

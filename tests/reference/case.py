@@ -186,15 +186,17 @@ class Conditions:
             self.prescribed |= self.held_by(support)
         self.cell_held = self.middle_of_cell()
 
-    def middle_of_cell(self):
+    def middle_of_cell(self, forces=None):
         """Degrees of freedom at which a cell that nothing holds is held: those of the point next to its middle, but for
-        what planes of symmetry hold."""
+        what planes of symmetry hold. Of points as near as one another that with the largest force."""
         mask = numpy.zeros(self.reference.shape, bool)
         is_held = self.prescribed.any() or any(self.case.get(name) for name in ("rigid", "roller", "constraint"))
         if self.case.get("period") and not is_held:
             away = ((self.reference - self.reference.mean(axis=0)) ** 2).sum(axis=1)
             mirrored = [axis in [table["axis"] for table in self.case.get("symmetry")] for axis in "xyz"]
-            mask[away.argmin()] = ~numpy.array(mirrored[: self.reference.shape[1]])
+            on_points = numpy.zeros(len(away)) if forces is None else (forces**2).sum(axis=1)
+            nearest = numpy.where(away <= away.min() + 1e-6 * self.spacing**2, on_points, -1).argmax()
+            mask[nearest] = ~numpy.array(mirrored[: self.reference.shape[1]])
         return mask
 
     def held_by(self, support):

@@ -167,11 +167,15 @@ class Mechanics:
         moved[:, component] += 1j * STEP * rate
         return self.energy(moved, history, held).imag / STEP
 
-    def pull_of_periods(self, u, history, held=False):
+    def slopes_by_jumps(self, u, history, held=False):
         """Derivative of the energy by the jumps over the periods [N], axes x components."""
-        beyond, axes = self.body.beyond, range(self.body.dimension)
-        pull = numpy.array([[self.slope(u, history, c, beyond.periods[:, axis], held) for c in axes] for axis in axes])
-        pull[:, beyond.mirrored_axes()] = 0.0  # what acts beyond a plane of symmetry is the opposite
+        periods, axes = self.body.beyond.periods, range(self.body.dimension)
+        return numpy.array([[self.slope(u, history, c, periods[:, axis], held) for c in axes] for axis in axes])
+
+    def pull_of_periods(self, u, history, held=False):
+        """Force over each period [N], axes x components."""
+        pull = self.slopes_by_jumps(u, history, held)
+        pull[:, self.body.beyond.mirrored_axes()] = 0.0  # what acts beyond a plane of symmetry is the opposite
         return pull
 
     def pull_of_planes(self, u, history):

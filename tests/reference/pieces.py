@@ -97,7 +97,7 @@ def motions_at(place, centre, size):
     return numpy.array(columns).T
 
 
-def may_move(members, twice, places, jump, prescribed, free_jump):
+def may_move(members, twice, places, jump, prescribed, free_jump, sums):
     """Whether a piece has a rigid motion, with changes of the jumps that are free, that nothing forbids."""
     dimension = places.shape[1]
 
@@ -118,6 +118,10 @@ def may_move(members, twice, places, jump, prescribed, free_jump):
 
     moved = {point: own_motion(point, copy) for point, copy in members.items()}
     rows = [moved[point][c] for point in members for c in numpy.flatnonzero(prescribed[point])]
+    for weights in sums:  # what a piece shares with others may be made up by these
+        of = numpy.flatnonzero((weights * ~prescribed).any(axis=1))
+        if all(point in members for point in of.tolist()):
+            rows.append(sum(weights[point] @ moved[point] for point in of.tolist()))
     for point, copy in twice:
         rows += list(moved[point] - own_motion(point, copy))
     everything = numpy.vstack([*moved.values(), *rows])
@@ -125,14 +129,15 @@ def may_move(members, twice, places, jump, prescribed, free_jump):
     return held < numpy.linalg.matrix_rank(everything, tol=1e-6)
 
 
-def unheld_points(displacement, bonds, prescribed, beyond, jump, free_jump):
+def unheld_points(displacement, bonds, prescribed, beyond, jump, free_jump, sums=()):
     """Own points that are loose, and those of pieces of the others that may move rigidly.
 
-    displacement: of all points; bonds: those that are whole; prescribed: own points x dimension.
+    displacement: of all points; bonds: those that are whole; prescribed: own points x dimension; sums: weights of
+    displacements, sums of which are given.
     """
     places = beyond.places + displacement
     unheld = loose_points(places, bonds, prescribed, beyond)
     for members, twice in pieces(beyond.own, bonds, beyond, unheld.copy()):
-        if may_move(members, twice, places, jump, prescribed, free_jump):
+        if may_move(members, twice, places, jump, prescribed, free_jump, sums):
             unheld[list(members)] = True
     return unheld

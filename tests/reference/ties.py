@@ -54,7 +54,7 @@ class Ties:
         self.spacing = case.spacing(volume)
         self.spacings = case.spacing_in_expressions if case.is_lattice else self.spacing
         self.volume = volume
-        self.follows = numpy.zeros(reference.shape, bool)
+        self.follows, self.held = numpy.zeros(reference.shape, bool), numpy.zeros(reference.shape, bool)
         self.rigid, self.slopes, self.rows = [], [], []
         for table in case.get("rigid"):
             members = numpy.flatnonzero(sets[table["set"]])
@@ -75,9 +75,16 @@ class Ties:
                 inside = sets[term["set"]]
                 row[inside] += numpy.asarray(term["weights"], float) / inside.sum()
             self.rows.append((table["name"], row, table.get("displacement", 0), None, None))
+        self.held |= self.follows  # whatever becomes of a piece; sums are only of displacements
+        self.in_rows = numpy.zeros(reference.shape, bool)
         if self.rows:
             self.eliminate()
             self.follows |= self.in_rows
+
+    @property
+    def size(self):
+        """Of rigid sets [m]: their places are rounded."""
+        return max((numpy.abs(arms).max() for _, _, arms in self.rigid), default=0.0)
 
     def add_touching(self, table, normal):
         start = numpy.asarray(table["at"], float)
@@ -152,8 +159,9 @@ class Ties:
         expressions = expressions or ["free"] * len(now)
         return numpy.array([is_now if e == "free" else self.value(e, loads) for e, is_now in zip(expressions, now)])
 
-    def out_of_balance(self, displacement, forces):
-        """Forces that nothing is there to bear [N]: those along what the ties leave free."""
+    def out_of_balance(self, displacement, forces, unheld=None):
+        """Forces that nothing is there to bear [N]: those along what the ties leave free, but on points that nothing
+        holds and pins may."""
         left = []
         for table, members, arms in self.rigid:
             motion = RigidMotion(arms, displacement[members])
@@ -168,8 +176,19 @@ class Ties:
             if table.get("displacement", 0) == "free":
                 left.append(along.sum())
         if self.rows:
-            left += list(self.slides.T @ forces[self.in_rows])
+            left += list((self.slides.T @ forces[self.in_rows])[~self.are_of(unheld)])
         return numpy.array(left)
+
+    def are_of(self, unheld):
+        """Which slides are those of displacements of points that nothing holds."""
+        unheld = numpy.zeros(len(self.reference), bool) if unheld is None else unheld
+        return numpy.broadcast_to(unheld[:, None], self.reference.shape)[self.in_rows][self.others]
+
+    def on_unheld(self, forces, unheld):
+        """Norm of what only pins can bear [N]."""
+        loose = numpy.broadcast_to(unheld[:, None], forces.shape) & ~self.prescribed & ~self.in_rows
+        along = (self.slides.T @ forces[self.in_rows])[self.are_of(unheld)] if self.rows else []
+        return numpy.hypot(numpy.linalg.norm(forces[loose]), numpy.linalg.norm(along))
 
     def eliminate(self):
         """Each row has a pivot, the displacement with its largest coefficient, which follows the others: `slides` are
@@ -183,7 +202,7 @@ class Ties:
             for other in range(len(solved)):
                 if other != k:
                     solved[other] -= solved[other, pivots[k]] * solved[k]
-        others = numpy.setdiff1d(numpy.arange(solved.shape[1]), pivots)
+        self.others = others = numpy.setdiff1d(numpy.arange(solved.shape[1]), pivots)
         self.slides = numpy.zeros((solved.shape[1], len(others)))
         self.slides[others, numpy.arange(len(others))] = 1
         self.slides[pivots] = -solved[:, others]

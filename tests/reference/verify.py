@@ -149,7 +149,8 @@ class Verification:
         reach = max(numpy.abs(target).max(), 1e-300)
         if prescribed.any():
             self.compare(step, "prescribed displacement", step.displacement[prescribed], target[prescribed], reach, 1e-12)
-        self.compare(step, "ties", self.ties.errors(step.displacement, step.loads), 0.0, max(reach, numpy.abs(step.displacement).max()), 1e-11)
+        size = max(reach, numpy.abs(step.displacement).max(), 1e-4 * self.ties.size)
+        self.compare(step, "ties", self.ties.errors(step.displacement, step.loads), 0.0, size, 1e-11)
         self.judge_jump(mechanics, step)
         loads = self.loads(step.loads, step.displacement)
         external = self.external(step.loads, step.displacement)
@@ -200,14 +201,16 @@ class Verification:
         if old.number + 1 == step.number and broken.sum() == self.broken_when_looked_for:
             return self.last_unheld
         self.broken_when_looked_for = broken.sum()
-        held = self.conditions.prescribed | self.conditions.cell_held | self.ties.follows
+        held = self.conditions.prescribed | self.conditions.cell_held | self.ties.held
         body = self.mechanics.body
+        sums = [row for _, row, *_ in self.ties.rows]
         everywhere = body.beyond.spread(old.displacement, old.jump)
-        self.last_unheld = unheld_points(everywhere, body.bonds[~broken], held, body.beyond, old.jump, self.jump_is_free)
+        self.last_unheld = unheld_points(everywhere, body.bonds[~broken], held, body.beyond, old.jump, self.jump_is_free, sums)
         return self.last_unheld
 
     def judge_residual(self, mechanics, step, row, old, history, out_of_balance, magnitude, unheld):
-        free = ~self.conditions.prescribed & ~unheld[:, None] & ~self.ties.follows & ~self.conditions.cell_held
+        cell_held = self.conditions.middle_of_cell(out_of_balance)
+        free = ~self.conditions.prescribed & ~unheld[:, None] & ~self.ties.follows & ~cell_held
         if not free.any() and not self.jump_is_free.any():
             return
         jumped = old.displacement.copy()
@@ -224,6 +227,9 @@ class Verification:
         held = prescribed | self.ties.follows
         of_ties = self.norm_of_ties(old, reactions)
         norms = [numpy.linalg.norm(external), numpy.linalg.norm([numpy.linalg.norm(reactions[held]), beyond, of_ties])]
+        # Loads on what is held may have changed: the program knows the new ones.
+        changed = reactions + self.external(old.loads, old.displacement) - external
+        norms.append(numpy.linalg.norm([numpy.linalg.norm(changed[held]), beyond, self.norm_of_ties(old, changed)]))
         beyond = self.forces_beyond(mechanics, step, history)
         of_ties = self.norm_of_ties(step, out_of_balance)
         norms.append(numpy.linalg.norm([numpy.linalg.norm(out_of_balance[held]), beyond, of_ties]))
@@ -239,17 +245,17 @@ class Verification:
         scale = max(norms)
         floor = 8 * UNIT_ROUND_OFF * (numpy.linalg.norm(magnitude) + self.whole_force(mechanics, step))
         floor += STEP * mechanics.body.constants[1] * mechanics.body.weight[1].sum()
-        along_ties = self.ties.out_of_balance(step.displacement, out_of_balance)
+        along_ties = self.ties.out_of_balance(step.displacement, out_of_balance, unheld)
         on_jumps = mechanics.pull_of_periods(step.everywhere, history)[self.jump_is_free]
         residual = numpy.linalg.norm([numpy.linalg.norm(part) for part in (out_of_balance[free], along_ties, on_jumps)])
         # A tenth more: the program's scale has the same three norms in its own rounding and its own
         # idea of the jump that a cut or relaxed step begins with.
         allowed = 1.1 * self.case["solver"]["relative_tolerance"] * scale + floor
-        self.judge_pins(step, row, numpy.linalg.norm(out_of_balance[unheld[:, None] & ~prescribed]), allowed)
+        self.judge_pins(step, row, self.ties.on_unheld(out_of_balance, unheld), allowed)
         if row["settled"]:  # owes no equilibrium
             return
         self.worst["residual / allowed"] = max(self.worst.get("residual / allowed", 0.0), residual / allowed)
-        on_cell = numpy.linalg.norm(out_of_balance[self.conditions.cell_held])
+        on_cell = numpy.linalg.norm(out_of_balance[cell_held])
         if not on_cell <= allowed * len(unheld) ** 0.5:
             self.complain(step, f"{on_cell:.4g} N on the point at which the cell is held, though nothing holds it")
         if not residual <= allowed:
@@ -267,7 +273,7 @@ class Verification:
     def forces_beyond(mechanics, state, history):
         """Norm of what acts beyond planes and periods: it counts among the reactions."""
         on_copies = numpy.linalg.norm(mechanics.gradient_of_shares(state.everywhere, history)[mechanics.body.own :])
-        return numpy.hypot(on_copies, numpy.linalg.norm(mechanics.pull_of_periods(state.everywhere, history)))
+        return numpy.hypot(on_copies, numpy.linalg.norm(mechanics.slopes_by_jumps(state.everywhere, history)))
 
     def of_environment(self, mechanics, step, old, past):
         """What eigenstrains and pressures add to the forces of the old displacement."""
@@ -389,8 +395,13 @@ class Verification:
         self.compare(step, "max_damage", row["max_damage"], damage.max(), 1.0)
         whole = stretch[~broken]
         largest = whole.max() if len(whole) else 0.0
+        of_points = numpy.full(len(mechanics.body.volume), -numpy.inf)
+        for end in (0, 1):
+            numpy.maximum.at(of_points, mechanics.body.bonds[~broken, end], whole)
+        of_points = numpy.where(numpy.isfinite(of_points), of_points, 0.0)[: mechanics.body.own]
         scale = max(abs(stretch).max(), 1e-5 * self.reach(mechanics, step), 1e-300)
         self.compare(step, "max_stretch", row["max_stretch"], largest, scale)
+        self.compare(step, "stretch", step.stretch, of_points, scale)
 
     def judge_broken_bonds(self, step, broken):
         """Those listed so far."""

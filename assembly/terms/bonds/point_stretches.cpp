@@ -1,6 +1,7 @@
 #include "assembly/terms/bonds/point_stretches.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <type_traits>
 
 #include "assembly/terms/damage.hpp"
@@ -9,7 +10,7 @@
 namespace peristat {
 namespace {
 
-constexpr double none = -2.0;  // below every stretch
+constexpr double none = -std::numeric_limits<double>::infinity();
 
 template <int D>
 void find_largest(const Points& points, const Model& model, const StateView& at,
@@ -42,8 +43,8 @@ void find_largest(const Points& points, const Model& model, const StateView& at,
 
 }  // namespace
 
-void point_stretches(const Points& points, const Model& model, const StateView& at,
-                     std::span<double> stretches) {
+double point_stretches(const Points& points, const Model& model, const StateView& at,
+                       std::span<double> stretches) {
   std::fill(stretches.begin(), stretches.end(), none);
   switch (points.dimension) {
     case 1:
@@ -55,7 +56,9 @@ void point_stretches(const Points& points, const Model& model, const StateView& 
     default:
       find_largest<3>(points, model, at, stretches);
   }
+  const double largest = *std::max_element(stretches.begin(), stretches.end());
   std::replace(stretches.begin(), stretches.end(), none, 0.0);
+  return largest == none ? 0.0 : largest;
 }
 
 }  // namespace peristat

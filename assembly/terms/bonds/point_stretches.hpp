@@ -9,7 +9,8 @@
 namespace peristat {
 
 /// Largest stretch l/L - 1 of the unbroken bonds of each point; 0 without such a bond.
-void point_stretches(const Points& points, const Model& model, const StateView& at,
-                     std::span<double> stretches);
+/// @return the largest of all unbroken bonds
+double point_stretches(const Points& points, const Model& model, const StateView& at,
+                       std::span<double> stretches);
 
 }  // namespace peristat

@@ -42,6 +42,7 @@ Recorder::Fields Recorder::fields(const StateView& at, std::vector<double> force
               std::vector<double>(points),
               std::vector<double>(own_, 0.0),
               0.0,
+              0.0,
               written_histories_.changes(points_, body_.model.bonds(),
                                          bond_stretches(body_.model, at.history))};
   assembler_.point_energies(at, made.energy_density);
@@ -49,7 +50,7 @@ Recorder::Fields Recorder::fields(const StateView& at, std::vector<double> force
     made.energy_density[std::size_t(points_.source(Index(i)))] += made.energy_density[i];
   }
   for (std::size_t i = 0; i < own_; ++i) made.energy_density[i] /= points_.volume[i];
-  point_stretches(points_, body_.model, at, made.stretch);
+  made.max_stretch = point_stretches(points_, body_.model, at, made.stretch);
   const auto cut_weight =
       case_.output.count_cracks ? std::span(body_.cut_weight) : std::span<const double>();
   made.max_damage =
@@ -72,7 +73,7 @@ void Recorder::accepted(StepRecord record, const AcceptedState& state) {
   for (std::size_t k = 0; k < follower_force.size(); ++k) force[k] -= follower_force[k];
   body_.conditions->foundations().add_force(at.displacement, at.environment, -1.0, force);
   Fields made = fields(at, std::move(force), state.piece);
-  record.max_stretch = *std::max_element(made.stretch.begin(), made.stretch.end());
+  record.max_stretch = made.max_stretch;
   record.max_damage = made.max_damage;
   record_broken_bonds(record, at.history);
   const StepFields all = made.view(true), view = made.view(case_.output.stress);

@@ -59,7 +59,7 @@ class Recorder {
  private:
   struct Fields {
     std::vector<double> displacement, force, damage, energy_density, stretch, fragment;
-    double max_damage = 0.0;
+    double max_damage = 0.0, max_stretch = 0.0;
     std::optional<BondHistories> histories;
     std::optional<StressFields> stress{};  ///< where a probe or the results need it
     /// @param with_stress whether strain and stress are shown
