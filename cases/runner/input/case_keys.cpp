@@ -861,6 +861,7 @@ Table<LoadingSpecification> loading_keys() {
           .otherwise(
               [](auto& loading, auto&) { loading.largest_step = 1.0 / loading.steps_to_entry(); },
               "the first step")
+          .written_if([](auto&, auto& from) { return from.solver.mode != Mode::arc_length; })
           .then([](auto& at, auto& loading) {
             const double step = 1.0 / loading.steps_to_entry();
             if (loading.smallest_step > step)
