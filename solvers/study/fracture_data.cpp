@@ -253,6 +253,15 @@ class TearSearch {
   std::optional<DamageSpecification> law_;
 };
 
+/// Refuses a law so steep that finding its stretches would take minutes.
+void require_quick(const DamageSpecification& damage, const std::string& key, const CpdTear& tear) {
+  const AnyLaw law = law_of(damage.softens() ? shape(damage, 0.5) : damage);
+  if (tear.quadrature_points(law) <= most_quadrature_points_of_tear) return;
+  throw InputError(key + "fracture_energy", number_text(*damage.fracture_energy),
+                   "takes minutes to turn into stretches of cpd at this horizon ratio and rate, " +
+                       short_text(damage.rate) + "; give a lower rate, or critical");
+}
+
 void require_range(const DamageSpecification& found, const DamageSpecification& given,
                    const std::string& key) {
   const bool fits = found.critical >= 1e-9 && found.critical <= 1e3 &&
@@ -310,9 +319,10 @@ DamageSpecification with_stretches(const DamageSpecification& damage, const std:
                                    const FractureScale& scale) {
   if (!damage.is_by_data()) return damage;
   const std::string table = key + ".damage.";
-  const DamageSpecification found = scale.tear && damage.fracture_energy
-                                        ? TearSearch(damage, table, scale).found()
-                                        : Search(damage, table, scale).found();
+  const bool by_tear = scale.tear && damage.fracture_energy;
+  if (by_tear) require_quick(damage, table, *scale.tear);
+  const DamageSpecification found =
+      by_tear ? TearSearch(damage, table, scale).found() : Search(damage, table, scale).found();
   require_range(found, damage, key + ".damage.");
   return found;
 }

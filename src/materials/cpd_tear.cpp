@@ -284,6 +284,14 @@ double CpdTear::energy(const AnyLaw& law, const Coordinates& normal) const {
   return of_bonds(law, n) + of_simplices(law, n);
 }
 
+double CpdTear::quadrature_points(const AnyLaw& of) const {
+  const double steps =
+      std::visit([](const auto& law) { return 1.0 / share_per_step(law); }, of.law);
+  const double places = 2.0 * double(triangles_.size()) + 3.0 * double(tetrahedra_.size());
+  const double in_between = of.onset() < of.critical() ? 10.0 * (4.0 + steps) : 1.0;
+  return places * in_between * (dimension_ == 2 ? 12.0 : 16.0);
+}
+
 double CpdTear::mean_crossing() const {
   double sum = 0.0;
   for (const Bond& bond : bonds_) sum += bond.length * bond.length;

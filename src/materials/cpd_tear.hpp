@@ -39,6 +39,9 @@ class CpdTear {
   /// The mean, and the least and the most over its directions, the axes and the diagonals.
   [[nodiscard]] DirectionalSpread spread(const AnyLaw& law) const;
 
+  /// Points of the quadrature that one mean takes of a law.
+  [[nodiscard]] double quadrature_points(const AnyLaw& law) const;
+
   /// Mean A of the bonds [m5].
   [[nodiscard]] double mean_crossing() const;
 
@@ -66,8 +69,9 @@ class CpdTear {
   std::vector<Simplex<4>> tetrahedra_;
 };
 
-/// Largest horizon / spacing at which a tear of triangles or tetrahedra is summed: above, finding a
-/// stretch takes minutes.
+/// Largest horizon / spacing at which a tear of triangles or tetrahedra is summed, and most points
+/// of its quadrature with which a stretch is found: above, that takes minutes.
+inline constexpr double most_quadrature_points_of_tear = 1e8;
 [[nodiscard]] constexpr double largest_ratio_of_tear(int dimension) {
   return dimension == 2 ? 12.0 : 3.2;
 }

@@ -51,6 +51,10 @@ class Tear:
         law = Law.of_table(damage)
         return sum(self._of_kind(law, *kind, numpy.asarray(normal)) for kind in self.kinds)
 
+    def of_bonds(self, damage, normal):
+        """The part of the bonds alone."""
+        return self._of_kind(Law.of_table(damage), *self.kinds[0], numpy.asarray(normal))
+
     def mean(self, damage):
         law = Law.of_table(damage)
         bonds = self.kinds[0]
@@ -85,7 +89,7 @@ class Tear:
         # Between what makes a kink the integrand is smooth.
         stops = numpy.concatenate([numpy.zeros((len(end), 1)), *map(opening, marks)], axis=1)
         stops = numpy.sort(numpy.minimum(stops, end[:, None]), axis=1)
-        panels = 12
+        panels = 2 + math.ceil(law.rate)
         nodes, weights = numpy.polynomial.legendre.leggauss(10)
         at = (numpy.arange(panels)[:, None] + (nodes + 1) / 2).ravel() / panels
         share = numpy.tile(weights, panels) / 2 / panels
