@@ -142,20 +142,20 @@ void add_bond_calibration(CLI::App& command, CommandLine& line) {
       ->transform(names<Calibration>(
           {{"continuum", Calibration::continuum}, {"lattice", Calibration::lattice}}));
   add("--micromodulus", material.micromodulus, "bond: c [N/m6]");
-  add("--law", damage.law, "bond: of damage, as in case files")
+  add("--law", damage.law, "of damage, as in case files")
       ->transform(names<Law>({{"critical_stretch", Law::critical_stretch},
                               {"tanh", Law::tanh},
                               {"tanh_continuous", Law::tanh_continuous},
                               {"linear", Law::linear},
                               {"exponential", Law::exponential},
                               {"blended", Law::blended}}));
-  add("--fracture-energy", damage.fracture_energy, "bond [J/m2]");
-  add("--strength", damage.strength, "bond [Pa]");
-  add("--critical", damage.critical, "bond: stretch");
-  add("--onset", damage.onset, "bond: stretch");
-  add("--peak", damage.peak, "bond, blended: stretch");
-  add("--hardening", damage.hardening, "bond, blended");
-  add("--rate", damage.rate, "bond, tanh laws and exponential");
+  add("--fracture-energy", damage.fracture_energy, "[J/m2]");
+  add("--strength", damage.strength, "[Pa]");
+  add("--critical", damage.critical, "stretch");
+  add("--onset", damage.onset, "stretch");
+  add("--peak", damage.peak, "blended: stretch");
+  add("--hardening", damage.hardening, "blended");
+  add("--rate", damage.rate, "tanh laws and exponential");
 }
 
 RunOptions run_options(const CommandLine& line, int threads) {
@@ -171,7 +171,7 @@ Exit execute(const CLI::App& program, const CommandLine& line, int threads) {
   if (is_calibration && line.case_file.empty()) {
     return line.calibrated_model == MaterialModel::bond
                ? calibrate(line.calibration, line.bond_calibration)
-               : calibrate(line.calibration);
+               : calibrate(line.calibration, line.bond_calibration.material.damage);
   }
   const Case from = read_case(line.case_file, overrides(line));
   if (is_calibration) return calibrate(from);

@@ -108,9 +108,6 @@ void check_cpd_material(const MaterialSpecification& material, const std::string
   require(material.youngs_modulus.has_value() != material.c1.has_value(), key, "",
           "needs a youngs_modulus with a poisson_ratio, or c1, and not both");
   require_absent(material.micromodulus.has_value(), key + ".micromodulus", "is for the model bond");
-  require_absent(material.damage.fracture_energy.has_value(), key + ".damage.fracture_energy",
-                 "is for the model bond: what cpd dissipates with the triangles and tetrahedra of "
-                 "broken bonds has no formula; give critical");
   require(material.poisson_ratio.has_value() == material.youngs_modulus.has_value(),
           key + ".poisson_ratio", "", "goes with youngs_modulus");
   require(std::isfinite(material.c2), key + ".c2", number_text(material.c2), "must be finite");

@@ -49,34 +49,11 @@ Simplices<Measure> make_simplices(const BodySpecification& from, const Points& p
   return {std::move(interactions), Harmonic{constant.constant}};
 }
 
-CpdStiffness stiffness_of(const MaterialSpecification& material, const Points& points,
-                          const BondSetting& setting) {
+CpdStiffness stiffness_of(const MaterialSpecification& material, const BondSetting& setting,
+                          double spacing) {
   return material.calibrated_on() == Calibration::lattice
-             ? lattice_stiffness(points.dimension, points.spacing, setting.horizon,
-                                 setting.cross_section)
-             : continuum_stiffness(points.dimension, setting.horizon, setting.cross_section);
-}
-
-void refuse_damage_of_negative_constants(const PointMaterials::Material& of,
-                                         const CpdConstants& constants, const Points& points,
-                                         const BondSetting& setting) {
-  const std::string negative = negative_constant(constants);
-  if (negative.empty()) return;
-  const double value = negative == "c2" ? constants.c2 : constants.c3;
-  std::string advice = "give " + negative + " = 0 or more";
-  if (of.of->poisson_ratio) {
-    const CpdStiffness stiffness = stiffness_of(*of.of, points, setting);
-    const double least = poisson_ratio_of(stiffness.moduli({1.0, 0.0, 0.0}), points.dimension);
-    advice = "it is for a poisson_ratio below " + number_text(least) +
-             (points.dimension == 3 ? " (with c2 = 0; a positive c2 needs a larger one)" : "") +
-             ". Give a larger poisson_ratio, or model = \"bond\"";
-  }
-  throw InputError(of.key + ".damage.law", "",
-                   "damage needs constants of at least 0, but " + negative + " is " +
-                       number_text(value) +
-                       ": interactions of negative energy that are lost with a "
-                       "broken bond would set energy free from nothing; " +
-                       advice);
+             ? lattice_stiffness(setting.dimension, spacing, setting.horizon, setting.cross_section)
+             : continuum_stiffness(setting.dimension, setting.horizon, setting.cross_section);
 }
 
 /// Value of a constant that interactions of points of several materials have.
@@ -166,13 +143,36 @@ std::string negative_constant(const CpdConstants& constants) {
   return constants.c2 < 0.0 ? "c2" : constants.c3 < 0.0 ? "c3" : "";
 }
 
+void refuse_damage_of_negative_constants(const MaterialSpecification& material,
+                                         const std::string& key, const CpdConstants& constants,
+                                         const BondSetting& setting, double spacing) {
+  const std::string negative = negative_constant(constants);
+  if (negative.empty()) return;
+  const double value = negative == "c2" ? constants.c2 : constants.c3;
+  std::string advice = "give " + negative + " = 0 or more";
+  if (material.poisson_ratio) {
+    const CpdStiffness stiffness = stiffness_of(material, setting, spacing);
+    const double least = poisson_ratio_of(stiffness.moduli({1.0, 0.0, 0.0}), setting.dimension);
+    advice = "it is for a poisson_ratio below " + number_text(least) +
+             (setting.dimension == 3 ? " (with c2 = 0; a positive c2 needs a larger one)" : "") +
+             ". Give a larger poisson_ratio, or model = \"bond\"";
+  }
+  throw InputError(key + ".damage.law", "",
+                   "damage needs constants of at least 0, but " + negative + " is " +
+                       number_text(value) +
+                       ": interactions of negative energy that are lost with a "
+                       "broken bond would set energy free from nothing; " +
+                       advice);
+}
+
 CpdConstants cpd_constants_of(const MaterialSpecification& material, const std::string& key,
-                              const Points& points, const BondSetting& setting) {
+                              const BondSetting& setting, double spacing) {
   if (material.c1) return {*material.c1, material.c2, material.c3};
   try {
-    return stiffness_of(material, points, setting)
-        .constants(lame_moduli(*material.youngs_modulus, *material.poisson_ratio, points.dimension),
-                   material.c2);
+    return stiffness_of(material, setting, spacing)
+        .constants(
+            lame_moduli(*material.youngs_modulus, *material.poisson_ratio, setting.dimension),
+            material.c2);
   } catch (const InputError& error) {
     throw InputError(key + "." + error.key(), error.value(), error.allowed());
   }
@@ -194,8 +194,10 @@ Model make_cpd_model(const BodySpecification& from, const PointMaterials& materi
   std::vector<DirectedConstant> c1;
   std::vector<double> c2, c3;
   for (const auto& kind : kinds) {
-    const CpdConstants constants = cpd_constants_of(*kind.of, kind.key, points, setting);
-    if (fails) refuse_damage_of_negative_constants(kind, constants, points, setting);
+    const CpdConstants constants = cpd_constants_of(*kind.of, kind.key, setting, points.spacing);
+    if (fails) {
+      refuse_damage_of_negative_constants(*kind.of, kind.key, constants, setting, points.spacing);
+    }
     c1.push_back({{constants.c1, 0.0, 0.0}, {}});
     c2.push_back(constants.c2);
     c3.push_back(constants.c3);

@@ -18,16 +18,21 @@ namespace peristat {
 /// @param key of the material, for errors
 /// @throws InputError
 [[nodiscard]] CpdConstants cpd_constants_of(const MaterialSpecification& material,
-                                            const std::string& key, const Points& points,
-                                            const BondSetting& setting);
+                                            const std::string& key, const BondSetting& setting,
+                                            double spacing);
 
 /// Key of a constant below zero, "c2" or "c3", whose interactions store negative energy; empty if
 /// there is none.
 [[nodiscard]] std::string negative_constant(const CpdConstants& constants);
 
+/// @throws InputError ("….damage.law") for a negative constant: the triangles and tetrahedra that a
+///         broken bond takes along would release energy that nobody has put in
+void refuse_damage_of_negative_constants(const MaterialSpecification& material,
+                                         const std::string& key, const CpdConstants& constants,
+                                         const BondSetting& setting, double spacing);
+
 /// Model of a body of model "cpd".
-/// @throws InputError for damage together with a negative constant: the triangles and tetrahedra
-///         that a broken bond takes along would release energy that nobody has put in
+/// @throws InputError for damage together with a negative constant
 /// @param bonds whose weights are to be set
 /// @param cut gets the bonds that pre-cracks have cut
 [[nodiscard]] Model make_cpd_model(const BodySpecification& from, const PointMaterials& materials,

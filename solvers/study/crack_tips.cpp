@@ -28,7 +28,8 @@ TipElasticity elasticity_of(const PointMaterials::Material& material, const Body
                    : TipElasticity::plane_strain(modulus, nu);
   }
   const BondSetting& setting = body.setting;
-  const CpdConstants constants = cpd_constants_of(*material.of, material.key, body.points, setting);
+  const CpdConstants constants =
+      cpd_constants_of(*material.of, material.key, setting, body.points.spacing);
   const CpdStiffness stiffness =
       material.of->calibrated_on() == Calibration::lattice
           ? lattice_stiffness(dimension, body.points.spacing, setting.horizon,

@@ -2,14 +2,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "solvers/study/bond_materials.hpp"
 #include "solvers/study/bond_potential.hpp"
+#include "solvers/study/cpd_model.hpp"
 #include "src/core/input_error.hpp"
 #include "src/core/number_text.hpp"
+#include "src/neighbourhood/horizon.hpp"
 
 namespace peristat {
 namespace {
@@ -178,6 +181,87 @@ class Search {
   double peak_ = 0.0;  // f_p that is asked for; 0: it isn't
 };
 
+/// Finds the stretches with which a tear of cpd takes the fracture energy. Bonds of which each took
+/// G/W per area, whatever the law, would be those of a Search; the tear's G/W is that of the law
+/// that it gives.
+class TearSearch {
+ public:
+  TearSearch(const DamageSpecification& damage, std::string key, const FractureScale& scale)
+      : damage_(damage), key_(std::move(key)), scale_(scale) {}
+
+  /// Between a G/W that is too small, from that of the bonds alone on, and one that is too large or
+  /// leaves no law, by secants.
+  [[nodiscard]] DamageSpecification found() {
+    double small = std::log(scale_.micromodulus * scale_.crossing), large = INFINITY;
+    double last = small, last_excess = excess_at(small);
+    double next = small + last_excess;
+    if (std::isnan(last_excess)) refuse();
+    for (int k = 0; k < most_trials && large - small > 1e-12; ++k) {
+      if (std::abs(last_excess) <= tolerance) return *law_;
+      const double excess = excess_at(next);
+      (excess > 0.0 ? small : large) = next;
+      double guess = next - excess * (next - last) / (excess - last_excess);
+      if (!(guess > small && guess < large)) {
+        guess = std::isfinite(large) ? 0.5 * (small + large) : small + excess;
+      }
+      if (!std::isnan(excess)) {
+        last = next;
+        last_excess = excess;
+      }
+      next = guess;
+    }
+    refuse();
+  }
+
+ private:
+  static constexpr double tolerance = 1e-11;
+  static constexpr int most_trials = 100;
+
+  [[nodiscard]] FractureScale with_ratio(double log_ratio) const {
+    FractureScale scale = scale_;
+    scale.crossing = std::exp(log_ratio) / scale.micromodulus;
+    return scale;
+  }
+
+  /// How much too much the tear takes with the law of this G/W, as a logarithm; NaN without a law.
+  double excess_at(double log_ratio) {
+    try {
+      law_ = Search(damage_, key_, with_ratio(log_ratio)).found();
+    } catch (const InputError&) {
+      return NAN;
+    }
+    return std::log(scale_.energy(*law_) / *damage_.fracture_energy);
+  }
+
+  /// With what is told of bonds that have the G/W of brittle ones with this strength.
+  [[noreturn]] void refuse() const {
+    DamageSpecification brittle;
+    brittle.law = DamageLaw::critical_stretch;
+    const double work = *damage_.fracture_energy / (scale_.micromodulus * scale_.crossing);
+    brittle.critical = damage_.strength      ? *damage_.strength / scale_.youngs_modulus
+                       : damage_.onset > 0.0 ? damage_.onset
+                                             : std::sqrt(2.0 * work);
+    const double ratio = scale_.energy(brittle) / total_work(brittle);
+    static_cast<void>(Search(damage_, key_, with_ratio(std::log(ratio))).found());
+    throw InputError(key_ + "fracture_energy", number_text(*damage_.fracture_energy),
+                     "gives no stretches with this onset or strength; give others");
+  }
+
+  const DamageSpecification& damage_;
+  std::string key_;
+  const FractureScale& scale_;
+  std::optional<DamageSpecification> law_;
+};
+
+/// Refuses a law so steep that finding its stretches would take minutes.
+void require_quick(const DamageSpecification& damage, const std::string& key, const CpdTear& tear) {
+  const AnyLaw law = law_of(damage.softens() ? shape(damage, 0.5) : damage);
+  if (tear.quadrature_points(law) <= most_quadrature_points_of_tear) return;
+  throw InputError(key + "fracture_energy", number_text(*damage.fracture_energy),
+                   "takes minutes to turn into stretches of cpd at this horizon ratio and rate, " +
+                       short_text(damage.rate) + "; give a lower rate, or critical");
+}
+
 void require_range(const DamageSpecification& found, const DamageSpecification& given,
                    const std::string& key) {
   const bool fits = found.critical >= 1e-9 && found.critical <= 1e3 &&
@@ -185,10 +269,10 @@ void require_range(const DamageSpecification& found, const DamageSpecification& 
                     (!found.softens() || found.onset < found.critical * (1.0 - 1e-9));
   if (fits) return;
   const char* datum = given.fracture_energy ? "fracture_energy" : "strength";
-  throw InputError(key + datum, number_text(given.fracture_energy.value_or(*given.strength)),
-                   "gives bonds an onset of " + short_text(found.onset) +
-                       " and a critical stretch of " + short_text(found.critical) +
-                       "; stretches must be from 1e-09 to 1000");
+  throw InputError(
+      key + datum, number_text(given.fracture_energy ? *given.fracture_energy : *given.strength),
+      "gives bonds an onset of " + short_text(found.onset) + " and a critical stretch of " +
+          short_text(found.critical) + "; stretches must be from 1e-09 to 1000");
 }
 
 }  // namespace
@@ -202,19 +286,43 @@ FractureScale FractureScale::of(const MaterialSpecification& material, const std
     scale.crossing = mean_crossing(setting);
     scale.youngs_modulus =
         material.youngs_modulus.value_or(youngs_modulus_of(scale.micromodulus, setting));
-  } else if (material.youngs_modulus) {
-    scale.youngs_modulus = *material.youngs_modulus;
-  } else if (material.damage.strength) {
+    return scale;
+  }
+  if (material.damage.strength && !material.youngs_modulus) {
     throw InputError(key + ".damage.strength", number_text(*material.damage.strength),
                      "needs a youngs_modulus; give the stretches onset and critical");
   }
+  scale.youngs_modulus = material.youngs_modulus.value_or(0.0);
+  const CpdConstants constants = cpd_constants_of(material, key, setting, spacing);
+  refuse_damage_of_negative_constants(material, key, constants, setting, spacing);
+  scale.micromodulus = constants.c1;
+  const double largest = largest_ratio_of_tear(setting.dimension);
+  if (setting.horizon <= largest * spacing * (1.0 + horizon_tolerance)) {
+    scale.tear = std::make_shared<CpdTear>(setting.dimension, spacing, setting.horizon,
+                                           setting.cross_section, constants);
+    scale.crossing = scale.tear->mean_crossing();
+  } else if (material.damage.fracture_energy) {
+    throw InputError(
+        key + ".damage.fracture_energy", number_text(*material.damage.fracture_energy),
+        "is for horizon ratios up to " + number_text(largest) + " with cpd in " +
+            std::to_string(setting.dimension) +
+            "D: summing what a tear takes of longer ones takes minutes; give critical");
+  }
   return scale;
+}
+
+double FractureScale::energy(const DamageSpecification& damage) const {
+  return tear ? tear->mean_energy(law_of(damage)) : micromodulus * crossing * total_work(damage);
 }
 
 DamageSpecification with_stretches(const DamageSpecification& damage, const std::string& key,
                                    const FractureScale& scale) {
   if (!damage.is_by_data()) return damage;
-  const DamageSpecification found = Search(damage, key + ".damage.", scale).found();
+  const std::string table = key + ".damage.";
+  const bool by_tear = scale.tear && damage.fracture_energy;
+  if (by_tear) require_quick(damage, table, *scale.tear);
+  const DamageSpecification found =
+      by_tear ? TearSearch(damage, table, scale).found() : Search(damage, table, scale).found();
   require_range(found, damage, key + ".damage.");
   return found;
 }
@@ -256,9 +364,10 @@ double peak_force(const DamageSpecification& damage) {
 }
 
 double largest_spacing(double fracture_energy, double strength, const FractureScale& scale) {
-  const double work = fracture_energy / (scale.micromodulus * scale.crossing);
-  const double peak = strength / scale.youngs_modulus;
-  return scale.spacing * work / (0.5 * peak * peak);
+  DamageSpecification brittle;
+  brittle.law = DamageLaw::critical_stretch;
+  brittle.critical = strength / scale.youngs_modulus;
+  return scale.spacing * fracture_energy / scale.energy(brittle);
 }
 
 }  // namespace peristat

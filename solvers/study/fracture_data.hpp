@@ -1,22 +1,31 @@
 #pragma once
 
+#include <memory>
 #include <string>
 
 #include "solvers/study/body_specification.hpp"
 #include "src/materials/bulk_bonds.hpp"
+#include "src/materials/cpd_tear.hpp"
 
 namespace peristat {
 
 /// What turns a fracture energy and a strength into stretches of bonds.
 struct FractureScale {
   double youngs_modulus = 0.0;  ///< E [Pa]
-  double micromodulus = 0.0;    ///< c [N/m6]
-  double crossing = 0.0;        ///< A [m5], see BulkBonds; 0: a fracture energy has no formula
+  double micromodulus = 0.0;    ///< c, or C1 of cpd [N/m6]
+  double crossing = 0.0;        ///< A of the bonds [m5], see BulkBonds
   double spacing = 0.0;         ///< [m], for messages
+  /// Of cpd, but for horizons above largest_ratio_of_tear.
+  std::shared_ptr<const CpdTear> tear{};
 
-  /// Of a material without fibres. @throws InputError for a strength without Young's modulus
+  /// Of a material without fibres.
+  /// @throws InputError for a strength without Young's modulus, a fracture energy of cpd at a
+  ///         horizon too long for it, and damage of negative constants
   static FractureScale of(const MaterialSpecification& material, const std::string& key,
                           const BondSetting& setting, double spacing);
+
+  /// G of a law, the mean over all directions of a tear [J/m2].
+  [[nodiscard]] double energy(const DamageSpecification& damage) const;
 };
 
 /// The law with stretches in the place of fracture energy and strength. With the work W = int_0^s_c
@@ -25,7 +34,9 @@ struct FractureScale {
 ///   G = c A W,   f_t = E f_p.
 ///
 /// A law that softens with a fracture energy alone gets half the stretch of a brittle bond of that
-/// energy as onset (blended: a quarter, and a peak force of half).
+/// energy as onset (blended: a quarter, and a peak force of half). In cpd G is that of a CpdTear,
+/// in the place of c A there is G/W of the law that is found, and the brittle bond is one of the
+/// same W.
 /// @param key of the material, for errors
 /// @throws InputError ("material.damage.strength", …) if there are no such stretches, with the
 ///         largest spacing that has them
@@ -37,7 +48,7 @@ struct FractureScale {
 [[nodiscard]] BodySpecification with_stretches(BodySpecification of, const BondSetting& setting,
                                                double spacing);
 
-/// W of the whole law, for the modulus 1: c A W is the fracture energy.
+/// W of the whole law, for the modulus 1: c A W is the fracture energy of bonds.
 [[nodiscard]] double total_work(const DamageSpecification& damage);
 
 /// f_p, the largest force for the modulus 1: E f_p is the strength.

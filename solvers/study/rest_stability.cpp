@@ -49,8 +49,8 @@ Stability at_rest(LinearSolver& solver, const TangentOperator& tangent, const Fr
 std::pair<PointMaterials::Material, std::string> negative_material(const Body& body) {
   const PointMaterials materials(body.specification, body.points);
   for (const auto& material : all_materials(body.specification, materials)) {
-    const std::string negative =
-        negative_constant(cpd_constants_of(*material.of, material.key, body.points, body.setting));
+    const std::string negative = negative_constant(
+        cpd_constants_of(*material.of, material.key, body.setting, body.points.spacing));
     if (!negative.empty()) return {material, negative};
   }
   return {};

@@ -45,14 +45,48 @@ class LatticeBall {
     }
   }
 
+  /// visit(b, c, area) for the triangles whose lowest point is the origin: of those that
+  /// translations make one another, one.
+  template <class Visit>
+  void for_each_triangle(const Visit& visit) const {
+    for (std::size_t j = first_above(); j < arms_.size(); ++j) {
+      for (std::size_t k = j + 1; k < arms_.size(); ++k) {
+        if (!are_mutual(j, k)) continue;
+        const Coordinates normal = cross(arms_[j], arms_[k]);
+        const double area = std::sqrt(dot(normal, normal));
+        if (area > flat_measure * spacing_ * spacing_) visit(arms_[j], arms_[k], area);
+      }
+    }
+  }
+
+  /// visit(b, c, d, volume) for the tetrahedra whose lowest point is the origin.
+  template <class Visit>
+  void for_each_tetrahedron(const Visit& visit) const {
+    if (dimension_ < 3) return;
+    for_each_solid(first_above(), [&](std::size_t j, std::size_t k, std::size_t l, double volume) {
+      visit(arms_[j], arms_[k], arms_[l], volume);
+    });
+  }
+
   /// visit(volume) for every unordered triplet of mutual neighbours that is not coplanar with the
   /// point; volume = |b.(c x d)|.
   template <class Visit>
   void for_each_triplet(const Visit& visit) const {
     if (dimension_ < 3) return;
+    for_each_solid(0, [&](std::size_t, std::size_t, std::size_t, double volume) { visit(volume); });
+  }
+
+ private:
+  /// Arms ascend by x, y, z, so that the opposite ones are the first half.
+  [[nodiscard]] std::size_t first_above() const { return arms_.size() / 2; }
+
+  /// visit(j, k, l, volume) for every triplet of mutual neighbours j < k < l from the first on that
+  /// is not coplanar with the point.
+  template <class Visit>
+  void for_each_solid(std::size_t first, const Visit& visit) const {
     const double least = flat_measure * spacing_ * spacing_ * spacing_;
     std::vector<std::size_t> common;
-    for (std::size_t j = 0; j < arms_.size(); ++j) {
+    for (std::size_t j = first; j < arms_.size(); ++j) {
       common.clear();
       for (std::size_t k = j + 1; k < arms_.size(); ++k) {
         if (are_mutual(j, k)) common.push_back(k);
@@ -62,13 +96,12 @@ class LatticeBall {
         for (std::size_t b = a + 1; b < common.size(); ++b) {
           if (!are_mutual(common[a], common[b])) continue;
           const double volume = std::abs(dot(normal, arms_[common[b]]));
-          if (volume > least) visit(volume);
+          if (volume > least) visit(j, common[a], common[b], volume);
         }
       }
     }
   }
 
- private:
   static double dot(const Coordinates& a, const Coordinates& b) {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
   }

@@ -7,6 +7,7 @@ complex step has to give them, tangents are complex steps of forces.
     case      what a case file says, with its defaults
     laws      integrity and moment of the laws of damage
     sheets    moduli, fracture energy and strength as constants and stretches
+    tear      what a plane tear takes from a lattice of cpd
     body      points, interactions, weights
     mechanics energy, forces, tangent, damage
     results   what a results folder holds

@@ -6,6 +6,7 @@ import math
 import numpy
 
 from tests.reference.laws import Law
+from tests.reference.tear import Tear
 
 MEAN_OF_MAGNITUDE = {1: 1.0, 2: 2 / math.pi, 3: 0.5}
 MEAN_OF_FOURTH_POWER = {1: 1.0, 2: 3 / 8, 3: 1 / 5}
@@ -120,14 +121,40 @@ def with_stretches(damage, modulus, of_work):
     return with_critical(damage, work) if work else damage
 
 
-def resolve(case):
+def resolve_cpd(case, tables, spacing):
+    """Stretches of bonds that take G/W each, with the G/W of the law that they give."""
+    for table in tables:
+        if "fracture_energy" not in table.get("damage", {}):
+            continue
+        assert "strength" not in table["damage"], "the reference does not calibrate"
+        constants = {n: float(table.get(f"c{n}", 0.0)) for n in range(1, case.dimension + 1)}
+        tear = Tear(case.dimension, case.horizon() / spacing, spacing, case.cross_section, constants)
+        wanted = table["damage"]["fracture_energy"]
+        brittle = {"law": "critical_stretch", "critical": 1e-6}
+        bonds = Tear(case.dimension, case.horizon() / spacing, spacing, case.cross_section, {1: constants[1]})
+        least = math.log(bonds.mean(brittle) / total_work(brittle))
+        law = lambda ratio: with_stretches(table["damage"], 1.0, math.exp(ratio))
+        excess = lambda ratio: math.log(tear.mean(law(ratio)) / wanted)
+        before, ratio = least, least + excess(least)
+        of_before = ratio - least
+        while abs(ratio - before) > 1e-13 * abs(ratio):
+            of_ratio = excess(ratio)
+            slope = (of_ratio - of_before) / (ratio - before)
+            before, of_before = ratio, of_ratio
+            if abs(of_ratio) < 1e-11:
+                break
+            ratio -= of_ratio / slope
+        table["damage"] = law(ratio)
+
+
+def resolve(case, spacing=None):
     """Writes what bonds have into the tables of the materials, in the place of the data of a sheet."""
-    if case["material"].get("model", "bond") != "bond":
-        return
     tables = [case["material"]] + [t["material"] for t in case.get("region")]
     tables += [t["material"] for t in case.get("interface") if "material" in t]
     asks = lambda t: "calibration" in t or {"fracture_energy", "strength"} & set(t.get("damage", {}))
     tables = [table for table in tables if asks(table)]
+    if case["material"].get("model", "bond") == "cpd":
+        return resolve_cpd(case, tables, spacing or case.spacing(None))
     bulk = Bulk(case) if tables else None
     for table in tables:
         on_lattice = table.pop("calibration", "continuum") == "lattice"

@@ -175,7 +175,7 @@ double axis_poisson_ratio(const SolvedCase& solved) {
   const Points& points = solved.body->points;
   const BondSetting& setting = solved.body->setting;
   const CpdConstants constants =
-      cpd_constants_of(solved.from.material, "material", points, setting);
+      cpd_constants_of(solved.from.material, "material", setting, points.spacing);
   return lattice_stiffness(points.dimension, points.spacing, setting.horizon, setting.cross_section)
       .elasticity(constants)
       .axis_poisson_ratio(points.dimension);

@@ -186,32 +186,16 @@ Exit calibrate_bonds(const Case& from) {
   return Exit::done;
 }
 
-}  // namespace
-
-Exit calibrate(const CalibrationQuestion& where, BondCalibrationQuestion question) {
-  check_place(where, question);
-  BondSetting setting;
-  setting.dimension = where.dimension;
-  setting.horizon = where.horizon_ratio * where.spacing;
-  setting.cross_section = where.dimension == 1 ? question.area : where.thickness;
-  setting.volume_correction = question.volume_correction;
-  setting.plane = question.material.plane;
-  setting.lattice = {where.spacing, question.angle, question.surface_correction};
-  question.material.youngs_modulus = where.youngs_modulus;
-  try {
-    check_material(question.material, "material", where.dimension);
-    fmt::print("{}", bond_calibration(question.material, "material", setting, where.spacing));
-  } catch (const InputError& error) {
-    const std::string& key = error.key();
-    const std::size_t dot = key.rfind('.');
-    throw InputError(dot == std::string::npos ? "" : option(key.substr(dot + 1)), error.value(),
-                     error.allowed());
-  }
-  return Exit::done;
+/// The error of a material, of options in the place of keys.
+InputError of_options(const InputError& error) {
+  const std::string& key = error.key();
+  const std::size_t dot = key.rfind('.');
+  return {dot == std::string::npos ? "" : option(key.substr(dot + 1)), error.value(),
+          error.allowed()};
 }
 
-Exit calibrate(const CalibrationQuestion& question) {
-  check(question);
+/// @param damage what is told of a law of damage; empty: there is none
+void print_calibration(const CalibrationQuestion& question, const std::string& damage) {
   const int dimension = question.dimension;
   const double horizon = question.horizon_ratio * question.spacing;
   const CpdStiffness lattice =
@@ -240,11 +224,65 @@ Exit calibrate(const CalibrationQuestion& question) {
       "  \"neighbours\": {}, \"pairs\": {}, \"triplets\": {},\n"
       "  \"lattice\": {},\n"
       "  \"continuum\": {},\n"
-      "  \"lattice_over_continuum\": {{\"c1\": {}, \"c2\": {}, \"c3\": {}}}\n"
+      "  \"lattice_over_continuum\": {{\"c1\": {}, \"c2\": {}, \"c3\": {}}}{}\n"
       "}}\n",
       dimension, question.spacing, horizon, question.thickness, bulk.neighbours, bulk.pairs,
       bulk.triplets, section(on_lattice, lattice), section(in_continuum, continuum),
-      ratio(&CpdStiffness::of_c1), ratio(&CpdStiffness::of_c2), ratio(&CpdStiffness::of_c3));
+      ratio(&CpdStiffness::of_c1), ratio(&CpdStiffness::of_c2), ratio(&CpdStiffness::of_c3),
+      damage.empty() ? "" : ",\n  \"damage\": " + damage);
+}
+
+}  // namespace
+
+Exit calibrate(const CalibrationQuestion& where, BondCalibrationQuestion question) {
+  check_place(where, question);
+  BondSetting setting;
+  setting.dimension = where.dimension;
+  setting.horizon = where.horizon_ratio * where.spacing;
+  setting.cross_section = where.dimension == 1 ? question.area : where.thickness;
+  setting.volume_correction = question.volume_correction;
+  setting.plane = question.material.plane;
+  setting.lattice = {where.spacing, question.angle, question.surface_correction};
+  question.material.youngs_modulus = where.youngs_modulus;
+  try {
+    check_material(question.material, "material", where.dimension);
+    fmt::print("{}", bond_calibration(question.material, "material", setting, where.spacing));
+  } catch (const InputError& error) {
+    throw of_options(error);
+  }
+  return Exit::done;
+}
+
+Exit calibrate(const CalibrationQuestion& question, const DamageSpecification& damage) {
+  check(question);
+  const int dimension = question.dimension;
+  BondSetting setting;
+  setting.dimension = dimension;
+  setting.horizon = question.horizon_ratio * question.spacing;
+  setting.cross_section = question.thickness;
+  MaterialSpecification material;
+  material.model = MaterialModel::cpd;
+  material.youngs_modulus = question.youngs_modulus;
+  material.poisson_ratio = question.poisson_ratio;
+  if (question.lambda) {
+    const LameModuli moduli{*question.lambda, *question.mu};
+    material.youngs_modulus = youngs_modulus_of(moduli, dimension);
+    material.poisson_ratio = poisson_ratio_of(moduli, dimension);
+  }
+  material.c1 = question.c1;
+  material.c2 = question.c2.value_or(0.0);
+  material.c3 = question.c3.value_or(0.0);
+  material.damage = damage;
+  std::string told;
+  try {
+    check_material(material, "material", dimension);
+    if (damage.law != DamageLaw::none) {
+      told = damage_calibration(material, "material", setting, question.spacing);
+    }
+  } catch (const InputError& error) {
+    throw of_options(error);
+  }
+  print_calibration(question, told);
   return Exit::done;
 }
 
@@ -263,6 +301,10 @@ Exit calibrate(const Case& from) {
     question.horizon_ratio = source.horizon / points.spacing;
     if (from.dimension == 2) question.thickness = source.cross_section;
   }
+  BondSetting setting;
+  setting.dimension = from.dimension;
+  setting.horizon = question.horizon_ratio * points.spacing;
+  setting.cross_section = question.thickness;
   const auto all =
       located_errors(from, [&] { return all_materials(from, PointMaterials(from, points)); });
   for (std::size_t k = 0; k < all.size(); ++k) {
@@ -275,7 +317,13 @@ Exit calibrate(const Case& from) {
     if (material.c1 || from.dimension == 3) question.c2 = material.c2;
     if (material.c1) question.c3 = material.c3;
     if (all.size() > 1) fmt::print("{}\"{}\":\n", k == 0 ? "{" : ", ", all[k].name);
-    if (const Exit exit = calibrate(question); exit != Exit::done) return exit;
+    check(question);
+    const std::string damage = located_errors(from, [&] {
+      return material.damage.law == DamageLaw::none
+                 ? ""
+                 : damage_calibration(material, all[k].key, setting, points.spacing);
+    });
+    print_calibration(question, damage);
   }
   if (all.size() > 1) fmt::print("}}\n");
   return Exit::done;

@@ -26,9 +26,11 @@ struct BondCalibrationQuestion {
   MaterialSpecification material{};
 };
 
-/// Prints constants and moduli, in the continuum and on the lattice's bulk sums, as JSON.
+/// Prints constants and moduli, in the continuum and on the lattice's bulk sums, as JSON, and with
+/// a law of damage what it makes of a tear on the lattice.
 /// @throws InputError with the command line's options as keys
-[[nodiscard]] Exit calibrate(const CalibrationQuestion& question);
+[[nodiscard]] Exit calibrate(const CalibrationQuestion& question,
+                             const DamageSpecification& damage);
 
 /// Prints constants of bonds, see bond_calibration, as JSON.
 /// @param where dimension, spacing, horizon ratio, thickness and Young's modulus

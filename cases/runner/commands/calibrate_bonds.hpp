@@ -15,4 +15,9 @@ namespace peristat {
                                            const std::string& key, const BondSetting& setting,
                                            double spacing);
 
+/// What a law of damage makes of a tear and a pull, of bonds or of cpd, as JSON.
+[[nodiscard]] std::string damage_calibration(const MaterialSpecification& material,
+                                             const std::string& key, const BondSetting& setting,
+                                             double spacing);
+
 }  // namespace peristat

@@ -13,6 +13,7 @@
 #include "solvers/linear/available_memory.hpp"
 #include "solvers/linear/make_linear_solver.hpp"
 #include "solvers/study/bond_materials.hpp"
+#include "solvers/study/bond_potential.hpp"
 #include "solvers/study/cpd_model.hpp"
 #include "solvers/study/crack_tips.hpp"
 #include "solvers/study/found_loads.hpp"
@@ -85,29 +86,45 @@ void print_bond_constants(const PointMaterials::Material& of, const std::string&
              poisson_ratio(setting));
 }
 
+/// ": fracture energy 10 J/m2, …"; nothing where finding it would take minutes.
+std::string fracture_energy_text(const DamageSpecification& damage, const FractureScale& scale,
+                                 const BondSetting& setting) {
+  if (scale.crossing == 0.0) return "";
+  const double energy = scale.energy(damage);
+  const std::string mean = fmt::format(": fracture energy {:.6g} J/m2", energy);
+  if (!scale.tear && (!setting.lattice || setting.dimension == 1)) return mean;
+  DirectionalSpread spread;
+  if (scale.tear) {
+    spread = scale.tear->spread(law_of(damage));
+  } else {
+    spread = BulkBonds(setting).crossing();
+    spread.least *= energy / spread.mean;
+    spread.most *= energy / spread.mean;
+  }
+  return fmt::format("{} in the mean over the directions of a crack ({:.4g} to {:.4g})", mean,
+                     spread.least, spread.most);
+}
+
 /// What a law of damage makes of a tear and of a pull.
 void print_fracture(const PointMaterials::Material& of, const std::string& name,
                     const BondSetting& setting, double spacing) {
   const DamageSpecification& damage = of.of->damage;
-  if (damage.law == DamageLaw::none || of.of->fibre || of.of->model != MaterialModel::bond) return;
+  if (damage.law == DamageLaw::none || of.of->fibre) return;
   const FractureScale scale = FractureScale::of(*of.of, of.key, setting, spacing);
-  const double per_area = scale.micromodulus * total_work(damage);
-  std::string spread;
-  if (setting.lattice && setting.dimension > 1) {
-    const DirectionalSpread crossing = BulkBonds(setting).crossing();
-    spread = fmt::format(" in the mean over the directions of a crack ({:.4g} to {:.4g})",
-                         per_area * crossing.least, per_area * crossing.most);
-  }
   const std::string begin = damage.softens() ? fmt::format("onset {:.6g}, ", damage.onset) : "";
-  fmt::print("{} {}critical stretch {:.6g}: fracture energy {:.6g} J/m2{}, strength {:.6g} Pa\n",
-             heading("fracture", name), begin, damage.critical, per_area * scale.crossing, spread,
-             scale.youngs_modulus * peak_force(damage));
+  const std::string strength =
+      scale.youngs_modulus > 0.0
+          ? fmt::format(", strength {:.6g} Pa", scale.youngs_modulus * peak_force(damage))
+          : "";
+  fmt::print("{} {}critical stretch {:.6g}{}{}\n", heading("fracture", name), begin,
+             damage.critical, fracture_energy_text(damage, scale, setting), strength);
 }
 
 void print_cpd_constants(const PointMaterials::Material& of, const std::string& name,
                          const Body& body) {
   const int dimension = body.points.dimension;
-  const CpdConstants constants = cpd_constants_of(*of.of, of.key, body.points, body.setting);
+  const CpdConstants constants =
+      cpd_constants_of(*of.of, of.key, body.setting, body.points.spacing);
   fmt::print("{} C1 {:.6g} N/m6, C2 {:.6g} N/m10, C3 {:.6g} N/m14\n", heading("constants", name),
              constants.c1, constants.c2, constants.c3);
   const auto print_moduli = [&](const char* where, const CpdStiffness& stiffness) {

@@ -148,5 +148,79 @@ TEST(FractureData, OfPlaneStressAreThoseOfTheBooks) {
   EXPECT_NEAR(with_stretches(material.damage, "m", of).critical / book, 1.0, 1e-14);
 }
 
+MaterialSpecification cpd(DamageLaw of) {
+  MaterialSpecification material;
+  material.model = MaterialModel::cpd;
+  material.youngs_modulus = 70e9;
+  material.poisson_ratio = 0.4;
+  material.damage = law(of);
+  return material;
+}
+
+TEST(FractureData, OfCpdComeBackAsTheEnergyOfATear) {
+  for (const int dimension : {2, 3}) {
+    const BondSetting setting{{dimension, 2e-3, dimension == 2 ? 2e-3 : 1.0}};
+    MaterialSpecification whole = cpd(DamageLaw::critical_stretch);
+    whole.damage.fracture_energy = energy;
+    const FractureScale of = FractureScale::of(whole, "m", setting, 1e-3);
+    const DamageSpecification sudden = with_stretches(whole.damage, "m", of);
+    EXPECT_NEAR(of.energy(sudden) / energy, 1.0, 1e-9);
+    const double strength = sudden.critical * 70e9;
+    for (const DamageLaw each : softening) {
+      DamageSpecification damage = law(each);
+      damage.fracture_energy = energy;
+      const DamageSpecification alone = with_stretches(damage, "m", of);
+      EXPECT_NEAR(of.energy(alone) / energy, 1.0, 1e-9) << int(each);
+      damage.strength = 0.8 * strength;
+      if (each == DamageLaw::blended) damage.hardening = 0.9;
+      const DamageSpecification strong = with_stretches(damage, "m", of);
+      EXPECT_NEAR(of.energy(strong) / energy, 1.0, 1e-9) << int(each);
+      EXPECT_NEAR(70e9 * peak_force(strong) / *damage.strength, 1.0, 1e-12);
+      damage = law(each);
+      damage.fracture_energy = energy;
+      damage.onset = 0.4 * sudden.critical;
+      if (each == DamageLaw::blended) damage.peak = 0.6 * sudden.critical;
+      const DamageSpecification begun = with_stretches(damage, "m", of);
+      EXPECT_NEAR(of.energy(begun) / energy, 1.0, 1e-9) << int(each);
+      EXPECT_EQ(begun.onset, damage.onset);
+      // Where bonds have the strength of brittle ones they are brittle.
+      damage = law(each);
+      damage.fracture_energy = energy;
+      damage.strength = 1.3 * strength;
+      if (each == DamageLaw::blended) damage.onset = 1.29 * sudden.critical;
+      EXPECT_THROW(static_cast<void>(with_stretches(damage, "m", of)), InputError) << int(each);
+    }
+    EXPECT_NEAR(largest_spacing(energy, strength, of) / 1e-3, 1.0, 1e-9);
+    DamageSpecification both = law(DamageLaw::critical_stretch);
+    both.fracture_energy = energy;
+    both.strength = strength;
+    EXPECT_THROW(static_cast<void>(with_stretches(both, "m", of)), InputError);
+  }
+}
+
+TEST(FractureData, OfCpdAreRefusedWhereTheyWouldTakeMinutes) {
+  const BondSetting setting{{3, 4e-3, 1.0}};
+  MaterialSpecification material = cpd(DamageLaw::critical_stretch);
+  material.damage.critical = 0.01;
+  EXPECT_FALSE(FractureScale::of(material, "m", setting, 1e-3).tear);
+  material.damage.critical = 0.0;
+  material.damage.fracture_energy = energy;
+  EXPECT_THROW(static_cast<void>(FractureScale::of(material, "m", setting, 1e-3)), InputError);
+  material.damage = law(DamageLaw::tanh);
+  material.damage.fracture_energy = energy;
+  material.damage.rate = 50.0;
+  const BondSetting shorter{{3, 3.015e-3, 1.0}};
+  const FractureScale of = FractureScale::of(material, "m", shorter, 1e-3);
+  EXPECT_THROW(static_cast<void>(with_stretches(material.damage, "m", of)), InputError);
+}
+
+TEST(FractureData, OfCpdAreRefusedForNegativeConstants) {
+  const BondSetting setting{{2, 2e-3, 2e-3}};
+  MaterialSpecification material = cpd(DamageLaw::critical_stretch);
+  material.poisson_ratio = 0.1;
+  material.damage.fracture_energy = energy;
+  EXPECT_THROW(static_cast<void>(FractureScale::of(material, "m", setting, 1e-3)), InputError);
+}
+
 }  // namespace
 }  // namespace peristat

@@ -1,0 +1,79 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "src/core/types.hpp"
+#include "src/materials/bulk_bonds.hpp"
+#include "src/materials/cpd_constants.hpp"
+#include "src/potentials/any_law.hpp"
+
+namespace peristat {
+
+/// What a plane tear takes from the lattice of a body of one-, two- and three-neighbour
+/// interactions, far from its surfaces: its halves move apart rigidly along the plane's normal n,
+/// by u from 0 until no bond across is left. A triangle or tetrahedron across the plane takes the
+/// work of its force,
+///
+///   int T dpsi = -int psi dT,   T(u) = the product of the integrities of its bonds,
+///
+/// which is what it releases as it loses them: committing ever smaller steps of u comes to the
+/// same. Per area each kind of those that translations make one another is met as often as the
+/// plane can stand between its points,
+///
+///   G(n) = C1 A(n) M(s_c) + sum over kinds w/V sum over places (width along n) int T dpsi  [J/m2].
+///
+/// The mean over all directions of n is exact for bonds (see BulkBonds::crossing). For the others
+/// it is by Gauss's rule over one of the 8 or 48 parts that a square or cubic lattice repeats: the
+/// angle from 0 to pi/4 (2D, 12 directions), or y and z/y of n ~ (1, y, z), both from 0 to 1 (3D,
+/// 4 x 4), weighted by the solid angle.
+class CpdTear {
+ public:
+  /// @param cross_section thickness in 2D [m], 1 in 3D
+  CpdTear(int dimension, double spacing, double horizon, double cross_section,
+          const CpdConstants& constants);
+
+  /// G(n) [J/m2]
+  [[nodiscard]] double energy(const AnyLaw& law, const Coordinates& normal) const;
+  [[nodiscard]] double mean_energy(const AnyLaw& law) const;
+  /// The mean, and the least and the most over its directions, the axes and the diagonals.
+  [[nodiscard]] DirectionalSpread spread(const AnyLaw& law) const;
+
+  /// Points of the quadrature that one mean takes of a law.
+  [[nodiscard]] double quadrature_points(const AnyLaw& law) const;
+
+  /// Mean A of the bonds [m5].
+  [[nodiscard]] double mean_crossing() const;
+
+ private:
+  /// Points of a triangle or tetrahedron and what it would hold under a relative change of 1,
+  /// twice.
+  template <int points>
+  struct Simplex {
+    std::array<Coordinates, points> at;  // in spacings
+    double energy;                       // w |M| C spacing / V [J/m2]
+  };
+  struct Bond {
+    Coordinates arm;  // in spacings
+    double length;
+  };
+
+  [[nodiscard]] double of_bonds(const AnyLaw& law, const Coordinates& normal) const;
+  [[nodiscard]] double of_simplices(const AnyLaw& law, const Coordinates& normal) const;
+
+  int dimension_;
+  std::vector<Bond> bonds_;  // one of each two opposite ones
+  double bond_energy_;       // w C1 spacing^2 / V [J/m2]
+  double c1_;
+  std::vector<Simplex<3>> triangles_;
+  std::vector<Simplex<4>> tetrahedra_;
+};
+
+/// Largest horizon / spacing at which a tear of triangles or tetrahedra is summed, and most points
+/// of its quadrature with which a stretch is found: above, that takes minutes.
+inline constexpr double most_quadrature_points_of_tear = 1e8;
+[[nodiscard]] constexpr double largest_ratio_of_tear(int dimension) {
+  return dimension == 2 ? 12.0 : 3.2;
+}
+
+}  // namespace peristat

@@ -1,0 +1,125 @@
+"""Fracture energy of cpd: what a tear through the command line takes, beside what was asked for."""
+
+import json
+import math
+import pathlib
+import tempfile
+import unittest
+
+from tests.reference.case import Case
+from tests.reference.clouds import toml
+from tests.reference.program import peristat
+from tests.reference.sheets import resolve
+from tests.reference.tear import Tear
+
+SPACING, RATIO, G = 1e-3, 2.015, 4e3
+C1, C2 = 5e19, 3e26
+STEPS = 400
+# Directions of the lattice in which it repeats, with the period in spacings, and a little more than
+# the opening over s_c at which the bond breaks that is flattest to the plane, L^2 / h in spacings.
+ANGLES = ((0.0, 1.0, 2.1), (math.degrees(math.atan(0.5)), math.sqrt(5.0), 4.7), (45.0, math.sqrt(2.0), 3.0))
+
+
+class CpdFractureEnergy(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory(prefix="peristat_cpd_tear_")
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+
+    def write(self, tables):
+        path = self.folder / "case.toml"
+        path.write_text(toml(tables))
+        return path
+
+    def strip(self, length, angle, damage, steps=1, opening=0.0):
+        """Two halves that are pulled apart as rigid blocks, in small steps, until no bond joins them."""
+        half = (RATIO + 1) * SPACING
+        return {
+            "dimension": 2,
+            "lattice": {"spacing": SPACING, "horizon_ratio": RATIO, "angle": angle, "thickness": 0.5,
+                        "shape": [{"add": "box", "min": [0, -half], "max": [length, half]}]},
+            "set": [{"name": "low", "where": "y < 1.23e-5"}, {"name": "high", "where": "y >= 1.23e-5"}],
+            "quadrature": {"weights": "bulk"},  # the strip is all surface
+            "material": {"model": "cpd", "c1": C1, "c2": C2, "damage": damage},
+            "support": [{"set": "low", "displacement": [0, 0]}, {"set": "high", "displacement": [0, f"{opening}*load"]}],
+            "loading": {"steps": steps}, "solver": {"mode": "relaxation"}, "output": {"every": steps},
+        }  # fmt: skip
+
+    def told(self, damage):
+        run = peristat("calibrate", self.write(self.strip(0.03, 0.0, damage)))
+        self.assertEqual(run.code, 0, run.said)
+        return json.loads(run.output)["damage"]
+
+    def dissipated(self, tables):
+        run = peristat("run", self.write(tables), "--quiet", "--overwrite", "--output", self.folder / "out")
+        self.assertEqual(run.code, 0, run.said)
+        return json.loads((self.folder / "out/summary.json").read_text())["energy"]["dissipated"]
+
+    def test_a_torn_strip_takes_what_was_told(self):
+        for law, angles in (("critical_stretch", ANGLES), ("linear", ANGLES[:1])):
+            damage = {"law": law, "fracture_energy": G}
+            told = self.told(damage)
+            self.assertAlmostEqual(told["fracture_energy"]["mean"] / G, 1.0, delta=1e-9)
+            found = {"law": law} | {key: told[key] for key in ("onset", "critical") if key in told}
+            tear = Tear(2, RATIO, SPACING, 0.5, {1: C1, 2: C2})
+            for angle, period, last in angles:
+                with self.subTest(law=law, angle=angle):
+                    normal = [math.sin(math.radians(angle)), math.cos(math.radians(angle))]
+                    foretold = tear.energy(found, normal)
+                    took = self.tear(angle, period, damage, last * told["critical"] * SPACING)
+                    # A step overshoots what breaks by half a step of the STEPS, quadratically.
+                    self.assertAlmostEqual(took / foretold, 1.0, delta=0.01)
+                    self.assertGreater(foretold / tear.of_bonds(found, normal), 1.1)  # triangles matter
+                    if angle == 0.0:
+                        self.assertAlmostEqual(foretold / told["fracture_energy"]["axes"][0], 1.0, delta=1e-9)
+
+    def tear(self, angle, period, damage, opening):
+        """Dissipated over area, of the middle of a strip: what a longer one has more than a shorter one."""
+        periods = math.ceil((2 * RATIO + 2) / period)
+        lengths = [n * period * SPACING * (1 + 1e-12) for n in (periods, periods + 2)]
+        short, long = (self.dissipated(self.strip(n, angle, damage, STEPS, opening)) for n in lengths)
+        return (long - short) / (2 * period * SPACING * 0.5)
+
+    def test_stretches_are_those_of_the_reference(self):
+        for damage in ({"law": "critical_stretch"}, {"law": "tanh"}, {"law": "linear", "onset": 2e-3}, {"law": "exponential"}):
+            with self.subTest(law=damage["law"]):
+                damage = damage | {"fracture_energy": G}
+                told = self.told(damage)
+                case = Case(self.strip(0.03, 0.0, damage))
+                resolve(case)
+                found = case["material"]["damage"]
+                for key in {"onset", "critical"} & set(told):
+                    self.assertAlmostEqual(told[key] / float(found[key]), 1.0, delta=1e-9)
+
+    def test_in_space_the_reference_takes_as_much(self):
+        constants = {"c1": 4e20, "c2": 1e28, "c3": 7e37}
+        options = [word for key, value in constants.items() for word in (f"--{key}", repr(value))]
+        run = peristat("calibrate", "--dimension", "3", "--spacing", "1e-3", "--horizon-ratio", "2", *options,
+                       "--law", "critical_stretch", "--fracture-energy", "500")  # fmt: skip
+        self.assertEqual(run.code, 0, run.said)
+        told = json.loads(run.output)["damage"]
+        tear = Tear(3, 2.0, 1e-3, 1.0, dict(zip((1, 2, 3), constants.values(), strict=True)))
+        damage = {"law": "critical_stretch", "critical": told["critical"]}
+        self.assertAlmostEqual(tear.mean(damage) / 500, 1.0, delta=1e-9)
+
+    def test_a_strength_comes_back_and_check_tells_both(self):
+        tables = self.strip(0.03, 0.0, {"law": "linear", "fracture_energy": G, "strength": 2e8})
+        material = tables["material"]
+        del material["c1"], material["c2"]
+        material |= {"youngs_modulus": 70e9, "poisson_ratio": 0.4}
+        run = peristat("check", self.write(tables))
+        self.assertEqual(run.code, 0, run.said)
+        line = next(line for line in run.output.splitlines() if line.startswith("fracture "))
+        self.assertIn("fracture energy 4000 J/m2 in the mean over the directions of a crack (", line)
+        self.assertTrue(line.endswith("strength 2e+08 Pa"), line)
+
+    def test_too_long_a_horizon_is_refused(self):
+        run = peristat("calibrate", "--dimension", "3", "--spacing", "1e-3", "--horizon-ratio", "4",
+                       "--youngs-modulus", "70e9", "--poisson-ratio", "0.4", "--law", "critical_stretch",
+                       "--fracture-energy", "10")  # fmt: skip
+        self.assertEqual(run.code, 2)
+        self.assertIn("is for horizon ratios up to 3.2 with cpd in 3D", run.said)
+
+
+if __name__ == "__main__":
+    unittest.main()
