@@ -264,17 +264,18 @@ Exit calibrate(const CalibrationQuestion& question, const DamageSpecification& d
   material.model = MaterialModel::cpd;
   material.youngs_modulus = question.youngs_modulus;
   material.poisson_ratio = question.poisson_ratio;
-  if (question.lambda) {
-    const LameModuli moduli{*question.lambda, *question.mu};
-    material.youngs_modulus = youngs_modulus_of(moduli, dimension);
-    material.poisson_ratio = poisson_ratio_of(moduli, dimension);
-  }
   material.c1 = question.c1;
   material.c2 = question.c2.value_or(0.0);
   material.c3 = question.c3.value_or(0.0);
   material.damage = damage;
   std::string told;
   try {
+    if (question.lambda) {
+      const LameModuli moduli{*question.lambda, *question.mu};
+      require_stable(moduli, dimension);
+      material.youngs_modulus = youngs_modulus_of(moduli, dimension);
+      material.poisson_ratio = poisson_ratio_of(moduli, dimension);
+    }
     check_material(material, "material", dimension);
     if (damage.law != DamageLaw::none) {
       told = damage_calibration(material, "material", setting, question.spacing);
