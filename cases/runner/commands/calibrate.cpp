@@ -86,6 +86,12 @@ void check(const CalibrationQuestion& question) {
   require_finite("mu", question.mu);
   require_finite("c2", question.c2);
   require_finite("c3", question.c3);
+  if (!question.lambda) return;
+  try {
+    require_stable({*question.lambda, *question.mu}, question.dimension);
+  } catch (const InputError& error) {
+    throw InputError(option(error.key()), error.value(), error.allowed());
+  }
 }
 
 CpdConstants constants_of(const CalibrationQuestion& question, const CpdStiffness& stiffness) {
@@ -272,7 +278,6 @@ Exit calibrate(const CalibrationQuestion& question, const DamageSpecification& d
   try {
     if (question.lambda) {
       const LameModuli moduli{*question.lambda, *question.mu};
-      require_stable(moduli, dimension);
       material.youngs_modulus = youngs_modulus_of(moduli, dimension);
       material.poisson_ratio = poisson_ratio_of(moduli, dimension);
     }
