@@ -5,6 +5,7 @@
 #include <string>
 
 #include "solvers/drivers/arc_length_stepping.hpp"
+#include "solvers/drivers/event_stepping.hpp"
 #include "solvers/drivers/hand_over.hpp"
 #include "solvers/drivers/implicit_stepping.hpp"
 #include "solvers/drivers/relaxed_stepping.hpp"
@@ -23,6 +24,7 @@ constexpr std::array drivers{
     DriverEntry{Mode::relaxation, make<RelaxedStepping>},
     DriverEntry{Mode::adaptive, make<HandOver>},
     DriverEntry{Mode::arc_length, make<ArcLengthStepping>},
+    DriverEntry{Mode::path, make<EventStepping>},
 };
 
 }  // namespace

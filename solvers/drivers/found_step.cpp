@@ -32,26 +32,6 @@ void complete_record(const Path& path, const Attempt& attempt, FoundStep& found)
                                           attempt.state.displacement, attempt.state.environment);
 }
 
-/// Pins what has come free.
-Advance resolve_fragments(Path& path, double next) {
-  PathState& state = path.state();
-  if (!state.pins.are_outdated()) return Advance::goes_on;
-  const FragmentRemedy remedy = path.options().fragments;
-  if (remedy == FragmentRemedy::stop && state.pins.found.count > 0) {
-    Attempt attempt = std::move(path.last_attempt());
-    attempt.outcome = Outcome::fragmented;
-    return path.stop(std::move(attempt), 0.0, state.pins.described());
-  }
-  path.tell(load_point(state.accepted),
-            {.outcome = name(Outcome::converged),
-             .action = remedy == FragmentRemedy::remove ? Decision::remove_fragments
-                                                        : Decision::hold_fragments,
-             .next_increment = next,
-             .reason = state.pins.described()});
-  state.relaxed.motion = {};
-  return path.pin();
-}
-
 }  // namespace
 
 void commit(Path& path, Attempt& attempt, FoundStep& found,
@@ -96,6 +76,25 @@ std::string complete(Path& path, Attempt& attempt, FoundStep& found) {
     if (!fault.empty()) attempt.outcome = Outcome::limit_point;
   }
   return fault;
+}
+
+Advance resolve_fragments(Path& path, double next) {
+  PathState& state = path.state();
+  if (!state.pins.are_outdated()) return Advance::goes_on;
+  const FragmentRemedy remedy = path.options().fragments;
+  if (remedy == FragmentRemedy::stop && state.pins.found.count > 0) {
+    Attempt attempt = std::move(path.last_attempt());
+    attempt.outcome = Outcome::fragmented;
+    return path.stop(std::move(attempt), 0.0, state.pins.described());
+  }
+  path.tell(load_point(state.accepted),
+            {.outcome = name(Outcome::converged),
+             .action = remedy == FragmentRemedy::remove ? Decision::remove_fragments
+                                                        : Decision::hold_fragments,
+             .next_increment = next,
+             .reason = state.pins.described()});
+  state.relaxed.motion = {};
+  return path.pin();
 }
 
 bool cut(Path& path, Increment& increment, const Attempt& attempt, double attempted,

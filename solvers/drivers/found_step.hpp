@@ -27,6 +27,9 @@ void commit(Path& path, Attempt& attempt, FoundStep& found,
 /// @return what is wrong with it; the attempt's outcome is then inconsistent
 [[nodiscard]] std::string complete(Path& path, Attempt& attempt, FoundStep& found);
 
+/// Pins what was found to have come off, and tells it; ends the path if that is to end it.
+[[nodiscard]] Advance resolve_fragments(Path& path, double next);
+
 /// Cuts the next step after one that failed, and tells it, if a smaller one may help and is
 /// allowed.
 [[nodiscard]] bool cut(Path& path, Increment& increment, const Attempt& attempt, double attempted,

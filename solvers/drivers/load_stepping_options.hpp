@@ -14,6 +14,13 @@ struct ArcLengthOptions {
   bool branches_off = true;   ///< at a bifurcation of a stable path to the path that leaves there
 };
 
+/// What mode path does.
+struct EventOptions {
+  /// Bonds within this share of the most utilised one break with it; 0: those alone that tie with
+  /// it.
+  double tolerance = 0.01;
+};
+
 struct LoadSteppingOptions {
   Mode mode = Mode::newton;
   int steps = 1;         ///< equal steps from one entry of the programme to the next
@@ -31,6 +38,7 @@ struct LoadSteppingOptions {
   /// in adaptive mode.
   double newton_takes_over_at = 1e-5;
   ArcLengthOptions arc_length{};
+  EventOptions events{};
   FragmentRemedy fragments = FragmentRemedy::hold;
 };
 

@@ -15,11 +15,13 @@ struct Mode {
   static const Mode relaxation;  ///< by dynamic relaxation throughout
   static const Mode adaptive;    ///< implicitly while no damage grows, by relaxation while it does
   static const Mode arc_length;  ///< implicitly along the path itself, its integrities fixed
+  static const Mode path;        ///< from one breaking bond to the next
 };
 
 inline constexpr Mode Mode::newton{"newton"};
 inline constexpr Mode Mode::relaxation{"relaxation"};
 inline constexpr Mode Mode::adaptive{"adaptive"};
 inline constexpr Mode Mode::arc_length{"arc_length"};
+inline constexpr Mode Mode::path{"path"};
 
 }  // namespace peristat

@@ -50,6 +50,21 @@ struct PathState {
     bool relaxes = false;        ///< on the side of relaxation
     bool is_near_onset = false;  ///< an implicit step was cut to end just before damage begins
   } hand_over;
+  /// Of mode path.
+  struct Events {
+    bool at_strength = false;    ///< bonds of the accepted state are at what they bear
+    double top = 0.0;            ///< highest stage so far
+    double longest = 0.0;        ///< change of the stage in a step; 0: as far as the next event
+    double largest_scale = 0.0;  ///< that a residual was measured against so far [N]
+    double broke_at = 0.0;       ///< load factor of the last event
+    /// What bonds that broke before their strength lacked of the energy that they dissipate [J].
+    double batch_work = 0.0;
+    double released = 0.0;  ///< under the given control [J]
+    /// Of the last state under the given control [J]: stored and dissipated energy less the work of
+    /// its dead loads and the batches' work, and what was drained up to it.
+    double response_energy = 0.0, response_drained = 0.0;
+    std::int64_t count = 0;  ///< events so far
+  } events;
 };
 
 /// Whether the sizes of its arrays are those of a body's.

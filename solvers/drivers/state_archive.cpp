@@ -53,7 +53,7 @@ void transfer_pins(StateArchive& archive, FragmentPins& pins) {
 // The bindings name every member, so that none can be forgotten.
 void transfer(StateArchive& archive, PathState& state) {
   auto& [accepted, steps, ledger, pins, stands_in, rungs, relaxation_seconds, implicit, relaxed,
-         control_sign, arc, hand_over] = state;
+         control_sign, arc, hand_over, events] = state;
   // Made anew from the stage, see Path.
   [[maybe_unused]] auto& [displacement, stage, history, load, environment] = accepted;
   archive.transfer("accepted/displacement", displacement);
@@ -86,6 +86,18 @@ void transfer(StateArchive& archive, PathState& state) {
   auto& [relaxes, is_near_onset] = hand_over;
   archive.transfer("hand_over/relaxes", relaxes);
   archive.transfer("hand_over/is_near_onset", is_near_onset);
+  auto& [at_strength, top, longest, largest_scale, broke_at, batch_work, released, response_energy,
+         response_drained, count] = events;
+  archive.transfer("events/at_strength", at_strength);
+  archive.transfer("events/top", top);
+  archive.transfer("events/longest", longest);
+  archive.transfer("events/largest_scale", largest_scale);
+  archive.transfer("events/broke_at", broke_at);
+  archive.transfer("events/batch_work", batch_work);
+  archive.transfer("events/released", released);
+  archive.transfer("events/response_energy", response_energy);
+  archive.transfer("events/response_drained", response_drained);
+  archive.transfer("events/count", count);
 }
 
 }  // namespace peristat

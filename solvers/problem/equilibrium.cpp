@@ -180,6 +180,16 @@ double residual_scale(const EquilibriumProblem& problem, std::span<const double>
   return std::max({norm(external_force), reactions, after_jump.residual_norm});
 }
 
+double load_norm(const EquilibriumProblem& problem, std::span<const double> external_force,
+                 const Trial& state, Damage damage) {
+  const double reactions = norm_of(external_force.size(), [&](std::size_t dof) {
+    const bool is_free = problem.free.equation[dof] != FreeDofs::none;
+    return is_free ? 0.0 : state.gradient[dof] - external_force[dof];
+  });
+  return std::max({norm(external_force), reactions,
+                   environment_norm(problem, state.at(damage), state.gradient)});
+}
+
 double residual_round_off(const FreeDofs& free, const TangentOperator& tangent,
                           std::span<const double> displacement) {
   std::vector<double> sums(displacement.size());

@@ -103,6 +103,12 @@ void evaluate(const EquilibriumProblem& problem, std::span<const double> externa
                                     std::span<const double> external_force,
                                     std::span<const double> old_gradient, const Trial& after_jump);
 
+/// The larger of loads and reactions of a state, and of what its environment adds to its forces: a
+/// scale for residuals [N].
+[[nodiscard]] double load_norm(const EquilibriumProblem& problem,
+                               std::span<const double> external_force, const Trial& state,
+                               Damage damage);
+
 /// What round-off leaves of the residual [N]. A displacement is known to a unit round-off of
 /// itself, so that a slender body, which moves far and strains little, has no state with less than
 /// about

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -54,6 +55,15 @@ struct StepRecord {
   /// Of the tangent by which a control or an arc length has found the state, or at it: 0 where it
   /// is stable under its loads as they are. -1: not counted.
   std::int64_t negative_pivots = -1;
+  /// Mode path: whether the state is reached under the loads as they are given, the rest of the
+  /// path left out, and what has been released there since the start [J].
+  bool is_on_response = true;
+  double released_energy = 0.0;
+  /// Mode path: "stable", "unstable" (what breaks next goes on at the same load) or "bifurcated"
+  /// (the tangent has negative pivots); otherwise empty.
+  std::string stability;
+  /// Mode path: load factor at which the last bonds broke; otherwise they broke in this step.
+  std::optional<double> broke_at;
   bool settled = false;  ///< no equilibrium was asked for: see RelaxationResult
   std::map<std::string, Coordinates> reactions;       ///< by support set [N]
   std::map<std::string, std::vector<double>> probes;  ///< by probe name: components, or one scalar

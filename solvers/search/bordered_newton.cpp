@@ -6,75 +6,12 @@
 #include <utility>
 
 #include "solvers/linear/vector_verbs.hpp"
+#include "solvers/search/condition_rates.hpp"
 #include "solvers/search/convergence.hpp"
 #include "solvers/search/linearisation.hpp"
-#include "src/core/input_error.hpp"
 
 namespace peristat {
 namespace {
-
-/// Step of the differences of conditions; a power of two, so that no digit of the unknown is lost.
-constexpr double difference = 0x1p-13;
-
-/// Rates of supports and loads, and of what the load changes of the internal forces, per degree of
-/// freedom.
-struct ConditionRates {
-  std::vector<double> force, displacement;
-};
-
-/// force -= the difference of dE/dx between two load points, both folded onto what is followed.
-void take_off_heating(Assembler& assembler, const Conditions& conditions, const StateView& at,
-                      const LoadPoint& low, const LoadPoint& high, std::vector<double>& force) {
-  StateView there = at;
-  there.environment = conditions.environment(high);
-  const bool follows = !conditions.constraints().none();
-  if (!there.environment && !follows) return;
-  std::vector<double> change(force.size());
-  if (there.environment) {
-    static_cast<void>(assembler.gradient(there, change));
-    std::vector<double> gradient(force.size());
-    there.environment = conditions.environment(low);
-    static_cast<void>(assembler.gradient(there, gradient));
-    add_scaled(change, -1.0, gradient);
-  }
-  if (follows) conditions.constraints().fold(at.displacement, force, change);
-  add_scaled(force, -1.0, change);
-}
-
-ConditionRates between(const EquilibriumProblem& problem, const StateView& at,
-                       const LoadPath& loads, double low, double high) {
-  const Conditions& conditions = problem.conditions;
-  const std::size_t dofs = conditions.prescribed().size();
-  ConditionRates rates{std::vector<double>(dofs), std::vector<double>(dofs, 0.0)};
-  std::vector<double> before(dofs, 0.0);
-  conditions.external_force(loads(low), before);
-  conditions.external_force(loads(high), rates.force);
-  add_scaled(rates.force, -1.0, before);
-  take_off_heating(problem.assembler, conditions, at, loads(low), loads(high), rates.force);
-  std::fill(before.begin(), before.end(), 0.0);
-  conditions.prescribe(loads(low), before);
-  conditions.prescribe(loads(high), rates.displacement);
-  add_scaled(rates.displacement, -1.0, before);
-  for (auto* const rate : {&rates.force, &rates.displacement}) {
-    for (double& entry : *rate) entry /= high - low;
-  }
-  return rates;
-}
-
-/// Where an expression ends, sqrt(load) at zero for one, the difference is one-sided.
-ConditionRates rates_of(const EquilibriumProblem& problem, const StateView& at,
-                        const LoadPath& loads, double unknown) {
-  const double low = unknown - difference, high = unknown + difference;
-  try {
-    return between(problem, at, loads, low, high);
-  } catch (const InputError&) {
-    try {
-      return between(problem, at, loads, unknown, high);
-    } catch (const InputError&) {
-      return between(problem, at, loads, low, unknown);
-    }
-  }
-}
 
 /// Iterations that may pass without halving the least residual so far.
 constexpr int most_without_gain = 10;
@@ -235,14 +172,8 @@ class BorderedSearch {
     return missing / *answer;
   }
 
-  /// The larger of the loads and the reactions.
-  double load_norm() const {
-    const double reactions = norm_of(external_force_.size(), [&](std::size_t dof) {
-      const bool is_free = problem_.free.equation[dof] != FreeDofs::none;
-      return is_free ? 0.0 : current_.gradient[dof] - external_force_[dof];
-    });
-    return std::max({norm(external_force_), reactions,
-                     environment_norm(problem_, current_.at(), current_.gradient)});
+  [[nodiscard]] double load_norm() const {
+    return peristat::load_norm(problem_, external_force_, current_, Damage::grows);
   }
 
   [[nodiscard]] bool has_converged() {

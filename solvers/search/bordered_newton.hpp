@@ -1,16 +1,13 @@
 #pragma once
 
-#include <functional>
 #include <optional>
 #include <span>
 #include <vector>
 
+#include "solvers/search/condition_rates.hpp"
 #include "solvers/search/newton.hpp"
 
 namespace peristat {
-
-/// Where the loads are for a value of the unknown.
-using LoadPath = std::function<LoadPoint(double unknown)>;
 
 /// The equation that makes a load an unknown:
 ///

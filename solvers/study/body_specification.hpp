@@ -156,6 +156,9 @@ struct BodySpecification {
   /// Tables of the load parameters `load`, `load2`, …, see LoadingProgramme; none: `load` from 0 to
   /// 1. With controls the first table is of the controlled displacement [m].
   std::vector<std::vector<double>> programme{};
+  /// Most teeth of the saw-tooth in the place of each law of damage whose force falls smoothly; 0:
+  /// the laws as they are.
+  int teeth = 0;
   /// Memory that is to be left for what is found of a state beside the search for it [bytes].
   double evaluation_bytes_per_point = 0.0;
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <memory>
 #include <numbers>
+#include <stdexcept>
 
 #include <fmt/format.h>
 
@@ -12,6 +13,7 @@
 #include "src/core/input_error.hpp"
 #include "src/core/number_text.hpp"
 #include "src/materials/bulk_bonds.hpp"
+#include "src/potentials/make_saw_tooth.hpp"
 
 namespace peristat {
 namespace {
@@ -186,6 +188,17 @@ bool BondMaterials::has_one_law() const {
 }
 
 BondMaterials::Failing BondMaterials::potential(const Bonds& bonds) const {
+  Failing result = smooth_potential(bonds);
+  if (from_.teeth == 0) return result;
+  try {
+    result.potential = with_teeth(result.potential, from_.teeth);
+  } catch (const std::length_error& error) {
+    throw InputError("loading.teeth", std::to_string(from_.teeth), error.what());
+  }
+  return result;
+}
+
+BondMaterials::Failing BondMaterials::smooth_potential(const Bonds& bonds) const {
   const auto fails = [](const Kind& kind) { return kind.material->damage.law != DamageLaw::none; };
   const auto failing = std::ranges::find_if(kinds_, fails);
   if (failing == kinds_.end()) return {bond_potential(*kinds_.front().material, modulus_), {}};
@@ -195,8 +208,8 @@ BondMaterials::Failing BondMaterials::potential(const Bonds& bonds) const {
   const bool has_one = has_one_law();
   if (has_one && std::ranges::all_of(kinds_, fails)) return result;
   result.never_fails.resize(std::size_t(bonds.count()));
-  std::vector<AnyLaw> laws;
-  for (const Kind& kind : kinds_) laws.push_back(law_of(kind.material->damage));
+  std::vector<AnyBondLaw> laws;
+  for (const Kind& kind : kinds_) laws.push_back(bond_law(law_of(kind.material->damage)));
   auto by_bond = std::make_shared<BondLaws>(laws, has_one ? 0 : std::size_t(bonds.count()));
   for (Index i = 0; i < bonds.points(); ++i) {
     for (Offset bond = bonds.offset[i]; bond < bonds.offset[i + 1]; ++bond) {

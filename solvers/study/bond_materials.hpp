@@ -56,6 +56,9 @@ class BondMaterials {
   [[nodiscard]] Failing potential(const Bonds& bonds) const;
 
  private:
+  /// With laws whose force falls as it does.
+  [[nodiscard]] Failing smooth_potential(const Bonds& bonds) const;
+
   /// Constants and law of one kind of bond.
   struct Kind {
     DirectedConstant constant;

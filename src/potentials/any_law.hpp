@@ -5,14 +5,17 @@
 #include "src/potentials/critical_stretch.hpp"
 #include "src/potentials/force_envelope.hpp"
 #include "src/potentials/harmonic.hpp"
+#include "src/potentials/saw_tooth.hpp"
+#include "src/potentials/stepwise_law.hpp"
 #include "src/potentials/tanh_degradation.hpp"
 
 namespace peristat {
 
 /// One of the laws of damage, chosen where it is evaluated: for bonds that fail in different ways.
 /// See Degraded for what its members mean.
-struct AnyLaw {
-  std::variant<CriticalStretch, TanhDegradation, ForceEnvelope> law;
+template <class... Laws>
+struct OneLawOf {
+  std::variant<Laws...> law;
 
   [[nodiscard]] double onset() const {
     return std::visit([](const auto& one) { return one.onset(); }, law);
@@ -26,13 +29,36 @@ struct AnyLaw {
   [[nodiscard]] double slope(double s) const {
     return std::visit([s](const auto& one) { return one.slope(s); }, law);
   }
+  /// Whether stiffness is lost by drops alone, between which a bond is elastic.
+  [[nodiscard]] bool falls_by_steps() const {
+    return std::visit([]<class Law>(const Law&) { return StepwiseLaw<Law>; }, law);
+  }
+  /// Of a law that falls by steps.
+  [[nodiscard]] double borne_after(double strength) const {
+    return std::visit(
+        [&]<class Law>(const Law& one) {
+          if constexpr (StepwiseLaw<Law>) return one.borne_after(strength);
+          return one.critical();
+        },
+        law);
+  }
   [[nodiscard]] double work(const Harmonic& whole, double s) const {
     return std::visit([&](const auto& one) { return one.work(whole, s); }, law);
   }
   /// The same law between other stretches.
-  [[nodiscard]] AnyLaw between(double onset, double critical) const {
-    return std::visit([&](const auto& one) { return AnyLaw{one.between(onset, critical)}; }, law);
+  [[nodiscard]] OneLawOf between(double onset, double critical) const {
+    return std::visit([&](const auto& one) { return OneLawOf{one.between(onset, critical)}; }, law);
   }
 };
+
+/// The laws that a material may have.
+using AnyLaw = OneLawOf<CriticalStretch, TanhDegradation, ForceEnvelope>;
+
+/// What bonds follow: one of these, or the saw-tooth of one.
+using AnyBondLaw = OneLawOf<CriticalStretch, TanhDegradation, ForceEnvelope, SawTooth>;
+
+[[nodiscard]] inline AnyBondLaw bond_law(const AnyLaw& law) {
+  return std::visit([](const auto& one) { return AnyBondLaw{one}; }, law.law);
+}
 
 }  // namespace peristat

@@ -16,12 +16,15 @@ struct DamageRange {
   Real onset, critical;
 };
 
+/// Laws that the bonds of a body may be of: each keeps a byte of which.
+inline constexpr std::size_t most_bond_laws = 256;
+
 /// The laws of damage of bonds that fail in different ways: a law of a few, and stretches of each
 /// bond's own.
 class BondLaws {
  public:
   /// @param laws that bonds are of, at least one; their stretches don't matter
-  BondLaws(std::vector<AnyLaw> laws, std::size_t bonds)
+  BondLaws(std::vector<AnyBondLaw> laws, std::size_t bonds)
       : laws_(std::move(laws)),
         onset_(bonds + lane_count, 1.0),  // kernels read a batch of lanes
         critical_(onset_),
@@ -33,7 +36,10 @@ class BondLaws {
     critical_[std::size_t(bond)] = critical;
   }
 
-  [[nodiscard]] AnyLaw at(Offset bond) const {
+  [[nodiscard]] Offset bonds() const { return Offset(law_.size()) - lane_count; }
+  /// Which of the laws a bond is of.
+  [[nodiscard]] std::size_t law_of(Offset bond) const { return law_[std::size_t(bond)]; }
+  [[nodiscard]] AnyBondLaw at(Offset bond) const {
     const auto b = std::size_t(bond);
     return laws_[law_[b]].between(onset_[b], critical_[b]);
   }
@@ -51,7 +57,7 @@ class BondLaws {
   }
 
  private:
-  std::vector<AnyLaw> laws_;
+  std::vector<AnyBondLaw> laws_;
   std::vector<double> onset_, critical_;
   std::vector<std::uint8_t> law_;
 };

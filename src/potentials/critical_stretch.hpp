@@ -16,6 +16,8 @@ struct CriticalStretch {
   [[nodiscard]] double work(const auto& whole, double s) const {
     return whole(std::min(s, critical_stretch)).value;
   }
+  /// What a bond bears once its strength is exceeded: the critical stretch of a broken bond.
+  [[nodiscard]] double borne_after(double) const { return critical_stretch; }
   [[nodiscard]] CriticalStretch between(double, double critical) const { return {critical}; }
 };
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <limits>
 #include <memory>
 
 #include "src/core/integral.hpp"
@@ -107,10 +108,17 @@ struct Degraded {
            !is_broken(largest_stretch);
   }
 
-  /// Stretch over that beyond which the bond is damaged (further).
+  /// Stretch beyond which the bond is damaged (further); infinite for one that has nothing to lose.
+  [[nodiscard]] double borne(double largest_stretch) const {
+    if (largest_stretch == never_fails || is_broken(largest_stretch)) {
+      return std::numeric_limits<double>::infinity();
+    }
+    return std::max(law.onset(), largest_stretch);
+  }
+
+  /// Stretch over what is borne.
   [[nodiscard]] double utilisation(double e, double largest_stretch) const {
-    if (largest_stretch == never_fails || is_broken(largest_stretch)) return 0.0;
-    return e / std::max(law.onset(), largest_stretch);
+    return e / borne(largest_stretch);
   }
 
   [[nodiscard]] bool is_broken(double largest_stretch) const {
@@ -160,7 +168,7 @@ struct DegradedByBond {
 
   static constexpr double never_fails = never_failing;
 
-  [[nodiscard]] Degraded<AnyLaw, Whole> of_bond(Offset bond) const {
+  [[nodiscard]] Degraded<AnyBondLaw, Whole> of_bond(Offset bond) const {
     return {modulus, laws->at(bond), shape, holds_damage};
   }
   [[nodiscard]] DamageRange<Lanes> ranges(Offset first) const { return laws->ranges(first); }

@@ -109,6 +109,7 @@ Points make_points_of(const Case& from) {
 std::unique_ptr<const Body> make_body(const Case& from, int threads) {
   Points points = make_points_of(from);
   BodySpecification of = from;
+  if (from.solver.mode == Mode::path) of.teeth = from.loading.teeth;
   if (tells_stress(from)) of.evaluation_bytes_per_point = stress_bytes_per_point(from.dimension);
   return located_errors(from, [&] { return make_body(std::move(points), of, threads); });
 }

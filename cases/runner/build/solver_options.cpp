@@ -22,6 +22,7 @@ LoadSteppingOptions load_stepping_options(const Case& from) {
   options.largest_step = from.loading.largest_step;
   options.max_broken_bonds = from.loading.max_broken_bonds;
   options.arc_length = from.solver.arc_length;
+  options.events = from.loading.events;
   options.fragments = from.solver.fragments;
   options.relaxation_steps = from.relaxation.steps;
   options.relaxation = from.relaxation.options;

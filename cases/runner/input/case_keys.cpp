@@ -873,7 +873,13 @@ Table<LoadingSpecification> loading_keys() {
       K("max_broken_bonds", &Spec::max_broken_bonds, count_from(0, "bonds"),
         "mode `newton`: bonds that may break in one step; a step with more is cut. 0 is no "
         "limit")
-          .extends()};
+          .extends(),
+      K("event_tolerance", in(&Spec::events, &EventOptions::tolerance), between(0.0, 0.5),
+        "mode `path`: bonds within this share of the most utilised one break with it; 0: those "
+        "that tie with it alone"),
+      K("teeth", &Spec::teeth, integer(1, 1000),
+        "mode `path`: most teeth of the saw-tooth that a law of damage is followed by whose force "
+        "falls smoothly")};
   keys.keys.insert(keys.keys.end(), others.begin(), others.end());
   return keys;
 }
@@ -930,7 +936,7 @@ Table<SolverSpecification> solver_keys() {
       {K("mode", &Spec::mode, choice(modes()),
          "implicit throughout; by dynamic relaxation throughout; implicit while no damage grows "
          "and by relaxation while it does; along the path itself, through limit points and "
-         "bifurcations, without damage")
+         "bifurcations, without damage; from one breaking bond to the next")
            .extends(),
        K("linear", &Spec::linear,
          choice<LinearMethod>({{"auto", LinearMethod::automatic},
@@ -1049,6 +1055,18 @@ void check_found_loads(const Entry& at, const Case& result) {
   if (is_arc_length && at.from.has("loading") && at.from.table("loading").has("largest_step"))
     throw InputError("loading.largest_step", "",
                      "is not heeded in mode arc_length, which has arc_length.largest_step");
+  const bool is_path = result.solver.mode == Mode::path;
+  if (is_path && !may_fail(result))
+    throw InputError("solver.mode", "\"path\"",
+                     "is for bodies with damage: it goes from one breaking bond to the next");
+  if (is_path && result.solver.elastic_horizon_ratio > 0.0)
+    throw InputError("solver.elastic_horizon_ratio", "", "is for mode adaptive");
+  if (!is_path && at.from.has("loading")) {
+    for (const char* key : {"event_tolerance", "teeth"}) {
+      if (at.from.table("loading").has(key))
+        throw InputError(std::string("loading.") + key, "", "is for solver.mode = \"path\"");
+    }
+  }
   if (is_controlled) check_heeded(at, "[[control]]");
   if (is_arc_length) check_heeded(at, "mode arc_length");
 }

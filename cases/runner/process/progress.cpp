@@ -138,7 +138,7 @@ void Progress::accepted(const StepRecord& record, double relative_residual) {
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start_;
   const bool relaxed_or_damaged = record.relaxation_iterations > 0 || record.max_damage > 0.0;
   // How long a path is, nobody knows.
-  if (record.mode != Mode::arc_length.name)
+  if (record.mode != Mode::arc_length.name && record.mode != Mode::path.name)
     time_left_.accepted(elapsed.count(), record.stage / last_stage_, relaxed_or_damaged);
   const std::string relaxed =
       record.relaxation_iterations > 0

@@ -55,7 +55,7 @@ const std::vector<Column>& step_columns() {
   static const std::vector<Column> columns{
       {integer, "step", "1", "number of the accepted step"},
       {number, "load_factor", "1", "load factor of the step"},
-      {text, "mode", "none", "how equilibrium was found: newton, relaxation or arc_length"},
+      {text, "mode", "none", "how equilibrium was found: newton, relaxation, arc_length or path"},
       {integer, "newton_iterations", "1", "Newton iterations of the step"},
       {integer, "relaxation_iterations", "1", "iterations of dynamic relaxation of the step"},
       {number, "stored_energy", "J", "energy stored in the interactions"},
@@ -90,6 +90,15 @@ const std::vector<Column>& later_step_columns() {
        "control, arc_length: of the tangent, 0 where the state is stable under fixed loads; -1: "
        "not "
        "counted"},
+      {integer, "on_response", "1",
+       "path: 1 where the state is reached under the loads as they are given, 0 where they would "
+       "have to be taken back"},
+      {number, "released_energy", "J",
+       "path: energy that has been released since the start under the loads as they are given"},
+      {text, "stability", "none",
+       "path: stable, unstable (what breaks next runs on at the same load), bifurcated (the "
+       "tangent "
+       "has negative pivots)"},
   };
   return columns;
 }
@@ -175,8 +184,8 @@ Row make_row(const DecisionRecord& record) {
 }
 
 std::vector<Column> broken_bond_columns() {
-  return {{integer, "step", "1", "step that broke the bond"},
-          {number, "load_factor", "1", "load factor of the step"},
+  return {{integer, "step", "1", "step that broke the bond; path: that it led to"},
+          {number, "load_factor", "1", "load factor of the step; path: at which the bond broke"},
           {integer, "first_point", "1", "number of the bond's lower point"},
           {integer, "second_point", "1", "number of its other point"},
           {integer, "second_image", "1",
@@ -227,6 +236,9 @@ Row make_row(const StepRecord& record, const std::vector<std::string>& support_s
   append("stage", record.stage);
   append("control", record.control);
   row.emplace_back(record.negative_pivots);
+  row.emplace_back(std::int64_t{record.is_on_response});
+  append("released_energy", record.released_energy);
+  row.emplace_back(record.stability);
   return row;
 }
 
@@ -267,7 +279,8 @@ StepRecord read_step(const Row& row, const std::vector<std::string>& support_set
     for (double& value : values) cells >> value;
   }
   cells >> record.numerical_work >> record.pin_force >> record.settled >> record.stage >>
-      record.control >> record.negative_pivots;
+      record.control >> record.negative_pivots >> record.is_on_response >> record.released_energy >>
+      record.stability;
   return record;
 }
 

@@ -170,8 +170,8 @@ void Recorder::record_broken_bonds(const StepRecord& record, const History& hist
   std::vector<BrokenBondRecord> records;
   for (const BondEnds& ends : newly_broken(history)) {
     const auto [i, j] = ends;
-    records.push_back(
-        {record.step, record.load_factor, i, points_.source(j), image_number(points_, j)});
+    records.push_back({record.step, record.broke_at.value_or(record.load_factor), i,
+                       points_.source(j), image_number(points_, j)});
     separated_.push_back(ends);
   }
   results_.add(records);

@@ -9,7 +9,7 @@ namespace {
 struct Mixed {
   static constexpr Offset bonds = 11;
   std::shared_ptr<BondLaws> laws = std::make_shared<BondLaws>(
-      std::vector<AnyLaw>{{CriticalStretch{9.0}}, {TanhDegradation::continuous(1.0, 2.0, 4.0)}},
+      std::vector<AnyBondLaw>{{CriticalStretch{9.0}}, {TanhDegradation::continuous(1.0, 2.0, 4.0)}},
       std::size_t(bonds));
 
   Mixed() {

@@ -1,0 +1,221 @@
+#include "assembly/terms/bonds/borne_stretches.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <tuple>
+#include <utility>
+
+#include "assembly/terms/damage.hpp"
+#include "src/core/threads.hpp"
+#include "src/measures/length.hpp"
+
+namespace peristat {
+namespace {
+
+constexpr double infinite = std::numeric_limits<double>::infinity();
+
+/// Calls visit(law of a bond) for the law of damage of one of them.
+template <class Visit>
+void with_law(const Model& model, const Visit& visit) {
+  if (const BondTerm* const bonds = model.failing_bonds()) bonds->with_damage_law(visit);
+}
+
+/// What a law bears once a strength is exceeded.
+template <class Law>
+double borne_after(const Law& law, double strength) {
+  if constexpr (StepwiseLaw<Law>) {
+    return law.borne_after(strength);
+  } else {
+    throw std::logic_error("a law whose force falls smoothly has no drops");
+  }
+}
+
+template <class Law>
+bool falls_by_steps(const Law& law) {
+  if constexpr (requires { law.falls_by_steps(); }) {
+    return law.falls_by_steps();
+  } else {
+    return StepwiseLaw<Law>;
+  }
+}
+
+/// Kinematics of the bonds of a body at a state.
+template <int D>
+class BondLook {
+ public:
+  BondLook(const Points& points, const Bonds& bonds, const StateView& at)
+      : points_(points), bonds_(bonds), displacement_(at.displacement), free_(at.eigenstretch()) {}
+
+  struct Stretch {
+    double value, rate;
+  };
+
+  [[nodiscard]] double stretch(Index i, Offset bond) const {
+    return measure(i, bond).relative_change - mean(free_, i, bond);
+  }
+  [[nodiscard]] Stretch along(Index i, Offset bond, std::span<const double> direction,
+                              std::span<const double> free_rate) const {
+    const auto found = measure(i, bond);
+    const Vector<D, double> moved = difference(direction, i, bonds_.partner[bond]);
+    return {found.relative_change - mean(free_, i, bond),
+            dot<D>(found.gradient[0], moved) * found.inverse_reference - mean(free_rate, i, bond)};
+  }
+
+ private:
+  [[nodiscard]] Vector<D, double> difference(std::span<const double> field, Index i,
+                                             Index j) const {
+    Vector<D, double> result;
+    for (int c = 0; c < D; ++c) {
+      result[c] = field[std::size_t(j) * D + c] - field[std::size_t(i) * D + c];
+    }
+    return result;
+  }
+  [[nodiscard]] auto measure(Index i, Offset bond) const {
+    const Index j = bonds_.partner[bond];
+    return Length::at<D, double>(bonds_.inverse_length(bond), {difference(points_.reference, i, j)},
+                                 {difference(displacement_, i, j)});
+  }
+  [[nodiscard]] double mean(std::span<const double> of_point, Index i, Offset bond) const {
+    return of_point.empty() ? 0.0 : 0.5 * (of_point[i] + of_point[bonds_.partner[bond]]);
+  }
+
+  const Points& points_;
+  const Bonds& bonds_;
+  std::span<const double> displacement_, free_;
+};
+
+/// Calls visit(thread, point, bond, look) for every bond that bears a limited stretch, on several
+/// threads; a thread's bonds follow one another.
+template <class Visit>
+void for_each_bearing(const Points& points, const Model& model, const StateView& at,
+                      std::span<const double> borne, int threads, const Visit& visit) {
+  const Bonds& bonds = model.bonds();
+  const auto in_dimension = [&](const auto& look) {
+    run_on_threads(threads, [&](int thread) {
+      const std::ptrdiff_t count = bonds.points();
+      const Index first = Index(count * thread / threads);
+      const Index last = Index(count * (thread + 1) / threads);
+      for (Index i = first; i < last; ++i) {
+        for (Offset bond = bonds.offset[i]; bond < bonds.offset[i + 1]; ++bond) {
+          if (borne[std::size_t(bond)] < infinite) visit(thread, i, bond, look);
+        }
+      }
+    });
+  };
+  switch (points.dimension) {
+    case 1:
+      return in_dimension(BondLook<1>(points, bonds, at));
+    case 2:
+      return in_dimension(BondLook<2>(points, bonds, at));
+    default:
+      return in_dimension(BondLook<3>(points, bonds, at));
+  }
+}
+
+}  // namespace
+
+std::vector<double> borne_stretches(const Model& model, const History& history) {
+  const std::span<const double> largest = bond_stretches(model, history);
+  std::vector<double> borne(largest.size());
+  with_law(model, [&](const auto& laws) {
+    for (std::size_t bond = 0; bond < borne.size(); ++bond) {
+      borne[bond] = model.bonds().weight(Offset(bond)) == 0.0
+                        ? infinite
+                        : laws.of_bond(Offset(bond)).borne(largest[bond]);
+    }
+  });
+  return borne;
+}
+
+bool fails_by_steps(const Model& model) {
+  bool all = model.failing_bonds() != nullptr;
+  with_law(model, [&](const auto& laws) {
+    for (Offset bond = 0; all && bond < model.bonds().count(); ++bond) {
+      all = falls_by_steps(laws.of_bond(bond).law);
+    }
+  });
+  return all;
+}
+
+BondDrops drop(const Model& model, const History& history, std::span<const Offset> bonds,
+               std::span<const double> stretches) {
+  const std::span<const double> before = bond_stretches(model, history);
+  BondDrops result{{before.begin(), before.end()}};
+  const Bonds& network = model.bonds();
+  with_law(model, [&](const auto& laws) {
+    for (std::size_t k = 0; k < bonds.size(); ++k) {
+      const Offset bond = bonds[k];
+      const auto law = laws.of_bond(bond);
+      double& largest = result.histories[std::size_t(bond)];
+      const double after = borne_after(law.law, law.borne(largest));
+      const auto whole = [&](double kappa) {
+        auto potential = law.shape;
+        potential.modulus = law.modulus * law.integrity_after(kappa);
+        return potential(stretches[k]).value;
+      };
+      result.energy_lost +=
+          network.weight(bond) * network.length(bond) * (whole(largest) - whole(after));
+      largest = after;
+      result.breaking += law.is_broken(after);
+    }
+  });
+  return result;
+}
+
+std::vector<UtilisedBond> utilised_bonds(const Points& points, const Model& model,
+                                         const StateView& at, std::span<const double> borne,
+                                         double least, int threads) {
+  std::vector<std::vector<UtilisedBond>> parts(static_cast<std::size_t>(threads));
+  for_each_bearing(points, model, at, borne, threads,
+                   [&](int thread, Index i, Offset bond, const auto& look) {
+                     const double stretch = look.stretch(i, bond);
+                     const double utilisation = stretch / borne[std::size_t(bond)];
+                     if (utilisation >= least) {
+                       parts[std::size_t(thread)].push_back({bond, utilisation, stretch});
+                     }
+                   });
+  std::vector<UtilisedBond> found;
+  for (const auto& part : parts) found.insert(found.end(), part.begin(), part.end());
+  std::ranges::sort(found, [](const UtilisedBond& a, const UtilisedBond& b) {
+    return std::tuple(-a.utilisation, a.bond) < std::tuple(-b.utilisation, b.bond);
+  });
+  return found;
+}
+
+AdmissibleRange admissible_range(const Points& points, const Model& model, const StateView& at,
+                                 std::span<const double> borne, std::span<const double> rate,
+                                 std::span<const double> eigenstretch_rate, double share,
+                                 int threads) {
+  std::vector<AdmissibleRange> parts(static_cast<std::size_t>(threads));
+  for_each_bearing(points, model, at, borne, threads,
+                   [&](int thread, Index i, Offset bond, const auto& look) {
+                     AdmissibleRange& part = parts[std::size_t(thread)];
+                     const auto [stretch, speed] = look.along(i, bond, rate, eigenstretch_rate);
+                     const double strength = borne[std::size_t(bond)];
+                     const double way = (share * strength - stretch) / speed;
+                     if (speed > 0.0) part.high = std::min(part.high, way);
+                     if (speed < 0.0) part.low = std::max(part.low, way);
+                     part.utilisation = std::max(part.utilisation, stretch / strength);
+                   });
+  AdmissibleRange range;
+  for (const AdmissibleRange& part : parts) {
+    range.low = std::max(range.low, part.low);
+    range.high = std::min(range.high, part.high);
+    range.utilisation = std::max(range.utilisation, part.utilisation);
+  }
+  return range;
+}
+
+double largest_utilisation(const Points& points, const Model& model, const StateView& at,
+                           std::span<const double> borne, int threads) {
+  std::vector<double> parts(static_cast<std::size_t>(threads), 0.0);
+  for_each_bearing(points, model, at, borne, threads,
+                   [&](int thread, Index i, Offset bond, const auto& look) {
+                     double& part = parts[std::size_t(thread)];
+                     part = std::max(part, look.stretch(i, bond) / borne[std::size_t(bond)]);
+                   });
+  return *std::ranges::max_element(parts);
+}
+
+}  // namespace peristat

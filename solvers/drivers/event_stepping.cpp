@@ -1,0 +1,340 @@
+#include "solvers/drivers/event_stepping.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "assembly/terms/damage.hpp"
+#include "solvers/drivers/implicit_stepping.hpp"
+#include "solvers/linear/vector_verbs.hpp"
+#include "src/core/number_text.hpp"
+
+namespace peristat {
+namespace {
+
+/// Residuals are measured against no less than this share of the largest forces so far: what has
+/// come apart has none.
+constexpr double share_of_scale = 1e-5;
+
+/// The trapezoidal rule may err by this share of the energy that an elastic step stores; one that
+/// errs by more is cut.
+constexpr double share_of_work = 1e-3;
+
+/// Of the energy turned over, that may come from nothing by round-off.
+constexpr double share_from_nothing = 1e-6;
+
+/// Events of one avalanche.
+constexpr int most_passes = 1'000'000;
+
+/// End of the segment of the programme that a stage is in.
+double segment_begin(double stage) { return LoadingProgramme::next_entry(stage) - 1.0; }
+
+}  // namespace
+
+EventStepping::EventStepping(Path& path) : Driver(path) {}
+
+Advance EventStepping::next() {
+  if (!path_.has_load_left()) return Advance::ended;
+  PathState before = path_.state();
+  PathState::Events& events = path_.state().events;
+  if (events.at_strength) {
+    Settled settled =
+        ahead_ ? std::move(*ahead_) : settle(path_.state().accepted, path_.state().ledger);
+    ahead_.reset();
+    if (!settled.has_converged()) {
+      Step failed;
+      failed.attempt = std::move(settled.attempt);
+      failed.attempt.outcome = settled.outcome;
+      failed.fault = std::move(settled.fault);
+      return fail(std::move(failed), std::move(before));
+    }
+    take_up(std::move(settled));
+  }
+  Step step = search();
+  if (step.attempt.has_converged() && step.end == StrengthEnd::inadmissible) {
+    step = run_avalanche();
+  }
+  if (step.attempt.has_converged()) complete(step);
+  if (!step.attempt.has_converged()) return fail(std::move(step), std::move(before));
+  return accept(std::move(step));
+}
+
+NewtonOptions EventStepping::held() const {
+  NewtonOptions options = path_.setting().newton_options;
+  options.damage = Damage::held;
+  options.factorizes_first = false;
+  options.counts_pivots = false;
+  return options;
+}
+
+std::vector<UtilisedBond> EventStepping::batch_of(const State& at,
+                                                  std::span<const double> borne) const {
+  const Assembler& body = path_.damaged();
+  const auto utilised = [&](double least) {
+    return utilised_bonds(body.points(), body.model(), StateView(at, Damage::held), borne, least,
+                          body.threads());
+  };
+  const double most = largest_utilisation(body.points(), body.model(), StateView(at, Damage::held),
+                                          borne, body.threads());
+  const double tolerance = path_.options().events.tolerance;
+  // Room for the gap that ends the batch.
+  std::vector<UtilisedBond> all = utilised(most * (1.0 - std::max(1.5 * tolerance, 1e-3)));
+  std::size_t count = 1;
+  while (count < all.size() && (all[count].utilisation >= (1.0 - tolerance) * most ||
+                                all[count - 1].utilisation - all[count].utilisation <= tie)) {
+    ++count;
+  }
+  all.resize(std::min(count, all.size()));
+  return all;
+}
+
+bool EventStepping::pin(Settled& settled) {
+  PathState& state = path_.state();
+  const FragmentRemedy remedy = path_.options().fragments;
+  state.pins.find(path_.body().assembler, settled.state, path_.setting().conditions, remedy);
+  if (!state.pins.are_outdated()) return true;
+  if (remedy == FragmentRemedy::stop && state.pins.found.count > 0) {
+    settled.outcome = Outcome::fragmented;
+    settled.fault = state.pins.described();
+    return false;
+  }
+  path_.tell(load_point(settled.state),
+             {.outcome = name(Outcome::converged),
+              .action = remedy == FragmentRemedy::remove ? Decision::remove_fragments
+                                                         : Decision::hold_fragments,
+              .reason = state.pins.described()});
+  if (path_.pin() == Advance::goes_on) return true;
+  settled.outcome = Outcome::out_of_memory;
+  return false;
+}
+
+EventStepping::Settled EventStepping::settle(const State& at, const PathLedger& ledger) {
+  Assembler& body = path_.damaged();
+  const std::vector<double> borne = borne_stretches(body.model(), at.history);
+  const std::vector<UtilisedBond> batch = batch_of(at, borne);
+  std::vector<Offset> bonds;
+  std::vector<double> stretches;
+  for (const UtilisedBond& bond : batch) {
+    bonds.push_back(bond.bond);
+    stretches.push_back(bond.stretch);
+  }
+  const BondDrops dropped = drop(body.model(), at.history, bonds, stretches);
+  Settled settled;
+  settled.dropping = Index(batch.size());
+  settled.breaking = dropped.breaking;
+  settled.state = at;
+  settled.state.history = body.history_of(dropped.histories);
+  const auto energy = [&](const State& of) {
+    return body.energy(StateView(of, Damage::held)).energy;
+  };
+  const double lost = energy(at) - energy(settled.state);
+
+  const FragmentPins pins_before = path_.state().pins;
+  const bool may_go_on = dropped.breaking == 0 || pin(settled);
+  settled.pins = std::exchange(path_.state().pins, pins_before);
+  settled.attempt.at = load_point(at);
+  settled.attempt.state.displacement = at.displacement;
+  settled.attempt.state.history = at.history;
+  settled.attempt.state.environment = at.environment;
+  if (!may_go_on) return settled;
+
+  NewtonOptions options = held();
+  settled.attempt = path_.search(settled.state, at.stage, options);
+  settled.outcome = settled.attempt.outcome;
+  if (!settled.attempt.has_converged()) return settled;
+  settled.state = state_of(settled.attempt);
+
+  std::vector<double> damage(std::size_t(body.points().count()));
+  const double dissipated =
+      assess_damage(body.model(), settled.state.history, {}, damage).dissipated_energy;
+  StepEnergies energies;
+  energies.released = lost - dropped.energy_lost;
+  settled.ledger = ledger;
+  const std::vector<double> working =
+      path_.working_force(settled.attempt.state, settled.attempt.external_force);
+  Ledger after =
+      ledger.with_step(at.displacement, settled.attempt.state, working, dissipated, energies);
+  settled.batch_work =
+      after.dissipated - ledger.entries.dissipated - energies.released - dropped.energy_lost;
+  after.numerical_work += settled.batch_work;
+  const double drained = after.balance_error() - ledger.entries.balance_error();
+  const double turned_over = std::abs(lost) + std::abs(after.stored) + std::abs(drained);
+  if (drained < -share_from_nothing * turned_over) {
+    settled.outcome = Outcome::inconsistent;
+    settled.fault = number_text(-drained) + " J come from nothing as bonds break";
+    return settled;
+  }
+  after.drained += drained;
+  settled.ledger.accept(after, working, energies);
+  settled.utilisation =
+      largest_utilisation(body.points(), body.model(), StateView(settled.state, Damage::held),
+                          borne_stretches(body.model(), settled.state.history), body.threads());
+  return settled;
+}
+
+void EventStepping::take_up(Settled settled) {
+  PathState& state = path_.state();
+  state.events.broke_at = path_.setting().conditions.load_factor(load_point(state.accepted));
+  state.events.batch_work += settled.batch_work;
+  ++state.events.count;
+  state.accepted = std::move(settled.state);
+  state.ledger = std::move(settled.ledger);
+  state.pins = std::move(settled.pins);
+  path_.last_attempt() = std::move(settled.attempt);
+}
+
+StrengthStep EventStepping::strength_step(std::span<const double> borne) const {
+  const PathState& state = path_.state();
+  const double stage = state.accepted.stage, begin = segment_begin(stage), end = begin + 1.0;
+  StrengthStep step;
+  step.borne = borne;
+  step.range = {begin, end};
+  step.least_scale = share_of_scale * state.events.largest_scale;
+  step.stop = end;
+  const double steps = path_.options().steps;
+  const double asked_for =
+      begin + (std::floor((stage - begin) * steps + LoadingProgramme::tolerance) + 1.0) / steps;
+  if (stage >= state.events.top) step.stop = std::min(end, asked_for);
+  if (stage < state.events.top) step.stop = state.events.top;
+  if (state.events.longest > 0.0) step.longest = state.events.longest;
+  return step;
+}
+
+EventStepping::Step EventStepping::search() {
+  const State& from = path_.state().accepted;
+  const std::vector<double> borne = borne_stretches(path_.damaged().model(), from.history);
+  const StrengthStep asked = strength_step(borne);
+  const SolvedBody& body = path_.body();
+  Step step;
+  const double stop = asked.stop;
+  if (const auto refusal = path_.refusal_of_conditions(stop)) {
+    step.attempt = undefined_attempt(from, stop);
+    step.fault = *refusal;
+    return step;
+  }
+  StrengthResult found =
+      search_strength(path_.problem(), body.solver, body.tangent, from, asked, held(),
+                      [this](const IterationRecord& row) { return path_.iterated(row); });
+  step.end = found.end;
+  step.attempted = found.stage - from.stage;
+  step.attempt = to_attempt(std::move(found.newton), found.stage);
+  return step;
+}
+
+EventStepping::Step EventStepping::run_avalanche() {
+  PathState& state = path_.state();
+  Step step;
+  step.end = StrengthEnd::on_the_way;
+  int passes = 0;
+  for (;; ++passes) {
+    Settled settled = settle(state.accepted, state.ledger);
+    step.attempt = settled.attempt;
+    step.attempt.outcome = settled.outcome;
+    step.fault = settled.fault;
+    if (!settled.has_converged()) return step;
+    const double utilisation = settled.utilisation;
+    take_up(std::move(settled));
+    if (utilisation <= share_at_strength + 0.5 * (1.0 - share_at_strength)) break;
+    if (passes == most_passes) {
+      step.attempt.outcome = Outcome::iteration_limit;
+      return step;
+    }
+  }
+  step.how = std::to_string(passes + 1) + " events while the load is held";
+  return step;
+}
+
+void EventStepping::complete(Step& step) {
+  FoundStep& found = step.found;
+  found.record.mode = Mode::path.name;
+  found.record.newton_iterations = step.attempt.iterations;
+  step.fault = peristat::complete(path_, step.attempt, found);
+  if (!step.attempt.has_converged()) return;
+  const Ledger& before = path_.state().ledger.entries;
+  const double error = found.ledger.balance_error() - before.balance_error();
+  const double turned_over = std::abs(found.ledger.stored - before.stored) +
+                             std::abs(found.ledger.external_work - before.external_work);
+  if (std::abs(error) > share_of_work * turned_over + share_from_nothing * found.ledger.stored) {
+    step.attempt.outcome = Outcome::sharp_turn;
+    step.fault = "the work of the step is known to " + number_text(std::abs(error)) + " J only";
+    return;
+  }
+  found.ledger.numerical_work -= error;
+}
+
+void EventStepping::tell_response(const Step& step, StepRecord& record) {
+  PathState::Events& events = path_.state().events;
+  const double stage = step.attempt.at.stage;
+  record.broke_at = events.broke_at;
+  record.is_on_response = stage >= events.top;
+  if (record.is_on_response) {
+    const Ledger& ledger = step.found.ledger;
+    const double energy = ledger.stored + ledger.dissipated - events.batch_work -
+                          dot(step.attempt.external_force, step.attempt.state.displacement);
+    const bool is_held = stage == events.top && path_.state().steps > 0;
+    events.released +=
+        is_held ? events.response_energy - energy : ledger.drained - events.response_drained;
+    events.response_energy = energy;
+    events.response_drained = ledger.drained;
+    events.top = stage;
+  }
+  record.released_energy = events.released;
+}
+
+Advance EventStepping::accept(Step step) {
+  PathState& state = path_.state();
+  PathState::Events& events = state.events;
+  StepRecord& record = step.found.record;
+  const Assembler& body = path_.damaged();
+  const State reached = state_of(step.attempt);
+  events.largest_scale = std::max(events.largest_scale, step.attempt.scale);
+  if (events.longest > 0.0) {
+    events.longest *= step.end == StrengthEnd::on_the_way ? path_.options().growth : 1.0;
+  }
+  tell_response(step, record);
+  const double utilisation =
+      largest_utilisation(body.points(), body.model(), StateView(reached, Damage::held),
+                          borne_stretches(body.model(), reached.history), body.threads());
+  events.at_strength = utilisation >= 1.0 - tie;
+  std::string how =
+      step.how.empty() ? std::to_string(step.attempt.iterations) + " iterations" : step.how;
+  record.stability = step.attempt.has_negative_pivots ? "bifurcated" : "stable";
+  if (events.at_strength) {
+    PathLedger with_step = state.ledger;
+    with_step.accept(step.found.ledger,
+                     path_.working_force(step.attempt.state, step.attempt.external_force),
+                     step.found.energies);
+    ahead_ = settle(reached, with_step);
+    const bool runs_on = !ahead_->has_converged() || ahead_->utilisation > 1.0 + tie;
+    if (runs_on && !step.attempt.has_negative_pivots) record.stability = "unstable";
+    how += "; " + bonds_text(ahead_->dropping) + " at their strength";
+  }
+  path_.tell(step.attempt.at, {.increment = step.attempted,
+                               .outcome = name(step.attempt.outcome),
+                               .action = step.attempt.note.empty() ? Decision::accept
+                                                                   : Decision::accept_at_round_off,
+                               .next_increment = events.longest,
+                               .reason = how});
+  return peristat::accept(path_, std::move(step.attempt), std::move(step.found), events.longest);
+}
+
+Advance EventStepping::fail(Step step, PathState before) {
+  Attempt& attempt = step.attempt;
+  const std::string reason = reason_of(attempt, step.fault);
+  path_.state() = std::move(before);
+  PathState::Events& events = path_.state().events;
+  const double longest = path_.options().cut * std::abs(step.attempted);
+  const bool may_cut = path_.options().adaptive && longest >= path_.options().smallest_step &&
+                       worth_cutting(attempt);
+  if (!may_cut) return path_.stop(std::move(attempt), step.attempted, reason);
+  events.longest = longest;
+  path_.tell(attempt.at, {.increment = step.attempted,
+                          .outcome = name(attempt.outcome),
+                          .action = Decision::cut,
+                          .next_increment = longest,
+                          .reason = reason});
+  return Advance::goes_on;
+}
+
+}  // namespace peristat

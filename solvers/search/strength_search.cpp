@@ -1,0 +1,223 @@
+#include "solvers/search/strength_search.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "assembly/terms/bonds/borne_stretches.hpp"
+#include "solvers/linear/vector_verbs.hpp"
+#include "solvers/search/convergence.hpp"
+#include "solvers/search/linearisation.hpp"
+
+namespace peristat {
+namespace {
+
+/// The strength is met to this share of it; half of what the state stays below.
+constexpr double strength_tolerance = 0.5 * (1.0 - share_at_strength);
+
+/// By how much the first step along the tangent may miss the strength that it was to meet: beyond,
+/// the way is too curved to know which strength is met first.
+constexpr double largest_miss = 0.1;
+
+/// Relative residual of the systems for the rate: an error of it is one of the state.
+constexpr double rate_tolerance = 1e-8;
+
+/// Relative residual below which a range without a place in it is no fault of the iteration.
+constexpr double nearly = 1e-6;
+
+class StrengthSearch {
+ public:
+  StrengthSearch(const EquilibriumProblem& problem, LinearSolver& solver, TangentOperator& tangent,
+                 const State& from, const StrengthStep& step, const NewtonOptions& options,
+                 const IterationObserver& observer)
+      : problem_(problem),
+        solver_(solver),
+        tangent_(tangent),
+        step_(step),
+        options_(options),
+        observer_(observer),
+        start_(from.stage),
+        external_force_(from.displacement.size()),
+        linearisation_(problem, solver, tangent, external_force_) {
+    current_.displacement = from.displacement;
+    current_.history = from.history;
+    result_.stage = from.stage;
+  }
+
+  [[nodiscard]] StrengthResult run() {
+    stand();
+    old_scale_ = present_load();
+    result_.newton.outcome = search();
+    result_.newton.state = std::move(current_);
+    result_.newton.external_force = std::move(external_force_);
+    return std::move(result_);
+  }
+
+ private:
+  Outcome search() {
+    for (int iteration = 1; iteration <= options_.max_iterations; ++iteration) {
+      const Outcome outcome = iterate(iteration);
+      if (outcome != Outcome::converged || result_.end == StrengthEnd::inadmissible) {
+        return outcome;
+      }
+      if (is_balanced() && ends_well()) return Outcome::converged;
+    }
+    return Outcome::iteration_limit;
+  }
+
+  Outcome iterate(int iteration) {
+    IterationRecord row;
+    row.iteration = iteration;
+    row.step_length = 1.0;
+    const double earlier = std::exchange(last_residual_, current_.residual_norm);
+    const double target = options_.relative_tolerance * scale();
+    std::vector<double> correction;
+    LinearOutcome linear = linearisation_.solve(
+        current_.at(Damage::held), current_.gradient, 0.0, FactorUse::may_reuse, {},
+        std::min(options_.linear_tolerance, forcing_term(current_.residual_norm, earlier, target)),
+        correction);
+    if (linear != LinearOutcome::solved) return outcome_of(linear);
+    row.linear_iterations = solver_.last_iterations();
+
+    ConditionRates conditions =
+        rates_of(problem_, current_.at(Damage::held), loads, result_.stage, step_.range);
+    std::vector<double> rate;
+    linear =
+        linearisation_.solve_again(conditions.force, conditions.displacement, rate_tolerance, rate);
+    if (linear != LinearOutcome::solved) return outcome_of(linear);
+    add_scaled(rate, 1.0, conditions.displacement);
+    add_scaled(current_.displacement, 1.0, correction);
+    move_followers(problem_, current_);
+    problem_.conditions.constraints().extend(current_.displacement, rate);
+
+    const double change = choose(rate, conditions.eigenstretch, iteration == 1);
+    if (result_.end == StrengthEnd::inadmissible) return Outcome::converged;
+    for (const Index dof : problem_.free.dof) current_.displacement[dof] += change * rate[dof];
+    result_.stage = result_.end == StrengthEnd::at_stop ? step_.stop : result_.stage + change;
+    stand();
+    result_.newton.iterations = iteration;
+    if (current_.degenerate) return Outcome::degenerate;
+    if (iteration == 1 && misses_by_far()) return Outcome::iteration_limit;
+    return interrupts(row) ? Outcome::interrupted : Outcome::converged;
+  }
+
+  /// Change of the stage; sets what is being headed for.
+  double choose(std::span<const double> rate, std::span<const double> eigenstretch_rate,
+                bool is_first) {
+    const AdmissibleRange range = admissible_range(
+        problem_.assembler.points(), problem_.assembler.model(), current_.at(Damage::held),
+        step_.borne, rate, eigenstretch_rate, share_at_strength, problem_.assembler.threads());
+    if (is_first) {
+      if (range.low > range.high) return refuse();
+      result_.goes_up = range.high >= 0.0;
+      meets_upper_ = range.low <= 0.0 || range.high < 0.0;
+    }
+    const bool is_nearly_balanced = last_residual_ <= nearly * scale();
+    if (!is_first && is_nearly_balanced && range.low > range.high) return refuse();
+    double change = meets_upper_ ? range.high : range.low;
+    result_.end = StrengthEnd::at_strength;
+    // Where the present stage is not admissible, the one to stop at need not be.
+    const double stop = meets_upper_ ? step_.stop : step_.range.high;
+    if (result_.goes_up && result_.stage + change > stop) {
+      if (!meets_upper_) return refuse();
+      result_.end = StrengthEnd::at_stop;
+      change = stop - result_.stage;
+    } else if (result_.stage + change < step_.range.low) {
+      return refuse();
+    }
+    const double end = start_ + (result_.goes_up ? step_.longest : -step_.longest);
+    const bool is_long = std::abs(result_.stage + change - start_) > step_.longest;
+    if (is_long) {
+      result_.end = StrengthEnd::on_the_way;
+      change = end - result_.stage;
+    }
+    return change;
+  }
+
+  double refuse() {
+    result_.end = StrengthEnd::inadmissible;
+    return 0.0;
+  }
+
+  /// Whether the state is what the search was heading for; called in equilibrium.
+  bool ends_well() {
+    const double most = utilisation();
+    if (result_.end == StrengthEnd::at_strength) {
+      if (std::abs(most - share_at_strength) <= strength_tolerance) return true;
+      return false;
+    }
+    // Going down, bonds are above what they bear until the strength is met.
+    if (result_.end == StrengthEnd::on_the_way && !result_.goes_up) return true;
+    return most <= share_at_strength + strength_tolerance;
+  }
+
+  /// Whether one step along the tangent comes to quite another strength than it should.
+  [[nodiscard]] bool misses_by_far() const {
+    const double most = utilisation();
+    if (result_.end == StrengthEnd::at_strength) return std::abs(most - 1.0) > largest_miss;
+    return result_.goes_up && most > 1.0 + largest_miss;
+  }
+
+  [[nodiscard]] double utilisation() const {
+    return largest_utilisation(problem_.assembler.points(), problem_.assembler.model(),
+                               current_.at(Damage::held), step_.borne,
+                               problem_.assembler.threads());
+  }
+
+  /// Takes supports and loads to the stage, and evaluates.
+  void stand() {
+    const LoadPoint at = loads(result_.stage);
+    problem_.conditions.prescribe(at, current_.displacement);
+    problem_.conditions.external_force(at, external_force_);
+    current_.environment = problem_.conditions.environment(at);
+    evaluate(problem_, external_force_, current_, Damage::held);
+    result_.newton.scale = scale();
+  }
+
+  [[nodiscard]] double scale() const {
+    return std::max({step_.least_scale, old_scale_, present_load()});
+  }
+  [[nodiscard]] double present_load() const {
+    return load_norm(problem_, external_force_, current_, Damage::held);
+  }
+
+  [[nodiscard]] bool is_balanced() {
+    return note_convergence(problem_.free, tangent_, current_, last_residual_,
+                            options_.relative_tolerance, result_.newton);
+  }
+
+  [[nodiscard]] bool interrupts(IterationRecord row) const {
+    row.residual = current_.residual_norm;
+    row.relative_residual =
+        result_.newton.scale > 0.0 ? current_.residual_norm / result_.newton.scale : 0.0;
+    row.energy = current_.total_energy;
+    return observer_ && observer_(row);
+  }
+
+  static LoadPoint loads(double stage) { return stage; }
+
+  const EquilibriumProblem& problem_;
+  LinearSolver& solver_;
+  TangentOperator& tangent_;
+  const StrengthStep& step_;
+  const NewtonOptions& options_;
+  const IterationObserver& observer_;
+  double start_;
+  std::vector<double> external_force_;
+  Linearisation linearisation_;
+  Trial current_;
+  bool meets_upper_ = true;
+  double last_residual_ = 0.0, old_scale_ = 0.0;
+  StrengthResult result_;
+};
+
+}  // namespace
+
+StrengthResult search_strength(const EquilibriumProblem& problem, LinearSolver& solver,
+                               TangentOperator& tangent, const State& from,
+                               const StrengthStep& step, const NewtonOptions& options,
+                               const IterationObserver& observer) {
+  return StrengthSearch(problem, solver, tangent, from, step, options, observer).run();
+}
+
+}  // namespace peristat

@@ -1,0 +1,25 @@
+#pragma once
+
+#include "src/potentials/any_law.hpp"
+#include "src/potentials/potential.hpp"
+
+namespace peristat {
+
+/// The saw-tooth of a law whose force falls smoothly; see SawTooth. A law that falls by steps is
+/// left as it is.
+/// @param most of teeth, at least 1
+[[nodiscard]] AnyBondLaw saw_tooth(const AnyBondLaw& law, int most);
+
+/// A potential with the saw-teeth of its laws.
+/// @throws std::length_error if the bonds' laws have more ratios of their stretches than can be
+///         told apart
+[[nodiscard]] BondPotential with_teeth(const BondPotential& potential, int most);
+
+/// The largest band and excess of strength of the teeth of a potential's bonds; none without teeth.
+struct ToothedStrength {
+  int teeth = 0;
+  double band = 0.0, excess_strength = 0.0;
+};
+[[nodiscard]] ToothedStrength toothed_strength(const BondPotential& potential);
+
+}  // namespace peristat
