@@ -439,6 +439,21 @@ class Fracture(unittest.TestCase):
                 # from the hole's rim to the edge
                 self.assertLessEqual(abs(length[-1] - 20e-3), 2 * SPACING)
 
+    def test_resistance_sums_up_to_what_is_dissipated(self):
+        """Over the area that it is of, whatever else happens between; 0 where the crack does not grow."""
+        probes = '\n[[set]]\nname = "ligament"\nwhere = "x > 0 && abs(y) < 6e-3"\n'
+        for field in ("crack_area", "crack_resistance"):
+            probes += f'[[probe]]\nname = "{field}"\nset = "ligament"\nfield = "{field}"\n'
+        run = self.completed(SQUARE.read_text() + probes)
+        area, resistance, dissipated = (run.column(name) for name in ("crack_area", "crack_resistance", "dissipated_energy"))
+        growth = numpy.diff(area, prepend=0.0)
+        self.assertGreater((growth > 0).sum(), 3)
+        self.assertGreater((growth[dissipated > 0] == 0).sum(), 0)
+        self.assertTrue(((resistance > 0) == (growth > 0)).all())
+        last = numpy.flatnonzero(growth > 0)[-1]
+        # sums of some ten rows, told with all digits
+        self.assertAlmostEqual((resistance * growth).sum() / dissipated[last], 1.0, delta=1e-12)
+
     def test_threads_do_not_change_the_states(self):
         one, two = (self.completed(STRIP, threads=threads) for threads in (1, 2))
         self.assertEqual((one.summary["threads"], two.summary["threads"]), (1, 2))
