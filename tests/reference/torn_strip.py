@@ -51,9 +51,9 @@ class TornStrip:
         least = 4 * self.ratio + 3 if "surface_correction" in self.quadrature else self.ratio + 1
         lengths, widths = self._two(least, self.period, more), self._two(least, 1.0, more)
         if self.dimension == 2:
-            short, long = (self._dissipated(self.tables(length, 0.0), folder) for length in lengths)
+            short, long = (self.dissipated(self.tables(length, 0.0), folder) for length in lengths)
             return (long - short) / (more * self.period * SPACING * THICKNESS)
-        of = [self._dissipated(self.tables(*size), folder) for size in itertools.product(lengths, widths)]
+        of = [self.dissipated(self.tables(*size), folder) for size in itertools.product(lengths, widths)]
         return (of[3] - of[2] - of[1] + of[0]) / (more**2 * self.period * SPACING**2)
 
     @staticmethod
@@ -63,7 +63,7 @@ class TornStrip:
         return [n * period * SPACING * (1 + 1e-12) for n in (periods, periods + more)]
 
     @staticmethod
-    def _dissipated(tables, folder):
+    def dissipated(tables, folder):
         case = folder / "case.toml"
         case.write_text(toml(tables))
         run = peristat("run", case, "--quiet", "--overwrite", "--output", folder / "out")
