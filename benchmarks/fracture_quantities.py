@@ -145,7 +145,8 @@ def release(specimen, spacing, length):
     """G by a cut of one and a half horizons, of the kind that the specimen's supports or loads keep, over J in its middle."""
     cut = 1.5 * 3.015 * spacing
     row, *_ = specimen(spacing, length, f"cut = {cut}\n")
-    middle, *_ = specimen(spacing, length + cut / 2)
+    # The middle of the cut; the inclined crack has two tips that grow with its length, and is cut at one.
+    middle, *_ = specimen(spacing, length + cut / (4 if specimen is inclined else 2))
     kind = "displacement" if specimen is bend else "load"
     return row[f"tip_G_{kind}"] / middle["tip_J"]
 

@@ -83,11 +83,11 @@ def last_opening(ratio, normal, critical):
 
 def tell(ratio, laws, took, errors):
     by_angle = {angle: [took[key] / G for key in took if key[1] == angle] for angle, _ in ANGLES}
-    differ = max(max(values) - min(values) for values in by_angle.values())
+    differ = f"{max(max(values) - min(values) for values in by_angle.values()):.0e}" if len(took) > len(ANGLES) else ""
     first, between, last = (sum(values) / len(values) for values in by_angle.values())
     mean = (first + 2 * between + last) / 4  # the middle one stands for both halves of the range
     spread = max(first, between, last) - min(first, between, last)
-    print(f"| {ratio} | {laws} | {first:.4f} | {between:.4f} | {last:.4f} | {mean:.4f} | {spread:.4f} | {differ:.0e} | {max(errors):.0e} |",
+    print(f"| {ratio} | {laws} | {first:.4f} | {between:.4f} | {last:.4f} | {mean:.4f} | {spread:.4f} | {differ} | {max(errors):.0e} |",
           flush=True)  # fmt: skip
 
 
@@ -102,6 +102,7 @@ def main():
         if "cpd" in chosen:
             for law in LAWS:
                 cpd(3.015, law, 400, folder)
+            cpd(3.015, "exponential", 1600, folder)
 
 
 if __name__ == "__main__":
