@@ -52,7 +52,7 @@ def bonds(dimension, ratio, folder):
             errors.append(abs(took[law, angle] / foretold - 1))
             if angle == 0.0:
                 errors.append(abs(took[law, angle] / told(strip, folder)["fracture_energy"]["axes"][0] - 1))
-    tell(f"{ratio:g} ({dimension}D)", "all", took, errors)
+    tell(f"{ratio:g} ({dimension}D)", "bonds, all", took, errors)
 
 
 def cpd(ratio, law, steps, folder):
@@ -69,7 +69,7 @@ def cpd(ratio, law, steps, folder):
         took[law, angle] = strip.energy(folder)
         found = LAWS[law] | {key: answer[key] for key in ("onset", "peak", "critical", "hardening", "rate") if key in answer}
         errors.append(abs(took[law, angle] / tear.energy(found, normal) - 1))
-    tell(f"{ratio:g} (2D)", f"{law}, {steps} steps", took, errors)
+    tell(f"{ratio:g} (2D)", f"CPD, {law}, {steps} steps", took, errors)
 
 
 def last_opening(ratio, normal, critical):
