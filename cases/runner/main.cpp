@@ -37,6 +37,7 @@ struct CommandLine {
   CalibrationQuestion calibration;
   MaterialModel calibrated_model = MaterialModel::cpd;
   BondCalibrationQuestion bond_calibration;
+  std::vector<const CLI::Option*> of_bonds;  // options of calibrate that cpd has no use for
 };
 
 /// "key=value" taken apart.
@@ -122,26 +123,32 @@ void add_bond_calibration(CLI::App& command, CommandLine& line) {
   const auto add = [&](const char* name, auto& value, const char* text) {
     return command.add_option(name, value, text)->excludes(file);
   };
+  const auto add_of_bonds = [&](const char* name, auto& value, const char* text) {
+    CLI::Option* option = add(name, value, text);
+    line.of_bonds.push_back(option);
+    return option;
+  };
   using Volume = VolumeCorrection;
   using Surface = SurfaceCorrection;
   using Law = DamageLaw;
   add("--model", line.calibrated_model, "cpd (default) or bond")
       ->transform(
           names<MaterialModel>({{"cpd", MaterialModel::cpd}, {"bond", MaterialModel::bond}}));
-  add("--area", asked.area, "bond, 1D [m2] (default: 1)");
-  add("--angle", asked.angle, "bond: of the lattice [degrees]");
-  add("--volume-correction", asked.volume_correction, "bond: none (default) or linear")
+  add_of_bonds("--area", asked.area, "bond, 1D [m2] (default: 1)");
+  add_of_bonds("--angle", asked.angle, "bond: of the lattice [degrees]");
+  add_of_bonds("--volume-correction", asked.volume_correction, "bond: none (default) or linear")
       ->transform(names<Volume>({{"none", Volume::none}, {"linear", Volume::linear}}));
-  add("--surface-correction", asked.surface_correction, "bond: none (default), volume or energy")
+  add_of_bonds("--surface-correction", asked.surface_correction,
+               "bond: none (default), volume or energy")
       ->transform(names<Surface>(
           {{"none", Surface::none}, {"volume", Surface::volume}, {"energy", Surface::energy}}));
-  add("--plane", material.plane, "bond, 2D: stress (default) or strain")
+  add_of_bonds("--plane", material.plane, "bond, 2D: stress (default) or strain")
       ->transform(
           names<PlaneState>({{"stress", PlaneState::stress}, {"strain", PlaneState::strain}}));
-  add("--calibration", material.calibration, "bond: continuum (default) or lattice")
+  add_of_bonds("--calibration", material.calibration, "bond: continuum (default) or lattice")
       ->transform(names<Calibration>(
           {{"continuum", Calibration::continuum}, {"lattice", Calibration::lattice}}));
-  add("--micromodulus", material.micromodulus, "bond: c [N/m6]");
+  add_of_bonds("--micromodulus", material.micromodulus, "bond: c [N/m6]");
   add("--law", damage.law, "of damage, as in case files")
       ->transform(names<Law>({{"critical_stretch", Law::critical_stretch},
                               {"tanh", Law::tanh},
@@ -158,6 +165,21 @@ void add_bond_calibration(CLI::App& command, CommandLine& line) {
   add("--rate", damage.rate, "tanh laws and exponential");
 }
 
+/// Constants of cpd know nothing of them: an answer would be told as if they were there.
+void refuse_options_of_bonds(const CommandLine& line) {
+  for (const CLI::Option* option : line.of_bonds) {
+    if (option->count() > 0) throw InputError(option->get_name(), "", "is for --model bond");
+  }
+}
+
+Exit calibrate(const CommandLine& line) {
+  if (line.calibrated_model == MaterialModel::bond) {
+    return calibrate(line.calibration, line.bond_calibration);
+  }
+  refuse_options_of_bonds(line);
+  return calibrate(line.calibration, line.bond_calibration.material.damage);
+}
+
 RunOptions run_options(const CommandLine& line, int threads) {
   return {threads, line.quiet, line.log_file, line.overwrite, line.steps};
 }
@@ -168,11 +190,7 @@ Exit execute(const CLI::App& program, const CommandLine& line, int threads) {
     return resume(line.results, overrides(line), run_options(line, threads));
   }
   const bool is_calibration = program.got_subcommand("calibrate");
-  if (is_calibration && line.case_file.empty()) {
-    return line.calibrated_model == MaterialModel::bond
-               ? calibrate(line.calibration, line.bond_calibration)
-               : calibrate(line.calibration, line.bond_calibration.material.damage);
-  }
+  if (is_calibration && line.case_file.empty()) return calibrate(line);
   const Case from = read_case(line.case_file, overrides(line));
   if (is_calibration) return calibrate(from);
   if (program.got_subcommand("check")) return check(from, threads);

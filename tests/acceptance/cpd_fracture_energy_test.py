@@ -113,6 +113,35 @@ class CpdFractureEnergy(unittest.TestCase):
         self.assertIn("fracture energy 4000 J/m2 in the mean over the directions of a crack (", line)
         self.assertTrue(line.endswith("strength 2e+08 Pa"), line)
 
+    def of_moduli(self, damage):
+        tables = self.strip(0.03, 0.0, damage)
+        del tables["material"]["c1"], tables["material"]["c2"]
+        tables["material"] |= {"youngs_modulus": 70e9, "poisson_ratio": 0.4}
+        return self.write(tables)
+
+    def test_a_strength_is_the_stretch_of_the_largest_force_times_the_modulus(self):
+        for damage, key in (({"law": "linear", "critical": 0.02}, "onset"), ({"law": "exponential", "critical": 0.02}, "onset"),
+                            ({"law": "critical_stretch"}, "critical")):  # fmt: skip
+            with self.subTest(law=damage["law"]):
+                run = peristat("calibrate", self.of_moduli(damage | {"strength": 3e8}))
+                self.assertEqual(run.code, 0, run.said)
+                told = run.json()["damage"]
+                self.assertAlmostEqual(told[key] * 70e9 / 3e8, 1.0, delta=1e-12)
+                self.assertAlmostEqual(told["strength"] / 3e8, 1.0, delta=1e-12)
+
+    def test_strengths_without_an_answer_are_refused(self):
+        of_constants = self.strip(0.03, 0.0, {"law": "linear", "critical": 0.02, "strength": 2e8})
+        for case, words in ((lambda: self.write(of_constants), ["material.damage.strength", "youngs_modulus"]),
+                            (lambda: self.of_moduli({"law": "critical_stretch", "fracture_energy": G, "strength": 2e8}),
+                             ["material.damage.strength", "one stretch for both"]),
+                            (lambda: self.of_moduli({"law": "linear", "fracture_energy": G, "strength": 2e9}),
+                             ["material.damage.strength", "a spacing below"])):  # fmt: skip
+            with self.subTest(words=words):
+                run = peristat("check", case())
+                self.assertEqual(run.code, 2, run.said)
+                for word in words:
+                    self.assertIn(word, run.said)
+
     def test_too_long_a_horizon_is_refused(self):
         run = peristat("calibrate", "--dimension", "3", "--spacing", "1e-3", "--horizon-ratio", "4",
                        "--youngs-modulus", "70e9", "--poisson-ratio", "0.4", "--law", "critical_stretch",

@@ -267,6 +267,14 @@ class Cpd(unittest.TestCase):
             self.assertEqual(there["continuum"]["anisotropy"], 1.0)
             self.assertNotAlmostEqual(there["lattice"]["anisotropy"], 1.0, delta=0.01)
 
+    def test_calibrate_refuses_what_only_bonds_have(self):
+        moduli = ["--youngs-modulus", "1", "--poisson-ratio", "0.4"]
+        for option, value in {"--micromodulus": "1", "--plane": "strain", "--angle": "10", "--area": "1",
+                              "--calibration": "lattice", "--volume-correction": "linear",
+                              "--surface-correction": "none"}.items():  # fmt: skip
+            with self.subTest(option=option):
+                self.assert_refused(self.peristat("calibrate", *self.PLANE, *moduli, option, value), f"{option}: is for --model bond")
+
     def test_calibrate_refuses_what_makes_no_sense(self):
         moduli = ["--youngs-modulus", "1", "--poisson-ratio"]
         for arguments, words in {

@@ -1,22 +1,20 @@
 """Fracture energy and strength: what a tear takes and a pull bears, beside what was asked for and foretold."""
 
 import json
-import math
 import pathlib
 import tempfile
 import unittest
 
+import h5py
 import numpy
 
 from tests.reference.case import Case
 from tests.reference.clouds import toml
 from tests.reference.program import peristat
 from tests.reference.sheets import Bulk, resolve
+from tests.reference.torn_strip import ANGLES, TornStrip
 
 LAWS = ("critical_stretch", "tanh", "tanh_continuous", "linear", "exponential", "blended")
-SPACING = 1e-3
-# Directions of the lattice in which it repeats, with the period in spacings.
-ANGLES = ((0.0, 1.0), (math.degrees(math.atan(0.5)), math.sqrt(5.0)), (45.0, math.sqrt(2.0)))
 CORRECTIONS = {"none": {}, "linear": {"volume_correction": "linear"},
                "energy": {"volume_correction": "linear", "surface_correction": "energy"}}  # fmt: skip
 # Sums of a few hundred bonds by other means.
@@ -34,35 +32,19 @@ class FractureEnergy(unittest.TestCase):
         path.write_text(toml(tables))
         return path
 
-    def strip(self, length, angle, ratio, material, quadrature):
+    def strip(self, length, angle, ratio, material, quadrature, dimension=2):
         """Two halves that are pulled apart as rigid blocks, until no bond joins them."""
-        half = (2 * ratio + 3) * SPACING
-        return {
-            "dimension": 2,
-            "lattice": {"spacing": SPACING, "horizon_ratio": ratio, "angle": angle, "thickness": 0.5,
-                        "shape": [{"add": "box", "min": [0, -half], "max": [length, half]}]},
-            "set": [{"name": "low", "where": "y < 1.23e-5"}, {"name": "high", "where": "y >= 1.23e-5"}],
-            "quadrature": quadrature, "material": material,
-            "support": [{"set": "low", "displacement": [0, 0]}, {"set": "high", "displacement": [0, f"{20 * ratio * SPACING}*load"]}],
-            "solver": {"mode": "relaxation"},
-        }  # fmt: skip
+        return TornStrip(material, ratio, angle, 1.0, dimension, quadrature).tables(length, length)
 
-    def dissipated(self, tables):
-        run = peristat("run", self.write(tables), "--quiet", "--overwrite", "--output", self.folder / "out")
-        self.assertEqual(run.code, 0, run.said)
-        return json.loads((self.folder / "out/summary.json").read_text())["energy"]["dissipated"]
-
-    def tear(self, angle, period, ratio, material, quadrature):
+    def tear(self, angle, period, ratio, material, quadrature, dimension=2):
         """Dissipated over area, of the middle of a strip: what a longer one has more than a shorter one."""
-        periods = math.ceil((4 * ratio + 3) / period)
-        lengths = [n * period * SPACING * (1 + 1e-12) for n in (periods, periods + 4)]
-        short, long = (self.dissipated(self.strip(length, angle, ratio, material, quadrature)) for length in lengths)
-        return (long - short) / (4 * period * SPACING * 0.5)
+        return TornStrip(material, ratio, angle, period, dimension, quadrature).energy(self.folder)
 
     def test_a_straight_tear_takes_what_is_foretold_for_its_direction(self):
         found = {}
         tried = [(law, 3.015, "linear", "continuum") for law in LAWS]
-        tried += [("linear", 3.015, name, "lattice") for name in CORRECTIONS] + [("linear", 5.015, "linear", "continuum")]
+        tried += [("linear", 3.015, name, "lattice") for name in CORRECTIONS]
+        tried += [("blended", 4.0, "linear", "continuum"), ("exponential", 6.0, "linear", "continuum")]
         for law, ratio, correction, calibration in tried:
             material = {"youngs_modulus": 70e9, "calibration": calibration,
                         "damage": {"law": law, "fracture_energy": 10.0}}  # fmt: skip
@@ -78,6 +60,28 @@ class FractureEnergy(unittest.TestCase):
             flat, between, diagonal = by_angle.values()
             self.assertAlmostEqual((flat + 2 * between + diagonal) / 40, 1.0, delta=0.02 if correction == "none" else 0.01,
                                    msg=f"{ratio} {correction}")  # fmt: skip
+
+    def test_in_space_a_straight_tear_takes_what_is_foretold(self):
+        for law, (angle, period) in (("critical_stretch", ANGLES[0]), ("linear", ANGLES[2])):
+            with self.subTest(law=law, angle=angle):
+                material = {"youngs_modulus": 70e9, "damage": {"law": law, "fracture_energy": 10.0}}
+                took = self.tear(angle, period, 2.015, material, CORRECTIONS["linear"], 3)
+                bulk = Bulk(Case(self.strip(1, angle, 2.015, material, CORRECTIONS["linear"], 3)))
+                foretold = 10.0 * bulk.crossing_of([0, 1, 0]) / bulk.crossing
+                self.assertAlmostEqual(took / foretold, 1.0, delta=1e-10)  # differences of sums
+
+    def test_scatter_of_strength_takes_the_mean_square_of_the_factors(self):
+        damage = {"law": "linear", "fracture_energy": 10.0}
+        scattered = {"youngs_modulus": 70e9, "damage": damage, "scatter": [{"of": "strength", "weibull_modulus": 5, "seed": 3}]}
+        strip = lambda material: TornStrip.dissipated(self.strip(0.02, 0.0, 3.015, material, {}), self.folder)
+        whole, took = strip({"youngs_modulus": 70e9, "damage": damage}), strip(scattered)
+        with h5py.File(self.folder / "out/results.h5") as file:
+            factor, places = file["points/strength_factor"][:], file["points/reference"][:]
+            bonds = numpy.stack([file["broken_bonds/first_point"][:], file["broken_bonds/second_point"][:]])
+        length = numpy.linalg.norm(places[bonds[1]] - places[bonds[0]], axis=1)
+        square = (factor[bonds].mean(axis=0) ** 2 * length).sum() / length.sum()  # a bond takes c V^2 length W
+        self.assertGreater(abs(square - 1), 0.005)
+        self.assertAlmostEqual(took / whole / square, 1.0, delta=1e-10)
 
     def test_calibrate_foretells_the_tears_along_and_across_the_lattice(self):
         material = {"youngs_modulus": 70e9, "damage": {"law": "linear", "fracture_energy": 10.0, "strength": 8e6}}

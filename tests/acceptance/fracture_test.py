@@ -131,6 +131,61 @@ class Ended:
             return file[f"steps/{sorted(file['steps'])[step]}/{name}"][...]
 
 
+# A crack that is driven between two arms, in equilibrium.
+CANTILEVERS = """\
+dimension = 2
+[lattice]
+spacing = 1e-3
+thickness = 1e-3
+shape = [{ add = "box", min = [0, -0.008], max = [0.03, 0.008] }]
+[quadrature]
+volume_correction = "linear"
+[material]
+youngs_modulus = 70e9
+[material.damage]
+law = "linear"
+fracture_energy = 1000
+no_fail = ["arms"]
+[[crack]]
+from = [-0.001, 0]
+to = [0.01, 0]
+[[set]]
+name = "above"
+where = "x < 2e-3 && y > 0.006"
+[[set]]
+name = "below"
+where = "x < 2e-3 && y < -0.006"
+[[set]]
+name = "path"
+where = "abs(y) < spacing"
+[[set]]
+name = "arms"
+where = "abs(y) > 3e-3"
+[[support]]
+set = "above"
+displacement = ["free", "1.64e-4*load"]
+[[support]]
+set = "below"
+displacement = [0, "-1.64e-4*load"]
+[[probe]]
+name = "length"
+set = "path"
+field = "crack_length"
+[[probe]]
+name = "area"
+set = "path"
+field = "crack_area"
+[[probe]]
+name = "resistance"
+set = "path"
+field = "crack_resistance"
+[loading]
+steps = 16
+[solver]
+mode = "newton"
+"""
+
+
 class Fracture(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
@@ -438,6 +493,22 @@ class Fracture(unittest.TestCase):
                 self.assertTrue((numpy.diff(length) >= 0.0).all())
                 # from the hole's rim to the edge
                 self.assertLessEqual(abs(length[-1] - 20e-3), 2 * SPACING)
+
+    def test_resistance_sums_up_to_what_is_dissipated(self):
+        """Over the area that it is of; 0 where the crack does not grow, whatever is dissipated."""
+        run = self.completed(CANTILEVERS)
+        area, resistance, dissipated = (run.column(name) for name in ("area", "resistance", "dissipated_energy"))
+        growth = numpy.diff(area, prepend=10e-6)  # the pre-crack does not count
+        growth[abs(growth) < 1e-12] = 0.0
+        grown = growth > 0
+        self.assertGreater(grown.sum(), 5)
+        self.assertGreater((~grown & (numpy.diff(dissipated, prepend=0.0) > 0)).sum(), 0)
+        self.assertTrue(((resistance > 0) == grown).all())
+        last = numpy.flatnonzero(grown)[-1]
+        # sums of some ten rows, told with all digits
+        self.assertAlmostEqual((resistance * growth).sum() / dissipated[last], 1.0, delta=1e-12)
+        # What the material was asked for; a face more or less is open for the same softening ahead of it.
+        self.assertAlmostEqual((resistance * growth).sum() / growth.sum() / 1000, 1.0, delta=0.15)
 
     def test_threads_do_not_change_the_states(self):
         one, two = (self.completed(STRIP, threads=threads) for threads in (1, 2))

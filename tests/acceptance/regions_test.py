@@ -21,6 +21,7 @@ UNLIKE = {
     "alike": ("tanh", "tanh", "tanh"),
     "brittle and softening": ("critical_stretch", "tanh", "tanh_continuous"),
     "enveloped": ("linear", "blended", "linear"),
+    "exponential": ("exponential", "exponential", "exponential"),
     "one fails": ("none", "tanh_continuous", "none"),
     "none fails": ("none", "none", "none"),
 }
@@ -499,8 +500,11 @@ class Regions(unittest.TestCase):
     def test_other_modes_find_the_same_body(self):
         for name, settings in (
             ("stand-in", ("solver.elastic_horizon_ratio=2.015", "interface[0].rule=weaker")),
+            ("stand-in calibrated on its lattice", ("solver.elastic_horizon_ratio=2.015", "material.calibration=lattice",
+                                                    "material.damage={law='linear',fracture_energy=2e5,no_fail=['top','bottom']}",
+                                                    "region[0].material.calibration=lattice")),
             ("relaxation", ("solver.mode=relaxation", "relaxation.steps=10")),
-        ):
+        ):  # fmt: skip
             with self.subTest(mode=name):
                 self.judged(self.run_case(CRACKED, *STRENGTH, *settings, name=name))
 

@@ -47,6 +47,10 @@ name = "crack"
 set = "middle"
 field = "crack_length"
 axis = "y"
+[[probe]]
+name = "resistance"
+set = "middle"
+field = "crack_resistance"
 [loading]
 steps = 10
 [solver]

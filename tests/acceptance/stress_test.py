@@ -252,6 +252,16 @@ class Judged(Stressed):
                 self.assertEqual(complaints, [])
                 self.assertIn("first_piola_stress", worst)
 
+    def test_a_body_at_rest_bears_nothing(self):
+        """Not even beside a reference whose complex steps leave 1e-51 Pa."""
+        for pull in ("0", "1e-60"):
+            with self.subTest(pull):
+                name = f"by_{pull}"
+                self.run_case(plate("", pull=pull) + OUTPUT, name=name)
+                complaints, worst = verify(self.folder / name, self.fields_text(name), self.folder)
+                self.assertEqual(complaints, [])
+                self.assertIn("first_piola_stress", worst)
+
     def fields_text(self, name):
         with h5py.File(self.folder / name / "results.h5") as file:
             return file["case/as_resolved"][()].decode()

@@ -112,7 +112,7 @@ class Body:
         self.volume = volume[self.source]
         self.sets = {name: flags[self.source] for name, flags in (sets or {}).items()}
         factors = {name: values[self.source] for name, values in (factors or {}).items()}
-        resolve(case, self.spacing)
+        resolve(case, self.spacing, horizon_ratio)
         self.materials = Materials(case, self.sets, len(self.volume), factors)
         self.tuples, self.weight = {}, {}
         self.flatness, self.factor_sums = {}, {}  # cpd: g of interactions, and their sums at points

@@ -12,14 +12,14 @@ MEAN_OF_MAGNITUDE = {1: 1.0, 2: 2 / math.pi, 3: 0.5}
 MEAN_OF_FOURTH_POWER = {1: 1.0, 2: 3 / 8, 3: 1 / 5}
 
 
-def bulk_bonds(case):
+def bulk_bonds(case, horizon_ratio=None):
     """Directions, lengths and weights over the volume of the bonds of a point deep inside the lattice:
     those of the midpoint of a patch, made like every other body."""
     from tests.reference.body import Body
     from tests.reference.case import Case
 
     dimension, spacings = case.dimension, case.spacings
-    reach = case.horizon() + case.spacing(None) / 2
+    reach = case.horizon(horizon_ratio) + case.spacing(None) / 2
     if case["quadrature"]["surface_correction"] != "none":
         reach *= 2  # the neighbours have to be deep inside, too
     counts = [math.ceil(reach / edge) + 1 for edge in spacings]
@@ -31,6 +31,8 @@ def bulk_bonds(case):
         turned = numpy.array([[math.cos(angle), -math.sin(angle)], [math.sin(angle), math.cos(angle)]])
         places[:, :2] = places[:, :2] @ turned.T
     tables = {name: case[name] for name in ("dimension", "lattice", "quadrature")}
+    if horizon_ratio:
+        tables["lattice"] = tables["lattice"] | {"horizon_ratio": horizon_ratio}
     tables["material"] = {"plane": case["material"]["plane"], "youngs_modulus": 1.0}
     volume = numpy.prod(spacings) * case.cross_section
     patch = Body(Case(tables), places, numpy.full(len(places), volume))
@@ -43,13 +45,13 @@ def bulk_bonds(case):
 class Bulk:
     """What c / E and G / (c W) are, W the work of a bond of the modulus 1."""
 
-    def __init__(self, case):
+    def __init__(self, case, horizon_ratio=None):
         from tests.reference.body import confined_modulus_factor, micromodulus_factor
 
-        d, horizon, section = case.dimension, case.horizon(), case.cross_section
+        d, horizon, section = case.dimension, case.horizon(horizon_ratio), case.cross_section
         self.of_modulus = micromodulus_factor(d, case["material"]["plane"], horizon, section)
         if case.is_lattice:
-            self.direction, self.length, self.weight = bulk_bonds(case)
+            self.direction, self.length, self.weight = bulk_bonds(case, horizon_ratio)
             second = (self.weight * self.length**2).sum()
             stiffness = 2 * confined_modulus_factor(d, case["material"]["plane"])
             self.lattice_of_modulus = stiffness / MEAN_OF_FOURTH_POWER[d] / (self.weight * self.length).sum()
@@ -147,8 +149,10 @@ def resolve_cpd(case, tables, spacing):
         table["damage"] = law(ratio)
 
 
-def resolve(case, spacing=None):
-    """Writes what bonds have into the tables of the materials, in the place of the data of a sheet."""
+def resolve(case, spacing=None, horizon_ratio=None):
+    """Writes what bonds have into the tables of the materials, in the place of the data of a sheet.
+
+    horizon_ratio: of an elastic stand-in, whose constants are of its own horizon; stretches stay those of the body."""
     tables = [case["material"]] + [t["material"] for t in case.get("region")]
     tables += [t["material"] for t in case.get("interface") if "material" in t]
     asks = lambda t: "calibration" in t or {"fracture_energy", "strength"} & set(t.get("damage", {}))
@@ -156,13 +160,14 @@ def resolve(case, spacing=None):
     if case["material"].get("model", "bond") == "cpd":
         return resolve_cpd(case, tables, spacing or case.spacing(None))
     bulk = Bulk(case) if tables else None
+    elastic = Bulk(case, horizon_ratio) if tables and horizon_ratio else bulk
     for table in tables:
         on_lattice = table.pop("calibration", "continuum") == "lattice"
-        if on_lattice:
-            table["micromodulus"] = table["youngs_modulus"] * bulk.lattice_of_modulus
-        modulus = table.get("youngs_modulus") or table["micromodulus"] / bulk.of_modulus
-        if on_lattice:
-            del table["youngs_modulus"]
-        c = table.get("micromodulus") or modulus * bulk.of_modulus
+        c = table.get("micromodulus")
+        modulus = table["youngs_modulus"] if c is None else c / bulk.of_modulus
+        if c is None:
+            c = modulus * (bulk.lattice_of_modulus if on_lattice else bulk.of_modulus)
         if "damage" in table:
             table["damage"] = with_stretches(table["damage"], modulus, c * bulk.crossing)
+        if on_lattice:
+            table["micromodulus"] = table.pop("youngs_modulus") * elastic.lattice_of_modulus

@@ -1290,12 +1290,14 @@ Table<ProbeSpecification> probe_keys() {
            .one_of(),
        K("field", &Spec::field, one_of(probe_field_names()),
          "displacement, opening, length and place in m, area in m², force in N, energy density in "
-         "J/m³, stress in Pa, work of fracture in J/m²; "
+         "J/m³, stress in Pa, work of fracture and crack resistance in J/m²; "
          "`stress` is Cauchy's, `strain` Green and Lagrange's")
            .then([](auto& at, auto& probe) {
              if (probe.field == "poisson_ratio" && at.so_far.dimension == 1)
                at.refuse("there is no Poisson's ratio in dimension 1");
-             const bool has_area = probe.field == "crack_area" || probe.field == "work_of_fracture";
+             const bool has_area = probe.field == "crack_area" ||
+                                   probe.field == "work_of_fracture" ||
+                                   probe.field == "crack_resistance";
              if (has_area && !std::holds_alternative<Lattice>(at.so_far.body))
                at.refuse("is for points on a lattice, which have faces between them");
            })

@@ -43,6 +43,10 @@ def draw_all(results: ResultsFolder):
 
     if crack_tips(results):
         yield "crack_tips", draw_crack_tips(results)
+    from resistance_picture import draw_resistances, resistances
+
+    if found := resistances(results):
+        yield "resistance", draw_resistances(results, found)
     from convergence_picture import draw_convergence, has_iterations
 
     if has_iterations(results):

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 namespace peristat {
@@ -75,12 +76,14 @@ double face_between(const Points& points, const BondEnds& ends) {
   return (is_over_period ? 0.5 : 1.0) * volume / spacing;
 }
 
+/// Summed by size: a run that was resumed knows its broken bonds in another order.
 double area(const Points& points, Members set, std::span<const BondEnds> separated) {
-  double sum = 0.0;
+  std::vector<double> faces;
   for (const BondEnds& ends : separated) {
-    if (touches(ends, set)) sum += face_between(points, ends);
+    if (touches(ends, set)) faces.push_back(face_between(points, ends));
   }
-  return sum;
+  std::sort(faces.begin(), faces.end());
+  return std::accumulate(faces.begin(), faces.end(), 0.0);
 }
 
 const std::vector<CrackMeasure>& measures() {
@@ -104,13 +107,22 @@ const std::vector<CrackMeasure>& measures() {
        }},
       {"work_of_fracture", "J/m2", false,
        [](const Points& points, Members set, int, const CrackState& crack) {
-         const double grown = area(points, set, crack.separated.subspan(crack.cut));
+         const double grown = grown_area(points, set, crack);
          return grown > 0.0 ? crack.taken_up / grown : 0.0;
+       }},
+      {"crack_resistance", "J/m2", false,
+       [](const Points& points, Members set, int, const CrackState& crack) {
+         const double growth = grown_area(points, set, crack) - crack.before.area;
+         return growth > 0.0 ? (crack.dissipated - crack.before.dissipated) / growth : 0.0;
        }}};
   return all;
 }
 
 }  // namespace
+
+double grown_area(const Points& points, Members set, const CrackState& crack) {
+  return area(points, set, crack.separated.subspan(crack.cut));
+}
 
 const CrackMeasure* crack_measure(const std::string& name) {
   const auto found = std::ranges::find_if(

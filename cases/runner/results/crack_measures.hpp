@@ -9,11 +9,19 @@
 
 namespace peristat {
 
+/// What a crack had when its area grew last.
+struct CrackGrowth {
+  double area = 0.0;        ///< that has grown since the start [m2]
+  double dissipated = 0.0;  ///< [J]
+};
+
 /// How far cracks have come.
 struct CrackState {
   std::span<const BondEnds> separated;  ///< bonds that pre-cracks have cut, then those that broke
   std::size_t cut = 0;                  ///< how many of them pre-cracks have cut
   double taken_up = 0.0;                ///< work that is not stored any more [J]
+  double dissipated = 0.0;              ///< by damage [J]
+  CrackGrowth before{};                 ///< when the area through the set grew last
 };
 
 /// What a probe can tell of the cracks through a set: of the separated bonds that have an end in
@@ -27,6 +35,9 @@ struct CrackState {
 ///   crack's area by its projections on the axes of the lattice.
 /// - work_of_fracture [J/m2]: work that is not stored any more over the area that has grown since
 ///   the start.
+/// - crack_resistance [J/m2]: energy dissipated since the area grew last over what it has grown by
+///   now, R = dD/dA of an R-curve; 0 while it does not grow. The sum of R dA over the steps is D
+///   when the area grew last.
 ///
 /// All are 0 without such a bond, work_of_fracture without an area that has grown.
 struct CrackMeasure {
@@ -35,6 +46,11 @@ struct CrackMeasure {
   double (*value)(const Points& points, std::span<const Index> set, int axis,
                   const CrackState& crack);
 };
+
+/// Area through a set that has grown since the start, the same whatever the order of the bonds
+/// [m2].
+[[nodiscard]] double grown_area(const Points& points, std::span<const Index> set,
+                                const CrackState& crack);
 
 /// Of a name, or null.
 [[nodiscard]] const CrackMeasure* crack_measure(const std::string& name);

@@ -77,12 +77,11 @@ void Recorder::accepted(StepRecord record, const AcceptedState& state) {
   record.max_damage = made.max_damage;
   record_broken_bonds(record, at.history);
   const StepFields all = made.view(true), view = made.view(case_.output.stress);
-  const CrackState crack{separated_, body_.cut_bonds.size(),
-                         record.external_work + record.numerical_work - record.stored_energy};
   for (const ProbeSpecification& probe : case_.probes) {
     if (probe.from) continue;
-    record.probes[probe.name] = probe_values(probe, points_, all, crack);
+    record.probes[probe.name] = probe_values(probe, points_, all, crack_state(record, probe.name));
   }
+  note_growth(record);
   const std::string without_release = add_crack_tip_values(
       case_, crack_tips_, assembler_, state.trial, record.stage, record.probes);
   if (!without_release.empty()) {
@@ -103,6 +102,23 @@ void Recorder::accepted(StepRecord record, const AcceptedState& state) {
   if (!write_fields) unwritten_ = std::move(made);
 }
 
+CrackState Recorder::crack_state(const StepRecord& record, const std::string& probe) const {
+  const auto before = growth_.find(probe);
+  return {separated_, body_.cut_bonds.size(),
+          record.external_work + record.numerical_work - record.stored_energy,
+          record.dissipated_energy, before == growth_.end() ? CrackGrowth{} : before->second};
+}
+
+void Recorder::note_growth(const StepRecord& record) {
+  for (const ProbeSpecification& probe : case_.probes) {
+    if (probe.field != "crack_resistance") continue;
+    CrackGrowth& last = growth_[probe.name];
+    const double grown =
+        grown_area(points_, points_.sets.at(probe.set), crack_state(record, probe.name));
+    if (grown > last.area) last = {grown, record.dissipated_energy};
+  }
+}
+
 Checkpoint Recorder::checkpoint(const PathState& path) const {
   Checkpoint made{path, {}, 0, {}, {}};
   if (!unwritten_) return made;
@@ -120,6 +136,7 @@ void Recorder::go_on(const Checkpoint& checkpoint, const EarlierResults& earlier
   for (const Row& row : earlier.decisions) decisions_.push_back(read_decision(row));
   if (!earlier.history.empty()) last_ = read_step(earlier.history.back(), support_sets, probes);
   for (const BondEnds& ends : newly_broken(path.accepted.history)) separated_.push_back(ends);
+  find_growth(earlier, support_sets, probes);
   const bool is_unwritten = !checkpoint.unwritten.force.empty();
   written_histories_.tell(is_unwritten ? std::span(checkpoint.unwritten.told_stretches)
                                        : bond_stretches(body_.model, path.accepted.history));
@@ -127,6 +144,24 @@ void Recorder::go_on(const Checkpoint& checkpoint, const EarlierResults& earlier
     State accepted = path.accepted;
     accepted.environment = body_.conditions->environment({accepted.stage, accepted.load});
     unwritten_ = fields(StateView(accepted), checkpoint.unwritten.force, path.pins.found.piece);
+  }
+}
+
+void Recorder::find_growth(const EarlierResults& earlier,
+                           const std::vector<std::string>& support_sets,
+                           const std::vector<ProbeColumns>& probes) {
+  if (!last_) return;
+  for (const ProbeSpecification& probe : case_.probes) {
+    if (probe.field != "crack_resistance") continue;
+    // A step that grew without dissipation is told as 0, too: it changes what is looked for in
+    // nothing.
+    double dissipated = 0.0;
+    for (const Row& row : earlier.history) {
+      const StepRecord record = read_step(row, support_sets, probes);
+      if (record.probes.at(probe.name).front() != 0.0) dissipated = record.dissipated_energy;
+    }
+    const CrackState crack = crack_state(*last_, probe.name);
+    growth_[probe.name] = {grown_area(points_, points_.sets.at(probe.set), crack), dissipated};
   }
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -7,6 +8,7 @@
 #include "cases/runner/build/body.hpp"
 #include "cases/runner/input/case.hpp"
 #include "cases/runner/process/progress.hpp"
+#include "cases/runner/results/crack_measures.hpp"
 #include "cases/runner/results/damage_histories.hpp"
 #include "cases/runner/results/line_probe.hpp"
 #include "cases/runner/results/probe.hpp"
@@ -74,6 +76,13 @@ class Recorder {
   [[nodiscard]] std::vector<BondEnds> newly_broken(const History& history);
   /// Adds the bonds that have broken since the last step to the results.
   void record_broken_bonds(const StepRecord& record, const History& history);
+  /// What a probe is told of the cracks.
+  [[nodiscard]] CrackState crack_state(const StepRecord& record, const std::string& probe) const;
+  /// Keeps in growth_ what an accepted step has grown.
+  void note_growth(const StepRecord& record);
+  /// Finds growth_ of the steps that there were.
+  void find_growth(const EarlierResults& earlier, const std::vector<std::string>& support_sets,
+                   const std::vector<ProbeColumns>& probes);
 
   const Case& case_;
   const Points& points_;
@@ -88,6 +97,7 @@ class Recorder {
   DamageHistories written_histories_;  // in the last state that was written with fields
   std::vector<LineProbe> lines_;
   std::vector<BondEnds> separated_;  // by pre-cracks, and broken until the last accepted state
+  std::map<std::string, CrackGrowth> growth_;  // of the probes of resistance to cracks
   double relative_residual_ = 0.0;
   std::optional<StepRecord> last_;
   std::vector<DecisionRecord> decisions_;

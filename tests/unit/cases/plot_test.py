@@ -30,6 +30,7 @@ from convergence_picture import order_words  # noqa: E402
 from curve_pictures import find_abscissa, hand_overs, on_the_way, reactions  # noqa: E402
 from field_pictures import beyond, deformed_plate, displacement_magnitude  # noqa: E402
 from separations import crosses, separate  # noqa: E402
+from resistance_picture import draw_resistances, resistances  # noqa: E402
 from results_folder import read_results_folder  # noqa: E402
 from style import round_factor  # noqa: E402
 
@@ -42,7 +43,7 @@ ITERATIONS = "step,iteration,residual,relative_residual,energy,step_length,linea
 
 BROKEN_BONDS = ["step", "load_factor", "first_point", "second_point", "second_image"]
 PICTURES = {"deformed", "lateral", "middle_plane", "cut", "fields", "damage", "broken_bonds", "sequence",
-            "load_displacement", "energies", "convergence"}  # fmt: skip
+            "load_displacement", "energies", "convergence", "resistance"}  # fmt: skip
 CRACKED = ("deformed", "fields", "damage", "broken_bonds", "sequence", "load_displacement", "energies", "convergence")
 
 
@@ -426,6 +427,41 @@ class Pictures(unittest.TestCase):
                     file["steps/000003/fragment"] = np.arange(300) % 3
                 self.plot()
                 self.assertTrue((self.folder / "plots" / "damage.png").is_file())
+
+    def with_resistance(self, place):
+        """A cracked plate that probes tell the resistance of, and one more field."""
+        write_cracked_folder(self.folder, (20, 20), steps=12)
+        probes = "".join(f'[[probe]]\nname = "{name}"\nset = "left"\nfield = "{field}"\n'
+                         for name, field in (("taken", "crack_resistance"), ("far", place)))  # fmt: skip
+        with h5py.File(self.folder / "results.h5", "a") as file:
+            del file["case/as_resolved"]
+            file["case/as_resolved"] = (f"[lattice]\nspacing = {SPACING}\n[material.damage]\nfracture_energy = 30\n" + probes)
+
+        path = self.folder / "history.csv"
+        with open(path, newline="") as file:
+            rows = list(csv.reader(file))
+        for k, row in enumerate(rows):
+            row += ["taken", "far"] if k == 0 else [30.0 * (k % 2) * (k > 3), 1e-3 * k]
+        with open(path, "w", newline="") as file:
+            csv.writer(file).writerows(rows)
+
+    def test_resistance_is_drawn_over_the_length_of_its_crack(self):
+        self.with_resistance("crack_length")
+        self.plot()
+        self.assert_pictures(*sorted({*CRACKED, "resistance"}))
+        results = read_results_folder(self.folder)
+        [(probe, place)] = resistances(results)
+        self.assertEqual((probe["name"], place["name"]), ("taken", "far"))
+        axes = draw_resistances(results, [(probe, place)]).axes[0]
+        curve, asked = axes.get_lines()
+        np.testing.assert_allclose(curve.get_xdata(), [5, 7, 9, 11], rtol=1e-12)  # mm
+        np.testing.assert_allclose(curve.get_ydata(), 30.0, rtol=1e-12)
+        np.testing.assert_allclose(asked.get_ydata(), 30.0, rtol=1e-12)
+
+    def test_resistance_without_a_length_is_named(self):
+        self.with_resistance("damage")
+        self.assertIn("no resistance of taken", self.plot())
+        self.assert_pictures(*CRACKED)
 
     def test_energies_of_a_load_that_turns_are_drawn_over_steps(self):
         write_cracked_folder(self.folder, (20, 20), steps=6)

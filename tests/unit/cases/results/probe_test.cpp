@@ -178,5 +178,30 @@ TEST(CrackMeasure, WorkOfFractureIsOfTheAreaThatHasGrown) {
               1e-9);
 }
 
+TEST(CrackMeasure, ResistanceIsOfTheAreaGrownSinceItGrewLast) {
+  const BoxBody body = plate(2, 3.015);
+  const auto separated_by = [&](double low, double high) {
+    Bonds bonds = body.model.bonds();
+    return cut_bonds(bonds, body.points, {crack(2, low, high)}).ends;
+  };
+  std::vector<BondEnds> separated = separated_by(-1.0, 1.0);
+  const std::size_t cut = separated.size();
+  const auto resistance = [&](double dissipated, const CrackGrowth& before) {
+    return measured("crack_resistance", {separated, cut, 0.0, dissipated, before}, body.points);
+  };
+  EXPECT_EQ(resistance(3.0, {}), 0.0);  // a pre-crack is none that grew
+  for (const BondEnds& broken : separated_by(1.0, 2.5)) {
+    if (std::ranges::find(separated, broken) == separated.end()) separated.push_back(broken);
+  }
+  EXPECT_NEAR(resistance(3.0, {}), 3.0 / (1.5 * 0.5), 1e-9);
+  EXPECT_NEAR(resistance(3.0, {1.0 * 0.5, 2.4}), 0.6 / (0.5 * 0.5), 1e-9);
+  const double grown = grown_area(body.points, body.points.sets.at("all"), {separated, cut});
+  EXPECT_NEAR(grown, 1.5 * 0.5, 1e-9);
+  EXPECT_EQ(resistance(3.1, {grown, 3.0}), 0.0);  // dissipates, but does not grow
+  // The order in which the bonds are known is none of its business, to the last bit.
+  std::reverse(separated.begin() + std::ptrdiff_t(cut), separated.end());
+  EXPECT_EQ(grown_area(body.points, body.points.sets.at("all"), {separated, cut}), grown);
+}
+
 }  // namespace
 }  // namespace peristat
