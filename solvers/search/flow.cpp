@@ -188,6 +188,7 @@ class Flow {
     const double round_off =
         64.0 * std::numeric_limits<double>::epsilon() *
         std::max(std::abs(current_.stored_energy), std::abs(dot(force_, current_.displacement)));
+    if (has_stalled(decay <= round_off)) return Outcome::iteration_limit;
     int rejected = 0;
     for (;;) {
       if (result_.iterations >= options_.max_iterations) return Outcome::iteration_limit;
@@ -225,6 +226,16 @@ class Flow {
       if (outcome != Outcome::converged) return outcome;
       return tells(taken, rejected) ? Outcome::interrupted : Outcome::converged;
     }
+  }
+
+  /// Whether round-off leaves nothing to gain: many steps have brought the residual no further
+  /// down.
+  [[nodiscard]] bool has_stalled(bool energy_is_round_off) {
+    if (current_.residual_norm < least_residual_ || !energy_is_round_off) {
+      least_residual_ = current_.residual_norm;
+      steps_since_ = 0;
+    }
+    return ++steps_since_ > most_steps_without_gain;
   }
 
   void attempt(double theta) {
@@ -270,7 +281,7 @@ class Flow {
     return observer_ && observer_(row);
   }
 
-  static constexpr int most_rejections = 40;
+  static constexpr int most_rejections = 40, most_steps_without_gain = 50;
 
   const EquilibriumProblem& problem_;
   LinearSolver& solver_;
@@ -284,6 +295,8 @@ class Flow {
   Trial current_, next_;
   std::vector<double> direction_, next_direction_;
   double theta_ = 1.0;
+  double least_residual_ = std::numeric_limits<double>::infinity();
+  int steps_since_ = 0;  // the least residual
   RelaxationResult result_;
 };
 

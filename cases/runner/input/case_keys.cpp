@@ -1105,6 +1105,13 @@ Table<RelaxationSpecification> relaxation_keys() {
        K("flow_tolerance", in(options, &Options::flow_tolerance), between(1e-3, 0.5),
          "method `flow`: share of a step's length by which it may leave the flow's path")
            .unless(is_dynamic, "is for method = \"flow\""),
+       K("peak_tolerance", &Spec::peak_tolerance, between(0.0, 1.0),
+         "mode `adaptive`: a relaxed step in which the force begins to fall is halved until it is "
+         "no longer than this share of the whole load; the decision that accepts it tells between "
+         "which load factors the peak lies. 0: not searched")
+           .unless([](auto&, auto& from) { return from.solver.mode != Mode::adaptive; },
+                   "is for mode \"adaptive\"")
+           .extends(),
        K("load", &Spec::moving, choice<bool>({{"fixed", false}, {"moving", true}}),
          "rests after the ramp until the body is in equilibrium, or never rests")
            .unless(flows, for_dynamic)

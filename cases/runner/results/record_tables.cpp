@@ -57,7 +57,7 @@ const std::vector<Column>& step_columns() {
       {number, "load_factor", "1", "load factor of the step"},
       {text, "mode", "none", "how equilibrium was found: newton, relaxation or arc_length"},
       {integer, "newton_iterations", "1", "Newton iterations of the step"},
-      {integer, "relaxation_iterations", "1", "iterations of dynamic relaxation of the step"},
+      {integer, "relaxation_iterations", "1", "iterations of relaxation of the step; of a flow, its solves"},
       {number, "stored_energy", "J", "energy stored in the interactions"},
       {number, "dissipated_energy", "J", "energy dissipated by damage since the start"},
       {number, "drained_energy", "J",
