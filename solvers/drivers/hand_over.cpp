@@ -170,9 +170,9 @@ Advance HandOver::relaxed_step() {
 
 bool HandOver::cuts_to_peak(const RelaxedStepping::Found& found, bool falls) {
   PathState::HandOver& state = path_.state().hand_over;
-  const double half = 0.5 * found.attempted;
-  const bool is_found = found.attempted <= path_.options().peak_tolerance;
-  if (!falls || state.force_falls || is_found || !relaxed_.increment().can_cut_to(half)) {
+  const double next = std::max(0.5 * found.attempted, path_.options().peak_tolerance);
+  const bool is_shorter = next < found.attempted - LoadingProgramme::tolerance;
+  if (!falls || state.force_falls || !is_shorter || !relaxed_.increment().can_cut_to(next)) {
     return false;
   }
   const Attempt& attempt = found.step.attempt;
@@ -180,7 +180,7 @@ bool HandOver::cuts_to_peak(const RelaxedStepping::Found& found, bool falls) {
   path_.tell(attempt.at, {.increment = found.attempted,
                           .outcome = name(attempt.outcome),
                           .action = Decision::cut,
-                          .next_increment = std::max(half, path_.options().peak_tolerance),
+                          .next_increment = next,
                           .reason = "the force falls within this step: its peak is searched"});
   return true;
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <utility>
 
@@ -28,6 +29,19 @@ constexpr double sufficient_decrease = 1e-4;
 /// A predictor of the load is too long if the direction after it is more than this share of it.
 constexpr double largest_correction = 0.5;
 constexpr double smallest_share = 1.0 / 64.0;
+
+/// Relative size of the imperfection of every direction. Where a symmetric state is unstable
+/// against an unsymmetric motion something has to decide which way; round-off would not do so twice
+/// in the same way. This is far above what it can be and far below the path's tolerance.
+constexpr double imperfection = 1e-6;
+
+/// A number from -1 to 1 for every degree of freedom, the same in every run.
+double imperfection_of(Index dof) {
+  auto bits = std::uint64_t(dof) * 0x9e3779b97f4a7c15u;
+  bits = (bits ^ (bits >> 30)) * 0xbf58476d1ce4e5b9u;
+  bits = (bits ^ (bits >> 27)) * 0x94d049bb133111ebu;
+  return 2.0 * double(bits >> 11) * 0x1p-53 - 1.0;
+}
 
 /// Of theta, for the part of the step that the exponential rule neglects.
 double neglected_share(double theta) {
@@ -113,7 +127,12 @@ class Flow {
 
   [[nodiscard]] Outcome find_direction(const Trial& at, std::vector<double>& direction) {
     ++result_.iterations;
-    return outcome_of(linearisation_.solve_again(residual_of(at), {}, linear_tolerance, direction));
+    const LinearOutcome linear =
+        linearisation_.solve_again(residual_of(at), {}, linear_tolerance, direction);
+    for (const Index dof : problem_.free.dof) {
+      direction[dof] *= 1.0 + imperfection * imperfection_of(dof);
+    }
+    return outcome_of(linear);
   }
 
   /// Zero on degrees of freedom that are not free.

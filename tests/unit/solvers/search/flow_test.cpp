@@ -114,7 +114,9 @@ TEST(Flow, EndsInTheWellInWhichItBegins) {
   tests::BoxSetting box = tests::small_box(1);
   box.extent = {3, 0, 0};
   box.horizon_ratio = 1.015;
-  box.potential = weak;
+  box.potential = [](double micromodulus) -> BondPotential {
+    return Degraded<TanhDegradation>{micromodulus, TanhDegradation::continuous(0.04, 0.06, 3.0)};
+  };
   const double apart = 0.07 * box.spacing;
   Problem problem(box, {support("left", "0"), support("right", std::to_string(apart) + "*load")},
                   {});
