@@ -8,6 +8,7 @@
 #include "assembly/terms/damage.hpp"
 #include "solvers/drivers/implicit_stepping.hpp"
 #include "solvers/linear/vector_verbs.hpp"
+#include "src/core/input_error.hpp"
 #include "src/core/number_text.hpp"
 
 namespace peristat {
@@ -42,7 +43,12 @@ double segment_begin(double stage) { return LoadingProgramme::next_entry(stage) 
 
 }  // namespace
 
-EventStepping::EventStepping(Path& path) : Driver(path) {}
+EventStepping::EventStepping(Path& path) : Driver(path) {
+  if (!fails_by_steps(path.damaged().model())) {
+    throw InputError("mode", "path",
+                     "needs bonds that break, by laws that fall in steps: give the body teeth");
+  }
+}
 
 Advance EventStepping::next() {
   if (!path_.has_load_left()) return Advance::ended;
@@ -89,6 +95,11 @@ UpdatedTangent& EventStepping::tangent() {
   const SolvedBody& body = path_.body();
   if (!tangent_) {
     tangent_ = std::make_unique<UpdatedTangent>(path_.problem(), body.solver, body.tangent);
+    TangentReference known = path_.state().events.tangent;
+    if (!known.at.displacement.empty()) {
+      known.at.environment = path_.setting().conditions.environment(load_point(known.at));
+      tangent_->become(known);
+    }
   }
   return *tangent_;
 }
@@ -131,6 +142,7 @@ bool EventStepping::pin(Settled& settled) {
                                                          : Decision::hold_fragments,
               .reason = state.pins.described()});
   tangent_.reset();  // there are other equations
+  path_.state().events.tangent = {};
   if (path_.pin() == Advance::goes_on) return true;
   settled.outcome = Outcome::out_of_memory;
   return false;
@@ -350,6 +362,7 @@ Advance EventStepping::accept(Step step) {
   events.longest *= path_.options().growth;
   if (events.longest > 1.0) events.longest = 0.0;
   tell_response(step, record);
+  events.tangent = tangent().reference();
   const double most = utilisation(reached, borne_);
   events.at_strength = most >= 1.0 - tie;
   std::string how =
@@ -378,8 +391,9 @@ Advance EventStepping::fail(Step step, PathState before) {
   Attempt& attempt = step.attempt;
   const std::string reason = reason_of(attempt, step.fault);
   path_.state() = std::move(before);
+  path_.state().events.tangent = {};
   borne_.clear();
-  tangent().forget();
+  tangent_.reset();
   PathState::Events& events = path_.state().events;
   const double longest = path_.options().cut * std::abs(step.attempted);
   const bool may_cut = path_.options().adaptive && longest >= path_.options().smallest_step &&

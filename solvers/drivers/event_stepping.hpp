@@ -35,6 +35,7 @@ namespace peristat {
 /// elastic body takes up; the trapezoidal rule's error is told as numerical work.
 class EventStepping : public Driver {
  public:
+  /// @throws InputError ("mode") for a body without damage, or whose laws fall smoothly
   explicit EventStepping(Path& path);
 
   /// Utilisations nearer than this are the same: a hundred times what equilibrium to 1e-10 leaves

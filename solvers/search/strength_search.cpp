@@ -71,7 +71,8 @@ class StrengthSearch {
     row.iteration = iteration;
     row.step_length = 1.0;
     if (!tangent_.is_there() || is_slow(iteration)) {
-      const LinearOutcome linear = tangent_.refresh(current_.at(Damage::held));
+      const LinearOutcome linear = tangent_.refresh(
+          {current_.displacement, result_.stage, current_.history, {}, current_.environment});
       if (linear != LinearOutcome::solved) return outcome_of(linear);
     }
     const double earlier = std::exchange(last_residual_, current_.residual_norm);

@@ -73,17 +73,27 @@ UpdatedTangent::UpdatedTangent(const EquilibriumProblem& problem, LinearSolver& 
     : problem_(problem), solver_(solver), tangent_(tangent) {}
 UpdatedTangent::~UpdatedTangent() = default;
 
-LinearOutcome UpdatedTangent::refresh(const StateView& at) {
+void UpdatedTangent::forget() {
   is_there_ = false;
+  reference_ = {};
+}
+
+void UpdatedTangent::become(const TangentReference& reference) {
+  const TangentReference kept = reference;
+  if (kept.at.displacement.empty() || refresh(kept.at) != LinearOutcome::solved) return forget();
+  is_direct_ = solver_.inertia().has_value() || indefinite_in_force_;
+  lose(kept.lost);
+}
+
+LinearOutcome UpdatedTangent::refresh(State at) {
+  forget();
   correction_ = std::make_unique<Correction>();
   ++refreshed_;
-  tangent_.linearise(problem_.assembler, at, 0.0);
+  tangent_.linearise(problem_.assembler, StateView(at, Damage::held), 0.0);
+  reference_.at = std::move(at);
   solver_.count_pivots(false);
-  // A preconditioner of an earlier tangent will do; a factor is made anew.
-  const FactorUse use =
-      is_direct_ || refreshed_ == 1 ? FactorUse::factorize_now : FactorUse::may_reuse;
   indefinite_in_force_ = false;
-  LinearOutcome outcome = solver_.factorize(tangent_, use);
+  LinearOutcome outcome = solver_.factorize(tangent_, FactorUse::factorize_now);
   if (outcome == LinearOutcome::not_positive_definite) outcome = take_indefinite();
   is_there_ = outcome == LinearOutcome::solved;
   return outcome;
@@ -196,6 +206,7 @@ LinearOutcome UpdatedTangent::add_column(const LostStiffness& lost) {
 void UpdatedTangent::lose(std::span<const LostStiffness> lost) {
   for (const LostStiffness& bond : lost) {
     if (!is_worth_updating() || add_column(bond) != LinearOutcome::solved) return forget();
+    reference_.lost.push_back(bond);
   }
   if (!correction_->columns.empty() && !correction_->factorize()) forget();
 }

@@ -11,6 +11,12 @@
 
 namespace peristat {
 
+/// What an UpdatedTangent is made from: a value.
+struct TangentReference {
+  State at;  ///< where it was linearised; without displacements: nowhere yet
+  std::vector<LostStiffness> lost{};  ///< since
+};
+
 /// Solves with the tangent of a body whose bonds drop one after the other. A tangent K_0 is
 /// linearised and factorised now and then; between, the stiffness that bonds have lost since,
 ///
@@ -27,9 +33,12 @@ class UpdatedTangent {
   ~UpdatedTangent();
 
   /// Linearises and factorises at a state.
-  [[nodiscard]] LinearOutcome refresh(const StateView& at);
+  [[nodiscard]] LinearOutcome refresh(State at);
+  /// Becomes what another has been, to the last bit; forgets where that fails.
+  void become(const TangentReference& reference);
+  [[nodiscard]] const TangentReference& reference() const { return reference_; }
   /// The next solve has to be after a refresh.
-  void forget() { is_there_ = false; }
+  void forget();
   [[nodiscard]] bool is_there() const { return is_there_; }
   /// Of the last refresh.
   [[nodiscard]] bool has_negative_pivots() const { return indefinite_in_force_; }
@@ -75,6 +84,7 @@ class UpdatedTangent {
   TangentOperator& tangent_;
   std::unique_ptr<Correction> correction_;
   std::unique_ptr<LinearSolver> indefinite_;
+  TangentReference reference_;
   bool is_there_ = false, is_direct_ = false, indefinite_in_force_ = false;
   int refreshed_ = 0;
 };
