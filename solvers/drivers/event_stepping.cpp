@@ -58,8 +58,10 @@ Advance EventStepping::next() {
     borne_ = borne_stretches(path_.damaged().model(), path_.state().accepted.history);
   }
   if (events.at_strength) {
+    tells_ = false;  // it was told before the state was accepted
     Settled settled =
         ahead_ ? std::move(*ahead_) : settle(path_.state().accepted, path_.state().ledger);
+    tells_ = true;
     ahead_.reset();
     if (!settled.has_converged()) {
       Step failed;
@@ -136,11 +138,13 @@ bool EventStepping::pin(Settled& settled) {
     settled.fault = state.pins.described();
     return false;
   }
-  path_.tell(load_point(settled.state),
-             {.outcome = name(Outcome::converged),
-              .action = remedy == FragmentRemedy::remove ? Decision::remove_fragments
-                                                         : Decision::hold_fragments,
-              .reason = state.pins.described()});
+  const Decision action =
+      remedy == FragmentRemedy::remove ? Decision::remove_fragments : Decision::hold_fragments;
+  if (tells_) {
+    path_.tell(
+        load_point(settled.state),
+        {.outcome = name(Outcome::converged), .action = action, .reason = state.pins.described()});
+  }
   tangent_.reset();  // there are other equations
   path_.state().events.tangent = {};
   if (path_.pin() == Advance::goes_on) return true;
@@ -156,7 +160,7 @@ Attempt EventStepping::settle_at(const State& at, std::span<const double> borne)
   NewtonOptions options = held();
   options.relative_tolerance = std::max(options.relative_tolerance, settled_tolerance);
   options.max_iterations = most_settling_iterations;
-  const auto told = [this](const IterationRecord& row) { return path_.iterated(row); };
+  const auto told = [this](const IterationRecord& row) { return tells_ && path_.iterated(row); };
   StrengthResult found = search_strength(path_.problem(), tangent(), at, step, options, told);
   if (found.newton.outcome == Outcome::converged || found.newton.outcome == Outcome::interrupted) {
     return to_attempt(std::move(found.newton), at.stage);
@@ -165,7 +169,9 @@ Attempt EventStepping::settle_at(const State& at, std::span<const double> borne)
   tangent().forget();
   options = held();
   options.max_iterations = std::max(options.max_iterations, most_iterations_of_a_fall);
-  return path_.search(at, at.stage, options);
+  const SolvedBody& body = path_.body();
+  return to_attempt(newton(path_.problem(), body.solver, body.tangent, at, at.stage, options, told),
+                    at.stage);
 }
 
 EventStepping::Settled EventStepping::settle(const State& at, const PathLedger& ledger) {

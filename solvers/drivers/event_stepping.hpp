@@ -108,6 +108,7 @@ class EventStepping : public Driver {
   std::optional<Settled> ahead_;  // of the accepted state
   std::vector<double> borne_;     // after the history of the accepted state; empty: not known
   std::unique_ptr<UpdatedTangent> tangent_;
+  bool tells_ = true;
 };
 
 }  // namespace peristat

@@ -43,6 +43,7 @@ class StrengthSearch {
     current_.displacement = from.displacement;
     current_.history = from.history;
     result_.stage = from.stage;
+    result_.end = StrengthEnd::at_stop;
   }
 
   [[nodiscard]] StrengthResult run() {

@@ -43,9 +43,11 @@ class ToothMaker {
     const auto too_narrow = [&](double band) { return int(in_band(band).strength.size()) > most; };
     double wide = 1.0;
     while (too_narrow(wide)) wide *= 2.0;
-    const double narrowest = last_of(0.0, wide, too_narrow);
-    // One step of the bisection wider: there the teeth suffice.
-    Teeth teeth = in_band(narrowest + wide * std::ldexp(1.0, 1 - halvings));
+    // The bisection ends just below the band at which the teeth suffice.
+    constexpr double just_above = 1.0 + 1e-9;
+    double band = last_of(0.0, wide, too_narrow) * just_above;
+    while (too_narrow(band)) band *= just_above;
+    Teeth teeth = in_band(band);
     for (double& strength : teeth.strength) strength /= law_.critical();
     return teeth;
   }

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "assembly/assembler.hpp"
+#include "assembly/terms/damage.hpp"
 #include "src/potentials/make_saw_tooth.hpp"
 #include "tests/bodies.hpp"
 
@@ -145,7 +146,7 @@ TEST(BorneStretches, TheMostUtilisedComeFirst) {
   ASSERT_GT(first.size(), 10u);
   for (std::size_t k = 0; k < first.size(); ++k) {
     EXPECT_EQ(first[k].bond, again[k].bond);
-    if (k > 0) EXPECT_GE(first[k - 1].utilisation, first[k].utilisation);
+    EXPECT_GE(first[k > 0 ? k - 1 : 0].utilisation, first[k].utilisation);
     EXPECT_NEAR(first[k].utilisation * one.borne[std::size_t(first[k].bond)], first[k].stretch,
                 1e-15);
   }

@@ -58,7 +58,7 @@ TEST(SawTooth, EveryDropDissipatesWhatTheLawDoes) {
 
 TEST(SawTooth, StaysWithinTheBandThatItTells) {
   for (const auto& [name, law] : laws) {
-    double last = 1.0;
+    double last = 1e9;
     for (const int most : {5, 10, 20, 40}) {
       SCOPED_TRACE(std::string(name) + ", " + std::to_string(most));
       const AnyBondLaw toothed = saw_tooth(law, most);
@@ -69,9 +69,9 @@ TEST(SawTooth, StaysWithinTheBandThatItTells) {
         above = std::max(above, (teeth.integrity[k] * s - force(law, s)) / largest_force(law));
         strongest = std::max(strongest, teeth.integrity[k] * s / largest_force(law) - 1.0);
       }
-      EXPECT_LE(above, teeth.band * 1.001 + 1e-6);
+      EXPECT_NEAR(above, teeth.band, 1e-5);
       EXPECT_NEAR(strongest, teeth.excess_strength, 1e-5);
-      EXPECT_LE(teeth.excess_strength, teeth.band * 1.001 + 1e-6);
+      EXPECT_LT(teeth.excess_strength, 0.5 * teeth.band);  // the first teeth are the finest
       EXPECT_LT(teeth.band, 0.75 * last);  // more teeth, narrower
       last = teeth.band;
     }
