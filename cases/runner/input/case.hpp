@@ -42,7 +42,7 @@ struct LoadingSpecification {
   double largest_step = 0.0;      ///< of the stage; 0: the first step (the reader writes it out)
   int max_broken_bonds = 0;       ///< in one implicit step; 0: no limit
   EventOptions events{};          ///< of mode path
-  int teeth = 20;                 ///< of mode path, see BodySpecification
+  int teeth = 10;                 ///< of mode path, see BodySpecification
 
   /// Equal steps from one entry to the next: an expression has an entry for each step.
   [[nodiscard]] int steps_to_entry() const;
