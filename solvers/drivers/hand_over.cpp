@@ -1,7 +1,11 @@
 #include "solvers/drivers/hand_over.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <map>
 #include <utility>
+
+#include "src/core/number_text.hpp"
 
 namespace peristat {
 namespace {
@@ -9,6 +13,46 @@ namespace {
 /// Where an implicit step that would damage a bond is cut to: this share of the interpolated way
 /// to the onset of damage.
 constexpr double share_to_onset = 0.98;
+
+/// A force that falls by less, as a share of it, counts as constant.
+constexpr double smallest_fall = 1e-9;
+
+/// By how much the force falls from the last accepted state to a found one, as a share of it: what
+/// does work on the increment of the displacements.
+double fall_of_force(const Path& path, const Attempt& attempt) {
+  const std::vector<double>& before = path.state().ledger.force;
+  const std::vector<double> after = path.working_force(attempt.state, attempt.external_force);
+  const std::vector<double>& from = path.state().accepted.displacement;
+  double work_before = 0.0, work_after = 0.0;
+  for (std::size_t dof = 0; dof < from.size(); ++dof) {
+    const double moved = attempt.state.displacement[dof] - from[dof];
+    work_before += before[dof] * moved;
+    work_after += after[dof] * moved;
+  }
+  return work_before > 0.0 ? 1.0 - work_after / work_before : 0.0;
+}
+
+/// What is told of a step in which the force begins to fall.
+std::string peak_text(const Path& path, const LoadPoint& at, double fall) {
+  const Conditions& conditions = path.setting().conditions;
+  return "; the peak of the force lies between the load factors " +
+         number_text(conditions.load_factor(load_point(path.state().accepted))) + " and " +
+         number_text(conditions.load_factor(at)) + ", between which it falls by " +
+         number_text(100.0 * fall) + " %";
+}
+
+/// Largest difference of a set's reactions, as a share of the largest reaction.
+double largest_jump(const std::map<std::string, Coordinates>& before,
+                    const std::map<std::string, Coordinates>& after) {
+  double jump = 0.0, largest = 0.0;
+  for (const auto& [set, reaction] : before) {
+    for (std::size_t c = 0; c < reaction.size(); ++c) {
+      jump = std::max(jump, std::abs(after.at(set)[c] - reaction[c]));
+      largest = std::max(largest, std::abs(reaction[c]));
+    }
+  }
+  return largest > 0.0 ? jump / largest : 0.0;
+}
 
 }  // namespace
 
@@ -54,8 +98,12 @@ Advance HandOver::approach_damage(const ImplicitStep& step) {
 Advance HandOver::hand_over(const ImplicitStep& step, std::string reason) {
   PathState& state = path_.state();
   if (state.stands_in) {
-    if (take_up_body() == Advance::ended) return Advance::ended;
-    reason += "; the body with the horizon of damage takes the place of its stand-in";
+    double jump = 0.0;
+    if (take_up_body(jump) == Advance::ended) return Advance::ended;
+    reason +=
+        "; the body with the horizon of damage takes the place of its stand-in: at the same "
+        "load reactions change by " +
+        number_text(100.0 * jump) + " %";
   }
   state.hand_over = {.relaxes = true, .is_near_onset = false};
   state.relaxed.motion = {};
@@ -67,8 +115,18 @@ Advance HandOver::hand_over(const ImplicitStep& step, std::string reason) {
   return Advance::goes_on;
 }
 
-Advance HandOver::take_up_body() {
+Advance HandOver::take_up_body(double& jump) {
   PathState& state = path_.state();
+  const Conditions& conditions = path_.setting().conditions;
+  std::vector<double> force(state.accepted.displacement.size());
+  conditions.external_force(load_point(state.accepted), force);
+  Trial stand_in;
+  stand_in.displacement = state.accepted.displacement;
+  stand_in.history = state.accepted.history;
+  stand_in.environment = state.accepted.environment;
+  evaluate(path_.problem(), force, stand_in, Damage::held);
+  const auto before =
+      conditions.reactions(stand_in.gradient, force, stand_in.displacement, stand_in.environment);
   state.stands_in = false;
   if (!state.pins.pinned.empty() && path_.analyze() == Advance::ended) {
     return Advance::ended;
@@ -79,19 +137,52 @@ Advance HandOver::take_up_body() {
     const std::string reason = explanation(attempt.outcome);
     return path_.stop(std::move(attempt), 0.0, reason);
   }
+  jump = largest_jump(before,
+                      conditions.reactions(attempt.state.gradient, attempt.external_force,
+                                           attempt.state.displacement, attempt.state.environment));
   state.accepted.displacement = attempt.state.displacement;
   state.ledger.begin(attempt.state, path_.working_force(attempt.state, attempt.external_force));
   return Advance::goes_on;
 }
 
 Advance HandOver::relaxed_step() {
+  PathState::HandOver& state = path_.state().hand_over;
+  if (state.peak_before > 0.0) {
+    const double half = 0.5 * (state.peak_before - path_.state().accepted.stage);
+    relaxed_.increment().cut_to(std::max(half, path_.options().peak_tolerance));
+  }
   RelaxedStepping::Found found = relaxed_.search();
-  if (!found.step.attempt.has_converged()) return relaxed_.fail(std::move(found));
+  const Attempt& attempt = found.step.attempt;
+  if (!attempt.has_converged()) return relaxed_.fail(std::move(found));
   const bool was_damaged = found.step.found.growth.degrading > 0;
-  if (relaxed_.accept(std::move(found)) == Advance::ended) return Advance::ended;
+  const double fall = path_.options().peak_tolerance > 0.0 ? fall_of_force(path_, attempt) : 0.0;
+  const bool falls = was_damaged && fall > smallest_fall;
+  if (cuts_to_peak(found, falls)) return Advance::goes_on;
+  std::string peak;
+  if (falls && !state.force_falls) peak = peak_text(path_, attempt.at, fall);
+  state.force_falls = falls;
+  if (falls || attempt.at.stage >= state.peak_before) state.peak_before = 0.0;
+  if (relaxed_.accept(std::move(found), peak) == Advance::ended) return Advance::ended;
   const bool hands_back = path_.options().relaxation.holds && !was_damaged;
   if (hands_back && path_.has_load_left()) hand_back();
   return Advance::goes_on;
+}
+
+bool HandOver::cuts_to_peak(const RelaxedStepping::Found& found, bool falls) {
+  PathState::HandOver& state = path_.state().hand_over;
+  const double next = std::max(0.5 * found.attempted, path_.options().peak_tolerance);
+  const bool is_shorter = next < found.attempted - LoadingProgramme::tolerance;
+  if (!falls || state.force_falls || !is_shorter || !relaxed_.increment().can_cut_to(next)) {
+    return false;
+  }
+  const Attempt& attempt = found.step.attempt;
+  state.peak_before = attempt.at.stage;
+  path_.tell(attempt.at, {.increment = found.attempted,
+                          .outcome = name(attempt.outcome),
+                          .action = Decision::cut,
+                          .next_increment = next,
+                          .reason = "the force falls within this step: its peak is searched"});
+  return true;
 }
 
 void HandOver::hand_back() {

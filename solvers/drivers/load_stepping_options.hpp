@@ -30,6 +30,9 @@ struct LoadSteppingOptions {
   /// Relative residual of a relaxed step at which Newton's method takes its last iterations over,
   /// in adaptive mode.
   double newton_takes_over_at = 1e-5;
+  /// Of the stage, in adaptive mode: a relaxed step in which the force begins to fall is halved
+  /// until it is no longer than this. 0: never.
+  double peak_tolerance = 0.0;
   ArcLengthOptions arc_length{};
   FragmentRemedy fragments = FragmentRemedy::hold;
 };

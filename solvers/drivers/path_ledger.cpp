@@ -11,27 +11,7 @@ namespace {
 /// Share of the body's energy whose release in an implicit step is a jump over a limit point.
 constexpr double share_of_jump = 5e-3;
 
-double trapezoidal_work(std::span<const double> force0, std::span<const double> force1,
-                        std::span<const double> u0, std::span<const double> u1) {
-  double work = 0.0;
-  for (std::size_t k = 0; k < u0.size(); ++k)
-    work += 0.5 * (force0[k] + force1[k]) * (u1[k] - u0[k]);
-  return work;
-}
-
 }  // namespace
-
-std::vector<double> working_force(const Conditions& conditions, const Trial& state,
-                                  std::span<const double> external_force) {
-  const std::vector<char>&prescribed = conditions.prescribed(),
-        &dependent = conditions.constraints().dependent();
-  std::vector<double> force(external_force.begin(), external_force.end());
-  for (std::size_t dof = 0; dof < force.size(); ++dof) {
-    if (prescribed[dof] && !dependent[dof]) force[dof] = state.gradient[dof];
-    if (!state.follower_force.empty()) force[dof] += state.follower_force[dof];
-  }
-  return force;
-}
 
 void PathLedger::begin(const Trial& state, std::vector<double> working) {
   force = std::move(working);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "solvers/problem/consistency.hpp"
+#include "solvers/problem/working_force.hpp"
 
 namespace peristat {
 
@@ -22,12 +23,6 @@ struct StepEnergies {
   /// what is stored and dissipated counts as drained.
   bool is_avalanche = false;
 };
-
-/// Forces that do work on the body: loads, and on prescribed degrees of freedom what holds them,
-/// which is dE/dx there. Pins of fragments do none: they don't move, and when they are taken away
-/// nothing follows them. Constraints do none either: what follows others bears its loads alone.
-[[nodiscard]] std::vector<double> working_force(const Conditions& conditions, const Trial& state,
-                                                std::span<const double> external_force);
 
 /// Energies of the accepted steps of a load path. A value.
 ///

@@ -49,6 +49,8 @@ struct PathState {
   struct HandOver {
     bool relaxes = false;        ///< on the side of relaxation
     bool is_near_onset = false;  ///< an implicit step was cut to end just before damage begins
+    bool force_falls = false;    ///< has fallen in the last relaxed step
+    double peak_before = 0.0;    ///< stage by which the force has fallen; 0: no peak is searched
   } hand_over;
 };
 

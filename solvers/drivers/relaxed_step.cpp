@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "solvers/linear/vector_verbs.hpp"
+#include "solvers/search/flow.hpp"
 #include "src/core/stopwatch.hpp"
 
 namespace peristat {
@@ -57,9 +58,13 @@ void relax_towards(Path& path, RelaxedStep& step, double target, RelaxationOptio
   if (from.stage == target && options.holds) options.ramp = 1;
   options.scale = step.scale;
   const Stopwatch watch(path.state().relaxation_seconds);
+  const auto tell = [&](const IterationRecord& row) { return path.iterated(row); };
+  const SolvedBody& body = path.body();
   RelaxationResult relaxed =
-      relax(path.problem(), path.body().tangent, from, target, options, path.state().relaxed.motion,
-            [&](const IterationRecord& row) { return path.iterated(row); });
+      options.method == RelaxationMethod::flow
+          ? flow(path.problem(), body.solver, body.tangent, from, target, options, tell)
+          : relax(path.problem(), body.tangent, from, target, options, path.state().relaxed.motion,
+                  tell);
   step.found.record.relaxation_iterations += relaxed.iterations;
   step.found.record.settled = relaxed.largest_residual < 0.0;
   step.found.energies.relaxed->work += relaxed.external_work;

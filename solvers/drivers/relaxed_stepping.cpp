@@ -3,10 +3,19 @@
 #include <utility>
 
 namespace peristat {
+namespace {
+
+/// The flow has a solver at hand; a motion that never rests has nothing to finish.
+RelaxedStepping::Finish finish_of(const RelaxationOptions& options, RelaxedStepping::Finish asked) {
+  if (!options.holds) return RelaxedStepping::Finish::relaxation;
+  return options.method == RelaxationMethod::flow ? RelaxedStepping::Finish::newton : asked;
+}
+
+}  // namespace
 
 RelaxedStepping::RelaxedStepping(Path& path, Finish finish)
     : Driver(path),
-      finish_(path.options().relaxation.holds ? finish : Finish::relaxation),
+      finish_(finish_of(path.options().relaxation, finish)),
       increment_(path.options().relaxation_steps, 0.0,
                  {path.options().adaptive, path.options().smallest_step, path.options().growth},
                  path.state().relaxed.increment) {}
@@ -44,7 +53,7 @@ RelaxedStepping::Found RelaxedStepping::search() {
   return found;
 }
 
-Advance RelaxedStepping::accept(Found found) {
+Advance RelaxedStepping::accept(Found found, const std::string& what) {
   const bool grew = increment_.grow();
   const Attempt& attempt = found.step.attempt;
   path_.tell(attempt.at, {.increment = found.attempted,
@@ -52,7 +61,7 @@ Advance RelaxedStepping::accept(Found found) {
                           .action = grew ? Decision::accept_and_grow : Decision::accept,
                           .next_increment = increment_.value(),
                           .reason = std::to_string(found.step.found.record.relaxation_iterations) +
-                                    " iterations of relaxation"});
+                                    " iterations of relaxation" + what});
   return peristat::accept(path_, std::move(found.step.attempt), std::move(found.step.found),
                           increment_.value());
 }

@@ -23,11 +23,12 @@ class RelaxedStepping : public Driver {
   };
   /// Relaxes the next step, commits its damage, and checks it.
   [[nodiscard]] Found search();
-  [[nodiscard]] Advance accept(Found found);
+  /// @param what else is told of it; may be empty
+  [[nodiscard]] Advance accept(Found found, const std::string& what = {});
   /// Cuts, or stops.
   [[nodiscard]] Advance fail(Found found);
 
-  [[nodiscard]] const Increment& increment() const { return increment_; }
+  [[nodiscard]] Increment& increment() { return increment_; }
 
  protected:
   [[nodiscard]] Advance next() override;

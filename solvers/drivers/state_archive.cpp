@@ -83,9 +83,11 @@ void transfer(StateArchive& archive, PathState& state) {
   archive.transfer("arc/displacement_scale", displacement_scale);
   archive.transfer("arc/negative_pivots", negative_pivots);
   archive.transfer("arc/passes_critical_point", passes_critical_point);
-  auto& [relaxes, is_near_onset] = hand_over;
+  auto& [relaxes, is_near_onset, force_falls, peak_before] = hand_over;
   archive.transfer("hand_over/relaxes", relaxes);
   archive.transfer("hand_over/is_near_onset", is_near_onset);
+  archive.transfer("hand_over/force_falls", force_falls);
+  archive.transfer("hand_over/peak_before", peak_before);
 }
 
 }  // namespace peristat

@@ -89,15 +89,17 @@ ChosenSolver choose(const LinearProblem& problem, SolverLadder::Reporter tell) {
   const bool fits = problem.is_stored && problem.factor_bytes <= problem.available_bytes;
   const bool is_small = problem.factor_flops <= small_factorisation;
   const bool for_stability = problem.may_soften && problem.factor_flops <= affordable_factorisation;
+  const bool for_many = problem.solves_often && problem.factor_flops <= affordable_factorisation;
   std::vector<SolverLadder::Rung> rungs;
   std::string reason;
-  const bool is_direct = fits && (is_small || for_stability || direct <= iterative);
+  const bool is_direct = fits && (is_small || for_stability || for_many || direct <= iterative);
   if (is_direct) {
     rungs = {cholesky, pieces, surrogate, patient};
     reason =
         is_small ? fmt::format("a factorisation of {:.2g} flops is small", problem.factor_flops)
-        : for_stability
-            ? std::string("its pivots tell whether the softening body is stable")
+        : for_stability ? std::string("its pivots tell whether the softening body is stable")
+        : for_many
+            ? std::string("each factor serves many directions of the flow")
             : fmt::format("a factorisation is estimated at {:.2g} s, iterations at {:.2g} s a step",
                           direct, iterative);
   } else {

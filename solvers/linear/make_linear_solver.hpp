@@ -45,8 +45,9 @@ struct LinearProblem {
   double factor_flops = 0.0;  ///< of one factorisation, as estimated from dimension, size and shape
   double factor_bytes = 0.0;  ///< of the direct solver
   double available_bytes = std::numeric_limits<double>::infinity();
-  bool is_stored = true;    ///< the tangent: direct solvers and Trilinos' preconditioners need it
-  bool may_soften = false;  ///< damage grows in implicit steps: stability is in question
+  bool is_stored = true;      ///< the tangent: direct solvers and Trilinos' preconditioners need it
+  bool may_soften = false;    ///< damage grows in implicit steps: stability is in question
+  bool solves_often = false;  ///< many systems have the same tangent
 };
 
 /// A solver with the reason for its choice, in words.

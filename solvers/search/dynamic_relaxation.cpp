@@ -5,8 +5,8 @@
 #include <cmath>
 #include <utility>
 
-#include "assembly/terms/damage.hpp"
 #include "solvers/linear/vector_verbs.hpp"
+#include "solvers/search/way_of_load.hpp"
 #include "src/core/threads.hpp"
 
 namespace peristat {
@@ -22,64 +22,14 @@ constexpr int iterations_per_record = 100;
 /// Iterations between two looks at which bonds a state would break.
 constexpr int iterations_per_look = 10;
 
-/// Supports and loads on the straight way from one load factor to another.
-class Way {
- public:
-  Way(const EquilibriumProblem& problem, const State& from, double stage)
-      : displacement0_(from.displacement),
-        displacement1_(from.displacement),
-        force0_(from.displacement.size()),
-        force1_(from.displacement.size()) {
-    problem.conditions.prescribe(stage, displacement1_);
-    problem.conditions.external_force(from.stage, force0_);
-    problem.conditions.external_force(stage, force1_);
-    const std::vector<char>& dependent = problem.conditions.constraints().dependent();
-    environment0_ = from.environment;
-    environment1_ = problem.conditions.environment(stage);
-    for (std::size_t dof = 0; dof < displacement0_.size(); ++dof) {
-      const bool is_free = problem.free.equation[dof] != FreeDofs::none;
-      if (!is_free && !dependent[dof]) prescribed_.push_back(Index(dof));
-      const bool is_loaded = force0_[dof] != 0.0 || force1_[dof] != 0.0;
-      has_loads_ |= is_loaded;
-      if (is_loaded && dependent[dof]) loaded_followers_.push_back(Index(dof));
-    }
-  }
-
-  [[nodiscard]] const std::vector<Index>& prescribed() const { return prescribed_; }
-  /// Degrees of freedom that are loaded, and follow others.
-  [[nodiscard]] const std::vector<Index>& loaded_followers() const { return loaded_followers_; }
-  [[nodiscard]] bool has_loads() const { return has_loads_; }
-  [[nodiscard]] const std::vector<double>& end_displacement() const { return displacement1_; }
-  [[nodiscard]] const std::vector<double>& end_force() const { return force1_; }
-
-  [[nodiscard]] const SharedEnvironment& end_environment() const { return environment1_; }
-
-  [[nodiscard]] SharedEnvironment environment(double share) const {
-    return between(environment0_, environment1_, share);
-  }
-  [[nodiscard]] double displacement(Index dof, double share) const {
-    return displacement0_[dof] + share * (displacement1_[dof] - displacement0_[dof]);
-  }
-  void load(double share, std::vector<double>& force) const {
-    for (std::size_t dof = 0; dof < force.size(); ++dof) {
-      force[dof] = force0_[dof] + share * (force1_[dof] - force0_[dof]);
-    }
-  }
-
- private:
-  std::vector<double> displacement0_, displacement1_, force0_, force1_;
-  SharedEnvironment environment0_, environment1_;
-  std::vector<Index> prescribed_, loaded_followers_;
-  bool has_loads_ = false;
-};
-
 /// Sums over the equations, threads added up in order.
 using Sums = std::array<double, 4>;
 
 class Relaxation {
  public:
-  Relaxation(const EquilibriumProblem& problem, const Way& way, const RelaxationOptions& options,
-             std::vector<double>& velocity, RelaxationResult& result)
+  Relaxation(const EquilibriumProblem& problem, const WayOfLoad& way,
+             const RelaxationOptions& options, std::vector<double>& velocity,
+             RelaxationResult& result)
       : problem_(problem),
         way_(way),
         options_(options),
@@ -311,7 +261,7 @@ class Relaxation {
   }
 
   const EquilibriumProblem& problem_;
-  const Way& way_;
+  const WayOfLoad& way_;
   const RelaxationOptions& options_;
   const std::vector<Index>& dofs_;
   std::vector<double>& velocity_;  // V^(n-1/2), and after `accelerate` V^(n+1/2)
@@ -330,31 +280,6 @@ class Relaxation {
   double share_ = 0.0, share_change_ = 0.0;
 };
 
-double scale_of_step(const EquilibriumProblem& problem, const Way& way, const Trial& start,
-                     bool holds) {
-  if (!holds) return residual_scale(problem, way.end_force(), start.gradient, start);
-  Trial after_jump = start;
-  for (const Index dof : way.prescribed()) {
-    after_jump.displacement[dof] = way.end_displacement()[dof];
-  }
-  share_out_jump(problem, start.displacement, after_jump.displacement);
-  after_jump.environment = way.end_environment();
-  // A jump that tears bonds would leave no residual to measure against.
-  evaluate(problem, way.end_force(), after_jump, Damage::held);
-  if (after_jump.degenerate) after_jump.residual_norm = 0.0;  // a jump onto a neighbour
-  return residual_scale(problem, way.end_force(), start.gradient, after_jump);
-}
-
-/// Energy that the bonds have taken up, stored or dissipated, since the history they began with
-/// [J].
-double taken_up(const EquilibriumProblem& problem, const RelaxationOptions& options,
-                const Trial& at) {
-  if (options.breaking == Breaking::at_equilibrium) return at.stored_energy;
-  std::vector<double> damage(std::size_t(problem.assembler.points().count()));
-  return at.stored_energy +
-         assess_damage(problem.assembler.model(), at.history, {}, damage).dissipated_energy;
-}
-
 }  // namespace
 
 RelaxationResult relax(const EquilibriumProblem& problem, TangentOperator& tangent,
@@ -365,20 +290,14 @@ RelaxationResult relax(const EquilibriumProblem& problem, TangentOperator& tange
   result.state.history = from.history;
   result.state.environment = from.environment;
   result.external_force.resize(from.displacement.size());
-  const Way way(problem, from, stage);
+  const WayOfLoad way(problem, from, stage);
   way.load(0.0, result.external_force);
   evaluate(problem, result.external_force, result.state);
-  result.scale = options.scale > 0.0 ? options.scale
-                                     : scale_of_step(problem, way, result.state, options.holds);
-  if (way.end_environment() && options.scale <= 0.0) {
-    Trial start = result.state;
-    start.environment = way.end_environment();
-    evaluate(problem, way.end_force(), start, Damage::held);
-    result.scale =
-        std::max(result.scale, environment_norm(problem, start.at(Damage::held), start.gradient));
-  }
+  result.scale = options.scale > 0.0
+                     ? options.scale
+                     : relaxation_scale(problem, result.state, stage, options.holds);
 
-  const double taken_up_at_start = taken_up(problem, options, result.state);
+  const double taken_up_at_start = taken_up(problem, options.breaking, result.state);
 
   const bool goes_on = motion.velocity.size() == std::size_t(problem.free.count());
   if (!goes_on) motion.velocity.assign(std::size_t(problem.free.count()), 0.0);
@@ -433,7 +352,7 @@ RelaxationResult relax(const EquilibriumProblem& problem, TangentOperator& tange
     relaxation.accelerate();
   }
   result.drained_energy = result.external_work - result.released_energy -
-                          (taken_up(problem, options, state) - taken_up_at_start);
+                          (taken_up(problem, options.breaking, state) - taken_up_at_start);
   if (observer && !state.degenerate) static_cast<void>(observer(relaxation.record()));
   return result;
 }

@@ -29,6 +29,16 @@ void require_ldlt(const StudyOptions& options) {
   }
 }
 
+/// Vectors of the flow beside those of Newton's search: a state, two directions, works, the way.
+constexpr double vectors_of_flow = 9.0;
+
+bool flows(const StudyOptions& options, const Model& model) {
+  const LoadSteppingOptions& loading = options.loading;
+  const bool relaxes =
+      loading.mode == Mode::relaxation || (loading.mode == Mode::adaptive && model.has_history());
+  return relaxes && loading.relaxation.method == RelaxationMethod::flow;
+}
+
 }  // namespace
 
 LinearSystems choose_linear_systems(const StudyOptions& options, const Model& model,
@@ -47,6 +57,7 @@ LinearSystems choose_linear_systems(const StudyOptions& options, const Model& mo
   problem.available_bytes = available_memory() - estimate.body_bytes - estimate.tangent_bytes;
   // Elsewhere damage grows in relaxation, which finds stable states alone.
   problem.may_soften = model.has_history() && options.loading.mode == Mode::newton;
+  problem.solves_often = flows(options, model);
   problem.is_stored = options.tangent != TangentStorage::matrix_free;
   LinearSystems systems;
   systems.chosen = make_linear_solver(linear, problem, tell);
@@ -59,6 +70,9 @@ LinearSystems choose_linear_systems(const StudyOptions& options, const Model& mo
   }
   systems.is_stored = problem.is_stored;
   systems.bytes = estimate.bytes(systems.chosen.is_direct, systems.is_stored, linear);
+  if (problem.solves_often) {
+    systems.bytes += 8.0 * vectors_of_flow * estimate.size.points * estimate.size.dimension;
+  }
   return systems;
 }
 

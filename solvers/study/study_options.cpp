@@ -37,6 +37,10 @@ void check_options(const StudyOptions& options) {
   require_within(options.newton.max_iterations, 1, 1000, "newton.max_iterations");
   require_within(loading.relaxation.relative_tolerance, 1e-14, 1e-2,
                  "loading.relaxation.relative_tolerance");
+  require_within(loading.relaxation.flow_tolerance, 1e-3, 0.5, "loading.relaxation.flow_tolerance");
+  require_within(loading.peak_tolerance, 0.0, 1.0, "loading.peak_tolerance");
+  if (loading.relaxation.method == RelaxationMethod::flow && !loading.relaxation.holds)
+    throw InputError("loading.relaxation.holds", "false", "is for the dynamic method");
   const LinearSolverOptions& linear = options.linear;
   if (linear.method == LinearMethod::cholesky &&
       linear.preconditioner != PreconditionerKind::automatic)

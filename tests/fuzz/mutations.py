@@ -26,13 +26,13 @@ WORDS = """dimension title lattice points spacing horizon_ratio thickness area o
     surface_correction material model plane youngs_modulus micromodulus poisson_ratio calibration c1 c2 c3 density damage law onset
     critical rate peak hardening fracture_energy strength no_fail support displacement load body_force total_force loading steps adaptive smallest_step largest_step
     max_broken_bonds solver mode linear preconditioner tangent predictor projection relative_tolerance max_iterations fragments
-    elastic_horizon_ratio relaxation iterations ramp breaking damping mass_factor quiet_iterations displacement_tolerance output
+    elastic_horizon_ratio relaxation iterations ramp breaking damping mass_factor quiet_iterations displacement_tolerance method flow_tolerance peak_tolerance output
     directory every count_cracks probe field other threshold control weights table table2 arc_length bifurcation region interface between
     rule fibre angle direction transverse_modulus shear_modulus transverse_critical scatter of distribution weibull_modulus
     correlation_length rigid roller at normal constraint term symmetry period gradient rotation gravity traction pressure depth eigenstrain
     strain temperature change thermal_expansion volumes neighbours""".split()
 CHOICES = """none linear exact volume energy mean bulk bond cpd stress strain lattice continuum critical_stretch tanh tanh_continuous linear exponential blended newton
-    relaxation adaptive auto cholesky pcg minres gmres jacobi block_jacobi rigid_pieces surrogate riluk chebyshev multigrid stored
+    relaxation adaptive flow dynamic auto cholesky pcg minres gmres jacobi block_jacobi rigid_pieces surrogate riluk chebyshev multigrid stored
     matrix_free consistent never always hold remove stop fixed moving at_equilibrium transient kinetic cell_centres nodes box disk polygon
     cylinder sphere x- x+ y- y+ z- z+ displacement force damage stretch energy_density poisson_ratio opening crack_length
     arc_length branch straight cells fractional harmonic arithmetic weaker stiffness strength weibull row horizon x y z""".split()
@@ -55,7 +55,7 @@ KEYS = """dimension lattice.spacing lattice.horizon_ratio lattice.thickness latt
     constraint[0].term[0].weights constraint[0].term[1].set symmetry[0].axis symmetry[0].at symmetry[1].at symmetry[1].axis period[0].from
     period[0].to period[0].gradient period[1].gradient period[1].axis load[0].gravity load[0].traction load[0].depth load[0].side
     load[0].pressure load[1].pressure load[1].total_force eigenstrain[0].strain eigenstrain[0].set temperature.change
-    relaxation.quiet_iterations relaxation.displacement_tolerance output.every output.count_cracks probe[0].field probe[0].set probe[0]
+    relaxation.quiet_iterations relaxation.displacement_tolerance relaxation.method relaxation.flow_tolerance relaxation.peak_tolerance output.every output.count_cracks probe[0].field probe[0].set probe[0]
     [[ ]. .. a.b.c lattice lattice. .lattice support[-1].set support[99999999999].set support[0]""".split()
 
 

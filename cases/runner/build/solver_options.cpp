@@ -25,6 +25,7 @@ LoadSteppingOptions load_stepping_options(const Case& from) {
   options.fragments = from.solver.fragments;
   options.relaxation_steps = from.relaxation.steps;
   options.relaxation = from.relaxation.options;
+  options.peak_tolerance = from.relaxation.peak_tolerance;
   return options;
 }
 

@@ -70,6 +70,7 @@ struct RelaxationSpecification {
   int steps = 1;
   bool moving = false;      ///< the load moves in every iteration, as in [ADAPT]; nothing is held
   int iterations = 10'000;  ///< of the whole load, if it moves
+  double peak_tolerance = 0.0;  ///< of the stage; 0: the peak is not searched
   RelaxationOptions options;
 };
 

@@ -1078,6 +1078,13 @@ Table<RelaxationSpecification> relaxation_keys() {
   const auto options = &Spec::options;
   const auto moves = [](auto& relaxation, auto&) { return relaxation.moving; };
   const auto rests = [](auto& relaxation, auto&) { return !relaxation.moving; };
+  const auto flows = [](auto& relaxation, auto&) {
+    return relaxation.options.method == RelaxationMethod::flow;
+  };
+  const auto is_dynamic = [flows](auto& relaxation, auto& from) {
+    return !flows(relaxation, from);
+  };
+  const std::string for_dynamic = "is for method = \"dynamic\"";
   return {
       "relaxation",
       {K("steps", &Spec::steps, count_from(1),
@@ -1089,8 +1096,25 @@ Table<RelaxationSpecification> relaxation_keys() {
                       "`loading.steps`; in mode `adaptive` with damage no fewer than 50. With a "
                       "table that is "
                       "an expression, which has an entry for each step: 1, and 50 in all"),
+       K("method", in(options, &Options::method),
+         choice<RelaxationMethod>(
+             {{"dynamic", RelaxationMethod::dynamic}, {"flow", RelaxationMethod::flow}}),
+         "dynamic relaxation, a motion in a made-up dynamics; or the flow without inertia, whose "
+         "directions are solved for")
+           .early(),
+       K("flow_tolerance", in(options, &Options::flow_tolerance), between(1e-3, 0.5),
+         "method `flow`: share of a step's length by which it may leave the flow's path")
+           .unless(is_dynamic, "is for method = \"flow\""),
+       K("peak_tolerance", &Spec::peak_tolerance, between(0.0, 1.0),
+         "mode `adaptive`: a relaxed step in which the force begins to fall is halved until it is "
+         "no longer than this share of the whole load; the decision that accepts it tells between "
+         "which load factors the peak lies. 0: not searched")
+           .unless([](auto&, auto& from) { return from.solver.mode != Mode::adaptive; },
+                   "is for mode \"adaptive\"")
+           .extends(),
        K("load", &Spec::moving, choice<bool>({{"fixed", false}, {"moving", true}}),
          "rests after the ramp until the body is in equilibrium, or never rests")
+           .unless(flows, for_dynamic)
            .early(),
        K("iterations", &Spec::iterations, count_from(1),
          "load `moving`: iterations over the whole load, or from one entry of `loading.table` to "
@@ -1100,9 +1124,11 @@ Table<RelaxationSpecification> relaxation_keys() {
            .moreover("a multiple of `steps`"),
        K("ramp", in(options, &Options::ramp), count_from(1),
          "load `fixed`: iterations over which supports and loads move to their new values")
+           .unless(flows, for_dynamic)
            .unless(moves, "is for load = \"fixed\""),
        K("quiet_iterations", in(options, &Options::quiet_iterations), count_from(0),
          "load `fixed`: iterations without a further bond breaking before a state may be accepted")
+           .unless(flows, for_dynamic)
            .unless(moves, "is for load = \"fixed\""),
        K("breaking", in(options, &Options::breaking),
          choice<Breaking>(
@@ -1118,6 +1144,7 @@ Table<RelaxationSpecification> relaxation_keys() {
          choice<Damping>({{"adaptive", Damping::adaptive}, {"kinetic", Damping::kinetic}}),
          "as published, a coefficient from the Rayleigh quotient of the present motion; or none, "
          "and all motion stops whenever the kinetic energy has passed a peak")
+           .unless(flows, for_dynamic)
            .otherwise(
                [](auto& relaxation, auto&) {
                  if (relaxation.moving) relaxation.options.damping = Damping::adaptive;
@@ -1125,6 +1152,7 @@ Table<RelaxationSpecification> relaxation_keys() {
                "`\"kinetic\"`; `\"adaptive\"` if the load is `moving`"),
        K("mass_factor", in(options, &Options::mass_factor), between(1.0, 1e6),
          "pseudo density over the least stable one: larger is slower and safer")
+           .unless(flows, for_dynamic)
            .otherwise(
                [](auto& relaxation, auto&) {
                  if (relaxation.options.damping == Damping::adaptive)
@@ -1136,7 +1164,8 @@ Table<RelaxationSpecification> relaxation_keys() {
            .extends(),
        K("displacement_tolerance", in(options, &Options::displacement_tolerance), between(0.0, 1.0),
          "load `fixed`: also accepts a state whose displacements changed by less than this in an "
-         "iteration, ‖Δu‖/‖u‖, as published (10⁻⁹). 0: never")},
+         "iteration, ‖Δu‖/‖u‖, as published (10⁻⁹). 0: never")
+           .unless(flows, for_dynamic)},
       {},
       [](auto& at, auto& relaxation) {
         relaxation.options.holds = !relaxation.moving;

@@ -397,6 +397,35 @@ TEST(LoadStepping, AdaptiveModeRelaxesWhileDamageGrows) {
   EXPECT_EQ(mode, "newton");
 }
 
+TEST(LoadStepping, FindsThePeakWhateverTheSteps) {
+  std::vector<double> peaks;
+  for (const RelaxationMethod method : {RelaxationMethod::dynamic, RelaxationMethod::flow}) {
+    // Longer steps pass a first, shallow peak without seeing it.
+    for (const int relaxed_steps : {20, 40}) {
+      SCOPED_TRACE(relaxed_steps);
+      Strip strip(Strip::Middle::notched, drawn("0.045*load"));
+      LoadSteppingOptions options = in_mode(Mode::adaptive, 10, relaxed_steps);
+      options.relaxation.method = method;
+      options.peak_tolerance = 1e-3;
+      const Followed followed = follow(strip, options);
+      ASSERT_EQ(followed.result.outcome, Outcome::converged);
+      expect_consistent(followed);
+      expect_no_healing(followed);
+      expect_equilibria(followed, strip, 1e-10);
+      const auto tells_peak = [](const DecisionRecord& decision) {
+        return decision.reason.find("the peak of the force lies between") != std::string::npos;
+      };
+      const auto peak =
+          std::find_if(followed.decisions.begin(), followed.decisions.end(), tells_peak);
+      ASSERT_NE(peak, followed.decisions.end());
+      EXPECT_LE(peak->increment, 1e-3 * (1.0 + 1e-9));
+      peaks.push_back(peak->stage);
+    }
+  }
+  // Each lies at the end of a bracket of 1e-3; beyond it the states are the same.
+  for (const double peak : peaks) EXPECT_NEAR(peak, peaks.front(), 1e-3);
+}
+
 TEST(LoadStepping, AdaptiveModeWithoutDamageIsNewton) {
   const tests::BoxSetting box = tests::small_box(2);
   Problem problem(box, pulled(box, 0.2), {});

@@ -251,6 +251,27 @@ TEST(PathState, GoesOnInTheMidstOfMotion) {
       any_state(whole, [](const PathState& s) { return !s.relaxed.motion.velocity.empty(); }));
 }
 
+TEST(PathState, GoesOnInStepsWithoutInertia) {
+  for (const Breaking breaking : {Breaking::at_equilibrium, Breaking::transient}) {
+    Setting setting{drawn("0.03*load"), options_of(Mode::relaxation, 1, 10)};
+    setting.options.relaxation.method = RelaxationMethod::flow;
+    setting.options.relaxation.breaking = breaking;
+    const Followed whole = expect_to_go_on_from_copies(setting);
+    EXPECT_EQ(whole.outcome, Outcome::converged);
+  }
+}
+
+TEST(PathState, GoesOnWhileAPeakIsSearched) {
+  Setting setting{drawn("0.045*load"), options_of(Mode::adaptive, 10, 20)};
+  setting.options.relaxation.method = RelaxationMethod::flow;
+  setting.options.peak_tolerance = 1e-3;
+  const Followed whole = expect_to_go_on_from_copies(setting);
+  EXPECT_EQ(whole.outcome, Outcome::converged);
+  EXPECT_TRUE(any_state(whole, [](const PathState& s) { return s.hand_over.peak_before > 0.0; }));
+  EXPECT_TRUE(any_state(whole, [](const PathState& s) { return s.hand_over.force_falls; }));
+  EXPECT_EQ(whole.states.back().hand_over.peak_before, 0.0);
+}
+
 TEST(PathState, GoesOnBeforeAndAfterAHandOver) {
   // Pulled and then let go.
   const Setting setting{drawn("0.045*min(load, 1.2 - load)"), options_of(Mode::adaptive, 10, 50)};
