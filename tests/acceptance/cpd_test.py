@@ -67,9 +67,10 @@ class Cpd(unittest.TestCase):
 
     def test_tangents_of_every_case_are_exact(self):
         checked = 0
-        small = {"cube.toml": ["lattice.spacing=0.1", "material.c2=125", "material.c3=4e4"],
-                 "cube_hole.toml": ["lattice.spacing=0.1", "material.c2=125", "material.c3=4e4"],
-                 "table3.toml": ["material.c2=51", "material.c3=1"]}  # fmt: skip
+        # Coarse: a formula that is right is so at any number of points.
+        small = {"cube.toml": ["lattice.spacing=0.2", "material.c2=125", "material.c3=4e4"],
+                 "cube_hole.toml": ["lattice.spacing=0.125", "material.c2=125", "material.c3=4e4"],
+                 "table3.toml": ["lattice.spacing=0.2", "material.c2=51", "material.c3=1"]}  # fmt: skip
         for case in sorted(CASES.glob("*.toml")):
             for weights in ("mean", "bulk"):
                 with self.subTest(case=case.name, weights=weights):

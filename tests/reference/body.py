@@ -39,7 +39,8 @@ def measure(arms):
 
 def arms_of(tuples, places):
     """Vectors from the first point of every tuple to the others."""
-    return [places[tuples[:, k]] - places[tuples[:, 0]] for k in range(1, tuples.shape[1])]
+    first, *others = (numpy.take(places, ends, axis=0) for ends in tuples.T)
+    return [other - first for other in others]
 
 
 def cliques(bonds, count, size, first_points=None):

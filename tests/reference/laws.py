@@ -53,9 +53,8 @@ class Law:
         return (1 - numpy.tanh(argument)) / 2
 
     def tanh(self, stretch):
-        start, end = self.published(self.onset), self.published(self.critical)
-        rescaled = (self.published(stretch) - end) / (start - end)
-        return numpy.where(self.name == numpy.array("tanh"), self.published(stretch), rescaled)
+        start, end, published = self.published(self.onset), self.published(self.critical), self.published(stretch)
+        return numpy.where(self.name == numpy.array("tanh"), published, (published - end) / (start - end))
 
     def enveloped(self, stretch):
         """Of the laws that are given by their force: that over the stretch."""
@@ -71,6 +70,10 @@ class Law:
 
     def softening(self, stretch):
         is_tanh = numpy.char.startswith(numpy.array(self.name, "U20"), "tanh")
+        if is_tanh.all():
+            return self.tanh(stretch)
+        if not is_tanh.any():
+            return self.enveloped(stretch)
         with numpy.errstate(all="ignore"):  # each of the two is nonsense for the other's laws
             return numpy.where(is_tanh, self.tanh(stretch), self.enveloped(stretch))
 

@@ -67,6 +67,7 @@ class Mechanics:
         self.law = law.spread(len(body.bonds))
         # Where any bond fails, one without a law is one that never does.
         self.fails = (self.law.name != "none") | ~numpy.full(len(body.bonds), self.case.has_damage and not elastic)
+        self.told_history, self.told_work = numpy.zeros((2, len(body.bonds)))  # moments of the law that are known
 
     def spare(self, sets):
         """Bonds of the points of no-fail sets stay elastic."""
@@ -105,7 +106,8 @@ class Mechanics:
         return history >= self.law.critical
 
     def _is_loading(self, stretch, history):
-        return self.fails & (numpy.real(stretch) > numpy.maximum(history, self.law.onset))
+        """Where the bond takes up more; a broken one does not."""
+        return self.fails & ~self.is_broken(history) & (numpy.real(stretch) > numpy.maximum(history, self.law.onset))
 
     def _bond_potential(self, stretch, history, held=False):
         """phi / C1: what a bond takes up."""
@@ -156,7 +158,10 @@ class Mechanics:
 
     def energy(self, u, history=None, held=False):
         history = self.no_history() if history is None else history
-        energies = self.energies(u, history, held)
+        return self.sum_of(self.energies(u, history, held))
+
+    def sum_of(self, energies):
+        """Of what interactions take up, by order, what belongs to the body [J]."""
         return sum((self.body.share[order] * part).sum() for order, part in energies.items())
 
     def slope(self, u, history, component, rate, held=False):
@@ -187,6 +192,8 @@ class Mechanics:
         """Half of what an eigenstretch going from before to after adds to the energy in each of two states, each
         (u, history)."""
         work = 0.0
+        if before is None and after is None:
+            return work
         for u, history in (old, new):
             for self.eigenstretch, sign in ((after, 0.5), (before, -0.5)):
                 work += sign * self.energy(u, history, held=True)
@@ -249,9 +256,10 @@ class Mechanics:
 
     def dissipated(self, history):
         """By bonds [J]; what triangles and tetrahedra lose depends on when they lose it."""
+        grown = (history > 0) & (history != self.told_history)
+        self.told_history[grown], self.told_work[grown] = history[grown], self.law.of(grown).moment(history[grown])
         worn = history > 0
-        past = history[worn]
-        lost = self.law.of(worn).moment(past) - self.integrity(history)[worn] * past**2 / 2
+        lost = self.told_work[worn] - self.integrity(history)[worn] * history[worn] ** 2 / 2
         weight = (self.body.share[1] * self.body.weight[1])[worn]
         return float((self.body.constants[1] * weight * self.body.lengths[worn] * lost).sum())
 

@@ -36,96 +36,127 @@ def loose_points(places, bonds, prescribed, beyond):
         loose |= stripped
 
 
-class Copy:
-    """One of the copies of the body: x' = mirror x + shift + periods . jump."""
+class Copies:
+    """Copies of points, an entry for each: x' = mirror x + shift + periods . jump."""
 
     def __init__(self, mirror, shift, periods):
         self.mirror, self.shift, self.periods = mirror, shift, periods
 
-    def after(self, first):
-        return Copy(self.mirror * first.mirror, self.mirror * first.shift + self.shift,
-                    self.mirror * first.periods + self.periods)  # fmt: skip
+    @property
+    def parts(self):
+        return self.mirror, self.shift, self.periods
 
-    def is_as(self, other, spacing):
-        same = (self.mirror == other.mirror).all() and (self.periods == other.periods).all()
-        return same and numpy.abs(self.shift - other.shift).max() < 0.01 * spacing
+    def of(self, which):
+        return Copies(*(part[which] for part in self.parts))
+
+    def put(self, which, copies):
+        for part, other in zip(self.parts, copies.parts):
+            part[which] = other
+
+    def after(self, first):
+        return Copies(self.mirror * first.mirror, self.mirror * first.shift + self.shift,
+                      self.mirror * first.periods + self.periods)  # fmt: skip
+
+    def back(self):
+        return Copies(self.mirror, -self.mirror * self.shift, -self.mirror * self.periods)
+
+    def and_then(self, others):
+        return Copies(*(numpy.concatenate(both) for both in zip(self.parts, others.parts)))
+
+    def are_as(self, other, spacing):
+        same = (self.mirror == other.mirror).all(axis=1) & (self.periods == other.periods).all(axis=1)
+        return same & (numpy.abs(self.shift - other.shift).max(axis=1) < 0.01 * spacing)
+
+
+class Links:
+    """Bonds both ways, ordered by where they start: the copy of `end` that an own point `start` sees."""
+
+    def __init__(self, count, bonds, beyond, skip):
+        source = beyond.source[bonds[:, 1]]
+        keep = ~skip[bonds[:, 0]] & ~skip[source]
+        here, there, source = bonds[keep, 0], bonds[keep, 1], source[keep]
+        seen = Copies(beyond.mirror, beyond.shift, beyond.periods).of(there)
+        start = numpy.concatenate([here, source])
+        order = numpy.argsort(start, kind="stable")
+        self.start, self.end = start[order], numpy.concatenate([source, here])[order]
+        self.copy = seen.and_then(seen.back()).of(order)
+        self.first = numpy.searchsorted(self.start, numpy.arange(count + 1))
+
+    def of(self, points):
+        """Numbers of those that start at some points."""
+        low, many = self.first[points], self.first[points + 1] - self.first[points]
+        return numpy.repeat(low - numpy.cumsum(many) + many, many) + numpy.arange(many.sum())
 
 
 def pieces(count, bonds, beyond, skip):
-    """Connected parts of what is there without bounds: for each the copy of every own point that is in it, and pairs of
-    copies of one point that are both in it."""
-    neighbours = [[] for _ in range(count)]
-    for i, j in bonds.tolist():
-        s = int(beyond.source[j])
-        if skip[i] or skip[s]:
+    """Connected parts of what is there without bounds: the number of the part of every own point (-1: skipped), the copy
+    of every own point that is in it, and pairs of copies of one point that are both in it: the point and the other copy."""
+    links = Links(count, bonds, beyond, skip)
+    still = numpy.zeros((count, beyond.places.shape[1]))
+    part, placed, parts = numpy.full(count, -1), Copies(still + 1, still.copy(), still.copy()), 0
+    for start in numpy.flatnonzero(~skip).tolist():
+        if part[start] >= 0:
             continue
-        there = Copy(beyond.mirror[j], beyond.shift[j], beyond.periods[j])
-        back = Copy(there.mirror, -there.mirror * there.shift, -there.mirror * there.periods)
-        neighbours[i].append((s, there))
-        neighbours[s].append((i, back))
-    placed, found = {}, []
-    still = numpy.zeros(beyond.places.shape[1])
-    for start in range(count):
-        if skip[start] or start in placed:
-            continue
-        placed[start] = Copy(still + 1, still, still)
-        members, twice, waiting = [start], [], [start]
-        while waiting:
-            i = waiting.pop()
-            for s, step in neighbours[i]:
-                copy = placed[i].after(step)
-                if s not in placed:
-                    placed[s] = copy
-                    members.append(s)
-                    waiting.append(s)
-                elif not copy.is_as(placed[s], beyond.spacing):
-                    twice.append((s, copy))
-        found.append(({m: placed[m] for m in members}, twice))
-    return found
+        part[start], front = parts, numpy.array([start])
+        while len(front):
+            out = links.of(front)
+            out = out[part[links.end[out]] < 0]
+            front, one = numpy.unique(links.end[out], return_index=True)
+            out = out[one]
+            placed.put(front, links.copy.of(out).after(placed.of(links.start[out])))
+            part[front] = parts
+        parts += 1
+    again = links.copy.after(placed.of(links.start))
+    other = ~again.are_as(placed.of(links.end), beyond.spacing)
+    return part, placed, (links.end[other], again.of(other))
 
 
-def motions_at(place, centre, size):
-    """Columns: velocities of a place by the infinitesimal rigid motions."""
-    dimension = len(place)
-    arm = (place - centre) / size
-    columns = list(numpy.eye(dimension))
+def motions_at(places, centre, size):
+    """Columns: velocities of places by the infinitesimal rigid motions."""
+    count, dimension = places.shape
+    arm = (places - centre) / size
+    columns = [numpy.tile(axis, (count, 1)) for axis in numpy.eye(dimension)]
     for a in range(dimension):
         for b in range(a + 1, dimension):
-            turn = numpy.zeros(dimension)
-            turn[a], turn[b] = -arm[b], arm[a]
+            turn = numpy.zeros((count, dimension))
+            turn[:, a], turn[:, b] = -arm[:, b], arm[:, a]
             columns.append(turn)
-    return numpy.array(columns).T
+    return numpy.stack(columns, axis=2)
 
 
-def may_move(members, twice, places, jump, prescribed, free_jump, sums):
-    """Whether a piece has a rigid motion, with changes of the jumps that are free, that nothing forbids."""
-    dimension = places.shape[1]
+def may_move(members, copies, twice, places, jump, prescribed, free_jump, sums):
+    """Whether a piece has a rigid motion, with changes of the jumps that are free, that nothing forbids.
 
-    def now(point, copy):
-        return copy.mirror * places[point] + copy.shift + copy.periods @ jump
+    members: points, ascending; copies: of these; twice: points and other copies of them.
+    """
 
-    held = {point: now(point, copy) for point, copy in members.items()}
-    centre = numpy.mean(list(held.values()), axis=0)
-    size = max(numpy.abs(numpy.array(list(held.values())) - centre).max(), 1e-300)
+    def now(points, copies):
+        return copies.mirror * places[points] + copies.shift + copies.periods @ jump
+
+    held = now(members, copies)
+    centre = held.mean(axis=0)
+    size = max(numpy.abs(held - centre).max(), 1e-300)
     free = numpy.argwhere(free_jump)
 
-    def own_motion(point, copy):
-        """Of the own point, when this copy moves with the piece."""
-        of_jumps = numpy.zeros((dimension, len(free)))
+    def own_motions(points, copies):
+        """Of the own points, when these copies move with the piece."""
+        of_jumps = numpy.zeros((*copies.periods.shape, len(free)))
         for column, (axis, component) in enumerate(free):
-            of_jumps[component, column] = -copy.periods[axis]
-        return copy.mirror[:, None] * numpy.hstack([motions_at(now(point, copy), centre, size), of_jumps])
+            of_jumps[:, component, column] = -copies.periods[:, axis]
+        motions = motions_at(now(points, copies), centre, size)
+        return copies.mirror[:, :, None] * numpy.concatenate([motions, of_jumps], axis=2)
 
-    moved = {point: own_motion(point, copy) for point, copy in members.items()}
-    rows = [moved[point][c] for point in members for c in numpy.flatnonzero(prescribed[point])]
+    moved = own_motions(members, copies)
+    rows = [moved[prescribed[members]]]
     for weights in sums:  # what a piece shares with others may be made up by these
         of = numpy.flatnonzero((weights * ~prescribed).any(axis=1))
-        if all(point in members for point in of.tolist()):
-            rows.append(sum(weights[point] @ moved[point] for point in of.tolist()))
-    for point, copy in twice:
-        rows += list(moved[point] - own_motion(point, copy))
-    everything = numpy.vstack([*moved.values(), *rows])
-    held = numpy.linalg.matrix_rank(numpy.array(rows), tol=1e-6) if rows else 0
+        if numpy.isin(of, members).all():
+            rows.append(numpy.einsum("pa,pam->m", weights[of], moved[numpy.searchsorted(members, of)])[None])
+    points, others = twice
+    between = moved[numpy.searchsorted(members, points)] - own_motions(points, others)
+    rows = numpy.concatenate([*rows, between.reshape(-1, moved.shape[2])])
+    everything = numpy.concatenate([moved.reshape(-1, moved.shape[2]), rows])
+    held = numpy.linalg.matrix_rank(rows, tol=1e-6) if len(rows) else 0
     return held < numpy.linalg.matrix_rank(everything, tol=1e-6)
 
 
@@ -137,7 +168,10 @@ def unheld_points(displacement, bonds, prescribed, beyond, jump, free_jump, sums
     """
     places = beyond.places + displacement
     unheld = loose_points(places, bonds, prescribed, beyond)
-    for members, twice in pieces(beyond.own, bonds, beyond, unheld.copy()):
-        if may_move(members, twice, places, jump, prescribed, free_jump, sums):
-            unheld[list(members)] = True
+    part, placed, (again, others) = pieces(beyond.own, bonds, beyond, unheld)
+    for number in range(part.max() + 1):
+        members, of_part = numpy.flatnonzero(part == number), part[again] == number
+        twice = again[of_part], others.of(of_part)
+        if may_move(members, placed.of(members), twice, places, jump, prescribed, free_jump, sums):
+            unheld[members] = True
     return unheld

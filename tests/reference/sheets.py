@@ -66,10 +66,10 @@ class Bulk:
 
 
 def root(rising, low, high):
-    for _ in range(200):
-        middle = (low + high) / 2
+    """By bisection, until no number is left between the two."""
+    while low < (middle := (low + high) / 2) < high:
         low, high = (middle, high) if rising(middle) < 0 else (low, middle)
-    return (low + high) / 2
+    return middle
 
 
 def total_work(damage):

@@ -34,12 +34,12 @@ class Verification:
         self.broken_across = 0  # bonds to what lies beyond that are broken in the end
         self.broken_when_looked_for, self.last_unheld = 0, None
         self.rows = {int(row["step"]): row for row in self.results.table("history")}
-        self.listed_bonds = self.results.table("broken_bonds")
         reference, volume, sets = self.results.reference, self.results.volume, self.results.sets
         more = {"sets": sets, "factors": self.results.factors}
         as_given = copy.deepcopy(self.case)  # a body puts constants in the place of data of a sheet
         self.mechanics = Mechanics(Body(self.case, reference, volume, **more))
         self.mechanics.spare(sets)
+        self.listed_steps, self.listed_codes = self.listed_bonds()
         self.conditions = Conditions(self.case, reference, volume, sets)
         self.foundations = Foundations(self.case, self.conditions)
         self.ties = Ties(self.case, reference, volume, sets, self.conditions.prescribed)
@@ -74,6 +74,15 @@ class Verification:
 
     def jump(self, row):
         return self.mechanics.body.beyond.told_jump(row)
+
+    def listed_bonds(self):
+        """Steps and codes of the bonds that are written to have broken, in the order of the codes; -1 is no bond."""
+        rows, body = self.results.table("broken_bonds"), self.mechanics.body
+        ends = [self.number_of(int(row["second_point"]), int(row.get("second_image", 0))) for row in rows]
+        pairs = numpy.sort([[int(row["first_point"]), -1 if end is None else end] for row, end in zip(rows, ends)], axis=-1)
+        codes = body.codes(pairs) if rows else numpy.zeros(0, int)
+        order = numpy.argsort(codes, kind="stable")
+        return numpy.array([row["step"] for row in rows])[order], numpy.where(codes < 0, -1, codes)[order]
 
     # ---- histories -------------------------------------------------------------------------------
 
@@ -158,7 +167,8 @@ class Verification:
         loads = self.loads(step.loads, step.displacement)
         external = self.external(step.loads, step.displacement)
         unheld = self.unheld(step, old)
-        self.judge_residual(mechanics, step, row, old, history, gradient - external, magnitude, unheld)
+        before = self.gradient_before(mechanics, step, old)
+        self.judge_residual(mechanics, step, row, old, history, before, gradient - external, magnitude, unheld)
         self.judge_reactions(step, row, gradient - external, largest, unheld, external)
         self.judge_beyond(mechanics, step, row, history, gradient, largest)
         self.judge_energies(mechanics, step, row, old, history)
@@ -166,7 +176,17 @@ class Verification:
             self.judge_damage(mechanics, step, row, history)
             everywhere = getattr(step, "everywhere", step.displacement)
             stress.judge(self, step, mechanics, everywhere, history, self.whole_force(mechanics, step))
-        self.judge_work(mechanics, step, row, old, history, gradient, external, loads)
+        self.judge_work(mechanics, step, row, old, history, before, gradient, external, loads)
+
+    def gradient_before(self, mechanics, step, old):
+        """Of the old state, under its own eigenstretch."""
+        mechanics.eigenstretch = self.conditions.eigenstretch(old.loads)
+        gradient = mechanics.gradient(old.everywhere, self.past(mechanics, old))
+        mechanics.eigenstretch = self.conditions.eigenstretch(step.loads)
+        return gradient
+
+    def past(self, mechanics, old):
+        return old.history if mechanics is self.mechanics else mechanics.no_history()
 
     def loads(self, load, displacement):
         """Dead loads, and those that follow the deformation [N]."""
@@ -211,7 +231,7 @@ class Verification:
         self.last_unheld = unheld_points(everywhere, body.bonds[~broken], held, body.beyond, old.jump, self.jump_is_free, sums)
         return self.last_unheld
 
-    def judge_residual(self, mechanics, step, row, old, history, out_of_balance, magnitude, unheld):
+    def judge_residual(self, mechanics, step, row, old, history, before, out_of_balance, magnitude, unheld):
         cell_held = self.conditions.middle_of_cell(out_of_balance)
         free = ~self.conditions.prescribed & ~unheld[:, None] & ~self.ties.follows & ~cell_held
         if not free.any() and not self.jump_is_free.any():
@@ -220,10 +240,10 @@ class Verification:
         prescribed = self.conditions.prescribed
         jumped[prescribed] = self.conditions.displacement(step.loads)[prescribed]
         jumped = self.ties.after_jump(jumped, step.loads)
-        past = old.history if mechanics is self.mechanics else history
+        past = self.past(mechanics, old)
         external = self.external(step.loads, jumped)
         mechanics.eigenstretch = self.conditions.eigenstretch(old.loads)
-        reactions = mechanics.gradient(old.everywhere, past) - self.external(old.loads, old.displacement)
+        reactions = before - self.external(old.loads, old.displacement)
         beyond = self.forces_beyond(mechanics, old, past)
         mechanics.eigenstretch = self.conditions.eigenstretch(step.loads)
         # Reactions of both states: Newton's method that finishes a relaxed step starts from the latter.
@@ -275,15 +295,19 @@ class Verification:
     @staticmethod
     def forces_beyond(mechanics, state, history):
         """Norm of what acts beyond planes and periods: it counts among the reactions."""
+        if mechanics.body.own == len(mechanics.body.volume):
+            return 0.0
         on_copies = numpy.linalg.norm(mechanics.gradient_of_shares(state.everywhere, history)[mechanics.body.own :])
         return numpy.hypot(on_copies, numpy.linalg.norm(mechanics.slopes_by_jumps(state.everywhere, history)))
 
     def of_environment(self, mechanics, step, old, past):
         """What eigenstrains and pressures add to the forces of the old displacement."""
-        under = mechanics.gradient_of_shares(old.everywhere, past, held=True)
-        kept, mechanics.eigenstretch = mechanics.eigenstretch, None
-        added = under - mechanics.gradient_of_shares(old.everywhere, past, held=True)
-        mechanics.eigenstretch = kept
+        added = numpy.zeros(mechanics.body.reference.shape)
+        if mechanics.eigenstretch is not None:
+            under = mechanics.gradient_of_shares(old.everywhere, past, held=True)
+            kept, mechanics.eigenstretch = mechanics.eigenstretch, None
+            added = under - mechanics.gradient_of_shares(old.everywhere, past, held=True)
+            mechanics.eigenstretch = kept
         added[: mechanics.body.own] -= self.conditions.follower_force(step.loads, old.displacement)
         resting = numpy.zeros(old.displacement.shape)
         added[: mechanics.body.own] -= self.foundations.force(resting, step.loads)  # of the ground alone
@@ -361,7 +385,7 @@ class Verification:
     def judge_energies(self, mechanics, step, row, old, history):
         energies = mechanics.energies(step.everywhere, history)
         of_springs = self.foundations.energy(step.displacement, step.loads)
-        stored = mechanics.energy(step.everywhere, history) + of_springs.sum()
+        stored = mechanics.sum_of(energies) + of_springs.sum()
         scale = max(abs(stored), abs(row["external_work"]), abs(row["dissipated_energy"]))
         scale += 1e-5 * self.whole_forces(mechanics, step) * numpy.abs(step.everywhere).max()
         self.compare(step, "stored energy", row["stored_energy"], stored, scale)
@@ -410,25 +434,20 @@ class Verification:
         """Those listed so far."""
         bonds = self.mechanics.body.bonds[broken]
         self.broken_across = int((bonds >= self.mechanics.body.own).any(axis=1).sum())
-        written = []
-        for row in self.listed_bonds:
-            if row["step"] <= step.number:
-                end = self.number_of(int(row["second_point"]), int(row.get("second_image", 0)))
-                written.append(sorted((int(row["first_point"]), -1 if end is None else end)))
-        if sorted(written) != sorted(numpy.sort(bonds, axis=1).tolist()):
+        written = self.listed_codes[self.listed_steps <= step.number]
+        if not numpy.array_equal(written, numpy.sort(self.mechanics.body.codes(numpy.sort(bonds, axis=1)))):
             self.complain(step, "the list of broken bonds is not that of bonds whose history has come to an end")
 
-    def judge_work(self, mechanics, step, row, old, history, gradient, external, loads):
+    def judge_work(self, mechanics, step, row, old, history, before, gradient, external, loads):
         """External work by the trapezoidal rule over the accepted steps; implicit ones add no other."""
         if old.mechanics not in (None, mechanics) or old.number + 1 != step.number:
             return
         if step.mode == "newton" and row["numerical_work"] != old.numerical_work:
             self.complain(step, f"numerical work {row['numerical_work']} in an implicit step, {old.numerical_work} before it")
         prescribed = self.conditions.prescribed
-        past = old.history if mechanics is self.mechanics else mechanics.no_history()
+        past = self.past(mechanics, old)
         here = self.conditions.eigenstretch(step.loads)
         mechanics.eigenstretch = self.conditions.eigenstretch(old.loads)
-        before = mechanics.gradient(old.everywhere, past)
         pull = mechanics.pull_of_periods(old.everywhere, past)
         heating = mechanics.heating_work((old.everywhere, past), (step.everywhere, history), mechanics.eigenstretch, here)
         pull = (pull + mechanics.pull_of_periods(step.everywhere, history)) / 2

@@ -6,6 +6,7 @@ Run with /usr/bin/python3 tests/unit/cases/plot_test.py; it builds its own folde
 import csv
 import io
 import json
+import multiprocessing
 import os
 import subprocess
 import sys
@@ -850,8 +851,15 @@ def huge_new(file, path):
     file.create_dataset(path, shape=(1_000_000_000,), dtype="i8", chunks=(1024,))
 
 
+def drawn(folder: Path, told: int) -> None:
+    """What the command does, but for another import of matplotlib."""
+    os.dup2(told, 1)
+    os.dup2(told, 2)
+    os._exit(plot.guarded([str(folder)]))
+
+
 class DamagedFolders(unittest.TestCase):
-    """Each is drawn by the program as it is run: it ends by itself, with code 2 and a sentence, or draws."""
+    """Each is drawn in a process of its own: it ends by itself, with code 2 and a sentence, or draws."""
 
     def setUp(self):
         temporary = tempfile.TemporaryDirectory(prefix="peristat_plot_test_")
@@ -859,14 +867,27 @@ class DamagedFolders(unittest.TestCase):
         self.folder = Path(temporary.name) / "results"
 
     def plot(self, expected_code: int | None = 2) -> str:
+        with tempfile.TemporaryFile("w+", encoding="utf-8") as told:
+            process = multiprocessing.get_context("fork").Process(target=drawn, args=(self.folder, told.fileno()))
+            process.start()
+            process.join(300)  # two seconds; an end by all means
+            if process.is_alive():
+                process.kill()
+                self.fail("plot did not end")
+            told.seek(0)
+            return self.judged(process.exitcode, told.read(), expected_code)
+
+    def plot_by_command(self) -> str:
         command = [sys.executable, "-BEs", str(PLOTS / "plot.py"), str(self.folder)]
-        done = subprocess.run(command, capture_output=True, text=True, timeout=300)  # two seconds; an end by all means
-        said = done.stdout + done.stderr
+        done = subprocess.run(command, capture_output=True, text=True, timeout=300)
+        return self.judged(done.returncode, done.stdout + done.stderr, 2)
+
+    def judged(self, code: int | None, said: str, expected_code: int | None) -> str:
         self.assertNotIn("Traceback", said)
         if expected_code is None:
-            self.assertIn(done.returncode, (0, 2), said)
+            self.assertIn(code, (0, 2), said)
         else:
-            self.assertEqual(done.returncode, expected_code, said)
+            self.assertEqual(code, expected_code, said)
         return said
 
     def write(self):
@@ -889,7 +910,7 @@ class DamagedFolders(unittest.TestCase):
         for make in (lambda: os.mkfifo(results), results.mkdir, lambda: results.symlink_to("/dev/zero"),
                      lambda: results.symlink_to("results.h5")):  # fmt: skip
             make()
-            self.plot()
+            self.plot_by_command()
             results.rmdir() if results.is_dir() else results.unlink()
 
     def test_tables_that_are_no_files(self):
