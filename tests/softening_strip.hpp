@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "src/potentials/make_saw_tooth.hpp"
 #include "tests/problems.hpp"
 
 namespace peristat::tests {
@@ -12,6 +13,9 @@ inline constexpr double onset = 0.01, critical = 0.03;
 
 [[nodiscard]] inline BondPotential softening(double micromodulus) {
   return Degraded<TanhDegradation>{micromodulus, TanhDegradation::continuous(onset, critical, 3.0)};
+}
+[[nodiscard]] inline BondPotential toothed(double micromodulus) {
+  return with_teeth(softening(micromodulus), 5);
 }
 
 /// What is controlled in the place of the load, and its values.
@@ -33,8 +37,8 @@ struct Strip {
   Tangent tangent;
 
   Strip(Middle middle, const std::vector<SupportSpecification>& supports, int threads = 1,
-        double triangles = 0.0, const Control& control = {})
-      : box(setting(triangles)),
+        double triangles = 0.0, const Control& control = {}, bool has_teeth = false)
+      : box(setting(triangles, has_teeth)),
         body(points_with_ends(box), box),
         conditions((change(middle), body.points), supports, {}, control.programme, control.terms),
         free(conditions.prescribed(), 2),
@@ -47,11 +51,11 @@ struct Strip {
     return solver.analyze(tangent.pattern, free);
   }
 
-  static BoxSetting setting(double triangles) {
+  static BoxSetting setting(double triangles, bool has_teeth = false) {
     BoxSetting strip = small_box(2);
     strip.triangles = triangles;
     strip.extent = {15, 7, 0};
-    strip.potential = softening;
+    strip.potential = has_teeth ? toothed : softening;
     return strip;
   }
 

@@ -8,6 +8,7 @@
 #include "assembly/terms/damage.hpp"
 #include "solvers/drivers/implicit_stepping.hpp"
 #include "solvers/linear/vector_verbs.hpp"
+#include "src/core/input_error.hpp"
 #include "src/core/number_text.hpp"
 
 namespace peristat {
@@ -21,8 +22,18 @@ constexpr double share_of_scale = 1e-5;
 /// errs by more is cut.
 constexpr double share_of_work = 1e-3;
 
+/// Likewise, of all work so far: where little happens the rule may err.
+constexpr double share_of_total = 1e-5;
+
 /// Of the energy turned over, that may come from nothing by round-off.
 constexpr double share_from_nothing = 1e-6;
+
+/// Relative residual at which a body counts as settled: its energy is known to the square of that.
+constexpr double settled_tolerance = 1e-7;
+constexpr int most_settling_iterations = 10;
+
+/// Newton iterations in which a body that buckles as bonds break may come to rest.
+constexpr int most_iterations_of_a_fall = 200;
 
 /// Events of one avalanche.
 constexpr int most_passes = 1'000'000;
@@ -32,12 +43,20 @@ double segment_begin(double stage) { return LoadingProgramme::next_entry(stage) 
 
 }  // namespace
 
-EventStepping::EventStepping(Path& path) : Driver(path) {}
+EventStepping::EventStepping(Path& path) : Driver(path) {
+  if (!fails_by_steps(path.damaged().model())) {
+    throw InputError("mode", "path",
+                     "needs bonds that break, by laws that fall in steps: give the body teeth");
+  }
+}
 
 Advance EventStepping::next() {
   if (!path_.has_load_left()) return Advance::ended;
   PathState before = path_.state();
   PathState::Events& events = path_.state().events;
+  if (borne_.empty()) {
+    borne_ = borne_stretches(path_.damaged().model(), path_.state().accepted.history);
+  }
   if (events.at_strength) {
     Settled settled =
         ahead_ ? std::move(*ahead_) : settle(path_.state().accepted, path_.state().ledger);
@@ -52,6 +71,10 @@ Advance EventStepping::next() {
     take_up(std::move(settled));
   }
   Step step = search();
+  while (step.attempt.has_converged() && is_above_strength(step)) {
+    pass_over(step);
+    if (step.attempt.has_converged()) step = search();
+  }
   if (step.attempt.has_converged() && step.end == StrengthEnd::inadmissible) {
     step = run_avalanche();
   }
@@ -68,18 +91,32 @@ NewtonOptions EventStepping::held() const {
   return options;
 }
 
-std::vector<UtilisedBond> EventStepping::batch_of(const State& at,
-                                                  std::span<const double> borne) const {
+UpdatedTangent& EventStepping::tangent() {
+  const SolvedBody& body = path_.body();
+  if (!tangent_) {
+    tangent_ = std::make_unique<UpdatedTangent>(path_.problem(), body.solver, body.tangent);
+    TangentReference known = path_.state().events.tangent;
+    if (!known.at.displacement.empty()) {
+      known.at.environment = path_.setting().conditions.environment(load_point(known.at));
+      tangent_->become(known);
+    }
+  }
+  return *tangent_;
+}
+
+double EventStepping::utilisation(const State& at, std::span<const double> borne) const {
   const Assembler& body = path_.damaged();
-  const auto utilised = [&](double least) {
-    return utilised_bonds(body.points(), body.model(), StateView(at, Damage::held), borne, least,
-                          body.threads());
-  };
-  const double most = largest_utilisation(body.points(), body.model(), StateView(at, Damage::held),
-                                          borne, body.threads());
-  const double tolerance = path_.options().events.tolerance;
+  return largest_utilisation(body.points(), body.model(), StateView(at, Damage::held), borne,
+                             body.threads());
+}
+
+std::vector<UtilisedBond> EventStepping::batch_of(const State& at) const {
+  const Assembler& body = path_.damaged();
+  const double most = utilisation(at, borne_), tolerance = path_.options().events.tolerance;
   // Room for the gap that ends the batch.
-  std::vector<UtilisedBond> all = utilised(most * (1.0 - std::max(1.5 * tolerance, 1e-3)));
+  const double least = most * (1.0 - std::max(1.5 * tolerance, 1e-3));
+  std::vector<UtilisedBond> all = utilised_bonds(
+      body.points(), body.model(), StateView(at, Damage::held), borne_, least, body.threads());
   std::size_t count = 1;
   while (count < all.size() && (all[count].utilisation >= (1.0 - tolerance) * most ||
                                 all[count - 1].utilisation - all[count].utilisation <= tie)) {
@@ -104,59 +141,70 @@ bool EventStepping::pin(Settled& settled) {
               .action = remedy == FragmentRemedy::remove ? Decision::remove_fragments
                                                          : Decision::hold_fragments,
               .reason = state.pins.described()});
+  tangent_.reset();  // there are other equations
+  path_.state().events.tangent = {};
   if (path_.pin() == Advance::goes_on) return true;
   settled.outcome = Outcome::out_of_memory;
   return false;
 }
 
+Attempt EventStepping::settle_at(const State& at, std::span<const double> borne) {
+  StrengthStep step;
+  step.borne = borne;
+  step.settles = true;
+  step.least_scale = share_of_scale * path_.state().events.largest_scale;
+  NewtonOptions options = held();
+  options.relative_tolerance = std::max(options.relative_tolerance, settled_tolerance);
+  options.max_iterations = most_settling_iterations;
+  const auto told = [this](const IterationRecord& row) { return path_.iterated(row); };
+  StrengthResult found = search_strength(path_.problem(), tangent(), at, step, options, told);
+  if (found.newton.outcome == Outcome::converged || found.newton.outcome == Outcome::interrupted) {
+    return to_attempt(std::move(found.newton), at.stage);
+  }
+  // Far away, or none: a search with line search and projected tangents finds what there is.
+  tangent().forget();
+  options = held();
+  options.max_iterations = std::max(options.max_iterations, most_iterations_of_a_fall);
+  return path_.search(at, at.stage, options);
+}
+
 EventStepping::Settled EventStepping::settle(const State& at, const PathLedger& ledger) {
   Assembler& body = path_.damaged();
-  const std::vector<double> borne = borne_stretches(body.model(), at.history);
-  const std::vector<UtilisedBond> batch = batch_of(at, borne);
-  std::vector<Offset> bonds;
-  std::vector<double> stretches;
-  for (const UtilisedBond& bond : batch) {
-    bonds.push_back(bond.bond);
-    stretches.push_back(bond.stretch);
-  }
-  const BondDrops dropped = drop(body.model(), at.history, bonds, stretches);
+  const std::vector<UtilisedBond> batch = batch_of(at);
+  BondDrops dropped = drop(body.points(), body.model(), StateView(at, Damage::held), borne_, batch);
   Settled settled;
   settled.dropping = Index(batch.size());
   settled.breaking = dropped.breaking;
   settled.state = at;
   settled.state.history = body.history_of(dropped.histories);
+  settled.borne = std::move(dropped.borne);
   const auto energy = [&](const State& of) {
     return body.energy(StateView(of, Damage::held)).energy;
   };
-  const double lost = energy(at) - energy(settled.state);
+  const bool bonds_alone = body.model().terms().size() == 1;
+  const double lost = bonds_alone ? dropped.energy_lost : energy(at) - energy(settled.state);
+  tangent().lose(dropped.stiffness);
 
   const FragmentPins pins_before = path_.state().pins;
   const bool may_go_on = dropped.breaking == 0 || pin(settled);
   settled.pins = std::exchange(path_.state().pins, pins_before);
-  settled.attempt.at = load_point(at);
-  settled.attempt.state.displacement = at.displacement;
-  settled.attempt.state.history = at.history;
-  settled.attempt.state.environment = at.environment;
+  settled.attempt = undefined_attempt(at, load_point(at));
   if (!may_go_on) return settled;
 
-  NewtonOptions options = held();
-  settled.attempt = path_.search(settled.state, at.stage, options);
+  settled.attempt = settle_at(settled.state, settled.borne);
   settled.outcome = settled.attempt.outcome;
   if (!settled.attempt.has_converged()) return settled;
   settled.state = state_of(settled.attempt);
 
-  std::vector<double> damage(std::size_t(body.points().count()));
-  const double dissipated =
-      assess_damage(body.model(), settled.state.history, {}, damage).dissipated_energy;
   StepEnergies energies;
   energies.released = lost - dropped.energy_lost;
   settled.ledger = ledger;
   const std::vector<double> working =
       path_.working_force(settled.attempt.state, settled.attempt.external_force);
+  const double dissipated = ledger.entries.dissipated - ledger.released + dropped.dissipated;
   Ledger after =
       ledger.with_step(at.displacement, settled.attempt.state, working, dissipated, energies);
-  settled.batch_work =
-      after.dissipated - ledger.entries.dissipated - energies.released - dropped.energy_lost;
+  settled.batch_work = dropped.dissipated - dropped.energy_lost;
   after.numerical_work += settled.batch_work;
   const double drained = after.balance_error() - ledger.entries.balance_error();
   const double turned_over = std::abs(lost) + std::abs(after.stored) + std::abs(drained);
@@ -167,9 +215,7 @@ EventStepping::Settled EventStepping::settle(const State& at, const PathLedger& 
   }
   after.drained += drained;
   settled.ledger.accept(after, working, energies);
-  settled.utilisation =
-      largest_utilisation(body.points(), body.model(), StateView(settled.state, Damage::held),
-                          borne_stretches(body.model(), settled.state.history), body.threads());
+  settled.utilisation = utilisation(settled.state, settled.borne);
   return settled;
 }
 
@@ -181,14 +227,15 @@ void EventStepping::take_up(Settled settled) {
   state.accepted = std::move(settled.state);
   state.ledger = std::move(settled.ledger);
   state.pins = std::move(settled.pins);
+  borne_ = std::move(settled.borne);
   path_.last_attempt() = std::move(settled.attempt);
 }
 
-StrengthStep EventStepping::strength_step(std::span<const double> borne) const {
+StrengthStep EventStepping::strength_step() const {
   const PathState& state = path_.state();
   const double stage = state.accepted.stage, begin = segment_begin(stage), end = begin + 1.0;
   StrengthStep step;
-  step.borne = borne;
+  step.borne = borne_;
   step.range = {begin, end};
   step.least_scale = share_of_scale * state.events.largest_scale;
   step.stop = end;
@@ -203,9 +250,7 @@ StrengthStep EventStepping::strength_step(std::span<const double> borne) const {
 
 EventStepping::Step EventStepping::search() {
   const State& from = path_.state().accepted;
-  const std::vector<double> borne = borne_stretches(path_.damaged().model(), from.history);
-  const StrengthStep asked = strength_step(borne);
-  const SolvedBody& body = path_.body();
+  const StrengthStep asked = strength_step();
   Step step;
   const double stop = asked.stop;
   if (const auto refusal = path_.refusal_of_conditions(stop)) {
@@ -214,7 +259,7 @@ EventStepping::Step EventStepping::search() {
     return step;
   }
   StrengthResult found =
-      search_strength(path_.problem(), body.solver, body.tangent, from, asked, held(),
+      search_strength(path_.problem(), tangent(), from, asked, held(),
                       [this](const IterationRecord& row) { return path_.iterated(row); });
   step.end = found.end;
   step.attempted = found.stage - from.stage;
@@ -245,22 +290,48 @@ EventStepping::Step EventStepping::run_avalanche() {
   return step;
 }
 
+bool EventStepping::is_above_strength(const Step& step) const {
+  return step.end == StrengthEnd::on_the_way &&
+         utilisation(state_of(step.attempt), borne_) > share_at_strength * (1.0 + tie);
+}
+
+void EventStepping::pass_over(Step& step) {
+  PathState& state = path_.state();
+  const Trial& trial = step.attempt.state;
+  StepEnergies energies;
+  energies.heating = heating_work(path_.body().assembler, state.accepted, trial.at());
+  const std::vector<double> working = path_.working_force(trial, step.attempt.external_force);
+  Ledger& after = step.found.ledger;
+  after = state.ledger.with_step(state.accepted.displacement, trial, working,
+                                 state.ledger.entries.dissipated - state.ledger.released, energies);
+  settle_work(step);
+  if (!step.attempt.has_converged()) return;
+  state.ledger.accept(after, working, energies);
+  state.accepted = state_of(step.attempt);
+}
+
+void EventStepping::settle_work(Step& step) const {
+  const Ledger& before = path_.state().ledger.entries;
+  Ledger& after = step.found.ledger;
+  const double error = after.balance_error() - before.balance_error();
+  const double turned_over =
+      std::abs(after.stored - before.stored) + std::abs(after.external_work - before.external_work);
+  if (std::abs(error) >
+      share_of_work * turned_over + share_of_total * std::abs(after.external_work)) {
+    step.attempt.outcome = Outcome::sharp_turn;
+    step.fault = "the work of the step is known to " + number_text(std::abs(error)) + " J only";
+  }
+  after.numerical_work -= error;
+}
+
 void EventStepping::complete(Step& step) {
   FoundStep& found = step.found;
   found.record.mode = Mode::path.name;
   found.record.newton_iterations = step.attempt.iterations;
+  if (step.attempt.iterations == 0) tangent().forget();  // complete takes the tangent then
   step.fault = peristat::complete(path_, step.attempt, found);
   if (!step.attempt.has_converged()) return;
-  const Ledger& before = path_.state().ledger.entries;
-  const double error = found.ledger.balance_error() - before.balance_error();
-  const double turned_over = std::abs(found.ledger.stored - before.stored) +
-                             std::abs(found.ledger.external_work - before.external_work);
-  if (std::abs(error) > share_of_work * turned_over + share_from_nothing * found.ledger.stored) {
-    step.attempt.outcome = Outcome::sharp_turn;
-    step.fault = "the work of the step is known to " + number_text(std::abs(error)) + " J only";
-    return;
-  }
-  found.ledger.numerical_work -= error;
+  settle_work(step);
 }
 
 void EventStepping::tell_response(const Step& step, StepRecord& record) {
@@ -286,20 +357,17 @@ Advance EventStepping::accept(Step step) {
   PathState& state = path_.state();
   PathState::Events& events = state.events;
   StepRecord& record = step.found.record;
-  const Assembler& body = path_.damaged();
   const State reached = state_of(step.attempt);
   events.largest_scale = std::max(events.largest_scale, step.attempt.scale);
-  if (events.longest > 0.0) {
-    events.longest *= step.end == StrengthEnd::on_the_way ? path_.options().growth : 1.0;
-  }
+  events.longest *= path_.options().growth;
+  if (events.longest > 1.0) events.longest = 0.0;
   tell_response(step, record);
-  const double utilisation =
-      largest_utilisation(body.points(), body.model(), StateView(reached, Damage::held),
-                          borne_stretches(body.model(), reached.history), body.threads());
-  events.at_strength = utilisation >= 1.0 - tie;
+  events.tangent = tangent().reference();
+  const double most = utilisation(reached, borne_);
+  events.at_strength = most >= 1.0 - tie;
   std::string how =
       step.how.empty() ? std::to_string(step.attempt.iterations) + " iterations" : step.how;
-  record.stability = step.attempt.has_negative_pivots ? "bifurcated" : "stable";
+  record.stability = tangent().has_negative_pivots() ? "bifurcated" : "stable";
   if (events.at_strength) {
     PathLedger with_step = state.ledger;
     with_step.accept(step.found.ledger,
@@ -307,7 +375,7 @@ Advance EventStepping::accept(Step step) {
                      step.found.energies);
     ahead_ = settle(reached, with_step);
     const bool runs_on = !ahead_->has_converged() || ahead_->utilisation > 1.0 + tie;
-    if (runs_on && !step.attempt.has_negative_pivots) record.stability = "unstable";
+    if (runs_on && record.stability == "stable") record.stability = "unstable";
     how += "; " + bonds_text(ahead_->dropping) + " at their strength";
   }
   path_.tell(step.attempt.at, {.increment = step.attempted,
@@ -323,6 +391,9 @@ Advance EventStepping::fail(Step step, PathState before) {
   Attempt& attempt = step.attempt;
   const std::string reason = reason_of(attempt, step.fault);
   path_.state() = std::move(before);
+  path_.state().events.tangent = {};
+  borne_.clear();
+  tangent_.reset();
   PathState::Events& events = path_.state().events;
   const double longest = path_.options().cut * std::abs(step.attempted);
   const bool may_cut = path_.options().adaptive && longest >= path_.options().smallest_step &&

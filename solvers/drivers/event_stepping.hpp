@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -34,6 +35,7 @@ namespace peristat {
 /// elastic body takes up; the trapezoidal rule's error is told as numerical work.
 class EventStepping : public Driver {
  public:
+  /// @throws InputError ("mode") for a body without damage, or whose laws fall smoothly
   explicit EventStepping(Path& path);
 
   /// Utilisations nearer than this are the same: a hundred times what equilibrium to 1e-10 leaves
@@ -52,8 +54,9 @@ class EventStepping : public Driver {
     State state;
     PathLedger ledger;
     FragmentPins pins;
-    double utilisation = 0.0;  ///< the largest
-    double batch_work = 0.0;   ///< see PathState::Events
+    std::vector<double> borne;  ///< see borne_stretches
+    double utilisation = 0.0;   ///< the largest
+    double batch_work = 0.0;    ///< see PathState::Events
     Index breaking = 0, dropping = 0;
 
     [[nodiscard]] bool has_converged() const { return outcome == Outcome::converged; }
@@ -71,9 +74,10 @@ class EventStepping : public Driver {
 
   /// The next event: what drops at a state, and where that settles.
   [[nodiscard]] Settled settle(const State& at, const PathLedger& ledger);
+  /// Equilibrium at the load where it is.
+  [[nodiscard]] Attempt settle_at(const State& at, std::span<const double> borne);
   /// Bonds that drop together.
-  [[nodiscard]] std::vector<UtilisedBond> batch_of(const State& at,
-                                                   std::span<const double> borne) const;
+  [[nodiscard]] std::vector<UtilisedBond> batch_of(const State& at) const;
   /// Makes what has settled the state to go on from.
   void take_up(Settled settled);
   /// Pins what has come off, in the equations.
@@ -82,16 +86,28 @@ class EventStepping : public Driver {
   [[nodiscard]] Step search();
   /// Holds the load until nothing is above its strength.
   [[nodiscard]] Step run_avalanche();
+  /// Whether a step has ended where bonds are above their strength, on the way to a lower load.
+  [[nodiscard]] bool is_above_strength(const Step& step) const;
+  /// Goes on from there: no state to be accepted.
+  void pass_over(Step& step);
   /// Closes the step's ledger.
   void complete(Step& step);
+  /// Books the trapezoidal rule's error, or refuses the step for it.
+  void settle_work(Step& step) const;
   [[nodiscard]] Advance accept(Step step);
   /// Tells where the state is on the response under the given loads.
   void tell_response(const Step& step, StepRecord& record);
   [[nodiscard]] Advance fail(Step step, PathState before);
-  [[nodiscard]] StrengthStep strength_step(std::span<const double> borne) const;
+  [[nodiscard]] StrengthStep strength_step() const;
+  [[nodiscard]] double utilisation(const State& at, std::span<const double> borne) const;
+  /// The tangent of the present equations.
+  [[nodiscard]] UpdatedTangent& tangent();
   [[nodiscard]] NewtonOptions held() const;
 
-  std::optional<Settled> ahead_;  ///< of the accepted state
+  // None of these is more than what can be found anew from the path's state.
+  std::optional<Settled> ahead_;  // of the accepted state
+  std::vector<double> borne_;     // after the history of the accepted state; empty: not known
+  std::unique_ptr<UpdatedTangent> tangent_;
 };
 
 }  // namespace peristat

@@ -8,6 +8,7 @@
 #include "solvers/drivers/fragment_pins.hpp"
 #include "solvers/drivers/path_ledger.hpp"
 #include "solvers/search/dynamic_relaxation.hpp"
+#include "solvers/search/updated_tangent.hpp"
 
 namespace peristat {
 
@@ -65,7 +66,8 @@ struct PathState {
     /// Of the last state under the given control [J]: stored and dissipated energy less the work of
     /// its dead loads and the batches' work, and what was drained up to it.
     double response_energy = 0.0, response_drained = 0.0;
-    std::int64_t count = 0;  ///< events so far
+    std::int64_t count = 0;      ///< events so far
+    TangentReference tangent{};  ///< that the accepted state was found with
   } events;
 };
 

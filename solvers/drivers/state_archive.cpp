@@ -15,13 +15,13 @@ void transfer_optional(StateArchive& archive, const std::string& name,
   value = is_there ? std::optional(held) : std::nullopt;
 }
 
-void transfer_history(StateArchive& archive, History& history) {
+void transfer_history(StateArchive& archive, const std::string& name, History& history) {
   int terms = static_cast<int>(history.terms());
-  archive.transfer("accepted/terms", terms);
+  archive.transfer(name + "/terms", terms);
   for (int k = 0; k < terms; ++k) {
     const auto term = static_cast<std::size_t>(k);
     std::vector<double> values(history.of(term).begin(), history.of(term).end());
-    archive.transfer("accepted/history_" + std::to_string(k), values);
+    archive.transfer(name + "/history_" + std::to_string(k), values);
     history.replace(term, std::move(values));
   }
 }
@@ -48,6 +48,36 @@ void transfer_pins(StateArchive& archive, FragmentPins& pins) {
   archive.transfer("pins/pinned", pinned);
 }
 
+void transfer_tangent(StateArchive& archive, TangentReference& tangent) {
+  auto& [at, lost] = tangent;
+  [[maybe_unused]] auto& [displacement, stage, history, load, environment] = at;
+  const std::string name = "events/tangent";
+  archive.transfer(name + "/displacement", displacement);
+  archive.transfer(name + "/stage", stage);
+  transfer_optional(archive, name + "/load", load);
+  transfer_history(archive, name, history);
+  std::vector<double> bond, direction, stiffness;
+  std::vector<Index> first, second;
+  for (const LostStiffness& one : lost) {
+    bond.push_back(double(one.bond));
+    first.push_back(one.first);
+    second.push_back(one.second);
+    direction.insert(direction.end(), one.direction.begin(), one.direction.end());
+    stiffness.push_back(one.stiffness);
+  }
+  archive.transfer(name + "/bond", bond);
+  archive.transfer(name + "/first", first);
+  archive.transfer(name + "/second", second);
+  archive.transfer(name + "/direction", direction);
+  archive.transfer(name + "/stiffness", stiffness);
+  lost.clear();
+  for (std::size_t k = 0; k < bond.size(); ++k) {
+    const double* const along = &direction[3 * k];
+    lost.push_back(
+        {Offset(bond[k]), first[k], second[k], {along[0], along[1], along[2]}, stiffness[k]});
+  }
+}
+
 }  // namespace
 
 // The bindings name every member, so that none can be forgotten.
@@ -59,7 +89,7 @@ void transfer(StateArchive& archive, PathState& state) {
   archive.transfer("accepted/displacement", displacement);
   archive.transfer("accepted/stage", stage);
   transfer_optional(archive, "accepted/load", load);
-  transfer_history(archive, history);
+  transfer_history(archive, "accepted", history);
   archive.transfer("steps", steps);
   transfer_ledger(archive, ledger);
   transfer_pins(archive, pins);
@@ -89,7 +119,7 @@ void transfer(StateArchive& archive, PathState& state) {
   archive.transfer("hand_over/force_falls", force_falls);
   archive.transfer("hand_over/peak_before", peak_before);
   auto& [at_strength, top, longest, largest_scale, broke_at, batch_work, released, response_energy,
-         response_drained, count] = events;
+         response_drained, count, tangent] = events;
   archive.transfer("events/at_strength", at_strength);
   archive.transfer("events/top", top);
   archive.transfer("events/longest", longest);
@@ -100,6 +130,7 @@ void transfer(StateArchive& archive, PathState& state) {
   archive.transfer("events/response_energy", response_energy);
   archive.transfer("events/response_drained", response_drained);
   archive.transfer("events/count", count);
+  transfer_tangent(archive, tangent);
 }
 
 }  // namespace peristat

@@ -25,20 +25,21 @@ constexpr double rate_tolerance = 1e-8;
 /// Relative residual below which a range without a place in it is no fault of the iteration.
 constexpr double nearly = 1e-6;
 
+/// An iteration that leaves more than this share of the residual asks for a new tangent.
+constexpr double slow = 0.1;
+
 class StrengthSearch {
  public:
-  StrengthSearch(const EquilibriumProblem& problem, LinearSolver& solver, TangentOperator& tangent,
-                 const State& from, const StrengthStep& step, const NewtonOptions& options,
+  StrengthSearch(const EquilibriumProblem& problem, UpdatedTangent& tangent, const State& from,
+                 const StrengthStep& step, const NewtonOptions& options,
                  const IterationObserver& observer)
       : problem_(problem),
-        solver_(solver),
         tangent_(tangent),
         step_(step),
         options_(options),
         observer_(observer),
         start_(from.stage),
-        external_force_(from.displacement.size()),
-        linearisation_(problem, solver, tangent, external_force_) {
+        external_force_(from.displacement.size()) {
     current_.displacement = from.displacement;
     current_.history = from.history;
     result_.stage = from.stage;
@@ -69,44 +70,70 @@ class StrengthSearch {
     IterationRecord row;
     row.iteration = iteration;
     row.step_length = 1.0;
+    if (!tangent_.is_there() || is_slow(iteration)) {
+      const LinearOutcome linear = tangent_.refresh(
+          {current_.displacement, result_.stage, current_.history, {}, current_.environment});
+      if (linear != LinearOutcome::solved) return outcome_of(linear);
+    }
     const double earlier = std::exchange(last_residual_, current_.residual_norm);
-    const double target = options_.relative_tolerance * scale();
-    std::vector<double> correction;
-    LinearOutcome linear = linearisation_.solve(
-        current_.at(Damage::held), current_.gradient, 0.0, FactorUse::may_reuse, {},
-        std::min(options_.linear_tolerance, forcing_term(current_.residual_norm, earlier, target)),
-        correction);
-    if (linear != LinearOutcome::solved) return outcome_of(linear);
-    row.linear_iterations = solver_.last_iterations();
-
-    ConditionRates conditions =
-        rates_of(problem_, current_.at(Damage::held), loads, result_.stage, step_.range);
-    std::vector<double> rate;
-    linear =
-        linearisation_.solve_again(conditions.force, conditions.displacement, rate_tolerance, rate);
-    if (linear != LinearOutcome::solved) return outcome_of(linear);
-    add_scaled(rate, 1.0, conditions.displacement);
-    add_scaled(current_.displacement, 1.0, correction);
-    move_followers(problem_, current_);
-    problem_.conditions.constraints().extend(current_.displacement, rate);
-
-    const double change = choose(rate, conditions.eigenstretch, iteration == 1);
-    if (result_.end == StrengthEnd::inadmissible) return Outcome::converged;
-    for (const Index dof : problem_.free.dof) current_.displacement[dof] += change * rate[dof];
-    result_.stage = result_.end == StrengthEnd::at_stop ? step_.stop : result_.stage + change;
+    if (Outcome found = correct(earlier); found != Outcome::converged) return found;
+    if (!step_.settles) {
+      if (Outcome found = find_rate(); found != Outcome::converged) return found;
+      const double change = choose(iteration == 1);
+      if (result_.end == StrengthEnd::inadmissible) return Outcome::converged;
+      for (const Index dof : problem_.free.dof) current_.displacement[dof] += change * rate_[dof];
+      result_.stage = result_.end == StrengthEnd::at_stop ? step_.stop : result_.stage + change;
+    }
     stand();
     result_.newton.iterations = iteration;
+    row.linear_iterations = tangent_.last_iterations();
     if (current_.degenerate) return Outcome::degenerate;
     if (iteration == 1 && misses_by_far()) return Outcome::iteration_limit;
     return interrupts(row) ? Outcome::interrupted : Outcome::converged;
   }
 
+  /// Whether the tangent that is there is too far from the state's.
+  [[nodiscard]] bool is_slow(int iteration) const {
+    return iteration > 2 && current_.residual_norm > slow * last_residual_ &&
+           current_.residual_norm > options_.relative_tolerance * scale();
+  }
+
+  /// u + a
+  Outcome correct(double earlier) {
+    const double target = options_.relative_tolerance * scale();
+    if (current_.residual_norm <= target) return Outcome::converged;
+    std::vector<double> residual = external_force_, correction;
+    add_scaled(residual, -1.0, current_.gradient);
+    const double tolerance =
+        std::min(options_.linear_tolerance, forcing_term(current_.residual_norm, earlier, target));
+    const LinearOutcome linear = tangent_.solve(residual, {}, tolerance, correction);
+    if (linear != LinearOutcome::solved) return outcome_of(linear);
+    add_scaled(current_.displacement, 1.0, correction);
+    move_followers(problem_, current_);
+    return Outcome::converged;
+  }
+
+  /// b, with the rates of the eigenstretches: anew where the tangent is, or the load curves it.
+  Outcome find_rate() {
+    const bool is_known = rate_of_ == tangent_.refreshed() && !current_.environment;
+    if (is_known && !rate_.empty()) return Outcome::converged;
+    ConditionRates conditions =
+        rates_of(problem_, current_.at(Damage::held), loads, result_.stage, step_.range);
+    const LinearOutcome linear =
+        tangent_.solve_again(conditions.force, conditions.displacement, rate_tolerance, rate_);
+    if (linear != LinearOutcome::solved) return outcome_of(linear);
+    rate_of_ = tangent_.refreshed();
+    add_scaled(rate_, 1.0, conditions.displacement);
+    problem_.conditions.constraints().extend(current_.displacement, rate_);
+    eigenstretch_rate_ = std::move(conditions.eigenstretch);
+    return Outcome::converged;
+  }
+
   /// Change of the stage; sets what is being headed for.
-  double choose(std::span<const double> rate, std::span<const double> eigenstretch_rate,
-                bool is_first) {
+  double choose(bool is_first) {
     const AdmissibleRange range = admissible_range(
         problem_.assembler.points(), problem_.assembler.model(), current_.at(Damage::held),
-        step_.borne, rate, eigenstretch_rate, share_at_strength, problem_.assembler.threads());
+        step_.borne, rate_, eigenstretch_rate_, share_at_strength, problem_.assembler.threads());
     if (is_first) {
       if (range.low > range.high) return refuse();
       result_.goes_up = range.high >= 0.0;
@@ -141,6 +168,7 @@ class StrengthSearch {
 
   /// Whether the state is what the search was heading for; called in equilibrium.
   bool ends_well() {
+    if (step_.settles) return true;
     const double most = utilisation();
     if (result_.end == StrengthEnd::at_strength) {
       if (std::abs(most - share_at_strength) <= strength_tolerance) return true;
@@ -153,6 +181,7 @@ class StrengthSearch {
 
   /// Whether one step along the tangent comes to quite another strength than it should.
   [[nodiscard]] bool misses_by_far() const {
+    if (step_.settles) return false;
     const double most = utilisation();
     if (result_.end == StrengthEnd::at_strength) return std::abs(most - 1.0) > largest_miss;
     return result_.goes_up && most > 1.0 + largest_miss;
@@ -182,7 +211,7 @@ class StrengthSearch {
   }
 
   [[nodiscard]] bool is_balanced() {
-    return note_convergence(problem_.free, tangent_, current_, last_residual_,
+    return note_convergence(problem_.free, tangent_.tangent(), current_, last_residual_,
                             options_.relative_tolerance, result_.newton);
   }
 
@@ -197,15 +226,15 @@ class StrengthSearch {
   static LoadPoint loads(double stage) { return stage; }
 
   const EquilibriumProblem& problem_;
-  LinearSolver& solver_;
-  TangentOperator& tangent_;
+  UpdatedTangent& tangent_;
   const StrengthStep& step_;
   const NewtonOptions& options_;
   const IterationObserver& observer_;
   double start_;
   std::vector<double> external_force_;
-  Linearisation linearisation_;
   Trial current_;
+  std::vector<double> rate_, eigenstretch_rate_;
+  int rate_of_ = 0;  // refresh of the tangent
   bool meets_upper_ = true;
   double last_residual_ = 0.0, old_scale_ = 0.0;
   StrengthResult result_;
@@ -213,11 +242,10 @@ class StrengthSearch {
 
 }  // namespace
 
-StrengthResult search_strength(const EquilibriumProblem& problem, LinearSolver& solver,
-                               TangentOperator& tangent, const State& from,
-                               const StrengthStep& step, const NewtonOptions& options,
-                               const IterationObserver& observer) {
-  return StrengthSearch(problem, solver, tangent, from, step, options, observer).run();
+StrengthResult search_strength(const EquilibriumProblem& problem, UpdatedTangent& tangent,
+                               const State& from, const StrengthStep& step,
+                               const NewtonOptions& options, const IterationObserver& observer) {
+  return StrengthSearch(problem, tangent, from, step, options, observer).run();
 }
 
 }  // namespace peristat

@@ -5,6 +5,7 @@
 
 #include "solvers/search/condition_rates.hpp"
 #include "solvers/search/newton.hpp"
+#include "solvers/search/updated_tangent.hpp"
 
 namespace peristat {
 
@@ -17,6 +18,7 @@ struct StrengthStep {
   std::span<const double> borne;  ///< per bond, see borne_stretches
   LoadRange range;                ///< that the stage may not leave
   double stop = 0.0;              ///< stage to end at, going up, if no strength is met before
+  bool settles = false;           ///< at its stage, whatever the bonds bear
   double least_scale = 0.0;       ///< that the residual is measured against [N]
   /// Largest change of the stage; a strength beyond it is not looked for.
   double longest = std::numeric_limits<double>::infinity();
@@ -43,16 +45,16 @@ struct StrengthResult {
 ///
 ///   f_ext(l) - dE/dx_f(u) = 0,   max_b s_b(u) / s_b^borne = share_at_strength,   u_p = u_p(l).
 ///
-/// Each iteration solves K_ff a = f_ext - dE/dx_f and K_ff b = df_ext/dl - K_fp du_p/dl, and with
-/// the stretches at u + a and their rates along b finds the range of dl in which no bond is above
-/// what it bears. Where the present stage is within it the next strength is at its upper end;
-/// otherwise the one that is met first from here is at the end that is nearer, up or down. The
-/// stretches are those of the state itself: the strength is exact at finite strain.
+/// Each iteration solves, with a tangent that may be of a state nearby, K_ff a = f_ext - dE/dx_f
+/// and K_ff b = df_ext/dl - K_fp du_p/dl, and with the stretches at u + a and their rates along b
+/// finds the range of dl in which no bond is above what it bears. Where the present stage is within
+/// it the next strength is at its upper end; otherwise the one that is met first from here is at
+/// the end that is nearer, up or down. The stretches are those of the state itself: the strength is
+/// exact at finite strain.
 /// @return outcome iteration_limit also where the way is too curved for one step
 [[nodiscard]] StrengthResult search_strength(const EquilibriumProblem& problem,
-                                             LinearSolver& solver, TangentOperator& tangent,
-                                             const State& from, const StrengthStep& step,
-                                             const NewtonOptions& options,
+                                             UpdatedTangent& tangent, const State& from,
+                                             const StrengthStep& step, const NewtonOptions& options,
                                              const IterationObserver& observer);
 
 }  // namespace peristat

@@ -6,6 +6,7 @@
 #include "assembly/operators/matrix_free_tangent.hpp"
 #include "assembly/operators/tangent.hpp"
 #include "solvers/linear/available_memory.hpp"
+#include "solvers/search/updated_tangent.hpp"
 #include "solvers/study/found_loads.hpp"
 #include "src/core/input_error.hpp"
 
@@ -32,6 +33,10 @@ void require_ldlt(const StudyOptions& options) {
 /// Vectors of the flow beside those of Newton's search: a state, two directions, works, the way.
 constexpr double vectors_of_flow = 9.0;
 
+/// Of mode path: vectors beside those of Newton's search, and numbers per bond: histories of three
+/// states, what is borne in two.
+constexpr double vectors_of_events = 12.0, numbers_of_events_per_bond = 6.0;
+
 bool flows(const StudyOptions& options, const Model& model) {
   const LoadSteppingOptions& loading = options.loading;
   const bool relaxes =
@@ -57,7 +62,8 @@ LinearSystems choose_linear_systems(const StudyOptions& options, const Model& mo
   problem.available_bytes = available_memory() - estimate.body_bytes - estimate.tangent_bytes;
   // Elsewhere damage grows in relaxation, which finds stable states alone.
   problem.may_soften = model.has_history() && options.loading.mode == Mode::newton;
-  problem.solves_often = flows(options, model);
+  const bool goes_by_events = options.loading.mode == Mode::path;
+  problem.solves_often = flows(options, model) || goes_by_events;
   problem.is_stored = options.tangent != TangentStorage::matrix_free;
   LinearSystems systems;
   systems.chosen = make_linear_solver(linear, problem, tell);
@@ -70,8 +76,13 @@ LinearSystems choose_linear_systems(const StudyOptions& options, const Model& mo
   }
   systems.is_stored = problem.is_stored;
   systems.bytes = estimate.bytes(systems.chosen.is_direct, systems.is_stored, linear);
-  if (problem.solves_often) {
-    systems.bytes += 8.0 * vectors_of_flow * estimate.size.points * estimate.size.dimension;
+  const double bytes_of_vector = 8.0 * estimate.size.points * estimate.size.dimension;
+  if (goes_by_events) {
+    const double columns = systems.chosen.is_direct ? UpdatedTangent::most_columns : 0.0;
+    systems.bytes += (vectors_of_events + columns) * bytes_of_vector +
+                     8.0 * numbers_of_events_per_bond * estimate.size.bonds;
+  } else if (problem.solves_often) {
+    systems.bytes += vectors_of_flow * bytes_of_vector;
   }
   return systems;
 }

@@ -133,6 +133,7 @@ struct Degraded {
   /// Energy density that the history has dissipated: int_0^kappa T phi_0' dr - T(kappa)
   /// phi_0(kappa)
   [[nodiscard]] double dissipated(double largest_stretch) const {
+    // A brittle bond is broken at the stretch where its damage begins.
     if (!(largest_stretch > law.onset()) && !is_broken(largest_stretch)) return 0.0;
     const double kappa = std::min(largest_stretch, law.critical());
     return modulus * (work(kappa) - whole(law.integrity(kappa))(kappa).value);

@@ -11,6 +11,9 @@ namespace {
 /// Two ratios of stretches nearer than this differ by the round-off of a common factor.
 constexpr double same_ratio = 1e-9;
 
+/// Of the band, at the strength of a whole bond.
+constexpr double share_at_strength = 0.1;
+
 /// Shares of an interval that a bisection ends at, after so many halvings.
 constexpr int halvings = 60;
 
@@ -63,21 +66,27 @@ class ToothMaker {
     return (law_.integrity(from) * s - force(s)) / largest_force_;
   }
 
+  /// The strength decides where a crack begins: the first teeth are the finest.
+  [[nodiscard]] double allowed_at(double from, double band) const {
+    return band * std::max(share_at_strength, 1.0 - law_.integrity(from));
+  }
+
   [[nodiscard]] Teeth in_band(double band) const {
     constexpr std::size_t endless = 100'000;
     Teeth teeth;
-    teeth.band = band;
     const double end = law_.critical();
     for (double from = law_.onset(); from < end && teeth.strength.size() < endless;) {
       double to = end;
-      if (above_law(from, end) > band) {
-        to = last_of(from, end, [&](double at) { return above_law(from, at) <= band; });
+      const double allowed = allowed_at(from, band);
+      if (above_law(from, end) > allowed) {
+        to = last_of(from, end, [&](double at) { return above_law(from, at) <= allowed; });
       }
       // A law that falls steeply may need a drop that is higher than the band.
       if (!(to > from * (1.0 + 1e-9))) to = std::min(end, from + 1e-3 * (end - law_.onset()));
       const double s = strength(from, to);
       teeth.strength.push_back(s);
       teeth.integrity.push_back(law_.integrity(from));
+      teeth.band = std::max(teeth.band, above_law(from, to));
       teeth.excess_strength =
           std::max(teeth.excess_strength, law_.integrity(from) * s / largest_force_ - 1.0);
       from = to;

@@ -85,6 +85,20 @@ class BondLook {
   std::span<const double> displacement_, free_;
 };
 
+/// Of the bond between two points, now.
+Coordinates direction(const Points& points, const StateView& at, Index i, Index j) {
+  const std::size_t d = std::size_t(points.dimension);
+  Coordinates arm{};
+  for (std::size_t c = 0; c < d; ++c) {
+    const std::size_t from = std::size_t(i) * d + c, to = std::size_t(j) * d + c;
+    arm[c] =
+        points.reference[to] - points.reference[from] + at.displacement[to] - at.displacement[from];
+  }
+  const double length = std::hypot(arm[0], arm[1], arm[2]);
+  for (double& component : arm) component /= length;
+  return arm;
+}
+
 /// Calls visit(thread, point, bond, look) for every bond that bears a limited stretch, on several
 /// threads; a thread's bonds follow one another.
 template <class Visit>
@@ -138,25 +152,32 @@ bool fails_by_steps(const Model& model) {
   return all;
 }
 
-BondDrops drop(const Model& model, const History& history, std::span<const Offset> bonds,
-               std::span<const double> stretches) {
-  const std::span<const double> before = bond_stretches(model, history);
-  BondDrops result{{before.begin(), before.end()}};
+BondDrops drop(const Points& points, const Model& model, const StateView& at,
+               std::span<const double> borne, std::span<const UtilisedBond> bonds) {
+  const std::span<const double> before = bond_stretches(model, at.history);
+  BondDrops result{{before.begin(), before.end()}, {borne.begin(), borne.end()}};
   const Bonds& network = model.bonds();
   with_law(model, [&](const auto& laws) {
-    for (std::size_t k = 0; k < bonds.size(); ++k) {
-      const Offset bond = bonds[k];
+    for (const UtilisedBond& one : bonds) {
+      const Offset bond = one.bond;
       const auto law = laws.of_bond(bond);
       double& largest = result.histories[std::size_t(bond)];
       const double after = borne_after(law.law, law.borne(largest));
+      const double volume = network.weight(bond) * network.length(bond);
       const auto whole = [&](double kappa) {
         auto potential = law.shape;
         potential.modulus = law.modulus * law.integrity_after(kappa);
-        return potential(stretches[k]).value;
+        return potential(one.stretch);
       };
-      result.energy_lost +=
-          network.weight(bond) * network.length(bond) * (whole(largest) - whole(after));
+      const auto stored = whole(largest), left = whole(after);
+      result.energy_lost += volume * (stored.value - left.value);
+      result.dissipated += volume * (law.dissipated(after) - law.dissipated(largest));
+      result.stiffness.push_back(
+          {bond, one.first_point, network.partner[bond],
+           direction(points, at, one.first_point, network.partner[bond]),
+           (stored.second - left.second) * network.weight(bond) * network.inverse_length(bond)});
       largest = after;
+      result.borne[std::size_t(bond)] = law.borne(after);
       result.breaking += law.is_broken(after);
     }
   });
@@ -172,7 +193,7 @@ std::vector<UtilisedBond> utilised_bonds(const Points& points, const Model& mode
                      const double stretch = look.stretch(i, bond);
                      const double utilisation = stretch / borne[std::size_t(bond)];
                      if (utilisation >= least) {
-                       parts[std::size_t(thread)].push_back({bond, utilisation, stretch});
+                       parts[std::size_t(thread)].push_back({bond, i, utilisation, stretch});
                      }
                    });
   std::vector<UtilisedBond> found;

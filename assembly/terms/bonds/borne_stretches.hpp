@@ -17,23 +17,35 @@ namespace peristat {
 /// Whether all bonds that fail do so by drops of their stiffness, elastic in between.
 [[nodiscard]] bool fails_by_steps(const Model& model);
 
-/// Drops of stiffness of some bonds at a state: each leaves what it bears, for good.
-struct BondDrops {
-  std::vector<double> histories;  ///< of all bonds, after the drops
-  Index breaking = 0;             ///< of the bonds, those that lose all
-  double energy_lost = 0.0;       ///< that the bonds stored at the state and no longer do [J]
-};
-
-/// @param bonds    that drop
-/// @param stretches of these bonds at the state
-[[nodiscard]] BondDrops drop(const Model& model, const History& history,
-                             std::span<const Offset> bonds, std::span<const double> stretches);
-
 /// A bond and its stretch over what it bears.
 struct UtilisedBond {
   Offset bond = 0;
+  Index first_point = 0;
   double utilisation = 0.0, stretch = 0.0;
 };
+
+/// Stiffness along its direction that a bond has lost.
+struct LostStiffness {
+  Offset bond = 0;
+  Index first = 0, second = 0;  ///< its points
+  Coordinates direction{};      ///< from the one to the other, now
+  double stiffness = 0.0;       ///< [N/m]
+};
+
+/// Drops of stiffness of some bonds at a state: each leaves what it bears, for good.
+struct BondDrops {
+  std::vector<double> histories{};  ///< of all bonds, after the drops
+  std::vector<double> borne{};      ///< likewise, see borne_stretches
+  Index breaking = 0;               ///< of the bonds, those that lose all
+  double energy_lost = 0.0;         ///< that the bonds stored at the state and no longer do [J]
+  double dissipated = 0.0;          ///< by the laws [J]
+  std::vector<LostStiffness> stiffness{};
+};
+
+/// @param borne after the history
+/// @param bonds that drop
+[[nodiscard]] BondDrops drop(const Points& points, const Model& model, const StateView& at,
+                             std::span<const double> borne, std::span<const UtilisedBond> bonds);
 
 /// Bonds that are utilised by at least so much, most utilised first, then by their numbers.
 /// @param borne see borne_stretches

@@ -76,7 +76,8 @@ struct Solved {
   SolverLadder solver;
 
   Solved(const Setting& setting, Followed& followed)
-      : strip(setting.middle, setting.supports, 1, setting.triangles, setting.control),
+      : strip(setting.middle, setting.supports, 1, setting.triangles, setting.control,
+              setting.options.mode == Mode::path),
         solver({{"first",
                  [&setting]() -> std::unique_ptr<LinearSolver> {
                    const bool finds_loads =
@@ -270,6 +271,24 @@ TEST(PathState, GoesOnWhileAPeakIsSearched) {
   EXPECT_TRUE(any_state(whole, [](const PathState& s) { return s.hand_over.peak_before > 0.0; }));
   EXPECT_TRUE(any_state(whole, [](const PathState& s) { return s.hand_over.force_falls; }));
   EXPECT_EQ(whole.states.back().hand_over.peak_before, 0.0);
+}
+
+TEST(PathState, GoesOnFromEventToEvent) {
+  // Triangles lose with their bonds; the halves come apart, one of them free along y.
+  for (const double triangles : {0.0, 0.2}) {
+    Setting setting{{support("left", "0", "0"), support("right", "0.1*load")},
+                    options_of(Mode::path, 4, 1)};
+    setting.middle = Strip::Middle::weak;
+    setting.triangles = triangles;
+    const Followed whole = expect_to_go_on_from_copies(setting);
+    EXPECT_EQ(whole.outcome, Outcome::converged);
+    EXPECT_TRUE(any_state(whole, [](const PathState& s) { return s.events.at_strength; }));
+    EXPECT_TRUE(any_state(whole, [](const PathState& s) {
+      return s.accepted.stage < s.events.top && !s.events.tangent.lost.empty();
+    }));
+    EXPECT_GT(whole.states.back().events.released, 0.0);
+    EXPECT_FALSE(whole.states.back().pins.pinned.empty());
+  }
 }
 
 TEST(PathState, GoesOnBeforeAndAfterAHandOver) {

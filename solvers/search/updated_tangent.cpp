@@ -1,0 +1,214 @@
+#include "solvers/search/updated_tangent.hpp"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include <Eigen/Dense>
+
+#include "solvers/linear/ldlt.hpp"
+
+namespace peristat {
+namespace {
+
+/// Relative residual of the columns of Z.
+constexpr double column_tolerance = 1e-10;
+
+/// Below this a pivot of the inner matrix is round-off of the others.
+constexpr double least_pivot = 1e-12;
+
+}  // namespace
+
+struct UpdatedTangent::Correction {
+  /// Entries of a bond's direction in the equations.
+  struct Direction {
+    std::array<std::pair<Index, double>, 6> entries;
+    int count = 0;
+  };
+
+  std::map<Offset, std::size_t> column_of;
+  std::vector<Direction> directions;
+  std::vector<double> stiffness;
+  std::vector<std::vector<double>> columns;  // of Z
+  Eigen::MatrixXd between;                   // G^T Z
+  Eigen::LDLT<Eigen::MatrixXd> inner;        // of C^-1 - G^T Z
+  bool is_current = true;
+  std::vector<double> known_side, known_solution;
+
+  static double along(const Direction& g, std::span<const double> v) {
+    double sum = 0.0;
+    for (int k = 0; k < g.count; ++k)
+      sum += g.entries[k].second * v[std::size_t(g.entries[k].first)];
+    return sum;
+  }
+
+  [[nodiscard]] bool factorize() {
+    const auto size = Eigen::Index(columns.size());
+    Eigen::MatrixXd matrix = -between.topLeftCorner(size, size);
+    for (Eigen::Index k = 0; k < size; ++k) matrix(k, k) += 1.0 / stiffness[std::size_t(k)];
+    inner.compute(matrix);
+    is_current = true;
+    const auto pivots = inner.vectorD();
+    return inner.info() == Eigen::Success && inner.isPositive() &&
+           pivots.minCoeff() > least_pivot * pivots.maxCoeff();
+  }
+
+  void apply(std::vector<double>& x) const {
+    const std::size_t size = columns.size();
+    if (size == 0) return;
+    Eigen::VectorXd along_bonds{Eigen::Index(size)};
+    for (std::size_t k = 0; k < size; ++k) along_bonds[Eigen::Index(k)] = along(directions[k], x);
+    const Eigen::VectorXd shares = inner.solve(along_bonds);
+    using Vector = Eigen::Map<Eigen::VectorXd>;
+    using Constant = Eigen::Map<const Eigen::VectorXd>;
+    Vector sum(x.data(), Eigen::Index(x.size()));
+    for (std::size_t k = 0; k < size; ++k) {
+      sum += shares[Eigen::Index(k)] * Constant(columns[k].data(), sum.size());
+    }
+  }
+};
+
+UpdatedTangent::UpdatedTangent(const EquilibriumProblem& problem, LinearSolver& solver,
+                               TangentOperator& tangent)
+    : problem_(problem), solver_(solver), tangent_(tangent) {}
+UpdatedTangent::~UpdatedTangent() = default;
+
+void UpdatedTangent::forget() {
+  is_there_ = false;
+  reference_ = {};
+}
+
+void UpdatedTangent::become(const TangentReference& reference) {
+  const TangentReference kept = reference;
+  if (kept.at.displacement.empty() || refresh(kept.at) != LinearOutcome::solved) return forget();
+  is_direct_ = solver_.inertia().has_value() || indefinite_in_force_;
+  lose(kept.lost);
+}
+
+LinearOutcome UpdatedTangent::refresh(State at) {
+  forget();
+  correction_ = std::make_unique<Correction>();
+  ++refreshed_;
+  tangent_.linearise(problem_.assembler, StateView(at, Damage::held), 0.0);
+  reference_.at = std::move(at);
+  solver_.count_pivots(false);
+  indefinite_in_force_ = false;
+  LinearOutcome outcome = solver_.factorize(tangent_, FactorUse::factorize_now);
+  if (outcome == LinearOutcome::not_positive_definite) outcome = take_indefinite();
+  is_there_ = outcome == LinearOutcome::solved;
+  return outcome;
+}
+
+LinearOutcome UpdatedTangent::take_indefinite() {
+  if (!tangent_.as_tangent()) return LinearOutcome::not_positive_definite;
+  if (!indefinite_) {
+    indefinite_ = std::make_unique<Ldlt>();
+    const LinearOutcome outcome = indefinite_->analyze(tangent_.pattern, problem_.free);
+    if (outcome != LinearOutcome::solved) return outcome;
+  }
+  indefinite_in_force_ = true;
+  return indefinite_->factorize(tangent_, FactorUse::factorize_now);
+}
+
+LinearOutcome UpdatedTangent::solve_for(std::span<const double> side, double tolerance,
+                                        std::vector<double>& solution) {
+  solution.assign(side.size(), 0.0);
+  LinearOutcome outcome = present().solve(side, solution, tolerance);
+  if (outcome == LinearOutcome::not_positive_definite && !indefinite_in_force_) {
+    outcome = take_indefinite();  // iterations have met negative curvature
+    if (outcome == LinearOutcome::solved) outcome = present().solve(side, solution, tolerance);
+  }
+  is_direct_ = outcome == LinearOutcome::solved && present().last_iterations() == 0;
+  return outcome;
+}
+
+std::vector<double> UpdatedTangent::right_hand_side(std::span<const double> force,
+                                                    std::span<const double> jump) const {
+  std::vector<double> side(std::size_t(problem_.free.count()));
+  problem_.free.restrict_to_free(force, side);
+  if (jump.empty()) return side;
+  std::vector<double> of_supports(jump.size());
+  tangent_.multiply(jump, of_supports);
+  for (std::size_t e = 0; e < side.size(); ++e) side[e] -= of_supports[problem_.free.dof[e]];
+  return side;
+}
+
+LinearOutcome UpdatedTangent::solve(std::span<const double> force, std::span<const double> jump,
+                                    double tolerance, std::vector<double>& direction) {
+  const std::vector<double> side = right_hand_side(force, jump);
+  std::vector<double> solution;
+  const LinearOutcome outcome = solve_for(side, tolerance, solution);
+  if (outcome == LinearOutcome::solved) correction_->apply(solution);
+  direction.resize(problem_.free.equation.size());
+  problem_.free.extend_by_zero(solution, direction);
+  return outcome;
+}
+
+LinearOutcome UpdatedTangent::solve_again(std::span<const double> force,
+                                          std::span<const double> jump, double tolerance,
+                                          std::vector<double>& direction) {
+  std::vector<double> side = right_hand_side(force, jump);
+  Correction& known = *correction_;
+  if (side != known.known_side) {
+    known.known_side.clear();
+    const LinearOutcome outcome = solve_for(side, tolerance, known.known_solution);
+    if (outcome != LinearOutcome::solved) return outcome;
+    known.known_side = std::move(side);
+  }
+  std::vector<double> solution = known.known_solution;
+  correction_->apply(solution);
+  direction.resize(problem_.free.equation.size());
+  problem_.free.extend_by_zero(solution, direction);
+  return LinearOutcome::solved;
+}
+
+bool UpdatedTangent::is_worth_updating() const {
+  return is_there_ && is_direct_ && problem_.conditions.constraints().none() &&
+         correction_->columns.size() < std::size_t(most_columns);
+}
+
+LinearOutcome UpdatedTangent::add_column(const LostStiffness& lost) {
+  Correction& c = *correction_;
+  const auto known = c.column_of.find(lost.bond);
+  if (known != c.column_of.end()) {
+    c.stiffness[known->second] += lost.stiffness;
+    return LinearOutcome::solved;
+  }
+  Correction::Direction g;
+  std::vector<double> side(std::size_t(problem_.free.count()));
+  const int d = problem_.free.dimension;
+  for (int r = 0; r < d; ++r) {
+    for (const auto& [point, sign] : {std::pair(lost.first, -1.0), std::pair(lost.second, 1.0)}) {
+      const Index equation = problem_.free.equation[std::size_t(point) * d + r];
+      if (equation == FreeDofs::none) continue;
+      g.entries[std::size_t(g.count++)] = {equation, sign * lost.direction[std::size_t(r)]};
+      side[std::size_t(equation)] = sign * lost.direction[std::size_t(r)];
+    }
+  }
+  if (g.count == 0) return LinearOutcome::solved;
+  std::vector<double> column;
+  const LinearOutcome outcome = solve_for(side, column_tolerance, column);
+  if (outcome != LinearOutcome::solved) return outcome;
+  const auto size = Eigen::Index(c.columns.size());
+  if (c.between.rows() == 0) c.between.setZero(most_columns, most_columns);
+  for (Eigen::Index k = 0; k < size; ++k) {
+    c.between(k, size) = c.between(size, k) =
+        Correction::along(c.directions[std::size_t(k)], column);
+  }
+  c.between(size, size) = Correction::along(g, column);
+  c.column_of[lost.bond] = c.columns.size();
+  c.directions.push_back(g);
+  c.stiffness.push_back(lost.stiffness);
+  c.columns.push_back(std::move(column));
+  return LinearOutcome::solved;
+}
+
+void UpdatedTangent::lose(std::span<const LostStiffness> lost) {
+  for (const LostStiffness& bond : lost) {
+    if (!is_worth_updating() || add_column(bond) != LinearOutcome::solved) return forget();
+    reference_.lost.push_back(bond);
+  }
+  if (!correction_->columns.empty() && !correction_->factorize()) forget();
+}
+
+}  // namespace peristat

@@ -1,0 +1,201 @@
+#include "solvers/search/strength_search.hpp"
+
+#include <cmath>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "solvers/search/linearisation.hpp"
+#include "tests/problems.hpp"
+
+namespace peristat {
+namespace {
+
+using tests::Problem;
+using tests::support;
+
+const IterationObserver nobody;
+constexpr double critical = 0.05;
+
+tests::BoxSetting brittle() {
+  tests::BoxSetting box = tests::small_box(2);
+  box.potential = [](double micromodulus) {
+    return Degraded<CriticalStretch>{micromodulus, {critical}};
+  };
+  return box;
+}
+
+/// A strip that is held on the left, drawn and turned on the right.
+struct Drawn : Problem {
+  Cholesky solver;
+  UpdatedTangent updated;
+  State state;
+  std::vector<double> borne;
+
+  explicit Drawn(const std::string& along = "0.2*load", const std::string& across = "0.1*load^2")
+      : Problem(brittle(), {support("left", "0", "0"), support("right", along, across)}, {}, 2),
+        updated(equilibrium, solver, tangent),
+        state(at_rest()),
+        borne(borne_stretches(body.model, state.history)) {
+    EXPECT_EQ(analyze(solver), LinearOutcome::solved);
+  }
+
+  [[nodiscard]] StrengthStep step() const {
+    StrengthStep made;
+    made.borne = borne;
+    made.range = {0.0, 1.0};
+    made.stop = 1.0;
+    return made;
+  }
+  [[nodiscard]] StrengthResult search(const StrengthStep& step) {
+    return search_strength(equilibrium, updated, state, step, NewtonOptions(), nobody);
+  }
+  [[nodiscard]] double utilisation(const Trial& trial) const {
+    return largest_utilisation(body.points, body.model, trial.at(Damage::held), borne, 1);
+  }
+  /// The state that a search by itself finds at the stage.
+  [[nodiscard]] double distance_from_newton(const StrengthResult& found) {
+    Cholesky own;
+    EXPECT_EQ(analyze(own), LinearOutcome::solved);
+    Tangent of_its_own(BlockPattern(body.model.bonds()), 2);
+    NewtonOptions options;
+    options.damage = Damage::held;
+    State from = state;
+    from.history = found.newton.state.history;
+    const NewtonResult expected =
+        newton(equilibrium, own, of_its_own, from, found.stage, options, nobody);
+    EXPECT_EQ(expected.outcome, Outcome::converged);
+    return tests::distance(found.newton.state.displacement, expected.state.displacement) /
+           tests::norm(expected.state.displacement);
+  }
+
+  /// Some of the most stretched bonds break.
+  void break_bonds(std::size_t count) {
+    auto most = utilised_bonds(body.points, body.model, StateView(state, Damage::held), borne, 0.1,
+                               assembler.threads());
+    most.resize(count);
+    const BondDrops dropped =
+        drop(body.points, body.model, StateView(state, Damage::held), borne, most);
+    state.history = assembler.history_of(dropped.histories);
+    borne = dropped.borne;
+    updated.lose(dropped.stiffness);
+  }
+};
+
+TEST(StrengthSearch, EndsWhereTheFirstBondIsAtItsStrength) {
+  Drawn drawn;
+  const StrengthResult found = drawn.search(drawn.step());
+  ASSERT_EQ(found.newton.outcome, Outcome::converged);
+  ASSERT_EQ(found.end, StrengthEnd::at_strength);
+  EXPECT_GT(found.stage, 0.05);
+  EXPECT_LT(found.stage, 1.0);
+  EXPECT_NEAR(drawn.utilisation(found.newton.state), share_at_strength, 1e-9);
+  EXPECT_LE(found.newton.state.residual_norm, 1e-10 * found.newton.scale);
+  EXPECT_LT(drawn.distance_from_newton(found), 1e-8);
+}
+
+TEST(StrengthSearch, StopsBeforeIt) {
+  Drawn drawn;
+  StrengthStep step = drawn.step();
+  step.stop = 0.05;
+  const StrengthResult found = drawn.search(step);
+  ASSERT_EQ(found.newton.outcome, Outcome::converged);
+  EXPECT_EQ(found.end, StrengthEnd::at_stop);
+  EXPECT_EQ(found.stage, 0.05);
+  EXPECT_LT(drawn.utilisation(found.newton.state), 1.0);
+  EXPECT_LT(drawn.distance_from_newton(found), 1e-8);
+}
+
+TEST(StrengthSearch, FindsTheSameStrengthFromAnywhereBelow) {
+  double stage = 0.0;
+  for (const double stop : {1.0, 0.01, 0.03, 0.06, 0.09}) {
+    Drawn drawn;
+    StrengthStep step = drawn.step();
+    step.stop = stop;
+    StrengthResult found = drawn.search(step);
+    if (found.end == StrengthEnd::at_stop) {
+      drawn.state = {found.newton.state.displacement, found.stage, drawn.state.history};
+      found = drawn.search(drawn.step());
+    }
+    ASSERT_EQ(found.end, StrengthEnd::at_strength);
+    if (stage == 0.0) stage = found.stage;
+    EXPECT_NEAR(found.stage, stage, 1e-9);
+  }
+}
+
+TEST(StrengthSearch, GoesDownWhereBondsAreAboveTheirStrength) {
+  Drawn drawn;
+  const StrengthResult first = drawn.search(drawn.step());
+  ASSERT_EQ(first.end, StrengthEnd::at_strength);
+  drawn.state = {first.newton.state.displacement, first.stage, drawn.state.history};
+  drawn.break_bonds(12);
+  const StrengthResult found = drawn.search(drawn.step());
+  ASSERT_EQ(found.newton.outcome, Outcome::converged);
+  ASSERT_EQ(found.end, StrengthEnd::at_strength);
+  EXPECT_FALSE(found.goes_up);
+  EXPECT_LT(found.stage, first.stage);
+  EXPECT_NEAR(drawn.utilisation(found.newton.state), share_at_strength, 1e-9);
+  EXPECT_LT(drawn.distance_from_newton(found), 1e-8);
+}
+
+TEST(StrengthSearch, TellsWhereNoLoadWillDo) {
+  // The body is drawn before the load begins, and the range ends there.
+  Drawn drawn;
+  const StrengthResult first = drawn.search(drawn.step());
+  drawn.state = {first.newton.state.displacement, first.stage, drawn.state.history};
+  drawn.break_bonds(12);
+  StrengthStep step = drawn.step();
+  step.range.low = first.stage - 1e-6;
+  EXPECT_EQ(drawn.search(step).end, StrengthEnd::inadmissible);
+}
+
+TEST(StrengthSearch, SettlesAtItsLoad) {
+  Drawn drawn;
+  const StrengthResult first = drawn.search(drawn.step());
+  drawn.state = {first.newton.state.displacement, first.stage, drawn.state.history};
+  drawn.break_bonds(3);
+  StrengthStep step = drawn.step();
+  step.settles = true;
+  const StrengthResult found = drawn.search(step);
+  ASSERT_EQ(found.newton.outcome, Outcome::converged);
+  EXPECT_EQ(found.stage, first.stage);
+  EXPECT_LT(drawn.distance_from_newton(found), 1e-8);
+}
+
+TEST(UpdatedTangent, IsThatOfTheBodyWithoutWhatItHasLost) {
+  // At rest a bond's stiffness is along its direction alone: nothing else is lost.
+  Drawn drawn;
+  ASSERT_EQ(drawn.updated.refresh(drawn.state), LinearOutcome::solved);
+  const std::vector<double> force = tests::Random(5).vector(drawn.body.dofs());
+  std::vector<double> whole, updated, anew, again;
+  ASSERT_EQ(drawn.updated.solve(force, {}, 1e-10, whole), LinearOutcome::solved);
+  std::vector<UtilisedBond> some;
+  tests::for_each_bond(drawn.body.model.bonds(), [&](Index i, Index, Offset bond) {
+    if (bond % 9 == 4) some.push_back({bond, i, 1.0, 0.0});
+  });
+  const BondDrops dropped = drop(drawn.body.points, drawn.body.model,
+                                 StateView(drawn.state, Damage::held), drawn.borne, some);
+  drawn.state.history = drawn.assembler.history_of(dropped.histories);
+  drawn.updated.lose(dropped.stiffness);
+  ASSERT_TRUE(drawn.updated.is_there());
+  ASSERT_EQ(drawn.updated.solve(force, {}, 1e-10, updated), LinearOutcome::solved);
+
+  const TangentReference reference = drawn.updated.reference();
+  Tangent another(BlockPattern(drawn.body.model.bonds()), 2);
+  Cholesky solver;
+  ASSERT_EQ(drawn.analyze(solver), LinearOutcome::solved);
+  UpdatedTangent fresh(drawn.equilibrium, solver, another);
+  ASSERT_EQ(fresh.refresh(drawn.state), LinearOutcome::solved);
+  ASSERT_EQ(fresh.solve(force, {}, 1e-10, anew), LinearOutcome::solved);
+  EXPECT_LT(tests::distance(updated, anew), 1e-10 * tests::norm(anew));
+  EXPECT_GT(tests::distance(updated, whole), 1e-2 * tests::norm(anew));
+
+  UpdatedTangent same(drawn.equilibrium, solver, another);
+  same.become(reference);
+  ASSERT_TRUE(same.is_there());
+  ASSERT_EQ(same.solve(force, {}, 1e-10, again), LinearOutcome::solved);
+  EXPECT_EQ(again, updated);
+}
+
+}  // namespace
+}  // namespace peristat
