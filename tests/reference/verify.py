@@ -11,10 +11,12 @@ import numpy
 from tests.reference import stress
 from tests.reference.body import Body
 from tests.reference.case import Case, Conditions
+from tests.reference.events import Events
 from tests.reference.foundations import Foundations
 from tests.reference.mechanics import STEP, Mechanics
 from tests.reference.pieces import unheld_points
 from tests.reference.results import Results
+from tests.reference.saw_tooth import SAME_STRENGTH, SawTooth
 from tests.reference.ties import Ties
 
 UNIT_ROUND_OFF = 2.0**-53
@@ -45,6 +47,10 @@ class Verification:
         self.ties = Ties(self.case, reference, volume, sets, self.conditions.prescribed)
         self.jump_is_free = self.mechanics.body.beyond.given_jump(0.0)[1]
         self.first_real_step = 0
+        self.events = None
+        if self.case["solver"]["mode"] == "path":
+            self.mechanics.law = SawTooth(self.mechanics.law, self.case["loading"].get("teeth", 20))
+            self.events = Events(self)
         self.stand_in = None
         if "elastic_horizon_ratio" in self.case["solver"]:
             body = Body(as_given, reference, volume, self.case["solver"]["elastic_horizon_ratio"], **more)
@@ -117,11 +123,21 @@ class Verification:
             elif (stretch == NEVER_FAILS) == self.mechanics.fails[bond]:
                 self.complain(step, f"bond {first}-{second} is written to fail or not to, and the other is right")
             elif stretch != NEVER_FAILS:
-                if stretch < history[bond] or stretch <= self.mechanics.law.onset[bond]:
+                if self.events:
+                    stretch = self.strength_meant(step, bond, stretch)
+                elif stretch <= self.mechanics.law.onset[bond]:
+                    self.complain(step, f"history {stretch} of bond {first}-{second} up to the onset")
+                if stretch < history[bond]:
                     self.complain(step, f"history {stretch} of bond {first}-{second} after {history[bond]}")
                 history[bond] = stretch
         self.judge_twins(step, history)
         return history
+
+    def strength_meant(self, step, bond, written):
+        """The strength of the secant of that number."""
+        right, off = self.mechanics.law.told(numpy.array([bond]), numpy.array([written]))
+        self.compare(step, "strength of a tooth", written, right[0], self.mechanics.law.critical[bond], SAME_STRENGTH)
+        return right[0]
 
     def judge_twins(self, step, history):
         """A bond to a point beyond and the same bond as the other point sees it have one history."""
@@ -166,7 +182,7 @@ class Verification:
         self.judge_jump(mechanics, step)
         loads = self.loads(step.loads, step.displacement)
         external = self.external(step.loads, step.displacement)
-        unheld = self.unheld(step, old)
+        unheld = self.unheld(step, old, history)
         before = self.gradient_before(mechanics, step, old)
         self.judge_residual(mechanics, step, row, old, history, before, gradient - external, magnitude, unheld)
         self.judge_reactions(step, row, gradient - external, largest, unheld, external)
@@ -174,6 +190,8 @@ class Verification:
         self.judge_energies(mechanics, step, row, old, history)
         if mechanics is self.mechanics:
             self.judge_damage(mechanics, step, row, history)
+            if self.events:
+                self.events.judge(step, row, old, history)
             everywhere = getattr(step, "everywhere", step.displacement)
             stress.judge(self, step, mechanics, everywhere, history, self.whole_force(mechanics, step))
         self.judge_work(mechanics, step, row, old, history, before, gradient, external, loads)
@@ -215,10 +233,10 @@ class Verification:
             self.bears[mechanics] = mechanics.bears()
         return self.bears[mechanics] * self.reach(mechanics, step)
 
-    def unheld(self, step, old):
+    def unheld(self, step, old, history):
         """Points that may be pinned or have left the equations in this step: those that nothing held
-        after the last step that broke bonds."""
-        broken = self.mechanics.is_broken(old.history)
+        after the last step that broke bonds, or, in mode path, after what broke at its beginning."""
+        broken = self.mechanics.is_broken(history if self.events else old.history)
         if not broken.any() or step.number < self.first_real_step:
             return numpy.zeros(len(self.results.volume), bool)
         if old.number + 1 == step.number and broken.sum() == self.broken_when_looked_for:
@@ -440,8 +458,8 @@ class Verification:
 
     def judge_work(self, mechanics, step, row, old, history, before, gradient, external, loads):
         """External work by the trapezoidal rule over the accepted steps; implicit ones add no other."""
-        if old.mechanics not in (None, mechanics) or old.number + 1 != step.number:
-            return
+        if old.mechanics not in (None, mechanics) or old.number + 1 != step.number or self.events:
+            return  # between two events of a path: see Events
         if step.mode == "newton" and row["numerical_work"] != old.numerical_work:
             self.complain(step, f"numerical work {row['numerical_work']} in an implicit step, {old.numerical_work} before it")
         prescribed = self.conditions.prescribed
