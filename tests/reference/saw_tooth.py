@@ -67,8 +67,9 @@ class Smooth:
             if len(strengths) == most:
                 return None
             start, end = ends[-1], 1.0
-            if self.above(start, end) > band:
-                end = last_of(start, 1.0, lambda at: self.above(start, at) <= band)[0]
+            allowed = band * max(0.1, 1 - self.integrity(start))  # the first teeth are the finest
+            if self.above(start, end) > allowed:
+                end = last_of(start, 1.0, lambda at: self.above(start, at) <= allowed)[0]
             if not end > start * (1 + 1e-9):  # the law itself falls by more than the band
                 end = min(1.0, start + 1e-3 * (1.0 - self.onset))
             strengths.append(self.strength(start, end))

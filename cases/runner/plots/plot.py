@@ -35,6 +35,10 @@ def draw_all(results: ResultsFolder):
 
     if has_found_loads(results):
         yield "path", draw_path(results)
+    from event_path_picture import draw_events, has_events
+
+    if has_events(results):
+        yield "path", draw_events(results)
     from energy_picture import draw_energies, has_lost_energy
 
     if has_lost_energy(results):

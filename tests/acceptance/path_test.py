@@ -1,0 +1,253 @@
+"""Mode path: from event to event. The reference of tests/reference settles every event once more."""
+
+import csv
+
+import h5py
+import numpy
+
+from tests.acceptance.programme_test import Programmes
+from tests.reference.events import Events
+from tests.reference.program import peristat
+from tests.reference.verify import Verification
+from tests.same_results import differences
+
+# 12 x 6 points between two held layers, notched from below.
+STRIP = """\
+dimension = 2
+[lattice]
+spacing = 1e-3
+thickness = 1e-3
+[[lattice.shape]]
+add = "box"
+min = [0.0, 0.0]
+max = [0.012, 0.006]
+[[lattice.layer]]
+name = "left"
+side = "x-"
+[[lattice.layer]]
+name = "right"
+side = "x+"
+[[crack]]
+from = [0.006, 0.0]
+to = [0.006, 0.0015]
+[material]
+youngs_modulus = 200e9
+[material.damage]
+law = "critical_stretch"
+critical = 0.01
+[[support]]
+set = "left"
+displacement = ["LEFT*load", 0]
+[[support]]
+set = "right"
+displacement = ["2e-4*load", "free"]
+[solver]
+mode = "path"
+"""
+CRACK = '[[crack]]\nfrom = [0.006, 0.0]\nto = [0.006, 0.0015]\n'
+BRITTLE = 'law = "critical_stretch"\ncritical = 0.01\n'
+LINEAR = 'law = "linear"\nonset = 0.005\ncritical = 0.02\n'
+TANH = 'law = "tanh"\nonset = 0.008\ncritical = 0.012\n'
+
+
+def strip(damage=BRITTLE, cracks=CRACK, left="0", more=""):
+    return STRIP.replace(BRITTLE, damage).replace(CRACK, cracks).replace("LEFT", left) + more
+
+
+def crack(*ends):
+    return "".join(f"[[crack]]\nfrom = {list(a)}\nto = {list(b)}\n" for a, b in ends)
+
+
+class Paths(Programmes):
+    def history(self, name="out"):
+        with open(self.folder / name / "history.csv", newline="") as table:
+            texts = ("mode", "stability")
+            return [{key: value if key in texts else float(value) for key, value in row.items()}
+                    for row in csv.DictReader(table)]  # fmt: skip
+
+    def broken(self, name="out"):
+        """Ends of the bonds in the order in which they broke, and the load factors."""
+        with open(self.folder / name / "broken_bonds.csv", newline="") as table:
+            rows = list(csv.DictReader(table))
+        return [(row["step"], row["first_point"], row["second_point"]) for row in rows], numpy.array(
+            [float(row["load_factor"]) for row in rows])  # fmt: skip
+
+    def decisions(self, action, name="out"):
+        with open(self.folder / name / "decisions.csv", newline="") as table:
+            return [row["reason"] for row in csv.DictReader(table) if row["action"] == action]
+
+    def judged(self, text, *settings, name="out"):
+        """Rows of a run that ends with 0 and that the reference has nothing against."""
+        rows = self.run_case(text, *settings, name=name)
+        judge = Verification(self.folder / name, text)
+        self.assertEqual(judge.run(), [])
+        events = judge.events
+        self.assertIsInstance(events, Events)
+        self.assertEqual(events.unknown, 0)
+        self.assertTrue(events.is_whole)
+        if events.is_plain:
+            self.assertGreater(events.settled_here, 10)
+        self.assertEqual(rows[-1]["stage"], round(rows[-1]["stage"]))
+        return rows, events
+
+
+class Judged(Paths):
+    def test_brittle(self):
+        rows, _ = self.judged(strip())
+        self.assertGreater(sum(row["on_response"] == 0 for row in rows), 10)
+        self.assertIn("unstable", {row["stability"] for row in rows})
+        self.assertGreater(rows[-1]["released_energy"], rows[-1]["drained_energy"])
+
+    def test_linear_softening(self):
+        self.judged(strip(LINEAR, more="[loading]\nteeth = 3\n"))
+
+    def test_tanh_softening(self):
+        self.judged(strip(TANH, more="[loading]\nteeth = 4\n"))
+
+    def test_one_tooth(self):
+        self.judged(strip(LINEAR, more="[loading]\nteeth = 1\n"))
+
+    def test_no_batches_and_wide_ones(self):
+        for tolerance in (0, 0.1):
+            with self.subTest(tolerance):
+                self.judged(strip(more=f"[loading]\nevent_tolerance = {tolerance}\n"), name=f"out{tolerance}")
+
+    def test_cpd(self):
+        material = 'model = "cpd"\nyoungs_modulus = 200e9\npoissons_ratio = 0.35\n[material.damage]\n'
+        text = strip().replace("youngs_modulus = 200e9\n[material.damage]\n", material)
+        rows, _ = self.judged(text)
+        self.assertGreater(rows[-1]["broken_bonds"], 10)
+
+    def test_dead_load_beside_supports(self):
+        self.judged(strip(more='[[load]]\nside = "y+"\ntraction = [0, "2e7*load"]\n'))
+
+    def test_unloading_in_the_middle(self):
+        rows, _ = self.judged(strip(more="[loading]\ntable = [0, 0.6, 0.2, 1]\n"))
+        stages = [row["stage"] for row in rows]
+        for stage in (1.0, 2.0, 3.0):
+            self.assertIn(stage, stages)
+        bonds = {row["stage"]: row["broken_bonds"] for row in rows}
+        self.assertEqual(bonds[1.0], bonds[2.0])  # nothing breaks on the way down
+        self.assertGreater(bonds[1.0], 0)
+
+    def test_two_notches_that_compete(self):
+        notches = crack(([0.004, 0.0], [0.004, 0.0016]), ([0.008, 0.0044], [0.008, 0.006]))
+        self.judged(strip(cracks=notches))
+
+    def test_three_pieces(self):
+        """Two ligaments that are alike break together, and leave a piece that nothing holds."""
+        notches = crack(*(([x, 0.0], [x, 0.003]) for x in (0.003, 0.009)))
+        text = strip(cracks=notches, left="-2e-4").replace('"-2e-4*load", 0]', '"-2e-4*load", "free"]')
+        text = text.replace('[[support]]\nset = "left"', '[[set]]\nname = "low"\nwhere = "y < 0.001 and x < 0"\n[[support]]\nset = "left"')
+        text += '[[support]]\nset = "low"\ndisplacement = ["free", 0]\n'
+        rows, _ = self.judged(strip(cracks=notches, left="-2e-4"))
+        self.assertTrue(self.decisions("hold fragments"))
+        with h5py.File(self.folder / "out/results.h5") as file:
+            last = list(file["steps"].values())[-1]
+            self.assertIn(-1.0, [*last["fragment"][...], -1.0])
+        self.assertLess(rows[-1]["reaction_x:right"], 0.05 * max(row["reaction_x:right"] for row in rows))
+
+
+class Symmetric(Paths):
+    def test_it_stays_symmetric(self):
+        notches = crack(([0.006, 0.0], [0.006, 0.001]), ([0.006, 0.005], [0.006, 0.006]))
+        text = strip(cracks=notches, left="-2e-4")
+        text = text.replace('"-2e-4*load", 0]', '"-2e-4*load", "0"]').replace('"2e-4*load", "free"]', '"2e-4*load", "0"]')
+        self.judged(text)
+        with h5py.File(self.folder / "out/results.h5") as file:
+            reference = file["points/reference"][...]
+            mirrors = []
+            for axis, middle in ((0, 0.012), (1, 0.006)):
+                mirrored = reference.copy()
+                mirrored[:, axis] = middle - mirrored[:, axis]
+                away = numpy.abs(reference[None] - mirrored[:, None]).max(axis=2)
+                self.assertLess(away.min(axis=1).max(), 1e-9)
+                mirrors.append((axis, away.argmin(axis=1)))
+            compared = 0
+            for step in file["steps"].values():
+                displacement, damage = step["displacement"][...], step["damage"][...]
+                for axis, image in mirrors:
+                    sign = numpy.where(numpy.arange(2) == axis, -1, 1)
+                    off = numpy.abs(displacement - sign * displacement[image]).max()
+                    self.assertLess(off, 1e-7 * numpy.abs(displacement).max())
+                    self.assertEqual(numpy.abs(damage - damage[image]).max(), 0)
+                    compared += damage.max() > 0
+            self.assertGreater(compared, 20)
+
+
+class OnePath(Paths):
+    def same_path(self, text, variants):
+        self.run_case(text)
+        bonds, loads = self.broken()
+        self.assertGreater(len(bonds), 20)
+        for name, words in variants.items():
+            with self.subTest(name):
+                folder = name.replace(".", "_")
+                ended = peristat("run", self.case(text), "--output", self.folder / folder, *words)
+                self.assertEqual(ended.code, 0, ended.said)
+                others, other_loads = self.broken(folder)
+                self.assertEqual([b[1:] for b in others], [b[1:] for b in bonds])
+                self.assertLess(numpy.abs(other_loads - loads).max(), 1e-8)
+                last, other = self.history()[-1], self.history(folder)[-1]
+                for key in ("dissipated_energy", "drained_energy", "released_energy"):
+                    self.assertLess(abs(last[key] - other[key]), 1e-7 * last["external_work"], key)
+
+    def variants(self):
+        words = {"two threads": ["--threads", 2], "three threads": ["--threads", 3]}
+        for setting in ("loading.steps=10", "loading.steps=100", "solver.linear=cholesky", "solver.linear=pcg"):
+            words[setting] = ["--threads", 1, "--set", setting]
+        return words
+
+    def test_brittle(self):
+        self.same_path(strip(), self.variants())
+
+    def test_softening(self):
+        self.same_path(strip(TANH, more="[loading]\nteeth = 3\n"), self.variants())
+
+    def test_symmetric(self):
+        """Where bonds tie, too."""
+        notches = crack(([0.006, 0.0], [0.006, 0.001]), ([0.006, 0.005], [0.006, 0.006]))
+        self.same_path(strip(cracks=notches, left="-2e-4"), self.variants())
+
+    def test_it_goes_on_from_any_step_as_if_nothing_had_been(self):
+        text = strip()
+        rows = self.run_case(text)
+        for stop in (1, len(rows) // 3, 2 * len(rows) // 3):
+            with self.subTest(stop):
+                folder = self.folder / f"split{stop}"
+                ended = peristat("run", self.case(text), "--output", folder, "--threads", 1, "--stop-after", stop)
+                self.assertEqual(ended.code, 130, ended.said)
+                ended = peristat("resume", folder, "--threads", 1)
+                self.assertEqual(ended.code, 0, ended.said)
+                self.assertEqual(differences(self.folder / "out", folder), [])
+
+
+class WrongInput(Paths):
+    def test_it_is_refused(self):
+        for setting, words in {
+            'material.damage={law="none"}': "is for bodies with damage",
+            "loading.event_tolerance=0.6": "must be a number from 0 to 0.5",
+            "loading.event_tolerance=-1": "must be a number from 0 to 0.5",
+            "loading.teeth=0": "must be a whole number from 1 to 1000",
+            "loading.teeth=1001": "must be a whole number from 1 to 1000",
+            "solver.elastic_horizon_ratio=4": "is for mode adaptive",
+        }.items():
+            with self.subTest(setting):
+                ended = peristat("run", self.case(strip()), "--output", self.folder / "out", "--set", setting)
+                self.assertEqual(ended.code, 2, ended.said)
+                self.assertIn(words, ended.errors)
+                self.assertIn(setting.partition("={")[0].partition("=")[0] if "damage" not in setting else "solver.mode", ended.errors)
+
+    def test_its_keys_are_refused_in_other_modes(self):
+        for setting in ("loading.teeth=3", "loading.event_tolerance=0.01"):
+            ended = peristat("run", self.case(strip()), "--output", self.folder / "out", "--set", setting,
+                             "--set", "solver.mode=adaptive")  # fmt: skip
+            self.assertEqual(ended.code, 2, ended.said)
+            self.assertIn('is for solver.mode = "path"', ended.errors)
+
+    def test_a_control_is_refused(self):
+        text = strip(more='[[control]]\nset = "right"\nweights = [1, 0]\n[loading]\ntable = [0, 1e-4]\n')
+        text = text.replace('displacement = ["2e-4*load", "free"]', 'displacement = ["load", "free"]')
+        ended = peristat("run", self.case(text), "--output", self.folder / "out")
+        self.assertEqual(ended.code, 2, ended.said)
+        self.assertIn("solver.mode", ended.errors)
