@@ -160,7 +160,11 @@ Attempt EventStepping::settle_at(const State& at, std::span<const double> borne)
   NewtonOptions options = held();
   options.relative_tolerance = std::max(options.relative_tolerance, settled_tolerance);
   options.max_iterations = most_settling_iterations;
-  const auto told = [this](const IterationRecord& row) { return tells_ && path_.iterated(row); };
+  // It is no state to be told: the search for the next one is.
+  const auto told = [this](const IterationRecord&) {
+    const auto& interrupted = path_.setting().observer.interrupted;
+    return interrupted && interrupted();
+  };
   StrengthResult found = search_strength(path_.problem(), tangent(), at, step, options, told);
   if (found.newton.outcome == Outcome::converged || found.newton.outcome == Outcome::interrupted) {
     return to_attempt(std::move(found.newton), at.stage);
