@@ -113,7 +113,7 @@ class Judged(Paths):
                 self.judged(strip(more=f"[loading]\nevent_tolerance = {tolerance}\n"), name=f"out{tolerance}")
 
     def test_cpd(self):
-        material = 'model = "cpd"\nyoungs_modulus = 200e9\npoissons_ratio = 0.35\n[material.damage]\n'
+        material = 'model = "cpd"\nc1 = 1e22\nc2 = 2e31\n[material.damage]\n'
         text = strip().replace("youngs_modulus = 200e9\n[material.damage]\n", material)
         rows, _ = self.judged(text)
         self.assertGreater(rows[-1]["broken_bonds"], 10)

@@ -8,6 +8,7 @@ from tests.reference.laws import Law
 
 # Strengths are where a band is met, whose least width is searched: both sides know them to some 1e-10.
 SAME_STRENGTH = 1e-8
+JUST_ABOVE = 1 + 1e-9  # at the least band itself round-off tells whether the teeth suffice
 
 
 class Teeth:
@@ -96,7 +97,8 @@ def teeth_of(name, onset, rate, peak, hardening, most):
     wide = 1.0
     while smooth.in_band(wide, most) is None:
         wide *= 2
-    return smooth.in_band(last_of(0.0, wide, lambda band: smooth.in_band(band, most) is None)[1], most)
+    narrowest = last_of(0.0, wide, lambda band: smooth.in_band(band, most) is None)[1]
+    return smooth.in_band(narrowest * JUST_ABOVE, most)
 
 
 class SawTooth:
