@@ -72,7 +72,7 @@ TEST(SawTooth, StaysWithinTheBandThatItTells) {
       EXPECT_NEAR(above, teeth.band, 1e-5);
       EXPECT_NEAR(strongest, teeth.excess_strength, 1e-5);
       EXPECT_LT(teeth.excess_strength, 0.5 * teeth.band);  // the first teeth are the finest
-      EXPECT_LT(teeth.band, 0.75 * last);  // more teeth, narrower
+      EXPECT_LT(teeth.band, 0.75 * last);                  // more teeth, narrower
       last = teeth.band;
     }
   }
