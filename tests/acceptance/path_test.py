@@ -86,7 +86,7 @@ class Paths(Programmes):
         self.assertEqual(events.unknown, 0)
         self.assertTrue(events.is_whole)
         if events.is_plain:
-            self.assertGreater(events.settled_here, 10)
+            self.assertGreater(events.settled_here, 5)
         self.assertEqual(rows[-1]["stage"], round(rows[-1]["stage"]))
         return rows, events
 
@@ -135,17 +135,23 @@ class Judged(Paths):
         self.judged(strip(cracks=notches))
 
     def test_three_pieces(self):
-        """Two ligaments that are alike break together, and leave a piece that nothing holds."""
-        notches = crack(*(([x, 0.0], [x, 0.003]) for x in (0.003, 0.009)))
-        text = strip(cracks=notches, left="-2e-4").replace('"-2e-4*load", 0]', '"-2e-4*load", "free"]')
-        text = text.replace('[[support]]\nset = "left"', '[[set]]\nname = "low"\nwhere = "y < 0.001 and x < 0"\n[[support]]\nset = "left"')
-        text += '[[support]]\nset = "low"\ndisplacement = ["free", 0]\n'
-        rows, _ = self.judged(strip(cracks=notches, left="-2e-4"))
-        self.assertTrue(self.decisions("hold fragments"))
+        """Ligaments that are alike break together, and leave a piece that nothing holds."""
+        notches = crack(*(([x, low], [x, high]) for x in (0.005, 0.015) for low, high in ((0, 0.002), (0.004, 0.006))))
+        text = strip(cracks=notches, left="-4e-4").replace("[0.012, 0.006]", "[0.020, 0.006]")
+        text = text.replace('displacement = ["2e-4*load", "free"]', 'displacement = ["4e-4*load", "free"]')
+        rows, _ = self.judged(text)
+        self.assertIn("2 floating pieces, 0 loose points", self.decisions("hold fragments"))
+        self.assertEqual(rows[-1]["stored_energy"], 0)
+        self.assertEqual(rows[-1]["reaction_x:right"], 0)
         with h5py.File(self.folder / "out/results.h5") as file:
-            last = list(file["steps"].values())[-1]
-            self.assertIn(-1.0, [*last["fragment"][...], -1.0])
-        self.assertLess(rows[-1]["reaction_x:right"], 0.05 * max(row["reaction_x:right"] for row in rows))
+            pieces = list(file["steps"].values())[-1]["fragment"][...]
+        self.assertGreater(len(set(pieces)), 1)
+
+    def test_avalanches_where_the_path_would_go_back_behind_an_entry(self):
+        first = self.run_case(strip(BRITTLE))[0]["load_factor"]
+        rows, events = self.judged(strip(BRITTLE, more=f"[loading]\ntable = [0, {first - 1e-3}, 1]\n"), name="held")
+        self.assertGreater(events.avalanches, 0)
+        self.assertEqual(len([r for r in self.decisions("accept", "held") if "while the load is held" in r]), events.avalanches)
 
 
 class Symmetric(Paths):

@@ -23,6 +23,7 @@ UNIT_ROUND_OFF = 2.0**-53
 # Sums of energies and forces over up to 10^6 interactions in another order: errors grow like the
 # square root of their number, and stretches near 1e-3 have lost three digits before.
 AGREEMENT = 1e-10
+SHARE_OF_SCALE = 1e-5  # of the largest forces so far: what has come apart along a path has none
 NEVER_FAILS = -1  # history of a bond of a no-fail set, as it is written
 
 
@@ -283,7 +284,12 @@ class Verification:
         on_jumps = mechanics.pull_of_periods(everywhere, past, held=True)[self.jump_is_free]
         norms.append(numpy.hypot(numpy.linalg.norm(on_points), numpy.linalg.norm(on_jumps)))
         norms.append(numpy.linalg.norm(self.of_environment(mechanics, step, old, past)))
+        if self.events:
+            norms += [numpy.linalg.norm(self.loads(at.loads, at.displacement)) for at in (old, step)]
+            norms.append(self.events.least_scale)
         scale = max(norms)
+        if self.events:
+            self.events.least_scale = max(self.events.least_scale, SHARE_OF_SCALE * scale)
         floor = 8 * UNIT_ROUND_OFF * (numpy.linalg.norm(magnitude) + self.whole_force(mechanics, step))
         floor += STEP * mechanics.body.constants[1] * mechanics.body.weight[1].sum()
         along_ties = self.ties.out_of_balance(step.displacement, out_of_balance, unheld)
