@@ -141,8 +141,8 @@ class Judged(Paths):
         text = text.replace('displacement = ["2e-4*load", "free"]', 'displacement = ["4e-4*load", "free"]')
         rows, _ = self.judged(text)
         self.assertIn("2 floating pieces, 0 loose points", self.decisions("hold fragments"))
-        self.assertEqual(rows[-1]["stored_energy"], 0)
-        self.assertEqual(rows[-1]["reaction_x:right"], 0)
+        self.assertLess(rows[-1]["stored_energy"], 1e-20 * rows[0]["stored_energy"])
+        self.assertLess(abs(rows[-1]["reaction_x:right"]), 1e-10 * rows[0]["reaction_x:right"])
         with h5py.File(self.folder / "out/results.h5") as file:
             pieces = list(file["steps"].values())[-1]["fragment"][...]
         self.assertGreater(len(set(pieces)), 1)
