@@ -82,7 +82,7 @@ Advance EventStepping::next() {
   }
   if (step.attempt.has_converged()) complete(step);
   if (!step.attempt.has_converged()) return fail(std::move(step), std::move(before));
-  return accept(std::move(step));
+  return accept(std::move(step), std::move(before));
 }
 
 NewtonOptions EventStepping::held() const {
@@ -152,13 +152,14 @@ bool EventStepping::pin(Settled& settled) {
   return false;
 }
 
-Attempt EventStepping::settle_at(const State& at, std::span<const double> borne) {
+Attempt EventStepping::settle_at(const State& at, std::span<const double> borne,
+                                 double relative_tolerance) {
   StrengthStep step;
   step.borne = borne;
   step.settles = true;
   step.least_scale = share_of_scale * path_.state().events.largest_scale;
   NewtonOptions options = held();
-  options.relative_tolerance = std::max(options.relative_tolerance, settled_tolerance);
+  options.relative_tolerance = relative_tolerance;
   options.max_iterations = most_settling_iterations;
   // It is no state to be told: the search for the next one is.
   const auto told = [this](const IterationRecord&) {
@@ -201,7 +202,8 @@ EventStepping::Settled EventStepping::settle(const State& at, const PathLedger& 
   settled.attempt = undefined_attempt(at, load_point(at));
   if (!may_go_on) return settled;
 
-  settled.attempt = settle_at(settled.state, settled.borne);
+  settled.attempt = settle_at(settled.state, settled.borne,
+                              std::max(held().relative_tolerance, settled_tolerance));
   settled.outcome = settled.attempt.outcome;
   if (!settled.attempt.has_converged()) return settled;
   settled.state = state_of(settled.attempt);
@@ -297,6 +299,8 @@ EventStepping::Step EventStepping::run_avalanche() {
     }
   }
   step.how = std::to_string(passes + 1) + " events while the load is held";
+  // It is a state to be told now.
+  step.attempt = settle_at(state.accepted, borne_, held().relative_tolerance);
   return step;
 }
 
@@ -363,7 +367,7 @@ void EventStepping::tell_response(const Step& step, StepRecord& record) {
   record.released_energy = events.released;
 }
 
-Advance EventStepping::accept(Step step) {
+Advance EventStepping::accept(Step step, PathState before) {
   PathState& state = path_.state();
   PathState::Events& events = state.events;
   StepRecord& record = step.found.record;
@@ -384,6 +388,10 @@ Advance EventStepping::accept(Step step) {
                      path_.working_force(step.attempt.state, step.attempt.external_force),
                      step.found.energies);
     ahead_ = settle(reached, with_step);
+    if (ahead_->outcome == Outcome::interrupted) {  // whether the state is stable is not known
+      step.attempt.outcome = Outcome::interrupted;
+      return fail(std::move(step), std::move(before));
+    }
     const bool runs_on = !ahead_->has_converged() || ahead_->utilisation > 1.0 + tie;
     if (runs_on && record.stability == "stable") record.stability = "unstable";
     how += "; " + bonds_text(ahead_->dropping) + " at their strength";
@@ -402,6 +410,7 @@ Advance EventStepping::fail(Step step, PathState before) {
   const std::string reason = reason_of(attempt, step.fault);
   path_.state() = std::move(before);
   path_.state().events.tangent = {};
+  ahead_.reset();
   borne_.clear();
   tangent_.reset();
   PathState::Events& events = path_.state().events;

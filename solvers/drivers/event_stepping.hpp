@@ -75,7 +75,8 @@ class EventStepping : public Driver {
   /// The next event: what drops at a state, and where that settles.
   [[nodiscard]] Settled settle(const State& at, const PathLedger& ledger);
   /// Equilibrium at the load where it is.
-  [[nodiscard]] Attempt settle_at(const State& at, std::span<const double> borne);
+  [[nodiscard]] Attempt settle_at(const State& at, std::span<const double> borne,
+                                  double relative_tolerance);
   /// Bonds that drop together.
   [[nodiscard]] std::vector<UtilisedBond> batch_of(const State& at) const;
   /// Makes what has settled the state to go on from.
@@ -94,7 +95,8 @@ class EventStepping : public Driver {
   void complete(Step& step);
   /// Books the trapezoidal rule's error, or refuses the step for it.
   void settle_work(Step& step) const;
-  [[nodiscard]] Advance accept(Step step);
+  /// @param before the path as it was before the step
+  [[nodiscard]] Advance accept(Step step, PathState before);
   /// Tells where the state is on the response under the given loads.
   void tell_response(const Step& step, StepRecord& record);
   [[nodiscard]] Advance fail(Step step, PathState before);

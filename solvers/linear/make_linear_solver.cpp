@@ -99,7 +99,7 @@ ChosenSolver choose(const LinearProblem& problem, SolverLadder::Reporter tell) {
         is_small ? fmt::format("a factorisation of {:.2g} flops is small", problem.factor_flops)
         : for_stability ? std::string("its pivots tell whether the softening body is stable")
         : for_many
-            ? std::string("each factor serves many directions of the flow")
+            ? std::string("each factor serves many solves")
             : fmt::format("a factorisation is estimated at {:.2g} s, iterations at {:.2g} s a step",
                           direct, iterative);
   } else {

@@ -5,6 +5,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include <fmt/format.h>
+
 namespace peristat {
 namespace {
 
@@ -167,6 +169,12 @@ BondPotential with_teeth(const BondPotential& potential, int most) {
         }
       },
       potential);
+}
+
+std::string description(const ToothedStrength& strength) {
+  return fmt::format(
+      "{} teeth, within {:.2g} % of the law's largest force, the strength {:.2g} % above",
+      strength.teeth, 100.0 * strength.band, 100.0 * strength.excess_strength);
 }
 
 ToothedStrength toothed_strength(const BondPotential& potential) {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <string>
+
 #include "src/potentials/any_law.hpp"
 #include "src/potentials/potential.hpp"
 
@@ -21,5 +23,8 @@ struct ToothedStrength {
   double band = 0.0, excess_strength = 0.0;
 };
 [[nodiscard]] ToothedStrength toothed_strength(const BondPotential& potential);
+
+/// "10 teeth, within 12 % of the law's largest force, the strength 1.2 % above"
+[[nodiscard]] std::string description(const ToothedStrength& strength);
 
 }  // namespace peristat

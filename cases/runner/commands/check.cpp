@@ -22,6 +22,7 @@
 #include "solvers/study/rest_stability.hpp"
 #include "solvers/study/study.hpp"
 #include "src/neighbourhood/neighbour_counts.hpp"
+#include "src/potentials/make_saw_tooth.hpp"
 
 namespace peristat {
 namespace {
@@ -173,6 +174,9 @@ void print_constants(const Case& from, const Body& body, int threads) {
     print_fracture(material, from.regions.empty() ? "" : material.name, body.setting,
                    body.points.spacing);
   }
+  const BondTerm* const bonds = body.model.failing_bonds();
+  const ToothedStrength teeth = bonds ? toothed_strength(bonds->potential()) : ToothedStrength();
+  if (teeth.teeth > 0) fmt::print("saw-tooth   {}\n", description(teeth));
 }
 
 /// How many points each material has.
@@ -281,9 +285,14 @@ Exit check(const Case& from, int threads) {
   }
   fmt::print("memory      about {} of {} available\n", bytes_text(systems.bytes),
              bytes_text(available_memory()));
-  const int steps = from.loading.steps_to_entry() * int(body.conditions->programme().end());
-  fmt::print("time        {} for {} load steps, if none has to be cut\n",
-             seconds_text(chosen.seconds * steps / threads), steps);
+  if (from.solver.mode == Mode::path) {
+    fmt::print("time        {} for an event; how many there are, the path shows\n",
+               seconds_text(chosen.seconds / threads));
+  } else {
+    const int steps = from.loading.steps_to_entry() * int(body.conditions->programme().end());
+    fmt::print("time        {} for {} load steps, if none has to be cut\n",
+               seconds_text(chosen.seconds * steps / threads), steps);
+  }
   located_errors(from, [&] {
     refuse_unheld_bodies(body);
     refuse_unstable_rest(body, options);

@@ -25,6 +25,7 @@
 #include "solvers/study/study.hpp"
 #include "src/core/input_error.hpp"
 #include "src/core/stopwatch.hpp"
+#include "src/potentials/make_saw_tooth.hpp"
 
 namespace peristat {
 namespace {
@@ -299,6 +300,10 @@ class CaseRun {
     progress_.say(fmt::format("linear solver: {}{} ({})", equations.solver().describe(),
                               equations.systems().is_stored ? "" : ", tangent matrix-free",
                               equations.systems().chosen.reason));
+    if (const BondTerm* bonds = body_->model.failing_bonds()) {
+      const ToothedStrength teeth = toothed_strength(bonds->potential());
+      if (teeth.teeth > 0) progress_.say("damage law: a saw-tooth of " + description(teeth));
+    }
     const PathState* path = earlier_ ? &earlier_->checkpoint().path : nullptr;
     stand_in_ = make_elastic_stand_in(from_, *body_, options_.threads);
     if (!stand_in_) return study_->follow(observer(), nullptr, path);
