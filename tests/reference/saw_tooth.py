@@ -127,6 +127,11 @@ class SawTooth:
         part.name, part.critical, part.onset, part.kind = (of[bonds] for of in (self.name, self.critical, self.onset, self.kind))
         return part
 
+    @property
+    def is_toothed(self):
+        """Whether any law falls smoothly."""
+        return bool((self.name[self.critical < numpy.inf] != "critical_stretch").any())
+
     def tooth(self, stretch):
         """Number of the secant on which a bond with this history is."""
         share = numpy.real(stretch) / self.critical
