@@ -29,6 +29,7 @@ import plot  # noqa: E402
 from cells import Cells, merged  # noqa: E402
 from convergence_picture import order_words  # noqa: E402
 from curve_pictures import find_abscissa, hand_overs, on_the_way, reactions  # noqa: E402
+from event_path_picture import draw_events  # noqa: E402
 from field_pictures import beyond, deformed_plate, displacement_magnitude  # noqa: E402
 from separations import crosses, separate  # noqa: E402
 from resistance_picture import draw_resistances, resistances  # noqa: E402
@@ -486,6 +487,37 @@ class Pictures(unittest.TestCase):
             self.assertAlmostEqual(on_the_way(results, places, step, step / 6), place, delta=1e-12)
         self.assertAlmostEqual(on_the_way(results, places, 5, 4.5 / 6), 6.5, delta=1e-12)
         self.assertAlmostEqual(on_the_way(results, places, 7, 7 / 6), 9.0, delta=1e-12)  # was never accepted
+
+    def write_events(self, **columns):
+        """A run of mode path whose six steps snap back at the third and come back to its load with the fifth."""
+        write_folder(self.folder, lattice(20, 10), steps=6)
+        rows = {"mode": ["path"] * 6, "load_factor": [0.2, 0.4, 0.3, 0.35, 0.4, 1.0],
+                "reaction_x:right": [2e3, 4e3, 2.5e3, 2.8e3, 3e3, 5e3], "on_response": [1, 1, 0, 0, 1, 1],
+                "released_energy": [0, 0, 0, 0, 0.3, 0.3], **columns}  # fmt: skip
+        with open(self.folder / "history.csv", newline="") as file:
+            history = list(csv.DictReader(file))
+        history = [row | {name: values[k] for name, values in rows.items()} for k, row in enumerate(history)]
+        with open(self.folder / "history.csv", "w", newline="") as file:
+            table = csv.DictWriter(file, list(history[0]))
+            table.writeheader()
+            table.writerows(history)
+
+    def test_a_path_from_event_to_event_is_drawn_beside_its_response(self):
+        self.write_events()
+        self.plot()
+        self.assertIn("path.png", os.listdir(self.folder / "plots"))
+        path, released = draw_events(read_results_folder(self.folder)).axes
+        drawn = {line.get_label(): line.get_xydata().tolist() for line in path.lines}
+        # Over the displacement of the support that moves most, which grows from step to step here.
+        self.assertEqual([y for _, y in drawn["equilibrium path"]], [0, 2, 4, 2.5, 2.8, 3, 5])
+        self.assertEqual([y for _, y in drawn["response under the given loads"]], [0, 2, 4, 3, 5])
+        self.assertEqual([y for _, y in drawn["peak: 5 kN"]], [5])
+        self.assertEqual(released.lines[0].get_ydata().tolist(), [0, 0, 0, 300, 300])
+        self.assertIn("[mJ]", released.get_ylabel())
+
+    def test_a_path_that_releases_nothing_is_drawn_alone(self):
+        self.write_events(released_energy=[0] * 6)
+        self.assertEqual(len(draw_events(read_results_folder(self.folder)).axes), 1)
 
     # ---- what is written and removed --------------------------------------------------------------
 
