@@ -846,6 +846,7 @@ Table<LoadingSpecification> loading_keys() {
     keys.keys.push_back(std::move(key));
   }
   keys.keys.back().then(resolve_tables);
+  const auto follows_events = [](auto&, auto& from) { return from.solver.mode == Mode::path; };
   const std::vector<K> others{
       K("adaptive", &Spec::adaptive, boolean(),
         "cut a step that does not converge, and grow again; otherwise such a step ends the "
@@ -876,10 +877,12 @@ Table<LoadingSpecification> loading_keys() {
           .extends(),
       K("event_tolerance", in(&Spec::events, &EventOptions::tolerance), between(0.0, 0.5),
         "mode `path`: bonds within this share of the most utilised one break with it; 0: those "
-        "that tie with it alone"),
+        "that tie with it alone")
+          .written_if(follows_events),
       K("teeth", &Spec::teeth, integer(1, 1000),
         "mode `path`: most teeth of the saw-tooth that a law of damage is followed by whose force "
-        "falls smoothly")};
+        "falls smoothly")
+          .written_if(follows_events)};
   keys.keys.insert(keys.keys.end(), others.begin(), others.end());
   return keys;
 }

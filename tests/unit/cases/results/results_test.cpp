@@ -206,6 +206,9 @@ StepRecord example_step(int step) {
   record.stage = 1.5;
   record.control = 1.25e-5;
   record.negative_pivots = 2;
+  record.is_on_response = false;
+  record.released_energy = 0.375;
+  record.stability = "unstable";
   record.load_factor = 0.1 * step;
   record.mode = "newton";
   record.newton_iterations = 4;
@@ -415,9 +418,9 @@ TEST_F(ResultsTest, TablesHaveTheColumnsOfTheContract) {
           "max_damage,max_stretch,reaction_x:right,reaction_y:right,reaction_z:right,"
           "\"reaction_x:left, \"\"top\"\"\",\"reaction_y:left, \"\"top\"\"\","
           "\"reaction_z:left, \"\"top\"\"\",tip_x,tip_y,crack,numerical_work,pin_force,settled,"
-          "stage,control,negative_pivots",
+          "stage,control,negative_pivots,on_response,released_energy,stability",
           "1,0.1,newton,4,100,0.3333333333333333,0.25,0.125,5,1e-17,3,0.5,0.01,1,2,0,-1,-2,0,0.5,"
-          "-0.5,9,0.0625,0.75,1,1.5,1.25e-05,2"}));
+          "-0.5,9,0.0625,0.75,1,1.5,1.25e-05,2,0,0.375,unstable"}));
   EXPECT_EQ(lines(directory / "iterations.csv"),
             (std::vector<std::string>{
                 "step,iteration,residual,relative_residual,energy,step_length,"
@@ -831,7 +834,7 @@ TEST_F(ResultsTest, AKillLeavesEveryAnnouncedStep) {
     EXPECT_EQ(file.numbers("/points/volume"), example_points(2).volume);
 
     for (const auto& [name, columns] : std::map<std::string, int>{
-             {"history.csv", 28}, {"iterations.csv", 13}, {"decisions.csv", 8}}) {
+             {"history.csv", 31}, {"iterations.csv", 13}, {"decisions.csv", 8}}) {
       EXPECT_EQ(read_text(folder / name).back(), '\n') << name;
       const std::vector<std::string> rows = lines(folder / name);
       ASSERT_GE(rows.size(), 1u + announced) << name;
