@@ -72,6 +72,42 @@ class Fracture(PrintedTest):
         self.assertIn("limit_point", summary["reason"])
         self.assertLess(summary["broken_bonds"], 0.3 * controlled.summary["broken_bonds"])
 
+    def test_path_of_the_square_plate(self):
+        self.page = "cases/plate_with_hole/path.toml"
+        plate = run("plate_with_hole/path")
+        response = [row for row in plate.history if row["on_response"]]
+        snaps = [(before, after) for before, after in zip(response, response[1:])
+                 if after["broken_bonds"] > before["broken_bonds"] and after["stage"] == before["stage"]]  # fmt: skip
+        first = snaps[0][1]
+        self.prints("{} bonds snap at the hole at load factor {} and", first["broken_bonds"], first["load_factor"])
+        peak = plate.step_of_peak("top", "y")
+        self.prints("peak {} kN at {}, where", 1e-3 * peak["reaction_y:top"], peak["load_factor"])
+        through = next(after for before, after in snaps if before["step"] == peak["step"])
+        self.assertLess(abs(through["reaction_y:top"]), 0.01 * peak["reaction_y:top"])
+        self.prints("{} broken bonds in {} steps", plate.summary["broken_bonds"], plate.summary["steps"])
+
+    def test_path_of_the_notched_plate(self):
+        self.page = "cases/three_point_bending/path.toml"
+        plate = run("three_point_bending/path")
+        first = next(row for row, after in zip(plate.history, plate.history[1:]) if after["broken_bonds"] > 0)
+        self.prints("break at {} kN and {} mm;", 1e-3 * abs(first["reaction_y:load"]), 4 * first["load_factor"])
+        peak = plate.step_of_peak("load", "y")
+        self.prints("peak {} kN at {} mm;", 1e-3 * abs(peak["reaction_y:load"]), 4 * peak["load_factor"])
+        back = sum(after["load_factor"] < row["load_factor"] for row, after in zip(plate.history, plate.history[1:]))
+        self.prints("In {} of {} steps", back, plate.summary["steps"])
+        self.prints("{} broken bonds in the end", plate.summary["broken_bonds"])
+
+    def test_path_of_the_four_holes(self):
+        self.page = "cases/four_holes/path.toml"
+        plate = run("four_holes/path")
+        peak = plate.step_of_peak("top", "y")
+        self.prints("peak reaction {} kN at load factor {};", 1e-3 * peak["reaction_y:top"], peak["load_factor"])
+        response = [row for row in plate.history if row["on_response"]]
+        torn = [after for before, after in zip(response, response[1:])
+                if after["broken_bonds"] > before["broken_bonds"] + 2000]  # fmt: skip
+        self.prints("large hole at {}, and on to the right edge at {};", *(row["load_factor"] for row in torn))
+        self.prints("{} broken bonds.", plate.summary["broken_bonds"])
+
     def test_four_holes(self):
         self.page = "cases/four_holes/tension.toml"
         plate = run("four_holes/tension")

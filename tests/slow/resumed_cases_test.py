@@ -32,6 +32,7 @@ OTHERS = {
     "cpd/poisson_2d": ["loading.steps=4"],
     "cpd/poisson_3d": ["loading.steps=3"],
     "cpd/table3": ["loading.steps=3"],
+    "plate_with_hole/path": ["lattice.spacing=2e-3", "loading.event_tolerance=0.1", "loading.teeth=2"],
     "buckling/column": ["arc_length.steps=8"],  # across the bifurcation
     "three_point_bending/mouth_opening": ["loading.table=[0,7e-4]", "loading.steps=2"],  # with the first avalanche
 }  # fmt: skip
