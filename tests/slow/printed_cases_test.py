@@ -97,17 +97,6 @@ class Fracture(PrintedTest):
         self.prints("In {} of {} steps", back, plate.summary["steps"])
         self.prints("{} broken bonds in the end", plate.summary["broken_bonds"])
 
-    def test_path_of_the_four_holes(self):
-        self.page = "cases/four_holes/path.toml"
-        plate = run("four_holes/path")
-        peak = plate.step_of_peak("top", "y")
-        self.prints("peak reaction {} kN at load factor {};", 1e-3 * peak["reaction_y:top"], peak["load_factor"])
-        response = [row for row in plate.history if row["on_response"]]
-        torn = [after for before, after in zip(response, response[1:])
-                if after["broken_bonds"] > before["broken_bonds"] + 2000]  # fmt: skip
-        self.prints("large hole at {}, and on to the right edge at {};", *(row["load_factor"] for row in torn))
-        self.prints("{} broken bonds.", plate.summary["broken_bonds"])
-
     def test_four_holes(self):
         self.page = "cases/four_holes/tension.toml"
         plate = run("four_holes/tension")
