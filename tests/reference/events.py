@@ -41,7 +41,7 @@ class Events:
 
     def batch(self, utilisation):
         """Bonds that drop together, and by how much the gap after them is wider than a tie."""
-        tolerance = self.case["loading"].get("event_tolerance", 0.002)
+        tolerance = self.case["loading"].get("event_tolerance", 0.01)
         order = numpy.argsort(-utilisation, kind="stable")
         sorted_down = utilisation[order]
         gaps = sorted_down[:-1] - sorted_down[1:]
