@@ -152,8 +152,13 @@ bool EventStepping::pin(Settled& settled) {
   return false;
 }
 
-Attempt EventStepping::settle_at(const State& at, std::span<const double> borne,
-                                 double relative_tolerance) {
+bool EventStepping::asks_for_interrupt() const {
+  const auto& interrupted = path_.setting().observer.interrupted;
+  return interrupted && interrupted();
+}
+
+Attempt EventStepping::settle_nearby(const State& at, std::span<const double> borne,
+                                     double relative_tolerance) {
   StrengthStep step;
   step.borne = borne;
   step.settles = true;
@@ -162,21 +167,21 @@ Attempt EventStepping::settle_at(const State& at, std::span<const double> borne,
   options.relative_tolerance = relative_tolerance;
   options.max_iterations = most_settling_iterations;
   // It is no state to be told: the search for the next one is.
-  const auto told = [this](const IterationRecord&) {
-    const auto& interrupted = path_.setting().observer.interrupted;
-    return interrupted && interrupted();
-  };
-  StrengthResult found = search_strength(path_.problem(), tangent(), at, step, options, told);
-  if (found.newton.outcome == Outcome::converged || found.newton.outcome == Outcome::interrupted) {
-    return to_attempt(std::move(found.newton), at.stage);
-  }
-  // Far away, or none: a search with line search and projected tangents finds what there is.
+  StrengthResult found =
+      search_strength(path_.problem(), tangent(), at, step, options,
+                      [this](const IterationRecord&) { return asks_for_interrupt(); });
+  return to_attempt(std::move(found.newton), at.stage);
+}
+
+Attempt EventStepping::settle_downhill(const State& at, double relative_tolerance) {
   tangent().forget();
-  options = held();
+  NewtonOptions options = held();
+  options.relative_tolerance = relative_tolerance;
   options.max_iterations = std::max(options.max_iterations, most_iterations_of_a_fall);
   const SolvedBody& body = path_.body();
-  return to_attempt(newton(path_.problem(), body.solver, body.tangent, at, at.stage, options, told),
-                    at.stage);
+  NewtonResult found = newton(path_.problem(), body.solver, body.tangent, at, at.stage, options,
+                              [this](const IterationRecord&) { return asks_for_interrupt(); });
+  return to_attempt(std::move(found), at.stage);
 }
 
 EventStepping::Settled EventStepping::settle(const State& at, const PathLedger& ledger) {
@@ -194,6 +199,7 @@ EventStepping::Settled EventStepping::settle(const State& at, const PathLedger& 
   };
   const bool bonds_alone = body.model().terms().size() == 1;
   const double lost = bonds_alone ? dropped.energy_lost : energy(at) - energy(settled.state);
+  const bool was_bifurcated = tangent().has_negative_pivots();
   tangent().lose(dropped.stiffness);
 
   const FragmentPins pins_before = path_.state().pins;
@@ -202,12 +208,28 @@ EventStepping::Settled EventStepping::settle(const State& at, const PathLedger& 
   settled.attempt = undefined_attempt(at, load_point(at));
   if (!may_go_on) return settled;
 
-  settled.attempt = settle_at(settled.state, settled.borne,
-                              std::max(held().relative_tolerance, settled_tolerance));
-  settled.outcome = settled.attempt.outcome;
-  if (!settled.attempt.has_converged()) return settled;
+  const double tolerance = std::max(held().relative_tolerance, settled_tolerance);
+  const auto settles = [&](Attempt attempt) {
+    settled.attempt = std::move(attempt);
+    settled.outcome = settled.attempt.outcome;
+    return settled.has_converged() && book_event(at, ledger, dropped, lost, settled);
+  };
+  const State& from = settled.state;
+  const bool has_settled = settles(settle_nearby(from, settled.borne, tolerance));
+  // What was stable comes to rest where it is stable, however far that is.
+  const bool is_lost = !was_bifurcated && tangent().has_negative_pivots();
+  if ((!has_settled || is_lost) && settled.outcome != Outcome::interrupted &&
+      !settles(settle_downhill(from, tolerance))) {
+    return settled;
+  }
+  if (!settled.has_converged()) return settled;
   settled.state = state_of(settled.attempt);
+  settled.utilisation = utilisation(settled.state, settled.borne);
+  return settled;
+}
 
+bool EventStepping::book_event(const State& at, const PathLedger& ledger, const BondDrops& dropped,
+                               double lost, Settled& settled) const {
   StepEnergies energies;
   energies.released = lost - dropped.energy_lost;
   settled.ledger = ledger;
@@ -223,12 +245,12 @@ EventStepping::Settled EventStepping::settle(const State& at, const PathLedger& 
   if (drained < -share_from_nothing * turned_over) {
     settled.outcome = Outcome::inconsistent;
     settled.fault = number_text(-drained) + " J come from nothing as bonds break";
-    return settled;
+    return false;
   }
   after.drained += drained;
   settled.ledger.accept(after, working, energies);
-  settled.utilisation = utilisation(settled.state, settled.borne);
-  return settled;
+  settled.fault.clear();
+  return true;
 }
 
 void EventStepping::take_up(Settled settled) {
@@ -300,7 +322,11 @@ EventStepping::Step EventStepping::run_avalanche() {
   }
   step.how = std::to_string(passes + 1) + " events while the load is held";
   // It is a state to be told now.
-  step.attempt = settle_at(state.accepted, borne_, held().relative_tolerance);
+  const double tolerance = held().relative_tolerance;
+  step.attempt = settle_nearby(state.accepted, borne_, tolerance);
+  if (!step.attempt.has_converged() && step.attempt.outcome != Outcome::interrupted) {
+    step.attempt = settle_downhill(state.accepted, tolerance);
+  }
   return step;
 }
 
@@ -367,6 +393,11 @@ void EventStepping::tell_response(const Step& step, StepRecord& record) {
   record.released_energy = events.released;
 }
 
+Stability EventStepping::stability_of_elastic_body() {
+  if (tangent().has_negative_pivots()) return Stability::bifurcated;
+  return tangent().tells_pivots() ? Stability::stable : Stability::not_judged;
+}
+
 Advance EventStepping::accept(Step step, PathState before) {
   PathState& state = path_.state();
   PathState::Events& events = state.events;
@@ -381,7 +412,7 @@ Advance EventStepping::accept(Step step, PathState before) {
   events.at_strength = most >= 1.0 - tie;
   std::string how =
       step.how.empty() ? std::to_string(step.attempt.iterations) + " iterations" : step.how;
-  record.stability = tangent().has_negative_pivots() ? "bifurcated" : "stable";
+  record.stability = stability_of_elastic_body();
   if (events.at_strength) {
     PathLedger with_step = state.ledger;
     with_step.accept(step.found.ledger,
@@ -393,7 +424,9 @@ Advance EventStepping::accept(Step step, PathState before) {
       return fail(std::move(step), std::move(before));
     }
     const bool runs_on = !ahead_->has_converged() || ahead_->utilisation > 1.0 + tie;
-    if (runs_on && record.stability == "stable") record.stability = "unstable";
+    if (runs_on && record.stability != Stability::bifurcated) {
+      record.stability = Stability::unstable;
+    }
     how += "; " + bonds_text(ahead_->dropping) + " at their strength";
   }
   path_.tell(step.attempt.at, {.increment = step.attempted,

@@ -74,9 +74,17 @@ class EventStepping : public Driver {
 
   /// The next event: what drops at a state, and where that settles.
   [[nodiscard]] Settled settle(const State& at, const PathLedger& ledger);
-  /// Equilibrium at the load where it is.
-  [[nodiscard]] Attempt settle_at(const State& at, std::span<const double> borne,
-                                  double relative_tolerance);
+  /// Equilibrium at the load where it is, if it is not far.
+  [[nodiscard]] Attempt settle_nearby(const State& at, std::span<const double> borne,
+                                      double relative_tolerance);
+  /// Likewise, a stable one, by lines of descending energy along projected tangents.
+  [[nodiscard]] Attempt settle_downhill(const State& at, double relative_tolerance);
+  /// Closes the ledger of an event.
+  /// @param lost energy that the body has lost as the bonds dropped [J]
+  /// @return false if it would have come to rest with more energy than it had
+  [[nodiscard]] bool book_event(const State& at, const PathLedger& ledger, const BondDrops& dropped,
+                                double lost, Settled& settled) const;
+  [[nodiscard]] bool asks_for_interrupt() const;
   /// Bonds that drop together.
   [[nodiscard]] std::vector<UtilisedBond> batch_of(const State& at) const;
   /// Makes what has settled the state to go on from.
@@ -99,6 +107,7 @@ class EventStepping : public Driver {
   [[nodiscard]] Advance accept(Step step, PathState before);
   /// Tells where the state is on the response under the given loads.
   void tell_response(const Step& step, StepRecord& record);
+  [[nodiscard]] Stability stability_of_elastic_body();
   [[nodiscard]] Advance fail(Step step, PathState before);
   [[nodiscard]] StrengthStep strength_step() const;
   [[nodiscard]] double utilisation(const State& at, std::span<const double> borne) const;

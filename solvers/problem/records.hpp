@@ -33,6 +33,14 @@ struct IterationRecord {
                                   ///< for a direct solve
 };
 
+/// Of an accepted state under its loads as they are: its values stand in history.csv.
+enum class Stability : std::int8_t {
+  bifurcated = -2,  ///< the tangent has negative pivots
+  unstable = -1,    ///< what breaks next goes on at the same load
+  not_judged = 0,
+  stable = 1,
+};
+
 /// One accepted step (a row of history.csv).
 struct StepRecord {
   int step = 0;
@@ -59,9 +67,7 @@ struct StepRecord {
   /// path left out, and what has been released there since the start [J].
   bool is_on_response = true;
   double released_energy = 0.0;
-  /// Mode path: "stable", "unstable" (what breaks next goes on at the same load) or "bifurcated"
-  /// (the tangent has negative pivots); otherwise empty.
-  std::string stability;
+  Stability stability = Stability::not_judged;  ///< mode path judges it
   /// Mode path: load factor at which the last bonds broke; otherwise they broke in this step.
   std::optional<double> broke_at;
   bool settled = false;  ///< no equilibrium was asked for: see RelaxationResult

@@ -81,7 +81,7 @@ void UpdatedTangent::forget() {
 void UpdatedTangent::become(const TangentReference& reference) {
   const TangentReference kept = reference;
   if (kept.at.displacement.empty() || refresh(kept.at) != LinearOutcome::solved) return forget();
-  is_direct_ = solver_.inertia().has_value() || indefinite_in_force_;
+  is_direct_ = tells_pivots();
   lose(kept.lost);
 }
 

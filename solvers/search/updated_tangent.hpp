@@ -40,6 +40,10 @@ class UpdatedTangent {
   /// The next solve has to be after a refresh.
   void forget();
   [[nodiscard]] bool is_there() const { return is_there_; }
+  /// Whether pivots are seen; iterations only come upon negative curvature by chance.
+  [[nodiscard]] bool tells_pivots() const {
+    return solver_.inertia().has_value() || indefinite_in_force_;
+  }
   /// Of the last refresh.
   [[nodiscard]] bool has_negative_pivots() const { return indefinite_in_force_; }
   /// Bonds whose loss is taken off before the tangent is factorised anew: then taking it off costs

@@ -81,7 +81,7 @@ class Events:
         self.of.worst["utilisation - 1"] = max(self.of.worst.get("utilisation - 1", -1.0), most - 1)
         if most > AT_STRENGTH + SHARE:
             self.of.complain(step, f"a bond is utilised by {most!r}")
-        if row["stability"] not in ("stable", "unstable", "bifurcated"):
+        if row["stability"] not in (1, 0, -1, -2):
             self.of.complain(step, f"stability {row['stability']}")
 
     def judge_drops(self, step, row, old, history):

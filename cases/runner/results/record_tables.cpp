@@ -96,10 +96,9 @@ const std::vector<Column>& later_step_columns() {
        "have to be taken back"},
       {number, "released_energy", "J",
        "path: energy that has been released since the start under the loads as they are given"},
-      {text, "stability", "none",
-       "path: stable, unstable (what breaks next runs on at the same load), bifurcated (the "
-       "tangent "
-       "has negative pivots)"},
+      {integer, "stability", "1",
+       "path: 1 stable, -1 unstable (what breaks next runs on at the same load), -2 bifurcated "
+       "(the tangent has negative pivots); other modes: 0, not judged"},
   };
   return columns;
 }
@@ -239,7 +238,7 @@ Row make_row(const StepRecord& record, const std::vector<std::string>& support_s
   row.emplace_back(record.negative_pivots);
   row.emplace_back(std::int64_t{record.is_on_response});
   append("released_energy", record.released_energy);
-  row.emplace_back(record.stability);
+  row.emplace_back(static_cast<std::int64_t>(record.stability));
   return row;
 }
 
@@ -280,8 +279,10 @@ StepRecord read_step(const Row& row, const std::vector<std::string>& support_set
     for (double& value : values) cells >> value;
   }
   cells >> record.numerical_work >> record.pin_force >> record.settled >> record.stage >>
-      record.control >> record.negative_pivots >> record.is_on_response >> record.released_energy >>
-      record.stability;
+      record.control >> record.negative_pivots >> record.is_on_response >> record.released_energy;
+  std::int64_t stability = 0;
+  cells >> stability;
+  record.stability = Stability{static_cast<std::int8_t>(stability)};
   return record;
 }
 

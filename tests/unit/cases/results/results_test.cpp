@@ -208,7 +208,7 @@ StepRecord example_step(int step) {
   record.negative_pivots = 2;
   record.is_on_response = false;
   record.released_energy = 0.375;
-  record.stability = "unstable";
+  record.stability = Stability::unstable;
   record.load_factor = 0.1 * step;
   record.mode = "newton";
   record.newton_iterations = 4;
