@@ -217,7 +217,7 @@ EventStepping::Settled EventStepping::settle(const State& at, const PathLedger& 
   const State& from = settled.state;
   const bool has_settled = settles(settle_nearby(from, settled.borne, tolerance));
   // What was stable comes to rest where it is stable, however far that is.
-  const bool is_lost = !was_bifurcated && tangent().has_negative_pivots();
+  const bool is_lost = has_settled && !was_bifurcated && is_unstable(settled.attempt);
   if ((!has_settled || is_lost) && settled.outcome != Outcome::interrupted &&
       !settles(settle_downhill(from, tolerance))) {
     return settled;
@@ -226,6 +226,13 @@ EventStepping::Settled EventStepping::settle(const State& at, const PathLedger& 
   settled.state = state_of(settled.attempt);
   settled.utilisation = utilisation(settled.state, settled.borne);
   return settled;
+}
+
+bool EventStepping::is_unstable(const Attempt& attempt) {
+  if (!tangent().has_negative_pivots()) return false;
+  // They are those of a state on the way.
+  const LinearOutcome outcome = tangent().refresh(state_of(attempt));
+  return outcome != LinearOutcome::solved || tangent().has_negative_pivots();
 }
 
 bool EventStepping::book_event(const State& at, const PathLedger& ledger, const BondDrops& dropped,

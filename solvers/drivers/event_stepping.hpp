@@ -79,6 +79,8 @@ class EventStepping : public Driver {
                                       double relative_tolerance);
   /// Likewise, a stable one, by lines of descending energy along projected tangents.
   [[nodiscard]] Attempt settle_downhill(const State& at, double relative_tolerance);
+  /// Whether the tangent at an equilibrium has negative pivots, where it had some on the way.
+  [[nodiscard]] bool is_unstable(const Attempt& attempt);
   /// Closes the ledger of an event.
   /// @param lost energy that the body has lost as the bonds dropped [J]
   /// @return false if it would have come to rest with more energy than it had

@@ -18,7 +18,7 @@ struct ArcLengthOptions {
 struct EventOptions {
   /// Bonds within this share of the most utilised one break with it; 0: those alone that tie with
   /// it.
-  double tolerance = 0.01;
+  double tolerance = 0.002;
 };
 
 struct LoadSteppingOptions {

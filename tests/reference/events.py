@@ -41,7 +41,7 @@ class Events:
 
     def batch(self, utilisation):
         """Bonds that drop together, and by how much the gap after them is wider than a tie."""
-        tolerance = self.case["loading"].get("event_tolerance", 0.01)
+        tolerance = self.case["loading"].get("event_tolerance", 0.002)
         order = numpy.argsort(-utilisation, kind="stable")
         sorted_down = utilisation[order]
         gaps = sorted_down[:-1] - sorted_down[1:]
@@ -144,8 +144,43 @@ class Events:
         part = matrix[numpy.ix_(free, free)]
         return numpy.linalg.solve(part + 1e-11 * numpy.abs(numpy.diag(part)).max() * numpy.eye(len(part)), right)
 
-    def settle(self, u, history, loads):
-        """The equilibrium under the same loads, or nothing if Newton's method does not find it."""
+    def settle(self, u, past, history, loads):
+        """The equilibrium under the same loads, or nothing if Newton's method does not find it.
+
+        What was stable before bonds dropped does not end in an unstable one: then the energy is
+        followed downhill.
+        """
+        free = (~self.of.conditions.prescribed).ravel()
+        near = self.settle_nearby(u, history, loads)
+        if near is not None and self.spectrum(near, history, free)[0][0] < 0 <= self.spectrum(u, past, free)[0][0]:
+            return self.settle_downhill(u, history, loads)
+        return near
+
+    def spectrum(self, u, history, free):
+        """Eigenvalues, those within round-off of zero as zero, and eigenvectors of the tangent."""
+        values, vectors = numpy.linalg.eigh(self.tangent(u, history)[numpy.ix_(free, free)])
+        return numpy.where(numpy.abs(values) < 1e-9 * values[-1], 0.0, values), vectors
+
+    def settle_downhill(self, u, history, loads):
+        """Newton's method with the moduli of the eigenvalues, its steps halved until the energy falls."""
+        free = (~self.of.conditions.prescribed).ravel()
+        external = self.of.conditions.force(loads)
+        potential = lambda at: self.energy(at, history) - (external * at).sum()
+        for _ in range(200):
+            gradient = self.mechanics.gradient(u, history, held=True)
+            rest = (external - gradient).ravel()[free]
+            if numpy.linalg.norm(rest) <= 1e-11 * (numpy.linalg.norm(gradient) + numpy.linalg.norm(external)):
+                return u
+            values, vectors = self.spectrum(u, history, free)
+            values = numpy.maximum(numpy.abs(values), 1e-9 * values[-1])
+            step, length = numpy.zeros(u.size), 1.0
+            step[free] = vectors @ (vectors.T @ rest / values)
+            while potential(u + length * step.reshape(u.shape)) > potential(u) * (1 + 1e-14) and length > 1e-10:
+                length /= 2
+            u = u + length * step.reshape(u.shape)
+        return None
+
+    def settle_nearby(self, u, history, loads):
         free = (~self.of.conditions.prescribed).ravel()
         external = self.of.conditions.force(loads)
         u, scale = u.copy(), None
@@ -193,7 +228,7 @@ class Events:
             after = self.dropped(past, batch)
             lost = self.energy(u, past) - self.energy(u, after)
             batch_work += self.mechanics.dissipated(after) - self.mechanics.dissipated(past) - lost
-            settled = self.settle(u, after, old.loads)
+            settled = self.settle(u, past, after, old.loads)
             if settled is None:
                 self.unknown += 1
                 self.is_whole = False  # what was drained is not known from here on

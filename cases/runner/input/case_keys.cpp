@@ -1064,6 +1064,13 @@ void check_found_loads(const Entry& at, const Case& result) {
                      "is for bodies with damage: it goes from one breaking bond to the next");
   if (is_path && result.solver.elastic_horizon_ratio > 0.0)
     throw InputError("solver.elastic_horizon_ratio", "", "is for mode adaptive");
+  if (is_path && at.from.has("loading")) {
+    for (const char* key : {"largest_step", "max_broken_bonds"}) {
+      if (at.from.table("loading").has(key))
+        throw InputError(std::string("loading.") + key, "",
+                         "is not heeded in mode path, which goes from event to event");
+    }
+  }
   if (!is_path && at.from.has("loading")) {
     for (const char* key : {"event_tolerance", "teeth"}) {
       if (at.from.table("loading").has(key))
