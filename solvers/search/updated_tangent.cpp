@@ -1,7 +1,6 @@
 #include "solvers/search/updated_tangent.hpp"
 
 #include <algorithm>
-#include <array>
 #include <utility>
 
 #include <Eigen/Dense>
@@ -21,10 +20,7 @@ constexpr double least_pivot = 1e-12;
 
 struct UpdatedTangent::Correction {
   /// Entries of a bond's direction in the equations.
-  struct Direction {
-    std::array<std::pair<Index, double>, 6> entries;
-    int count = 0;
-  };
+  using Direction = std::vector<std::pair<Index, double>>;
 
   std::map<Offset, std::size_t> column_of;
   std::vector<Direction> directions;
@@ -37,8 +33,7 @@ struct UpdatedTangent::Correction {
 
   static double along(const Direction& g, std::span<const double> v) {
     double sum = 0.0;
-    for (int k = 0; k < g.count; ++k)
-      sum += g.entries[k].second * v[std::size_t(g.entries[k].first)];
+    for (const auto& [equation, share] : g) sum += share * v[std::size_t(equation)];
     return sum;
   }
 
@@ -163,8 +158,25 @@ LinearOutcome UpdatedTangent::solve_again(std::span<const double> force,
 }
 
 bool UpdatedTangent::is_worth_updating() const {
-  return is_there_ && is_direct_ && problem_.conditions.constraints().none() &&
-         correction_->columns.size() < std::size_t(most_columns);
+  return is_there_ && is_direct_ && correction_->columns.size() < std::size_t(most_columns);
+}
+
+std::vector<std::pair<Index, double>> UpdatedTangent::direction_of(
+    const LostStiffness& lost) const {
+  std::vector<std::pair<Index, double>> shares;
+  const auto d = std::size_t(problem_.free.dimension);
+  for (const auto& [point, sign] : {std::pair(lost.first, -1.0), std::pair(lost.second, 1.0)}) {
+    for (const Dependence& on :
+         problem_.conditions.constraints().dependences(point, reference_.at.displacement)) {
+      for (std::size_t c = 0; c < d; ++c) {
+        const Index equation = problem_.free.equation[std::size_t(on.master) * d + c];
+        double share = 0.0;
+        for (std::size_t r = 0; r < d; ++r) share += lost.direction[r] * on.block[r][c];
+        if (equation != FreeDofs::none && share != 0.0) shares.emplace_back(equation, sign * share);
+      }
+    }
+  }
+  return shares;
 }
 
 LinearOutcome UpdatedTangent::add_column(const LostStiffness& lost) {
@@ -174,18 +186,10 @@ LinearOutcome UpdatedTangent::add_column(const LostStiffness& lost) {
     c.stiffness[known->second] += lost.stiffness;
     return LinearOutcome::solved;
   }
-  Correction::Direction g;
+  Correction::Direction g = direction_of(lost);
+  if (g.empty()) return LinearOutcome::solved;
   std::vector<double> side(std::size_t(problem_.free.count()));
-  const int d = problem_.free.dimension;
-  for (int r = 0; r < d; ++r) {
-    for (const auto& [point, sign] : {std::pair(lost.first, -1.0), std::pair(lost.second, 1.0)}) {
-      const Index equation = problem_.free.equation[std::size_t(point) * d + r];
-      if (equation == FreeDofs::none) continue;
-      g.entries[std::size_t(g.count++)] = {equation, sign * lost.direction[std::size_t(r)]};
-      side[std::size_t(equation)] = sign * lost.direction[std::size_t(r)];
-    }
-  }
-  if (g.count == 0) return LinearOutcome::solved;
+  for (const auto& [equation, share] : g) side[std::size_t(equation)] += share;
   std::vector<double> column;
   const LinearOutcome outcome = solve_for(side, column_tolerance, column);
   if (outcome != LinearOutcome::solved) return outcome;

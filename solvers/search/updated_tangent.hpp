@@ -3,6 +3,7 @@
 #include <map>
 #include <memory>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "assembly/terms/bonds/borne_stretches.hpp"
@@ -80,6 +81,8 @@ class UpdatedTangent {
   [[nodiscard]] LinearOutcome take_indefinite();
   [[nodiscard]] LinearOutcome solve_for(std::span<const double> side, double tolerance,
                                         std::vector<double>& solution);
+  /// Of a bond in the equations: what follows others hands its share on to them.
+  [[nodiscard]] std::vector<std::pair<Index, double>> direction_of(const LostStiffness& lost) const;
   [[nodiscard]] LinearOutcome add_column(const LostStiffness& lost);
   [[nodiscard]] bool is_worth_updating() const;
 
