@@ -81,7 +81,7 @@ Advance ArcLengthStepping::next() {
 
 std::optional<Advance> ArcLengthStepping::end() const {
   const int asked_for = path_.options().arc_length.steps, taken = path_.state().steps;
-  if (!path_.has_load_left() || (asked_for > 0 && taken >= asked_for)) return Advance::ended;
+  if (!path_.goes_on() || (asked_for > 0 && taken >= asked_for)) return Advance::ended;
   if (taken < most_steps || asked_for > 0) return std::nullopt;
   Attempt attempt;
   attempt.outcome = Outcome::step_limit;

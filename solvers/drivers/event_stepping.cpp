@@ -51,7 +51,7 @@ EventStepping::EventStepping(Path& path) : Driver(path) {
 }
 
 Advance EventStepping::next() {
-  if (!path_.has_load_left()) return Advance::ended;
+  if (!path_.goes_on()) return Advance::ended;
   PathState before = path_.state();
   PathState::Events& events = path_.state().events;
   if (borne_.empty()) {

@@ -1,9 +1,12 @@
 #include "solvers/drivers/found_step.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <utility>
 #include <vector>
 
 #include "assembly/terms/damage.hpp"
+#include "src/core/number_text.hpp"
 
 namespace peristat {
 namespace {
@@ -30,6 +33,23 @@ void complete_record(const Path& path, const Attempt& attempt, FoundStep& found)
   record.reactions =
       path.setting().conditions.reactions(attempt.state.gradient, attempt.external_force,
                                           attempt.state.displacement, attempt.state.environment);
+}
+
+/// Whether it is where the path is to end is told.
+void note_force(Path& path, const StepRecord& record) {
+  PathState::SupportForce& force = path.state().force;
+  force.present = 0.0;
+  for (const auto& [set, reaction] : record.reactions) {
+    force.present = std::max(force.present, std::hypot(reaction[0], reaction[1], reaction[2]));
+  }
+  force.largest = std::max(force.largest, force.present);
+  if (!path.has_fallen()) return;
+  path.tell(load_point(path.state().accepted),
+            {.outcome = name(Outcome::converged),
+             .action = Decision::stop,
+             .reason = "the largest reaction, " + number_text(force.present) + " N, is below " +
+                       number_text(path.options().stop_below) + " of its peak, " +
+                       number_text(force.largest) + " N"});
 }
 
 }  // namespace
@@ -121,6 +141,7 @@ Advance accept(Path& path, Attempt attempt, FoundStep found, double next) {
                     path.options().fragments);
   }
   complete_record(path, attempt, found);
+  note_force(path, found.record);
   if (const auto& tell = path.setting().observer.accepted) {
     tell(found.record, {attempt.state, attempt.external_force, state.pins.found.piece});
   }

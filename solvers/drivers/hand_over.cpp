@@ -57,7 +57,7 @@ double largest_jump(const std::map<std::string, Coordinates>& before,
 }  // namespace
 
 Advance HandOver::next() {
-  if (!path_.has_load_left()) return Advance::ended;
+  if (!path_.goes_on()) return Advance::ended;
   return path_.state().hand_over.relaxes ? relaxed_step() : implicit_step();
 }
 
@@ -164,7 +164,7 @@ Advance HandOver::relaxed_step() {
   if (falls || attempt.at.stage >= state.peak_before) state.peak_before = 0.0;
   if (relaxed_.accept(std::move(found), peak) == Advance::ended) return Advance::ended;
   const bool hands_back = path_.options().relaxation.holds && !was_damaged;
-  if (hands_back && path_.has_load_left()) hand_back();
+  if (hands_back && path_.goes_on()) hand_back();
   return Advance::goes_on;
 }
 

@@ -33,7 +33,7 @@ ImplicitStepping::ImplicitStepping(Path& path)
                  path.state().implicit.increment) {}
 
 Advance ImplicitStepping::next() {
-  if (!path_.has_load_left()) return Advance::ended;
+  if (!path_.goes_on()) return Advance::ended;
   ImplicitStep step = search(path_.setting().newton_options.damage);
   if (step.attempt.has_converged()) establish(step);
   if (may_be_avalanche(step)) run_avalanche(step);

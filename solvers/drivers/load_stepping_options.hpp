@@ -40,6 +40,9 @@ struct LoadSteppingOptions {
   /// Of the stage, in adaptive mode: a relaxed step in which the force begins to fall is halved
   /// until it is no longer than this. 0: never.
   double peak_tolerance = 0.0;
+  /// Share of the largest force on a support so far below which the path has come to its end. 0:
+  /// only the load ends it.
+  double stop_below = 0.0;
   ArcLengthOptions arc_length{};
   EventOptions events{};
   FragmentRemedy fragments = FragmentRemedy::hold;

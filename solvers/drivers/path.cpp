@@ -47,8 +47,12 @@ void Path::note_rungs() {
   if (setting_.stand_in) state_.rungs.stand_in = setting_.stand_in->solver.rung();
 }
 
-bool Path::has_load_left() const {
-  return setting_.conditions.programme().has_rest(state_.accepted.stage);
+bool Path::goes_on() const {
+  return !has_fallen() && setting_.conditions.programme().has_rest(state_.accepted.stage);
+}
+
+bool Path::has_fallen() const {
+  return state_.force.present < options().stop_below * state_.force.largest;
 }
 
 const SolvedBody& Path::body() const {

@@ -54,7 +54,10 @@ class Path {
   [[nodiscard]] Outcome outcome() const { return outcome_; }
   [[nodiscard]] Attempt& last_attempt() { return last_attempt_; }
 
-  [[nodiscard]] bool has_load_left() const;
+  /// Whether it goes on: there is load left, and the force has not fallen to where it is to end.
+  [[nodiscard]] bool goes_on() const;
+  /// Whether the supports' force has fallen below the share of its peak that ends the path.
+  [[nodiscard]] bool has_fallen() const;
   [[nodiscard]] int next_step() const { return state_.steps + 1; }
 
   /// The body in force: the stand-in until damage begins.

@@ -22,6 +22,10 @@ struct PathState {
   int steps = 0;   ///< accepted
   PathLedger ledger;
   FragmentPins pins;
+  /// 2-norm of the largest reaction of a support, in the accepted state and so far [N].
+  struct SupportForce {
+    double present = 0.0, largest = 0.0;
+  } force;
   bool stands_in = false;  ///< the stand-in is in the place of the body
   struct Rungs {
     int body = 0, stand_in = 0;

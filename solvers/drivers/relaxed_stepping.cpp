@@ -21,7 +21,7 @@ RelaxedStepping::RelaxedStepping(Path& path, Finish finish)
                  path.state().relaxed.increment) {}
 
 Advance RelaxedStepping::next() {
-  if (!path_.has_load_left()) return Advance::ended;
+  if (!path_.goes_on()) return Advance::ended;
   Found found = search();
   return found.step.attempt.has_converged() ? accept(std::move(found)) : fail(std::move(found));
 }

@@ -82,8 +82,8 @@ void transfer_tangent(StateArchive& archive, TangentReference& tangent) {
 
 // The bindings name every member, so that none can be forgotten.
 void transfer(StateArchive& archive, PathState& state) {
-  auto& [accepted, steps, ledger, pins, stands_in, rungs, relaxation_seconds, implicit, relaxed,
-         control_sign, arc, hand_over, events] = state;
+  auto& [accepted, steps, ledger, pins, force, stands_in, rungs, relaxation_seconds, implicit,
+         relaxed, control_sign, arc, hand_over, events] = state;
   // Made anew from the stage, see Path.
   [[maybe_unused]] auto& [displacement, stage, history, load, environment] = accepted;
   archive.transfer("accepted/displacement", displacement);
@@ -93,6 +93,9 @@ void transfer(StateArchive& archive, PathState& state) {
   archive.transfer("steps", steps);
   transfer_ledger(archive, ledger);
   transfer_pins(archive, pins);
+  auto& [present_force, largest_force] = force;
+  archive.transfer("force/present", present_force);
+  archive.transfer("force/largest", largest_force);
   archive.transfer("stands_in", stands_in);
   auto& [body_rung, stand_in_rung] = rungs;
   archive.transfer("rungs/body", body_rung);

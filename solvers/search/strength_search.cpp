@@ -72,15 +72,20 @@ class StrengthSearch {
     row.iteration = iteration;
     row.step_length = 1.0;
     if (!tangent_.is_there() || is_slow(iteration)) {
-      const LinearOutcome linear = tangent_.refresh(
-          {current_.displacement, result_.stage, current_.history, {}, current_.environment});
-      if (linear != LinearOutcome::solved) return outcome_of(linear);
+      if (Outcome found = refresh(); found != Outcome::converged) return found;
     }
     const double earlier = std::exchange(last_residual_, current_.residual_norm);
     if (Outcome found = correct(earlier); found != Outcome::converged) return found;
     if (!step_.settles) {
       if (Outcome found = find_rate(); found != Outcome::converged) return found;
-      const double change = choose(iteration == 1);
+      double change = choose(iteration == 1);
+      if (result_.end == StrengthEnd::inadmissible && !is_fresh()) {
+        // Where the body goes an old tangent does not tell well enough to give the way up.
+        result_.end = StrengthEnd::at_stop;
+        if (Outcome found = refresh(); found != Outcome::converged) return found;
+        if (Outcome found = find_rate(); found != Outcome::converged) return found;
+        change = choose(iteration == 1);
+      }
       if (result_.end == StrengthEnd::inadmissible) return Outcome::converged;
       for (const Index dof : problem_.free.dof) current_.displacement[dof] += change * rate_[dof];
       result_.stage = result_.end == StrengthEnd::at_stop ? step_.stop : result_.stage + change;
@@ -92,6 +97,15 @@ class StrengthSearch {
     if (iteration == 1 && misses_by_far()) return Outcome::iteration_limit;
     return interrupts(row) ? Outcome::interrupted : Outcome::converged;
   }
+
+  Outcome refresh() {
+    refreshed_at_ = tangent_.refreshed() + 1;
+    return outcome_of(tangent_.refresh(
+        {current_.displacement, result_.stage, current_.history, {}, current_.environment}));
+  }
+
+  /// Whether the tangent is of this search.
+  [[nodiscard]] bool is_fresh() const { return refreshed_at_ == tangent_.refreshed(); }
 
   /// Whether the tangent that is there is too far from the state's.
   [[nodiscard]] bool is_slow(int iteration) const {
@@ -235,7 +249,7 @@ class StrengthSearch {
   std::vector<double> external_force_;
   Trial current_;
   std::vector<double> rate_, eigenstretch_rate_;
-  int rate_of_ = 0;  // refresh of the tangent
+  int rate_of_ = 0, refreshed_at_ = 0;  // refresh of the tangent
   bool meets_upper_ = true;
   double last_residual_ = 0.0, old_scale_ = 0.0;
   StrengthResult result_;

@@ -19,11 +19,10 @@ constexpr double least_pivot = 1e-12;
 }  // namespace
 
 struct UpdatedTangent::Correction {
-  /// Entries of a bond's direction in the equations.
-  using Direction = std::vector<std::pair<Index, double>>;
+  using Direction = BondDirection::Shares;
 
   std::map<Offset, std::size_t> column_of;
-  std::vector<Direction> directions;
+  std::vector<BondDirection> directions;
   std::vector<double> stiffness;
   std::vector<std::vector<double>> columns;  // of Z
   Eigen::MatrixXd between;                   // G^T Z
@@ -52,7 +51,8 @@ struct UpdatedTangent::Correction {
     const std::size_t size = columns.size();
     if (size == 0) return;
     Eigen::VectorXd along_bonds{Eigen::Index(size)};
-    for (std::size_t k = 0; k < size; ++k) along_bonds[Eigen::Index(k)] = along(directions[k], x);
+    for (std::size_t k = 0; k < size; ++k)
+      along_bonds[Eigen::Index(k)] = along(directions[k].free, x);
     const Eigen::VectorXd shares = inner.solve(along_bonds);
     using Vector = Eigen::Map<Eigen::VectorXd>;
     using Constant = Eigen::Map<const Eigen::VectorXd>;
@@ -125,6 +125,12 @@ std::vector<double> UpdatedTangent::right_hand_side(std::span<const double> forc
   std::vector<double> of_supports(jump.size());
   tangent_.multiply(jump, of_supports);
   for (std::size_t e = 0; e < side.size(); ++e) side[e] -= of_supports[problem_.free.dof[e]];
+  // The tangent that was linearised still has what bonds to the supports have lost.
+  for (std::size_t k = 0; k < correction_->directions.size(); ++k) {
+    const BondDirection& bond = correction_->directions[k];
+    const double lost = correction_->stiffness[k] * Correction::along(bond.held, jump);
+    for (const auto& [equation, share] : bond.free) side[std::size_t(equation)] += share * lost;
+  }
   return side;
 }
 
@@ -161,22 +167,27 @@ bool UpdatedTangent::is_worth_updating() const {
   return is_there_ && is_direct_ && correction_->columns.size() < std::size_t(most_columns);
 }
 
-std::vector<std::pair<Index, double>> UpdatedTangent::direction_of(
-    const LostStiffness& lost) const {
-  std::vector<std::pair<Index, double>> shares;
+UpdatedTangent::BondDirection UpdatedTangent::direction_of(const LostStiffness& lost) const {
+  BondDirection found;
   const auto d = std::size_t(problem_.free.dimension);
   for (const auto& [point, sign] : {std::pair(lost.first, -1.0), std::pair(lost.second, 1.0)}) {
     for (const Dependence& on :
          problem_.conditions.constraints().dependences(point, reference_.at.displacement)) {
       for (std::size_t c = 0; c < d; ++c) {
-        const Index equation = problem_.free.equation[std::size_t(on.master) * d + c];
         double share = 0.0;
         for (std::size_t r = 0; r < d; ++r) share += lost.direction[r] * on.block[r][c];
-        if (equation != FreeDofs::none && share != 0.0) shares.emplace_back(equation, sign * share);
+        if (share == 0.0) continue;
+        const Index dof = on.master * Index(d) + Index(c);
+        const Index equation = problem_.free.equation[std::size_t(dof)];
+        if (equation == FreeDofs::none) {
+          found.held.emplace_back(dof, sign * share);
+        } else {
+          found.free.emplace_back(equation, sign * share);
+        }
       }
     }
   }
-  return shares;
+  return found;
 }
 
 LinearOutcome UpdatedTangent::add_column(const LostStiffness& lost) {
@@ -186,10 +197,10 @@ LinearOutcome UpdatedTangent::add_column(const LostStiffness& lost) {
     c.stiffness[known->second] += lost.stiffness;
     return LinearOutcome::solved;
   }
-  Correction::Direction g = direction_of(lost);
-  if (g.empty()) return LinearOutcome::solved;
+  BondDirection g = direction_of(lost);
+  if (g.free.empty()) return LinearOutcome::solved;
   std::vector<double> side(std::size_t(problem_.free.count()));
-  for (const auto& [equation, share] : g) side[std::size_t(equation)] += share;
+  for (const auto& [equation, share] : g.free) side[std::size_t(equation)] += share;
   std::vector<double> column;
   const LinearOutcome outcome = solve_for(side, column_tolerance, column);
   if (outcome != LinearOutcome::solved) return outcome;
@@ -197,11 +208,11 @@ LinearOutcome UpdatedTangent::add_column(const LostStiffness& lost) {
   if (c.between.rows() == 0) c.between.setZero(most_columns, most_columns);
   for (Eigen::Index k = 0; k < size; ++k) {
     c.between(k, size) = c.between(size, k) =
-        Correction::along(c.directions[std::size_t(k)], column);
+        Correction::along(c.directions[std::size_t(k)].free, column);
   }
-  c.between(size, size) = Correction::along(g, column);
+  c.between(size, size) = Correction::along(g.free, column);
   c.column_of[lost.bond] = c.columns.size();
-  c.directions.push_back(g);
+  c.directions.push_back(std::move(g));
   c.stiffness.push_back(lost.stiffness);
   c.columns.push_back(std::move(column));
   return LinearOutcome::solved;

@@ -81,8 +81,13 @@ class UpdatedTangent {
   [[nodiscard]] LinearOutcome take_indefinite();
   [[nodiscard]] LinearOutcome solve_for(std::span<const double> side, double tolerance,
                                         std::vector<double>& solution);
-  /// Of a bond in the equations: what follows others hands its share on to them.
-  [[nodiscard]] std::vector<std::pair<Index, double>> direction_of(const LostStiffness& lost) const;
+  /// Of a bond: what follows others hands its share on to them.
+  struct BondDirection {
+    using Shares = std::vector<std::pair<Index, double>>;
+    Shares free;  ///< by equation
+    Shares held;  ///< by degree of freedom that has none
+  };
+  [[nodiscard]] BondDirection direction_of(const LostStiffness& lost) const;
   [[nodiscard]] LinearOutcome add_column(const LostStiffness& lost);
   [[nodiscard]] bool is_worth_updating() const;
 

@@ -32,6 +32,7 @@ void check_options(const StudyOptions& options) {
   require_within(loading.smallest_step, 1e-12, step, "loading.smallest_step");
   if (loading.largest_step != 0.0)
     require_within(loading.largest_step, step, 1.0, "loading.largest_step");
+  require_within(loading.stop_below, 0.0, 1.0, "loading.stop_below");
   require_within(options.newton.relative_tolerance, 1e-14, 1e-2, "newton.relative_tolerance");
   require_within(options.newton.linear_tolerance, 1e-14, 1e-1, "newton.linear_tolerance");
   require_within(options.newton.max_iterations, 1, 1000, "newton.max_iterations");

@@ -1,6 +1,7 @@
 """Mode path: from event to event. The reference of tests/reference settles every event once more."""
 
 import csv
+import json
 
 import h5py
 import numpy
@@ -209,6 +210,15 @@ class OnePath(Paths):
     def test_softening(self):
         self.same_path(strip(TANH, more="[loading]\nteeth = 3\n"), self.variants())
 
+    def test_on_rollers(self):
+        """What follows others takes part in the stiffness that dropped bonds take off a tangent."""
+        roller = '[[roller]]\nset = "right"\nnormal = [1, 0.2]\ndisplacement = "2e-4*load"\n'
+        text = strip().replace('[[support]]\nset = "right"\ndisplacement = ["2e-4*load", "free"]\n', roller)
+        self.same_path(text, {"pcg": ["--set", "solver.linear=pcg"]})
+        self.run_case(text.replace("2e-4*load", "2e-6*load").replace("critical = 0.01", "critical = 1e-4"))
+        costs = json.loads((self.folder / "out/summary.json").read_text())
+        self.assertLess(4 * costs["factorisations"], costs["steps"])
+
     def test_symmetric(self):
         """Where bonds tie, too."""
         notches = crack(([0.006, 0.0], [0.006, 0.001]), ([0.006, 0.005], [0.006, 0.006]))
@@ -227,6 +237,29 @@ class OnePath(Paths):
                 self.assertEqual(differences(self.folder / "out", folder), [])
 
 
+class Fallen(Paths):
+    """A run that ends where the force has fallen below a share of its peak."""
+
+    def test_it_ends_and_goes_on(self):
+        for mode in ("path", "relaxation", "adaptive"):
+            with self.subTest(mode):
+                text = strip(LINEAR, more="[loading]\nsteps = 40\n").replace('mode = "path"', f'mode = "{mode}"')
+                text = text.replace("2e-4*load", "4e-4*load")
+                whole = self.run_case(text, name=f"whole {mode}")
+                name = f"fallen {mode}"
+                rows = self.run_case(text, "loading.stop_below=0.8", name=name)
+                force = [numpy.hypot(row["reaction_x:right"], row["reaction_y:right"]) for row in rows]
+                peaks = numpy.maximum.accumulate(force)
+                self.assertLess(len(rows), len(whole))
+                self.assertEqual(rows, whole[: len(rows)])
+                self.assertGreaterEqual(min(numpy.array(force[:-1]) / peaks[:-1]), 0.8 - 1e-12)
+                self.assertLess(force[-1] / peaks[-1], 0.8)
+                self.assertIn("is below 0.8 of its peak", self.decisions("stop", name)[-1])
+                ended = peristat("resume", self.folder / name, "--threads", 1, "--set", "loading.stop_below=0")
+                self.assertEqual(ended.code, 0, ended.said)
+                self.assertEqual(self.history(name), whole)
+
+
 class WrongInput(Paths):
     def test_it_is_refused(self):
         for setting, words in {
@@ -236,6 +269,7 @@ class WrongInput(Paths):
             "loading.teeth=0": "must be a whole number from 1 to 1000",
             "loading.teeth=1001": "must be a whole number from 1 to 1000",
             "solver.elastic_horizon_ratio=4": "is for mode adaptive",
+            "loading.stop_below=1.1": "must be a number from 0 to 1",
             "loading.largest_step=1": "is not heeded in mode path",
             "loading.max_broken_bonds=3": "is not heeded in mode path",
         }.items():

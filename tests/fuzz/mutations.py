@@ -25,7 +25,7 @@ WORDS = """dimension title lattice points spacing horizon_ratio thickness area o
     centre radius axis length vertices name side where file horizon set crack from to quadrature volume_correction weights
     surface_correction material model plane youngs_modulus micromodulus poisson_ratio calibration c1 c2 c3 density damage law onset
     critical rate peak hardening fracture_energy strength no_fail support displacement load body_force total_force loading steps adaptive smallest_step largest_step
-    max_broken_bonds solver mode linear preconditioner tangent predictor projection relative_tolerance max_iterations fragments
+    max_broken_bonds stop_below solver mode linear preconditioner tangent predictor projection relative_tolerance max_iterations fragments
     elastic_horizon_ratio relaxation iterations ramp breaking damping mass_factor quiet_iterations displacement_tolerance method flow_tolerance peak_tolerance output
     directory every count_cracks probe field other threshold control weights table table2 arc_length bifurcation region interface between
     rule fibre angle direction transverse_modulus shear_modulus transverse_critical scatter of distribution weibull_modulus

@@ -21,6 +21,7 @@ LoadSteppingOptions load_stepping_options(const Case& from) {
   options.smallest_step = from.loading.smallest_step;
   options.largest_step = from.loading.largest_step;
   options.max_broken_bonds = from.loading.max_broken_bonds;
+  options.stop_below = from.loading.stop_below;
   options.arc_length = from.solver.arc_length;
   options.events = from.loading.events;
   options.fragments = from.solver.fragments;

@@ -41,6 +41,7 @@ struct LoadingSpecification {
   double smallest_step = 1e-6;    ///< of the stage
   double largest_step = 0.0;      ///< of the stage; 0: the first step (the reader writes it out)
   int max_broken_bonds = 0;       ///< in one implicit step; 0: no limit
+  double stop_below = 0.0;        ///< share of the largest reaction; 0: the load's end alone
   EventOptions events{};          ///< of mode path
   int teeth = 10;                 ///< of mode path, see BodySpecification
 

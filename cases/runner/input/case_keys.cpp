@@ -847,6 +847,7 @@ Table<LoadingSpecification> loading_keys() {
   }
   keys.keys.back().then(resolve_tables);
   const auto follows_events = [](auto&, auto& from) { return from.solver.mode == Mode::path; };
+  const auto takes_steps = [](auto&, auto& from) { return from.solver.mode != Mode::path; };
   const std::vector<K> others{
       K("adaptive", &Spec::adaptive, boolean(),
         "cut a step that does not converge, and grow again; otherwise such a step ends the "
@@ -862,7 +863,9 @@ Table<LoadingSpecification> loading_keys() {
           .otherwise(
               [](auto& loading, auto&) { loading.largest_step = 1.0 / loading.steps_to_entry(); },
               "the first step")
-          .written_if([](auto&, auto& from) { return from.solver.mode != Mode::arc_length; })
+          .written_if([](auto&, auto& from) {
+            return from.solver.mode != Mode::arc_length && from.solver.mode != Mode::path;
+          })
           .then([](auto& at, auto& loading) {
             const double step = 1.0 / loading.steps_to_entry();
             if (loading.smallest_step > step)
@@ -874,6 +877,12 @@ Table<LoadingSpecification> loading_keys() {
       K("max_broken_bonds", &Spec::max_broken_bonds, count_from(0, "bonds"),
         "mode `newton`: bonds that may break in one step; a step with more is cut. 0 is no "
         "limit")
+          .written_if(takes_steps)
+          .extends(),
+      K("stop_below", &Spec::stop_below, between(0.0, 1.0),
+        "of the largest reaction of a support so far: the run has come to its end when the largest "
+        "one falls below this share of it, as that of a specimen that tears. 0: the load alone "
+        "ends it")
           .extends(),
       K("event_tolerance", in(&Spec::events, &EventOptions::tolerance), between(0.0, 0.5),
         "mode `path`: bonds within this share of the most utilised one break with it; 0: those "

@@ -702,7 +702,7 @@ TEST_F(CaseOverride, IsCheckedLikeTheFile) {
       refusal(plate, {{"loading.stepz", "50"}}),
       "--set loading.stepz=50: loading.stepz = 50: unknown key; did you mean steps?  (allowed: "
       "steps, table, table2, table3, table4, adaptive, smallest_step, largest_step, "
-      "max_broken_bonds, event_tolerance, teeth)");
+      "max_broken_bonds, stop_below, event_tolerance, teeth)");
   EXPECT_EQ(refusal(plate, {{"lattice.spacing", "-1"}}),
             "--set lattice.spacing=-1: lattice.spacing = -1: must be a positive number [m]");
   EXPECT_EQ(refusal(plate, {{"lattice.spacing", "small"}})

@@ -420,7 +420,7 @@ TEST_F(ResultsTest, TablesHaveTheColumnsOfTheContract) {
           "\"reaction_z:left, \"\"top\"\"\",tip_x,tip_y,crack,numerical_work,pin_force,settled,"
           "stage,control,negative_pivots,on_response,released_energy,stability",
           "1,0.1,newton,4,100,0.3333333333333333,0.25,0.125,5,1e-17,3,0.5,0.01,1,2,0,-1,-2,0,0.5,"
-          "-0.5,9,0.0625,0.75,1,1.5,1.25e-05,2,0,0.375,unstable"}));
+          "-0.5,9,0.0625,0.75,1,1.5,1.25e-05,2,0,0.375,-1"}));
   EXPECT_EQ(lines(directory / "iterations.csv"),
             (std::vector<std::string>{
                 "step,iteration,residual,relative_residual,energy,step_length,"
