@@ -72,7 +72,8 @@ Advance EventStepping::next() {
     }
     take_up(std::move(settled));
   }
-  Step step = search();
+  Step step = path_.state().steps == 0 ? begin() : Step{};
+  if (path_.state().steps > 0 || step.attempt.has_converged()) step = search();
   while (step.attempt.has_converged() && is_above_strength(step)) {
     pass_over(step);
     if (step.attempt.has_converged()) step = search();
@@ -228,6 +229,13 @@ EventStepping::Settled EventStepping::settle(const State& at, const PathLedger& 
   return settled;
 }
 
+Attempt EventStepping::settle_anywhere(const State& at, std::span<const double> borne,
+                                       double relative_tolerance) {
+  Attempt attempt = settle_nearby(at, borne, relative_tolerance);
+  if (attempt.has_converged() || attempt.outcome == Outcome::interrupted) return attempt;
+  return settle_downhill(at, relative_tolerance);
+}
+
 bool EventStepping::is_unstable(const Attempt& attempt) {
   if (!tangent().has_negative_pivots()) return false;
   // They are those of a state on the way.
@@ -289,6 +297,14 @@ StrengthStep EventStepping::strength_step() const {
   return step;
 }
 
+EventStepping::Step EventStepping::begin() {
+  Step step;
+  const State& rest = path_.state().accepted;
+  step.attempt = settle_anywhere(rest, borne_, held().relative_tolerance);
+  if (step.attempt.has_converged()) pass_over(step);
+  return step;
+}
+
 EventStepping::Step EventStepping::search() {
   const State& from = path_.state().accepted;
   const StrengthStep asked = strength_step();
@@ -313,6 +329,11 @@ EventStepping::Step EventStepping::run_avalanche() {
   Step step;
   step.end = StrengthEnd::on_the_way;
   int passes = 0;
+  if (utilisation(state.accepted, borne_) < share_at_strength * (1.0 - tie)) {
+    step.attempt = undefined_attempt(state.accepted, load_point(state.accepted));
+    step.fault = "no load is admissible, and yet no bond is at its strength";
+    return step;
+  }
   for (;; ++passes) {
     Settled settled = settle(state.accepted, state.ledger);
     step.attempt = settled.attempt;
@@ -329,11 +350,7 @@ EventStepping::Step EventStepping::run_avalanche() {
   }
   step.how = std::to_string(passes + 1) + " events while the load is held";
   // It is a state to be told now.
-  const double tolerance = held().relative_tolerance;
-  step.attempt = settle_nearby(state.accepted, borne_, tolerance);
-  if (!step.attempt.has_converged() && step.attempt.outcome != Outcome::interrupted) {
-    step.attempt = settle_downhill(state.accepted, tolerance);
-  }
+  step.attempt = settle_anywhere(state.accepted, borne_, held().relative_tolerance);
   return step;
 }
 

@@ -81,6 +81,9 @@ class EventStepping : public Driver {
   [[nodiscard]] Attempt settle_downhill(const State& at, double relative_tolerance);
   /// Whether the tangent at an equilibrium has negative pivots, where it had some on the way.
   [[nodiscard]] bool is_unstable(const Attempt& attempt);
+  /// The one, or else the other.
+  [[nodiscard]] Attempt settle_anywhere(const State& at, std::span<const double> borne,
+                                        double relative_tolerance);
   /// Closes the ledger of an event.
   /// @param lost energy that the body has lost as the bonds dropped [J]
   /// @return false if it would have come to rest with more energy than it had
@@ -94,6 +97,8 @@ class EventStepping : public Driver {
   /// Pins what has come off, in the equations.
   [[nodiscard]] bool pin(Settled& settled);
 
+  /// Equilibrium under what supports and loads are at the beginning of the programme.
+  [[nodiscard]] Step begin();
   [[nodiscard]] Step search();
   /// Holds the load until nothing is above its strength.
   [[nodiscard]] Step run_avalanche();

@@ -237,6 +237,26 @@ class OnePath(Paths):
                 self.assertEqual(differences(self.folder / "out", folder), [])
 
 
+class Preloaded(Paths):
+    """Supports that have moved before the load begins."""
+
+    def test_the_path_is_the_same(self):
+        self.run_case(strip(), name="from rest")
+        bonds, loads = self.broken("from rest")
+        self.run_case(strip().replace("2e-4*load", "2e-4*(0.1+0.9*load)"), name="preloaded")
+        others, other_loads = self.broken("preloaded")
+        self.assertEqual([b[1:] for b in others], [b[1:] for b in bonds])
+        self.assertLess(numpy.abs(0.1 + 0.9 * other_loads - loads).max(), 1e-8)
+
+    def test_what_is_above_its_strength_at_once_is_an_avalanche(self):
+        """All bonds of the strip used to break where none was at its strength yet."""
+        rows = self.run_case(strip().replace("2e-4*load", "2e-4*(0.5+0.5*load)"))
+        self.assertEqual(rows[0]["load_factor"], 0)
+        self.assertGreater(rows[0]["broken_bonds"], 0)
+        self.assertLess(rows[-1]["broken_bonds"], 150)
+        self.assertLess(abs(rows[0]["balance_error"]), 1e-9 * rows[0]["external_work"])
+
+
 class Fallen(Paths):
     """A run that ends where the force has fallen below a share of its peak."""
 
