@@ -49,12 +49,13 @@ class Launcher(unittest.TestCase):
         self.addCleanup(folder.cleanup)
         self.folder = pathlib.Path(folder.name).resolve()
         root = self.folder / "house"
-        for part in ["src", "assembly", "solvers", "cases/runner/plots", "cases/runner/sweep", "cmake", "build/release"]:
+        for part in ["src", "assembly", "solvers", "cases/runner/plots", "cases/runner/sweep", "cases/runner/trust", "cmake", "build/release"]:
             (root / part).mkdir(parents=True)
         for name in ["peristat", "CMakeLists.txt", "CMakePresets.json"]:
             shutil.copy(ROOT / name, root)
         (root / "cases/runner/plots/plot.py").write_text(PLOT)
         (root / "cases/runner/sweep/sweep.py").write_text(SWEEP)
+        (root / "cases/runner/trust/trust.py").write_text(SWEEP.replace('"sweep"', '"trust"'))
         (root / "build/release/peristat").write_text(PROGRAM)
         (root / "build/release/peristat").chmod(0o755)
         (root / "build/release/.built").touch()
@@ -139,6 +140,11 @@ class Launcher(unittest.TestCase):
         result = self.launch("run", "case.toml")
         self.assertEqual(result.returncode, 0)
         self.assertIn("could not be drawn", result.stderr)
+
+    def test_the_suite_knows_the_program(self):
+        result = self.launch("trust", "surfing", "--quick")
+        self.assertTrue(result.stdout.startswith("trust ['surfing', '--quick'] "), result.stdout)
+        self.assertIn("trust ['--help']", self.launch("help", "trust").stdout)
 
     def test_a_sweep_knows_the_program(self):
         result = self.launch("sweep", "a case.toml", "--vary", "x=1,2")

@@ -1,0 +1,101 @@
+"""Single-edge notched beams in three-point bending, ASTM E399 (S = 4 W), under their mouth opening."""
+
+from pathlib import Path
+
+import lefm
+from setting import FRACTURE_ENERGY, MODULUS, setting
+from specimen import Lattice, Specimen, aside, peak, rows
+
+WIDTH, THICKNESS = 0.04, 1e-3
+TOUGHNESS = lefm.toughness(MODULUS, FRACTURE_ENERGY)
+
+
+def case(ratio: float):
+    crack = ratio * WIDTH
+
+    def text(lattice: Lattice, h: float) -> str:
+        # Mouth opening of the elastic beam at its load: 4 sigma a V / E [Tada, Paris and Irwin 2000].
+        load = lefm.bend_load(TOUGHNESS, WIDTH, crack, THICKNESS)
+        shape = 0.76 - 2.28 * ratio + 3.87 * ratio**2 - 2.04 * ratio**3 + 0.66 / (1 - ratio) ** 2
+        mouth = 4 * 6 * load / (THICKNESS * WIDTH) * crack / MODULUS * shape
+        x = aside(lattice, h)
+        return setting(h, lattice, THICKNESS, ["ends"]) + f"""
+[[lattice.shape]]
+add = "box"
+min = [{-2.1 * WIDTH}, 0.0]
+max = [{2.1 * WIDTH}, {WIDTH}]
+
+[[crack]]
+from = [{x}, {-WIDTH}]
+to = [{x}, {crack}]
+
+[[set]]
+name = "ends"
+where = "(abs(x) > {1.75 * WIDTH} && y < {0.25 * WIDTH}) || (abs(x) < {0.25 * WIDTH} && y > {0.85 * WIDTH})"
+
+[[set]]
+name = "mouth_right"
+where = "x > {x} && x < {x + 1.5 * h} && y < {1.5 * h}"
+
+[[set]]
+name = "mouth_left"
+where = "x < {x} && x > {x - 1.5 * h} && y < {1.5 * h}"
+
+[[roller]]
+name = "left"
+at = [{-2 * WIDTH}, 0.0]
+normal = [0, 1]
+
+[[roller]]
+name = "right"
+at = [{2 * WIDTH}, 0.0]
+normal = [0, 1]
+
+[[roller]]
+name = "load"
+at = [0.0, {WIDTH}]
+normal = [0, 1]
+displacement = "-load"
+
+[[roller]]
+name = "middle"
+at = [0.0, {WIDTH}]
+normal = [1, 0]
+
+[[control]]
+set = "mouth_right"
+weights = [1, 0]
+
+[[control]]
+set = "mouth_left"
+weights = [-1, 0]
+
+[loading]
+table = [0, {2 * mouth:.6g}]
+steps = 40
+stop_below = 0.85
+"""  # fmt: skip
+
+    return text
+
+
+def specimen(ratio: float) -> Specimen:
+    load = lambda crack: lefm.bend_load(TOUGHNESS, WIDTH, crack, THICKNESS)
+    crack = ratio * WIDTH
+
+    def value(folder: Path) -> float:
+        return peak([abs(row["reaction_y:load"]) for row in rows(folder)]) / load(crack)
+
+    return Specimen(
+        name=f"senb_{10 * ratio:02.0f}",
+        title=f"Notched beam, a/W = {ratio}",
+        reference="ASTM E399",
+        quantity="peak load",
+        coarsest=WIDTH / 20,
+        case=case(ratio),
+        value=value,
+        of_longer_crack=lambda by: load(crack + by) / load(crack),
+    )
+
+
+SPECIMENS = [specimen(ratio) for ratio in (0.3, 0.4, 0.5, 0.6)]

@@ -1,0 +1,81 @@
+"""What an entry of the suite is: runs of one setting, and a number of each that a reference knows."""
+
+import csv
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from pathlib import Path
+
+SPACINGS, RATIOS, ANGLES = (1.0, 0.5, 0.25), (3.015, 4.015), (0.0, 18.4349488, 26.5650512, 45.0)
+MIDDLE = 1  # of the spacings: that of the other horizon and of the angles
+
+
+@dataclass(frozen=True)
+class Lattice:
+    """Of one run: the spacing over the specimen's coarsest one, and what else the answer must not hang on."""
+
+    refinement: float = 1.0
+    ratio: float = RATIOS[0]
+    angle: float = 0.0
+
+    @property
+    def name(self) -> str:
+        return f"h{self.refinement:g}_m{self.ratio:g}_{self.angle:.0f}"
+
+
+def lattices(quick: bool) -> list[Lattice]:
+    """Three spacings, two horizons, four angles; quick: the coarsest alone."""
+    if quick:
+        return [Lattice()]
+    middle = SPACINGS[MIDDLE]
+    return [*(Lattice(h) for h in SPACINGS), Lattice(middle, RATIOS[1]), *(Lattice(middle, angle=a) for a in ANGLES[1:])]
+
+
+def aside(lattice: Lattice, spacing: float) -> float:
+    """What a crack along a side of the lattice is moved by [m]: points of a turned one stand on it."""
+    return 0.0 if lattice.angle == 0.0 else 0.23 * spacing
+
+
+@dataclass
+class Specimen:
+    """One entry. `value` is what is measured over what the reference says: 1 is right."""
+
+    name: str
+    title: str
+    reference: str  # where the answer is from
+    quantity: str
+    coarsest: float  # spacing [m]
+    case: Callable[[Lattice, float], str]  # lattice, spacing
+    value: Callable[[Path], float]
+    allowed: float = 0.02
+    # Reference of a specimen whose crack is longer by that much, over its own: what a crack of finite width errs by.
+    of_longer_crack: Callable[[float], float] | None = None
+    reasons: dict[str, str] = field(default_factory=dict)  # of a red entry
+
+    def spacing(self, lattice: Lattice) -> float:
+        return self.coarsest * lattice.refinement
+
+    def text(self, lattice: Lattice) -> str:
+        return self.case(lattice, self.spacing(lattice))
+
+
+def rows(folder: Path, name: str = "history") -> list[dict]:
+    """Rows of a table, numbers as such."""
+
+    def value(text):
+        try:
+            return float(text)
+        except ValueError:
+            return text
+
+    with open(folder / f"{name}.csv", newline="") as table:
+        return [{key: value(text) for key, text in row.items()} for row in csv.DictReader(table)]
+
+
+def peak(values: list[float]) -> float:
+    """Largest value, between rows by the parabola through the three that are highest."""
+    top = max(range(len(values)), key=lambda k: values[k])
+    if top in (0, len(values) - 1):
+        return values[top]
+    before, here, after = values[top - 1 : top + 2]
+    bend = before - 2 * here + after
+    return here - (after - before) ** 2 / (8 * bend) if bend < 0 else here

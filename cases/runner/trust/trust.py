@@ -1,0 +1,107 @@
+"""One setting beside references that it was not fitted to: a table of what agrees and what does not
+(docs/trustworthy-peaks.md).
+
+The program to run is named by the environment variable PERISTAT_PROGRAM, which the launcher sets.
+"""
+
+import argparse
+import os
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "sweep"))
+
+import notched_beam
+import surfing
+import trapping
+from program import Program
+from run_all import Failed, Runs
+from specimen import Specimen, lattices
+from verdict import CALIBRATION, HEADING, Verdict, extension_of, row
+
+ENTRIES: dict[str, Specimen] = {s.name: s for module in (surfing, notched_beam) for s in module.SPECIMENS}
+STEADY = "surfing"
+PASSED, RED, WRONG_INPUT, INTERRUPTED = 0, 3, 2, 130
+
+
+def verdicts(specimens: list[Specimen], runs: Runs, quick: bool, tell: Callable[[str], None]) -> list[Verdict]:
+    found = []
+    for specimen in specimens:
+        verdict = Verdict(specimen, {}, {}, 0.0)
+        for lattice in lattices(quick):
+            if runs.interrupted:
+                return found
+            try:
+                value, seconds = runs.value(f"{specimen.name}/{lattice.name}", specimen.text(lattice), specimen.value)
+            except Failed as failure:
+                verdict.failures[lattice] = str(failure)
+                tell(f"{specimen.name} {lattice.name}: {failure}")
+                continue
+            verdict.values[lattice] = value
+            verdict.seconds += seconds
+            tell(f"{specimen.name} {lattice.name}: {value:.4f} of the reference, {seconds:.0f} s")
+        found.append(verdict)
+    return found
+
+
+def extend_cracks(found: list[Verdict]) -> None:
+    """Gives every verdict kappa as the notched beam of the setting has it, if that beam and the strip were run."""
+    by_name = {verdict.specimen.name: verdict for verdict in found}
+    beam, strip = by_name.get(CALIBRATION), by_name.get(STEADY)
+    if beam is None or strip is None or beam.raw is None or strip.raw is None:
+        return
+    kappa = extension_of(beam.specimen, beam.raw, beam.finest, strip.raw)
+    for verdict in found:
+        verdict.extension = kappa
+
+
+def table(found: list[Verdict]) -> str:
+    seconds = ", ".join(f"{verdict.specimen.name} {verdict.seconds:.0f} s" for verdict in found)
+    return "\n".join([*HEADING, *map(row, found)]) + f"\n\nSeconds of this run: {seconds}.\n"
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(
+        prog="peristat trust", allow_abbrev=False,
+        description="Runs one setting on specimens with known answers, goes on with what was interrupted, skips what is "
+        "done, and tells which agree: table.md in DIR.",
+        epilog=f"Entries: {', '.join(ENTRIES)}. Exit codes: 0 all pass, 3 some are red, 2 wrong input, 130 interrupted.",
+    )  # fmt: skip
+    parser.add_argument("names", metavar="NAME", nargs="*", help="entries (default: all); trapping: what lattices hold "
+                        "cracks up with, by law, horizon ratio and angle")  # fmt: skip
+    parser.add_argument("--quick", action="store_true", help="the coarsest lattice of each alone")
+    parser.add_argument("--output", metavar="DIR", type=Path, default=Path("results/trust"), help="default: results/trust")
+    parser.add_argument("--threads", metavar="N", type=int, help="number of threads of each run (default: all processors)")
+    return parser
+
+
+def main(words: list[str]) -> int:
+    asked = _parser().parse_args(words)
+    unknown = [name for name in asked.names if name not in ENTRIES and name != "trapping"]
+    if unknown:
+        print(f"peristat trust: no entry {unknown[0]}; there are {', '.join(ENTRIES)} and trapping", file=sys.stderr)
+        return WRONG_INPUT
+    program = os.environ.get("PERISTAT_PROGRAM")
+    if not program:
+        print("peristat trust: PERISTAT_PROGRAM must name the program; use ./peristat trust", file=sys.stderr)
+        return WRONG_INPUT
+    tell = lambda text: print(text, flush=True)
+    runs = Runs(Program(program), asked.output, ["--threads", str(asked.threads)] if asked.threads else [])
+    if "trapping" in asked.names:
+        trapping.measure(runs, asked.output, asked.quick, tell)
+    names = [name for name in asked.names if name != "trapping"] or ([] if asked.names else list(ENTRIES))
+    found = verdicts([ENTRIES[name] for name in names], runs, asked.quick, tell)
+    if runs.interrupted:
+        return INTERRUPTED
+    if not found:
+        return PASSED
+    extend_cracks(found)
+    text = table(found)
+    (asked.output / "table.md").write_text(text)
+    tell("\n" + text)
+    return PASSED if all(verdict.passes for verdict in found) else RED
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
