@@ -16,6 +16,7 @@
 #include "solvers/study/bond_potential.hpp"
 #include "solvers/study/cpd_model.hpp"
 #include "solvers/study/crack_tips.hpp"
+#include "solvers/study/crack_trapping.hpp"
 #include "solvers/study/found_loads.hpp"
 #include "solvers/study/fracture_data.hpp"
 #include "solvers/study/linear_systems.hpp"
@@ -177,6 +178,9 @@ void print_constants(const Case& from, const Body& body, int threads) {
   const BondTerm* const bonds = body.model.failing_bonds();
   const ToothedStrength teeth = bonds ? toothed_strength(bonds->potential()) : ToothedStrength();
   if (teeth.teeth > 0) fmt::print("saw-tooth   {}\n", description(teeth));
+  if (const auto trapping = crack_trapping(of, body.points.dimension, body.points.spacing)) {
+    fmt::print("crack       {}\n", description(*trapping));
+  }
 }
 
 /// How many points each material has.

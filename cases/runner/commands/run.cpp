@@ -21,6 +21,7 @@
 #include "cases/runner/results/recorder.hpp"
 #include "cases/runner/results/results.hpp"
 #include "solvers/linear/cholesky.hpp"
+#include "solvers/study/crack_trapping.hpp"
 #include "solvers/study/found_loads.hpp"
 #include "solvers/study/study.hpp"
 #include "src/core/input_error.hpp"
@@ -303,6 +304,11 @@ class CaseRun {
     if (const BondTerm* bonds = body_->model.failing_bonds()) {
       const ToothedStrength teeth = toothed_strength(bonds->potential());
       if (teeth.teeth > 0) progress_.say("damage law: a saw-tooth of " + description(teeth));
+    }
+    const Points& points = body_->points;
+    if (const auto trapping =
+            crack_trapping(body_->specification, points.dimension, points.spacing)) {
+      progress_.say("damage law: " + description(*trapping));
     }
     const PathState* path = earlier_ ? &earlier_->checkpoint().path : nullptr;
     stand_in_ = make_elastic_stand_in(from_, *body_, options_.threads);

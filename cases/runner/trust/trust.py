@@ -12,6 +12,8 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "sweep"))
 
+import centre_crack
+import compact_tension
 import notched_beam
 import surfing
 import trapping
@@ -20,7 +22,8 @@ from run_all import Failed, Runs
 from specimen import Specimen, lattices
 from verdict import CALIBRATION, HEADING, Verdict, extension_of, row
 
-ENTRIES: dict[str, Specimen] = {s.name: s for module in (surfing, notched_beam) for s in module.SPECIMENS}
+MODULES = (surfing, notched_beam, compact_tension, centre_crack)
+ENTRIES: dict[str, Specimen] = {s.name: s for module in MODULES for s in module.SPECIMENS}
 STEADY = "surfing"
 PASSED, RED, WRONG_INPUT, INTERRUPTED = 0, 3, 2, 130
 

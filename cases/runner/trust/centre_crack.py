@@ -1,0 +1,97 @@
+"""Panel with a central crack, pulled at its ends, under the opening of the crack's middle."""
+
+from pathlib import Path
+
+import lefm
+from setting import FRACTURE_ENERGY, MODULUS, setting
+from specimen import Lattice, Specimen, aside, peak, rows
+
+WIDTH, HEIGHT, THICKNESS = 0.04, 0.1, 1e-3
+CRACK = 0.25 * WIDTH  # half of it
+TOUGHNESS = lefm.toughness(MODULUS, FRACTURE_ENERGY)
+
+
+def load(crack: float) -> float:
+    return lefm.panel_load(TOUGHNESS, WIDTH, crack, THICKNESS)
+
+
+def text(lattice: Lattice, h: float) -> str:
+    y = aside(lattice, h)
+    opening = 4 * load(CRACK) / (WIDTH * THICKNESS) * CRACK / MODULUS  # of a crack in a wide panel, at its middle
+    return setting(h, lattice, THICKNESS, ["ends"]) + f"""
+[[lattice.shape]]
+add = "box"
+min = [{-0.5 * WIDTH}, {-0.5 * HEIGHT}]
+max = [{0.5 * WIDTH}, {0.5 * HEIGHT}]
+
+[[crack]]
+from = [{-CRACK}, {y}]
+to = [{CRACK}, {y}]
+
+[[set]]
+name = "ends"
+where = "abs(y) > {0.3 * HEIGHT}"
+
+[[set]]
+name = "top"
+where = "y > {0.5 * HEIGHT - 1.5 * h}"
+
+[[set]]
+name = "bottom"
+where = "y < {-0.5 * HEIGHT + 1.5 * h}"
+
+[[set]]
+name = "corner"
+where = "abs(x) < {1.1 * h} && y < {-0.5 * HEIGHT + 1.5 * h}"
+
+[[set]]
+name = "above"
+where = "abs(x) < {1.5 * h} && y > {y} && y < {y + 1.5 * h}"
+
+[[set]]
+name = "below"
+where = "abs(x) < {1.5 * h} && y < {y} && y > {y - 1.5 * h}"
+
+[[support]]
+set = "top"
+displacement = ["free", "load"]
+
+[[support]]
+set = "bottom"
+displacement = ["free", "-load"]
+
+[[support]]
+set = "corner"
+displacement = [0, "-load"]
+
+[[control]]
+set = "above"
+weights = [0, 1]
+
+[[control]]
+set = "below"
+weights = [0, -1]
+
+[loading]
+table = [0, {2.5 * opening:.6g}]
+steps = 40
+stop_below = 0.85
+"""  # fmt: skip
+
+
+def value(folder: Path) -> float:
+    return peak([abs(row["reaction_y:top"]) for row in rows(folder)]) / load(CRACK)
+
+
+SPECIMENS = [
+    Specimen(
+        name="centre_crack",
+        title="Panel with a central crack, 2a/W = 0.5",
+        reference="Tada, Paris and Irwin",
+        quantity="peak load",
+        coarsest=WIDTH / 20,
+        case=text,
+        value=value,
+        of_longer_crack=lambda by: load(CRACK + by) / load(CRACK),
+    )
+]

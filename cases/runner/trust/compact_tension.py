@@ -1,0 +1,92 @@
+"""Compact tension on two pins that turn, ASTM E399, under the opening of its mouth."""
+
+from pathlib import Path
+
+import lefm
+from setting import FRACTURE_ENERGY, MODULUS, setting
+from specimen import Lattice, Specimen, aside, peak, rows
+
+WIDTH, THICKNESS = 0.04, 1e-3
+CRACK = 0.5 * WIDTH
+TOUGHNESS = lefm.toughness(MODULUS, FRACTURE_ENERGY)
+
+
+def load(crack: float) -> float:
+    return lefm.tension_load(TOUGHNESS, WIDTH, crack, THICKNESS)
+
+
+def text(lattice: Lattice, h: float) -> str:
+    y = aside(lattice, h)
+    # Mouth opening at the edge over the load: 47 / (E B) [Saxena and Hudak 1978], at a / W = 0.5.
+    mouth = 47 * load(CRACK) / (MODULUS * THICKNESS)
+    return setting(h, lattice, THICKNESS, ["arms"]) + f"""
+[[lattice.shape]]
+add = "box"
+min = [{-0.25 * WIDTH}, {-0.6 * WIDTH}]
+max = [{WIDTH}, {0.6 * WIDTH}]
+
+[[crack]]
+from = [{-WIDTH}, {y}]
+to = [{CRACK}, {y}]
+
+[[set]]
+name = "arms"
+where = "x < {0.3 * WIDTH}"
+
+[[set]]
+name = "upper"
+where = "x^2 + (y - {0.275 * WIDTH})^2 < {0.125 * WIDTH}^2"
+
+[[set]]
+name = "lower"
+where = "x^2 + (y + {0.275 * WIDTH})^2 < {0.125 * WIDTH}^2"
+
+[[set]]
+name = "mouth_above"
+where = "x < {-0.25 * WIDTH + 1.5 * h} && y > {y} && y < {y + 1.5 * h}"
+
+[[set]]
+name = "mouth_below"
+where = "x < {-0.25 * WIDTH + 1.5 * h} && y < {y} && y > {y - 1.5 * h}"
+
+[[rigid]]
+set = "upper"
+centre = [0.0, {0.275 * WIDTH}]
+displacement = [0, "load"]
+
+[[rigid]]
+set = "lower"
+centre = [0.0, {-0.275 * WIDTH}]
+displacement = [0, "-load"]
+
+[[control]]
+set = "mouth_above"
+weights = [0, 1]
+
+[[control]]
+set = "mouth_below"
+weights = [0, -1]
+
+[loading]
+table = [0, {2 * mouth:.6g}]
+steps = 40
+stop_below = 0.85
+"""  # fmt: skip
+
+
+def value(folder: Path) -> float:
+    return peak([abs(row["reaction_y:upper"]) for row in rows(folder)]) / load(CRACK)
+
+
+SPECIMENS = [
+    Specimen(
+        name="compact_tension",
+        title="Compact tension, a/W = 0.5",
+        reference="ASTM E399",
+        quantity="peak load",
+        coarsest=WIDTH / 20,
+        case=text,
+        value=value,
+        of_longer_crack=lambda by: load(CRACK + by) / load(CRACK),
+    )
+]
