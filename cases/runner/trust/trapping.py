@@ -61,7 +61,7 @@ def resistance(folder: Path) -> tuple[float, float]:
 
 
 def measure(runs: Runs, directory: Path, quick: bool, tell: Callable[[str], None]) -> None:
-    """Writes trapping.csv, and trapping.png where there are angles."""
+    """Writes trapping.csv, and trapping.svg where there are angles."""
     found = []
     for setting in settings(quick):
         if runs.interrupted:
@@ -78,7 +78,7 @@ def measure(runs: Runs, directory: Path, quick: bool, tell: Callable[[str], None
     with open(directory / "trapping.csv", "w", newline="") as table:
         csv.writer(table).writerows([COLUMNS, *found])
     if not quick:
-        draw(found, directory / "trapping.png")
+        draw(found, directory / "trapping.svg")
 
 
 def draw(found: list[list], path: Path) -> None:
@@ -86,6 +86,7 @@ def draw(found: list[list], path: Path) -> None:
     import matplotlib
 
     matplotlib.use("Agg")
+    matplotlib.rcParams["svg.hashsalt"] = "peristat"  # the same picture in every run
     from matplotlib import pyplot
 
     figure, axes = pyplot.subplots(subplot_kw={"projection": "polar"}, figsize=(6, 5))
@@ -103,5 +104,5 @@ def draw(found: list[list], path: Path) -> None:
     axes.set_xlabel("$K_-$ to $K_+$ over $K_{Ic}$", labelpad=14)
     axes.legend(loc="upper right", bbox_to_anchor=(1.15, 1.05))
     axes.set_title("Angle between crack and lattice")
-    figure.savefig(path, dpi=120, bbox_inches="tight")
+    figure.savefig(path, bbox_inches="tight", metadata={"Date": None})
     pyplot.close(figure)
