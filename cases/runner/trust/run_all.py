@@ -36,6 +36,6 @@ class Runs:
         words = ["resume", str(out)] if goes_on else ["run", str(case), "--output", str(out), "--overwrite"]
         ending = self._program.run([*words, "--quiet", *self._words])
         if ending.code != 0:
-            raise Failed(ending.message.splitlines()[0] if ending.message else f"exit code {ending.code}")
+            raise Failed(ending.message.splitlines()[0].removeprefix("peristat: ") if ending.message else f"exit code {ending.code}")
         record_done(out, [])
         return value(out), time.monotonic() - began

@@ -2,7 +2,7 @@
 
 import csv
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 
 SPACINGS, RATIOS, ANGLES = (1.0, 0.5, 0.25), (3.015, 4.015), (0.0, 18.4349488, 26.5650512, 45.0)
@@ -49,7 +49,6 @@ class Specimen:
     allowed: float = 0.02
     # Reference of a specimen whose crack is longer by that much, over its own: what a crack of finite width errs by.
     of_longer_crack: Callable[[float], float] | None = None
-    reasons: dict[str, str] = field(default_factory=dict)  # of a red entry
 
     def spacing(self, lattice: Lattice) -> float:
         return self.coarsest * lattice.refinement

@@ -14,6 +14,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "sweep"))
 
 import centre_crack
 import compact_tension
+import double_cantilever
 import notched_beam
 import surfing
 import trapping
@@ -22,7 +23,7 @@ from run_all import Failed, Runs
 from specimen import Specimen, lattices
 from verdict import CALIBRATION, HEADING, Verdict, extension_of, row
 
-MODULES = (surfing, notched_beam, compact_tension, centre_crack)
+MODULES = (surfing, notched_beam, compact_tension, centre_crack, double_cantilever)
 ENTRIES: dict[str, Specimen] = {s.name: s for module in MODULES for s in module.SPECIMENS}
 STEADY = "surfing"
 PASSED, RED, WRONG_INPUT, INTERRUPTED = 0, 3, 2, 130

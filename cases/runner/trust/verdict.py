@@ -46,7 +46,7 @@ class Verdict:
     def reason(self) -> str:
         if self.failures:
             lattice, why = next(iter(self.failures.items()))
-            return f"{lattice.name}: {why}"
+            return f"{lattice.name}: {why.partition(': ')[0]}"
         return "" if self.passes else f"{100 * (self.corrected - 1):+.1f} % where {100 * self.specimen.allowed:.0f} % are allowed"
 
 
