@@ -45,21 +45,19 @@ std::optional<CrackTrapping> crack_trapping(const BodySpecification& of, int dim
 }
 
 std::string description(const CrackTrapping& trapping) {
-  const std::string law = fmt::format("brittle bonds at horizon ratio {:.2g} hold a crack up: ",
-                                      trapping.horizon_ratio);
-  const std::string advice = "; law = \"linear\" within 0.02 (docs/trustworthy-peaks.md)";
-  if (!trapping.needed) {
-    return law +
-           fmt::format(
-               "not measured in {}D, at ratios 3 and 4 in 2D it runs at 1.14 to 1.19 of K_Ic",
-               trapping.dimension) +
-           advice;
-  }
-  const auto [low, high] = *trapping.needed;
-  return law +
-         (low == high ? fmt::format("it runs at {} of K_Ic", high)
-                      : fmt::format("it runs at {} to {} of K_Ic", low, high)) +
-         advice;
+  const auto range = [](double low, double high) {
+    return low == high ? fmt::format("{}", high) : fmt::format("{} to {}", low, high);
+  };
+  const std::string needed =
+      trapping.needed
+          ? "it runs at " + range(trapping.needed->first, trapping.needed->second)
+          : fmt::format(
+                "not measured in {}D at this ratio, at 3 and 4 in 2D it runs at 1.14 to 1.19",
+                trapping.dimension);
+  return fmt::format(
+      "brittle bonds at horizon ratio {:.2g} hold a crack up: {} of K_Ic, and with law = "
+      "\"linear\" within 0.02 of it (docs/trustworthy-peaks.md)",
+      trapping.horizon_ratio, needed);
 }
 
 }  // namespace peristat

@@ -36,6 +36,17 @@ class Trust(unittest.TestCase):
         self.assertEqual(ended.returncode, 3, ended.stdout + ended.stderr)
         self.assertIn("**red**", (self.folder / "table.md").read_text())
 
+    def test_bad_input(self):
+        ended = self.trust("surfing", "--threads", 0)
+        self.assertEqual(ended.returncode, 2)
+        self.assertIn("argument --threads", ended.stderr)
+        self.folder /= "a file"
+        self.folder.write_text("")
+        ended = self.trust("surfing", "--quick")
+        self.assertEqual(ended.returncode, 5)
+        self.assertIn("a file", ended.stderr)
+        self.assertNotIn("Traceback", ended.stderr)
+
     def test_no_such_entry(self):
         ended = self.trust("nonsense")
         self.assertEqual(ended.returncode, 2)

@@ -3,7 +3,7 @@
 from pathlib import Path
 
 import lefm
-from setting import FRACTURE_ENERGY, MODULUS, setting
+from setting import FRACTURE_ENERGY, MODULUS, setting, under_opening
 from specimen import Lattice, Specimen, aside, peak, rows
 
 WIDTH, HEIGHT, THICKNESS = 0.04, 0.1, 1e-3
@@ -64,19 +64,7 @@ displacement = ["free", "-load"]
 set = "corner"
 displacement = [0, "-load"]
 
-[[control]]
-set = "above"
-weights = [0, 1]
-
-[[control]]
-set = "below"
-weights = [0, -1]
-
-[loading]
-table = [0, {2.5 * opening:.6g}]
-steps = 40
-stop_below = 0.85
-"""  # fmt: skip
+""" + under_opening("above", "below", "[0, 1]", 2.5 * opening)  # fmt: skip
 
 
 def value(folder: Path) -> float:

@@ -3,7 +3,7 @@
 from pathlib import Path
 
 import lefm
-from setting import FRACTURE_ENERGY, MODULUS, setting
+from setting import FRACTURE_ENERGY, MODULUS, setting, under_opening
 from specimen import Lattice, Specimen, aside, peak, rows
 
 WIDTH, THICKNESS = 0.04, 1e-3
@@ -59,19 +59,7 @@ set = "lower"
 centre = [0.0, {-0.275 * WIDTH}]
 displacement = [0, "-load"]
 
-[[control]]
-set = "mouth_above"
-weights = [0, 1]
-
-[[control]]
-set = "mouth_below"
-weights = [0, -1]
-
-[loading]
-table = [0, {2 * mouth:.6g}]
-steps = 40
-stop_below = 0.85
-"""  # fmt: skip
+""" + under_opening("mouth_above", "mouth_below", "[0, 1]", 2 * mouth)  # fmt: skip
 
 
 def value(folder: Path) -> float:

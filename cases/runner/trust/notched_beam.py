@@ -3,7 +3,7 @@
 from pathlib import Path
 
 import lefm
-from setting import FRACTURE_ENERGY, MODULUS, setting
+from setting import FRACTURE_ENERGY, MODULUS, setting, under_opening
 from specimen import Lattice, Specimen, aside, peak, rows
 
 WIDTH, THICKNESS = 0.04, 1e-3
@@ -62,19 +62,7 @@ name = "middle"
 at = [0.0, {WIDTH}]
 normal = [1, 0]
 
-[[control]]
-set = "mouth_right"
-weights = [1, 0]
-
-[[control]]
-set = "mouth_left"
-weights = [-1, 0]
-
-[loading]
-table = [0, {2 * mouth:.6g}]
-steps = 40
-stop_below = 0.85
-"""  # fmt: skip
+""" + under_opening("mouth_right", "mouth_left", "[1, 0]", 2 * mouth)  # fmt: skip
 
     return text
 

@@ -34,3 +34,21 @@ mode = "newton"
 [output]
 every = 1000000
 """
+
+
+def under_opening(first: str, second: str, weights: str, largest: float) -> str:
+    """Control by how far one set opens from the other, until the force has passed its peak [m]."""
+    return f"""\
+[[control]]
+set = "{first}"
+weights = {weights}
+
+[[control]]
+set = "{second}"
+weights = {weights.replace("1", "-1")}
+
+[loading]
+table = [0, {largest:.6g}]
+steps = 40
+stop_below = 0.85
+"""

@@ -26,7 +26,7 @@ from verdict import CALIBRATION, HEADING, Verdict, extension_of, row
 MODULES = (surfing, notched_beam, compact_tension, centre_crack, double_cantilever)
 ENTRIES: dict[str, Specimen] = {s.name: s for module in MODULES for s in module.SPECIMENS}
 STEADY = "surfing"
-PASSED, RED, WRONG_INPUT, INTERRUPTED = 0, 3, 2, 130
+PASSED, RED, WRONG_INPUT, MACHINE_FAILED, INTERRUPTED = 0, 3, 2, 5, 130
 
 
 def verdicts(specimens: list[Specimen], runs: Runs, quick: bool, tell: Callable[[str], None]) -> list[Verdict]:
@@ -65,23 +65,38 @@ def table(found: list[Verdict]) -> str:
     return "\n".join([*HEADING, *map(row, found)]) + f"\n\nSeconds of this run: {seconds}.\n"
 
 
+def _positive(text: str) -> int:
+    number = int(text)
+    if number < 1:
+        raise ValueError(text)
+    return number
+
+
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
         prog="peristat trust", allow_abbrev=False,
         description="Runs one setting on specimens with known answers, goes on with what was interrupted, skips what is "
         "done, and tells which agree: table.md in DIR.",
-        epilog=f"Entries: {', '.join(ENTRIES)}. Exit codes: 0 all pass, 3 some are red, 2 wrong input, 130 interrupted.",
+        epilog=f"Entries: {', '.join(ENTRIES)}. Exit codes: 0 all pass, 3 some are red, 2 wrong input, 5 the machine failed, 130 interrupted.",
     )  # fmt: skip
     parser.add_argument("names", metavar="NAME", nargs="*", help="entries (default: all); trapping: what lattices hold "
                         "cracks up with, by law, horizon ratio and angle")  # fmt: skip
     parser.add_argument("--quick", action="store_true", help="the coarsest lattice of each alone")
     parser.add_argument("--output", metavar="DIR", type=Path, default=Path("results/trust"), help="default: results/trust")
-    parser.add_argument("--threads", metavar="N", type=int, help="number of threads of each run (default: all processors)")
+    parser.add_argument("--threads", metavar="N", type=_positive, help="number of threads of each run (default: all processors)")
     return parser
 
 
 def main(words: list[str]) -> int:
     asked = _parser().parse_args(words)
+    try:
+        return run(asked)
+    except OSError as error:
+        print(f"peristat trust: {error}", file=sys.stderr)
+        return MACHINE_FAILED
+
+
+def run(asked: argparse.Namespace) -> int:
     unknown = [name for name in asked.names if name not in ENTRIES and name != "trapping"]
     if unknown:
         print(f"peristat trust: no entry {unknown[0]}; there are {', '.join(ENTRIES)} and trapping", file=sys.stderr)

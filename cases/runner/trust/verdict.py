@@ -47,7 +47,11 @@ class Verdict:
         if self.failures:
             lattice, why = next(iter(self.failures.items()))
             return f"{lattice.name}: {why.partition(': ')[0]}"
-        return "" if self.passes else f"{100 * (self.corrected - 1):+.1f} % where {100 * self.specimen.allowed:.0f} % are allowed"
+        if self.passes:
+            return ""
+        off = f"{100 * (self.corrected - 1):+.1f} % where {100 * self.specimen.allowed:.0f} % are allowed"
+        needs_more = self.extension is None and self.specimen.of_longer_crack is not None
+        return off + f", not corrected: run it with surfing and {CALIBRATION}" * needs_more
 
 
 def extension_of(specimen: Specimen, value: float, lattice: Lattice, resistance: float) -> float:
