@@ -4,7 +4,7 @@ from pathlib import Path
 
 import lefm
 from setting import FRACTURE_ENERGY, MODULUS, setting
-from specimen import Lattice, Specimen, aside, rows
+from specimen import Lattice, Measure, Specimen, aside, rows
 
 ARM, LENGTH, THICKNESS = 0.01, 0.08, 1e-3
 FIRST, LAST = 0.025, 0.038  # crack lengths from and to which it is followed
@@ -77,10 +77,8 @@ SPECIMENS = [
         name="double_cantilever",
         title="Double cantilever",
         reference="Kanninen",
-        quantity="load while the crack grows",
         coarsest=ARM / 10,
         case=text,
-        value=value,
-        allowed=0.02,
+        measures=(Measure("load while the crack grows", value, allowed=0.01, on_every_lattice=True),),
     )
 ]

@@ -19,6 +19,12 @@ def bend_load(toughness: float, width: float, crack: float, thickness: float) ->
     return toughness * thickness * math.sqrt(width) / (4 * bend_factor(crack / width))
 
 
+def bend_opening(a: float) -> float:
+    """E B V / P of a notched beam with S = 4 W, V the opening of its mouth, a over W: 24 a v(a)
+    [Tada, Paris and Irwin 2000]."""
+    return 24 * a * (0.76 - 2.28 * a + 3.87 * a**2 - 2.04 * a**3 + 0.66 / (1 - a) ** 2)
+
+
 def tension_factor(a: float) -> float:
     """f(a/W) of a compact-tension specimen: K = P f / (B sqrt(W)) (ASTM E399)."""
     return (2 + a) * (0.886 + 4.64 * a - 13.32 * a**2 + 14.72 * a**3 - 5.6 * a**4) / (1 - a) ** 1.5
@@ -26,6 +32,12 @@ def tension_factor(a: float) -> float:
 
 def tension_load(toughness: float, width: float, crack: float, thickness: float) -> float:
     return toughness * thickness * math.sqrt(width) / tension_factor(crack / width)
+
+
+def tension_opening(a: float) -> float:
+    """E B V / P of a compact-tension specimen, V the opening of its mouth at the edge [Saxena and Hudak 1978]."""
+    shape = 1.6137 + 12.678 * a - 14.231 * a**2 - 16.610 * a**3 + 35.050 * a**4 - 14.494 * a**5
+    return (1 + 0.25 / a) * ((1 + a) / (1 - a)) ** 2 * shape
 
 
 def panel_load(toughness: float, width: float, crack: float, thickness: float) -> float:

@@ -3,10 +3,12 @@
 from pathlib import Path
 
 import lefm
+from compliance import LEAST_GROWTH, toughness
 from setting import FRACTURE_ENERGY, MODULUS, setting, under_opening
-from specimen import Lattice, Specimen, aside, peak, rows
+from specimen import MIDDLE, RATIOS, Lattice, Measure, Specimen, aside, peak, rows
 
 WIDTH, THICKNESS = 0.04, 1e-3
+GROWN = LEAST_GROWTH * RATIOS[0] * MIDDLE * WIDTH / 20
 TOUGHNESS = lefm.toughness(MODULUS, FRACTURE_ENERGY)
 
 
@@ -14,10 +16,7 @@ def case(ratio: float):
     crack = ratio * WIDTH
 
     def text(lattice: Lattice, h: float) -> str:
-        # Mouth opening of the elastic beam at its load: 4 sigma a V / E [Tada, Paris and Irwin 2000].
-        load = lefm.bend_load(TOUGHNESS, WIDTH, crack, THICKNESS)
-        shape = 0.76 - 2.28 * ratio + 3.87 * ratio**2 - 2.04 * ratio**3 + 0.66 / (1 - ratio) ** 2
-        mouth = 4 * 6 * load / (THICKNESS * WIDTH) * crack / MODULUS * shape
+        mouth = lefm.bend_load(TOUGHNESS, WIDTH, crack, THICKNESS) * lefm.bend_opening(ratio) / (MODULUS * THICKNESS)
         x = aside(lattice, h)
         return setting(h, lattice, THICKNESS, ["ends"]) + f"""
 [[lattice.shape]]
@@ -62,7 +61,7 @@ name = "middle"
 at = [0.0, {WIDTH}]
 normal = [1, 0]
 
-""" + under_opening("mouth_right", "mouth_left", "[1, 0]", 2 * mouth)  # fmt: skip
+""" + under_opening("mouth_right", "mouth_left", "[1, 0]", 2 * mouth, lattice.refinement >= MIDDLE)  # fmt: skip
 
     return text
 
@@ -71,18 +70,23 @@ def specimen(ratio: float) -> Specimen:
     load = lambda crack: lefm.bend_load(TOUGHNESS, WIDTH, crack, THICKNESS)
     crack = ratio * WIDTH
 
-    def value(folder: Path) -> float:
+    def highest(folder: Path) -> float:
         return peak([abs(row["reaction_y:load"]) for row in rows(folder)]) / load(crack)
+
+    def growing(folder: Path) -> float:
+        opening = lambda a: lefm.bend_opening(a / WIDTH) / (MODULUS * THICKNESS)
+        return toughness(folder, "reaction_y:load", opening, load, crack, 0.75 * WIDTH, GROWN)
 
     return Specimen(
         name=f"senb_{10 * ratio:02.0f}",
         title=f"Notched beam, a/W = {ratio}",
         reference="ASTM E399",
-        quantity="peak load",
         coarsest=WIDTH / 20,
         case=case(ratio),
-        value=value,
-        of_longer_crack=lambda by: load(crack + by) / load(crack),
+        measures=(
+            Measure("peak load", highest, of_longer_crack=lambda by: load(crack + by) / load(crack)),
+            Measure("toughness by compliance", growing, allowed=0.03, at=MIDDLE),
+        ),
     )
 
 

@@ -1,9 +1,13 @@
-"""Runs what is missing, each run in a folder of its own, so that an interrupted suite goes on where it was."""
+"""Runs what is missing, side by side, each run in a folder of its own, so that an interrupted suite goes on where
+it was and two of them in one folder share the work."""
 
+import json
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
 from pathlib import Path
 
+from jobs import FolderLock, Jobs, estimated_memory
 from program import Program
 from record import can_go_on, is_done, record_done
 
@@ -12,30 +16,74 @@ class Failed(Exception):
     """A run that has no results to be judged by."""
 
 
+@dataclass
+class Ran:
+    """One run, and how it ended."""
+
+    name: str
+    results: Path
+    failure: str = ""  # why there are no results
+
+    def value(self, of: Callable[[Path], float]) -> float:
+        """@raise Failed also where the results lack what is asked of them"""
+        if self.failure:
+            raise Failed(self.failure)
+        try:
+            return of(self.results)
+        except (LookupError, ValueError, ZeroDivisionError) as error:
+            raise Failed(f"its results can't be judged: {error}") from error
+
+    @property
+    def seconds(self) -> float:
+        """What the run took, now or earlier."""
+        return json.loads((self.results / "summary.json").read_text())["seconds"]["total"] if not self.failure else 0.0
+
+
 class Runs:
-    def __init__(self, program: Program, directory: Path, words: list[str]):
-        self._program, self._directory, self._words = program, directory, words
+    def __init__(self, program: Program, directory: Path, jobs: int, threads: int, tell: Callable[[str], None]):
+        self._program, self._directory, self._jobs, self._tell = program, directory, jobs, tell
+        self._words = ["--threads", str(threads)]
 
     @property
     def interrupted(self) -> bool:
         return self._program.interrupted
 
-    def value(self, name: str, text: str, value: Callable[[Path], float]) -> tuple[float, float]:
-        """What a run of a case text has, and the seconds that it took; 0: it was there already.
+    def run(self, texts: dict[str, str]) -> Iterator[Ran]:
+        """Runs of case texts by name, as they end; fewer where the suite is interrupted."""
+        names = list(texts)
+        jobs = Jobs(self._jobs, lambda number: self._memory(names[number], texts[names[number]]),
+                    lambda number: FolderLock(self._folder(names[number])))  # fmt: skip
+        waits = lambda number: self._tell(f"{names[number]}: another suite is running it; waiting for its end")
+        task = lambda number: self._run(names[number], texts[names[number]])
+        for _, ran in jobs.run(range(len(names)), task, lambda: not self.interrupted, waits):
+            if not self.interrupted or not ran.failure:
+                yield ran
 
-        @raise Failed
-        """
-        folder = self._directory / name
-        folder.mkdir(parents=True, exist_ok=True)
-        case, out = folder / "case.toml", folder / "out"
-        began = time.monotonic()
+    def _folder(self, name: str) -> Path:
+        return self._directory / name
+
+    def _memory(self, name: str, text: str) -> tuple[float, float] | None:
+        folder = self._folder(name)
+        if is_done(folder / "out", text.encode(), []):
+            return 0.0, 1.0
+        case = folder / "asked.toml"
+        case.write_text(text)
+        told = self._program.run(["check", str(case)], told=True).output
+        case.unlink()
+        return estimated_memory(told)
+
+    def _run(self, name: str, text: str) -> Ran:
+        case, out = self._folder(name) / "case.toml", self._folder(name) / "out"
         if is_done(out, text.encode(), []):
-            return value(out), 0.0
+            return Ran(name, out)
         goes_on = case.is_file() and case.read_text() == text and can_go_on(out, text.encode(), [])
         case.write_text(text)
         words = ["resume", str(out)] if goes_on else ["run", str(case), "--output", str(out), "--overwrite"]
-        ending = self._program.run([*words, "--quiet", *self._words])
+        began = time.monotonic()
+        ending = self._program.run([*words, "--quiet", "--no-plots", *self._words])
         if ending.code != 0:
-            raise Failed(ending.message.splitlines()[0].removeprefix("peristat: ") if ending.message else f"exit code {ending.code}")
+            why = ending.message.splitlines()[0].removeprefix("peristat: ") if ending.message else f"exit code {ending.code}"
+            return Ran(name, out, why)
         record_done(out, [])
-        return value(out), time.monotonic() - began
+        self._tell(f"{name}: {time.monotonic() - began:.0f} s")
+        return Ran(name, out)

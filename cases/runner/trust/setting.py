@@ -1,9 +1,11 @@
 """The one setting: found on the notched beam with a/W = 0.5, and the same for every specimen."""
 
+from specimen import Lattice
+
 MODULUS, POISSON_RATIO, FRACTURE_ENERGY = 70e9, 1 / 3, 10.0  # glass: Pa, bonds in plane stress, J/m2
 
 
-def setting(spacing: float, lattice, thickness: float, no_fail: list[str]) -> str:
+def setting(spacing: float, lattice: Lattice, thickness: float, no_fail: list[str]) -> str:
     names = ", ".join(f'"{name}"' for name in no_fail)
     return f"""\
 dimension = 2
@@ -36,8 +38,10 @@ every = 1000000
 """
 
 
-def under_opening(first: str, second: str, weights: str, largest: float) -> str:
-    """Control by how far one set opens from the other, until the force has passed its peak [m]."""
+def under_opening(first: str, second: str, weights: str, largest: float, follow_growth: bool) -> str:
+    """Control by how far one set opens from the other [m], until the force has passed its peak, or further, until the
+    crack has grown."""
+    below = 0.45 if follow_growth else 0.93
     return f"""\
 [[control]]
 set = "{first}"
@@ -50,5 +54,5 @@ weights = {weights.replace("1", "-1")}
 [loading]
 table = [0, {largest:.6g}]
 steps = 40
-stop_below = 0.85
+stop_below = {below}
 """

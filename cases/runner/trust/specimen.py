@@ -1,4 +1,4 @@
-"""What an entry of the suite is: runs of one setting, and a number of each that a reference knows."""
+"""What an entry of the suite is: runs of one setting, and numbers of each that a reference knows."""
 
 import csv
 from collections.abc import Callable
@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 SPACINGS, RATIOS, ANGLES = (1.0, 0.5, 0.25), (3.015, 4.015), (0.0, 18.4349488, 26.5650512, 45.0)
-MIDDLE = 1  # of the spacings: that of the other horizon and of the angles
+MIDDLE = SPACINGS[1]  # that of the other horizon and of the angles
 
 
 @dataclass(frozen=True)
@@ -21,13 +21,17 @@ class Lattice:
     def name(self) -> str:
         return f"h{self.refinement:g}_m{self.ratio:g}_{self.angle:.0f}"
 
+    @property
+    def is_straight(self) -> bool:
+        """Whether it differs from the first one by its spacing alone."""
+        return (self.ratio, self.angle) == (RATIOS[0], 0.0)
+
 
 def lattices(quick: bool) -> list[Lattice]:
     """Three spacings, two horizons, four angles; quick: the coarsest alone."""
     if quick:
         return [Lattice()]
-    middle = SPACINGS[MIDDLE]
-    return [*(Lattice(h) for h in SPACINGS), Lattice(middle, RATIOS[1]), *(Lattice(middle, angle=a) for a in ANGLES[1:])]
+    return [*(Lattice(h) for h in SPACINGS), Lattice(MIDDLE, RATIOS[1]), *(Lattice(MIDDLE, angle=a) for a in ANGLES[1:])]
 
 
 def aside(lattice: Lattice, spacing: float) -> float:
@@ -36,19 +40,26 @@ def aside(lattice: Lattice, spacing: float) -> float:
 
 
 @dataclass
-class Specimen:
-    """One entry. `value` is what is measured over what the reference says: 1 is right."""
+class Measure:
+    """A number of a run over what the reference says: 1 is right."""
 
-    name: str
-    title: str
-    reference: str  # where the answer is from
     quantity: str
-    coarsest: float  # spacing [m]
-    case: Callable[[Lattice, float], str]  # lattice, spacing
     value: Callable[[Path], float]
     allowed: float = 0.02
+    at: float = SPACINGS[-1]  # the refinement at which it is judged
+    on_every_lattice: bool = False  # at that spacing, where it is judged by the worst
     # Reference of a specimen whose crack is longer by that much, over its own: what a crack of finite width errs by.
     of_longer_crack: Callable[[float], float] | None = None
+
+
+@dataclass
+class Specimen:
+    name: str
+    title: str
+    reference: str  # where the answers are from
+    coarsest: float  # spacing [m]
+    case: Callable[[Lattice, float], str]  # lattice, spacing
+    measures: tuple[Measure, ...]
 
     def spacing(self, lattice: Lattice) -> float:
         return self.coarsest * lattice.refinement

@@ -62,19 +62,20 @@ def resistance(folder: Path) -> tuple[float, float]:
 
 def measure(runs: Runs, directory: Path, quick: bool, tell: Callable[[str], None]) -> None:
     """Writes trapping.csv, and trapping.svg where there are angles."""
+    by_name = {f"trapping/{setting.name}": setting for setting in settings(quick)}
     found = []
-    for setting in settings(quick):
-        if runs.interrupted:
-            return
+    for ran in runs.run({name: text(setting) for name, setting in by_name.items()}):
+        setting, note = by_name[ran.name], ""
         try:
-            (least, largest), seconds = runs.value(f"trapping/{setting.name}", text(setting), resistance)
-            note = ""
-            tell(f"trapping {setting.name}: K- {least:.3f}, K+ {largest:.3f} of K_Ic, {seconds:.0f} s")
+            least, largest = ran.value(resistance)
+            tell(f"{ran.name}: K- {least:.3f}, K+ {largest:.3f} of K_Ic")
         except Failed as failure:
-            least = largest = math.nan
-            note = str(failure)
-            tell(f"trapping {setting.name}: {failure}")
+            least, largest, note = math.nan, math.nan, str(failure)
+            tell(f"{ran.name}: {failure}")
         found.append([setting.law, setting.ratio, setting.angle, setting.perturbation, least, largest, note])
+    if runs.interrupted:
+        return
+    found.sort(key=lambda row: row[:4])
     with open(directory / "trapping.csv", "w", newline="") as table:
         csv.writer(table).writerows([COLUMNS, *found])
     if not quick:

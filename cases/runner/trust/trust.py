@@ -18,9 +18,11 @@ import double_cantilever
 import notched_beam
 import surfing
 import trapping
+from entries_picture import draw
+from jobs import bounded
 from program import Program
-from run_all import Failed, Runs
-from specimen import Specimen, lattices
+from run_all import Failed, Ran, Runs
+from specimen import Lattice, Specimen, lattices
 from verdict import CALIBRATION, HEADING, Verdict, extension_of, row
 
 MODULES = (surfing, notched_beam, compact_tension, centre_crack, double_cantilever)
@@ -30,39 +32,47 @@ PASSED, RED, WRONG_INPUT, MACHINE_FAILED, INTERRUPTED = 0, 3, 2, 5, 130
 
 
 def verdicts(specimens: list[Specimen], runs: Runs, quick: bool, tell: Callable[[str], None]) -> list[Verdict]:
-    found = []
-    for specimen in specimens:
-        verdict = Verdict(specimen, {}, {}, 0.0)
-        for lattice in lattices(quick):
-            if runs.interrupted:
-                return found
-            try:
-                value, seconds = runs.value(f"{specimen.name}/{lattice.name}", specimen.text(lattice), specimen.value)
-            except Failed as failure:
-                verdict.failures[lattice] = str(failure)
-                tell(f"{specimen.name} {lattice.name}: {failure}")
-                continue
-            verdict.values[lattice] = value
-            verdict.seconds += seconds
-            tell(f"{specimen.name} {lattice.name}: {value:.4f} of the reference, {seconds:.0f} s")
-        found.append(verdict)
-    return found
+    """One per specimen and quantity; what is interrupted has no values."""
+    places = {f"{specimen.name}/{lattice.name}": (specimen, lattice) for specimen in specimens for lattice in lattices(quick)}
+    found = {specimen.name: [Verdict(specimen, measure, {}, {}, 0.0, {}) for measure in specimen.measures] for specimen in specimens}
+    for ran in runs.run({name: specimen.text(lattice) for name, (specimen, lattice) in places.items()}):
+        specimen, lattice = places[ran.name]
+        for verdict in found[specimen.name]:
+            take(verdict, lattice, ran, tell)
+    return [verdict for of_specimen in found.values() for verdict in of_specimen]
+
+
+def take(verdict: Verdict, lattice: Lattice, ran: Ran, tell: Callable[[str], None]) -> None:
+    name = f"{ran.name}, {verdict.measure.quantity}"
+    try:
+        verdict.values[lattice] = ran.value(verdict.measure.value)
+        verdict.seconds += ran.seconds
+        tell(f"{name}: {verdict.values[lattice]:.4f} of the reference")
+    except Failed as failure:
+        # Runs on the finest lattices end where the peak is behind them: they owe nothing that is judged on coarser ones.
+        if lattice.refinement >= verdict.measure.at:
+            verdict.failures[lattice] = str(failure)
+            tell(f"{name}: {failure}")
 
 
 def extend_cracks(found: list[Verdict]) -> None:
     """Gives every verdict kappa as the notched beam of the setting has it, if that beam and the strip were run."""
-    by_name = {verdict.specimen.name: verdict for verdict in found}
-    beam, strip = by_name.get(CALIBRATION), by_name.get(STEADY)
-    if beam is None or strip is None or beam.raw is None or strip.raw is None:
+    first = {}
+    for verdict in found:
+        first.setdefault(verdict.specimen.name, verdict)
+    beam, strip = first.get(CALIBRATION), first.get(STEADY)
+    if beam is None or strip is None or strip.raw is None:
         return
-    kappa = extension_of(beam.specimen, beam.raw, beam.finest, strip.raw)
+    steady = lambda lattice: strip.values.get(lattice, strip.raw)
+    kappa = {lattice: extension_of(beam, lattice, steady(lattice)) for lattice in beam.values}
     for verdict in found:
         verdict.extension = kappa
 
 
 def table(found: list[Verdict]) -> str:
-    seconds = ", ".join(f"{verdict.specimen.name} {verdict.seconds:.0f} s" for verdict in found)
-    return "\n".join([*HEADING, *map(row, found)]) + f"\n\nSeconds of this run: {seconds}.\n"
+    seconds = {verdict.specimen.name: verdict.seconds for verdict in found}
+    cost = ", ".join(f"{name} {second:.0f} s" for name, second in seconds.items())
+    return "\n".join([*HEADING, *map(row, found)]) + f"\n\nSeconds of the runs: {cost}.\n"
 
 
 def _positive(text: str) -> int:
@@ -83,7 +93,8 @@ def _parser() -> argparse.ArgumentParser:
                         "cracks up with, by law, horizon ratio and angle")  # fmt: skip
     parser.add_argument("--quick", action="store_true", help="the coarsest lattice of each alone")
     parser.add_argument("--output", metavar="DIR", type=Path, default=Path("results/trust"), help="default: results/trust")
-    parser.add_argument("--threads", metavar="N", type=_positive, help="number of threads of each run (default: all processors)")
+    parser.add_argument("--jobs", metavar="N", type=_positive, help="runs side by side (default: one per processor)")
+    parser.add_argument("--threads", metavar="N", type=_positive, help="threads of each run (default: 1)")
     return parser
 
 
@@ -106,7 +117,10 @@ def run(asked: argparse.Namespace) -> int:
         print("peristat trust: PERISTAT_PROGRAM must name the program; use ./peristat trust", file=sys.stderr)
         return WRONG_INPUT
     tell = lambda text: print(text, flush=True)
-    runs = Runs(Program(program), asked.output, ["--threads", str(asked.threads)] if asked.threads else [])
+    cores = len(os.sched_getaffinity(0))
+    jobs, threads = bounded(asked.jobs or cores, asked.threads or 1, cores)
+    asked.output.mkdir(parents=True, exist_ok=True)
+    runs = Runs(Program(program), asked.output, jobs, threads, tell)
     if "trapping" in asked.names:
         trapping.measure(runs, asked.output, asked.quick, tell)
     names = [name for name in asked.names if name != "trapping"] or ([] if asked.names else list(ENTRIES))
@@ -118,6 +132,8 @@ def run(asked: argparse.Namespace) -> int:
     extend_cracks(found)
     text = table(found)
     (asked.output / "table.md").write_text(text)
+    if not asked.quick:
+        draw(found, asked.output / "entries.svg")
     tell("\n" + text)
     return PASSED if all(verdict.passes for verdict in found) else RED
 

@@ -2,6 +2,7 @@
 
 import math
 import sys
+import tempfile
 import unittest
 from pathlib import Path
 
@@ -9,14 +10,21 @@ RUNNER = Path(__file__).resolve().parents[3] / "cases" / "runner"
 sys.path[:0] = [str(RUNNER / "trust"), str(RUNNER / "sweep")]
 
 import lefm  # noqa: E402
-from specimen import Lattice, Specimen, lattices, peak  # noqa: E402
+from compliance import elastic_factor, toughness  # noqa: E402
+from specimen import Lattice, Measure, Specimen, lattices, peak  # noqa: E402
 from verdict import Verdict, extension_of, row  # noqa: E402
 
 
-def bar(factor=1.0) -> Specimen:
-    """Its load falls with the crack as 1 / (1 + 10 by)."""
-    return Specimen("bar", "Bar", "theory", "load", 1.0, lambda lattice, h: "", lambda folder: factor,
-                    of_longer_crack=lambda by: 1 / (1 + 10 * by))  # fmt: skip
+FALLS = lambda by: 1 / (1 + 10 * by)  # with the crack
+
+
+def bar(measure: Measure) -> Specimen:
+    return Specimen("bar", "Bar", "theory", 1.0, lambda lattice, h: "", (measure,))
+
+
+def verdict(values, failures=None, extension=None, **of_measure) -> Verdict:
+    measure = Measure("load", lambda folder: 1.0, **({"of_longer_crack": FALLS} | of_measure))
+    return Verdict(bar(measure), measure, values, failures or {}, 0.0, extension or {})
 
 
 class ClosedForms(unittest.TestCase):
@@ -26,6 +34,15 @@ class ClosedForms(unittest.TestCase):
         self.assertAlmostEqual(lefm.bend_factor(0.45), 2.29, delta=0.005)
         self.assertAlmostEqual(lefm.tension_factor(0.5), 9.66, delta=0.005)
         self.assertAlmostEqual(lefm.tension_factor(0.45), 8.34, delta=0.005)
+
+    def test_openings_of_the_standard(self):
+        """E B V / P of compact tension is tabulated as 54.7 at the edge for a/W = 0.5; the mouth of a short edge crack
+        opens by 4 * 1.454 sigma a / E [Tada, Paris and Irwin 2000], sigma = 6 P / (B W); both rise with the crack."""
+        self.assertAlmostEqual(lefm.tension_opening(0.5), 54.7, delta=0.5)
+        self.assertAlmostEqual(lefm.bend_opening(1e-3) / (4 * 1.454 * 6e-3), 1, delta=0.03)
+        for opening in (lefm.bend_opening, lefm.tension_opening):
+            values = [opening(0.3 + 0.05 * k) for k in range(9)]
+            self.assertEqual(values, sorted(values))
 
     def test_williams_opening_is_that_of_irwin(self):
         """Behind the tip the faces are 8 K / E sqrt(r / 2 pi) apart, and on its line ahead nothing opens."""
@@ -60,16 +77,58 @@ class Verdicts(unittest.TestCase):
         kappa, resistance = 0.4, 0.99
         value = resistance / (1 + 10 * kappa * 0.25 * 3.015)
         lattice = Lattice(0.25)
-        self.assertAlmostEqual(extension_of(bar(), value, lattice, resistance), kappa, delta=1e-12)
-        verdict = Verdict(bar(), {Lattice(): 0.5, lattice: value}, {}, 0.0, kappa)
-        self.assertAlmostEqual(verdict.corrected, resistance, delta=1e-12)
-        self.assertTrue(verdict.passes)
-        self.assertIn("| pass |", row(verdict))
+        beam = verdict({Lattice(): 0.5, lattice: value})
+        self.assertAlmostEqual(extension_of(beam, lattice, resistance), kappa, delta=1e-12)
+        found = verdict({Lattice(): 0.5, lattice: value}, extension={lattice: kappa})
+        self.assertAlmostEqual(found.corrected, resistance, delta=1e-12)
+        self.assertTrue(found.passes)
+        self.assertIn("| pass |", row(found))
 
     def test_what_is_off_is_red_and_says_by_how_much(self):
-        verdict = Verdict(bar(), {Lattice(): 0.9}, {}, 0.0)
-        self.assertFalse(verdict.passes)
-        self.assertIn("**red**: -10.0 % where 2 % are allowed", row(verdict))
-        failed = Verdict(bar(), {Lattice(): 1.0}, {Lattice(0.5): "no memory"}, 0.0)
+        found = verdict({Lattice(): 0.9})
+        self.assertFalse(found.passes)
+        self.assertIn("**red**: -10.0 % where 2 % are allowed", row(found))
+        failed = verdict({Lattice(): 1.0}, {Lattice(0.5): "no memory"})
         self.assertFalse(failed.passes)
         self.assertIn("h0.5_m3.015_0: no memory", row(failed))
+
+    def test_a_quantity_is_judged_on_its_own_spacing(self):
+        values = {Lattice(): 0.8, Lattice(0.5): 1.0, Lattice(0.25): 1.2}
+        self.assertTrue(verdict(values, at=0.5, of_longer_crack=None).passes)
+        self.assertFalse(verdict(values, of_longer_crack=None).passes)
+
+    def test_one_that_is_asked_on_every_lattice_is_judged_by_the_worst(self):
+        values = {Lattice(0.25): 1.0, Lattice(0.5, angle=45.0): 0.9}
+        self.assertTrue(verdict(values, of_longer_crack=None).passes)
+        strict = verdict(values, of_longer_crack=None, on_every_lattice=True)
+        self.assertIn("-10.0 % on h0.5_m3.015_45", row(strict))
+
+    def test_peaks_go_to_their_limit_as_a_size_effect(self):
+        """1 / P^2 = 1 + h: first order, 1 at spacing 0, and the finest with 1.25 times its distance from there."""
+        values = {Lattice(h): (1 + h) ** -0.5 for h in (1.0, 0.5, 0.25)}
+        limit, uncertainty = verdict(values).extrapolated
+        self.assertAlmostEqual(limit, 1, delta=1e-9)
+        self.assertAlmostEqual(uncertainty, 0.5 * 1.25 * 0.25 / 1.25 * 1.25**-0.5, delta=1e-9)
+        self.assertEqual(verdict({Lattice(): 1.0}).extrapolated, (None, None))
+
+
+class Compliance(unittest.TestCase):
+    def history(self, *forces_and_openings) -> Path:
+        folder = Path(self.enterContext(tempfile.TemporaryDirectory()))
+        lines = ["force,control", *(f"{force},{opening}" for force, opening in forces_and_openings)]
+        (folder / "history.csv").write_text("\n".join(lines))
+        return folder
+
+    def test_toughness_of_a_growing_crack(self):
+        """Opening over load is the crack squared, and it grows at the load 1.1 / crack where 1 / crack is due."""
+        cracks = [1.0, 1.2, 1.6, 2.0]
+        folder = self.history((0, 0), (0.5, 0.5), *((1.1 / a, 1.1 * a) for a in cracks))
+        of = lambda least: toughness(folder, "force", lambda a: a * a, lambda a: 1 / a, 1.0, 3.0, least)
+        self.assertAlmostEqual(of(0.3), 1.1, delta=1e-9)
+        with self.assertRaisesRegex(ValueError, "has not grown by 1.5 m"):
+            of(1.5)
+        self.assertAlmostEqual(elastic_factor(folder, "force", 0.8), 1.25, delta=1e-12)
+
+
+if __name__ == "__main__":
+    unittest.main()
