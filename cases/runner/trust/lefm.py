@@ -58,11 +58,12 @@ def cantilever_load(modulus: float, arm: float, thickness: float, crack: float, 
     return modulus * thickness * arm**3 * opening / (8 * (crack + 0.64 * arm) ** 3)
 
 
-def williams_opening(toughness: float, modulus: float, poisson_ratio: float, x: str, y: str) -> tuple[str, str]:
-    """Displacements of mode I about a tip at the origin in plane stress, as expressions of x and y given as texts:
-    K / (2 mu) sqrt(r / 2 pi) (kappa - cos t) (cos t/2, sin t/2)."""
+def williams_opening(toughness: float, modulus: float, poisson_ratio: float, x: str, y: str,
+                     is_plane_strain: bool = False) -> tuple[str, str]:  # fmt: skip
+    """Displacements of mode I about a tip at the origin in plane stress or strain, as expressions of x and y given as
+    texts: K / (2 mu) sqrt(r / 2 pi) (kappa - cos t) (cos t/2, sin t/2)."""
     shear = modulus / (2 * (1 + poisson_ratio))
-    kappa = (3 - poisson_ratio) / (1 + poisson_ratio)
+    kappa = 3 - 4 * poisson_ratio if is_plane_strain else (3 - poisson_ratio) / (1 + poisson_ratio)
     r, t = f"sqrt(({x})^2+({y})^2)", f"atan2({y},{x})"
     size = f"{toughness / (2 * shear * math.sqrt(2 * math.pi)):.17g}*sqrt({r})*({kappa:.17g}-cos({t}))"
     return f"{size}*cos(0.5*{t})", f"{size}*sin(0.5*{t})"

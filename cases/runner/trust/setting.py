@@ -2,28 +2,27 @@
 
 from specimen import Lattice
 
-MODULUS, POISSON_RATIO, FRACTURE_ENERGY = 70e9, 1 / 3, 10.0  # glass: Pa, bonds in plane stress, J/m2
+MODULUS, FRACTURE_ENERGY = 70e9, 10.0  # glass: Pa, J/m2
 
 
-def setting(spacing: float, lattice: Lattice, thickness: float, no_fail: list[str]) -> str:
+def setting(spacing: float, lattice: Lattice, thickness: float, no_fail: list[str], dimension: int = 2) -> str:
     names = ", ".join(f'"{name}"' for name in no_fail)
+    planar, plane = (f"thickness = {thickness}\n", 'plane = "stress"\n') if dimension == 2 else ("", "")
     return f"""\
-dimension = 2
+dimension = {dimension}
 
 [lattice]
 spacing = {spacing:.17g}
 horizon_ratio = {lattice.ratio}
 angle = {lattice.angle}
-thickness = {thickness}
-
+{planar}
 [quadrature]
 volume_correction = "linear"
 surface_correction = "energy"
 
 [material]
 model = "bond"
-plane = "stress"
-youngs_modulus = {MODULUS}
+{plane}youngs_modulus = {MODULUS}
 
 [material.damage]
 law = "linear"

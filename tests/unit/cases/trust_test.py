@@ -3,6 +3,7 @@
 import math
 import sys
 import tempfile
+import tomllib
 import unittest
 from pathlib import Path
 
@@ -10,8 +11,10 @@ RUNNER = Path(__file__).resolve().parents[3] / "cases" / "runner"
 sys.path[:0] = [str(RUNNER / "trust"), str(RUNNER / "sweep")]
 
 import lefm  # noqa: E402
+import trapping  # noqa: E402
 from compliance import elastic_factor, toughness  # noqa: E402
 from specimen import Lattice, Measure, Specimen, lattices, peak  # noqa: E402
+from strip import Strip  # noqa: E402
 from verdict import Verdict, extension_of, row  # noqa: E402
 
 
@@ -110,6 +113,45 @@ class Verdicts(unittest.TestCase):
         self.assertAlmostEqual(limit, 1, delta=1e-9)
         self.assertAlmostEqual(uncertainty, 0.5 * 1.25 * 0.25 / 1.25 * 1.25**-0.5, delta=1e-9)
         self.assertEqual(verdict({Lattice(): 1.0}).extrapolated, (None, None))
+
+
+class Strips(unittest.TestCase):
+    def displacement(self, strip, x, y, load):
+        case = tomllib.loads(strip.text(Lattice(), 1e-3))
+        text = next(s for s in case["support"] if s["set"] == "rim")["displacement"][:2]
+        names = {name: getattr(math, name) for name in ("sqrt", "atan2", "cos", "sin")} | {"x": x, "y": y, "load": load}
+        return [eval(one.replace("^", "**"), names) for one in text]
+
+    def test_half_way_an_arc_is_level(self):
+        straight, arc = Strip(way=10.0), Strip(way=10.0, turn=0.5)
+        for x, y in ((0.02, 0.01), (-0.01, 0.03), (-0.02, -0.01)):
+            for one, other in zip(self.displacement(straight, x, y, 0.5), self.displacement(arc, x, y, 0.5)):
+                self.assertAlmostEqual(one / other, 1, delta=1e-9)
+
+    def test_an_arc_ends_turned(self):
+        """At the end the field is that of the middle, turned by half the angle about the arc's centre."""
+        arc, half = Strip(way=10.0, turn=0.5), 0.25
+        radius = 10.0 * 3.015e-3 / 0.5
+        x, y = 0.02, 0.01
+        turned = (math.cos(half) * x - math.sin(half) * (y - radius), radius + math.sin(half) * x + math.cos(half) * (y - radius))
+        u, v = self.displacement(arc, x, y, 0.5)
+        found = self.displacement(arc, *turned, 1.0)
+        self.assertAlmostEqual(found[0] / (math.cos(half) * u - math.sin(half) * v), 1, delta=1e-9)
+        self.assertAlmostEqual(found[1] / (math.sin(half) * u + math.cos(half) * v), 1, delta=1e-9)
+
+    def test_a_strip_in_3d_is_one_of_plane_strain(self):
+        """Behind the tip its faces are 8 K / E' sqrt(r / 2 pi) apart."""
+        strip = Strip(dimension=3)
+        self.assertAlmostEqual(strip.modulus, 70e9 / (1 - 1 / 16), delta=1)
+        tip = -0.5 * strip.way * 3.015e-3
+        gap = self.displacement(strip, tip - 0.01, 1e-12, 0.0)[1] - self.displacement(strip, tip - 0.01, -1e-12, 0.0)[1]
+        self.assertAlmostEqual(gap / (8 * strip.toughness / strip.modulus * math.sqrt(0.01 / (2 * math.pi))), 1, delta=1e-6)
+
+    def test_every_setting_of_the_lattices_has_a_run_of_its_own(self):
+        settings = trapping.settings(quick=False)
+        self.assertEqual(len({setting.name for setting in settings}), len(settings))
+        for setting in settings:
+            tomllib.loads(trapping.text(setting))
 
 
 class Compliance(unittest.TestCase):
