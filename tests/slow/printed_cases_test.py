@@ -1,6 +1,7 @@
 """What the headers of the long cases print, compared with one run of each."""
 
 import json
+import math
 import pathlib
 import tempfile
 import unittest
@@ -38,6 +39,15 @@ class Fracture(PrintedTest):
         self.prints("the most stretched bond would end at {} (3.3) and {} (5.2) of the onset",
                     rectangle.history[-1]["max_stretch"] / 0.033, square.history[-1]["max_stretch"] / 0.015,
                     page="docs/theory.md")  # fmt: skip
+
+    def test_toughness(self):
+        self.page = "cases/three_point_bending/toughness.toml"
+        beam = run("three_point_bending/toughness")
+        known = math.sqrt(70e9 * 10.0) * 1e-3 * math.sqrt(0.04) / (4 * 2.66)  # ASTM E399 has f(0.5) = 2.66
+        peak = beam.peak("load", "y")
+        self.prints("a peak of {} N where fracture mechanics has {} N", peak, known, within=2e-3)
+        self.prints("{} % less, as 40", 100 * (1 - peak / known), within=0.05)
+        self.assertLess(beam.history[-1]["reaction_y:load"] / -peak, 0.5)
 
     def test_mouth_opening(self):
         self.page = "cases/three_point_bending/mouth_opening.toml"
