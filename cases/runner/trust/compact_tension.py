@@ -85,5 +85,6 @@ SPECIMENS = [
             Measure("peak load", highest, of_longer_crack=lambda by: load(CRACK + by) / load(CRACK)),
             Measure("toughness by compliance", growing, allowed=0.03, at=MIDDLE),
         ),
+        finer=(0.125,),
     )
 ]

@@ -27,13 +27,6 @@ class Lattice:
         return (self.ratio, self.angle) == (RATIOS[0], 0.0)
 
 
-def lattices(quick: bool) -> list[Lattice]:
-    """Three spacings, two horizons, four angles; quick: the coarsest alone."""
-    if quick:
-        return [Lattice()]
-    return [*(Lattice(h) for h in SPACINGS), Lattice(MIDDLE, RATIOS[1]), *(Lattice(MIDDLE, angle=a) for a in ANGLES[1:])]
-
-
 def aside(lattice: Lattice, spacing: float) -> float:
     """What a crack along a side of the lattice is moved by [m]: points of a turned one stand on it."""
     return 0.0 if lattice.angle == 0.0 else 0.23 * spacing
@@ -60,6 +53,14 @@ class Specimen:
     coarsest: float  # spacing [m]
     case: Callable[[Lattice, float], str]  # lattice, spacing
     measures: tuple[Measure, ...]
+    finer: tuple[float, ...] = ()  # refinements beyond SPACINGS, of a specimen whose runs are cheap
+
+    def lattices(self, quick: bool) -> list[Lattice]:
+        """Three spacings or more, two horizons, four angles; quick: the coarsest alone."""
+        if quick:
+            return [Lattice()]
+        others = [Lattice(MIDDLE, RATIOS[1]), *(Lattice(MIDDLE, angle=angle) for angle in ANGLES[1:])]
+        return [*(Lattice(refinement) for refinement in (*SPACINGS, *self.finer)), *others]
 
     def spacing(self, lattice: Lattice) -> float:
         return self.coarsest * lattice.refinement

@@ -22,7 +22,7 @@ from entries_picture import draw
 from jobs import bounded
 from program import Program
 from run_all import Failed, Ran, Runs
-from specimen import Lattice, Specimen, lattices
+from specimen import Lattice, Specimen
 from verdict import CALIBRATION, HEADING, Verdict, extension_of, row
 
 MODULES = (surfing, notched_beam, compact_tension, centre_crack, double_cantilever)
@@ -33,9 +33,10 @@ PASSED, RED, WRONG_INPUT, MACHINE_FAILED, INTERRUPTED = 0, 3, 2, 5, 130
 
 def verdicts(specimens: list[Specimen], runs: Runs, quick: bool, tell: Callable[[str], None]) -> list[Verdict]:
     """One per specimen and quantity; what is interrupted has no values."""
-    places = {f"{specimen.name}/{lattice.name}": (specimen, lattice) for specimen in specimens for lattice in lattices(quick)}
+    places = {f"{specimen.name}/{lattice.name}": (specimen, lattice) for specimen in specimens for lattice in specimen.lattices(quick)}
     found = {specimen.name: [Verdict(specimen, measure, {}, {}, 0.0, {}) for measure in specimen.measures] for specimen in specimens}
-    for ran in runs.run({name: specimen.text(lattice) for name, (specimen, lattice) in places.items()}):
+    # Judged when all have run: some quantities are of several sizes.
+    for ran in list(runs.run({name: specimen.text(lattice) for name, (specimen, lattice) in places.items()})):
         specimen, lattice = places[ran.name]
         for verdict in found[specimen.name]:
             take(verdict, lattice, ran, tell)

@@ -13,7 +13,7 @@ sys.path[:0] = [str(RUNNER / "trust"), str(RUNNER / "sweep")]
 import lefm  # noqa: E402
 import trapping  # noqa: E402
 from compliance import elastic_factor, toughness  # noqa: E402
-from specimen import Lattice, Measure, Specimen, lattices, peak  # noqa: E402
+from specimen import Lattice, Measure, Specimen, peak  # noqa: E402
 from strip import Strip  # noqa: E402
 from verdict import Verdict, extension_of, row  # noqa: E402
 
@@ -70,11 +70,11 @@ class Verdicts(unittest.TestCase):
         self.assertEqual(peak([1.0, 2.0, 3.0]), 3)
 
     def test_every_entry_has_three_spacings_two_horizons_and_four_angles(self):
-        found = lattices(quick=False)
+        found = bar(None).lattices(quick=False)
         self.assertEqual(len({lattice.refinement for lattice in found}), 3)
         self.assertEqual(len({lattice.ratio for lattice in found}), 2)
         self.assertEqual(len({lattice.angle for lattice in found}), 4)
-        self.assertEqual(len(lattices(quick=True)), 1)
+        self.assertEqual(len(bar(None).lattices(quick=True)), 1)
 
     def test_a_finite_horizon_is_taken_off(self):
         kappa, resistance = 0.4, 0.99
