@@ -1,5 +1,6 @@
-"""A steady crack in a strip: J on its way is what it resists with."""
+"""A steady crack in a strip: J on its way is what it resists with, and what it dissipates is G_c on its area."""
 
+import tomllib
 from pathlib import Path
 
 from setting import FRACTURE_ENERGY
@@ -14,13 +15,27 @@ def resistance(folder: Path) -> float:
     return (sum(steady) / len(steady) / FRACTURE_ENERGY) ** 0.5
 
 
+def dissipation(folder: Path) -> float:
+    """Energy that bonds have taken up over the area, over G_c, on the last half of the way."""
+    lattice = tomllib.loads((folder.parent / "case.toml").read_text())["lattice"]
+    area = STRIP.crack_area(lattice["spacing"] * lattice["horizon_ratio"])
+    found = rows(folder)
+    middle = min(found, key=lambda row: abs(row["load_factor"] - 0.5))
+    grown = (found[-1]["load_factor"] - middle["load_factor"]) * area
+    return (found[-1]["dissipated_energy"] - middle["dissipated_energy"]) / grown / FRACTURE_ENERGY
+
+
+STRIP = Strip()
 SPECIMENS = [
     Specimen(
         name="surfing",
         title="Steady crack in a strip",
         reference="G_c as given",
         coarsest=1e-3,
-        case=Strip().text,
-        measures=(Measure("sqrt(J / G_c)", resistance, allowed=0.03, on_every_lattice=True),),
+        case=STRIP.text,
+        measures=(
+            Measure("sqrt(J / G_c)", resistance, allowed=0.03, on_every_lattice=True),
+            Measure("dissipated energy over area", dissipation, allowed=0.01, on_every_lattice=True),
+        ),
     )
 ]

@@ -11,6 +11,7 @@ RUNNER = Path(__file__).resolve().parents[3] / "cases" / "runner"
 sys.path[:0] = [str(RUNNER / "trust"), str(RUNNER / "sweep")]
 
 import lefm  # noqa: E402
+import surfing  # noqa: E402
 import trapping  # noqa: E402
 from compliance import elastic_factor, toughness  # noqa: E402
 from specimen import Lattice, Measure, Specimen, peak  # noqa: E402
@@ -146,6 +147,16 @@ class Strips(unittest.TestCase):
         tip = -0.5 * strip.way * 3.015e-3
         gap = self.displacement(strip, tip - 0.01, 1e-12, 0.0)[1] - self.displacement(strip, tip - 0.01, -1e-12, 0.0)[1]
         self.assertAlmostEqual(gap / (8 * strip.toughness / strip.modulus * math.sqrt(0.01 / (2 * math.pi))), 1, delta=1e-6)
+
+    def test_dissipation_is_that_of_the_last_half(self):
+        """The field goes 8 horizons of 3 mm in a strip of 1 mm: half of it at 9 J/m2, over G_c = 10."""
+        folder = Path(self.enterContext(tempfile.TemporaryDirectory())) / "out"
+        folder.mkdir()
+        (folder.parent / "case.toml").write_text("[lattice]\nspacing = 1e-3\nhorizon_ratio = 3.0\n")
+        energies = [0.0, 7.0, 7.0 + 9.0 * 4 * 3e-3 * 1e-3]
+        lines = ["load_factor,dissipated_energy", *(f"{0.5 * k},{energy!r}" for k, energy in enumerate(energies))]
+        (folder / "history.csv").write_text("\n".join(lines))
+        self.assertAlmostEqual(surfing.dissipation(folder), 0.9, delta=1e-9)
 
     def test_every_setting_of_the_lattices_has_a_run_of_its_own(self):
         settings = trapping.settings(quick=False)
