@@ -1,0 +1,28 @@
+"""The one setting with other material constants, and with a groove: law, horizon, corrections and solver stay."""
+
+import setting
+
+
+def of_material(text: str, modulus: float, fracture_energy: float, strength: float | None = None) -> str:
+    """The case of another material: Pa, J/m2, Pa; without a strength it is what the horizon gives."""
+    text = _replaced(text, f"youngs_modulus = {setting.MODULUS}", f"youngs_modulus = {modulus}")
+    damage = f"fracture_energy = {fracture_energy}" + (f"\nstrength = {strength}" if strength else "")
+    return _replaced(text, f"fracture_energy = {setting.FRACTURE_ENERGY}", damage)
+
+
+def grooved(text: str, y: float) -> str:
+    """Only bonds that cross the line at y can fail: two elastic regions, and the law of damage between them alone."""
+    begin, damage, end = (text.index(head) for head in ("[material]\n", "[material.damage]\n", "[solver]\n"))
+    material, law = text[begin:damage], text[damage:end]
+    law = "".join(line for line in law.splitlines(True) if not line.startswith("no_fail"))
+    below_it = lambda table: (material + (law if table == "interface" else "")).replace("[material", f"[{table}.material")
+    regions = [f'[[set]]\nname = "{name}"\nwhere = "y {sign} {y}"\n\n[[region]]\nset = "{name}"\n\n{below_it("region")}'
+               for name, sign in (("above", ">"), ("below", "<"))]  # fmt: skip
+    interface = f'[[interface]]\nbetween = ["above", "below"]\n\n{below_it("interface")}'
+    return text[:begin] + text[end:].rstrip() + "\n\n" + "".join(regions) + interface
+
+
+def _replaced(text: str, old: str, new: str) -> str:
+    if text.count(old) != 1:
+        raise ValueError(f"{old!r} stands {text.count(old)} times in the setting")
+    return text.replace(old, new)
