@@ -5,6 +5,7 @@ import setting
 
 def of_material(text: str, modulus: float, fracture_energy: float, strength: float | None = None) -> str:
     """The case of another material: Pa, J/m2, Pa; without a strength it is what the horizon gives."""
+    text = text.replace("no_fail = []\n", "")  # an empty list is refused
     text = _replaced(text, f"youngs_modulus = {setting.MODULUS}", f"youngs_modulus = {modulus}")
     damage = f"fracture_energy = {fracture_energy}" + (f"\nstrength = {strength}" if strength else "")
     return _replaced(text, f"fracture_energy = {setting.FRACTURE_ENERGY}", damage)

@@ -12,6 +12,7 @@ import crack_path  # noqa: E402
 import grooved_cantilever as cantilever  # noqa: E402
 import other_setting  # noqa: E402
 import setting  # noqa: E402
+import strength  # noqa: E402
 from specimen import Lattice  # noqa: E402
 
 
@@ -65,6 +66,17 @@ class Cantilevers(unittest.TestCase):
 
     def test_slope_of_a_line(self):
         self.assertAlmostEqual(cantilever.slope([0, 1, 2, 5], [1, 3, 5, 11]), 2, delta=1e-12)
+
+
+class Strengths(unittest.TestCase):
+    def test_a_turned_tensor_keeps_its_principal_values(self):
+        for angle in (0.0, 0.3, math.pi / 4, 2.0):
+            xx, yy, xy = strength.turned(3.0, -1.0, angle)
+            middle, radius = 0.5 * (xx + yy), math.hypot(0.5 * (xx - yy), xy)
+            self.assertAlmostEqual(middle + radius, 3.0, delta=1e-12)
+            self.assertAlmostEqual(middle - radius, -1.0, delta=1e-12)
+            along = (math.cos(angle), math.sin(angle))
+            self.assertAlmostEqual(xx * along[0] ** 2 + 2 * xy * along[0] * along[1] + yy * along[1] ** 2, 3.0, delta=1e-12)
 
 
 class CrackPaths(unittest.TestCase):

@@ -1,0 +1,67 @@
+"""Strengths of a body without a crack: a cell that repeats is strained until its stress has passed a peak. Data of
+soda-lime glass, of the nine circles of elastic brittle fracture [Kumar et al. 2026], second-hand."""
+
+import math
+import tomllib
+from pathlib import Path
+
+from other_setting import of_material
+from setting import POISSON_RATIO, setting
+from specimen import Lattice, Specimen, rows
+
+MODULUS, FRACTURE_ENERGY, TENSILE, BIAXIAL, SHEAR = 70e9, 10.0, 40e6, 27e6, 44.4e6
+CELLS, COARSEST, THICKNESS = 12, 5e-5, 1e-3  # cells a side of the one that repeats
+
+
+def turned(first: float, second: float, angle: float) -> tuple[float, float, float]:
+    """Components xx, yy, xy of a tensor whose principal values lie at an angle."""
+    mean, half = 0.5 * (first + second), 0.5 * (first - second)
+    return mean + half * math.cos(2 * angle), mean - half * math.cos(2 * angle), half * math.sin(2 * angle)
+
+
+def case(second: float, most: float):
+    """Of strains that grow as 1 : second up to that many times the strain at the tensile strength, beyond the peak, or
+    six tenths of the critical stretch. What is repeated cannot be turned: the strains are, against the lattice."""
+
+    def text(lattice: Lattice, h: float) -> str:
+        critical = 4 * math.pi * FRACTURE_ENERGY * MODULUS / (9 * TENSILE**2 * h * lattice.ratio)
+        largest = min(most, 0.6 * critical)
+        xx, yy, xy = (f'"{largest * TENSILE / MODULUS * part:.9g}*load"' for part in turned(1.0, second, -math.radians(lattice.angle)))
+        period = lambda axis, column: f'[[period]]\naxis = "{axis}"\nfrom = 0.0\nto = {CELLS * h}\ngradient = [{", ".join(column)}]\n\n'
+        straight = Lattice(lattice.refinement, lattice.ratio)
+        return of_material(setting(h, straight, THICKNESS, []), MODULUS, FRACTURE_ENERGY, TENSILE) + f"""
+[[lattice.shape]]
+add = "box"
+min = [0.0, 0.0]
+max = [{CELLS * h}, {CELLS * h}]
+
+{period("x", (xx, xy))}{period("y", (xy, yy))}[loading]
+steps = {math.ceil(30 * largest)}
+"""  # fmt: skip
+
+    return text
+
+
+def largest_stress(folder: Path) -> float:
+    """Peak of the largest principal stress [Pa]."""
+    spacing = tomllib.loads((folder.parent / "case.toml").read_text())["lattice"]["spacing"]
+    return max(_principal_force(row) for row in rows(folder)) / (CELLS * spacing * THICKNESS)
+
+
+def _principal_force(row: dict) -> float:
+    xx, xy, yx, yy = (row[f"reaction_{of}"] for of in ("x:period_x", "y:period_x", "x:period_y", "y:period_y"))
+    shear = 0.5 * (xy + yx)
+    return 0.5 * (xx + yy) + math.hypot(0.5 * (xx - yy), shear)
+
+
+def specimen(name: str, title: str, second: float, largest: float, known: float) -> Specimen:
+    value = lambda folder: largest_stress(folder) / known
+    return Specimen(name, title, "glass, second-hand", "strength", COARSEST, case(second, largest), value, allowed=0.05)
+
+
+# Uniaxial: the strain across is the elastic one, so that the stress across is not quite zero when bonds soften.
+SPECIMENS = [
+    specimen("strength_uniaxial", "Glass under tension", -POISSON_RATIO, 4.0, TENSILE),
+    specimen("strength_biaxial", "Glass under equal biaxial tension", 1.0, 1.5, BIAXIAL),
+    specimen("strength_shear", "Glass in pure shear", -1.0, 2.5, SHEAR),
+]
