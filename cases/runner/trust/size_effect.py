@@ -1,0 +1,134 @@
+"""Size effect: notched beams of four sizes, S = 4 D, of concrete with its strength and its toughness, on one spacing. Their
+nominal strengths follow Bazant's law, and its slope is the toughness."""
+
+import math
+from pathlib import Path
+
+import lefm
+from other_setting import of_material
+from run_all import Failed
+from setting import setting, under_opening
+from specimen import Lattice, Specimen, aside, peak, rows
+
+MODULUS, FRACTURE_ENERGY, TENSILE = 25.85e9, 89.0, 2.7e6  # concrete of the panels of [Winkler 2001]
+DEPTHS, NOTCH, THICKNESS, COARSEST = (0.2, 0.32, 0.52, 0.8), 0.3, 0.1, 0.04
+TOUGHNESS = lefm.toughness(MODULUS, FRACTURE_ENERGY)
+# Of the length E G / f_t^2, by which a process zone with linear softening makes long cracks longer [Cusatis and Schauffert 2009].
+ZONE = 0.44 * MODULUS * FRACTURE_ENERGY / TENSILE**2
+
+
+def law(depth: float) -> float:
+    """Bazant's nominal strength P / (B D) for the data: K_Ic / sqrt(g D + g' c) with g = (4 f)^2 [Bazant and Planas 1998]."""
+    shape = lambda notch: (4 * lefm.bend_factor(notch)) ** 2
+    growth = (shape(NOTCH + 1e-5) - shape(NOTCH - 1e-5)) / 2e-5
+    return TOUGHNESS / math.sqrt(shape(NOTCH) * depth + growth * ZONE)
+
+
+def toughness_of(depths: list[float], strengths: list[float]) -> tuple[float, float]:
+    """K_Ic by the slope of 1 / strength^2 over the depth, (4 f / K_Ic)^2, and r^2 of that line."""
+    inverse = [1 / strength**2 for strength in strengths]
+    x_mean, y_mean = sum(depths) / len(depths), sum(inverse) / len(inverse)
+    xx = sum((x - x_mean) ** 2 for x in depths)
+    xy = sum((x - x_mean) * (y - y_mean) for x, y in zip(depths, inverse))
+    yy = sum((y - y_mean) ** 2 for y in inverse)
+    return 4 * lefm.bend_factor(NOTCH) / math.sqrt(xy / xx), xy**2 / (xx * yy)
+
+
+def case(depth: float):
+    def text(lattice: Lattice, h: float) -> str:
+        x, crack = aside(lattice, h), NOTCH * depth
+        half = h * math.ceil(2.1 * depth / h)  # as many points to each side of the notch
+        mouth = 24 * law(depth) * crack / MODULUS * (0.76 - 2.28 * NOTCH + 3.87 * NOTCH**2 - 2.04 * NOTCH**3 + 0.66 / (1 - NOTCH) ** 2)
+        concrete = of_material(setting(h, lattice, THICKNESS, ["ends"]), MODULUS, FRACTURE_ENERGY, TENSILE)
+        return concrete + f"""
+[[lattice.shape]]
+add = "box"
+min = [{-half}, 0.0]
+max = [{half}, {depth}]
+
+[[crack]]
+from = [{x}, {-depth}]
+to = [{x}, {crack}]
+
+[[set]]
+name = "ends"
+where = "(abs(x) > {1.75 * depth} && y < {0.25 * depth}) || (abs(x) < {0.25 * depth} && y > {0.85 * depth})"
+
+[[set]]
+name = "mouth_right"
+where = "x > {x} && x < {x + 1.5 * h} && y < {1.5 * h}"
+
+[[set]]
+name = "mouth_left"
+where = "x < {x} && x > {x - 1.5 * h} && y < {1.5 * h}"
+
+[[roller]]
+name = "left"
+at = [{-2 * depth}, 0.0]
+normal = [0, 1]
+
+[[roller]]
+name = "right"
+at = [{2 * depth}, 0.0]
+normal = [0, 1]
+
+[[roller]]
+name = "load"
+at = [0.0, {depth}]
+normal = [0, 1]
+displacement = "-load"
+
+[[roller]]
+name = "middle"
+at = [0.0, {depth}]
+normal = [1, 0]
+
+""" + under_opening("mouth_right", "mouth_left", "[1, 0]", 4 * mouth)  # fmt: skip
+
+    return text
+
+
+def nominal_strength(folder: Path, depth: float) -> float:
+    return peak([abs(row["reaction_y:load"]) for row in rows(folder)]) / (THICKNESS * depth)
+
+
+def name(depth: float) -> str:
+    return "size_effect" if depth == DEPTHS[-1] else f"size_effect_{1000 * depth:.0f}"
+
+
+def of_all_sizes(folder: Path) -> float:
+    """K_Ic by the slope of the law through all sizes, over the given one: runs of the other sizes lie beside.
+
+    @raise Failed if one has not run
+    """
+    strengths = []
+    for depth in DEPTHS:
+        beside = folder.parents[2] / name(depth) / folder.parent.name / folder.name
+        if not (beside / "summary.json").is_file():
+            raise Failed(f"run it with {name(depth)}")
+        strengths.append(nominal_strength(beside, depth))
+    return toughness_of(list(DEPTHS), strengths)[0] / TOUGHNESS
+
+
+def specimen(depth: float) -> Specimen:
+    return Specimen(
+        name=name(depth),
+        title=f"Notched beam of concrete, {1000 * depth:.0f} mm deep",
+        reference="Bazant's law",
+        quantity="nominal strength",
+        coarsest=COARSEST,
+        case=case(depth),
+        value=lambda folder: nominal_strength(folder, depth) / law(depth),
+        allowed=0.1,
+    )
+
+
+def slope_of_the_law() -> Specimen:
+    """Of the largest beam, after the others."""
+    largest = specimen(DEPTHS[-1])
+    largest.title, largest.quantity = "Notched beams of concrete, four sizes", "toughness by the slope of the law"
+    largest.value = of_all_sizes
+    return largest
+
+
+SPECIMENS = [*map(specimen, DEPTHS[:-1]), slope_of_the_law()]
