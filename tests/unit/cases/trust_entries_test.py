@@ -8,10 +8,12 @@ from pathlib import Path
 RUNNER = Path(__file__).resolve().parents[3] / "cases" / "runner"
 sys.path[:0] = [str(RUNNER / "trust"), str(RUNNER / "sweep")]
 
+import brazilian_disk  # noqa: E402
 import crack_path  # noqa: E402
 import grooved_cantilever as cantilever  # noqa: E402
 import other_setting  # noqa: E402
 import setting  # noqa: E402
+import size_effect  # noqa: E402
 import strength  # noqa: E402
 from specimen import Lattice  # noqa: E402
 
@@ -77,6 +79,32 @@ class Strengths(unittest.TestCase):
             self.assertAlmostEqual(middle - radius, -1.0, delta=1e-12)
             along = (math.cos(angle), math.sin(angle))
             self.assertAlmostEqual(xx * along[0] ** 2 + 2 * xy * along[0] * along[1] + yy * along[1] ** 2, 3.0, delta=1e-12)
+
+
+class SizeEffect(unittest.TestCase):
+    def test_strengths_of_the_law_have_its_toughness(self):
+        strengths = [size_effect.law(depth) for depth in size_effect.DEPTHS]
+        found, r_squared = size_effect.toughness_of(list(size_effect.DEPTHS), strengths)
+        self.assertAlmostEqual(found / size_effect.TOUGHNESS, 1, delta=1e-9)
+        self.assertAlmostEqual(r_squared, 1, delta=1e-9)
+
+    def test_large_beams_are_those_of_fracture_mechanics(self):
+        depth = 1e6
+        load = size_effect.lefm.bend_load(size_effect.TOUGHNESS, depth, size_effect.NOTCH * depth, size_effect.THICKNESS)
+        self.assertAlmostEqual(size_effect.law(depth) * depth * size_effect.THICKNESS / load, 1, delta=1e-4)
+
+
+class BrazilianDisk(unittest.TestCase):
+    def test_short_cracks_are_those_in_the_middle_of_an_uncracked_disk(self):
+        """Tension across the middle is P / (pi R B): K = sigma sqrt(pi a)."""
+        crack = 1e-4 * brazilian_disk.RADIUS
+        stress = brazilian_disk.load(crack) / (math.pi * brazilian_disk.RADIUS * brazilian_disk.THICKNESS)
+        self.assertAlmostEqual(stress * math.sqrt(math.pi * crack) / brazilian_disk.TOUGHNESS, 1, delta=1e-6)
+
+    def test_the_factor_goes_through_the_table(self):
+        for share, value in brazilian_disk.FACTORS.items():
+            self.assertAlmostEqual(brazilian_disk.factor(share), value, delta=1e-12)
+        self.assertAlmostEqual(brazilian_disk.factor(0.1), 1.0150, delta=5e-4)  # of the table, not used
 
 
 class CrackPaths(unittest.TestCase):

@@ -1,0 +1,109 @@
+"""Half a disk in three-point bending with a notch inclined by 30 degrees: the crack kinks and curves towards the load,
+as in half disks of PMMA [Ayatollahi, Aliha and Hassani 2006]."""
+
+import math
+import tomllib
+from pathlib import Path
+
+import crack_path
+from setting import FRACTURE_ENERGY, MODULUS, setting
+from specimen import Lattice, Specimen, rows
+
+RADIUS, THICKNESS = 0.05, 5e-3
+SUPPORT, NOTCH, INCLINED = 0.43 * RADIUS, 0.3 * RADIUS, math.radians(30)
+TIP = (NOTCH * math.sin(INCLINED), NOTCH * math.cos(INCLINED))
+# Digits of the measured path as github.com/floiseau/gcrack has them, m, the load at (0, RADIUS).
+MEASURED = [
+    (0.00727, 0.01314), (0.00625, 0.01492), (0.00459, 0.01735), (0.00344, 0.01939), (0.00191, 0.02245), (0.0014, 0.02436),
+    (0.00102, 0.02615), (0.00077, 0.02793), (0.00051, 0.02985), (0.00038, 0.03176), (0.00026, 0.03342), (0.00013, 0.03508),
+    (0.0, 0.03661), (-0.00013, 0.03827), (-0.00026, 0.0412), (-0.00026, 0.04349), (-0.00051, 0.04643), (-0.00038, 0.04885),
+    (-0.00038, 0.05),
+]  # fmt: skip
+FOLLOWED = 0.03  # height up to which it is compared
+OPENING = 4 * math.sqrt(FRACTURE_ENERGY * NOTCH / (math.pi * MODULUS))  # of a crack as long in a wide plate that tears
+
+
+def text(lattice: Lattice, h: float) -> str:
+    return setting(h, lattice, THICKNESS, ["contacts"]) + f"""
+[[lattice.shape]]
+add = "disk"
+centre = [0.0, 0.0]
+radius = {RADIUS}
+
+[[lattice.shape]]
+subtract = "box"
+min = [{-RADIUS}, {-RADIUS}]
+max = [{RADIUS}, {-1e-9 * RADIUS}]
+
+[[crack]]
+from = [{-0.1 * TIP[0]}, {-0.1 * TIP[1]}]
+to = [{TIP[0]}, {TIP[1]}]
+
+[[set]]
+name = "contacts"
+where = "y > {0.85 * RADIUS} || (y < {0.1 * RADIUS} && abs(x) > {0.3 * RADIUS})"
+
+[[set]]
+name = "mouth_right"
+where = "x > {0.02 * RADIUS} && x < {0.02 * RADIUS + 1.5 * h} && y < {1.1 * h}"
+
+[[set]]
+name = "mouth_left"
+where = "x < {-0.02 * RADIUS} && x > {-0.02 * RADIUS - 1.5 * h} && y < {1.1 * h}"
+
+[[roller]]
+name = "left"
+at = [{-SUPPORT}, 0.0]
+normal = [0, 1]
+
+[[roller]]
+name = "right"
+at = [{SUPPORT}, 0.0]
+normal = [0, 1]
+
+[[roller]]
+name = "load"
+at = [0.0, {RADIUS}]
+normal = [0, 1]
+displacement = "-load"
+
+[[roller]]
+name = "middle"
+at = [0.0, {RADIUS}]
+normal = [1, 0]
+
+[[control]]
+set = "mouth_right"
+weights = [1, 0]
+
+[[control]]
+set = "mouth_left"
+weights = [-1, 0]
+
+[loading]
+table = [0, {OPENING:.6g}, {2 * OPENING:.6g}, {4 * OPENING:.6g}, {8 * OPENING:.6g}]
+steps = 12
+stop_below = 0.3
+"""  # fmt: skip
+
+
+def deviation(folder: Path) -> float:
+    """1 + the largest distance of the crack's middle line from the measured one, in horizons."""
+    lattice = tomllib.loads((folder.parent / "case.toml").read_text())["lattice"]
+    horizon = lattice["spacing"] * lattice["horizon_ratio"]
+    middles = [place for place in crack_path.broken_middles(folder) if TIP[1] < place[1] < FOLLOWED]
+    return 1 + max(crack_path.distance(place, MEASURED) for place in crack_path.line(middles, 1, 0.03 * RADIUS)) / horizon
+
+
+SPECIMENS = [
+    Specimen(
+        name="inclined_notch",
+        title="Half disk with an inclined notch",
+        reference="Ayatollahi et al., PMMA",
+        quantity="1 + distance of the paths in horizons",
+        coarsest=RADIUS / 32,
+        case=text,
+        value=deviation,
+        allowed=2.0,
+    )
+]
