@@ -1,0 +1,99 @@
+"""Beam with three holes, bent at three points, whose eccentric crack ends in the middle hole, as in beams of PMMA [Ingraffea
+and Grigoriu 1990; Bittencourt, Wawrzynek, Ingraffea and Sousa 1996]. No digits of the measured path are at hand: judged
+by whether the crack meets that hole."""
+
+import math
+import tomllib
+from pathlib import Path
+
+import crack_path
+from setting import FRACTURE_ENERGY, MODULUS, setting
+from specimen import Lattice, Specimen, aside
+
+INCH, THICKNESS = 0.0254, 0.0127
+HALF, DEPTH, SUPPORT = 10 * INCH, 8 * INCH, 9 * INCH
+HOLES, RADIUS = [(-4 * INCH, y * INCH) for y in (2.75, 4.75, 6.75)], 0.25 * INCH
+NOTCH, ASIDE = 1.5 * INCH, -5 * INCH
+OPENING = 4 * math.sqrt(FRACTURE_ENERGY * NOTCH / (math.pi * MODULUS))  # of a crack as long in a wide plate that tears
+
+
+def text(lattice: Lattice, h: float) -> str:
+    x = ASIDE + aside(lattice, h)
+    holes = "".join(f'[[lattice.shape]]\nsubtract = "disk"\ncentre = [{a}, {b}]\nradius = {RADIUS}\n\n' for a, b in HOLES)
+    return setting(h, lattice, THICKNESS, ["contacts"]) + f"""
+[[lattice.shape]]
+add = "box"
+min = [{-HALF}, 0.0]
+max = [{HALF}, {DEPTH}]
+
+{holes}[[crack]]
+from = [{x}, {-NOTCH}]
+to = [{x}, {NOTCH}]
+
+[[set]]
+name = "contacts"
+where = "(abs(x) > {0.8 * HALF} && y < {0.2 * DEPTH}) || (abs(x) < {0.1 * HALF} && y > {0.85 * DEPTH})"
+
+[[set]]
+name = "mouth_right"
+where = "x > {x} && x < {x + 1.5 * h} && y < {1.5 * h}"
+
+[[set]]
+name = "mouth_left"
+where = "x < {x} && x > {x - 1.5 * h} && y < {1.5 * h}"
+
+[[roller]]
+name = "left"
+at = [{-SUPPORT}, 0.0]
+normal = [0, 1]
+
+[[roller]]
+name = "right"
+at = [{SUPPORT}, 0.0]
+normal = [0, 1]
+
+[[roller]]
+name = "load"
+at = [0.0, {DEPTH}]
+normal = [0, 1]
+displacement = "-load"
+
+[[roller]]
+name = "middle"
+at = [0.0, {DEPTH}]
+normal = [1, 0]
+
+[[control]]
+set = "mouth_right"
+weights = [1, 0]
+
+[[control]]
+set = "mouth_left"
+weights = [-1, 0]
+
+[loading]
+table = [0, {OPENING:.6g}, {2 * OPENING:.6g}, {4 * OPENING:.6g}, {8 * OPENING:.6g}, {16 * OPENING:.6g}]
+steps = 12
+stop_below = 0.25
+"""  # fmt: skip
+
+
+def missed_by(folder: Path) -> float:
+    """1 + how far the crack stays away from the rim of the middle hole, in horizons."""
+    lattice = tomllib.loads((folder.parent / "case.toml").read_text())["lattice"]
+    away = [math.dist(place, HOLES[1]) - RADIUS for place in crack_path.broken_middles(folder)]
+    return 1 + max(min(away), 0.0) / (lattice["spacing"] * lattice["horizon_ratio"])
+
+
+SPECIMENS = [
+    Specimen(
+        name="attracted_crack",
+        title="Beam with three holes",
+        reference="Ingraffea and Grigoriu, PMMA",
+        quantity="1 + distance from the middle hole in horizons",
+        coarsest=0.2 * INCH,
+        case=text,
+        value=missed_by,
+        allowed=1.0,
+    )
+]
