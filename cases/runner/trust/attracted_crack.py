@@ -8,7 +8,7 @@ from pathlib import Path
 
 import crack_path
 from setting import FRACTURE_ENERGY, MODULUS, setting
-from specimen import Lattice, Specimen, aside
+from specimen import Lattice, Measure, Specimen, aside
 
 INCH, THICKNESS = 0.0254, 0.0127
 HALF, DEPTH, SUPPORT = 10 * INCH, 8 * INCH, 9 * INCH
@@ -90,10 +90,8 @@ SPECIMENS = [
         name="attracted_crack",
         title="Beam with three holes",
         reference="Ingraffea and Grigoriu, PMMA",
-        quantity="1 + distance from the middle hole in horizons",
         coarsest=0.2 * INCH,
         case=text,
-        value=missed_by,
-        allowed=1.0,
+        measures=(Measure("1 + distance from the middle hole in horizons", missed_by, allowed=1.0),),
     )
 ]

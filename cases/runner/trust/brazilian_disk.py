@@ -7,7 +7,7 @@ from pathlib import Path
 
 import lefm
 from setting import FRACTURE_ENERGY, MODULUS, setting
-from specimen import Lattice, Specimen, aside, peak, rows
+from specimen import Lattice, Measure, Specimen, aside, peak, rows
 
 RADIUS, THICKNESS, SHARE = 0.02, 1e-3, 0.5
 CRACK = SHARE * RADIUS  # half of it
@@ -95,10 +95,8 @@ SPECIMENS = [
         name="brazilian_disk",
         title="Brazilian disk, a/R = 0.5",
         reference="Atkinson et al.",
-        quantity="peak load",
         coarsest=RADIUS / 16,
         case=text,
-        value=value,
-        of_longer_crack=lambda by: load(CRACK + by) / load(CRACK),
+        measures=(Measure("peak load", value, of_longer_crack=lambda by: load(CRACK + by) / load(CRACK)),),
     )
 ]

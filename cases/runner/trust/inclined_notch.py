@@ -7,7 +7,7 @@ from pathlib import Path
 
 import crack_path
 from setting import FRACTURE_ENERGY, MODULUS, setting
-from specimen import Lattice, Specimen, rows
+from specimen import Lattice, Measure, Specimen
 
 RADIUS, THICKNESS = 0.05, 5e-3
 SUPPORT, NOTCH, INCLINED = 0.43 * RADIUS, 0.3 * RADIUS, math.radians(30)
@@ -100,10 +100,8 @@ SPECIMENS = [
         name="inclined_notch",
         title="Half disk with an inclined notch",
         reference="Ayatollahi et al., PMMA",
-        quantity="1 + distance of the paths in horizons",
         coarsest=RADIUS / 32,
         case=text,
-        value=deviation,
-        allowed=2.0,
+        measures=(Measure("1 + distance of the paths in horizons", deviation, allowed=2.0),),
     )
 ]

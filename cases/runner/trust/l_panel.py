@@ -8,7 +8,7 @@ from pathlib import Path
 
 from other_setting import of_material
 from setting import setting
-from specimen import Lattice, Specimen, peak, rows
+from specimen import Lattice, Measure, Specimen, peak, rows
 
 MODULUS, FRACTURE_ENERGY, TENSILE = 25.85e9, 89.0, 2.7e6
 SIDE, THICKNESS, ARM_END = 0.5, 0.1, 0.47
@@ -86,12 +86,13 @@ def at_peak(folder: Path) -> tuple[float, float]:
     return peak([abs(row["reaction_y:load"]) for row in found]), top["load_factor"]
 
 
-def specimen(name: str, quantity: str, tensile: float | None, value) -> Specimen:
+def specimen(name: str, tensile: float | None) -> Specimen:
     title = "L-shaped panel" + (", strength as measured" if tensile else "")
-    return Specimen(name, title, "Winkler, series A", quantity, SIDE / 24, case(tensile), value, allowed=0.1)
+    measures = (
+        Measure("peak load", lambda folder: at_peak(folder)[0] / LOAD, allowed=0.1),
+        Measure("displacement at the peak", lambda folder: at_peak(folder)[1] / DISPLACEMENT, allowed=0.1),
+    )
+    return Specimen(name, title, "Winkler, series A", SIDE / 24, case(tensile), measures)
 
 
-SPECIMENS = [
-    specimen("l_panel", "peak load", None, lambda folder: at_peak(folder)[0] / LOAD),
-    specimen("l_panel_strength", "peak load", TENSILE, lambda folder: at_peak(folder)[0] / LOAD),
-]
+SPECIMENS = [specimen("l_panel", None), specimen("l_panel_strength", TENSILE)]

@@ -6,9 +6,8 @@ from pathlib import Path
 
 import lefm
 from other_setting import of_material
-from run_all import Failed
 from setting import setting, under_opening
-from specimen import Lattice, Specimen, aside, peak, rows
+from specimen import Lattice, Measure, Specimen, aside, peak, rows
 
 MODULUS, FRACTURE_ENERGY, TENSILE = 25.85e9, 89.0, 2.7e6  # concrete of the panels of [Winkler 2001]
 DEPTHS, NOTCH, THICKNESS, COARSEST = (0.2, 0.32, 0.52, 0.8), 0.3, 0.1, 0.04
@@ -83,7 +82,7 @@ name = "middle"
 at = [0.0, {depth}]
 normal = [1, 0]
 
-""" + under_opening("mouth_right", "mouth_left", "[1, 0]", 4 * mouth)  # fmt: skip
+""" + under_opening("mouth_right", "mouth_left", "[1, 0]", 4 * mouth, follow_growth=False)  # fmt: skip
 
     return text
 
@@ -93,42 +92,33 @@ def nominal_strength(folder: Path, depth: float) -> float:
 
 
 def name(depth: float) -> str:
-    return "size_effect" if depth == DEPTHS[-1] else f"size_effect_{1000 * depth:.0f}"
+    return f"size_effect_{1000 * depth:.0f}"
 
 
-def of_all_sizes(folder: Path) -> float:
-    """K_Ic by the slope of the law through all sizes, over the given one: runs of the other sizes lie beside.
+def of_all_sizes(folder: Path) -> tuple[float, float]:
+    """K_Ic by the slope of the law through all sizes, over the given one, and r^2: the other sizes' runs lie beside.
 
-    @raise Failed if one has not run
+    @raise ValueError if one has not run
     """
     strengths = []
     for depth in DEPTHS:
         beside = folder.parents[2] / name(depth) / folder.parent.name / folder.name
         if not (beside / "summary.json").is_file():
-            raise Failed(f"run it with {name(depth)}")
+            raise ValueError(f"run it with {name(depth)}")
         strengths.append(nominal_strength(beside, depth))
-    return toughness_of(list(DEPTHS), strengths)[0] / TOUGHNESS
+    found, r_squared = toughness_of(list(DEPTHS), strengths)
+    return found / TOUGHNESS, r_squared
 
 
 def specimen(depth: float) -> Specimen:
-    return Specimen(
-        name=name(depth),
-        title=f"Notched beam of concrete, {1000 * depth:.0f} mm deep",
-        reference="Bazant's law",
-        quantity="nominal strength",
-        coarsest=COARSEST,
-        case=case(depth),
-        value=lambda folder: nominal_strength(folder, depth) / law(depth),
-        allowed=0.1,
-    )
+    measures = [Measure("nominal strength", lambda folder: nominal_strength(folder, depth) / law(depth), allowed=0.1)]
+    if depth == DEPTHS[-1]:
+        measures += [
+            Measure("toughness by the slope of the law through four sizes", lambda folder: of_all_sizes(folder)[0], allowed=0.1),
+            Measure("r^2 of that line", lambda folder: of_all_sizes(folder)[1], allowed=0.01),
+        ]
+    title = f"Notched beam of concrete, {1000 * depth:.0f} mm deep"
+    return Specimen(name(depth), title, "Bazant's law", COARSEST, case(depth), tuple(measures))
 
 
-def slope_of_the_law() -> Specimen:
-    """Of the largest beam, after the others."""
-    largest = specimen(DEPTHS[-1])
-    largest.title, largest.quantity = "Notched beams of concrete, four sizes", "toughness by the slope of the law"
-    largest.value = of_all_sizes
-    return largest
-
-
-SPECIMENS = [*map(specimen, DEPTHS[:-1]), slope_of_the_law()]
+SPECIMENS = [specimen(depth) for depth in DEPTHS]
