@@ -12,10 +12,16 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "sweep"))
 
+import attracted_crack
+import brazilian_disk
 import centre_crack
 import compact_tension
 import double_cantilever
+import inclined_notch
+import l_panel
 import notched_beam
+import size_effect
+import strength
 import surfing
 import trapping
 from entries_picture import draw
@@ -25,7 +31,8 @@ from run_all import Failed, Ran, Runs
 from specimen import Lattice, Specimen
 from verdict import CALIBRATION, HEADING, Verdict, extension_of, row
 
-MODULES = (surfing, notched_beam, compact_tension, centre_crack, double_cantilever)
+MODULES = (surfing, notched_beam, compact_tension, centre_crack, double_cantilever, brazilian_disk, size_effect, l_panel,
+           inclined_notch, attracted_crack, strength)  # fmt: skip
 ENTRIES: dict[str, Specimen] = {s.name: s for module in MODULES for s in module.SPECIMENS}
 STEADY = "surfing"
 PASSED, RED, WRONG_INPUT, MACHINE_FAILED, INTERRUPTED = 0, 3, 2, 5, 130

@@ -10,7 +10,7 @@ sys.path[:0] = [str(RUNNER / "trust"), str(RUNNER / "sweep")]
 
 import brazilian_disk  # noqa: E402
 import crack_path  # noqa: E402
-import grooved_cantilever as cantilever  # noqa: E402
+import double_cantilever as cantilever  # noqa: E402
 import other_setting  # noqa: E402
 import setting  # noqa: E402
 import size_effect  # noqa: E402
