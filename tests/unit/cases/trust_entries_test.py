@@ -2,15 +2,19 @@
 
 import math
 import sys
+import tomllib
 import unittest
 from pathlib import Path
 
 RUNNER = Path(__file__).resolve().parents[3] / "cases" / "runner"
 sys.path[:0] = [str(RUNNER / "trust"), str(RUNNER / "sweep")]
 
+import attracted_crack  # noqa: E402
 import brazilian_disk  # noqa: E402
 import crack_path  # noqa: E402
 import double_cantilever as cantilever  # noqa: E402
+import inclined_notch  # noqa: E402
+import l_panel  # noqa: E402
 import other_setting  # noqa: E402
 import setting  # noqa: E402
 import size_effect  # noqa: E402
@@ -33,8 +37,6 @@ class OtherSettings(unittest.TestCase):
             other_setting.of_material("[material]\n", 3e9, 500.0)
 
     def test_the_law_of_a_groove_is_that_of_the_setting(self):
-        import tomllib
-
         whole, grooved = (tomllib.loads(text) for text in (self.text, other_setting.grooved(self.text, 0.1)))
         law = whole["material"].pop("damage")
         law.pop("no_fail")
@@ -42,6 +44,26 @@ class OtherSettings(unittest.TestCase):
         for table in (*grooved["region"], *grooved["interface"]):
             self.assertEqual(table["material"], whole["material"])
         self.assertEqual([of["where"] for of in grooved["set"]], ["y > 0.1", "y < 0.1"])
+
+
+class OneSetting(unittest.TestCase):
+    def test_no_entry_has_a_key_of_its_own(self):
+        """Lattice, quadrature, law and solver are those of the setting, on every lattice."""
+        modules = (attracted_crack, brazilian_disk, cantilever, inclined_notch, l_panel, size_effect, strength)
+        specimens = [specimen for module in modules for specimen in module.SPECIMENS]
+        self.assertEqual(len({specimen.name for specimen in specimens}), len(specimens))
+        for specimen in specimens:
+            for lattice in specimen.lattices(quick=False):
+                with self.subTest(specimen=specimen.name, lattice=lattice.name):
+                    asked = tomllib.loads(setting.setting(specimen.spacing(lattice), lattice, 1.0, ["ends"]))
+                    found = tomllib.loads(specimen.text(lattice))
+                    self.assertEqual(found["quadrature"], asked["quadrature"])
+                    self.assertEqual(found["solver"], asked["solver"])
+                    self.assertEqual(found["lattice"]["horizon_ratio"], lattice.ratio)
+                    material = found.get("material") or found["interface"][0]["material"]
+                    damage = material["damage"]
+                    self.assertEqual(damage["law"], asked["material"]["damage"]["law"])
+                    self.assertLessEqual(set(damage), {"law", "fracture_energy", "strength", "no_fail"})
 
 
 class Cantilevers(unittest.TestCase):
