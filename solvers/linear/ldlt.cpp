@@ -42,6 +42,8 @@ LinearOutcome outcome_of(mumps::FactorOutcome outcome) {
       return LinearOutcome::solved;
     case mumps::FactorOutcome::singular:
       return LinearOutcome::singular;
+    case mumps::FactorOutcome::put_off:
+      return LinearOutcome::inaccurate;
     case mumps::FactorOutcome::out_of_memory:
       return LinearOutcome::out_of_memory;
   }

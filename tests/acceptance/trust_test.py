@@ -16,19 +16,49 @@ class Trust(unittest.TestCase):
         self.addCleanup(folder.cleanup)
         self.folder = Path(folder.name)
 
-    def trust(self, *words):
+    def start(self, *words):
         command = ["/usr/bin/python3", "-BEs", ROOT / "cases/runner/trust/trust.py", *map(str, words), "--output", self.folder]
-        return subprocess.run(command, capture_output=True, text=True, env=os.environ | {"PERISTAT_PROGRAM": str(PROGRAM)})
+        return subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+                                env=os.environ | {"PERISTAT_PROGRAM": str(PROGRAM)})  # fmt: skip
+
+    def trust(self, *words):
+        process = self.start(*words)
+        out, errors = process.communicate(timeout=600)
+        return subprocess.CompletedProcess(process.args, process.returncode, out, errors)
 
     def test_a_steady_crack_resists_with_what_it_was_given(self):
-        """A law whose force falls linearly: within 2 % of G_c; and nothing is run twice."""
+        """A law whose force falls linearly: within 2 % of G_c; and nothing is run twice. What is dissipated is 2.3 % off
+        along the lattice, where 1 % is asked for: red, by the exit code, too."""
         ended = self.trust("surfing", "--quick", "--threads", 1)
-        self.assertEqual(ended.returncode, 0, ended.stdout + ended.stderr)
-        value = float(re.search(r"surfing h1_m3.015_0: ([0-9.]+) of the reference", ended.stdout)[1])
+        self.assertEqual(ended.returncode, 3, ended.stdout + ended.stderr)
+        value = float(re.search(r"surfing/h1_m3.015_0, sqrt\(J / G_c\): ([0-9.]+) of the reference", ended.stdout)[1])
         self.assertAlmostEqual(value, 1, delta=0.02)
-        self.assertIn("| pass |", (self.folder / "table.md").read_text())
+        steady, dissipated = [line for line in (self.folder / "table.md").read_text().splitlines() if "(`surfing`)" in line]
+        self.assertIn("| pass |", steady)
+        self.assertIn("| **red**: -2.3 % where 1 % are allowed |", dissipated)
         again = self.trust("surfing", "--quick", "--threads", 1)
-        self.assertIn(", 0 s", again.stdout)
+        self.assertNotRegex(again.stdout, r"h1_m3.015_0: \d+ s")
+
+    def test_the_quick_subset(self):
+        """Entries whose coarsest lattice takes seconds: a cantilever whose energy over the area is G_c, strengths that no
+        horizon can give together, and a beam whose toughness by compliance is nearer than its peak."""
+        ended = self.trust("double_cantilever", "strength_biaxial", "strength_shear", "senb_03", "--quick")
+        self.assertEqual(ended.returncode, 3, ended.stdout + ended.stderr)
+        value = lambda name, quantity: float(re.search(rf"{name}/h1_m3.015_0, {quantity}: ([0-9.]+)", ended.stdout)[1])
+        self.assertAlmostEqual(value("double_cantilever", "dissipated energy over area"), 1, delta=0.01)
+        self.assertAlmostEqual(value("double_cantilever", "load while the crack grows"), 1, delta=0.025)
+        self.assertAlmostEqual(value("senb_03", "toughness by compliance"), 1, delta=0.04)
+        self.assertGreater(value("strength_biaxial", "strength"), 2)
+        self.assertLess(value("strength_shear", "strength"), 0.8)
+
+    def test_two_suites_in_one_folder_share_the_work(self):
+        names = ["strength_uniaxial", "strength_biaxial", "strength_shear"]
+        started = [self.start(*names, "--jobs", 1) for _ in range(2)]
+        said = [process.communicate(timeout=300)[0] for process in started]
+        self.assertEqual([process.returncode for process in started], [3, 3], said)
+        for name in names:
+            runs = [text for text in said if re.search(rf"{name}/h0.25_m3.015_0: \d+ s", text)]
+            self.assertEqual(len(runs), 1, said)
 
     def test_a_coarse_beam_is_red(self):
         """20 spacings are too few for a peak within 2 %: it says so, with exit code 3."""

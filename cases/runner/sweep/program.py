@@ -37,15 +37,21 @@ class Program:
     def interrupted(self) -> bool:
         return self._interrupts > 0
 
-    def run(self, arguments: list[str], told: bool = False) -> Ending:
-        """@param told whether standard output is kept"""
+    def run(self, arguments: list[str], told: bool = False, limit: float | None = None) -> Ending:
+        """@param told whether standard output is kept
+        @param limit seconds after which it is interrupted
+        """
         child = subprocess.Popen([*self._command, *arguments], text=True, errors="replace",
                                  stdin=subprocess.DEVNULL, stdout=subprocess.PIPE if told else subprocess.DEVNULL,
                                  stderr=subprocess.PIPE, process_group=0)  # fmt: skip
         with self._lock:
             self._children[child] = 0
         self._pass_on()
-        output, message = child.communicate()
+        try:
+            output, message = child.communicate(timeout=limit)
+        except subprocess.TimeoutExpired:
+            child.send_signal(signal.SIGINT)
+            output, message = child.communicate()
         with self._lock:
             del self._children[child]
         code = child.returncode

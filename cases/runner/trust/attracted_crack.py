@@ -1,5 +1,5 @@
 """Beam with three holes, bent at three points, whose eccentric crack ends in the middle hole, as in beams of PMMA [Ingraffea
-and Grigoriu 1990; Bittencourt, Wawrzynek, Ingraffea and Sousa 1996]. No digits of the measured path are at hand: judged
+and Grigoriu 1990]. No digits of the measured path are at hand: judged
 by whether the crack meets that hole."""
 
 import math

@@ -1,5 +1,5 @@
 """Disk with a central crack along the line on which it is pressed together by two points, under the opening of the crack's
-middle [Atkinson, Smelser and Sanchez 1982]. Followed to its peak: once split, the halves bear more than the whole did. One of the two tips cannot
+middle [Atkinson et al. 1982]. Followed to its peak: once split, the halves bear more than the whole did. One of the two tips cannot
 grow: otherwise they compete, and which one runs is round-off's choice."""
 
 import math

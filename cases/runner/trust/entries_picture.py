@@ -43,6 +43,6 @@ def _draw_entry(axes, of: Verdict) -> None:
     axes.set_title(f"{of.specimen.name}: {of.measure.quantity}" + ("" if of.passes else " (red)"), fontsize=9,
                    color="black" if of.passes else "tab:red")  # fmt: skip
     axes.set_xlim(left=0)
-    axes.set_ylim(min(0.7, *of.values.values()), max(1.15, *of.values.values()))
+    axes.set_ylim(min(0.7, *of.values.values()) - 0.03, max(1.15, *of.values.values()) + 0.03)
     axes.set_xlabel("horizon [mm]", fontsize=8)
     axes.tick_params(labelsize=8)

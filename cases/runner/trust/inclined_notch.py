@@ -1,5 +1,5 @@
 """Half a disk in three-point bending with a notch inclined by 30 degrees: the crack kinks and curves towards the load,
-as in half disks of PMMA [Ayatollahi, Aliha and Hassani 2006]."""
+as in half disks of PMMA [Ayatollahi et al. 2006]."""
 
 import math
 import tomllib

@@ -8,8 +8,11 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from jobs import FolderLock, Jobs, estimated_memory
-from program import Program
+from program import Ending, Program
 from record import can_go_on, is_done, record_done
+
+
+LIMIT = 900.0  # s of one run: the suite ends, and what was not done by then goes on the next time
 
 
 class Failed(Exception):
@@ -80,10 +83,16 @@ class Runs:
         case.write_text(text)
         words = ["resume", str(out)] if goes_on else ["run", str(case), "--output", str(out), "--overwrite"]
         began = time.monotonic()
-        ending = self._program.run([*words, "--quiet", "--no-plots", *self._words])
+        ending = self._program.run([*words, "--quiet", "--no-plots", *self._words], limit=LIMIT)
         if ending.code != 0:
-            why = ending.message.splitlines()[0].removeprefix("peristat: ") if ending.message else f"exit code {ending.code}"
-            return Ran(name, out, why)
+            return Ran(name, out, self._failure(ending, case, time.monotonic() - began))
         record_done(out, [])
         self._tell(f"{name}: {time.monotonic() - began:.0f} s")
         return Ran(name, out)
+
+    def _failure(self, ending: Ending, case: Path, seconds: float) -> str:
+        """Without the place of the suite's folder."""
+        if seconds >= LIMIT and not self.interrupted:
+            return f"no end within {LIMIT:.0f} s"
+        first = ending.message.splitlines()[0] if ending.message else f"exit code {ending.code}"
+        return first.removeprefix("peristat: ").removeprefix(f"{case}:")

@@ -1,5 +1,5 @@
 """Size effect: notched beams of four sizes, S = 4 D, of concrete with its strength and its toughness, on one spacing. Their
-nominal strengths follow Bazant's law, and its slope is the toughness."""
+nominal strengths follow Bažant's law, and its slope is the toughness."""
 
 import math
 from pathlib import Path
@@ -17,7 +17,7 @@ ZONE = 0.44 * MODULUS * FRACTURE_ENERGY / TENSILE**2
 
 
 def law(depth: float) -> float:
-    """Bazant's nominal strength P / (B D) for the data: K_Ic / sqrt(g D + g' c) with g = (4 f)^2 [Bazant and Planas 1998]."""
+    """Bažant's nominal strength P / (B D) for the data: K_Ic / sqrt(g D + g' c) with g = (4 f)^2 [Bažant and Planas 1998]."""
     shape = lambda notch: (4 * lefm.bend_factor(notch)) ** 2
     growth = (shape(NOTCH + 1e-5) - shape(NOTCH - 1e-5)) / 2e-5
     return TOUGHNESS / math.sqrt(shape(NOTCH) * depth + growth * ZONE)
@@ -118,7 +118,7 @@ def specimen(depth: float) -> Specimen:
             Measure("r^2 of that line", lambda folder: of_all_sizes(folder)[1], allowed=0.01),
         ]
     title = f"Notched beam of concrete, {1000 * depth:.0f} mm deep"
-    return Specimen(name(depth), title, "Bazant's law", COARSEST, case(depth), tuple(measures))
+    return Specimen(name(depth), title, "Bažant's law", COARSEST, case(depth), tuple(measures))
 
 
 SPECIMENS = [specimen(depth) for depth in DEPTHS]

@@ -1,5 +1,5 @@
 """Strengths of a body without a crack: a cell that repeats is strained until its stress has passed a peak. Data of
-soda-lime glass, of the nine circles of elastic brittle fracture [Kumar et al. 2026], second-hand."""
+soda-lime glass, of the nine circles of elastic brittle fracture [Nine circles 2026], second-hand."""
 
 import math
 import tomllib

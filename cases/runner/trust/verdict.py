@@ -46,7 +46,7 @@ class Verdict:
     @property
     def refinement(self) -> Refinement | None:
         """Where the values go with the spacing, and how far from that the finest is. Of a peak, of its inverse
-        square, which a process zone of fixed length makes linear in the spacing [Bazant and Planas 1998]."""
+        square, which a process zone of fixed length makes linear in the spacing [Bažant and Planas 1998]."""
         if len(self.straight) < 3:
             return None
         values = [self.values[lattice] for lattice in self.straight]
@@ -95,7 +95,7 @@ class Verdict:
     def reason(self) -> str:
         if self.failures:
             lattice, why = next(iter(self.failures.items()))
-            return f"{lattice.name}: {why.partition(': ')[0]}"
+            return f"{lattice.name}: {why[:100]}"
         if self.passes:
             return ""
         where = "" if self.worst == self.judged_at else f" on {self.worst.name}"

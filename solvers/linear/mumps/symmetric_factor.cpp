@@ -61,7 +61,7 @@ class Factor final : public SymmetricFactor {
       const FactorOutcome outcome = call(factorisation);
       if (!lacks_room()) return outcome;
     }
-    return FactorOutcome::out_of_memory;
+    return FactorOutcome::put_off;
   }
 
   std::int64_t negative_pivots() const override { return at(data_.infog, 12); }

@@ -12,7 +12,12 @@ struct LowerEntries {
   std::vector<int> row, column;
 };
 
-enum class FactorOutcome { done, singular, out_of_memory };
+enum class FactorOutcome {
+  done,
+  singular,
+  put_off,  ///< pivots put off so many rows that no room for them was enough: far from definite
+  out_of_memory
+};
 
 /// L D L^T of a symmetric matrix that need not be definite, with pivots of one and two rows: MUMPS
 /// (Amestoy, Duff, L'Excellent and Koster, SIAM J. Matrix Anal. Appl. 23, 2001), on one process.
