@@ -65,6 +65,16 @@ Evaluation Assembler::commit(std::span<const double> displacement, History& hist
   return found;
 }
 
+Evaluation Assembler::commit_forces(std::span<const double> displacement, History& history,
+                                    std::span<double> gradient,
+                                    const SharedEnvironment& environment) {
+  Evaluation found;
+  for_each_term([&](TermPasses& term, Write how) {
+    found += term.commit_forces(displacement, environment, history, gradient, how);
+  });
+  return found;
+}
+
 void Assembler::follower_force(const StateView& at, std::span<double> force) {
   std::fill(force.begin(), force.end(), 0.0);
   for_each_term([&](TermPasses& term, Write) { term.follower_force(at, force); });

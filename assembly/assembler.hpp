@@ -45,6 +45,11 @@ class Assembler : public Energy {
   Evaluation commit(std::span<const double> displacement, History& history,
                     std::span<double> gradient = {}, const SharedEnvironment& environment = {});
 
+  /// As `commit`, but the energy is not found, and values that are not finite show in dE/dx alone:
+  /// for time steps, of which there are many.
+  Evaluation commit_forces(std::span<const double> displacement, History& history,
+                           std::span<double> gradient, const SharedEnvironment& environment = {});
+
   /// Forces of loads that follow the deformation [N], every entry overwritten. They have no part in
   /// E; in dE/dx they are, with the other sign.
   void follower_force(const StateView& at, std::span<double> force);

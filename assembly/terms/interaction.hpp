@@ -17,9 +17,8 @@ struct InteractionEnergy {
 
 /// @param weight quadrature weight, negative where the signed reference measure M is
 template <class Real, class P, class MeasureAt>
-[[nodiscard]] inline InteractionEnergy<Real> interaction_energy(const Real& weight,
-                                                                const P& potential,
-                                                                const MeasureAt& measure) {
+[[nodiscard, gnu::always_inline]] inline InteractionEnergy<Real> interaction_energy(
+    const Real& weight, const P& potential, const MeasureAt& measure) {
   const auto phi = potential(measure.relative_change);
   return {weight * phi.value / measure.inverse_reference, weight * phi.first,
           weight * phi.second * measure.inverse_reference};
@@ -27,8 +26,8 @@ template <class Real, class P, class MeasureAt>
 
 /// psi' grad m
 template <class Real, class MeasureAt>
-[[nodiscard]] inline auto energy_gradient(const InteractionEnergy<Real>& psi,
-                                          const MeasureAt& measure) {
+[[nodiscard, gnu::always_inline]] inline auto energy_gradient(const InteractionEnergy<Real>& psi,
+                                                              const MeasureAt& measure) {
   auto result = measure.gradient;
   for (auto& arm : result) arm = scaled<MeasureAt::dimension>(psi.first, arm);
   return result;

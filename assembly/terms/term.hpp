@@ -38,6 +38,13 @@ class TermPasses {
     return this->gradient({displacement, history, Damage::grows, environment}, gradient, how);
   }
 
+  /// As `commit`, but the energy may be left out.
+  virtual Evaluation commit_forces(std::span<const double> displacement,
+                                   const SharedEnvironment& environment, History& history,
+                                   std::span<double> gradient, Write how) {
+    return commit(displacement, environment, history, gradient, how);
+  }
+
   /// Adds the forces of loads that follow the deformation [N]: the gradient holds them with the
   /// other sign.
   virtual void follower_force(const StateView&, std::span<double> /*force*/) {}

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "solvers/drivers/arc_length_stepping.hpp"
+#include "solvers/drivers/dynamics.hpp"
 #include "solvers/drivers/event_stepping.hpp"
 #include "solvers/drivers/hand_over.hpp"
 #include "solvers/drivers/implicit_stepping.hpp"
@@ -25,6 +26,7 @@ constexpr std::array drivers{
     DriverEntry{Mode::adaptive, make<HandOver>},
     DriverEntry{Mode::arc_length, make<ArcLengthStepping>},
     DriverEntry{Mode::path, make<EventStepping>},
+    DriverEntry{Mode::dynamics, make<Dynamics>},
 };
 
 }  // namespace

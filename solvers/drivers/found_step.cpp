@@ -14,6 +14,25 @@ namespace {
 /// Commits of one step of a body with triangles or tetrahedra, each of which may damage more bonds.
 constexpr int most_commits = 1000;
 
+/// Whether it is where the path is to end is told.
+void note_force(Path& path, const StepRecord& record) {
+  PathState::SupportForce& force = path.state().force;
+  force.present = 0.0;
+  for (const auto& [set, reaction] : record.reactions) {
+    force.present = std::max(force.present, std::hypot(reaction[0], reaction[1], reaction[2]));
+  }
+  force.largest = std::max(force.largest, force.present);
+  if (!path.has_fallen()) return;
+  path.tell(load_point(path.state().accepted),
+            {.outcome = name(Outcome::converged),
+             .action = Decision::stop,
+             .reason = "the largest reaction, " + number_text(force.present) + " N, is below " +
+                       number_text(path.options().stop_below) + " of its peak, " +
+                       number_text(force.largest) + " N"});
+}
+
+}  // namespace
+
 void complete_record(const Path& path, const Attempt& attempt, FoundStep& found) {
   StepRecord& record = found.record;
   record.step = path.state().steps;
@@ -34,25 +53,6 @@ void complete_record(const Path& path, const Attempt& attempt, FoundStep& found)
       path.setting().conditions.reactions(attempt.state.gradient, attempt.external_force,
                                           attempt.state.displacement, attempt.state.environment);
 }
-
-/// Whether it is where the path is to end is told.
-void note_force(Path& path, const StepRecord& record) {
-  PathState::SupportForce& force = path.state().force;
-  force.present = 0.0;
-  for (const auto& [set, reaction] : record.reactions) {
-    force.present = std::max(force.present, std::hypot(reaction[0], reaction[1], reaction[2]));
-  }
-  force.largest = std::max(force.largest, force.present);
-  if (!path.has_fallen()) return;
-  path.tell(load_point(path.state().accepted),
-            {.outcome = name(Outcome::converged),
-             .action = Decision::stop,
-             .reason = "the largest reaction, " + number_text(force.present) + " N, is below " +
-                       number_text(path.options().stop_below) + " of its peak, " +
-                       number_text(force.largest) + " N"});
-}
-
-}  // namespace
 
 void commit(Path& path, Attempt& attempt, FoundStep& found,
             const std::function<Outcome()>& equilibrate) {

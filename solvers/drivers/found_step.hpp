@@ -27,6 +27,10 @@ void commit(Path& path, Attempt& attempt, FoundStep& found,
 /// @return what is wrong with it; the attempt's outcome is then inconsistent
 [[nodiscard]] std::string complete(Path& path, Attempt& attempt, FoundStep& found);
 
+/// Fills in what a row of the history tells of an attempt that has become the path's last accepted
+/// state.
+void complete_record(const Path& path, const Attempt& attempt, FoundStep& found);
+
 /// Pins what was found to have come off, and tells it; ends the path if that is to end it.
 [[nodiscard]] Advance resolve_fragments(Path& path, double next);
 

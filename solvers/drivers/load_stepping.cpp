@@ -21,12 +21,7 @@ void follow_to_end(Path& path) {
 
 }  // namespace
 
-LoadSteppingResult follow_loading(const SolvedBody& body, const Conditions& conditions,
-                                  const LoadSteppingOptions& options,
-                                  const NewtonOptions& newton_options,
-                                  const LoadSteppingObserver& observer, const SolvedBody* stand_in,
-                                  const PathState* from) {
-  const PathSetting setting{body, conditions, options, newton_options, observer, stand_in};
+LoadSteppingResult follow_loading(const PathSetting& setting, const PathState* from) {
   Path path = from ? Path(setting, *from) : Path(setting);
   if (from && path.prepare_solvers() != LinearOutcome::solved) {
     return {Outcome::out_of_memory, from->steps, from->accepted, from->relaxation_seconds, {}};

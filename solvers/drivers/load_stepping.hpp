@@ -24,14 +24,13 @@ struct LoadSteppingResult {
 /// Before a step is accepted it is checked against what it owes (find_inconsistency); a step that
 /// fails is cut like one that does not converge.
 ///
-/// @param stand_in a body with the same points that is elastic and has another horizon: it takes
+/// @param setting its stand_in is a body with the same points that is elastic and has another
+/// horizon: it takes
 ///        the place of the body until damage begins. The body's ledger then begins with what it
 ///        stores in equilibrium at that load: the work that elastic steps to there would have done
-/// @param from what a path with the same arguments has reached; null: from rest. The rest is the
+/// @param from what a path with the same setting has reached; null: from rest. The rest is the
 ///        same as without the interruption, on one thread to the last bit
-[[nodiscard]] LoadSteppingResult follow_loading(
-    const SolvedBody& body, const Conditions& conditions, const LoadSteppingOptions& options,
-    const NewtonOptions& newton_options, const LoadSteppingObserver& observer,
-    const SolvedBody* stand_in = nullptr, const PathState* from = nullptr);
+[[nodiscard]] LoadSteppingResult follow_loading(const PathSetting& setting,
+                                                const PathState* from = nullptr);
 
 }  // namespace peristat

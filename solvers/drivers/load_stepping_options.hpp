@@ -21,6 +21,13 @@ struct EventOptions {
   double tolerance = 0.002;
 };
 
+/// How a body in motion is followed in time.
+struct DynamicsOptions {
+  double time_step = 0.0;   ///< [s]; 0: a share of the stable one
+  double step_share = 0.9;  ///< of the stable step, which is found anew as the stiffness changes
+  int steps_per_row = 100;  ///< time steps from one state that is told to the next
+};
+
 struct LoadSteppingOptions {
   Mode mode = Mode::newton;
   int steps = 1;         ///< equal steps from one entry of the programme to the next
@@ -45,6 +52,7 @@ struct LoadSteppingOptions {
   double stop_below = 0.0;
   ArcLengthOptions arc_length{};
   EventOptions events{};
+  DynamicsOptions dynamics{};
   FragmentRemedy fragments = FragmentRemedy::hold;
 };
 

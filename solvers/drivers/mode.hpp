@@ -16,6 +16,7 @@ struct Mode {
   static const Mode adaptive;    ///< implicitly while no damage grows, by relaxation while it does
   static const Mode arc_length;  ///< implicitly along the path itself, its integrities fixed
   static const Mode path;        ///< from one breaking bond to the next
+  static const Mode dynamics;    ///< the motion in time, explicitly
 };
 
 inline constexpr Mode Mode::newton{"newton"};
@@ -23,5 +24,6 @@ inline constexpr Mode Mode::relaxation{"relaxation"};
 inline constexpr Mode Mode::adaptive{"adaptive"};
 inline constexpr Mode Mode::arc_length{"arc_length"};
 inline constexpr Mode Mode::path{"path"};
+inline constexpr Mode Mode::dynamics{"dynamics"};
 
 }  // namespace peristat

@@ -19,6 +19,7 @@ struct AcceptedState {
   const Trial& trial;  ///< with its damage committed
   const std::vector<double>& external_force;
   std::span<const std::int32_t> piece;  ///< per point, see Fragments; empty: none
+  std::span<const double> velocity{};   ///< of a body in motion, per degree of freedom [m/s]
 };
 
 /// Receives what happens; all members may be empty.

@@ -8,6 +8,7 @@
 #include "solvers/drivers/load_stepping_options.hpp"
 #include "solvers/drivers/observer.hpp"
 #include "solvers/drivers/path_state.hpp"
+#include "solvers/motion/motion_setting.hpp"
 #include "solvers/search/bordered_newton.hpp"
 
 namespace peristat {
@@ -27,7 +28,8 @@ struct PathSetting {
   const LoadSteppingOptions& options;
   const NewtonOptions& newton_options;
   const LoadSteppingObserver& observer;
-  const SolvedBody* stand_in = nullptr;  ///< see follow_loading
+  const SolvedBody* stand_in = nullptr;   ///< see follow_loading
+  const MotionSetting* motion = nullptr;  ///< of mode dynamics
 };
 
 /// Whether a driver goes on.

@@ -46,7 +46,7 @@ bool is_of_body(const PathState& state, const Assembler& body,
   const FreeDofs free = state.pins.free_dofs(prescribed, body.points().dimension);
   return are_points && state.accepted.displacement.size() == dofs &&
          state.ledger.force.size() == dofs && are_sizes_of(state.accepted.history, body) &&
-         is_empty_or(state.arc.direction, dofs) &&
+         is_empty_or(state.arc.direction, dofs) && is_empty_or(state.dynamics.velocity, dofs) &&
          is_empty_or(state.relaxed.motion.velocity, std::size_t(free.count()));
 }
 

@@ -7,6 +7,7 @@
 #include "assembly/energy/state.hpp"
 #include "solvers/drivers/fragment_pins.hpp"
 #include "solvers/drivers/path_ledger.hpp"
+#include "solvers/motion/stable_step.hpp"
 #include "solvers/search/dynamic_relaxation.hpp"
 #include "solvers/search/updated_tangent.hpp"
 
@@ -73,6 +74,18 @@ struct PathState {
     std::int64_t count = 0;      ///< events so far
     TangentReference tangent{};  ///< that the accepted state was found with
   } events;
+  /// Of mode dynamics; the stage is the time.
+  struct Dynamics {
+    bool has_begun = false;        ///< the initial state has been told
+    std::vector<double> velocity;  ///< per degree of freedom, in the accepted state [m/s]
+    double step = 0.0;             ///< in force [s]
+    /// (dt^2/8) F.M^-1 F at the start, and what the steps have added to it [J].
+    double correction_at_start = 0.0, correction = 0.0;
+    double largest_energy = 0.0;           ///< that has been put in so far [J]
+    Stiffness stiffness;                   ///< whose eigenvalue was found last
+    double last_bound = 0.0;               ///< of the stiffness [1/s2]
+    int look_interval = 0, next_look = 0;  ///< at the stiffness, in time steps
+  } dynamics;
 };
 
 /// Whether the sizes of its arrays are those of a body's.

@@ -28,12 +28,13 @@ void transfer_history(StateArchive& archive, const std::string& name, History& h
 
 void transfer_ledger(StateArchive& archive, PathLedger& ledger) {
   auto& [entries, released, force] = ledger;
-  auto& [stored, dissipated, drained, external_work, numerical_work] = entries;
+  auto& [stored, dissipated, drained, external_work, numerical_work, kinetic] = entries;
   archive.transfer("ledger/stored", stored);
   archive.transfer("ledger/dissipated", dissipated);
   archive.transfer("ledger/drained", drained);
   archive.transfer("ledger/external_work", external_work);
   archive.transfer("ledger/numerical_work", numerical_work);
+  archive.transfer("ledger/kinetic", kinetic);
   archive.transfer("ledger/released", released);
   archive.transfer("ledger/force", force);
 }
@@ -83,7 +84,7 @@ void transfer_tangent(StateArchive& archive, TangentReference& tangent) {
 // The bindings name every member, so that none can be forgotten.
 void transfer(StateArchive& archive, PathState& state) {
   auto& [accepted, steps, ledger, pins, force, stands_in, rungs, relaxation_seconds, implicit,
-         relaxed, control_sign, arc, hand_over, events] = state;
+         relaxed, control_sign, arc, hand_over, events, dynamics] = state;
   // Made anew from the stage, see Path.
   [[maybe_unused]] auto& [displacement, stage, history, load, environment] = accepted;
   archive.transfer("accepted/displacement", displacement);
@@ -134,6 +135,20 @@ void transfer(StateArchive& archive, PathState& state) {
   archive.transfer("events/response_drained", response_drained);
   archive.transfer("events/count", count);
   transfer_tangent(archive, tangent);
+  auto& [has_begun, time_velocity, time_step, correction_at_start, correction, largest_energy,
+         stiffness, last_bound, look_interval, next_look] = dynamics;
+  auto& [bound, eigenvalue] = stiffness;
+  archive.transfer("dynamics/has_begun", has_begun);
+  archive.transfer("dynamics/velocity", time_velocity);
+  archive.transfer("dynamics/step", time_step);
+  archive.transfer("dynamics/correction_at_start", correction_at_start);
+  archive.transfer("dynamics/correction", correction);
+  archive.transfer("dynamics/largest_energy", largest_energy);
+  archive.transfer("dynamics/last_bound", last_bound);
+  archive.transfer("dynamics/look_interval", look_interval);
+  archive.transfer("dynamics/next_look", next_look);
+  archive.transfer("dynamics/stiffness/bound", bound);
+  archive.transfer("dynamics/stiffness/eigenvalue", eigenvalue);
 }
 
 }  // namespace peristat

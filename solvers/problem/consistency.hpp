@@ -15,9 +15,10 @@ struct Ledger {
   double drained = 0.0;         ///< taken out by relaxation
   double external_work = 0.0;   ///< of supports and loads over the accepted states, int P du
   double numerical_work = 0.0;  ///< what relaxation has spent beyond it
+  double kinetic = 0.0;         ///< of a body in motion
 
   [[nodiscard]] double balance_error() const {
-    return external_work + numerical_work - stored - dissipated - drained;
+    return external_work + numerical_work - stored - dissipated - drained - kinetic;
   }
 };
 

@@ -47,6 +47,8 @@ std::string name(Outcome outcome) {
       return "damage_begins";
     case Outcome::inconsistent:
       return "inconsistent";
+    case Outcome::unstable_step:
+      return "unstable_step";
     case Outcome::interrupted:
       return "interrupted";
   }
@@ -98,6 +100,8 @@ std::string explanation(Outcome outcome) {
              "are (a [[control]] follows damage)";
     case Outcome::inconsistent:
       return "the state that was found contradicts a balance that it owes";
+    case Outcome::unstable_step:
+      return "the time step is longer than the stable one of the present stiffness";
     case Outcome::interrupted:
       return "interrupted";
   }

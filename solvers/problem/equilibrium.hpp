@@ -32,6 +32,7 @@ enum class Outcome {
   step_limit,           ///< as many steps as allowed, and the load has not come to its end
   damage_begins,        ///< where the integrities are to stay as they are
   inconsistent,         ///< a state found breaks a balance that it owes (solvers/consistency.hpp)
+  unstable_step,        ///< the explicit scheme's step is longer than the stable one
   interrupted,          ///< by the person
 };
 

@@ -19,6 +19,7 @@ const std::map<Decision, std::string>& decision_names() {
       {Decision::remove_fragments, "remove fragments"},
       {Decision::change_linear_solver, "change linear solver"},
       {Decision::locate, "locate critical point"},
+      {Decision::change_time_step, "change time step"},
       {Decision::branch_off, "branch off"}};
   return names;
 }

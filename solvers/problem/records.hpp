@@ -41,12 +41,23 @@ enum class Stability : std::int8_t {
   stable = 1,
 };
 
+/// Of a state of a body in motion.
+struct MotionRecord {
+  double time = 0.0;            ///< [s]
+  double time_step = 0.0;       ///< in force [s]
+  double kinetic_energy = 0.0;  ///< of what is not prescribed [J]
+  /// What the explicit scheme conserves where forces are linear: kinetic and stored energy less
+  /// (dt^2/8) F.M^-1 F [J].
+  double modified_energy = 0.0;
+  Coordinates momentum{};  ///< likewise of what is not prescribed [kg m/s]
+};
+
 /// One accepted step (a row of history.csv).
 struct StepRecord {
   int step = 0;
   double stage = 0.0;  ///< of the loading programme
   double load_factor = 0.0;
-  std::string mode;  ///< "newton", "relaxation"
+  std::string mode;  ///< "newton", "relaxation", …
   int newton_iterations = 0;
   int relaxation_iterations = 0;
   double stored_energy = 0.0;      ///< [J]
@@ -70,7 +81,8 @@ struct StepRecord {
   Stability stability = Stability::not_judged;  ///< mode path judges it
   /// Mode path: load factor at which the last bonds broke; otherwise they broke in this step.
   std::optional<double> broke_at;
-  bool settled = false;  ///< no equilibrium was asked for: see RelaxationResult
+  bool settled = false;                  ///< no equilibrium was asked for: see RelaxationResult
+  std::optional<MotionRecord> motion{};  ///< mode dynamics
   std::map<std::string, Coordinates> reactions;       ///< by support set [N]
   std::map<std::string, std::vector<double>> probes;  ///< by probe name: components, or one scalar
 };
@@ -87,7 +99,8 @@ enum class Decision {
   hold_fragments,
   remove_fragments,
   change_linear_solver,
-  locate,      ///< a critical point between two states
+  locate,  ///< a critical point between two states
+  change_time_step,
   branch_off,  ///< to the path that leaves at a bifurcation
 };
 
@@ -137,6 +150,9 @@ struct StepFields {
   const std::vector<double>* principal_stress = nullptr;     ///< count x dimension [Pa]
   const std::vector<double>* principal_direction = nullptr;  ///< rows in its order
   const std::vector<double>* missing_neighbourhood = nullptr;
+  /// Of a body in motion.
+  const std::vector<double>* velocity = nullptr;                ///< [m/s]
+  const std::vector<double>* kinetic_energy_density = nullptr;  ///< per point [J/m3]
 };
 
 /// A bond that has broken (a row of broken_bonds.csv).

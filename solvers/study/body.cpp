@@ -147,6 +147,11 @@ std::vector<double> of_materials(const PointMaterials& materials, const Points& 
   return values;
 }
 
+LoadingProgramme programme_of(const BodySpecification& of) {
+  if (of.end_time) return LoadingProgramme::of_time(*of.end_time);
+  return of.programme.empty() ? LoadingProgramme() : LoadingProgramme(of.programme);
+}
+
 LoadSetting load_setting(const BodySpecification& of, const Points& points) {
   const PointMaterials materials(of, points);
   const bool has_gravity = std::any_of(
@@ -215,8 +220,7 @@ std::unique_ptr<const Body> make_body(Points points, const BodySpecification& of
                  fmt::format("the body with {} points", body.points.count()));
   make_model(body, threads);
   body.conditions = std::make_unique<Conditions>(
-      body.points, of.supports, of.loads,
-      of.programme.empty() ? LoadingProgramme() : LoadingProgramme(of.programme), of.controls,
+      body.points, of.supports, of.loads, programme_of(of), of.controls,
       load_setting(of, body.points), of.eigenstrains, of.constraints, of.foundations);
   add_terms_of_conditions(body.model, body);
   const Stopwatch watch(body.seconds_neighbourhood);

@@ -156,6 +156,9 @@ struct BodySpecification {
   /// Tables of the load parameters `load`, `load2`, …, see LoadingProgramme; none: `load` from 0 to
   /// 1. With controls the first table is of the controlled displacement [m].
   std::vector<std::vector<double>> programme{};
+  /// In their place the time `t`, up to this [s]: of a body in motion.
+  std::optional<double> end_time{};
+  std::vector<InitialSpecification> initial{};  ///< of a body in motion
   /// Most teeth of the saw-tooth in the place of each law of damage whose force falls smoothly; 0:
   /// the laws as they are.
   int teeth = 0;

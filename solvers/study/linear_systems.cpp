@@ -6,6 +6,7 @@
 #include "assembly/operators/matrix_free_tangent.hpp"
 #include "assembly/operators/tangent.hpp"
 #include "solvers/linear/available_memory.hpp"
+#include "solvers/linear/no_solver.hpp"
 #include "solvers/search/updated_tangent.hpp"
 #include "solvers/study/found_loads.hpp"
 #include "src/core/input_error.hpp"
@@ -36,6 +37,22 @@ constexpr double vectors_of_flow = 9.0;
 /// Of mode path: vectors beside those of Newton's search, and numbers per bond: histories of three
 /// states, what is borne in two.
 constexpr double vectors_of_events = 12.0, numbers_of_events_per_bond = 6.0;
+
+/// Of mode dynamics: mass, its inverse, velocities before and after, and those of Lanczos' method.
+constexpr double vectors_of_motion = 9.0;
+
+/// Explicit steps solve nothing; they need products of the tangent now and then.
+LinearSystems systems_of_motion(const Body& body) {
+  const MemoryEstimate estimate = estimate_memory(body);
+  LinearSystems systems;
+  systems.chosen.solver = std::make_unique<NoSolver>();
+  systems.chosen.is_direct = false;
+  systems.chosen.reason = "explicit time steps solve no equations";
+  systems.is_stored = !body.model.visits_rows() || !body.conditions->constraints().none();
+  systems.bytes = estimate.body_bytes + (systems.is_stored ? estimate.tangent_bytes : 0.0) +
+                  8.0 * vectors_of_motion * estimate.size.points * estimate.size.dimension;
+  return systems;
+}
 
 bool flows(const StudyOptions& options, const Model& model) {
   const LoadSteppingOptions& loading = options.loading;
@@ -89,6 +106,7 @@ LinearSystems choose_linear_systems(const StudyOptions& options, const Model& mo
 
 LinearSystems choose_linear_systems(const StudyOptions& options, const Body& body,
                                     SolverLadder::Reporter tell) {
+  if (options.loading.mode == Mode::dynamics) return systems_of_motion(body);
   StudyOptions chosen = options;
   if (!body.conditions->constraints().none()) {
     if (options.tangent == TangentStorage::matrix_free) {

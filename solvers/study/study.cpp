@@ -1,12 +1,15 @@
 #include "solvers/study/study.hpp"
 
+#include <cmath>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "solvers/linear/available_memory.hpp"
 #include "solvers/study/found_loads.hpp"
+#include "solvers/study/motion.hpp"
 #include "solvers/study/rest_stability.hpp"
+#include "src/core/number_text.hpp"
 
 namespace peristat {
 
@@ -25,7 +28,17 @@ Study::Study(const Body& body, StudyOptions options, SolverLadder::Reporter tell
       free_(body.conditions->prescribed(), body.points.dimension) {
   check_options(options_);
   options_.threads = usable_threads(options_.threads);
-  refuse_unheld_bodies(body);
+  const bool moves = options_.loading.mode == Mode::dynamics;
+  if (moves != body.conditions->programme().is_of_time()) {
+    throw InputError(
+        "end_time", "",
+        moves ? "is missing; mode dynamics needs it" : "is of a motion in time, for mode dynamics");
+  }
+  if (moves) {
+    motion_ = make_motion_setting(body);
+  } else {
+    refuse_unheld_bodies(body);
+  }
   refuse_unstable_rest(body, options_);
   LinearSystems systems = choose_linear_systems(options_, body, std::move(tell));
   require_memory(systems.bytes, fmt::format("the body with {} points", body.points.count()));
@@ -44,6 +57,32 @@ LinearOutcome Study::analyze() {
   return *analysis_;
 }
 
+const Stiffness& Study::find_initial_stiffness() {
+  if (motion_->at_start) return *motion_->at_start;
+  const auto& [assembler, solver, tangent, free] = equations_->solved();
+  const Conditions& conditions = *body_.conditions;
+  std::vector<double> displacement = motion_->displacement;
+  conditions.prescribe(0.0, displacement);
+  conditions.constraints().move(displacement);
+  const History history = assembler.initial_history();
+  tangent.linearise(assembler, {displacement, history, Damage::grows, conditions.environment(0.0)},
+                    1.0);
+  motion_->at_start = find_stiffness(tangent, free, motion_->mass, motion_->most_points);
+  const double step = options_.loading.dynamics.time_step;
+  const double stable = motion_->at_start->stable_step();
+  if (step > stable) {
+    throw InputError("dynamics.time_step", number_text(step),
+                     "is longer than the stable step, " + number_text(stable) +
+                         " s; take a shorter one, or dynamics.step_share");
+  }
+  if (step == 0.0 && !std::isfinite(stable)) {
+    throw InputError("dynamics.step_share", number_text(options_.loading.dynamics.step_share),
+                     "is of a stable step that is not there: nothing that moves has a stiffness; "
+                     "give dynamics.time_step");
+  }
+  return *motion_->at_start;
+}
+
 LoadSteppingResult Study::follow(const LoadSteppingObserver& observer, const SolvedBody* stand_in,
                                  const PathState* from) {
   if (analyze() != LinearOutcome::solved) {
@@ -51,8 +90,10 @@ LoadSteppingResult Study::follow(const LoadSteppingObserver& observer, const Sol
     result.outcome = Outcome::out_of_memory;
     return result;
   }
-  return follow_loading(equations_->solved(), *body_.conditions, options_.loading, options_.newton,
-                        observer, stand_in, from);
+  if (motion_ && !from) find_initial_stiffness();
+  return follow_loading({equations_->solved(), *body_.conditions, options_.loading, options_.newton,
+                         observer, stand_in, motion_ ? &*motion_ : nullptr},
+                        from);
 }
 
 StudyResult solve(const Body& body, const StudyOptions& options,

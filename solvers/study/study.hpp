@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "solvers/drivers/load_stepping.hpp"
+#include "solvers/motion/motion_setting.hpp"
 #include "solvers/study/body.hpp"
 #include "solvers/study/linear_systems.hpp"
 
@@ -55,6 +56,10 @@ class Study {
   /// @throws InputError for loads that are to be found and can't be
   LinearOutcome analyze();
 
+  /// Of mode dynamics: the stiffness that the motion begins with.
+  /// @throws InputError ("dynamics.time_step") for a step above the stable one
+  const Stiffness& find_initial_stiffness();
+
   [[nodiscard]] const Body& body() const { return body_; }
   [[nodiscard]] const StudyOptions& options() const { return options_; }
   [[nodiscard]] const FreeDofs& free() const { return free_; }
@@ -64,6 +69,7 @@ class Study {
   const Body& body_;
   StudyOptions options_;
   FreeDofs free_;
+  std::optional<MotionSetting> motion_;  // of mode dynamics
   std::unique_ptr<SolvedModel> equations_;
   std::optional<LinearOutcome> analysis_;
 };

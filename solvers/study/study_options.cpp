@@ -42,6 +42,10 @@ void check_options(const StudyOptions& options) {
   require_within(loading.peak_tolerance, 0.0, 1.0, "loading.peak_tolerance");
   if (loading.relaxation.method == RelaxationMethod::flow && !loading.relaxation.holds)
     throw InputError("loading.relaxation.holds", "false", "is for the dynamic method");
+  const DynamicsOptions& dynamics = loading.dynamics;
+  require_within(dynamics.time_step, 0.0, 1e30, "dynamics.time_step");
+  require_within(dynamics.step_share, 1e-6, 0.99, "dynamics.step_share");
+  require_within(dynamics.steps_per_row, 1, 1e9, "dynamics.steps_per_row");
   const LinearSolverOptions& linear = options.linear;
   if (linear.method == LinearMethod::cholesky &&
       linear.preconditioner != PreconditionerKind::automatic)

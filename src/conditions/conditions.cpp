@@ -48,7 +48,7 @@ Conditions::Conditions(const Points& points, const std::vector<SupportSpecificat
       programme_(std::move(programme)),
       prescribed_(points.reference.size(), 0),
       made_{Constraints(points)} {
-  const std::vector<std::string> parameters = LoadingProgramme::names(programme_.parameters());
+  const std::vector<std::string> parameters = programme_.names();
   for (std::size_t k = 0; k < supports.size(); ++k) {
     const std::string table = indexed("supports", k);
     const std::vector<Index>& members = points_of_set(points, supports[k].set, table + ".set");
@@ -94,7 +94,22 @@ Conditions::Conditions(const Points& points, const std::vector<SupportSpecificat
     control_.emplace(points, control, held);
   }
   find_shared();
+  find_changes();
   try_stages();
+}
+
+void Conditions::find_changes() {
+  const auto changes = [](const auto& conditions, const auto& expression_of) {
+    return std::any_of(conditions.begin(), conditions.end(), [&](const auto& condition) {
+      return expression_of(condition).has_parameters();
+    });
+  };
+  const auto displacement = [](const auto& of) -> const Expression& { return of.displacement; };
+  const auto value = [](const auto& of) -> const Expression& { return of.value; };
+  changes_.supports = changes(prescriptions_, displacement) || changes(made_.prescriptions, value);
+  changes_.loads = changes(loads_, value);
+  changes_.environment =
+      changes(eigenstretches_, value) || changes(pressures_, value) || foundations_.ground_moves();
 }
 
 void Conditions::refuse_shared_names() const {
@@ -197,7 +212,7 @@ void Conditions::add_pressure(const LoadSpecification& load, const std::string& 
   const std::string key = table + ".value";
   pressures_.push_back({key, first, pressed_.face.size(), with_key(key, [&] {
                           return Expression(load.value[0], points_.dimension, points_.spacing,
-                                            LoadingProgramme::names(programme_.parameters()));
+                                            programme_.names());
                         })});
 }
 
@@ -205,9 +220,8 @@ void Conditions::add_eigenstrains(const Eigenstrains& eigenstrains, const LoadSe
   const auto add = [&](const std::string& key, const std::string& text, std::vector<Index> points,
                        std::vector<double> factor) {
     eigenstretches_.push_back({key, std::move(points), std::move(factor), with_key(key, [&] {
-                                 return Expression(
-                                     text, points_.dimension, points_.spacing,
-                                     LoadingProgramme::names(programme_.parameters()));
+                                 return Expression(text, points_.dimension, points_.spacing,
+                                                   programme_.names());
                                })});
   };
   for (std::size_t k = 0; k < eigenstrains.given.size(); ++k) {

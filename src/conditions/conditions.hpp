@@ -84,6 +84,11 @@ class Conditions {
   /// @throws InputError if one is not finite, or leaves nothing of a length
   [[nodiscard]] SharedEnvironment environment(const LoadPoint& at) const;
 
+  /// Whether these depend on where the load is.
+  [[nodiscard]] bool supports_move() const { return changes_.supports; }
+  [[nodiscard]] bool loads_change() const { return changes_.loads; }
+  [[nodiscard]] bool environment_changes() const { return changes_.environment; }
+
   [[nodiscard]] const Foundations& foundations() const { return foundations_; }
 
   /// Faces that pressures act on, in the order of Environment::pressure.
@@ -161,6 +166,7 @@ class Conditions {
   [[nodiscard]] Coordinates reaction_of(const Restraint& restraint,
                                         std::span<const double> gradient) const;
   void find_shared();
+  void find_changes();
   void try_stages();
   [[nodiscard]] std::size_t dof_of(const Prescription& prescription, Index point) const {
     return std::size_t(point) * points_.dimension + prescription.component;
@@ -183,7 +189,10 @@ class Conditions {
   /// First of the prescriptions of each degree of freedom; empty if none has more than one.
   std::vector<const Prescription*> first_;
   std::array<bool, 3> floats_{};  ///< components in which nothing holds a cell
-  double largest_ = 0.0;          ///< displacement at the stages that were tried [m]
+  struct Changes {
+    bool supports = false, loads = false, environment = false;
+  } changes_;
+  double largest_ = 0.0;  ///< displacement at the stages that were tried [m]
 };
 
 }  // namespace peristat

@@ -48,7 +48,21 @@ std::vector<std::string> LoadingProgramme::names(std::size_t parameters) {
   return names;
 }
 
+LoadingProgramme LoadingProgramme::of_time(double end) {
+  if (!(end > 0.0) || !std::isfinite(end)) {
+    throw InputError("end_time", number_text(end), "must be positive and finite [s]");
+  }
+  LoadingProgramme programme;
+  programme.end_time_ = end;
+  return programme;
+}
+
+std::vector<std::string> LoadingProgramme::names() const {
+  return is_of_time() ? std::vector<std::string>{"t"} : names(parameters());
+}
+
 std::vector<double> LoadingProgramme::at(double stage) const {
+  if (is_of_time()) return {stage};
   const double entry = std::clamp(std::floor(stage), 0.0, end() - 1.0);
   const double share = stage - entry;
   const auto before = static_cast<std::size_t>(entry);

@@ -8,7 +8,7 @@ namespace peristat {
 /// The load parameters `load`, `load2`, … along a path. Each has a table of values. The *stage*
 /// runs from 0 over 1, 2, … and counts the tables' entries; between two entries a parameter goes
 /// linearly from the one to the other. Without tables there is one parameter, the load factor,
-/// which goes from 0 to 1 as the stage does.
+/// which goes from 0 to 1 as the stage does. In a programme of time both are the time.
 class LoadingProgramme {
  public:
   static constexpr std::size_t most_parameters = 4;
@@ -22,8 +22,15 @@ class LoadingProgramme {
   ///         one that is not finite
   explicit LoadingProgramme(std::vector<std::vector<double>> tables);
 
+  /// The one parameter `t`, the time, which is the stage, too [s].
+  /// @throws InputError ("end_time") unless the end is positive and finite
+  [[nodiscard]] static LoadingProgramme of_time(double end);
+
   /// "load", "load2", … of so many parameters.
   [[nodiscard]] static std::vector<std::string> names(std::size_t parameters);
+  /// Those of this one.
+  [[nodiscard]] std::vector<std::string> names() const;
+  [[nodiscard]] bool is_of_time() const { return end_time_ > 0.0; }
 
   [[nodiscard]] std::size_t parameters() const { return tables_.size(); }
   [[nodiscard]] const std::vector<std::vector<double>>& tables() const { return tables_; }
@@ -32,13 +39,18 @@ class LoadingProgramme {
   [[nodiscard]] std::vector<double> at(double stage) const;
 
   /// The stage of the last entry.
-  [[nodiscard]] double end() const { return static_cast<double>(tables_.front().size() - 1); }
-  [[nodiscard]] bool has_rest(double stage) const { return end() - stage > tolerance; }
+  [[nodiscard]] double end() const {
+    return is_of_time() ? end_time_ : static_cast<double>(tables_.front().size() - 1);
+  }
+  [[nodiscard]] bool has_rest(double stage) const {
+    return is_of_time() ? stage < end_time_ : end() - stage > tolerance;
+  }
   /// Stage of the first entry that lies beyond.
   [[nodiscard]] static double next_entry(double stage);
 
  private:
   std::vector<std::vector<double>> tables_;
+  double end_time_ = 0.0;  // of a programme of time [s]
 };
 
 }  // namespace peristat

@@ -16,6 +16,13 @@ struct SupportSpecification {
   std::array<std::optional<std::string>, 3> displacement{};
 };
 
+/// What a set, or without one the body, begins with: per component an expression of x, y and z.
+struct InitialSpecification {
+  std::string set{};
+  std::array<std::string, 3> displacement{"0", "0", "0"};  ///< [m]
+  std::array<std::string, 3> velocity{"0", "0", "0"};      ///< [m/s]
+};
+
 /// How deep a traction acts: in the outermost row of points alone, or spread evenly over the
 /// horizon.
 enum class Depth { row, horizon };

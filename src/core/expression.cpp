@@ -64,7 +64,7 @@ struct Expression::Parser {
     std::string what = (is_called ? "unknown function " : "unknown variable ") + word + "; allowed";
     for (const std::string& name : allowed) what += (name == allowed[0] ? " are " : ", ") + name;
     // Well spelt, but not of this dimension or not here.
-    for (const char* known : {"x", "y", "z", "load"}) {
+    for (const char* known : {"x", "y", "z", "load", "t"}) {
       if (word == known) refuse(what);
     }
     // The parentheses of a function may have been forgotten.
@@ -200,6 +200,13 @@ double Expression::operator()(const Coordinates& place, std::span<const double> 
 }
 
 bool Expression::is_constant() const { return parser_->constant.has_value(); }
+
+bool Expression::has_parameters() const {
+  if (parser_->constant) return false;
+  const mu::varmap_type& used = parser_->parser.GetUsedVar();
+  return std::ranges::any_of(parser_->parameters,
+                             [&](const std::string& name) { return used.contains(name); });
+}
 
 const std::string& Expression::text() const { return parser_->text; }
 

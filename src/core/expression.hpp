@@ -39,6 +39,9 @@ class Expression {
   /// Whether the value depends on neither place nor parameters.
   [[nodiscard]] bool is_constant() const;
 
+  /// Whether a parameter occurs in it.
+  [[nodiscard]] bool has_parameters() const;
+
   [[nodiscard]] const std::string& text() const;
 
  private:

@@ -30,9 +30,10 @@ template <class Real, class Whole, class OfLane>
   PotentialDensity<Lanes> result;
   if (std::experimental::none_of(degraded && !broken)) {
     result = whole(e);
-    for (Lanes* part : {&result.value, &result.first, &result.second}) {
-      std::experimental::where(broken, *part) = 0.0;
-    }
+    // One by one: in a loop over their addresses they would leave their registers.
+    std::experimental::where(broken, result.value) = 0.0;
+    std::experimental::where(broken, result.first) = 0.0;
+    std::experimental::where(broken, result.second) = 0.0;
     return result;
   }
   for (int l = 0; l < lane_count; ++l) {
@@ -89,8 +90,9 @@ struct Degraded {
   }
 
   /// @param first the batch's first bond
-  [[nodiscard]] PotentialDensity<Lanes> operator()(const Lanes& e, const Lanes& largest_stretch,
-                                                   Offset first = 0) const {
+  [[nodiscard, gnu::always_inline]] PotentialDensity<Lanes> operator()(const Lanes& e,
+                                                                       const Lanes& largest_stretch,
+                                                                       Offset first = 0) const {
     return degraded_batch(e, largest_stretch, ranges(first), whole(modulus),
                           [&](int l) { return (*this)(double(e[l]), double(largest_stretch[l])); });
   }

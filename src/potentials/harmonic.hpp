@@ -17,7 +17,7 @@ struct Harmonic {
 
   /// @param e relative change of the measure
   template <class Real>
-  [[nodiscard]] PotentialDensity<Real> operator()(const Real& e) const {
+  [[nodiscard, gnu::always_inline]] PotentialDensity<Real> operator()(const Real& e) const {
     const Real first = modulus * e;
     return {0.5 * first * e, first, Real(modulus)};
   }

@@ -18,7 +18,7 @@ TEXTS = ['""', '"x"', '"load"', '"free"', '"left"', '"../../etc/passwd"', '"/dev
 EXPRESSIONS = ["1/0", "0/0", "load/0", "ln(-1)", "sqrt(-load)", "1e308*10*load", "x^x^x^x", "1e-3*load", "load*load*1e-4", "rint(load)",
                "load > 0.3 ? 1 : -1", "load > 0.6 ? 1/0 : 0", "(((((load", "load)", "x x", "x = 1", "y", "z", "q", "1,5", "sin()",
                "atan2(1)", "min()", "-" * 2000 + "1", "(" * 3000 + "1" + ")" * 3000, "+".join(["x"] * 3000), "1e-400", "load#", "load;x",
-               "x = y = load", "_pi", "pi", "spacing", "1e-4*sin(300*load)", "0 < x < 1", "x ? 1", "\"", "'", "\\", "load\u00b2", "∞"]  # fmt: skip
+               "x = y = load", "_pi", "pi", "spacing", "1e-4*sin(300*load)", "0 < x < 1", "x ? 1", "\"", "'", "\\", "load\u00b2", "∞", "1e-3*t", "sin(300*t)/t"]  # fmt: skip
 STRUCTURES = ["[]", "{}", "[[]]", "[1, 2]", "[1, 2, 3, 4]", "[1, \"a\"]", "[" * 500 + "]" * 500, "{a = {b = {c = 1}}}", "[" + "0," * 50_000 + "]",
               "{ disk = { centre = [0, 0], radius = -1 } }", "{ box = {} }", '["free", "free", "free"]', "[nan, inf]", "[[0, 0], [1, 1]]"]  # fmt: skip
 WORDS = """dimension title lattice points spacing horizon_ratio thickness area origin perturbation seed shape layer add subtract min max
@@ -30,12 +30,12 @@ WORDS = """dimension title lattice points spacing horizon_ratio thickness area o
     directory every count_cracks probe field other threshold control weights table table2 arc_length bifurcation region interface between
     rule fibre angle direction transverse_modulus shear_modulus transverse_critical scatter of distribution weibull_modulus
     correlation_length rigid roller at normal constraint term symmetry period gradient rotation gravity traction pressure depth eigenstrain
-    strain temperature change thermal_expansion volumes neighbours""".split()
+    strain temperature change thermal_expansion volumes neighbours dynamics end_time time_step step_share history_every initial velocity""".split()
 CHOICES = """none linear exact volume energy mean bulk bond cpd stress strain lattice continuum critical_stretch tanh tanh_continuous linear exponential blended newton
     relaxation adaptive flow dynamic auto cholesky pcg minres gmres jacobi block_jacobi rigid_pieces surrogate riluk chebyshev multigrid stored
     matrix_free consistent never always hold remove stop fixed moving at_equilibrium transient kinetic cell_centres nodes box disk polygon
     cylinder sphere x- x+ y- y+ z- z+ displacement force damage stretch energy_density poisson_ratio opening crack_length
-    arc_length branch straight cells fractional harmonic arithmetic weaker stiffness strength weibull row horizon x y z""".split()
+    arc_length dynamics branch straight cells fractional harmonic arithmetic weaker stiffness strength weibull row horizon x y z""".split()
 KEYS = """dimension lattice.spacing lattice.horizon_ratio lattice.thickness lattice.area lattice.origin lattice.perturbation lattice.seed
     lattice.shape[0].min lattice.shape[0].max lattice.shape[0].add lattice.shape[1].radius lattice.shape[9].add lattice.layer[0].thickness
     lattice.layer[0].where points.horizon points.file set[0].where crack[0].from crack[0].to quadrature.volume_correction
@@ -55,6 +55,7 @@ KEYS = """dimension lattice.spacing lattice.horizon_ratio lattice.thickness latt
     constraint[0].term[0].weights constraint[0].term[1].set symmetry[0].axis symmetry[0].at symmetry[1].at symmetry[1].axis period[0].from
     period[0].to period[0].gradient period[1].gradient period[1].axis load[0].gravity load[0].traction load[0].depth load[0].side
     load[0].pressure load[1].pressure load[1].total_force eigenstrain[0].strain eigenstrain[0].set temperature.change
+    dynamics.end_time dynamics.time_step dynamics.step_share dynamics.history_every initial[0].set initial[0].displacement initial[0].velocity
     relaxation.quiet_iterations relaxation.displacement_tolerance relaxation.method relaxation.flow_tolerance relaxation.peak_tolerance output.every output.count_cracks probe[0].field probe[0].set probe[0]
     [[ ]. .. a.b.c lattice lattice. .lattice support[-1].set support[99999999999].set support[0]""".split()
 

@@ -30,6 +30,7 @@ ROOMS = [
     "solvers/problem",
     "solvers/fracture",
     "solvers/search",
+    "solvers/motion",
     "solvers/drivers",
     "solvers/study",
     "cases/runner/process",

@@ -52,9 +52,11 @@ inline SolvedCase solve_case(const std::string& name,
   observer.accepted = [&](const StepRecord& row, const AcceptedState&) {
     solved.steps.push_back(row);
   };
-  solved.result =
-      follow_loading({assembler, solver, tangent, free}, *solved.body->conditions,
-                     load_stepping_options(solved.from), newton_options(solved.from), observer);
+  solved.result = follow_loading({{assembler, solver, tangent, free},
+                                  *solved.body->conditions,
+                                  load_stepping_options(solved.from),
+                                  newton_options(solved.from),
+                                  observer});
   return solved;
 }
 

@@ -41,11 +41,14 @@ template <int D, class Visit>
     batch.count = static_cast<int>(std::min<Offset>(lane_count, end - first));
     std::array<Offset, lane_count> bond;
     if (batch.count == lane_count) {
+#pragma GCC unroll 4
       for (int l = 0; l < lane_count; ++l) bond[l] = first + l;
     } else {
+#pragma GCC unroll 4
       for (int l = 0; l < lane_count; ++l) bond[l] = first + std::min(l, batch.count - 1);
     }
     std::array<const double*, lane_count> kind;
+#pragma GCC unroll 4
     for (int l = 0; l < lane_count; ++l) {
       batch.partner[l] = bonds.partner[bond[l]];
       kind[l] = &bonds.kind[bond[l]].inverse_length;
@@ -55,6 +58,7 @@ template <int D, class Visit>
       batch.weight = Lanes([&](int l) { return l < batch.count ? batch.weight[l] : 0.0; });
     }
     std::array<const double*, lane_count> row;
+#pragma GCC unroll 4
     for (int l = 0; l < lane_count; ++l) row[l] = rows + std::size_t(batch.partner[l]) * width;
     Lanes columns[8];
     load_transposed(row[0], row[1], row[2], row[3], columns);
@@ -76,12 +80,15 @@ inline void add_to_partners(double* sums, const std::array<Index, lane_count>& p
   if constexpr (D == 3) {
     lanes_detail::Quad rows[4];
     store_transposed(vector[0], vector[1], vector[2], Lanes(0.0), rows);
+#pragma GCC unroll 4
     for (int l = 0; l < lane_count; ++l) add_row(sums + std::ptrdiff_t(partner[l]) * 4, rows[l]);
   } else if constexpr (D == 2) {
     lanes_detail::Pair pairs[4];
     store_transposed(vector[0], vector[1], pairs);
+#pragma GCC unroll 4
     for (int l = 0; l < lane_count; ++l) add_row(sums + std::ptrdiff_t(partner[l]) * 2, pairs[l]);
   } else {
+#pragma GCC unroll 4
     for (int l = 0; l < lane_count; ++l) sums[partner[l]] += vector[0][l];
   }
 }
@@ -104,12 +111,14 @@ inline void add_to_partners(double* sums, const std::array<Index, lane_count>& p
   constexpr int width = block_width(D);
   lanes_detail::Quad head[4];
   store_transposed(half[0], half[1], half[2], half[3], head);
+#pragma GCC unroll 4
   for (int l = 0; l < lane_count; ++l) {
     add_row(sums + std::ptrdiff_t(partner[l]) * width, head[l]);
   }
   if constexpr (D == 3) {
     lanes_detail::Pair tail[4];
     store_transposed(half[4], half[5], tail);
+#pragma GCC unroll 4
     for (int l = 0; l < lane_count; ++l) {
       add_row(sums + std::ptrdiff_t(partner[l]) * width + 4, tail[l]);
     }
@@ -183,7 +192,7 @@ struct AtHistory {
   const P& potential;
   Lanes largest_stretch;
   Offset first_bond;
-  [[nodiscard]] PotentialDensity<Lanes> operator()(const Lanes& e) const {
+  [[nodiscard, gnu::always_inline]] PotentialDensity<Lanes> operator()(const Lanes& e) const {
     return potential(e, largest_stretch, first_bond);
   }
 };
@@ -198,6 +207,31 @@ template <class P>
                         first_bond};
   } else {
     return potential;
+  }
+}
+
+/// The potential's first derivative alone, at the bonds' histories if it has one. What at_history
+/// gives goes through memory on its way, which takes as long as all else of a pass.
+template <class P>
+[[gnu::always_inline]] inline Lanes tension(const double* largest_stretch, const P& potential,
+                                            Offset first_bond, const Lanes& e) {
+  if constexpr (PotentialWithHistory<P>) {
+    const Lanes largest(largest_stretch + first_bond, std::experimental::element_aligned);
+    const auto range = potential.ranges(first_bond);
+    const auto broken = largest >= range.critical;
+    const auto degraded = std::experimental::max(e, largest) > range.onset;
+    if (std::experimental::any_of(degraded && !broken)) {
+      return Lanes([&](int l) {
+        return potential.of_bond(first_bond + l)(double(e[l]), double(largest[l])).first;
+      });
+    }
+    auto whole = potential.shape;
+    whole.modulus = potential.modulus;
+    Lanes first = whole(e).first;
+    std::experimental::where(broken, first) = 0.0;
+    return first;
+  } else {
+    return potential(e).first;
   }
 }
 
@@ -258,7 +292,8 @@ struct BondKernels {
   using Span = std::span<const double>;
 
   /// @tparam commits whether histories follow: the energy is then what is stored after that
-  template <bool commits, class P, class E>
+  /// @tparam with_energy otherwise it is left out: it takes a division per bond
+  template <bool commits, bool with_energy = true, class P, class E>
   static Evaluation gradient(BondWorkspace& a, const P& potential, const E& eigenstretch,
                              Span displacement,
                              std::conditional_t<commits, double*, const double*> largest_stretch,
@@ -268,7 +303,7 @@ struct BondKernels {
     const Bonds& bonds = a.bonds;
     const bool energy_only = result.empty();
     constexpr int width = vector_width(D);
-    const auto body = [&](int thread, RowRange range, double* sums) {
+    const auto body = [&](int thread, RowRange range, double* sums) __attribute__((flatten)) {
       Lanes shortest = std::numeric_limits<double>::infinity();
       double energy = 0.0;
       DamageGrowth growth;
@@ -284,12 +319,19 @@ struct BondKernels {
               if constexpr (commits) {
                 commit<D>(potential, batch, measure.relative_change, largest_stretch, growth);
               }
-              const auto psi = interaction_energy(
-                  batch.weight, at_history(largest_stretch, potential, batch.first), measure);
-              row_energy += psi.value;
               shortest = std::experimental::min(shortest, measure.current);
-              if (energy_only) return;
-              const Vector<D, Lanes> force = energy_gradient(psi, measure)[0];
+              Vector<D, Lanes> force;
+              if constexpr (with_energy) {
+                const auto psi = interaction_energy(
+                    batch.weight, at_history(largest_stretch, potential, batch.first), measure);
+                row_energy += psi.value;
+                if (energy_only) return;
+                force = energy_gradient(psi, measure)[0];
+              } else {
+                force = scaled<D>(batch.weight * tension(largest_stretch, potential, batch.first,
+                                                         measure.relative_change),
+                                  measure.gradient[0]);
+              }
               for (int c = 0; c < D; ++c) own[c] -= force[c];
               add_to_partners<D>(sums, batch.partner, force);
             });

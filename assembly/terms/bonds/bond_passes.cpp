@@ -62,15 +62,31 @@ Evaluation BondPasses::gradient(const StateView& at, std::span<double> gradient,
 Evaluation BondPasses::commit(std::span<const double> displacement,
                               const SharedEnvironment& environment, History& history,
                               std::span<double> gradient, Write how) {
+  return commit<true>(displacement, environment, history, gradient, how);
+}
+
+Evaluation BondPasses::commit_forces(std::span<const double> displacement,
+                                     const SharedEnvironment& environment, History& history,
+                                     std::span<double> gradient, Write how) {
+  return commit<false>(displacement, environment, history, gradient, how);
+}
+
+template <bool with_energy>
+Evaluation BondPasses::commit(std::span<const double> displacement,
+                              const SharedEnvironment& environment, History& history,
+                              std::span<double> gradient, Write how) {
+  const bool can_fail = term_.can_fail();
   const StateView at{displacement, history, Damage::grows, environment};
-  if (!term_.can_fail()) return this->gradient(at, gradient, how);
-  double* const largest_stretch = history.change(slot_).data();
-  return dispatch(at, [&]<class P>(auto d, const P& law, const double*, const auto& eigenstretch) {
+  double* const to_change = can_fail ? history.change(slot_).data() : nullptr;
+  return dispatch(at, [&]<class P>(auto d, const P& law, const double* largest_stretch,
+                                   const auto& eigenstretch) {
+    using Kernels = BondKernels<decltype(d)::value>;
     if constexpr (PotentialWithHistory<P>) {
-      return BondKernels<decltype(d)::value>::template gradient<true>(
-          workspace_, law, eigenstretch, displacement, largest_stretch, gradient, how);
+      return Kernels::template gradient<true, with_energy>(workspace_, law, eigenstretch,
+                                                           displacement, to_change, gradient, how);
     } else {
-      return Evaluation{};
+      return Kernels::template gradient<false, with_energy>(
+          workspace_, law, eigenstretch, displacement, largest_stretch, gradient, how);
     }
   });
 }

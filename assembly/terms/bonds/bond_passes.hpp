@@ -15,6 +15,9 @@ class BondPasses : public TermPasses {
   Evaluation gradient(const StateView& at, std::span<double> gradient, Write how) override;
   Evaluation commit(std::span<const double> displacement, const SharedEnvironment& environment,
                     History& history, std::span<double> gradient, Write how) override;
+  Evaluation commit_forces(std::span<const double> displacement,
+                           const SharedEnvironment& environment, History& history,
+                           std::span<double> gradient, Write how) override;
   DamageGrowth growth(const StateView& at) override;
   void tangent(const StateView& at, double projection, Tangent& tangent, Write how) override;
   void visit_tangent(const StateView& at, double projection, const RowVisitor& visit,
@@ -29,6 +32,10 @@ class BondPasses : public TermPasses {
   /// compile-time constant, the potential as its own type, and one for no eigenstretch.
   template <class Body>
   auto dispatch(const StateView& at, const Body& body) const;
+
+  template <bool with_energy>
+  Evaluation commit(std::span<const double> displacement, const SharedEnvironment& environment,
+                    History& history, std::span<double> gradient, Write how);
 
   /// Straight into the tangent, whose off-diagonal blocks are those of the bonds.
   void write_tangent(const StateView& at, double projection, Tangent& tangent);

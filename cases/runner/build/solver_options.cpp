@@ -28,6 +28,9 @@ LoadSteppingOptions load_stepping_options(const Case& from) {
   options.relaxation_steps = from.relaxation.steps;
   options.relaxation = from.relaxation.options;
   options.peak_tolerance = from.relaxation.peak_tolerance;
+  const DynamicsSpecification& dynamics = from.dynamics;
+  const int rows = dynamics.history_every > 0 ? dynamics.history_every : from.output.every;
+  options.dynamics = {dynamics.time_step, dynamics.step_share, rows};
   return options;
 }
 

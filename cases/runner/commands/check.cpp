@@ -242,6 +242,20 @@ void print_pressures(const Body& body) {
   }
 }
 
+/// Of a motion in time: its stable step, and what its steps take.
+void print_motion(const Case& from, const Body& body, const StudyOptions& options) {
+  // Of a bond in a step, as measured; the other terms of a body take longer.
+  constexpr double seconds_per_bond = 6e-9;
+  const double stable = Study(body, options).find_initial_stiffness().stable_step();
+  const DynamicsSpecification& dynamics = from.dynamics;
+  const double step = dynamics.time_step > 0.0 ? dynamics.time_step : dynamics.step_share * stable;
+  const double steps = std::ceil(dynamics.end_time / step);
+  fmt::print("motion      stable time step {:.6g} s; {:.0f} steps of {:.6g} s\n", stable, steps,
+             step);
+  fmt::print("time        {} on one thread, without results\n",
+             seconds_text(steps * double(body.model.bonds().count()) * seconds_per_bond));
+}
+
 }  // namespace
 
 Exit check(const Case& from, int threads) {
@@ -289,7 +303,9 @@ Exit check(const Case& from, int threads) {
   }
   fmt::print("memory      about {} of {} available\n", bytes_text(systems.bytes),
              bytes_text(available_memory()));
-  if (from.solver.mode == Mode::path) {
+  if (from.solver.mode == Mode::dynamics) {
+    located_errors(from, [&] { print_motion(from, body, options); });
+  } else if (from.solver.mode == Mode::path) {
     fmt::print("time        {} for an event; how many there are, the path shows\n",
                seconds_text(chosen.seconds / threads));
   } else {
@@ -298,7 +314,7 @@ Exit check(const Case& from, int threads) {
                seconds_text(chosen.seconds * steps / threads), steps);
   }
   located_errors(from, [&] {
-    refuse_unheld_bodies(body);
+    if (from.solver.mode != Mode::dynamics) refuse_unheld_bodies(body);
     refuse_unstable_rest(body, options);
     if (finds_loads(options, *body.conditions)) static_cast<void>(Study(body, options).analyze());
     static_cast<void>(make_crack_tips(body, from.crack_tips, options));

@@ -56,6 +56,7 @@ std::string case_text(const EarlierRun& earlier, const Settings& settings) {
 }
 
 LoadingProgramme programme_of(const Case& from) {
+  if (from.end_time) return LoadingProgramme::of_time(*from.end_time);
   return from.programme.empty() ? LoadingProgramme() : LoadingProgramme(from.programme);
 }
 
@@ -63,6 +64,11 @@ LoadingProgramme programme_of(const Case& from) {
 void require_same_beginning(const LoadingProgramme& then, const LoadingProgramme& now,
                             const PathState& path) {
   const double stage = path.accepted.stage, reached = std::ceil(stage);
+  if (then.is_of_time()) {
+    if (now.is_of_time() && stage <= now.end()) return;
+    throw InputError("--set", "dynamics.end_time",
+                     fmt::format("the run has come to {:.6g} s, beyond that", stage));
+  }
   const bool is_long_enough = reached <= now.end() && then.parameters() == now.parameters();
   for (double entry = 0.0; is_long_enough && entry <= reached; ++entry) {
     if (then.at(entry) == now.at(entry)) continue;

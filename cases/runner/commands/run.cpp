@@ -17,6 +17,7 @@
 #include "cases/runner/results/constraint_columns.hpp"
 #include "cases/runner/results/crack_tip_columns.hpp"
 #include "cases/runner/results/dossier.hpp"
+#include "cases/runner/results/motion_columns.hpp"
 #include "cases/runner/results/probe.hpp"
 #include "cases/runner/results/recorder.hpp"
 #include "cases/runner/results/results.hpp"
@@ -216,6 +217,7 @@ class CaseRun {
     }
     for (ProbeColumns& columns : crack_tip_columns(from)) probes_.push_back(std::move(columns));
     for (ProbeColumns& columns : constraint_columns(from)) probes_.push_back(std::move(columns));
+    for (ProbeColumns& columns : motion_columns(from)) probes_.push_back(std::move(columns));
   }
 
   Exit run() {
@@ -250,9 +252,17 @@ class CaseRun {
     count(*body_, free, options_, summary_);
     // Loads that can't be found are refused before results are touched.
     if (finds_loads(study_->options(), *body_->conditions)) study_->analyze();
+    if (from_.dynamics.is_asked_for) describe_motion();
     progress_.follow_to(body_->conditions->programme().end());
     crack_tips_ = located_errors(
         from_, [&] { return make_crack_tips(*body_, from_.crack_tips, study_->options()); });
+  }
+
+  /// Refuses a step that is not stable before results are touched.
+  void describe_motion() {
+    if (earlier_) return;
+    const Stiffness& stiffness = study_->find_initial_stiffness();
+    progress_.say(fmt::format("stable time step: {:.6g} s", stiffness.stable_step()));
   }
 
   /// @throws InputError if the body is another one
@@ -298,9 +308,10 @@ class CaseRun {
   LoadSteppingResult follow() {
     SolvedModel& equations = study_->equations();
     study_->analyze();
-    progress_.say(fmt::format("linear solver: {}{} ({})", equations.solver().describe(),
-                              equations.systems().is_stored ? "" : ", tangent matrix-free",
-                              equations.systems().chosen.reason));
+    if (!from_.dynamics.is_asked_for)
+      progress_.say(fmt::format("linear solver: {}{} ({})", equations.solver().describe(),
+                                equations.systems().is_stored ? "" : ", tangent matrix-free",
+                                equations.systems().chosen.reason));
     if (const BondTerm* bonds = body_->model.failing_bonds()) {
       const ToothedStrength teeth = toothed_strength(bonds->potential());
       if (teeth.teeth > 0) progress_.say("damage law: a saw-tooth of " + description(teeth));

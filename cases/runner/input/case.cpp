@@ -71,6 +71,7 @@ const std::map<std::string, std::string>& keys_of_members() {
       {"eigenstrains", "eigenstrain"},
       {"directory", "output.directory"},
       {"controls", "control"},
+      {"end_time", "dynamics.end_time"},
       {"programme", "loading.table"}};
   return keys;
 }
@@ -114,6 +115,10 @@ std::vector<std::string> LoadingSpecification::parameters() const {
   return LoadingProgramme::names(std::max<std::size_t>(tables.size(), 1));
 }
 
+std::vector<std::string> Case::parameters() const {
+  return dynamics.is_asked_for ? std::vector<std::string>{"t"} : loading.parameters();
+}
+
 Case read_case(const std::filesystem::path& file, const Settings& overrides) {
   return read_case(file, read_case_text(file), overrides);
 }
@@ -135,6 +140,7 @@ Case read_case(const std::filesystem::path& file, const std::string& text,
   }
   resolve_size(result);
   for (const LoadTable& table : result.loading.tables) result.programme.push_back(table.entries);
+  if (result.dynamics.is_asked_for) result.end_time = result.dynamics.end_time;
   result.as_resolved = document_keys().lines(result, result);
   return result;
 }

@@ -68,6 +68,15 @@ struct SolverSpecification {
   double elastic_horizon_ratio = 0.0;
 };
 
+/// Table [dynamics]: the motion in time.
+struct DynamicsSpecification {
+  bool is_asked_for = false;  ///< by solver.mode
+  double end_time = 0.0;      ///< [s]
+  double time_step = 0.0;     ///< [s]; 0: a share of the stable one
+  double step_share = 0.9;
+  int history_every = 0;  ///< time steps from one row of the history to the next; 0: output.every
+};
+
 /// Table [relaxation]: steps of the load factor, and how each is relaxed.
 struct RelaxationSpecification {
   int steps = 1;
@@ -79,9 +88,9 @@ struct RelaxationSpecification {
 
 struct OutputSpecification {
   std::filesystem::path directory;  ///< default results/FOLDER_STEM of the case file
-  int every = 1;                    ///< fields of every n-th accepted step; the last always
-  bool count_cracks = false;        ///< whether bonds that a pre-crack has cut count as damage
-  bool stress = false;              ///< whether strain and stress are among the fields
+  int every = 1;              ///< fields of every n-th accepted step, or time step; the last always
+  bool count_cracks = false;  ///< whether bonds that a pre-crack has cut count as damage
+  bool stress = false;        ///< whether strain and stress are among the fields
 };
 
 /// What becomes of a field's values over a set.
@@ -112,9 +121,13 @@ struct Case : BodySpecification {
   LoadingSpecification loading;
   SolverSpecification solver;
   RelaxationSpecification relaxation;
+  DynamicsSpecification dynamics;
   OutputSpecification output;
   std::vector<ProbeSpecification> probes;
   std::vector<CrackTipSpecification> crack_tips;
+
+  /// Parameters that expressions of supports and loads may use: of the loading, or the time.
+  [[nodiscard]] std::vector<std::string> parameters() const;
 
   std::string file;         ///< as given by the person
   std::string as_read;      ///< text of the file

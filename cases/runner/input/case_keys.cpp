@@ -521,7 +521,7 @@ Table<MaterialSpecification> material_keys(const std::string& name) {
        K("thermal_expansion", &Spec::thermal_expansion, between(-1.0, 1.0, "per K"),
          "of lengths, α: for `[temperature]`"),
        K("density", &Spec::density, positive("kg/m3"),
-         "for gravity: dynamic relaxation has a density of its own"),
+         "for gravity and mode `dynamics`: dynamic relaxation has a density of its own"),
        K("damage", &Spec::damage, damage_keys(name), "table `[material.damage]`")
            .default_words("no damage"),
        K("fibre", fibre_of, fibre_keys(name),
@@ -769,6 +769,79 @@ Table<ControlTerm> control_keys() {
                .required()}};
 }
 
+// ---- Motion in time
+
+Table<InitialSpecification> initial_keys() {
+  using Spec = InitialSpecification;
+  using K = Key<Spec>;
+  return {"initial",
+          {K("set", &Spec::set, known_set(), "that begins with it")
+               .written_if([](auto& initial, auto&) { return !initial.set.empty(); })
+               .default_words("all points"),
+           K("displacement", &Spec::displacement, components_of_place("m"),
+             "at the time 0, per component; where a support prescribes another one, that holds"),
+           K("velocity", &Spec::velocity, components_of_place("m/s"),
+             "at the time 0, per component, of what no support prescribes")}};
+}
+
+/// Supports and loads are read as soon as it is known whether they are expressions of the time.
+void ask_for_dynamics(const Entry& at, Case& result) {
+  if (!at.from.has("solver")) return;
+  const TomlTable solver = at.from.table("solver");
+  result.dynamics.is_asked_for = solver.has("mode") && solver.is_string("mode") &&
+                                 solver.string("mode") == Mode::dynamics.name;
+}
+
+Table<DynamicsSpecification> dynamics_keys() {
+  using Spec = DynamicsSpecification;
+  using K = Key<Spec>;
+  const auto is_given = [](auto& dynamics, auto&) { return dynamics.time_step > 0.0; };
+  return {"dynamics",
+          {K("end_time", &Spec::end_time, positive("s"), "from 0 to which the motion is followed")
+               .required()
+               .extends(),
+           K("time_step", &Spec::time_step, positive("s"),
+             "that is kept; the run ends where it is longer than the stable one. The last step is "
+             "shorter where it has to be")
+               .written_if(is_given)
+               .early()
+               .moreover("at most the stable step")
+               .default_words("a share of the stable step"),
+           K("step_share", &Spec::step_share, between(1e-6, 0.99),
+             "time step over the stable one, which is found anew as the stiffness changes")
+               .unless(is_given, "stands beside time_step; give one of them"),
+           K("history_every", &Spec::history_every, count_from(1, "time steps"),
+             "from one row of the history to the next")
+               .written_if([](auto& dynamics, auto&) { return dynamics.history_every > 0; })
+               .default_words("`output.every`")}};
+}
+
+/// What goes with a motion in time, and what goes with it alone.
+void check_dynamics(const Entry& at, const Case& result) {
+  const auto refuse = [&](const std::string& key, const std::string& why) {
+    if (at.from.has(key)) at.from.refuse(key, why);
+  };
+  if (!result.dynamics.is_asked_for) {
+    refuse("dynamics", "is for solver.mode = \"dynamics\"");
+    refuse("initial", "is for solver.mode = \"dynamics\"");
+    return;
+  }
+  refuse("crack_tip",
+         "does not go with solver.mode = \"dynamics\": its integrals leave out the inertia");
+  for (const char* key : {"loading", "control", "relaxation", "arc_length"}) {
+    refuse(key,
+           "does not go with solver.mode = \"dynamics\", whose supports and loads go with the "
+           "time t; give their values as expressions of it");
+  }
+  const TomlTable solver = at.from.table("solver");
+  for (const char* key :
+       {"linear", "preconditioner", "tangent", "predictor", "projection", "relative_tolerance",
+        "linear_tolerance", "max_iterations", "fragments", "elastic_horizon_ratio"}) {
+    if (solver.has(key))
+      solver.refuse(key, "is not heeded in mode dynamics, whose steps search no equilibrium");
+  }
+}
+
 // ---- The search for equilibrium
 
 /// "table", "table2", …
@@ -943,12 +1016,14 @@ Choices<Mode> modes() {
 Table<SolverSpecification> solver_keys() {
   using Spec = SolverSpecification;
   using K = Key<Spec>;
+  const auto searches = [](auto&, auto& from) { return !from.dynamics.is_asked_for; };
   return {
       "solver",
       {K("mode", &Spec::mode, choice(modes()),
          "implicit throughout; by dynamic relaxation throughout; implicit while no damage grows "
          "and by relaxation while it does; along the path itself, through limit points and "
-         "bifurcations, without damage; from one breaking bond to the next")
+         "bifurcations, without damage; from one breaking bond to the next; the motion in time, by "
+         "explicit steps")
            .extends(),
        K("linear", &Spec::linear,
          choice<LinearMethod>({{"auto", LinearMethod::automatic},
@@ -958,6 +1033,7 @@ Table<SolverSpecification> solver_keys() {
                                {"gmres", LinearMethod::gmres}}),
          "solver of the linear systems ([linear-solvers.md](linear-solvers.md)); `\"auto\"` "
          "chooses, says why, and falls back where it fails")
+           .written_if(searches)
            .extends(),
        K("preconditioner", &Spec::preconditioner,
          choice<PreconditionerKind>({{"auto", PreconditionerKind::automatic},
@@ -970,6 +1046,7 @@ Table<SolverSpecification> solver_keys() {
                                      {"multigrid", PreconditionerKind::multigrid}}),
          "of the last three, not for `\"cholesky\"`; with `linear = \"auto\"` it means `\"pcg\"`; "
          "`\"auto\"` is `\"rigid_pieces\"`")
+           .written_if(searches)
            .extends()
            .then(check_preconditioner),
        K("tangent", &Spec::tangent,
@@ -979,21 +1056,27 @@ Table<SolverSpecification> solver_keys() {
          "the tangent's blocks are stored, or computed anew in each product, which takes a third "
          "of the memory in 3D; for `material.model = \"bond\"` without `\"cholesky\"`, "
          "`\"riluk\"`, `\"chebyshev\"` and `\"multigrid\"`. `\"auto\"` stores for direct solvers")
+           .written_if(searches)
            .then(check_tangent),
        K("predictor", &Spec::predictor,
          choice<Predictor>({{"consistent", Predictor::consistent}, {"none", Predictor::none}}),
          "the first iteration of a step linearises about the old state and spreads the jump of the "
-         "supports, or, as in [CPD], about the state after the jump"),
+         "supports, or, as in [CPD], about the state after the jump")
+           .written_if(searches),
        K("projection", &Spec::projection,
          choice<Projection>({{"auto", Projection::automatic},
                              {"never", Projection::never},
                              {"always", Projection::always}}),
          "of interactions to their positive semidefinite part: when the exact tangent has negative "
-         "pivots or leads nowhere, never, always"),
-       K("relative_tolerance", &Spec::relative_tolerance, between(1e-14, 1e-2), "of the residual"),
+         "pivots or leads nowhere, never, always")
+           .written_if(searches),
+       K("relative_tolerance", &Spec::relative_tolerance, between(1e-14, 1e-2), "of the residual")
+           .written_if(searches),
        K("linear_tolerance", &Spec::linear_tolerance, between(1e-14, 1e-1),
-         "largest relative residual that the linear system of a Newton iteration is left with"),
+         "largest relative residual that the linear system of a Newton iteration is left with")
+           .written_if(searches),
        K("max_iterations", &Spec::max_iterations, integer(1, 1000), "of Newton in one step")
+           .written_if(searches)
            .extends(),
        K("fragments", &Spec::fragments,
          choice<FragmentRemedy>({{"hold", FragmentRemedy::hold},
@@ -1002,6 +1085,7 @@ Table<SolverSpecification> solver_keys() {
          "what becomes of pieces that come off: just enough of their degrees of freedom are pinned "
          "that they cannot move freely; they leave the equations and stay where they are; the run "
          "ends with outcome `fragmented`")
+           .written_if(searches)
            .then(check_fragments)
            .moreover("not `\"remove\"` with eigenstrains or a temperature"),
        K("elastic_horizon_ratio", &Spec::elastic_horizon_ratio, between(1.0, 1e3),
@@ -1224,28 +1308,42 @@ std::filesystem::path default_directory(const std::filesystem::path& case_file) 
 Table<OutputSpecification> output_keys() {
   using Spec = OutputSpecification;
   using K = Key<Spec>;
-  return {"output",
-          {K("directory", &Spec::directory, text(),
-             "results folder, relative to the current folder; `--output` on the command line is "
-             "the same")
-               .otherwise([](auto& output,
-                             auto& from) { output.directory = default_directory(from.file); },
-                          "`results/FOLDER_NAME` of the case file: `results/bar_tension` for "
-                          "`cases/bar/tension.toml`")
-               .then([](auto& at, auto& output) {
-                 if (output.directory.empty()) at.refuse("is empty");
-               }),
-           K("every", &Spec::every, count_from(1, "steps"),
-             "fields are written at every n-th accepted step and at the last one")
-               .extends(),
-           K("count_cracks", &Spec::count_cracks, boolean(),
-             "whether bonds that a `[[crack]]` has cut count as lost in `damage` and `max_damage`, "
-             "so that the crack shows in the pictures from the start"),
-           K("stress", &Spec::stress, boolean(),
-             "whether strain and stress are among the fields: deformation gradient, strain, first "
-             "Piola–Kirchhoff and Cauchy stress, von Mises' stress, principal values and "
-             "directions ([theory](theory.md#strain-and-stress)); they take several times the room "
-             "of the others")}};
+  return {
+      "output",
+      {K("directory", &Spec::directory, text(),
+         "results folder, relative to the current folder; `--output` on the command line is "
+         "the same")
+           .otherwise(
+               [](auto& output, auto& from) { output.directory = default_directory(from.file); },
+               "`results/FOLDER_NAME` of the case file: `results/bar_tension` for "
+               "`cases/bar/tension.toml`")
+           .then([](auto& at, auto& output) {
+             if (output.directory.empty()) at.refuse("is empty");
+           }),
+       K("every", &Spec::every, count_from(1, "steps"),
+         "fields are written at every n-th accepted step, in mode `dynamics` time step, and at "
+         "the last one")
+           .otherwise(
+               [](auto& output, auto& from) {
+                 if (from.dynamics.is_asked_for)
+                   output.every = std::max(1, 100 / std::max(1, from.dynamics.history_every)) *
+                                  std::max(1, from.dynamics.history_every);
+               },
+               "1; in mode `dynamics` some 100 time steps")
+           .then([](auto& at, auto& output) {
+             const int rows = at.so_far.dynamics.history_every;
+             if (rows > 0 && output.every % rows != 0)
+               at.refuse("must be a multiple of dynamics.history_every, " + std::to_string(rows));
+           })
+           .extends(),
+       K("count_cracks", &Spec::count_cracks, boolean(),
+         "whether bonds that a `[[crack]]` has cut count as lost in `damage` and `max_damage`, "
+         "so that the crack shows in the pictures from the start"),
+       K("stress", &Spec::stress, boolean(),
+         "whether strain and stress are among the fields: deformation gradient, strain, first "
+         "Piola–Kirchhoff and Cauchy stress, von Mises' stress, principal values and "
+         "directions ([theory](theory.md#strain-and-stress)); they take several times the room "
+         "of the others")}};
 }
 
 /// Of fields that are looked at as a whole, over a set.
@@ -1337,8 +1435,9 @@ Table<ProbeSpecification> probe_keys() {
            .unless(is_whole, "is for a field that every point has")
            .one_of(),
        K("field", &Spec::field, one_of(probe_field_names()),
-         "displacement, opening, length and place in m, area in m², force in N, energy density in "
-         "J/m³, stress in Pa, work of fracture and crack resistance in J/m²; "
+         "displacement, opening, length and place in m, area in m², force in N, energy densities "
+         "in "
+         "J/m³, velocity in m/s, stress in Pa, work of fracture and crack resistance in J/m²; "
          "`stress` is Cauchy's, `strain` Green and Lagrange's")
            .then([](auto& at, auto& probe) {
              if (probe.field == "poisson_ratio" && at.so_far.dimension == 1)
@@ -1348,6 +1447,9 @@ Table<ProbeSpecification> probe_keys() {
                                    probe.field == "crack_resistance";
              if (has_area && !std::holds_alternative<Lattice>(at.so_far.body))
                at.refuse("is for points on a lattice, which have faces between them");
+             const ProbeField* const field = probe_field(probe.field);
+             if (field != nullptr && field->is_of_motion && !at.so_far.dynamics.is_asked_for)
+               at.refuse("is for solver.mode = \"dynamics\"");
            })
            .early(),
        K("to", &Spec::to, coordinates(), "end of the line")
@@ -1389,6 +1491,7 @@ Table<ProbeSpecification> probe_keys() {
 
 Table<Case> all_keys() {
   using K = Key<Case>;
+  const auto searches = [](auto& result, auto&) { return !result.dynamics.is_asked_for; };
   return {
       "",
       {K("title", &Case::title, text(), "one line for people")
@@ -1446,16 +1549,29 @@ Table<Case> all_keys() {
            }),
        K("control", &Case::controls, control_keys(),
          "tables: the displacement that is controlled in the place of `load`"),
+       K("initial", &Case::initial, initial_keys(),
+         "tables: displacements and velocities at the time 0"),
        K("loading", &Case::loading, loading_keys(), "table: the way of the loads, and its steps")
+           .written_if(searches)
            .early(),
        K("solver", &Case::solver, solver_keys(), "table: search for equilibrium"),
-       K("relaxation", &Case::relaxation, relaxation_keys(), "table: steps by dynamic relaxation"),
+       K("relaxation", &Case::relaxation, relaxation_keys(), "table: steps by dynamic relaxation")
+           .written_if(searches),
        K("arc_length", &Case::solver, arc_length_keys(), "table: steps in mode `arc_length`")
+           .written_if(searches)
            .then(check_found_loads),
+       K("dynamics", &Case::dynamics, dynamics_keys(), "table: the motion in time")
+           .early()
+           .unless([](auto& result, auto&) { return !result.dynamics.is_asked_for; }, "")
+           .default_words("required in mode `dynamics`"),
        K("output", &Case::output, output_keys(), "table: results folder"),
        K("probe", &Case::probes, probe_keys(), "tables: values that enter the history"),
        K("crack_tip", &Case::crack_tips, crack_tip_keys(),
-         "tables: J, stress intensity factors and T-stress in the history")}};
+         "tables: J, stress intensity factors and T-stress in the history")},
+      [](auto& at, auto& result) {
+        ask_for_dynamics(at, result);
+        check_dynamics(at, result);
+      }};
 }
 
 }  // namespace

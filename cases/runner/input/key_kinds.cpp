@@ -44,7 +44,7 @@ bool has_sets_from_file(const Case& from) { return std::holds_alternative<PointS
 void check_component(const Entry& at, std::size_t component, const std::string& text,
                      int dimension) {
   try {
-    Expression(text, dimension, spacing_of(at.so_far), at.so_far.loading.parameters());
+    Expression(text, dimension, spacing_of(at.so_far), at.so_far.parameters());
   } catch (const InputError& error) {
     at.from.refuse(at.key, component, error.allowed());
   }
@@ -290,7 +290,7 @@ Kind<std::array<std::optional<std::string>, 3>> prescribed_components() {
               return toml_string(component.value_or("free"));
             });
           },
-          "number, expression of place and `load`, or `\"free\"`", "m"};
+          "number, expression of place and `load` (mode `dynamics`: `t`), or `\"free\"`", "m"};
 }
 
 Kind<std::array<std::optional<std::string>, 3>> free_components(Components kind,
@@ -315,7 +315,7 @@ Kind<std::array<std::optional<std::string>, 3>> free_components(Components kind,
               return toml_string(component.value_or("free"));
             });
           },
-          "number, expression of `load` alone, or `\"free\"`", unit};
+          "number, expression of `load` (`t`) alone, or `\"free\"`", unit};
 }
 
 namespace {
@@ -328,7 +328,7 @@ Kind<std::string> expression(bool of_place, bool or_free) {
     if (or_free && text == "free") return text;
     try {
       Expression(text, of_place ? at.so_far.dimension : 0, spacing_of(at.so_far),
-                 at.so_far.loading.parameters());
+                 at.so_far.parameters());
     } catch (const InputError& error) {
       at.refuse(error.allowed());
     }
@@ -336,11 +336,33 @@ Kind<std::string> expression(bool of_place, bool or_free) {
   };
   return {read, string_text,
           std::string("number, or expression of ") +
-              (of_place ? "place and `load`" : "`load` alone") + (or_free ? ", or `\"free\"`" : ""),
+              (of_place ? "place and `load` (mode `dynamics`: `t`)" : "`load` (`t`) alone") +
+              (or_free ? ", or `\"free\"`" : ""),
           "m"};
 }
 
 }  // namespace
+
+Kind<std::array<std::string, 3>> components_of_place(const std::string& unit) {
+  const auto read = [](const Entry& at) {
+    std::array<std::string, 3> values{"0", "0", "0"};
+    const auto components = at.from.components(at.key, dimension_of(at.so_far));
+    for (std::size_t c = 0; c < components.size(); ++c) {
+      try {
+        Expression(components[c], at.so_far.dimension, spacing_of(at.so_far));
+      } catch (const InputError& error) {
+        at.from.refuse(at.key, c, error.allowed());
+      }
+      values[c] = components[c];
+    }
+    return values;
+  };
+  return {read,
+          [](const auto& values, const Case& from) {
+            return array_text(components_of(values, from), toml_string);
+          },
+          "number or expression of place", unit};
+}
 
 Kind<std::string> expression_or_free() { return expression(true, true); }
 Kind<std::string> expression_of_load() { return expression(false, false); }
@@ -374,13 +396,14 @@ Kind<std::string> scalar_field(const std::string& unit) {
                                   ? at.from.string(at.key)
                                   : toml_number(at.from.number(at.key, Range()));
     try {
-      Expression(given, at.so_far.dimension, spacing_of(at.so_far), at.so_far.loading.parameters());
+      Expression(given, at.so_far.dimension, spacing_of(at.so_far), at.so_far.parameters());
     } catch (const InputError& error) {
       at.refuse(error.allowed());
     }
     return given;
   };
-  return {read, string_text, "number or expression of place and `load`", unit};
+  return {read, string_text, "number or expression of place and `load` (mode `dynamics`: `t`)",
+          unit};
 }
 
 namespace {
@@ -402,8 +425,8 @@ Kind<std::array<std::string, 3>> located_components(bool has_place, const std::s
           [](const auto& values, const Case& from) {
             return array_text(components_of(values, from), toml_string);
           },
-          has_place ? "number or expression of place and `load`"
-                    : "number or expression of `load` alone",
+          has_place ? "number or expression of place and `load` (mode `dynamics`: `t`)"
+                    : "number or expression of `load` (`t`) alone",
           unit};
 }
 

@@ -91,6 +91,8 @@ enum class Components { axes, rotations, of_load };
 [[nodiscard]] Kind<std::string> expression_or_free();
 /// An expression of load alone.
 [[nodiscard]] Kind<std::string> expression_of_load();
+/// Per component an expression of place.
+[[nodiscard]] Kind<std::array<std::string, 3>> components_of_place(const std::string& unit);
 /// A stretch of a bond: a number, or an expression of `horizon` and, on a lattice, of `spacing`.
 [[nodiscard]] Kind<double> stretch();
 /// An expression of place and load.

@@ -8,18 +8,21 @@ namespace {
 using Kind = ProbeField::Kind;
 
 const std::vector<ProbeField>& fields() {
-  static const std::vector<ProbeField> all{{"displacement", "m", Kind::vector},
-                                           {"force", "N", Kind::vector},
-                                           {"damage", "1"},
-                                           {"stretch", "1"},
-                                           {"energy_density", "J/m3"},
-                                           {"deformation_gradient", "1", Kind::tensor, true},
-                                           {"strain", "1", Kind::symmetric, true},
-                                           {"first_piola_stress", "Pa", Kind::tensor, true},
-                                           {"stress", "Pa", Kind::symmetric, true},
-                                           {"von_mises", "Pa", Kind::scalar, true},
-                                           {"principal_stress", "Pa", Kind::principal, true},
-                                           {"missing_neighbourhood", "1", Kind::scalar, true}};
+  static const std::vector<ProbeField> all{
+      {"displacement", "m", Kind::vector},
+      {"force", "N", Kind::vector},
+      {"damage", "1"},
+      {"stretch", "1"},
+      {"energy_density", "J/m3"},
+      {"deformation_gradient", "1", Kind::tensor, true},
+      {"strain", "1", Kind::symmetric, true},
+      {"first_piola_stress", "Pa", Kind::tensor, true},
+      {"stress", "Pa", Kind::symmetric, true},
+      {"von_mises", "Pa", Kind::scalar, true},
+      {"principal_stress", "Pa", Kind::principal, true},
+      {"missing_neighbourhood", "1", Kind::scalar, true},
+      {"velocity", "m/s", Kind::vector, false, true},
+      {"kinetic_energy_density", "J/m3", Kind::scalar, false, true}};
   return all;
 }
 

@@ -10,6 +10,7 @@ struct ProbeField {
   std::string name, unit;
   enum class Kind { scalar, vector, principal, tensor, symmetric } kind = Kind::scalar;
   bool is_of_stress = false;  ///< found with strain and stress alone
+  bool is_of_motion = false;  ///< in mode dynamics alone
 
   /// Names of its components, in the order in which results hold them; empty for a scalar.
   [[nodiscard]] std::vector<std::string> components(int dimension) const;

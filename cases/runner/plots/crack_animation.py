@@ -153,7 +153,7 @@ class _Stage:
         load = self.results.numbers("load_factor")
         curves = reactions(self.results)
         abscissa = find_abscissa(self.results, curves)
-        label, places, shown = "load factor", load, curves
+        label, places, shown = "time [s]" if self.results.is_of_motion else "load factor", load, curves
         if abscissa:
             label, places, shown, _ = abscissa_of(abscissa, curves)
         curve = max(shown, key=lambda curve: curve.values.max())

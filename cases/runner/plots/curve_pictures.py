@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from style import FORCES, GHOST, INK, LENGTHS, LINES, WARNING, heading, new_figure, number, unit_for
+from style import FORCES, GHOST, INK, LENGTHS, LINES, WARNING, heading, load_words, new_figure, number, unit_for
 
 SMALL = 1e-6  # share of the largest reaction below which one is zero
 ALIKE = 0.02  # share by which reactions of two supports may differ and are still drawn as one
@@ -61,7 +61,7 @@ def draw_load_displacement(results):
     figure = new_figure(16.0, height)
     panels = [figure.add_axes([0.075, bottom, 0.40 if abscissa else 0.80, panel_height])]
     _draw_reactions(panels[0], curves, load, size, curves)
-    panels[0].set_xlabel("load factor")
+    panels[0].set_xlabel("time [s]" if results.is_of_motion else "load factor")
     if results.is_fractured:
         draw_fracture(panels[0], results, curves, load, size, "at load factor {}", curves)
     if abscissa:
@@ -80,7 +80,7 @@ def draw_load_displacement(results):
                   ncol=min(len(labels), 4), fontsize=12, bbox_to_anchor=(0.52, 0.0), borderaxespad=0.5)  # fmt: skip
     steps = len(load)
     heading(figure, results, ["reactions of the supports", f"{number(steps)} accepted step{'s' * (steps != 1)}",
-                              f"load factor up to {number(load.max())}"])  # fmt: skip
+                              load_words(load.max(), results.is_of_motion, "up to ")])  # fmt: skip
     return figure
 
 

@@ -3,13 +3,14 @@
 import numpy as np
 from matplotlib.ticker import MaxNLocator
 
-from style import ENERGIES, INK, heading, new_figure, number, unit_for
+from style import ENERGIES, INK, heading, new_figure, number, time_unit, unit_for
 
 PARTS = (  # columns of the history, words and colours, from below
     ("stored_energy", "stored", "#8fb8d4"),
     ("dissipated_energy", "dissipated by damage", "#d98a68"),
     ("drained_energy", "drained by relaxation, or released", "#c9b26a"),
 )
+KINETIC = ("kinetic_energy", "kinetic", "#a9c58f")  # of a motion
 
 
 def _column(results, name: str) -> np.ndarray:
@@ -17,9 +18,13 @@ def _column(results, name: str) -> np.ndarray:
     return np.nan_to_num(np.array(values if all(isinstance(value, float) for value in values) else [], dtype=float))
 
 
+def _parts(results) -> tuple:
+    return (PARTS[0], KINETIC, *PARTS[1:]) if results.is_of_motion else PARTS
+
+
 def has_lost_energy(results) -> bool:
-    """Whether the history has energies, and some was dissipated or drained."""
-    columns = [_column(results, name) for name in ("load_factor", "external_work", *(name for name, _, _ in PARTS))]
+    """Whether the history has energies, and some was dissipated, drained or set in motion."""
+    columns = [_column(results, name) for name in ("load_factor", "external_work", *(name for name, _, _ in _parts(results)))]
     lengths = {len(column) for column in columns}
     return len(lengths) == 1 and lengths != {0} and any(column.any() for column in columns[3:])
 
@@ -31,12 +36,12 @@ def _marks(count: int, edge: str = INK) -> dict:
 
 
 def draw_energies(results):
-    """Stored, dissipated and drained energy on top of each other, and the external work that they add up to.
+    """Stored, kinetic, dissipated and drained energy on top of each other, and the external work that they add up to.
 
-    Over the load factor while it only grows, else over the steps.
+    Over the load factor while it only grows, or the time of a motion, else over the steps.
     """
     load, work = _column(results, "load_factor"), _column(results, "external_work")
-    parts = [_column(results, name) for name, _, _ in PARTS]
+    parts = [_column(results, name) for name, _, _ in _parts(results)]
     grows = (np.diff(load) >= 0.0).all() and load[0] >= 0.0
     place = load if grows else np.arange(1.0, len(load) + 1)
     unit, size = unit_for(max(np.abs(work).max(), sum(parts).max()), ENERGIES, 1.0)
@@ -46,7 +51,9 @@ def draw_energies(results):
 
     figure = new_figure(15.0, 7.2)
     axes = figure.add_axes([0.07, 0.115, 0.67, 0.71])
-    shown = [(values, *looks) for values, (_, *looks) in zip(parts, PARTS) if values.any()]
+    time, second = time_unit(load.max()) if results.is_of_motion else ("", 1.0)
+    place = place / second
+    shown = [(values, *looks) for values, (_, *looks) in zip(parts, _parts(results)) if values.any()]
     below = np.zeros_like(work)
     for values, words, colour in shown:
         axes.fill_between(place, below, below + values, color=colour, linewidth=0.0, label=words, zorder=2)
@@ -59,7 +66,7 @@ def draw_energies(results):
         axes.plot(place, both, color=INK, linewidth=1.2, linestyle=(0, (4, 2)), zorder=4,
                   label="with the numerical work of relaxation")  # fmt: skip
         below = np.maximum(below, both)
-    axes.set_xlabel("load factor" if grows else "step")
+    axes.set_xlabel(f"time [{time}]" if results.is_of_motion else "load factor" if grows else "step")
     if not grows:
         axes.xaxis.set_major_locator(MaxNLocator(integer=True))
     axes.set_ylabel(f"energy [{unit}]")

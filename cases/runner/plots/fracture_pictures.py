@@ -11,7 +11,9 @@ from field_pictures import (
     crack_lines, deformed_plate, draw_plane, exaggeration, exaggeration_words, framed, mark_pieces, rims,
 )  # fmt: skip
 from images import ImageKinds
-from style import GHOST, INK, LENGTHS, PIECE, bond_words, colour_bar, heading, new_figure, number, unit_for
+from style import (
+    GHOST, INK, LENGTHS, PIECE, bond_words, colour_bar, heading, new_figure, number, step_words, time_unit, unit_for,
+)  # fmt: skip
 
 OPENING = 0.05  # largest displacement over the body's size: a crack is seen to open, the body keeps its shape
 MOST_BONDS = 150_000  # more broken bonds are thinned out
@@ -61,7 +63,7 @@ def draw_damage_sequence(results, steps):
         axes.set_ylim(low[1], high[1])
         axes.set_aspect("equal")
         axes.axis("off")
-        axes.set_title(f"load factor {number(step.load_factor)}, step {step.number}", fontsize=13, loc="left")
+        axes.set_title(", ".join(step_words(step)), fontsize=13, loc="left")
     mappable = ScalarMappable(Normalize(0, 1), DAMAGE_COLOURS)
     colour_bar(figure, [15.0 / width, 0.3 / height, 0.2 / width, (height - 1.9) / height], mappable, "damage")
     heading(figure, results, ["damage as it grows", exaggeration_words(factor), "outline: undeformed body"])
@@ -106,13 +108,18 @@ def draw_broken_bonds(results, broken):
     axes.set_xlabel(f"x [{unit}]")
     axes.set_ylabel(f"y [{unit}]")
     marked = np.unique(np.linspace(0, len(distinct) - 1, min(MOST_TICKS, len(distinct))).round().astype(int))
-    bar = colour_bar(figure, bar_place, lines, "step: load factor at which it broke", ticks=marked)
+    what = "time [s]" if results.is_of_motion else "load factor"
+    bar = colour_bar(figure, bar_place, lines, f"step: {what} at which it broke", ticks=marked)
     bar.set_ticks(marked, labels=[_step_label(results, int(distinct[place])) for place in marked])
     first, last = (results.in_history(int(step), "load_factor") for step in (steps[0], steps[-1]))
     words = ["broken bonds in the reference configuration", f"{number(len(steps))} bond{'s' * (len(steps) != 1)}"]
     if first is not None and last is not None:
         several = first != last
-        words.append(f"load factor {number(first)}" + f" to {number(last)}" * several)
+        if results.is_of_motion:
+            unit, size = time_unit(last)
+            first, last = first / size, last / size
+        end = f" to {number(last)}" * several + (f" {unit}" if results.is_of_motion else "")
+        words.append(("time" if results.is_of_motion else "load factor") + f" {number(first)}{end}")
     if every > 1:
         words.append(f"one line in {every} drawn")
     heading(figure, results, words)

@@ -186,6 +186,11 @@ class ResultsFolder:
         array = np.array(values)
         return array if np.isfinite(array).all() else None
 
+    @property
+    def is_of_motion(self) -> bool:
+        """Whether the load factor is the time [s]."""
+        return "kinetic_energy" in self.history and "time_step" in self.history
+
     def in_history(self, step: int, column: str) -> float | None:
         """A number of an accepted step's row in the history."""
         rows = zip(self.history.get("step", []), self.history.get(column, []))

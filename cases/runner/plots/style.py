@@ -104,9 +104,25 @@ def heading(figure: Figure, results, words: list[str]) -> None:
                     va="top", ha="right", fontweight="bold")  # fmt: skip
 
 
+TIMES = (("s", 1.0), ("ms", 1e-3), ("µs", 1e-6), ("ns", 1e-9))
+
+
+def time_unit(longest: float) -> tuple[str, float]:
+    """The unit that a time [s] is told in, and its size."""
+    return next(((unit, size) for unit, size in TIMES if abs(longest) >= size), TIMES[-1 if longest else 0])
+
+
+def load_words(load: float, moves: bool, reach: str = "") -> str:
+    """A load factor, or the time of a motion."""
+    if not moves:
+        return f"load factor {reach}{number(load)}"
+    unit, size = time_unit(load)
+    return f"time {reach}{number(load / size)} {unit}"
+
+
 def step_words(step) -> list[str]:
-    """Load factor and step as facts for a heading."""
-    return [f"load factor {number(step.load_factor)}", f"step {step.number}"]
+    """Load factor or time and step as facts for a heading."""
+    return [load_words(step.load_factor, step.mode == "dynamics"), f"step {step.number}"]
 
 
 def bond_words(results, step) -> list[str]:

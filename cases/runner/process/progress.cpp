@@ -133,13 +133,27 @@ void Progress::decision(const DecisionRecord& record) {
   say(fmt::format("  load {:.6g}: {}; {}", record.load_factor, why, what));
 }
 
+void Progress::moved(const StepRecord& record) {
+  const MotionRecord& motion = *record.motion;
+  const std::string broken = record.broken_bonds > 0
+                                 ? fmt::format(", {} bonds broken", record.broken_bonds)
+                                 : std::string();
+  say(
+      fmt::format("step {:6}  time {:<10.5g} s  kinetic {:<9.3e} J  stored {:<9.3e} J  damage "
+                  "{:.3g}{}{}",
+                  record.step, motion.time, motion.kinetic_energy, record.stored_energy,
+                  record.max_damage, broken, time_left()));
+}
+
 void Progress::accepted(const StepRecord& record, double relative_residual) {
   load_factor_ = record.load_factor;
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start_;
-  const bool relaxed_or_damaged = record.relaxation_iterations > 0 || record.max_damage > 0.0;
+  const bool relaxed_or_damaged =
+      !record.motion && (record.relaxation_iterations > 0 || record.max_damage > 0.0);
   // How long a path is, nobody knows.
   if (record.mode != Mode::arc_length.name && record.mode != Mode::path.name)
     time_left_.accepted(elapsed.count(), record.stage / last_stage_, relaxed_or_damaged);
+  if (record.motion) return moved(record);
   const std::string relaxed =
       record.relaxation_iterations > 0
           ? fmt::format("  after {} of relaxation", record.relaxation_iterations)

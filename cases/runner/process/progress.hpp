@@ -38,6 +38,7 @@ class Progress {
   void write_to_person(const std::string& text);
   void write_to_log(const std::string& line);
   void erase_live_line();
+  void moved(const StepRecord& record);
   [[nodiscard]] std::string time_left() const;
 
   bool quiet_, live_;

@@ -46,6 +46,10 @@ std::string suggestion(Outcome outcome, Mode mode) {
       return "Take smaller steps (loading.steps); solver.projection = \"always\" is slower and "
              "more robust.";
     case Outcome::degenerate:
+      if (mode == Mode::dynamics) {
+        return "Take smaller time steps (dynamics.time_step, dynamics.step_share), or softer loads "
+               "and initial fields: points have met, or have left the range of numbers.";
+      }
       return "Points collapse onto each other near the worst points below: take smaller steps, or "
              "see whether a support moves points onto their neighbours.";
     case Outcome::fragmented:
@@ -68,7 +72,14 @@ std::string suggestion(Outcome outcome, Mode mode) {
              "arc_length.steps; if it is long, allow longer steps (loading.largest_step).";
     case Outcome::damage_begins:
       return "Follow the damage by a [[control]] in mode newton, or in mode adaptive.";
+    case Outcome::unstable_step:
+      return "Take a smaller dynamics.time_step, or give dynamics.step_share, with which the step "
+             "follows the stable one.";
     case Outcome::inconsistent:
+      if (mode == Mode::dynamics) {
+        return "The motion gains energy that nobody has put in: take smaller time steps "
+               "(dynamics.time_step, dynamics.step_share).";
+      }
       return "What was found is no state of this body. Take smaller steps (loading.steps, "
              "relaxation.steps, loading.smallest_step). If that does not help, the case shows a "
              "fault of the program: please report it with its case file.";

@@ -30,7 +30,9 @@ const std::vector<double>& values_of(const ProbeField& field, const StepFields& 
       {"stress", &StepFields::stress},
       {"von_mises", &StepFields::von_mises},
       {"principal_stress", &StepFields::principal_stress},
-      {"missing_neighbourhood", &StepFields::missing_neighbourhood}};
+      {"missing_neighbourhood", &StepFields::missing_neighbourhood},
+      {"velocity", &StepFields::velocity},
+      {"kinetic_energy_density", &StepFields::kinetic_energy_density}};
   return *(fields.*members.at(field.name));
 }
 

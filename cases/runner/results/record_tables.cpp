@@ -55,7 +55,8 @@ const std::vector<Column>& step_columns() {
   static const std::vector<Column> columns{
       {integer, "step", "1", "number of the accepted step"},
       {number, "load_factor", "1", "load factor of the step"},
-      {text, "mode", "none", "how equilibrium was found: newton, relaxation, arc_length or path"},
+      {text, "mode", "none",
+       "how equilibrium was found: newton, relaxation, arc_length or path; dynamics"},
       {integer, "newton_iterations", "1", "Newton iterations of the step"},
       {integer, "relaxation_iterations", "1",
        "iterations of relaxation of the step; of a flow, its solves"},

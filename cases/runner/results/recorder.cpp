@@ -8,6 +8,7 @@
 #include "assembly/terms/damage.hpp"
 #include "cases/runner/results/constraint_columns.hpp"
 #include "cases/runner/results/crack_tip_columns.hpp"
+#include "cases/runner/results/motion_columns.hpp"
 #include "cases/runner/results/record_tables.hpp"
 
 namespace peristat {
@@ -21,6 +22,10 @@ StepFields Recorder::Fields::view(bool with_stress) const {
                     &fragment,
                     histories ? &*histories : nullptr};
   if (stress && with_stress) stress->show_in(fields);
+  if (!velocity.empty()) {
+    fields.velocity = &velocity;
+    fields.kinetic_energy_density = &kinetic_energy_density;
+  }
   return fields;
 }
 
@@ -31,20 +36,18 @@ void Recorder::iteration(const IterationRecord& record) {
 }
 
 Recorder::Fields Recorder::fields(const StateView& at, std::vector<double> force,
-                                  std::span<const std::int32_t> piece) const {
+                                  std::span<const std::int32_t> piece,
+                                  std::span<const double> velocity) const {
   const std::size_t points = points_.volume.size();
   const std::ptrdiff_t dofs = std::ptrdiff_t(own_) * points_.dimension;
   force.resize(std::size_t(dofs));
-  Fields made{{at.displacement.begin(), at.displacement.begin() + dofs},
-              std::move(force),
-              std::vector<double>(points),
-              std::vector<double>(points),
-              std::vector<double>(points),
-              std::vector<double>(own_, 0.0),
-              0.0,
-              0.0,
-              written_histories_.changes(points_, body_.model.bonds(),
-                                         bond_stretches(body_.model, at.history))};
+  Fields made;
+  made.displacement.assign(at.displacement.begin(), at.displacement.begin() + dofs);
+  made.force = std::move(force);
+  for (auto* field : {&made.damage, &made.energy_density, &made.stretch}) field->resize(points);
+  made.fragment.assign(own_, 0.0);
+  made.histories = written_histories_.changes(points_, body_.model.bonds(),
+                                              bond_stretches(body_.model, at.history));
   assembler_.point_energies(at, made.energy_density);
   for (std::size_t i = own_; i < points; ++i) {
     made.energy_density[std::size_t(points_.source(Index(i)))] += made.energy_density[i];
@@ -59,7 +62,17 @@ Recorder::Fields Recorder::fields(const StateView& at, std::vector<double> force
   for (auto* field : {&made.damage, &made.energy_density, &made.stretch}) field->resize(own_);
   std::copy_n(piece.begin(), std::min(piece.size(), own_), made.fragment.begin());
   if (tells_stress(case_)) made.stress = make_stress_fields(body_, assembler_, at);
+  if (!velocity.empty()) add_motion(velocity, made);
   return made;
+}
+
+void Recorder::add_motion(std::span<const double> velocity, Fields& made) const {
+  const auto d = std::size_t(points_.dimension);
+  made.velocity.assign(velocity.begin(), velocity.begin() + std::ptrdiff_t(own_ * d));
+  made.kinetic_energy_density.assign(own_, 0.0);
+  for (std::size_t k = 0; k < made.velocity.size(); ++k) {
+    made.kinetic_energy_density[k / d] += 0.5 * density_[k / d] * velocity[k] * velocity[k];
+  }
 }
 
 void Recorder::accepted(StepRecord record, const AcceptedState& state) {
@@ -72,7 +85,7 @@ void Recorder::accepted(StepRecord record, const AcceptedState& state) {
   if (!follower_force.empty()) constraints.fold_images(follower_force);
   for (std::size_t k = 0; k < follower_force.size(); ++k) force[k] -= follower_force[k];
   body_.conditions->foundations().add_force(at.displacement, at.environment, -1.0, force);
-  Fields made = fields(at, std::move(force), state.piece);
+  Fields made = fields(at, std::move(force), state.piece, state.velocity);
   record.max_stretch = made.max_stretch;
   record.max_damage = made.max_damage;
   record_broken_bonds(record, at.history);
@@ -90,6 +103,7 @@ void Recorder::accepted(StepRecord record, const AcceptedState& state) {
                       "; its energy release rates are told as 0");
   }
   add_constraint_values(*body_.conditions, state.trial, state.external_force, record.probes);
+  add_motion_values(record, points_.dimension, record.probes);
   for (const LineProbe& line : lines_) {
     results_.add_line(line.table().name, line.rows(record, all));
   }
@@ -105,7 +119,8 @@ void Recorder::accepted(StepRecord record, const AcceptedState& state) {
 CrackState Recorder::crack_state(const StepRecord& record, const std::string& probe) const {
   const auto before = growth_.find(probe);
   return {separated_, body_.cut_bonds.size(),
-          record.external_work + record.numerical_work - record.stored_energy,
+          record.external_work + record.numerical_work - record.stored_energy -
+              (record.motion ? record.motion->kinetic_energy : 0.0),
           record.dissipated_energy, before == growth_.end() ? CrackGrowth{} : before->second};
 }
 
@@ -143,7 +158,8 @@ void Recorder::go_on(const Checkpoint& checkpoint, const EarlierResults& earlier
   if (is_unwritten) {
     State accepted = path.accepted;
     accepted.environment = body_.conditions->environment({accepted.stage, accepted.load});
-    unwritten_ = fields(StateView(accepted), checkpoint.unwritten.force, path.pins.found.piece);
+    unwritten_ = fields(StateView(accepted), checkpoint.unwritten.force, path.pins.found.piece,
+                        path.dynamics.velocity);
   }
 }
 

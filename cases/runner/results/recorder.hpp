@@ -16,6 +16,7 @@
 #include "cases/runner/results/stress_fields.hpp"
 #include "solvers/drivers/load_stepping.hpp"
 #include "solvers/study/crack_tips.hpp"
+#include "solvers/study/motion.hpp"
 
 namespace peristat {
 
@@ -34,6 +35,7 @@ class Recorder {
         body_(body),
         crack_tips_(crack_tips),
         separated_(body.cut_bonds) {
+    if (from.dynamics.is_asked_for) density_ = densities_of(body);
     for (const ProbeSpecification& probe : from.probes) {
       if (probe.from) lines_.emplace_back(probe, body.points);
     }
@@ -61,9 +63,10 @@ class Recorder {
  private:
   struct Fields {
     std::vector<double> displacement, force, damage, energy_density, stretch, fragment;
+    std::vector<double> velocity, kinetic_energy_density;  ///< empty: of a body at rest
     double max_damage = 0.0, max_stretch = 0.0;
     std::optional<BondHistories> histories;
-    std::optional<StressFields> stress{};  ///< where a probe or the results need it
+    std::optional<StressFields> stress;  ///< where a probe or the results need it
     /// @param with_stress whether strain and stress are shown
     [[nodiscard]] StepFields view(bool with_stress) const;
   };
@@ -71,7 +74,10 @@ class Recorder {
   /// Fields of a state.
   /// @param force minus its gradient [N], of more than these points
   [[nodiscard]] Fields fields(const StateView& at, std::vector<double> force,
-                              std::span<const std::int32_t> piece) const;
+                              std::span<const std::int32_t> piece,
+                              std::span<const double> velocity) const;
+  /// Adds velocity and kinetic energy.
+  void add_motion(std::span<const double> velocity, Fields& made) const;
   /// The bonds that have broken since it was asked last.
   [[nodiscard]] std::vector<BondEnds> newly_broken(const History& history);
   /// Adds the bonds that have broken since the last step to the results.
@@ -95,6 +101,7 @@ class Recorder {
   std::optional<Fields> unwritten_;    // of the last step, if it only entered the history
   std::vector<char> broken_;           // per bond, in the last accepted state
   DamageHistories written_histories_;  // in the last state that was written with fields
+  std::vector<double> density_;        // per point, of a body in motion [kg/m3]
   std::vector<LineProbe> lines_;
   std::vector<BondEnds> separated_;  // by pre-cracks, and broken until the last accepted state
   std::map<std::string, CrackGrowth> growth_;  // of the probes of resistance to cracks

@@ -95,7 +95,12 @@ const std::vector<FieldKind>& field_kinds() {
         "and "
         "broken bonds; 1 where the unbroken bonds give no F"},
        Rank::scalar,
-       &StepFields::missing_neighbourhood}};
+       &StepFields::missing_neighbourhood},
+      {"velocity", {"m/s", "velocity of each point"}, Rank::vector, &StepFields::velocity},
+      {"kinetic_energy_density",
+       {"J/m3", "kinetic energy per volume of each point"},
+       Rank::scalar,
+       &StepFields::kinetic_energy_density}};
   return kinds;
 }
 
@@ -164,6 +169,7 @@ void StepPart::write(Hdf5File& file, const WrittenStep& step) const {
   file.set_attribute(step.group, "step", std::int64_t{step.step});
   file.set_attribute(step.group, "load_factor", step.load_factor);
   file.set_attribute(step.group, "mode", step.mode);
+  if (fields_.velocity != nullptr) file.set_attribute(step.group, "time", step.load_factor);
   for (const std::string& name : names_) {
     const FieldKind& kind = kind_of(name);
     file.write(step.group + "/" + name, *(fields_.*kind.values), kind.shape(shape_), kind.label);

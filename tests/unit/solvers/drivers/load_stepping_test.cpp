@@ -51,8 +51,11 @@ Followed follow(AnyProblem& problem, const LoadSteppingOptions& options,
     followed.pieces.emplace_back(state.piece.begin(), state.piece.end());
   };
   observer.interrupted = [&] { return int(followed.steps.size()) == interrupt_after; };
-  followed.result = follow_loading({problem.assembler, solver, problem.tangent, problem.free},
-                                   problem.conditions, options, newton_options, observer);
+  followed.result = follow_loading({{problem.assembler, solver, problem.tangent, problem.free},
+                                    problem.conditions,
+                                    options,
+                                    newton_options,
+                                    observer});
   return followed;
 }
 

@@ -59,12 +59,13 @@ struct Setting {
   int interrupt_after = -1;  ///< accepted steps
   NewtonOptions newton_options{};
   tests::Control control{};
+  bool moves = false;  ///< with masses, and a velocity at the start
 };
 
 /// A path that has been followed to its end: states and rows that were told.
 struct Followed {
   std::vector<PathState> states;  ///< after every step and decision
-  std::vector<std::size_t> rows_before;
+  std::vector<std::size_t> rows_before, told_before;
   std::vector<Row> rows;
   std::vector<std::vector<double>> told;  ///< displacements and pieces of accepted states
   Outcome outcome = Outcome::converged;
@@ -108,6 +109,18 @@ struct StandIn {
   }
 };
 
+MotionSetting motion_of(const Strip& strip) {
+  MotionSetting motion;
+  const std::size_t dofs = strip.body.points.reference.size();
+  for (std::size_t k = 0; k < dofs; ++k) {
+    motion.mass.push_back(2.0 * strip.body.points.volume[k / 2]);
+    motion.displacement.push_back(1e-4 * std::sin(double(k)));
+    motion.velocity.push_back(1e-3 * std::cos(double(k)));
+  }
+  motion.most_points = 3;
+  return motion;
+}
+
 /// @param from state to go on from; null: from rest
 Followed follow(const Setting& setting, const PathState* from = nullptr) {
   Followed followed;
@@ -125,15 +138,18 @@ Followed follow(const Setting& setting, const PathState* from = nullptr) {
     followed.rows.push_back(make_row(row, {"left", "right"}, {}));
     std::vector<double> told = state.trial.displacement;
     told.insert(told.end(), state.piece.begin(), state.piece.end());
+    told.insert(told.end(), state.velocity.begin(), state.velocity.end());
     followed.told.push_back(std::move(told));
   };
   const int steps_before = from ? from->steps : 0;
   observer.interrupted = [&] {
     return steps_before + int(followed.told.size()) == setting.interrupt_after;
   };
+  const MotionSetting motion = motion_of(solved.strip);
   const PathSetting all{solved.body(),   solved.strip.conditions,
                         setting.options, setting.newton_options,
-                        observer,        setting.has_stand_in ? &stand_in : nullptr};
+                        observer,        setting.has_stand_in ? &stand_in : nullptr,
+                        &motion};
   Path path = from ? Path(all, *from) : Path(all);
   if (from) {
     EXPECT_EQ(path.prepare_solvers(), LinearOutcome::solved);
@@ -142,6 +158,7 @@ Followed follow(const Setting& setting, const PathState* from = nullptr) {
   do {
     followed.states.push_back(path.state());
     followed.rows_before.push_back(followed.rows.size());
+    followed.told_before.push_back(followed.told.size());
   } while (driver->advance() == Advance::goes_on);
   followed.outcome = path.outcome();
   return followed;
@@ -203,7 +220,7 @@ Followed expect_to_go_on_from_copies(const Setting& setting) {
     EXPECT_EQ(rest.outcome, whole.outcome);
     const auto begin = whole.rows.begin() + std::ptrdiff_t(whole.rows_before[k]);
     EXPECT_TRUE(std::equal(rest.rows.begin(), rest.rows.end(), begin, whole.rows.end()));
-    const auto told = whole.told.begin() + whole.states[k].steps;
+    const auto told = whole.told.begin() + std::ptrdiff_t(whole.told_before[k]);
     EXPECT_TRUE(std::equal(rest.told.begin(), rest.told.end(), told, whole.told.end()));
   }
   return whole;
@@ -367,6 +384,24 @@ TEST(PathState, GoesOnAlongTheArcLength) {
   EXPECT_TRUE(any_state(whole, [](const PathState& s) { return s.arc.passes_critical_point; }));
 }
 
+TEST(PathState, GoesOnInTime) {
+  for (const double triangles : {0.0, 0.2}) {
+    for (const double time_step : {0.0, 0.01}) {
+      Setting setting{drawn("0.06*t"), options_of(Mode::dynamics, 1, 1)};
+      setting.control.programme = LoadingProgramme::of_time(1.0);
+      setting.triangles = triangles;
+      setting.options.dynamics = {time_step, 0.5, 7};
+      const Followed whole = expect_to_go_on_from_copies(setting);
+      EXPECT_EQ(whole.outcome, Outcome::converged);
+      const PathState& last = whole.states.back();
+      EXPECT_EQ(last.accepted.stage, 1.0);
+      EXPECT_GT(last.ledger.entries.dissipated, 0.0);
+      EXPECT_GT(last.ledger.entries.kinetic, 0.0);
+      EXPECT_EQ(last.dynamics.velocity.size(), last.accepted.displacement.size());
+    }
+  }
+}
+
 TEST(PathState, IsToldWhereAPathCanGoOn) {
   const Setting setting{drawn("0.045*min(load, 1.2 - load)"), options_of(Mode::adaptive, 10, 50)};
   Followed followed;
@@ -377,8 +412,9 @@ TEST(PathState, IsToldWhereAPathCanGoOn) {
     LoadSteppingObserver observer;
     if (from == nullptr)
       observer.reached = [&](const PathState& state) { reached.push_back(state); };
-    return follow_loading(solved.body(), solved.strip.conditions, setting.options,
-                          setting.newton_options, observer, nullptr, from);
+    return follow_loading(
+        {solved.body(), solved.strip.conditions, setting.options, setting.newton_options, observer},
+        from);
   };
   const LoadSteppingResult whole = follow_from(nullptr);
   ASSERT_EQ(whole.outcome, Outcome::converged);
@@ -408,8 +444,11 @@ TEST(PathState, KeepsNoFactorForTheNextStep) {
       first_of_step.push_back(uses.size());
     };
     const LoadSteppingResult result =
-        follow_loading({solved.strip.assembler, solver, solved.strip.tangent, solved.strip.free},
-                       solved.strip.conditions, setting.options, setting.newton_options, observer);
+        follow_loading({{solved.strip.assembler, solver, solved.strip.tangent, solved.strip.free},
+                        solved.strip.conditions,
+                        setting.options,
+                        setting.newton_options,
+                        observer});
     EXPECT_GT(result.steps, 5);
     first_of_step.pop_back();
     for (const std::size_t first : first_of_step) {

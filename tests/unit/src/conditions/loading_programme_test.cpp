@@ -66,5 +66,20 @@ TEST(LoadingProgramme, RefusesTablesThatDoNotGoTogether) {
             "programme = 5: must have from 1 to 4 tables");
 }
 
+TEST(LoadingProgramme, IsOfTime) {
+  const LoadingProgramme programme = LoadingProgramme::of_time(2.5);
+  EXPECT_TRUE(programme.is_of_time());
+  EXPECT_EQ(programme.names(), std::vector<std::string>{"t"});
+  EXPECT_EQ(programme.at(1.75), std::vector<double>{1.75});
+  EXPECT_EQ(programme.end(), 2.5);
+  EXPECT_TRUE(programme.has_rest(2.5 * (1.0 - 1e-12)));
+  EXPECT_FALSE(programme.has_rest(2.5));
+  EXPECT_FALSE(LoadingProgramme().is_of_time());
+  EXPECT_EQ(LoadingProgramme().names(), std::vector<std::string>{"load"});
+  for (const double end : {0.0, -1.0, std::numeric_limits<double>::infinity()}) {
+    EXPECT_THROW(static_cast<void>(LoadingProgramme::of_time(end)), InputError);
+  }
+}
+
 }  // namespace
 }  // namespace peristat

@@ -109,6 +109,13 @@ TEST(Expression, IsConstantWithoutAVariable) {
   EXPECT_FALSE(Expression("max(1, x)", 2, 0.01, with_load).is_constant());
 }
 
+TEST(Expression, KnowsWhetherAParameterOccurs) {
+  EXPECT_TRUE(Expression("x*load", 2, 0.01, with_load).has_parameters());
+  EXPECT_FALSE(Expression("x + spacing", 2, 0.01, with_load).has_parameters());
+  EXPECT_FALSE(Expression("2", 2, 0.01, with_load).has_parameters());
+  EXPECT_FALSE(Expression(2.75e-4).has_parameters());
+}
+
 TEST(Expression, CanBeMoved) {
   Expression first("x + load", 1, 1.0, with_load);
   const Expression second = std::move(first);

@@ -1,0 +1,291 @@
+#include "solvers/drivers/dynamics.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+
+#include "assembly/terms/damage.hpp"
+#include "src/core/number_text.hpp"
+
+namespace peristat {
+namespace {
+
+/// Time steps from one look at the stiffness to the next: more of them while it stays as it is.
+constexpr int fewest_between_looks = 4, most_between_looks = 64;
+constexpr int steps_between_interruptions = 20;
+
+/// Change of the bound with which the eigenvalue is taken to change in proportion.
+constexpr double same_stiffness = 0.02;
+
+/// A step grows only if it becomes this much longer: with each change the scheme begins anew.
+constexpr double least_growth = 1.25;
+
+/// Of the energy that is turned over, what trapezoidal sums of work may leave out; and all that
+/// bonds dissipate, since those that break within a step lose the energy of its beginning or its
+/// end.
+constexpr double work_error = 0.05;
+
+/// Of what has been put in, the energy of a motion that grows by itself. A stable step leaves a
+/// multiple of the modified energy to the highest frequencies, 1 / (1 - (step / stable step)^2).
+constexpr double growth_of_instability = 100.0;
+
+/// A remainder of the way below this share of a step is round-off.
+constexpr double remainder = 1e-9;
+
+}  // namespace
+
+Dynamics::Dynamics(Path& path) : Driver(path), options_(path.options().dynamics) {}
+
+const MotionSetting& Dynamics::setting() const {
+  if (!path_.setting().motion) throw std::logic_error("mode dynamics needs masses");
+  return *path_.setting().motion;
+}
+
+Advance Dynamics::next() {
+  PathState& state = path_.state();
+  if (state.dynamics.has_begun && !path_.goes_on()) return Advance::ended;
+  const PathState::Dynamics dynamics = state.dynamics;
+  const int steps = state.steps;
+  const Advance advance = dynamics.has_begun ? move() : begin();
+  if (path_.outcome() != Outcome::converged) {
+    state.dynamics = dynamics;
+    state.steps = steps;
+  }
+  return advance;
+}
+
+Advance Dynamics::begin() {
+  PathState& state = path_.state();
+  const Conditions& conditions = path_.setting().conditions;
+  State start{setting().displacement, 0.0, state.accepted.history, {}, state.accepted.environment};
+  conditions.prescribe(0.0, start.displacement);
+  std::vector<double> velocity = setting().velocity;
+  for (std::size_t dof = 0; dof < velocity.size(); ++dof) {
+    if (path_.free().equation[dof] == FreeDofs::none) velocity[dof] = 0.0;
+  }
+  VelocityVerlet motion(path_.problem(), setting(), start, std::move(velocity));
+  if (motion.at().degenerate || !motion.find_energy())
+    return fail(Outcome::degenerate, 0.0, "the initial state");
+  if (setting().at_start) state.dynamics.stiffness = *setting().at_start;
+  const std::string refusal = choose_step(motion.at(), 0.0);
+  if (!refusal.empty()) return fail(Outcome::unstable_step, 0.0, refusal);
+  const double step = state.dynamics.step;
+  state.dynamics.correction_at_start = step * step / 8.0 * motion.squared_force();
+  // What the body begins with counts as work that was done before.
+  Ledger& entries = state.ledger.entries;
+  entries = {};
+  std::vector<double> damage(std::size_t(path_.damaged().points().count()));
+  const DamageState damaged =
+      assess_damage(path_.damaged().model(), motion.at().history, {}, damage);
+  entries.external_work = motion.at().stored_energy + motion.kinetic_energy() +
+                          damaged.dissipated_energy + motion.sums().released;
+  state.dynamics.has_begun = true;
+  return accept(std::move(motion));
+}
+
+Stiffness Dynamics::stiffness_at(const Trial& state) {
+  const auto& [assembler, solver, tangent, free] = path_.body();
+  tangent.linearise(assembler, state.at(), 1.0);
+  is_linearised_ = true;
+  const Stiffness now = bound_stiffness(tangent, free, setting().mass, setting().most_points);
+  const Stiffness& known = path_.state().dynamics.stiffness;
+  const bool is_enough = options_.time_step > 0.0 && now.stable_step() >= options_.time_step;
+  if (is_enough) return now;
+  if (known.bound > 0.0 && std::abs(now.bound - known.bound) <= same_stiffness * known.bound) {
+    return {now.bound, known.eigenvalue * std::max(1.0, now.bound / known.bound)};
+  }
+  path_.state().dynamics.stiffness =
+      find_stiffness(tangent, free, setting().mass, setting().most_points);
+  return path_.state().dynamics.stiffness;
+}
+
+std::string Dynamics::choose_step(const Trial& state, double time) {
+  PathState::Dynamics& dynamics = path_.state().dynamics;
+  const Stiffness now = stiffness_at(state);
+  const bool has_changed =
+      std::abs(now.bound - dynamics.last_bound) > same_stiffness / 2 * now.bound;
+  dynamics.last_bound = now.bound;
+  dynamics.look_interval =
+      std::clamp(has_changed ? dynamics.look_interval / 2 : 2 * dynamics.look_interval,
+                 fewest_between_looks, most_between_looks);
+  dynamics.next_look += dynamics.look_interval;
+  const double stable = now.stable_step();
+  if (options_.time_step > 0.0) {
+    dynamics.step = options_.time_step;
+    if (dynamics.step <= stable) return {};
+    return "the step is " + number_text(dynamics.step) + " s, the stable one " +
+           number_text(stable) + " s";
+  }
+  if (!std::isfinite(stable)) return "nothing has a stiffness, so that no step is the stable one";
+  const double before = dynamics.step, wanted = options_.step_share * stable;
+  if (before > 0.0 && wanted >= before && wanted < least_growth * before) return {};
+  dynamics.step = wanted;
+  if (before == 0.0) return {};
+  path_.tell(time, {.increment = before,
+                    .outcome = name(Outcome::converged),
+                    .action = Decision::change_time_step,
+                    .next_increment = wanted,
+                    .reason = "the stable time step is " + number_text(stable) + " s"});
+  return {};
+}
+
+Advance Dynamics::move() {
+  PathState& state = path_.state();
+  const double end = path_.setting().conditions.programme().end();
+  const auto& interrupted = path_.setting().observer.interrupted;
+  VelocityVerlet motion(path_.problem(), setting(), state.accepted, state.dynamics.velocity);
+  int step = state.steps;
+  bool is_last = false;
+  do {
+    const double time = motion.time();
+    const bool asks = (step - state.steps) % steps_between_interruptions == 0;
+    if (interrupted && asks && interrupted()) {
+      return fail(Outcome::interrupted, time, "");
+    }
+    if (step >= state.dynamics.next_look) {
+      state.dynamics.next_look = step;
+      const std::string refusal = choose_step(motion.at(), time);
+      if (!refusal.empty()) return fail(Outcome::unstable_step, time, refusal);
+    }
+    double dt = state.dynamics.step, next = time + dt;
+    is_last = end - time <= dt * (1.0 + remainder);
+    if (is_last) dt = end - time, next = end;
+    if (!(next > time)) return fail(Outcome::unstable_step, time, "the step is lost in the time");
+    try {
+      if (!motion.step(dt, next)) return fail(Outcome::degenerate, next, "");
+    } catch (const InputError& error) {
+      return fail(Outcome::undefined_condition, next,
+                  path_.refusal_of_conditions(next).value_or(error.what()));
+    }
+    ++step;
+  } while (!is_last && step % options_.steps_per_row != 0);
+  state.steps = step;
+  if (!motion.find_energy()) return fail(Outcome::degenerate, motion.time(), "");
+  motion.complete_sums();
+  state.dynamics.correction += motion.sums().correction;
+  return accept(std::move(motion));
+}
+
+MotionRecord Dynamics::motion_record(const VelocityVerlet& motion) const {
+  const PathState::Dynamics& dynamics = path_.state().dynamics;
+  MotionRecord record;
+  record.time = motion.time();
+  record.time_step = dynamics.step;
+  record.kinetic_energy = motion.kinetic_energy();
+  record.modified_energy = record.kinetic_energy + motion.at().stored_energy -
+                           dynamics.correction_at_start - dynamics.correction;
+  const FreeDofs& free = path_.free();
+  for (const Index dof : free.dof) {
+    record.momentum[std::size_t(dof % free.dimension)] +=
+        setting().mass[dof] * motion.velocity()[dof];
+  }
+  return record;
+}
+
+Ledger Dynamics::ledger_with(const VelocityVerlet& motion, double dissipated) const {
+  const PathLedger& ledger = path_.state().ledger;
+  Ledger after = ledger.entries;
+  after.stored = motion.at().stored_energy;
+  after.dissipated = dissipated + ledger.released + motion.sums().released;
+  after.external_work += motion.sums().work;
+  after.kinetic = motion.kinetic_energy();
+  return after;
+}
+
+Advance Dynamics::accept(VelocityVerlet motion) {
+  PathState& state = path_.state();
+  const double time = motion.time();
+  Assembler& assembler = path_.damaged();
+  std::vector<double> damage(std::size_t(assembler.points().count()));
+  const DamageState damaged = assess_damage(assembler.model(), motion.at().history, {}, damage);
+  FoundStep found;
+  found.record.mode = Mode::dynamics.name;
+  found.record.settled = true;
+  found.record.motion = motion_record(motion);
+  found.record.broken_bonds = damaged.broken_bonds;
+  found.growth = motion.sums().growth;
+  found.energies.released = motion.sums().released;
+  found.ledger = ledger_with(motion, damaged.dissipated_energy);
+  std::vector<double> velocity = motion.take_velocity();
+  Attempt attempt;
+  attempt.at = time;
+  attempt.largest_residual = -1.0;
+  attempt.external_force = motion.external_force();
+  attempt.state = motion.take();
+  const std::string fault = fault_of(attempt, found);
+  if (!fault.empty()) return fail(Outcome::inconsistent, time, fault);
+  state.accepted = state_of(attempt);
+  add_velocity_of_supports(time, velocity);
+  state.dynamics.velocity = velocity;
+  state.ledger.accept(found.ledger, path_.working_force(attempt.state, attempt.external_force),
+                      found.energies);
+  complete_record(path_, attempt, found);
+  path_.tell(time, {.increment = state.dynamics.step,
+                    .outcome = name(Outcome::converged),
+                    .action = Decision::accept,
+                    .next_increment = state.dynamics.step,
+                    .reason = "time step " + std::to_string(state.steps)});
+  if (const auto& tell = path_.setting().observer.accepted) {
+    tell(found.record, {attempt.state, attempt.external_force, state.pins.found.piece, velocity});
+  }
+  path_.last_attempt() = std::move(attempt);
+  return Advance::goes_on;
+}
+
+void Dynamics::add_velocity_of_supports(double time, std::vector<double>& velocity) const {
+  const Conditions& conditions = path_.setting().conditions;
+  if (!conditions.supports_move()) return;
+  const double half = 0.5 * path_.state().dynamics.step;
+  const double before = std::max(0.0, time - half);
+  const double after = std::min(conditions.programme().end(), time + half);
+  std::vector<double> there(velocity.size()), here(velocity.size());
+  conditions.prescribe(before, here);
+  conditions.prescribe(after, there);
+  const std::vector<char>& dependent = conditions.constraints().dependent();
+  for (std::size_t dof = 0; dof < velocity.size(); ++dof) {
+    if (conditions.prescribed()[dof] && !dependent[dof]) {
+      velocity[dof] = (there[dof] - here[dof]) / (after - before);
+    }
+  }
+}
+
+std::string Dynamics::fault_of(const Attempt& attempt, const FoundStep& found) {
+  const auto& [assembler, solver, tangent, free] = path_.body();
+  if (!is_linearised_) tangent.linearise(assembler, attempt.state.at(), 1.0);
+  is_linearised_ = true;
+  const PathState& state = path_.state();
+  const std::string fault =
+      find_inconsistency(path_.problem(), path_.damaged(), tangent,
+                         {attempt.state, attempt.external_force, attempt.largest_residual, true,
+                          state.ledger.entries, found.ledger});
+  if (!fault.empty()) return fault;
+  return fault_of_balance(found.ledger);
+}
+
+std::string Dynamics::fault_of_balance(const Ledger& after) {
+  PathState::Dynamics& dynamics = path_.state().dynamics;
+  const double energy = after.kinetic + after.stored;
+  dynamics.largest_energy =
+      std::max({dynamics.largest_energy, std::abs(after.external_work), after.dissipated});
+  const double error = after.balance_error() + dynamics.correction;
+  const double allowed = work_error * std::max(dynamics.largest_energy, energy) + after.dissipated;
+  if (!(std::abs(error) <= allowed)) {
+    return "the modified energy is " + number_text(error) + " J less than what was put in, " +
+           number_text(dynamics.largest_energy) + " J";
+  }
+  if (!(energy <= growth_of_instability * dynamics.largest_energy)) {
+    return "the motion holds " + number_text(energy) + " J, and no more than " +
+           number_text(dynamics.largest_energy) + " J have been put in";
+  }
+  return {};
+}
+
+Advance Dynamics::fail(Outcome outcome, double time, const std::string& what) {
+  Attempt attempt = undefined_attempt(path_.state().accepted, time);
+  attempt.outcome = outcome;
+  const std::string reason = reason_of(attempt, what);
+  return path_.stop(std::move(attempt), path_.state().dynamics.step, reason);
+}
+
+}  // namespace peristat

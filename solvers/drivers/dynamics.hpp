@@ -1,0 +1,52 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "solvers/drivers/driver.hpp"
+#include "solvers/drivers/found_step.hpp"
+#include "solvers/motion/velocity_verlet.hpp"
+
+namespace peristat {
+
+/// Follows the motion in time, by the explicit scheme of VelocityVerlet, from the initial state to
+/// the end of the programme of time. Each call goes to the next state that is told, a number of
+/// time steps on; PathState::steps counts time steps. The last step ends at the end.
+///
+/// Every so many time steps the stiffness of the present state is bounded. A step that is a share
+/// of the stable one follows it; one that is given ends the path where it is no longer stable.
+///
+/// A state that is told owes the balance of its modified energy, up to what trapezoidal sums of
+/// work leave out; and its energy may not be many times what has been put in, which is how steps
+/// that are too long show.
+class Dynamics : public Driver {
+ public:
+  explicit Dynamics(Path& path);
+
+ protected:
+  [[nodiscard]] Advance next() override;
+
+ private:
+  /// @throws std::logic_error if the path has none
+  [[nodiscard]] const MotionSetting& setting() const;
+  [[nodiscard]] Advance begin();
+  [[nodiscard]] Advance move();
+  /// The stiffness at a state; the eigenvalue is found again where the bound has changed.
+  [[nodiscard]] Stiffness stiffness_at(const Trial& state);
+  /// Chooses the step for the present stiffness.
+  /// @return why there is none
+  [[nodiscard]] std::string choose_step(const Trial& state, double time);
+  [[nodiscard]] Advance accept(VelocityVerlet motion);
+  /// Of what is prescribed, the mean over a time step.
+  void add_velocity_of_supports(double time, std::vector<double>& velocity) const;
+  [[nodiscard]] MotionRecord motion_record(const VelocityVerlet& motion) const;
+  [[nodiscard]] Ledger ledger_with(const VelocityVerlet& motion, double dissipated) const;
+  [[nodiscard]] std::string fault_of(const Attempt& attempt, const FoundStep& found);
+  [[nodiscard]] std::string fault_of_balance(const Ledger& after);
+  [[nodiscard]] Advance fail(Outcome outcome, double time, const std::string& what);
+
+  const DynamicsOptions& options_;
+  bool is_linearised_ = false;  // the tangent, near the present state
+};
+
+}  // namespace peristat

@@ -1,0 +1,188 @@
+#include "solvers/motion/stable_step.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "solvers/linear/vector_verbs.hpp"
+#include "src/core/counter_random.hpp"
+
+namespace peristat {
+namespace {
+
+/// Lanczos' method ends where its largest Ritz value has risen by less than this share over the
+/// last iterations: it then lacks less than a hundredth (the ends of a band of frequencies are
+/// approached with the inverse square of the iterations).
+constexpr double settled_share = 1e-4;
+constexpr std::size_t look_back = 5, least_iterations = 20, most_iterations = 120;
+constexpr double margin = 1.01;
+
+using Vector = std::vector<double>;
+
+/// Largest eigenvalue of the symmetric block of a point, scaled by masses.
+double largest_of_block(const double* block, const double* mass, const char* is_free, int d) {
+  std::array<std::array<double, 3>, 3> a{};
+  for (int r = 0; r < d; ++r) {
+    for (int c = 0; c < d; ++c) {
+      if (!is_free[r] || !is_free[c]) continue;
+      a[r][c] = block[r * d + c] / std::sqrt(mass[r] * mass[c]);
+    }
+  }
+  // Jacobi's rotations: three by three needs a few sweeps.
+  for (int sweep = 0; sweep < 12; ++sweep) {
+    for (int p = 0; p < d; ++p) {
+      for (int q = p + 1; q < d; ++q) {
+        if (a[p][q] == 0.0) continue;
+        const double theta = 0.5 * (a[q][q] - a[p][p]) / a[p][q];
+        const double t = std::copysign(1.0, theta) / (std::abs(theta) + std::hypot(1.0, theta));
+        const double c = 1.0 / std::hypot(1.0, t), s = t * c;
+        for (int k = 0; k < d; ++k) {
+          const double kp = a[k][p], kq = a[k][q];
+          a[k][p] = c * kp - s * kq;
+          a[k][q] = s * kp + c * kq;
+        }
+        for (int k = 0; k < d; ++k) {
+          const double pk = a[p][k], qk = a[q][k];
+          a[p][k] = c * pk - s * qk;
+          a[q][k] = s * pk + c * qk;
+        }
+      }
+    }
+  }
+  double largest = 0.0;
+  for (int c = 0; c < d; ++c) largest = std::max(largest, a[c][c]);
+  return largest;
+}
+
+/// The point whose block is stiffest, and how stiff it is.
+struct Stiffest {
+  Index point = 0;
+  double eigenvalue = 0.0;
+};
+
+Stiffest stiffest_point(const TangentOperator& tangent, const FreeDofs& free,
+                        std::span<const double> mass) {
+  const auto d = std::size_t(tangent.dimension);
+  Stiffest found;
+  for (Index i = 0; i < tangent.pattern.points(); ++i) {
+    std::array<char, 3> is_free{};
+    for (std::size_t c = 0; c < d; ++c) {
+      is_free[c] = free.equation[std::size_t(i) * d + c] != FreeDofs::none;
+    }
+    const double value =
+        largest_of_block(&tangent.diagonal[std::size_t(i) * d * d], &mass[std::size_t(i) * d],
+                         is_free.data(), tangent.dimension);
+    if (value > found.eigenvalue) found = {i, value};
+  }
+  return found;
+}
+
+/// Largest eigenvalue of a symmetric tridiagonal matrix, by bisection on the signs of its pivots.
+double largest_eigenvalue(const Vector& diagonal, const Vector& beside) {
+  double high = 0.0;
+  for (std::size_t k = 0; k < diagonal.size(); ++k) {
+    high = std::max(high, std::abs(diagonal[k]) + (k > 0 ? beside[k - 1] : 0.0) +
+                              (k + 1 < diagonal.size() ? beside[k] : 0.0));
+  }
+  const auto is_above_all = [&](double value) {
+    double pivot = 1.0;
+    for (std::size_t k = 0; k < diagonal.size(); ++k) {
+      pivot = value - diagonal[k] - (k > 0 ? beside[k - 1] * beside[k - 1] / pivot : 0.0);
+      if (!(pivot > 0.0)) return false;
+    }
+    return true;
+  };
+  double low = 0.0;
+  for (int halving = 0; halving < 60; ++halving) {
+    const double middle = 0.5 * (low + high);
+    (is_above_all(middle) ? high : low) = middle;
+  }
+  return high;
+}
+
+/// The product of M^-1/2 K M^-1/2 on the free degrees of freedom.
+class ScaledProduct {
+ public:
+  ScaledProduct(const TangentOperator& tangent, const FreeDofs& free, std::span<const double> mass)
+      : tangent_(tangent), scale_(mass.size(), 0.0), scaled_(mass.size()) {
+    for (const Index dof : free.dof) scale_[dof] = 1.0 / std::sqrt(mass[dof]);
+  }
+
+  void operator()(const Vector& v, Vector& product) {
+    for (std::size_t k = 0; k < v.size(); ++k) scaled_[k] = scale_[k] * v[k];
+    tangent_.multiply(scaled_, product);
+    for (std::size_t k = 0; k < v.size(); ++k) product[k] *= scale_[k];
+  }
+
+ private:
+  const TangentOperator& tangent_;
+  Vector scale_, scaled_;
+};
+
+/// Random, and as much again at the point that is stiffest: a frequency that lives there alone is
+/// then not overlooked.
+Vector start_vector(const FreeDofs& free, Index stiffest, int dimension) {
+  constexpr std::uint64_t seed = 20;
+  Vector start(free.equation.size(), 0.0);
+  for (const Index dof : free.dof) {
+    start[dof] = 2.0 * open_unit(random_bits(seed, std::uint64_t(dof))) - 1.0;
+  }
+  const double length = norm(start);
+  for (int c = 0; c < dimension; ++c) {
+    const std::size_t dof = std::size_t(stiffest) * std::size_t(dimension) + std::size_t(c);
+    if (free.equation[dof] != FreeDofs::none) start[dof] += std::copysign(length, start[dof]);
+  }
+  const double whole = norm(start);
+  for (double& entry : start) entry /= whole;
+  return start;
+}
+
+/// Largest Ritz value, from below.
+double lanczos(ScaledProduct& product, Vector at) {
+  Vector before(at.size(), 0.0), next(at.size());
+  Vector diagonal, beside, found;
+  for (std::size_t k = 0; k < most_iterations; ++k) {
+    product(at, next);
+    diagonal.push_back(dot(at, next));
+    add_scaled(next, -diagonal.back(), at);
+    if (k > 0) add_scaled(next, -beside.back(), before);
+    found.push_back(largest_eigenvalue(diagonal, beside));
+    const double left = norm(next);
+    if (!(left > 1e-12 * found.back())) break;
+    if (k >= least_iterations &&
+        found.back() - found[k - look_back] <= settled_share * found.back()) {
+      break;
+    }
+    beside.push_back(left);
+    before.swap(at);
+    at.swap(next);
+    for (double& entry : at) entry /= left;
+  }
+  return found.back();
+}
+
+}  // namespace
+
+double Stiffness::stable_step() const {
+  return eigenvalue > 0.0 ? 2.0 / std::sqrt(eigenvalue) : std::numeric_limits<double>::infinity();
+}
+
+Stiffness bound_stiffness(const TangentOperator& tangent, const FreeDofs& free,
+                          std::span<const double> mass, int most_points) {
+  const double bound = most_points * stiffest_point(tangent, free, mass).eigenvalue;
+  return {bound, bound};
+}
+
+Stiffness find_stiffness(const TangentOperator& tangent, const FreeDofs& free,
+                         std::span<const double> mass, int most_points) {
+  const Stiffest stiffest = stiffest_point(tangent, free, mass);
+  const double bound = most_points * stiffest.eigenvalue;
+  if (!(bound > 0.0) || free.dof.empty()) return {bound, bound};
+  ScaledProduct product(tangent, free, mass);
+  const double found = lanczos(product, start_vector(free, stiffest.point, tangent.dimension));
+  return {bound, std::min(bound, margin * found)};
+}
+
+}  // namespace peristat

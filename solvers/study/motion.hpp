@@ -1,0 +1,18 @@
+#pragma once
+
+#include "solvers/motion/motion_setting.hpp"
+#include "solvers/study/body.hpp"
+
+namespace peristat {
+
+/// Per point but images [kg/m3].
+/// @throws InputError ("material.density", …) for a material without one
+[[nodiscard]] std::vector<double> densities_of(const Body& body);
+
+/// Masses of a body's points, density times volume, and what its motion begins with.
+/// @throws InputError as densities_of and make_initial_state do; ("rigid_sets", "rollers",
+/// "linear", "periods")
+///         for constraints whose masses are not those of points
+[[nodiscard]] MotionSetting make_motion_setting(const Body& body);
+
+}  // namespace peristat

@@ -1,0 +1,463 @@
+"""Mode dynamics: motions judged by NumPy's velocity Verlet, by conserved quantities, by symmetry and by restarts."""
+
+import json
+import os
+import pathlib
+import random
+import subprocess
+import tempfile
+import unittest
+
+import h5py
+import numpy
+
+from tests.reference.motion import Motion
+from tests.reference.results import Results
+
+PROGRAM = os.environ["PERISTAT_PROGRAM"]
+
+
+def peristat(*arguments):
+    return subprocess.run([PROGRAM, *map(str, arguments)], capture_output=True, text=True, timeout=120)
+
+
+class Folder(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+
+    def run_case(self, text, name="run", *arguments, code=0):
+        case = self.folder / f"{name}.toml"
+        case.write_text(text)
+        ended = peristat("run", case, "--output", self.folder / name, "--threads", 1, "--quiet", *arguments)
+        self.assertEqual(ended.returncode, code, ended.stdout + ended.stderr)
+        self.said = ended.stdout + ended.stderr
+        return self.folder / name
+
+    def refusal(self, text, *arguments):
+        self.run_case(text, "refused", *arguments, code=2)
+        self.assertFalse((self.folder / "refused" / "history.csv").exists())
+        return self.said
+
+
+def columns(folder):
+    rows = Results(folder).table("history")
+    return {name: numpy.array([row[name] for row in rows]) for name in rows[0]}
+
+
+def fields(folder):
+    """By step: the fields of a results file, and its time."""
+    with h5py.File(folder / "results.h5") as file:
+        return {int(group.attrs["step"]): {"time": group.attrs["time"]} | {
+            name: item[...] for name, item in group.items() if name != "history"} for group in file["steps"].values()}  # fmt: skip
+
+
+BAR = """\
+dimension = 1
+[lattice]
+spacing = 0.1
+horizon_ratio = 3.015
+area = 0.5
+[[lattice.shape]]
+add = "box"
+min = [0]
+max = [3]
+[material]
+youngs_modulus = 4.0
+density = 2.0
+[[initial]]
+displacement = ["1e-3*exp(-(x - 1.4)^2/0.09)"]
+velocity = ["1e-3*sin(x)"]
+[solver]
+mode = "dynamics"
+[dynamics]
+end_time = 4.0
+time_step = 0.02
+[output]
+every = 20
+"""
+
+
+def random_case(seed):
+    """A small body with whatever it may have, and its time step and end."""
+    rng = random.Random(seed)
+    d = rng.choice([1, 2, 3])
+    extent = {1: [1.2], 2: [0.9, 0.6], 3: [0.5, 0.4, 0.4]}[d]
+    axes = "xyz"[:d]
+    number = lambda low, high: f"{rng.uniform(low, high):.6g}"
+    wave = lambda size: f"{number(-size, size)}*sin({number(1, 5)}*{rng.choice(axes)} + {number(0, 3)})"
+    vector = lambda entry: "[" + ", ".join(f'"{entry()}"' for _ in range(d)) + "]"
+    law = rng.choice(["none", "critical_stretch", "tanh_continuous", "linear", "exponential", "blended"])
+    if d == 1:
+        law = rng.choice(["none", "critical_stretch", "linear"])
+    text = [f"dimension = {d}", "[lattice]", "spacing = 0.1", f"horizon_ratio = {rng.choice([1.5, 2.015, 3.015])}",
+            "[[lattice.shape]]", 'add = "box"', f"min = {[0.0] * d}", f"max = {extent}",
+            "[[set]]", 'name = "left"', 'where = "x < 0.1"', "[[set]]", 'name = "right"',
+            f'where = "x > {extent[0] - 0.15}"', "[material]", f"youngs_modulus = {number(1, 3)}",
+            f"density = {number(0.5, 2)}"]  # fmt: skip
+    if law != "none":
+        text += ["[material.damage]", f'law = "{law}"', "critical = 0.05"]
+        text += ["onset = 0.02"] if law != "critical_stretch" else []
+        text += ["peak = 0.03"] if law == "blended" else []
+        text += ['no_fail = ["left"]'] if rng.random() < 0.5 else []
+    if rng.random() < 0.6:
+        text += ["[[support]]", 'set = "left"', f"displacement = {vector(lambda: f'{number(-0.02, 0.02)}*sin({number(1, 8)}*t)')}"]
+    if rng.random() < 0.5:
+        text += ["[[load]]", 'set = "right"', f"body_force = {vector(lambda: f'{wave(0.05)}*({number(0, 1)} + t)')}"]
+    if rng.random() < 0.5:
+        text += ["[[load]]", 'set = "left"', f"total_force = {vector(lambda: number(-1e-4, 1e-4))}"]
+    text += ["[[initial]]", f"displacement = {vector(lambda: wave(0.01))}", f"velocity = {vector(lambda: wave(0.1))}"]
+    if rng.random() < 0.5:
+        text += ["[[initial]]", 'set = "right"', f"velocity = {vector(lambda: number(-0.1, 0.1))}"]
+    dt, end = rng.choice([0.01, 0.013]), 0.5
+    text += ["[solver]", 'mode = "dynamics"', "[dynamics]", f"end_time = {end}", f"time_step = {dt}",
+             "history_every = 5", "[output]", "every = 10"]  # fmt: skip
+    return "\n".join(text) + "\n", dt, end
+
+
+class AgainstNumPy(Folder):
+    """Random bodies of every law: what the reference finds with its own bonds, step by step."""
+
+    def judge(self, text, dt, end):
+        folder = self.run_case(text, f"case_{len(list(self.folder.iterdir()))}")
+        motion, rows, at = Motion(folder, text), columns(folder), fields(folder)
+        scale = {"u": 1e-9 * 0.02, "v": 1e-9 * 0.2}
+        seen, began = 0, None
+        for state in motion.follow(dt, end):
+            if began is None:
+                dissipated = state.mechanics.dissipated(state.history)
+                began = state.stored + state.kinetic + dissipated
+            if state.number in at:
+                field = at[state.number]
+                self.assertAlmostEqual(field["time"], state.time, delta=1e-12)
+                numpy.testing.assert_allclose(field["displacement"], state.u, rtol=1e-9, atol=scale["u"])
+                velocity = numpy.where(state.free, field["velocity"], 0.0)
+                numpy.testing.assert_allclose(velocity, state.v, rtol=1e-9, atol=scale["v"])
+                seen += 1
+            where = numpy.flatnonzero(rows["step"] == state.number)
+            if not len(where):
+                continue
+            row = {name: values[where[0]] for name, values in rows.items()}
+            dissipated = state.mechanics.dissipated(state.history)
+            energies = {"stored_energy": state.stored, "kinetic_energy": state.kinetic, "dissipated_energy": dissipated,
+                        "external_work": began + state.work}  # fmt: skip
+            energies["balance_error"] = began + state.work - state.stored - state.kinetic - dissipated
+            if state.time < end:
+                energies["modified_energy"] = state.kinetic + state.stored - dt**2 / 8 * state.modified
+            for name, energy in energies.items():
+                self.assertAlmostEqual(row[name], energy, delta=1e-10 * began, msg=name)
+            self.assertEqual(row["broken_bonds"], state.mechanics.is_broken(state.history).sum())
+            momentum = (state.mass * state.v).sum(axis=0)
+            for axis, component in zip("xyz", momentum):
+                self.assertAlmostEqual(row[f"momentum_{axis}"], component, delta=1e-10 * motion.mass.sum() * 0.1)
+        self.assertGreaterEqual(seen, 5)
+        return rows["broken_bonds"][-1]
+
+    def test_random_bodies(self):
+        broken = []
+        for seed in range(24):
+            with self.subTest(seed=seed):
+                broken.append(self.judge(*random_case(seed)))
+        self.assertGreater(sum(count > 0 for count in broken), 4)  # else nothing was seen of damage
+
+    def test_triangles_and_tetrahedra(self):
+        for dimension, constants in ((2, "c1 = 300\nc2 = 6e4"), (3, "c1 = 300\nc2 = 2e5\nc3 = 1e8")):
+            with self.subTest(dimension=dimension):
+                box = f"min = {[0.0] * dimension}\nmax = {[0.7, 0.5, 0.4][:dimension]}"
+                text = SQUARE.replace("dimension = 2", f"dimension = {dimension}").replace("youngs_modulus = 1.0", f'model = "cpd"\n{constants}')
+                text = text.replace("min = [-0.8, -0.8]\nmax = [0.8, 0.8]", box).replace("[lattice]", "[lattice]\nhorizon_ratio = 2.015")
+                still = ', "0"' * (dimension - 2)
+                text = text.replace('(x^2 + y^2)/0.1)"]', f'(x^2 + y^2)/0.1)"{still}]').replace("end_time = 2.0", "end_time = 0.5")
+                dt = 0.8 * columns(self.run_case(text, "share"))["time_step"].min()
+                self.judge(text.replace("every = 10", "every = 2").replace("step_share = 0.5", f"time_step = {dt}"), dt, 0.5)
+
+
+class Conserved(Folder):
+    def energies(self, dt):
+        rows = columns(self.run_case(BAR.replace("0.02\n", f"{dt}\n").replace("every = 20", f"every = {round(0.4 / dt)}"),
+                                     f"bar_{dt}"))  # fmt: skip
+        return rows["kinetic_energy"] + rows["stored_energy"], rows["modified_energy"]
+
+    def test_modified_energy_of_a_linear_body_and_the_order_of_the_plain_one(self):
+        errors = []
+        for dt in (0.04, 0.02, 0.01):
+            plain, modified = self.energies(dt)
+            self.assertLess(numpy.ptp(modified) / plain[0], 1e-12)
+            errors.append(numpy.ptp(plain) / plain[0])
+        self.assertGreater(errors[-1], 1e-6)  # not round-off
+        for coarse, fine in zip(errors, errors[1:]):
+            self.assertAlmostEqual(coarse / fine, 4.0, delta=0.3)
+
+    def test_momentum_of_a_free_body(self):
+        rows = columns(self.run_case(BAR))
+        self.assertGreater(abs(rows["momentum_x"][0]), 1e-4)
+        self.assertLess(numpy.ptp(rows["momentum_x"]) / abs(rows["momentum_x"][0]), 1e-12)
+
+    def test_a_constant_force_on_a_free_body(self):
+        """The centre falls as a point does: u = g t^2 / 2, of which velocity Verlet is exact."""
+        text = BAR.replace('displacement = ["1e-3*exp(-(x - 1.4)^2/0.09)"]\nvelocity = ["1e-3*sin(x)"]', 'velocity = [0.25]')
+        text += '[[load]]\ngravity = [-9.81]\n[[probe]]\nname = "fall"\nset = "all"\nfield = "displacement"\n'
+        text += '[[set]]\nname = "all"\nwhere = "1"\n'
+        rows = columns(self.run_case(text))
+        numpy.testing.assert_allclose(rows["fall"], 0.25 * rows["time"] - 9.81 * rows["time"] ** 2 / 2, atol=1e-10)
+        self.assertLess(numpy.abs(rows["balance_error"]).max(), 1e-10 * rows["kinetic_energy"][-1])
+
+
+class Waves(Folder):
+    def test_a_long_wave_travels_at_the_speed_of_sound(self):
+        """sqrt(E/rho) = sqrt(2) m/s: half a standing wave of the free bar swings with the period 2 L / c."""
+        text = BAR.replace("max = [3]", "max = [12]").replace("4.0\ntime_step = 0.02", "17.0\ntime_step = 0.05")
+        text = text.replace('["1e-3*exp(-(x - 1.4)^2/0.09)"]\nvelocity = ["1e-3*sin(x)"]', '["1e-3*cos(pi*x/12)"]')
+        text = text.replace("[lattice]", '[quadrature]\nvolume_correction = "linear"\nsurface_correction = "volume"\n[lattice]')
+        text += '[[probe]]\nname = "end"\nat = [0]\nfield = "displacement"\n'
+        rows = columns(self.run_case(text.replace("every = 20", "every = 2")))
+        after = rows["time"] > 12.0
+        period = rows["time"][after][rows["end"][after].argmax()]
+        self.assertAlmostEqual(period, 2 * 12 / numpy.sqrt(2.0), delta=0.02 * period)
+
+
+SQUARE = """\
+dimension = 2
+[lattice]
+spacing = 0.1
+[[lattice.shape]]
+add = "box"
+min = [-0.8, -0.8]
+max = [0.8, 0.8]
+[material]
+youngs_modulus = 1.0
+density = 1.0
+[[initial]]
+displacement = ["0.05*x*exp(-(x^2 + y^2)/0.1)", "0.05*y*exp(-(x^2 + y^2)/0.1)"]
+[solver]
+mode = "dynamics"
+[dynamics]
+end_time = 2.0
+step_share = 0.5
+[output]
+every = 10
+"""
+
+
+class Symmetry(Folder):
+    def test_four_fold_symmetry_is_kept_to_round_off(self):
+        at = fields(self.run_case(SQUARE))
+        u = at[max(at)]["displacement"]
+        with h5py.File(self.folder / "run" / "results.h5") as file:
+            x = file["points/reference"][...]
+        order = lambda places: numpy.lexsort(numpy.round(places / 0.05).astype(int).T)
+        for turn in ([[0, -1], [1, 0]], [[-1, 0], [0, 1]]):
+            turned = u @ numpy.array(turn).T
+            difference = turned[order(x @ numpy.array(turn).T)] - u[order(x)]
+            self.assertGreater(numpy.abs(u).max(), 1e-3)
+            self.assertLess(numpy.abs(difference).max(), 1e-13)
+
+    def test_planes_of_symmetry_give_the_whole_body(self):
+        whole = fields(self.run_case(SQUARE.replace("step_share = 0.5", "time_step = 0.05")))
+        quarter = SQUARE.replace("min = [-0.8, -0.8]", "min = [0, 0]").replace("step_share = 0.5", "time_step = 0.05")
+        quarter += '[[symmetry]]\naxis = "x"\nat = 0\n[[symmetry]]\naxis = "y"\nat = 0\n'
+        part = fields(self.run_case(quarter, "quarter"))
+        places = {}
+        for name in ("run", "quarter"):
+            with h5py.File(self.folder / name / "results.h5") as file:
+                places[name] = file["points/reference"][...]
+        of = {tuple(numpy.round(place, 6)): k for k, place in enumerate(places["run"])}
+        same = [of[tuple(numpy.round(place, 6))] for place in places["quarter"]]
+        last = max(part)
+        for name in ("displacement", "velocity"):
+            numpy.testing.assert_allclose(part[last][name], whole[last][name][same], atol=1e-13)
+        rows, quarter_rows = columns(self.folder / "run"), columns(self.folder / "quarter")
+        numpy.testing.assert_allclose(4 * quarter_rows["kinetic_energy"], rows["kinetic_energy"], rtol=1e-10, atol=1e-16)
+        numpy.testing.assert_allclose(4 * quarter_rows["stored_energy"], rows["stored_energy"], rtol=1e-10, atol=1e-16)
+
+
+BREAKING = SQUARE.replace("density = 1.0", """density = 1.0
+[material.damage]
+law = "critical_stretch"
+critical = 0.015""") + """[[crack]]
+from = [-1, 0.01]
+to = [0, 0.01]
+[[support]]
+set = "top"
+displacement = ["free", "0.05*t"]
+[[set]]
+name = "top"
+where = "y > 0.7"
+[[probe]]
+name = "speed"
+set = "top"
+field = "velocity"
+component = "y"
+"""  # fmt: skip
+
+
+class Restarts(Folder):
+    def same(self, a, b):
+        for name in ("history.csv", "broken_bonds.csv"):
+            self.assertEqual((a / name).read_text(), (b / name).read_text(), name)
+        first, second = fields(a), fields(b)
+        self.assertEqual(first.keys(), second.keys())
+        for step, values in first.items():
+            for name, value in values.items():
+                numpy.testing.assert_array_equal(value, second[step][name], f"{step} {name}")
+
+    def test_a_run_that_goes_on_is_the_same_to_the_last_bit(self):
+        text = BREAKING.replace("every = 10", "every = 16")
+        text = text.replace("step_share = 0.5", "step_share = 0.2\nhistory_every = 4")
+        whole = self.run_case(text, "whole")
+        self.assertGreater(columns(whole)["broken_bonds"][-1], 10)
+        for name, steps in (("early", 3), ("late", 9)):
+            folder = self.run_case(text, name, "--stop-after", steps, code=130)
+            ended = peristat("resume", folder, "--threads", 1, "--quiet")
+            self.assertEqual(ended.returncode, 0, ended.stderr)
+            self.same(whole, folder)
+
+    def test_a_longer_end_extends_a_run(self):
+        whole = self.run_case(BREAKING.replace("end_time = 2.0", "end_time = 3.0").replace("step_share = 0.5", "time_step = 0.04"), "whole")
+        part = self.run_case(BREAKING.replace("step_share = 0.5", "time_step = 0.04"), "part")
+        ended = peristat("resume", part, "--threads", 1, "--quiet", "--set", "dynamics.end_time=3.0")
+        self.assertEqual(ended.returncode, 0, ended.stderr)
+        a, b = columns(whole), columns(part)
+        self.assertAlmostEqual(a["time"][-1], b["time"][-1])
+        self.assertAlmostEqual(a["kinetic_energy"][-1], b["kinetic_energy"][-1], delta=1e-9 * a["kinetic_energy"][-1])
+        ended = peristat("resume", part, "--quiet", "--set", "dynamics.end_time=1.0")
+        self.assertEqual(ended.returncode, 2)
+        self.assertIn("dynamics.end_time", ended.stderr)
+
+    def test_rows_do_not_change_the_motion(self):
+        often = columns(self.run_case(BREAKING.replace("every = 10", "every = 2"), "often"))
+        seldom = columns(self.run_case(BREAKING, "seldom"))
+        for name in ("time", "kinetic_energy", "broken_bonds"):
+            self.assertEqual(often[name][-1], seldom[name][-1], name)
+
+    def test_threads_agree_to_round_off(self):
+        case = self.folder / "case.toml"
+        case.write_text(BREAKING)
+        for threads in (1, 2):
+            ended = peristat("run", case, "--output", self.folder / f"t{threads}", "--threads", threads, "--quiet")
+            self.assertEqual(ended.returncode, 0, ended.stderr)
+        again = peristat("run", case, "--output", self.folder / "t2b", "--threads", 2, "--quiet")
+        self.assertEqual(again.returncode, 0, again.stderr)
+        self.same(self.folder / "t2", self.folder / "t2b")
+        a, b = columns(self.folder / "t1"), columns(self.folder / "t2")
+        numpy.testing.assert_allclose(a["kinetic_energy"], b["kinetic_energy"], rtol=1e-9)
+        numpy.testing.assert_array_equal(a["broken_bonds"], b["broken_bonds"])
+
+
+class Supports(Folder):
+    def test_the_velocity_of_what_is_moved(self):
+        rows = columns(self.run_case(BREAKING))
+        numpy.testing.assert_allclose(rows["speed"], 0.05, rtol=1e-9)
+
+    def test_a_support_that_sets_off_at_once_does_the_work_that_balances(self):
+        rows = columns(self.run_case(BREAKING.replace("critical = 0.015", "critical = 10")))
+        error = numpy.abs(rows["balance_error"]).max() / rows["external_work"][-1]
+        self.assertLess(error, 0.05)
+        self.assertLess(rows["balance_error"][0], 1e-14)
+        finer = columns(self.run_case(BREAKING.replace("critical = 0.015", "critical = 10").replace("share = 0.5", "share = 0.125"), "fine"))
+        # Of first order, since the velocity jumps.
+        self.assertLess(numpy.abs(finer["balance_error"]).max() / finer["external_work"][-1], error / 3)
+
+
+class Steps(Folder):
+    def stable(self, text):
+        self.run_case(text, "share")
+        rows = columns(self.folder / "share")
+        return rows["time_step"][0] / 0.5
+
+    def test_the_stable_step_is_that_of_the_highest_frequency(self):
+        """Dense: the tangent at rest by complex steps, its largest eigenvalue with the masses."""
+        text = SQUARE.replace("0.05*x", "0*x").replace("0.05*y", "0*y")
+        text = text.replace("min = [-0.8, -0.8]\nmax = [0.8, 0.8]", "min = [0, 0]\nmax = [0.6, 0.6]")
+        stable = self.stable(text.replace("[[initial]]", "[[initial]]\nvelocity = [0.1, 0]"))
+        motion = Motion(self.folder / "share", text)
+        tangent = motion.mechanics.tangent(numpy.zeros_like(motion.u))
+        highest = numpy.linalg.eigvalsh(tangent).max() / motion.mass.max()
+        self.assertLess(stable, 2 / numpy.sqrt(highest))
+        self.assertGreater(stable, 0.99 * 2 / numpy.sqrt(highest))
+
+    def test_a_longer_step_is_refused_and_a_shorter_one_is_not(self):
+        stable = self.stable(SQUARE)
+        said = self.refusal(SQUARE.replace("step_share = 0.5", f"time_step = {1.02 * stable}"))
+        for words in ("refused.toml:", "dynamics.time_step", "stable step"):
+            self.assertIn(words, said)
+        self.run_case(SQUARE.replace("step_share = 0.5", f"time_step = {0.98 * stable}"), "shorter")
+
+    def test_a_step_follows_the_stiffness(self):
+        """A body that is pressed together stiffens: the step shrinks, and one that is given ends the run."""
+        text = SQUARE.replace("0.05*x", "0*x").replace("0.05*y", "0*y").replace("end_time = 2.0", "end_time = 24.0")
+        text += '[[set]]\nname = "edge"\nwhere = "abs(x) > 0.7"\n[[support]]\nset = "edge"\ndisplacement = ["x*(exp(t/24) - 1)", "free"]\n'
+        text = text.replace("step_share = 0.5", "step_share = 0.95")
+        rows = columns(self.run_case(text))
+        self.assertLess(rows["time_step"].min(), 0.99 * rows["time_step"][0])
+        decided = [row["action"] for row in Results(self.folder / "run").table("decisions")]
+        self.assertIn("change time step", decided)
+        first = rows["time_step"][0]
+        folder = self.run_case(text.replace("step_share = 0.95", f"time_step = {first * 0.999 / 0.95}"), "given", code=3)
+        self.assertIn("unstable_step", self.said)
+        self.assertEqual(json.loads((folder / "summary.json").read_text())["status"], "not_converged")
+
+    def test_points_that_meet_end_the_run_with_the_last_state(self):
+        text = SQUARE.replace('"0.05*x*exp(-(x^2 + y^2)/0.1)", "0.05*y*exp(-(x^2 + y^2)/0.1)"', "0, 0")
+        text += '[[load]]\nset = "far"\nbody_force = ["1e300*t", 0]\n[[set]]\nname = "far"\nwhere = "x > 0.7"\n'
+        folder = self.run_case(text.replace("every = 10", "every = 4"), code=3)
+        for values in fields(folder).values():
+            self.assertTrue(numpy.isfinite(values["displacement"]).all())
+        self.assertTrue((folder / "dossier.txt").exists())
+
+
+class Check(Folder):
+    def test_tells_the_steps(self):
+        case = self.folder / "case.toml"
+        case.write_text(SQUARE)
+        ended = peristat("check", case)
+        self.assertEqual(ended.returncode, 0, ended.stderr)
+        self.assertRegex(ended.stdout, r"motion      stable time step 0\.1\d+ s; 2\d steps of 0\.0\d+ s")
+        case.write_text(SQUARE.replace("step_share = 0.5", "time_step = 0.5"))
+        ended = peristat("check", case)
+        self.assertEqual(ended.returncode, 2)
+        self.assertIn("dynamics.time_step", ended.stderr)
+
+
+class Refusals(Folder):
+    def test_what_does_not_go_with_dynamics(self):
+        for change, words in {
+            ("density = 1.0", ""): "material.density",
+            ("end_time = 2.0", ""): "dynamics.end_time",
+            ("end_time = 2.0", "end_time = -1"): "dynamics.end_time",
+            ("step_share = 0.5", "step_share = 1.0"): "dynamics.step_share",
+            ("step_share = 0.5", "step_share = 0.5\ntime_step = 0.01"): "dynamics.step_share",
+            ("[output]", "[loading]\nsteps = 3\n[output]"): "loading",
+            ("[output]", "[relaxation]\nsteps = 3\n[output]"): "relaxation",
+            ("[output]", "[arc_length]\nsteps = 3\n[output]"): "arc_length",
+            ("[output]", '[[crack_tip]]\nname = "tip"\nat = [0, 0]\ndirection = [1, 0]\n[output]'): "crack_tip",
+            ('mode = "dynamics"', 'mode = "dynamics"\nlinear = "cholesky"'): "solver.linear",
+            ('mode = "dynamics"', 'mode = "dynamics"\nrelative_tolerance = 1e-6'): "solver.relative_tolerance",
+            ('mode = "dynamics"', 'mode = "newton"'): "dynamics",
+            ('"0.05*x*exp(-(x^2 + y^2)/0.1)"', '"load"'): "unknown variable load",
+            ('"0.05*x*exp(-(x^2 + y^2)/0.1)"', '"t"'): "unknown variable t",
+            ('"0.05*x*exp(-(x^2 + y^2)/0.1)"', '"sqrt(x)"'): "(-0.75, ",
+            ("every = 10", "every = 10\n[[support]]\nset = \"none\"\ndisplacement = [0, 0]"): "none",
+            ("step_share = 0.5", "step_share = 0.5\nhistory_every = 3"): "output.every",
+        }.items():  # fmt: skip
+            with self.subTest(change=change):
+                self.assertIn(change[0], SQUARE)
+                self.assertIn(words, self.refusal(SQUARE.replace(*change)))
+
+    def test_constraints_with_masses_of_their_own(self):
+        sets = '[[set]]\nname = "top"\nwhere = "y > 0.7"\n'
+        for table in ('[[rigid]]\nset = "top"\ndisplacement = [0, "free"]\nrotation = ["free"]\n',
+                      '[[roller]]\nset = "top"\nnormal = [1, 1]\n', '[[period]]\naxis = "x"\nfrom = -0.8\nto = 0.8\n'):  # fmt: skip
+            with self.subTest(table=table):
+                self.assertIn("dynamics", self.refusal(SQUARE + sets + table))
+
+    def test_a_probe_of_velocity_in_another_mode(self):
+        text = '[[probe]]\nname = "speed"\nat = [0, 0]\nfield = "velocity"\n'
+        text = SQUARE.replace('mode = "dynamics"\n[dynamics]\nend_time = 2.0\nstep_share = 0.5', 'mode = "newton"') + text
+        text = text[: text.index("[[initial]]")] + text[text.index("[solver]") :]
+        self.assertIn('solver.mode = "dynamics"', self.refusal(text))
+
+
+if __name__ == "__main__":
+    unittest.main()

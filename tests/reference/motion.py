@@ -1,0 +1,77 @@
+"""A motion in time once more: velocity Verlet on the reference's own bonds (docs/theory.md, Motion in time)."""
+
+import numpy
+
+from tests.reference.body import Body
+from tests.reference.case import Case, Conditions, evaluate
+from tests.reference.mechanics import Mechanics
+from tests.reference.results import Results
+
+
+class Motion:
+    """States of a body of one material, without images, at the time steps that a results folder tells."""
+
+    def __init__(self, folder, case_text):
+        self.case, self.results = Case(case_text), Results(folder)
+        reference, self.volume, sets = self.results.reference, self.results.volume, self.results.sets
+        self.conditions = Conditions(self.case, reference, self.volume, sets)
+        self.mechanics = Mechanics(Body(self.case, reference, self.volume, sets=sets))
+        self.mechanics.spare(sets)
+        self.free = ~self.conditions.prescribed
+        self.mass = (self.case["material"]["density"] * self.volume)[:, None] * self.free
+        self.time, self.number, self.work = 0.0, 0, 0.0
+        self.u, self.v = (self.initial(key, sets) for key in ("displacement", "velocity"))
+        self.u = numpy.where(self.free, self.u, self.conditions.displacement({"t": 0.0}))
+        self.v = self.v * self.free
+        self.history = self.mechanics.grown(self.mechanics.no_history(), self.u)
+        self.find_force()
+
+    def initial(self, key, sets):
+        value = numpy.zeros(self.results.reference.shape)
+        for table in self.case.get("initial"):
+            inside = sets[table["set"]] if "set" in table else numpy.ones(len(value), bool)
+            for axis, component in enumerate(table.get(key, [0] * value.shape[1])):
+                here = evaluate(component, self.results.reference, {}, self.conditions.spacings)
+                value[inside, axis] += here[inside]
+        return value
+
+    def find_force(self):
+        self.load = self.conditions.force({"t": self.time})
+        self.gradient = self.mechanics.gradient(self.u, self.history)
+        self.force = (self.load - self.gradient) * self.free
+
+    def acceleration(self):
+        return numpy.divide(self.force, self.mass, out=numpy.zeros_like(self.force), where=self.free)
+
+    def step(self, dt, time):
+        before, load, gradient = self.u, self.load, self.gradient
+        half = self.v + dt / 2 * self.acceleration()
+        self.time, self.number = time, self.number + 1
+        prescribed = self.conditions.displacement({"t": time})
+        self.u = numpy.where(self.free, self.u + dt * half, prescribed)
+        self.history = self.mechanics.grown(self.history, self.u)
+        self.find_force()
+        self.v = half + dt / 2 * self.acceleration()
+        pull = numpy.where(self.free, (load + self.load) / 2, (gradient + self.gradient) / 2)
+        self.work += (pull * (self.u - before)).sum()
+
+    def follow(self, dt, end):
+        """Yields itself at every step of a constant size, the last one as short as it has to be."""
+        yield self
+        while self.time < end:
+            is_last = end - self.time <= dt * (1 + 1e-9)
+            self.step(end - self.time if is_last else dt, end if is_last else self.time + dt)
+            yield self
+
+    @property
+    def kinetic(self):
+        return (self.mass * self.v**2).sum() / 2
+
+    @property
+    def stored(self):
+        return self.mechanics.energy(self.u, self.history)
+
+    @property
+    def modified(self):
+        """The energy that the scheme conserves where forces are linear, but for its dt^2/8."""
+        return (self.force * self.acceleration()).sum()
