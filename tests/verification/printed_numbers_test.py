@@ -403,6 +403,43 @@ class Buckling(PrintedTest):
         self.prints("top has moved {} m sideways and {} m down", abs(aside), -along)
 
 
+class Motions(PrintedTest):
+    def test_crack_branching(self):
+        self.page = "cases/bond_models/crack_branching.toml"
+        plate = run("bond_models/crack_branching")
+        first = next(row for row in plate.history if row["broken_bonds"])
+        self.prints("from about {} us on", 1e6 * first["time"], within=0.1)  # a row
+        last = plate.history[-1]
+        spacing = 0.1 / 300
+        for tip in ("upper_tip", "lower_tip"):  # which bond is the last to break round-off may decide
+            self.prints("are at x = {} m", last[tip], within=2 * spacing / 0.0457)
+        self.prints("{} bonds are broken", last["broken_bonds"], within=0.05)
+        self.prints("of {} J of work {} J are kinetic energy", last["external_work"], last["kinetic_energy"], within=0.01)
+        self.assertLess(abs(last["balance_error"]), 1e-3 * last["external_work"])
+        height = plate.points("reference")[:, 1]
+        of = rows(plate.folder / "broken_bonds.csv")
+        middles = numpy.array([height[[int(row["first_point"]), int(row["second_point"])]].mean() for row in of])
+        above, below = (middles > 1e-9).sum(), (middles < -1e-9).sum()
+        self.assertGreater(above, 2000)
+        self.assertLess(abs(above - below), 0.02 * above)  # none on this machine
+
+    def test_wave_propagation(self):
+        self.page = "cases/bond_models/wave_propagation.toml"
+        square = run("bond_models/wave_propagation")
+        self.prints("Expect: {} bonds", square.summary["bonds"])
+        self.prints("sqrt(9/8) = {} m/s", math.sqrt(9 / 8))
+        first, last = (square.history[k]["modified_energy"] for k in (0, -1))
+        self.prints("is {} J at the start and {} J at the end", first, last, within=1e-3)
+        field, places = square.field("displacement"), square.points("reference") - 2.5
+        radius, size = numpy.hypot(*places.T), numpy.hypot(*field.T)
+        front = radius[size > 0.02 * size.max()].max()
+        self.prints("at the end it is {} m from the middle", front, within=0.1)  # the ring is as wide
+        order = lambda at: numpy.lexsort(numpy.round(at / 0.0125).astype(int).T)
+        turned = field[:, ::-1] * [-1, 1]
+        difference = turned[order(places[:, ::-1] * [-1, 1])] - field[order(places)]
+        self.assertLess(abs(difference).max(), 1e-7)
+
+
 class Headers(unittest.TestCase):
     def test_every_header_is_compared(self):
         tests = "".join(path.read_text() for path in (ROOT / "tests").glob("*/printed_*_test.py"))
