@@ -71,7 +71,7 @@ def growing(folder: Path) -> float:
     """The discs about the pins, which turn as a whole, stiffen the arms: by what they do to the whole specimen."""
     force, opening = "reaction_y:upper", lambda a: lefm.tension_opening(a / WIDTH) / (MODULUS * THICKNESS)
     stiffer = elastic_factor(folder, force, opening(CRACK))
-    return toughness(folder, force, lambda a: stiffer * opening(a), load, CRACK, 0.75 * WIDTH, GROWN)
+    return toughness(folder, force, lambda a: stiffer * opening(a), load, CRACK, 0.85 * WIDTH, GROWN)
 
 
 SPECIMENS = [

@@ -75,7 +75,7 @@ def specimen(ratio: float) -> Specimen:
 
     def growing(folder: Path) -> float:
         opening = lambda a: lefm.bend_opening(a / WIDTH) / (MODULUS * THICKNESS)
-        return toughness(folder, "reaction_y:load", opening, load, crack, 0.75 * WIDTH, GROWN)
+        return toughness(folder, "reaction_y:load", opening, load, crack, 0.85 * WIDTH, GROWN)
 
     return Specimen(
         name=f"senb_{10 * ratio:02.0f}",
