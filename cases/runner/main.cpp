@@ -148,6 +148,7 @@ void add_bond_calibration(CLI::App& command, CommandLine& line) {
   add_of_bonds("--calibration", material.calibration, "bond: continuum (default) or lattice")
       ->transform(names<Calibration>(
           {{"continuum", Calibration::continuum}, {"lattice", Calibration::lattice}}));
+  add_of_bonds("--influence", material.influence, "bond: influence function, as in case files");
   add_of_bonds("--micromodulus", material.micromodulus, "bond: c [N/m6]");
   add("--law", damage.law, "of damage, as in case files")
       ->transform(names<Law>({{"critical_stretch", Law::critical_stretch},

@@ -33,6 +33,7 @@ BondSetting setting_of(const BodySpecification& of, const Points& points) {
   setting.dimension = points.dimension;
   setting.plane = of.material.plane;
   setting.volume_correction = of.volume_correction;
+  setting.influence = influence_named(of.material.influence);
   setting.horizon = of.horizon;
   setting.cross_section = points.dimension == 3     ? 1.0
                           : of.cross_section == 0.0 ? points.cross_section()

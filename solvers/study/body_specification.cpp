@@ -172,9 +172,21 @@ void check_scatter(const MaterialSpecification& material, const std::string& key
   }
 }
 
+void check_influence(const MaterialSpecification& material, const std::string& key) {
+  const std::vector<std::string> names = influence_names();
+  std::string listed;
+  for (const std::string& name : names) listed += (listed.empty() ? "" : ", ") + name;
+  require(std::ranges::find(names, material.influence) != names.end(), key + ".influence",
+          '"' + material.influence + '"', "must be one of " + listed);
+  require_absent(
+      material.model == MaterialModel::cpd && material.influence != ConstantInfluence::name,
+      key + ".influence", "is for the model bond");
+}
+
 }  // namespace
 
 void check_material(const MaterialSpecification& material, const std::string& key, int dimension) {
+  check_influence(material, key);
   if (material.model == MaterialModel::bond)
     check_bond_material(material, key);
   else
@@ -197,6 +209,7 @@ void require_of_body(const MaterialSpecification& material, const std::string& k
   require(material.model == of.material.model, key + ".model", "", same);
   require(material.potential == of.material.potential, key + ".potential", "", same);
   require(material.plane == of.material.plane, key + ".plane", "", same);
+  require(material.influence == of.material.influence, key + ".influence", "", same);
 }
 
 bool is_material_of(const std::string& name, const BodySpecification& of) {

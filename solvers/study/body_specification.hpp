@@ -15,6 +15,7 @@
 #include "src/materials/interface_rule.hpp"
 #include "src/materials/quadrature.hpp"
 #include "src/materials/random_field.hpp"
+#include "src/neighbourhood/influence.hpp"
 #include "src/potentials/potential.hpp"
 
 namespace peristat {
@@ -89,6 +90,7 @@ struct MaterialSpecification {
   MaterialModel model = MaterialModel::bond;
   std::string potential = Harmonic::name;  ///< of whole bonds, see WholeBondPotentials
   PlaneState plane = PlaneState::stress;
+  std::string influence = ConstantInfluence::name;  ///< omega of bonds, see Influences
   std::optional<double>
       youngs_modulus{};                   ///< [Pa]; exactly one of this, micromodulus and c1 is set
   std::optional<double> micromodulus{};   ///< c [N/m6]
@@ -114,7 +116,8 @@ struct MaterialSpecification {
 /// The points of a set are of a material of their own.
 struct RegionSpecification {
   std::string set{};
-  MaterialSpecification material{};  ///< model, potential and plane are those of the body
+  MaterialSpecification
+      material{};  ///< model, potential, plane and influence are those of the body
 };
 
 /// What holds between points of two materials: their constants by a rule, or constants of its own.

@@ -35,6 +35,7 @@ std::optional<CrackTrapping> crack_trapping(const BodySpecification& of, int dim
       });
   if (!is_any_brittle || !(spacing > 0.0) || dimension == 1) return std::nullopt;
   CrackTrapping found{of.horizon / spacing, dimension, std::nullopt};
+  if (of.material.influence != ConstantInfluence::name) return found;
   for (const Measured& known : measured) {
     if (known.dimension == dimension &&
         std::abs(known.horizon_ratio - found.horizon_ratio) < same_ratio) {
@@ -49,11 +50,12 @@ std::string description(const CrackTrapping& trapping) {
     return low == high ? fmt::format("{}", high) : fmt::format("{} to {}", low, high);
   };
   const std::string needed =
-      trapping.needed
-          ? "it runs at " + range(trapping.needed->first, trapping.needed->second)
-          : fmt::format(
-                "not measured in {}D at this ratio, at 3 and 4 in 2D it runs at 1.14 to 1.19",
-                trapping.dimension);
+      trapping.needed ? "it runs at " + range(trapping.needed->first, trapping.needed->second)
+                      : fmt::format(
+                            "not measured in {}D at this ratio and influence function, at 3 and 4 "
+                            "in 2D it runs "
+                            "at 1.14 to 1.19 with the constant one",
+                            trapping.dimension);
   return fmt::format(
       "brittle bonds at horizon ratio {:.2g} hold a crack up: {} of K_Ic, and with law = "
       "\"linear\" within 0.02 of it (docs/trustworthy-peaks.md)",

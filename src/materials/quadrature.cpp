@@ -172,7 +172,7 @@ Bonds make_bonds(const Points& points, SurfaceCorrection surface, const BondSett
                     ? search_bonds(points, search_radius(points, setting), threads)
                     : given_bonds(points);
   weigh_volumes(bonds, points, setting);
-  if (setting.volume_correction == VolumeCorrection::linear) drop_weightless(bonds);
+  if (setting.may_be_weightless()) drop_weightless(bonds);
   share_with_images(bonds, points);
   if (surface == SurfaceCorrection::volume) {
     apply_volume_method(bonds, points, setting);

@@ -13,8 +13,8 @@ namespace peristat {
 void drop_weightless(Bonds& bonds);
 
 /// Finds the bonds of a body, unless its points have given neighbours, and sets their weights.
-/// Those that the linear correction leaves none
-/// are dropped; those between two images have none, but triangles stand on them.
+/// Those that the kernel leaves none are dropped; those between two images have none, but triangles
+/// stand on them.
 ///
 ///   w_ij = 1/2 (V_i V_j nu_ij + V_j V_i nu_ji) omega_ij mu_ij   [m6]
 ///

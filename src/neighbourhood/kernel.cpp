@@ -22,6 +22,13 @@ double Kernel::partial_volume(double distance, double size) const {
   return distance <= inclusive_radius(horizon) ? 1.0 : 0.0;
 }
 
+double Kernel::influence_at(double distance) const {
+  if (!influence) return 1.0;
+  const double ratio = distance / horizon;
+  const double omega = influence(std::abs(ratio - 1.0) <= horizon_tolerance ? 1.0 : ratio);
+  return omega < horizon_tolerance ? 0.0 : omega;
+}
+
 double Kernel::search_radius(double largest_size) const {
   return volume_correction == VolumeCorrection::none ? horizon : horizon + 0.5 * largest_size;
 }

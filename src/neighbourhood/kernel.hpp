@@ -21,11 +21,16 @@ struct Kernel {
   double horizon = 0.0;        ///< delta [m]
   double cross_section = 1.0;  ///< 1D: area A [m2]; 2D: thickness h [m]; 3D: 1
   VolumeCorrection volume_correction = VolumeCorrection::none;
-  /// omega(r / delta), by which the weight of a bond is multiplied, smooth from 0 to 1; empty: 1
+  /// omega(r / delta), by which the weight of a bond is multiplied, see Influence; empty: 1
   std::function<double(double relative_distance)> influence{};
 
-  [[nodiscard]] double influence_at(double distance) const {
-    return influence ? influence(distance / horizon) : 1.0;
+  /// omega, with what round-off leaves of a distance at the horizon taken for the horizon, and of
+  /// an influence that ends there for none.
+  [[nodiscard]] double influence_at(double distance) const;
+
+  /// Whether some points that the search finds do not count.
+  [[nodiscard]] bool may_be_weightless() const {
+    return influence || volume_correction != VolumeCorrection::none;
   }
 
   /// Share of a volume of some size at a distance that counts.

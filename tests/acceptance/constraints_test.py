@@ -10,7 +10,7 @@ import numpy
 
 from benchmarks import specimens
 from tests.acceptance.programme_test import Programmes
-from tests.reference.body import ball_volume, lattice_ball, micromodulus_factor
+from tests.reference.body import ball_volume, constant_factor, lattice_ball
 from tests.reference.program import peristat
 from tests.reference.verify import verify
 
@@ -242,7 +242,7 @@ def lattice_stress(gradient, youngs_modulus=200e9, spacing=1e-3, ratio=3.015):
     lengths = numpy.linalg.norm(bonds, axis=1)
     moved = bonds @ (numpy.eye(2) + numpy.array(gradient)).T
     now = numpy.linalg.norm(moved, axis=1)
-    modulus = micromodulus_factor(2, "stress", ratio * spacing, spacing) * youngs_modulus
+    modulus = constant_factor(2, "stress", ratio * spacing, spacing) * youngs_modulus
     forces = (modulus * (now / lengths - 1) * spacing**3 / now)[:, None] * moved
     return 0.5 * forces.T @ bonds
 

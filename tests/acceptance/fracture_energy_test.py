@@ -70,6 +70,25 @@ class FractureEnergy(unittest.TestCase):
                 foretold = 10.0 * bulk.crossing_of([0, 1, 0]) / bulk.crossing
                 self.assertAlmostEqual(took / foretold, 1.0, delta=1e-10)  # differences of sums
 
+    def test_a_tear_and_calibrate_heed_the_influence_function(self):
+        whole = None
+        for influence in ("constant", "cubic", "gaussian", "inverse"):
+            for calibration, (angle, period) in zip(("continuum", "lattice"), (ANGLES[0], ANGLES[2]), strict=True):
+                with self.subTest(influence=influence, calibration=calibration):
+                    material = {"youngs_modulus": 70e9, "calibration": calibration, "influence": influence,
+                                "damage": {"law": "linear", "fracture_energy": 10.0}}  # fmt: skip
+                    strip = self.strip(0.03, angle, 3.015, material, CORRECTIONS["linear"])
+                    took = self.tear(angle, period, 3.015, material, CORRECTIONS["linear"])
+                    bulk = Bulk(Case(strip))
+                    self.assertAlmostEqual(took / (10.0 * bulk.crossing_of([0, 1]) / bulk.crossing), 1.0, delta=1e-10)
+                    told = json.loads(peristat("calibrate", self.write(strip)).output)
+                    modulus = 70e9 * (bulk.lattice_of_modulus if calibration == "lattice" else bulk.of_modulus)
+                    self.assertAlmostEqual(told["micromodulus"] / modulus, 1.0, delta=ROUND_OFF)
+                    self.assertAlmostEqual(told["damage"]["fracture_energy"]["mean"] / 10.0, 1.0, delta=ROUND_OFF)
+                    whole = whole or told["micromodulus"]
+                    if influence != "constant":
+                        self.assertGreater(abs(told["micromodulus"] / whole - 1), 0.2)
+
     def test_scatter_of_strength_takes_the_mean_square_of_the_factors(self):
         damage = {"law": "linear", "fracture_energy": 10.0}
         scattered = {"youngs_modulus": 70e9, "damage": damage, "scatter": [{"of": "strength", "weibull_modulus": 5, "seed": 3}]}

@@ -14,6 +14,7 @@ import numpy
 from tests.reference.body import Body
 from tests.reference.case import Case, evaluate, read_points
 from tests.reference.clouds import LAWS, random_cloud, random_deformation, random_places, toml, write_points
+from tests.reference.influence import POWERS
 from tests.reference.mechanics import STEP, Mechanics
 from tests.reference.program import peristat
 from tests.reference.verify import Verification
@@ -90,6 +91,20 @@ class Clouds(unittest.TestCase):
                     compared += 1
         self.assertEqual(compared, 4 * 6 * len(LAWS))
         self.assertGreater(min(seen[kind] for kind in ("stretched", "compressed", "broken", "softening")), 100)
+
+    def test_bonds_with_every_influence(self):
+        compared = 0
+        for dimension, name in itertools.product((1, 2, 3), (*POWERS, "gaussian")):
+            for volume, surface in (("none", "none"), ("linear", "volume"), ("linear", "energy")):
+                with self.subTest(dimension=dimension, influence=name, volume=volume, surface=surface):
+                    material = {"youngs_modulus": 3e3, "influence": name, "damage": {**LAWS["tanh"], "no_fail": ["left"]}}
+                    path = random_cloud(self.random, self.folder, dimension, count=(9, 24, 30)[dimension - 1],
+                                        horizon=self.random.uniform(2.2, 3.2), material=material,
+                                        quadrature={"volume_correction": volume, "surface_correction": surface},
+                                        )  # fmt: skip
+                    self.compare(path, 0.07, 6.0)
+                    compared += 1
+        self.assertEqual(compared, 3 * 8 * 3)
 
     def test_cpd_with_both_weights(self):
         compared = 0

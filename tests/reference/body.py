@@ -7,6 +7,7 @@ import numpy
 
 from tests.reference.beyond import Beyond
 from tests.reference.case import read_neighbours, read_points
+from tests.reference.influence import influence, relative_moment
 from tests.reference.materials import Materials
 from tests.reference.sheets import resolve
 
@@ -69,8 +70,14 @@ def ball_volume(dimension, horizon, cross_section):
     return {1: 2 * horizon, 2: math.pi * horizon**2, 3: 4 / 3 * math.pi * horizon**3}[dimension] * cross_section
 
 
-def micromodulus_factor(dimension, plane, horizon, cross_section):
+def micromodulus_factor(dimension, material, horizon, cross_section):
     """c / E."""
+    plane = material["plane"]
+    return constant_factor(dimension, plane, horizon, cross_section) / relative_moment(material["influence"], dimension)
+
+
+def constant_factor(dimension, plane, horizon, cross_section):
+    """c / E of the influence function 1."""
     if dimension == 1:
         return 2 / (cross_section * horizon**2)
     if dimension == 2 and plane == "stress":
@@ -138,8 +145,7 @@ class Body:
 
     def _make_bonds(self):
         material, quadrature = self.materials.tables[0], self.case["quadrature"]
-        plane = self.case["material"]["plane"]
-        factor = micromodulus_factor(self.dimension, plane, self.horizon, self.cross_section)
+        factor = micromodulus_factor(self.dimension, self.case["material"], self.horizon, self.cross_section)
         if "micromodulus" in material:
             self.constants = {1: float(material["micromodulus"])}
         else:
@@ -160,6 +166,7 @@ class Body:
             return numpy.where(inside < HORIZON_TOLERANCE, 0, inside)  # round-off at the far end
 
         mean_share = given[1] if given else (share(size[j]) + share(size[i])) / 2
+        mean_share = mean_share * influence(self.case["material"]["influence"], length / self.horizon)
         weight = self.volume[i] * self.volume[j] * mean_share
         keep = weight > 0
         pairs, arm, length, weight, mean_share = (a[keep] for a in (pairs, arm, length, weight, mean_share))
@@ -196,6 +203,7 @@ class Body:
         ball = lattice_ball(self.dimension, ratio + (0.5 if linear else 0), edges)
         distance = numpy.sqrt((ball**2).sum(axis=1))
         shares = numpy.clip(ratio + 0.5 - distance, 0, 1) if linear else numpy.ones(len(distance))
+        shares = shares * influence(self.case["material"]["influence"], distance / ratio)
         return shares.sum() * self.spacing**self.dimension * self.cross_section
 
     def _energy_correction(self, pairs, direction, length, weight):

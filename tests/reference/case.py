@@ -10,7 +10,7 @@ import numpy
 
 DEFAULTS = {
     "quadrature": {"volume_correction": "none", "weights": "mean", "surface_correction": "none"},
-    "material": {"model": "bond", "plane": "stress"},
+    "material": {"model": "bond", "plane": "stress", "influence": "constant"},
     "loading": {"steps": 1, "adaptive": True, "smallest_step": 1e-6},
     "solver": {"mode": "newton", "relative_tolerance": 1e-10, "fragments": "hold"},
     "relaxation": {"load": "fixed", "displacement_tolerance": 0.0},
@@ -27,7 +27,7 @@ class Case:
         self.has_material = "material" in self.tables
         first = self.tables["region"][0]["material"] if "region" in self.tables else {}
         if not self.has_material:  # model and plane are those of the first region
-            self.tables["material"] = {key: first[key] for key in ("model", "plane") if key in first}
+            self.tables["material"] = {key: first[key] for key in ("model", "plane", "influence") if key in first}
         for name, defaults in DEFAULTS.items():
             self.tables[name] = defaults | self.tables.get(name, {})
         self.dimension = self.tables["dimension"]

@@ -33,7 +33,7 @@ def bulk_bonds(case, horizon_ratio=None):
     tables = {name: case[name] for name in ("dimension", "lattice", "quadrature")}
     if horizon_ratio:
         tables["lattice"] = tables["lattice"] | {"horizon_ratio": horizon_ratio}
-    tables["material"] = {"plane": case["material"]["plane"], "youngs_modulus": 1.0}
+    tables["material"] = {key: case["material"][key] for key in ("plane", "influence")} | {"youngs_modulus": 1.0}
     volume = numpy.prod(spacings) * case.cross_section
     patch = Body(Case(tables), places, numpy.full(len(places), volume))
     own = (patch.bonds == middle).any(axis=1)
@@ -49,7 +49,7 @@ class Bulk:
         from tests.reference.body import confined_modulus_factor, micromodulus_factor
 
         d, horizon, section = case.dimension, case.horizon(horizon_ratio), case.cross_section
-        self.of_modulus = micromodulus_factor(d, case["material"]["plane"], horizon, section)
+        self.of_modulus = micromodulus_factor(d, case["material"], horizon, section)
         if case.is_lattice:
             self.direction, self.length, self.weight = bulk_bonds(case, horizon_ratio)
             second = (self.weight * self.length**2).sum()
@@ -57,6 +57,7 @@ class Bulk:
             self.lattice_of_modulus = stiffness / MEAN_OF_FOURTH_POWER[d] / (self.weight * self.length).sum()
         else:
             second = {1: 2, 2: 2 * math.pi, 3: 4 * math.pi}[d] * section * horizon ** (d + 2) / (d + 2)
+            second *= relative_moment(case["material"]["influence"], d + 1)
         self.crossing = MEAN_OF_MAGNITUDE[d] * second / 2
 
     def crossing_of(self, normal):

@@ -3,6 +3,7 @@
 import numpy
 
 from tests.reference.clouds import random_places, toml, write_points
+from tests.reference.influence import POWERS
 
 PRECONDITIONERS = ("auto", "jacobi", "block_jacobi", "rigid_pieces", "surrogate", "riluk", "chebyshev", "multigrid")
 
@@ -12,6 +13,7 @@ class Generator:
 
     def __init__(self, seed, number):
         self.random = numpy.random.default_rng([seed, number])
+        self.of_kernel = numpy.random.default_rng([seed, number, 2])  # so that the rest of a case stays as it was
 
     def choice(self, *options, weights=None):
         return options[self.random.choice(len(options), p=weights)]
@@ -107,6 +109,8 @@ class Generator:
             material["youngs_modulus"] = self.modulus
             if self.dimension == 2:
                 material["plane"] = self.choice("stress", "strain")
+            if self.of_kernel.random() < 0.3:
+                material["influence"] = str(self.of_kernel.choice([*POWERS, "gaussian"]))
         else:
             # Constants of the same order of stiffness: bonds, triangles and tetrahedra of a horizon
             # of two spacings each bear a part.

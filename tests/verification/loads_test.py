@@ -8,7 +8,7 @@ import h5py
 import numpy
 
 from tests.reference import ring
-from tests.reference.body import lattice_ball, micromodulus_factor
+from tests.reference.body import constant_factor, lattice_ball
 from tests.reference.case import Case
 from tests.reference.program import peristat
 from tests.reference.results import Results
@@ -196,7 +196,7 @@ change = "100*load"
                     results = self.run_case(bar.format(reach=reach, correction=correction))
                     share = numpy.ones(reach)
                     share[-1] = of_outermost
-                    factor = micromodulus_factor(1, None, reach * 1e-3, 1e-6)
+                    factor = constant_factor(1, None, reach * 1e-3, 1e-6)
                     force = (numpy.arange(1, reach + 1) * share).sum() * factor * 2e11 * 1e-3 * 1e-9**2
                     self.assertAlmostEqual(force / (2e11 * 1e-5 * 100 * 1e-6 * (1 if correction == "linear" else (reach + 1) / reach)), 1, delta=1e-14)
                     for side, sign in (("left", 1), ("right", -1)):
@@ -223,7 +223,7 @@ change = "100*load"
                     bonds = lattice_ball(dimension, ratio) * 1e-3
                     lengths = numpy.linalg.norm(bonds, axis=1)
                     thickness, volume = (2e-3, 2e-9) if dimension == 2 else (1.0, 1e-9)
-                    modulus = micromodulus_factor(dimension, "stress", ratio * 1e-3, thickness) * 1e9
+                    modulus = constant_factor(dimension, "stress", ratio * 1e-3, thickness) * 1e9
                     expected = -0.5 * modulus * growth * volume * (bonds[:, 0] ** 2 / lengths).sum()
                     for axis in range(dimension):
                         area = volume / 1e-3**dimension * numpy.prod(numpy.delete(shape, axis))

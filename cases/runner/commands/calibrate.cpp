@@ -248,6 +248,7 @@ Exit calibrate(const CalibrationQuestion& where, BondCalibrationQuestion questio
   setting.cross_section = where.dimension == 1 ? question.area : where.thickness;
   setting.volume_correction = question.volume_correction;
   setting.plane = question.material.plane;
+  setting.influence = influence_named(question.material.influence);
   setting.lattice = {where.spacing, question.angle, question.surface_correction};
   question.material.youngs_modulus = where.youngs_modulus;
   try {

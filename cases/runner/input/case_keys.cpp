@@ -272,6 +272,7 @@ void check_regions(const Entry& at, Case& result) {
     result.material.model = first.model;
     result.material.potential = first.potential;
     result.material.plane = first.plane;
+    result.material.influence = first.influence;
   }
   check_quadrature(at, result);
 }
@@ -477,6 +478,11 @@ Table<MaterialSpecification> material_keys(const std::string& name) {
            .unless(of_cpd, for_bond)
            .unless(in_dimension<1>, "is for dimension 2 only")
            .unless(in_dimension<3>, "is for dimension 2 only"),
+       K("influence", &Spec::influence, one_of(influence_names()),
+         "`bond`: influence function $\\omega(r/\\delta)$ of bonds, $c\\,\\omega s$ is their force "
+         "density: [GPMB]'s of order 0, 0.5, 1, 3, 5 and 7, $e^{-(r/\\delta)^2}$, or $\\delta/r$; "
+         "`micromodulus`, moduli and fracture energy go with it")
+           .unless(of_cpd, for_bond),
        K("youngs_modulus", &Spec::youngs_modulus, positive("Pa"), "in both models").one_of(),
        K("micromodulus", &Spec::micromodulus, positive("N/m6", 1e150),
          "`bond`: bond constant c of the pairwise force c·stretch")
@@ -535,8 +541,8 @@ Table<MaterialSpecification> material_keys(const std::string& name) {
          "tables `[[material.scatter]]`: random fields")}};
 }
 
-/// What regions and interfaces add to the keys of a material: its model, potential and plane are
-/// those of the body.
+/// What regions and interfaces add to the keys of a material: its model, potential, plane and
+/// influence function are those of the body.
 Table<MaterialSpecification> material_of_body_keys(const std::string& name) {
   Table<MaterialSpecification> keys = material_keys(name);
   const auto of_body = [](const Case& so_far) -> const MaterialSpecification& {
@@ -548,6 +554,7 @@ Table<MaterialSpecification> material_of_body_keys(const std::string& name) {
     material.model = body.model;
     material.potential = body.potential;
     material.plane = body.plane;
+    material.influence = body.influence;
   };
   keys.after = [of_body](const Entry& at, MaterialSpecification& material) {
     const bool is_first = !at.so_far.material.has_constants() && at.so_far.regions.empty();
@@ -559,6 +566,7 @@ Table<MaterialSpecification> material_of_body_keys(const std::string& name) {
     require(material.model == body.model, "model");
     require(material.potential == body.potential, "potential");
     require(material.plane == body.plane, "plane");
+    require(material.influence == body.influence, "influence");
   };
   return keys;
 }
