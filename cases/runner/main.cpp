@@ -136,8 +136,12 @@ void add_bond_calibration(CLI::App& command, CommandLine& line) {
           names<MaterialModel>({{"cpd", MaterialModel::cpd}, {"bond", MaterialModel::bond}}));
   add_of_bonds("--area", asked.area, "bond, 1D [m2] (default: 1)");
   add_of_bonds("--angle", asked.angle, "bond: of the lattice [degrees]");
-  add_of_bonds("--volume-correction", asked.volume_correction, "bond: none (default) or linear")
-      ->transform(names<Volume>({{"none", Volume::none}, {"linear", Volume::linear}}));
+  add_of_bonds("--volume-correction", asked.volume_correction,
+               "bond: none (default), linear, exact or exact_centroids")
+      ->transform(names<Volume>({{"none", Volume::none},
+                                 {"linear", Volume::linear},
+                                 {"exact", Volume::exact},
+                                 {"exact_centroids", Volume::exact_centroids}}));
   add_of_bonds("--surface-correction", asked.surface_correction,
                "bond: none (default), volume or energy")
       ->transform(names<Surface>(

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <utility>
 
 #include <fmt/format.h>
@@ -185,6 +186,14 @@ Model make_elastic_bonds(const Body& body, Bonds bonds, const BondSetting& setti
   return Model(std::move(bonds), std::move(potential));
 }
 
+double reach_ratio(VolumeCorrection correction, int dimension, double horizon_ratio) {
+  const double m = horizon_ratio, pi = std::numbers::pi;
+  if (!Kernel{.volume_correction = correction}.has_exact_shares()) return m;
+  if (dimension == 1) return m + 0.5;
+  if (dimension == 2) return std::sqrt((pi * m * m + 4.0 * m + 1.0) / pi);
+  return std::cbrt(m * m * m + (3.0 * pi * m * m + 6.0 * m + 1.0) * 0.75 / pi);
+}
+
 double expected_bonds(double points, int dimension, double horizon_ratio) {
   // No more than there are pairs of points.
   return points * std::min(bonds_per_point(dimension, horizon_ratio), 0.5 * points);
@@ -207,7 +216,7 @@ std::unique_ptr<const Body> make_body(Points points, const BodySpecification& of
   Body& body = *owned;
   body.points = std::move(points);
   const std::vector<Period> periods(of.constraints.periods.begin(), of.constraints.periods.end());
-  // A partial volume reaches half a cell beyond the horizon.
+  // A partial volume reaches half a cell's diagonal beyond the horizon.
   const bool is_whole = of.volume_correction == VolumeCorrection::none;
   const double reach = of.horizon + (is_whole ? 0.0 : body.points.spacing.largest());
   add_images(body.points, of.constraints.symmetries, periods, reach);
@@ -215,8 +224,9 @@ std::unique_ptr<const Body> make_body(Points points, const BodySpecification& of
   body.specification = with_stretches(of, body.setting, body.points.spacing);
   require_resolved(body.points, body.setting.horizon);
   BodySize expected = size_of(body.points);
-  expected.horizon_ratio = body.horizon_ratio();
-  expected.bonds = expected_bonds(expected.points, body.points.dimension, body.horizon_ratio());
+  expected.horizon_ratio =
+      reach_ratio(of.volume_correction, body.points.dimension, body.horizon_ratio());
+  expected.bonds = expected_bonds(expected.points, body.points.dimension, expected.horizon_ratio);
   require_memory(estimate_memory(expected).least_bytes(),
                  fmt::format("the body with {} points", body.points.count()));
   make_model(body, threads);
@@ -256,7 +266,8 @@ BodySize size_of(const Points& points) {
 MemoryEstimate estimate_memory(const Body& body) {
   const auto& prescribed = body.conditions->prescribed();
   BodySize size = size_of(body.points);
-  size.horizon_ratio = body.horizon_ratio();
+  size.horizon_ratio =
+      reach_ratio(body.setting.volume_correction, body.points.dimension, body.horizon_ratio());
   size.bonds = double(body.model.bonds().count());
   size.bytes_per_bond = double(sizeof(Index) + body.model.bonds().kind.bytes_per_bond());
   size.has_history = body.model.has_history();

@@ -267,9 +267,9 @@ void check_regions(const BodySpecification& of, int dimension) {
 void check_weights(const BodySpecification& of, const Points& points) {
   if (of.material.model == MaterialModel::bond) {
     require_absent(of.weights != InteractionWeights::mean, "weights", "is for the model cpd");
-    require(points.spacing.is_square() || of.volume_correction == VolumeCorrection::none,
+    require(points.spacing.is_square() || of.volume_correction != VolumeCorrection::linear,
             "volume_correction", "linear",
-            "is for square or cubic cells; spacings that differ need \"none\"");
+            "is for square or cubic cells; spacings that differ need \"none\" or \"exact\"");
     return;
   }
   require_whole_square_cells(points);

@@ -7,6 +7,8 @@
 
 #include <Eigen/Dense>
 
+#include "src/neighbourhood/lattice_kernel.hpp"
+
 namespace peristat {
 namespace {
 
@@ -72,26 +74,14 @@ std::vector<Coordinates> even_directions(int dimension, int count) {
 
 BulkBonds::BulkBonds(const BondSetting& setting) : setting_(setting) {
   const Spacing& spacing = setting.lattice.value().spacing;
-  std::array<int, 3> width{};
-  for (int c = 0; c < setting.dimension; ++c) {
-    width[c] = static_cast<int>(std::ceil(setting.search_radius(spacing) / spacing.along(c))) + 1;
-  }
+  const LatticeKernel lattice(setting, spacing);
   const double cell = std::pow(spacing, setting.dimension) * setting.cross_section;
-  for (int x = 0; x <= width[0]; ++x) {
-    for (int y = -width[1]; y <= width[1]; ++y) {
-      for (int z = -width[2]; z <= width[2]; ++z) {
-        if (std::array{x, y, z} <= std::array{0, 0, 0}) continue;
-        const Coordinates along{x * spacing.along(0), y * spacing.along(1), z * spacing.along(2)};
-        const double length = spacing.is_square()
-                                  ? spacing * std::sqrt(double(x * x + y * y + z * z))
-                                  : std::hypot(along[0], along[1], along[2]);
-        const double share = setting.partial_volume(length, spacing);
-        if (share == 0.0) continue;
-        bonds_.push_back(
-            {unit(turned(along)), length, 2.0 * cell * share * setting.influence_at(length)});
-      }
-    }
-  }
+  lattice.for_each_neighbour([&](const LatticeStep& step, double factor) {
+    if (step <= LatticeStep{}) return;  // one of two opposite ones
+    Coordinates along{};
+    for (int c = 0; c < 3; ++c) along[std::size_t(c)] = step[std::size_t(c)] * spacing.along(c);
+    bonds_.push_back({unit(turned(along)), lattice.distance(step), 2.0 * cell * factor});
+  });
   if (setting.lattice->surface_correction == SurfaceCorrection::energy) correct_energy();
   find_compliance();
 }

@@ -3,8 +3,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
+#include <optional>
+#include <string>
 
+#include "src/core/input_error.hpp"
+#include "src/core/number_text.hpp"
 #include "src/geometry/squared_distance.hpp"
+#include "src/neighbourhood/lattice_kernel.hpp"
 #include "src/neighbourhood/search.hpp"
 
 namespace peristat {
@@ -13,6 +19,51 @@ namespace {
 /// Edge of the cell that a point's volume fills [m].
 double cell_size(const Points& points, Index point, double cross_section) {
   return std::pow(points.volume[point] / cross_section, 1.0 / points.dimension);
+}
+
+/// Steps along the lattice's axes, not rounded.
+Coordinates spacings_between(const Points& points, Index i, Index j) {
+  const Coordinates from = points.position(i), to = points.position(j);
+  Coordinates arm{};
+  for (std::size_t c = 0; c < 3; ++c) arm[c] = to[c] - from[c];
+  if (points.angle != 0.0) {
+    const double angle = points.angle * std::numbers::pi / 180.0;
+    const double cosine = std::cos(angle), sine = std::sin(angle);
+    arm = {cosine * arm[0] + sine * arm[1], cosine * arm[1] - sine * arm[0], arm[2]};
+  }
+  for (int c = 0; c < 3; ++c) arm[std::size_t(c)] /= points.spacing.along(c);
+  return arm;
+}
+
+LatticeStep step_between(const Points& points, Index i, Index j) {
+  const Coordinates steps = spacings_between(points, i, j);
+  LatticeStep rounded{};
+  for (std::size_t c = 0; c < 3; ++c) rounded[c] = int(std::lround(steps[c]));
+  return rounded;
+}
+
+/// Refuses points that are not the middles of a lattice's whole cells.
+void require_whole_cells(const Points& points) {
+  constexpr double round_off = 1e-6;  // of a spacing, far beyond what places lose
+  const auto refuse = [](const std::string& what) {
+    throw InputError("volume_correction", "exact",
+                     "needs the whole cells of a regular lattice, of which it takes the parts "
+                     "within the horizon: " +
+                         what);
+  };
+  if (!points.lattice) refuse("points of a file have no cells; give \"linear\" or \"none\"");
+  const double whole = points.cross_section() * std::pow(points.spacing, points.dimension);
+  for (Index i = 0; i < points.count(); ++i) {
+    const Coordinates steps = spacings_between(points, 0, i);
+    for (const double along : steps) {
+      if (std::abs(along - std::round(along)) <= round_off) continue;
+      refuse("the point at " + place_text(points.position(i), points.dimension) +
+             " m stands beside the lattice; give a perturbation of 0, or \"linear\"");
+    }
+    if (std::abs(points.volume[std::size_t(i)] / whole - 1.0) <= round_off) continue;
+    refuse("the point at " + place_text(points.position(i), points.dimension) +
+           " m has a part of its cell only; give volumes = \"cells\", or \"linear\"");
+  }
 }
 
 /// Squares of a bond's direction cosines, n_a^2.
@@ -48,32 +99,53 @@ Bonds given_bonds(const Points& points) {
   return bonds;
 }
 
-/// Mean share of each other's volume that the points of a bond count.
-double partial_share(const Points& points, const Kernel& kernel, Index i, Index j, double length) {
-  if (!points.neighbours.empty()) {
-    const auto given =
-        std::lower_bound(points.neighbours.begin(), points.neighbours.end(), std::pair(i, j),
-                         [](const NeighbourShares& pair, const auto& ends) {
-                           return std::pair(pair.i, pair.j) < ends;
-                         });
-    return 0.5 * (given->of_j + given->of_i);
+/// What the kernel makes of the bonds of a body.
+class BondShares {
+ public:
+  BondShares(const Points& points, const Kernel& kernel) : points_(points), kernel_(kernel) {
+    if (!kernel.has_exact_shares()) return;
+    require_whole_cells(points);
+    lattice_.emplace(kernel, points.spacing);
   }
-  if (kernel.volume_correction == VolumeCorrection::none) return 1.0;
-  const double size_i = cell_size(points, i, kernel.cross_section);
-  const double size_j = cell_size(points, j, kernel.cross_section);
-  return 0.5 * (kernel.partial_volume(length, size_i) + kernel.partial_volume(length, size_j));
-}
+
+  /// Mean share of each other's volume that the points of a bond count, times the influence.
+  [[nodiscard]] double operator()(Index i, Index j, double length) const {
+    if (lattice_) return lattice_->factor(step_between(points_, i, j));
+    return mean_share(i, j, length) * kernel_.influence_at(length);
+  }
+
+ private:
+  [[nodiscard]] double mean_share(Index i, Index j, double length) const {
+    if (!points_.neighbours.empty()) {
+      const auto given =
+          std::lower_bound(points_.neighbours.begin(), points_.neighbours.end(), std::pair(i, j),
+                           [](const NeighbourShares& pair, const auto& ends) {
+                             return std::pair(pair.i, pair.j) < ends;
+                           });
+      return 0.5 * (given->of_j + given->of_i);
+    }
+    if (kernel_.volume_correction == VolumeCorrection::none) return 1.0;
+    const double size_i = cell_size(points_, i, kernel_.cross_section);
+    const double size_j = cell_size(points_, j, kernel_.cross_section);
+    return 0.5 * (kernel_.partial_volume(length, size_i) + kernel_.partial_volume(length, size_j));
+  }
+
+  const Points& points_;
+  const Kernel& kernel_;
+  std::optional<LatticeKernel> lattice_;
+};
 
 void weigh_volumes(Bonds& bonds, const Points& points, const Kernel& kernel) {
+  const BondShares share(points, kernel);
   bonds.set_weights([&](Index i, Offset bond) {
     const Index j = bonds.partner[bond];
-    const double share = partial_share(points, kernel, i, j, bonds.length(bond));
-    return share * points.volume[i] * points.volume[j] * kernel.influence_at(bonds.length(bond));
+    return share(i, j, bonds.length(bond)) * points.volume[i] * points.volume[j];
   });
 }
 
 /// Radius that the neighbour search needs [m].
 double search_radius(const Points& points, const Kernel& kernel) {
+  if (kernel.has_exact_shares()) return kernel.search_radius(points.spacing);
   double largest = 0.0;
   for (Index i = 0; i < points.count(); ++i) {
     largest = std::max(largest, cell_size(points, i, kernel.cross_section));
@@ -184,6 +256,7 @@ Bonds make_bonds(const Points& points, SurfaceCorrection surface, const BondSett
 
 std::vector<double> seen_volumes(const Points& points, const Bonds& bonds, const Kernel& kernel,
                                  std::span<const char> broken) {
+  const BondShares share_of(points, kernel);
   std::vector<double> seen(points.volume.size(), 0.0);
   for_each_bond(bonds, [&](Index i, Offset bond) {
     if (!broken.empty() && broken[std::size_t(bond)]) return;
@@ -191,9 +264,7 @@ std::vector<double> seen_volumes(const Points& points, const Bonds& bonds, const
     // A bond across a plane of symmetry has a twin, as in share_with_images.
     const int own = int(!points.is_image(i)) + int(!points.is_image(j));
     if (own == 0) return;
-    const double length = bonds.length(bond);
-    const double share =
-        0.5 * own * partial_share(points, kernel, i, j, length) * kernel.influence_at(length);
+    const double share = 0.5 * own * share_of(i, j, bonds.length(bond));
     seen[std::size_t(i)] += share * points.volume[std::size_t(j)];
     seen[std::size_t(j)] += share * points.volume[std::size_t(i)];
   });

@@ -1,18 +1,17 @@
 #include "src/neighbourhood/kernel.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
 
 #include "src/core/integral.hpp"
-#include "src/neighbourhood/horizon.hpp"
+#include "src/neighbourhood/lattice_kernel.hpp"
 
 namespace peristat {
 
 double linear_partial_volume(double distance, double horizon, double size) {
   const double share = std::clamp((horizon + 0.5 * size - distance) / size, 0.0, 1.0);
-  return share < horizon_tolerance ? 0.0 : share;  // round-off at the far end is no bond
+  return share < least_share ? 0.0 : share;  // round-off at the far end is no bond
 }
 
 double Kernel::partial_volume(double distance, double size) const {
@@ -29,8 +28,12 @@ double Kernel::influence_at(double distance) const {
   return omega < horizon_tolerance ? 0.0 : omega;
 }
 
-double Kernel::search_radius(double largest_size) const {
-  return volume_correction == VolumeCorrection::none ? horizon : horizon + 0.5 * largest_size;
+double Kernel::search_radius(const Spacing& largest_size) const {
+  if (volume_correction == VolumeCorrection::none) return horizon;
+  if (volume_correction == VolumeCorrection::linear) return horizon + 0.5 * largest_size;
+  double squared = 0.0;  // of the diagonal
+  for (int c = 0; c < dimension; ++c) squared += largest_size.along(c) * largest_size.along(c);
+  return horizon + 0.5 * std::sqrt(squared);
 }
 
 double Kernel::moment(int k) const {
@@ -46,25 +49,12 @@ double Kernel::moment(int k) const {
 }
 
 double Kernel::lattice_moment(int k, const Spacing& spacing) const {
-  std::array<int, 3> width{};
-  for (int c = 0; c < dimension; ++c) {
-    width[c] = static_cast<int>(std::ceil(horizon / spacing.along(c))) + 1;
-  }
+  const LatticeKernel lattice(*this, spacing);
   const double cell = std::pow(spacing, dimension) * cross_section;
   double sum = 0.0;
-  for (int x = -width[0]; x <= width[0]; ++x) {
-    for (int y = -width[1]; y <= width[1]; ++y) {
-      for (int z = -width[2]; z <= width[2]; ++z) {
-        const double distance =
-            spacing.is_square()
-                ? spacing * std::sqrt(double(x * x + y * y + z * z))
-                : std::hypot(spacing.along(0) * x, spacing.along(1) * y, spacing.along(2) * z);
-        const double share = distance > 0.0 ? partial_volume(distance, spacing) : 0.0;
-        if (share == 0.0) continue;
-        sum += cell * share * influence_at(distance) * std::pow(distance, k);
-      }
-    }
-  }
+  lattice.for_each_neighbour([&](const LatticeStep& step, double factor) {
+    sum += cell * factor * std::pow(lattice.distance(step), k);
+  });
   return sum;
 }
 

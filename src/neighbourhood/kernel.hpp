@@ -3,12 +3,22 @@
 #include <functional>
 
 #include "src/core/spacing.hpp"
+#include "src/neighbourhood/horizon.hpp"
 
 namespace peristat {
 
-/// Part of a neighbour's volume that counts: all of it, or a share that falls linearly from 1 to 0
-/// while the distance runs over one spacing about the horizon.
-enum class VolumeCorrection { none, linear };
+/// Part of a neighbour's volume that counts.
+enum class VolumeCorrection {
+  none,    ///< all of it
+  linear,  ///< a share that falls from 1 to 0 while the distance runs over a spacing about the
+           ///< horizon
+  exact,   ///< what a lattice's cell has within the horizon
+  /// the same, with influence and length of the bond those of the part's centroid
+  exact_centroids,
+};
+
+/// Less of a cell than this is round-off, and no part of it.
+inline constexpr double least_share = horizon_tolerance;
 
 /// Share nu of a point's volume inside another's horizon, for the linear correction:
 /// (delta + D/2 - r) / D between delta - D/2 and delta + D/2, 1 below, 0 above
@@ -33,11 +43,17 @@ struct Kernel {
     return influence || volume_correction != VolumeCorrection::none;
   }
 
-  /// Share of a volume of some size at a distance that counts.
+  /// Whether shares depend on where in a lattice's cells the horizon runs, see LatticeKernel.
+  [[nodiscard]] bool has_exact_shares() const {
+    return volume_correction == VolumeCorrection::exact ||
+           volume_correction == VolumeCorrection::exact_centroids;
+  }
+
+  /// Share of a volume of some size at a distance that counts, unless shares are exact.
   [[nodiscard]] double partial_volume(double distance, double size) const;
 
-  /// Farthest distance at which volumes up to a size count [m].
-  [[nodiscard]] double search_radius(double largest_size) const;
+  /// Farthest distance at which cells up to a size count [m].
+  [[nodiscard]] double search_radius(const Spacing& largest_size) const;
 
   /// m_k = int omega r^k dV over the ball of the horizon [m^(k+3)]; m_0 is V_H where omega is 1.
   [[nodiscard]] double moment(int k) const;

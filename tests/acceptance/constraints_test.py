@@ -133,7 +133,8 @@ class Symmetry(Constrained):
         for correction in ("none", "volume", "energy"):
             self.compare(("x", "y", "xy"), correction=correction, hole=HOLE)
         # Bonds that reach half a cell beyond the horizon have images, too.
-        self.compare(("x", "xy"), correction="energy", hole=HOLE, settings=("quadrature.volume_correction='linear'",))
+        for volume in ("linear", "exact", "exact_centroids"):
+            self.compare(("x", "xy"), correction="energy", hole=HOLE, settings=(f"quadrature.volume_correction='{volume}'",))
 
     def test_parts_of_cpd_bodies_are_the_whole(self):
         self.compare(("x", "xy"), material=CPD_2D, hole=HOLE)

@@ -107,6 +107,26 @@ class ByTheReference(Cases):
                 self.run_case(CUT, lattice + correction)
                 self.judge()
 
+    def test_runs_with_the_parts_of_cells(self):
+        lattices = ([], ["lattice.angle=20"], ["lattice.spacing=[1.3e-3, 0.9e-3]", "lattice.horizon_ratio=2.5"],
+                    ["lattice.spacing=[0.9e-3, 1.2e-3]", "lattice.angle=-35", "lattice.horizon_ratio=4"])  # fmt: skip
+        kernels = itertools.cycle(("constant", "cubic", "piecewise_constant", "inverse"))
+        for lattice, volume, surface in itertools.product(lattices, ("exact", "exact_centroids"), ("none", "volume", "energy")):
+            with self.subTest(lattice=lattice, volume=volume, surface=surface):
+                self.run_case(CUT, [*lattice, f"quadrature.volume_correction={volume}", f"quadrature.surface_correction={surface}",
+                                    f"material.influence={next(kernels)}"])  # fmt: skip
+                self.judge()
+
+    def test_runs_with_the_parts_of_cubes_and_of_intervals(self):
+        for dimension, half in ((1, 0.6), (3, 0.35)):
+            text = SQUARE.format(dimension=dimension, low=[-half] * dimension, high=[half] * dimension, where="abs(x) > 0.25",
+                                 displacement=json.dumps(["1e-3*x*load", "2e-4*sin(9*x)", "1e-4*z*x"][:dimension]))  # fmt: skip
+            for volume in ("exact", "exact_centroids"):
+                with self.subTest(dimension=dimension, volume=volume):
+                    settings = [f"quadrature.volume_correction={volume}", "lattice.horizon_ratio=2"]
+                    self.run_case(text, settings + (["lattice.spacing=[0.1, 0.1, 0.12]"] if dimension == 3 else []))
+                    self.judge()
+
     def test_equal_spacings_are_one_spacing_to_the_last_bit(self):
         for settings in ([], ["lattice.angle=15"]):
             one = self.run_case(CUT, settings)
@@ -159,6 +179,11 @@ class Refusals(Cases):
         oblong = "lattice.spacing=[1e-3, 1.5e-3]"
         self.refusal(PULLED, [oblong, "quadrature.volume_correction=linear"], "volume_correction", "square")
         self.refusal(PULLED, [oblong, cpd], "material.model", "square")
+        for exact in ("exact", "exact_centroids"):
+            correction = f"quadrature.volume_correction={exact}"
+            self.refusal(CUT, ["lattice.volumes=fractional", correction], "quadrature.volume_correction", "part of its cell")
+            self.refusal(CUT, ["lattice.perturbation=0.1", correction], "quadrature.volume_correction", "beside the lattice")
+            self.refusal(PULLED, [cpd, correction], "quadrature.volume_correction", "is for model \"bond\"")
         self.refusal(CUT, ["lattice.volumes=fractional", cpd], "material.model", "whole cells")
         self.refusal(PULLED, ["lattice.spacing=[1e-4, 2e-3]"], "lattice.horizon_ratio", "largest spacing")
         self.refusal(PULLED, ["lattice.spacing=[1e-3]"], "lattice.spacing", "2 numbers")
@@ -237,7 +262,8 @@ displacement = ["1e-5*load", "free"]
 
     def test_what_does_not_go_with_them_is_refused(self):
         self.write(lambda distance: 1.0)
-        self.refusal(self.GIVEN, ["quadrature.volume_correction=linear"], "volume_correction", "shares")
+        for correction in ("linear", "exact", "exact_centroids"):
+            self.refusal(self.GIVEN, [f"quadrature.volume_correction={correction}"], "volume_correction", "shares")
         self.refusal(self.GIVEN, ["quadrature.surface_correction=volume"], "surface_correction", "energy")
         self.refusal(self.GIVEN, ['material={model="cpd", youngs_modulus=1e9, poisson_ratio=0.4}'], "material.model")
         self.refusal(self.GIVEN, ["solver.mode=adaptive", "solver.elastic_horizon_ratio=2"], "elastic_horizon_ratio")

@@ -32,6 +32,8 @@ std::string words(const Setting& setting) {
   const auto& [dimension, quadrature, perturbation, triangles, tetrahedra] = setting;
   std::string text = std::to_string(dimension) + "D";
   if (quadrature.volume == VolumeCorrection::linear) text += "Linear";
+  if (quadrature.volume == VolumeCorrection::exact) text += "Exact";
+  if (quadrature.volume == VolumeCorrection::exact_centroids) text += "ExactCentroids";
   if (quadrature.surface == SurfaceCorrection::volume) text += "VolumeMethod";
   if (quadrature.surface == SurfaceCorrection::energy) text += "EnergyMethod";
   if (triangles > 0.0) text += "Triangles";
@@ -54,6 +56,11 @@ std::vector<Setting> all_settings() {
         }
       }
     }
+  }
+  for (int dimension = 1; dimension <= 3; ++dimension) {
+    settings.push_back({dimension, {VolumeCorrection::exact, SurfaceCorrection::energy}, 0.0});
+    settings.push_back(
+        {dimension, {VolumeCorrection::exact_centroids, SurfaceCorrection::none}, 0.0});
   }
   for (double perturbation : {0.0, 0.1}) {
     settings.push_back({2, {}, perturbation, 1.0, 0.0});

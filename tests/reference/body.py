@@ -9,6 +9,7 @@ from tests.reference.beyond import Beyond
 from tests.reference.case import read_neighbours, read_points
 from tests.reference.influence import influence, relative_moment
 from tests.reference.materials import Materials
+from tests.reference.parts import lattice_shares
 from tests.reference.sheets import resolve
 
 HORIZON_TOLERANCE = 1e-8
@@ -154,7 +155,9 @@ class Body:
         size = (self.volume / self.cross_section) ** (1 / self.dimension)
         linear = quadrature["volume_correction"] == "linear"
         given = self._given_pairs()
-        pairs = given[0] if given else pairs_within(self.reference, self.horizon + (size.max() / 2 if linear else 0), self.own)
+        exact = quadrature["volume_correction"].startswith("exact")
+        reach = numpy.sqrt((self.case.spacings**2).sum()) / 2 if exact else size.max() / 2 if linear else 0
+        pairs = given[0] if given else pairs_within(self.reference, self.horizon + reach, self.own)
         i, j = pairs.T
         arm = self.reference[j] - self.reference[i]
         length = numpy.sqrt((arm**2).sum(axis=1))
@@ -165,8 +168,14 @@ class Body:
             inside = numpy.clip((self.horizon + of / 2 - length) / of, 0, 1)
             return numpy.where(inside < HORIZON_TOLERANCE, 0, inside)  # round-off at the far end
 
-        mean_share = given[1] if given else (share(size[j]) + share(size[i])) / 2
-        mean_share = mean_share * influence(self.case["material"]["influence"], length / self.horizon)
+        name, counted = self.case["material"]["influence"], length / self.horizon
+        if exact:
+            mean_share, of_centroids = lattice_shares(arm, self.case.spacings, self.case["lattice"].get("angle", 0.0), self.horizon)
+            if quadrature["volume_correction"] == "exact_centroids":
+                mean_share, counted = mean_share * of_centroids / counted, of_centroids
+        else:
+            mean_share = given[1] if given else (share(size[j]) + share(size[i])) / 2
+        mean_share = mean_share * influence(name, counted)
         weight = self.volume[i] * self.volume[j] * mean_share
         keep = weight > 0
         pairs, arm, length, weight, mean_share = (a[keep] for a in (pairs, arm, length, weight, mean_share))
@@ -197,14 +206,19 @@ class Body:
 
     def _bulk_volume(self):
         """V_H of a point inside the lattice; for a cloud a lattice of its mean spacing."""
-        linear = self.case["quadrature"]["volume_correction"] == "linear"
+        correction, name = self.case["quadrature"]["volume_correction"], self.case["material"]["influence"]
         ratio = self.horizon / self.spacing
         edges = self.case.spacings / self.spacing if self.case.is_lattice else 1.0
-        ball = lattice_ball(self.dimension, ratio + (0.5 if linear else 0), edges)
+        ball = lattice_ball(self.dimension, ratio + (0.0 if correction == "none" else 1.0), edges)
         distance = numpy.sqrt((ball**2).sum(axis=1))
-        shares = numpy.clip(ratio + 0.5 - distance, 0, 1) if linear else numpy.ones(len(distance))
-        shares = shares * influence(self.case["material"]["influence"], distance / ratio)
-        return shares.sum() * self.spacing**self.dimension * self.cross_section
+        counted = distance / ratio
+        if correction.startswith("exact"):
+            shares, of_centroids = lattice_shares(ball * self.spacing, self.case.spacings, 0.0, self.horizon)
+            if correction == "exact_centroids":
+                shares, counted = shares * of_centroids / counted, of_centroids
+        else:
+            shares = numpy.clip(ratio + 0.5 - distance, 0, 1) if correction == "linear" else 1.0
+        return (shares * influence(name, counted)).sum() * self.spacing**self.dimension * self.cross_section
 
     def _energy_correction(self, pairs, direction, length, weight):
         i, j = pairs.T

@@ -38,7 +38,7 @@ class Generator:
         if not from_file and self.dimension > 1 and self.chance(0.25):
             case["crack"] = [self.crack()]
         case["material"] = self.material(from_file)
-        case["quadrature"] = self.quadrature()
+        case["quadrature"] = self.quadrature(case.get("lattice", {}))
         self.supports_and_loads(case, from_file)
         case.update(self.solution())
         path = folder / "case.toml"
@@ -138,11 +138,16 @@ class Generator:
             material["damage"] = damage
         return material
 
-    def quadrature(self):
+    def quadrature(self, place):
+        """place: table that tells where the points come from."""
         if self.model == "cpd":
             return {"weights": self.choice("mean", "bulk")}
-        return {"volume_correction": self.choice("none", "linear"),
-                "surface_correction": self.choice("none", "volume", "energy")}  # fmt: skip
+        has_whole_cells = "spacing" in place and not {"perturbation", "volumes"} & set(place)
+        quadrature = {"volume_correction": self.choice("none", "linear"),
+                      "surface_correction": self.choice("none", "volume", "energy")}  # fmt: skip
+        if has_whole_cells and self.of_kernel.random() < 0.3:
+            quadrature["volume_correction"] = str(self.of_kernel.choice(["exact", "exact_centroids"]))
+        return quadrature
 
     # ---- conditions and solution -----------------------------------------------------------------
 

@@ -27,7 +27,7 @@ class RichGenerator(Generator):
         case.update(self.cloud(folder) if self.is_cloud else self.lattice())
         case.update(self.beyond())
         case["material"] = self.material(self.is_cloud)
-        case["quadrature"] = self.quadrature()
+        case["quadrature"] = self.quadrature(case.get("lattice", {}))
         self.several_materials(case)
         self.warmth(case)
         self.hold_and_load(case)
@@ -142,8 +142,8 @@ class RichGenerator(Generator):
 
     # ---- materials -------------------------------------------------------------------------------
 
-    def quadrature(self):
-        quadrature = super().quadrature()
+    def quadrature(self, place):
+        quadrature = super().quadrature(place)
         if not self.is_square or getattr(self, "has_list", False):
             quadrature.pop("volume_correction", None)
         if getattr(self, "has_list", False) and quadrature["surface_correction"] == "volume":

@@ -230,10 +230,14 @@ Table<Case> quadrature_keys() {
   const auto of_bond = [](auto&, const Case& from) { return !is_cpd(from); };
   return {"quadrature",
           {K("volume_correction", &Case::volume_correction,
-             choice<VolumeCorrection>(
-                 {{"none", VolumeCorrection::none}, {"linear", VolumeCorrection::linear}}),
-             "share of a neighbour's volume that counts near the edge of the horizon: all, or "
-             "linear over half a spacing to either side")
+             choice<VolumeCorrection>({{"none", VolumeCorrection::none},
+                                       {"linear", VolumeCorrection::linear},
+                                       {"exact", VolumeCorrection::exact},
+                                       {"exact_centroids", VolumeCorrection::exact_centroids}}),
+             "share of a neighbour's volume that counts near the edge of the horizon: all; linear "
+             "over half a spacing to either side; what its cell has within the horizon; the same, "
+             "with length and influence of the bond those of that part's centroid. The last two "
+             "are for whole cells of a regular lattice")
                .written_if(of_bond),
            K("surface_correction", &Case::surface_correction,
              choice<SurfaceCorrection>({{"none", SurfaceCorrection::none},

@@ -27,7 +27,11 @@ const std::vector<Example> examples{
     {2, 0.1, 30.0, VolumeCorrection::linear, SurfaceCorrection::energy},
     {2, {{0.1, 0.14, 0.0}, 2}, 20.0, VolumeCorrection::none, SurfaceCorrection::energy},
     {3, 0.1, 0.0, VolumeCorrection::linear, SurfaceCorrection::volume},
-    {3, {{0.1, 0.12, 0.09}, 3}, 40.0, VolumeCorrection::none, SurfaceCorrection::energy}};
+    {3, {{0.1, 0.12, 0.09}, 3}, 40.0, VolumeCorrection::none, SurfaceCorrection::energy},
+    {1, 0.1, 0.0, VolumeCorrection::exact_centroids, SurfaceCorrection::none},
+    {2, 0.1, 30.0, VolumeCorrection::exact, SurfaceCorrection::energy},
+    {2, {{0.1, 0.14, 0.0}, 2}, 20.0, VolumeCorrection::exact_centroids, SurfaceCorrection::none},
+    {3, {{0.1, 0.12, 0.09}, 3}, 40.0, VolumeCorrection::exact, SurfaceCorrection::none}};
 
 BondSetting setting_of(const Example& of, double ratio) {
   BondSetting setting{{of.dimension, ratio * of.spacing, 1.0, of.volume}, PlaneState::stress};

@@ -4,11 +4,15 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <numbers>
 #include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
 
+#include "src/core/input_error.hpp"
+#include "src/geometry/box_in_ball.hpp"
+#include "src/neighbourhood/influence.hpp"
 #include "tests/bodies.hpp"
 
 namespace peristat {
@@ -19,12 +23,15 @@ using tests::for_each_bond;
 
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
 
-const tests::Quadrature all_quadratures[] = {{VolumeCorrection::none, SurfaceCorrection::none},
-                                             {VolumeCorrection::linear, SurfaceCorrection::none},
-                                             {VolumeCorrection::none, SurfaceCorrection::volume},
-                                             {VolumeCorrection::linear, SurfaceCorrection::volume},
-                                             {VolumeCorrection::none, SurfaceCorrection::energy},
-                                             {VolumeCorrection::linear, SurfaceCorrection::energy}};
+const tests::Quadrature all_quadratures[] = {
+    {VolumeCorrection::none, SurfaceCorrection::none},
+    {VolumeCorrection::linear, SurfaceCorrection::none},
+    {VolumeCorrection::none, SurfaceCorrection::volume},
+    {VolumeCorrection::linear, SurfaceCorrection::volume},
+    {VolumeCorrection::none, SurfaceCorrection::energy},
+    {VolumeCorrection::linear, SurfaceCorrection::energy},
+    {VolumeCorrection::exact, SurfaceCorrection::none},
+    {VolumeCorrection::exact_centroids, SurfaceCorrection::energy}};
 
 /// A box that has points whose neighbours' neighbours are all present.
 BoxSetting deep_box(int dimension, const tests::Quadrature& quadrature) {
@@ -113,6 +120,71 @@ TEST(MakeBonds, AveragesTheLinearPartialVolumesOfBothPoints) {
   EXPECT_GT(partial, 50);
 }
 
+// A cell at the corner of the neighbourhood, of radius 2.015 about a point of squares of edge 1:
+// the same as its part found alone, on a lattice that is turned, too.
+TEST(MakeBonds, WeighsWithThePartsOfCells) {
+  for (const double angle : {0.0, 25.0}) {
+    for (const auto volume : {VolumeCorrection::exact, VolumeCorrection::exact_centroids}) {
+      Lattice lattice;
+      lattice.dimension = 2;
+      lattice.angle = angle;
+      lattice.spacing = Spacing({0.1, 0.12, 0.0}, 2);
+      lattice.shapes = {{ShapeStep::Action::add, Box{{-1, -1, 0}, {1, 1, 0}}}};
+      const Points points = make_points(lattice);
+      BondSetting setting{{2, 0.24, 1.0, volume}, PlaneState::stress};
+      setting.influence = influence_named("gaussian");
+      const Bonds bonds = make_bonds(points, SurfaceCorrection::none, setting, 1);
+      const double turn = angle * std::numbers::pi / 180.0;
+      Offset cut = 0, beyond = 0;
+      for_each_bond(bonds, [&](Index i, Index j, Offset bond) {
+        const Coordinates from = points.position(i), to = points.position(j);
+        const double x = to[0] - from[0], y = to[1] - from[1];
+        const Coordinates along{std::cos(turn) * x + std::sin(turn) * y,
+                                std::cos(turn) * y - std::sin(turn) * x, 0.0};
+        const BoxPart part = box_in_ball(along, {0.1, 0.12, 0.0}, 0.24, 2);
+        const double nodes = std::hypot(x, y),
+                     centroid = std::hypot(part.centroid[0], part.centroid[1]);
+        const bool is_exact = volume == VolumeCorrection::exact;
+        const double counted = is_exact ? nodes : centroid;
+        const double expected = points.volume[i] * points.volume[j] * part.share *
+                                std::exp(-std::pow(counted / 0.24, 2)) * counted / nodes;
+        EXPECT_NEAR(bonds.weight(bond) / expected, 1.0, 1e-9);  // of parts of a millionth of a cell
+        cut += part.share < 1.0;
+        beyond += nodes > 0.24;
+      });
+      EXPECT_GT(cut, 100);
+      EXPECT_GT(beyond, 100);
+    }
+  }
+}
+
+TEST(MakeBonds, SeesTheWholeBallByThePartsOfCells) {
+  for (int dimension = 1; dimension <= 3; ++dimension) {
+    const tests::BoxBody body(
+        deep_box(dimension, {VolumeCorrection::exact, SurfaceCorrection::none}));
+    const auto seen = seen_volumes(body.points, body.model.bonds(), body.setting, {});
+    const double most = *std::max_element(seen.begin(), seen.end());
+    const double own = body.points.volume.front();
+    EXPECT_NEAR((most + own) / body.setting.moment(0), 1.0, 1e-14 * 200);  // sums of 10^2 terms
+    EXPECT_NEAR(
+        (body.setting.lattice_moment(0, body.points.spacing) + own) / body.setting.moment(0), 1.0,
+        1e-14);
+  }
+}
+
+TEST(MakeBonds, RefusesPartsOfCellsThatAreNotThere) {
+  BoxSetting box = tests::small_box(2);
+  box.quadrature.volume = VolumeCorrection::exact;
+  Points cut = tests::box_points(box), cloud = cut, moved = cut;
+  cut.volume[5] *= 0.5;
+  cloud.lattice.reset();
+  moved.reference[4] += 0.01 * box.spacing;
+  for (const Points& points : {cut, cloud, moved}) {
+    EXPECT_THROW(tests::BoxBody(points, box), InputError);
+  }
+  EXPECT_NO_THROW(tests::BoxBody{box});
+}
+
 TEST(MakeBonds, IsSymmetricInTheTwoPoints) {
   for (int dimension = 1; dimension <= 3; ++dimension) {
     for (const tests::Quadrature& quadrature : all_quadratures) {
@@ -120,7 +192,9 @@ TEST(MakeBonds, IsSymmetricInTheTwoPoints) {
       box.quadrature = quadrature;
       Points points = tests::box_points(box);
       tests::Random random(2);
-      for (double& volume : points.volume) volume *= 1.0 + 0.3 * random.number();
+      for (double& volume : points.volume) {
+        volume *= tests::bond_setting(box).has_exact_shares() ? 1.0 : 1.0 + 0.3 * random.number();
+      }
       // The same points numbered backwards: every bond has its points swapped.
       Points backwards = points;
       std::reverse(backwards.volume.begin(), backwards.volume.end());

@@ -59,6 +59,9 @@ TEST(Kernel, CountsCellsUpToItsHorizon) {
   kernel.volume_correction = VolumeCorrection::linear;
   EXPECT_EQ(kernel.partial_volume(3.0, 1.0), 0.5);
   EXPECT_EQ(kernel.search_radius(1.0), 3.5);
+  kernel.volume_correction = VolumeCorrection::exact;
+  EXPECT_DOUBLE_EQ(kernel.search_radius(1.0), 3.0 + std::sqrt(0.5));  // half a cell's diagonal
+  EXPECT_DOUBLE_EQ(kernel.lattice_moment(0, 1.0), 9.0 * pi - 1.0);  // all but the point's own cell
 }
 
 }  // namespace
