@@ -11,6 +11,7 @@
 #include "src/core/number_text.hpp"
 #include "src/geometry/lattice_sites.hpp"
 #include "src/geometry/numbering.hpp"
+#include "src/geometry/perturbed_cells.hpp"
 
 namespace peristat {
 namespace {
@@ -114,6 +115,19 @@ void check_lattice(const Lattice& lattice) {
   if (!(lattice.perturbation >= 0.0 && lattice.perturbation < 0.5)) {
     refuse("perturbation", lattice.perturbation, "must be at least 0 and below 0.5");
   }
+  if (!(lattice.cell_perturbation >= 0.0 && lattice.cell_perturbation < 0.25)) {
+    refuse("cell_perturbation", lattice.cell_perturbation,
+           "must be at least 0 and below 0.25, where cells stay convex");
+  }
+  if (lattice.cell_perturbation > 0.0) {
+    const auto require = [&](bool fits, const std::string& allowed) {
+      if (!fits) refuse("cell_perturbation", lattice.cell_perturbation, allowed);
+    };
+    require(lattice.dimension < 3,
+            "is for dimensions 1 and 2: in 3D cells would have curved faces");
+    require(lattice.perturbation == 0.0, "moves points with their cells; perturbation must be 0");
+    require(lattice.volumes == CellVolumes::whole, "is for volumes = \"cells\"");
+  }
   if (lattice.shapes.empty()) {
     throw InputError("shapes", "", "a lattice needs at least one added shape");
   }
@@ -146,7 +160,9 @@ Points make_points(const Lattice& lattice) {
   points.lattice->origin = frame_of(lattice).position({});
   for (const Layer& layer : lattice.layers) points.lattice->layers.push_back(layer.name);
   const double cell_volume = std::pow(lattice.spacing, lattice.dimension) * lattice.cross_section;
-  if (lattice.volumes == CellVolumes::fractional) points.cell_volume = cell_volume;
+  if (lattice.volumes == CellVolumes::fractional || lattice.cell_perturbation > 0.0) {
+    points.cell_volume = cell_volume;
+  }
   for (const std::vector<Site>& sites : {std::cref(body), std::cref(outside.sites)}) {
     for (const Site& site : sites) {
       points.reference.insert(points.reference.end(), site.place.begin(),
@@ -164,6 +180,14 @@ Points make_points(const Lattice& lattice) {
   const std::vector<Index> order =
       locality_order(lattice.dimension, lattice.spacing, points.reference);
   points = renumbered(points, order);
+  perturb_cells(lattice, body);
+  for (std::size_t k = 0; k < order.size() && lattice.cell_perturbation > 0.0; ++k) {
+    const auto site = std::size_t(order[k]);
+    if (site >= body.size()) continue;
+    points.volume[k] = cell_volume * body[site].share;
+    std::copy_n(body[site].place.begin(), lattice.dimension,
+                points.reference.begin() + std::ptrdiff_t(k) * lattice.dimension);
+  }
   std::vector<bool> is_body(order.size());
   for (std::size_t k = 0; k < order.size(); ++k) is_body[k] = std::size_t(order[k]) < body.size();
   perturb(lattice, is_body, points);

@@ -28,6 +28,9 @@ struct Lattice {
   std::vector<Layer> layers{};
   double perturbation = 0.0;  ///< largest random shift along each of the lattice's axes, in
                               ///< spacings, below 0.5
+  /// Largest random shift of the corners of cells inside the body along each of the lattice's axes,
+  /// in spacings, below 1/4, so that cells stay convex ([GPMB] app. B); dimensions 1 and 2.
+  double cell_perturbation = 0.0;
   std::uint64_t seed = 1;
 };
 
@@ -46,7 +49,8 @@ inline constexpr double smallest_share = 0.01;
 /// Points of the lattice, numbered with locality (see numbering.hpp). With whole cells every point
 /// has the volume of a cell, the product of the spacings x cross_section; with fractional volumes
 /// the sum of the body's is its volume, as exactly as piece_of tells. The layers' points stay on
-/// the lattice when it is perturbed; a seed gives the same perturbation everywhere.
+/// the lattice when it is perturbed; a seed gives the same perturbation everywhere. Points of
+/// perturbed cells stand at their centroids and have their volumes.
 /// @throws InputError if a shape or value can't be used, if no point is left, or if a layer that
 ///         needs a flat face has none
 [[nodiscard]] Points make_points(const Lattice& lattice);

@@ -101,7 +101,9 @@ class ByTheReference(Cases):
         corrections = (["quadrature.surface_correction=volume"], ["quadrature.surface_correction=energy"], [])
         lattices = (["lattice.angle=20"], ["lattice.spacing=[1.3e-3, 0.9e-3]"], ["lattice.volumes=fractional"],
                     ["lattice.spacing=[0.9e-3, 1.2e-3]", "lattice.angle=-35", "lattice.volumes=fractional"],
-                    ["lattice.volumes=fractional", "quadrature.volume_correction=linear"])  # fmt: skip
+                    ["lattice.volumes=fractional", "quadrature.volume_correction=linear"],
+                    ["lattice.cell_perturbation=0.2"],
+                    ["lattice.cell_perturbation=0.1", "lattice.angle=20", "quadrature.volume_correction=linear"])  # fmt: skip
         for lattice, correction in itertools.product(lattices, corrections):
             with self.subTest(lattice=lattice, correction=correction):
                 self.run_case(CUT, lattice + correction)
@@ -176,13 +178,17 @@ displacement = [0, 0]
 class Refusals(Cases):
     def test_what_does_not_hold_is_refused_with_its_key(self):
         cpd = 'material={model="cpd", youngs_modulus=1e9, poisson_ratio=0.4}'
+        for settings, word in ((["lattice.perturbation=0.1"], "must be 0"), (["lattice.volumes=fractional"], "cells"), ([cpd], "whole cells")):
+            self.refusal(CUT, ["lattice.cell_perturbation=0.2", *settings], word)
+        self.refusal(CUT, ["lattice.cell_perturbation=0.25"], "lattice.cell_perturbation", "0.249")
         oblong = "lattice.spacing=[1e-3, 1.5e-3]"
         self.refusal(PULLED, [oblong, "quadrature.volume_correction=linear"], "volume_correction", "square")
         self.refusal(PULLED, [oblong, cpd], "material.model", "square")
         for exact in ("exact", "exact_centroids"):
             correction = f"quadrature.volume_correction={exact}"
             self.refusal(CUT, ["lattice.volumes=fractional", correction], "quadrature.volume_correction", "part of its cell")
-            self.refusal(CUT, ["lattice.perturbation=0.1", correction], "quadrature.volume_correction", "beside the lattice")
+            for perturbation in ("perturbation", "cell_perturbation"):
+                self.refusal(CUT, [f"lattice.{perturbation}=0.1", correction], "quadrature.volume_correction", "beside the lattice")
             self.refusal(PULLED, [cpd, correction], "quadrature.volume_correction", "is for model \"bond\"")
         self.refusal(CUT, ["lattice.volumes=fractional", cpd], "material.model", "whole cells")
         self.refusal(PULLED, ["lattice.spacing=[1e-4, 2e-3]"], "lattice.horizon_ratio", "largest spacing")

@@ -21,7 +21,7 @@ EXPRESSIONS = ["1/0", "0/0", "load/0", "ln(-1)", "sqrt(-load)", "1e308*10*load",
                "x = y = load", "_pi", "pi", "spacing", "1e-4*sin(300*load)", "0 < x < 1", "x ? 1", "\"", "'", "\\", "load\u00b2", "∞", "1e-3*t", "sin(300*t)/t"]  # fmt: skip
 STRUCTURES = ["[]", "{}", "[[]]", "[1, 2]", "[1, 2, 3, 4]", "[1, \"a\"]", "[" * 500 + "]" * 500, "{a = {b = {c = 1}}}", "[" + "0," * 50_000 + "]",
               "{ disk = { centre = [0, 0], radius = -1 } }", "{ box = {} }", '["free", "free", "free"]', "[nan, inf]", "[[0, 0], [1, 1]]"]  # fmt: skip
-WORDS = """dimension title lattice points spacing horizon_ratio thickness area origin perturbation seed shape layer add subtract min max
+WORDS = """dimension title lattice points spacing horizon_ratio thickness area origin perturbation cell_perturbation seed shape layer add subtract min max
     centre radius axis length vertices name side where file horizon set crack from to quadrature volume_correction weights
     surface_correction material model plane influence youngs_modulus micromodulus poisson_ratio calibration c1 c2 c3 density damage law onset
     critical rate peak hardening fracture_energy strength no_fail support displacement load body_force total_force loading steps adaptive smallest_step largest_step

@@ -50,6 +50,7 @@ const std::map<std::string, std::string>& keys_of_members() {
   static const std::map<std::string, std::string> keys{
       {"spacing", "lattice.spacing"},
       {"perturbation", "lattice.perturbation"},
+      {"cell_perturbation", "lattice.cell_perturbation"},
       {"angle", "lattice.angle"},
       {"volume_correction", "quadrature.volume_correction"},
       {"surface_correction", "quadrature.surface_correction"},

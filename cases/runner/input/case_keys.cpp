@@ -130,6 +130,12 @@ Table<Case> lattice_keys() {
            .moreover("`fractional` with model `bond`"),
        K("perturbation", in(lattice, &Lattice::perturbation), between(0.0, 0.49, "spacings"),
          "largest random shift of a point along each of the lattice's axes; points of layers stay"),
+       K("cell_perturbation", in(lattice, &Lattice::cell_perturbation),
+         between(0.0, 0.249, "spacings"),
+         "largest random shift of the corners of cells inside the body along each of the lattice's "
+         "axes; points stand at the cells' centroids and have their volumes")
+           .unless(in_dimension<3>, "is for dimensions 1 and 2")
+           .moreover("model `bond`"),
        K("seed", in(lattice, &Lattice::seed),
          count_from(0, "", std::numeric_limits<std::int64_t>::max()),
          "of the random shifts; the same seed gives the same points"),
@@ -483,10 +489,11 @@ Table<MaterialSpecification> material_keys(const std::string& name) {
            .unless(in_dimension<1>, "is for dimension 2 only")
            .unless(in_dimension<3>, "is for dimension 2 only"),
        K("influence", &Spec::influence, one_of(influence_names()),
-         "`bond`: influence function $\\omega(r/\\delta)$ of bonds, $c\\,\\omega s$ is their force "
-         "density: [GPMB]'s of order 0, 0.5, 1, 3, 5 and 7, $e^{-(r/\\delta)^2}$, or $\\delta/r$; "
-         "`micromodulus`, moduli and fracture energy go with it")
-           .unless(of_cpd, for_bond),
+         "influence function $\\omega(r/\\delta)$, $c\\,\\omega s$ is the force density of a bond: "
+         "[GPMB]'s of order 0, 0.5, 1, 3, 5 and 7, $e^{-(r/\\delta)^2}$, or $\\delta/r$; "
+         "constants, "
+         "moduli and fracture energy go with it. `cpd`: of triangles and tetrahedra the product of "
+         "those of their sides, with constants of the lattice"),
        K("youngs_modulus", &Spec::youngs_modulus, positive("Pa"), "in both models").one_of(),
        K("micromodulus", &Spec::micromodulus, positive("N/m6", 1e150),
          "`bond`: bond constant c of the pairwise force c·stretch")

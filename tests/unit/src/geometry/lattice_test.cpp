@@ -630,5 +630,99 @@ TEST(MakePoints, NamesTheKeyOfALatticeThatCannotBeUsed) {
   EXPECT_THROW((void)make_points(bar), InputError);
 }
 
+/// A square with a hole and a layer, its inner cells' corners shifted.
+Lattice with_perturbed_cells(double perturbation, double angle) {
+  Lattice lattice;
+  lattice.spacing = Spacing({0.1, 0.08, 0.0}, 2);
+  lattice.angle = angle;
+  lattice.shapes = {{ShapeStep::Action::add, Box{{-0.8, -0.8, 0}, {0.8, 0.8, 0}}},
+                    {ShapeStep::Action::subtract, Disk{{0.1, 0.2, 0}, 0.3}}};
+  if (angle == 0.0) lattice.layers = {{"left", {0, -1}, 2, ""}};
+  lattice.cell_perturbation = perturbation;
+  return lattice;
+}
+
+// The cells fill the body as before: area and first moments stay what they were, to round-off of a
+// few hundred terms. Corners inside move, those on the boundary don't.
+TEST(PerturbedCells, FillTheBody) {
+  for (const double angle : {0.0, 25.0}) {
+    const Points still = make_points(with_perturbed_cells(0.0, angle));
+    const Points moved = make_points(with_perturbed_cells(0.24, angle));
+    ASSERT_EQ(still.count(), moved.count());
+    double area = 0.0, change = 0.0, farthest = 0.0, least = 1.0, most = 1.0;
+    Coordinates moment{};
+    for (Index i = 0; i < still.count(); ++i) {
+      const Coordinates a = still.position(i), b = moved.position(i);
+      area += still.volume[i];
+      change += moved.volume[i] - still.volume[i];
+      for (std::size_t c = 0; c < 2; ++c) {
+        moment[c] += moved.volume[i] * b[c] - still.volume[i] * a[c];
+      }
+      farthest = std::max(farthest, std::hypot(b[0] - a[0], b[1] - a[1]));
+      least = std::min(least, moved.volume[i] / still.volume[i]);
+      most = std::max(most, moved.volume[i] / still.volume[i]);
+    }
+    EXPECT_NEAR(change, 0.0, 1e-14 * area);
+    EXPECT_NEAR(moment[0], 0.0, 1e-14 * area);
+    EXPECT_NEAR(moment[1], 0.0, 1e-14 * area);
+    EXPECT_GT(farthest, 0.01);
+    EXPECT_LT(farthest, 0.03);  // a quarter of a diagonal
+    EXPECT_GT(most, 1.2);
+    EXPECT_LT(least, 0.8);
+    EXPECT_EQ(moved.cell_volume, still.volume.front());
+  }
+}
+
+TEST(PerturbedCells, LeaveLayersAndFollowFromTheSeed) {
+  Lattice lattice = with_perturbed_cells(0.2, 0.0);
+  const Points still = make_points(with_perturbed_cells(0.0, 0.0));
+  const Points one = make_points(lattice), again = make_points(lattice);
+  EXPECT_EQ(one.reference, again.reference);
+  EXPECT_EQ(one.volume, again.volume);
+  lattice.seed = 2;
+  EXPECT_NE(make_points(lattice).reference, one.reference);
+  ASSERT_GT(one.sets.at("left").size(), 10u);
+  for (const Index i : one.sets.at("left")) {
+    EXPECT_EQ(one.position(i), still.position(i));
+    EXPECT_EQ(one.volume[i], still.volume[i]);
+  }
+}
+
+// Of a line the cells are intervals: neighbours share their ends.
+TEST(PerturbedCells, OfALineAreIntervals) {
+  Lattice lattice;
+  lattice.dimension = 1;
+  lattice.spacing = 0.1;
+  lattice.shapes = {{ShapeStep::Action::add, Box{{0, 0, 0}, {2, 0, 0}}}};
+  lattice.cell_perturbation = 0.2;
+  const Points points = make_points(lattice);
+  double end = 0.0;
+  for (Index i = 0; i < points.count(); ++i) {
+    EXPECT_NEAR(points.reference[i] - 0.5 * points.volume[i], end, 1e-15 * 20);
+    end += points.volume[i];
+    EXPECT_GE(points.volume[i], 0.06);
+  }
+  EXPECT_NEAR(end, 2.0, 1e-14);
+}
+
+TEST(PerturbedCells, RefuseWhatIsNoneOfTheirs) {
+  const auto refusal = [](auto change) {
+    Lattice lattice = with_perturbed_cells(0.1, 0.0);
+    change(lattice);
+    try {
+      static_cast<void>(make_points(lattice));
+    } catch (const InputError& error) {
+      return error.key();
+    }
+    return std::string();
+  };
+  EXPECT_EQ(refusal([](Lattice& of) { of.cell_perturbation = 0.25; }), "cell_perturbation");
+  EXPECT_EQ(refusal([](Lattice& of) { of.cell_perturbation = -0.1; }), "cell_perturbation");
+  EXPECT_EQ(refusal([](Lattice& of) { of.perturbation = 0.1; }), "cell_perturbation");
+  EXPECT_EQ(refusal([](Lattice& of) { of.volumes = CellVolumes::fractional; }),
+            "cell_perturbation");
+  EXPECT_EQ(refusal([](Lattice&) {}), "");
+}
+
 }  // namespace
 }  // namespace peristat

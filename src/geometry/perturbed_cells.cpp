@@ -1,0 +1,82 @@
+#include "src/geometry/perturbed_cells.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+
+#include "src/core/counter_random.hpp"
+
+namespace peristat {
+namespace {
+
+using Corner = std::array<double, 2>;  // in spacings from the middle of the cell that it is of
+
+/// Corners of the cells of a body, in the order of a cell's corners: anticlockwise.
+class Corners {
+ public:
+  Corners(const Lattice& lattice, const std::vector<Site>& body)
+      : lattice_(lattice), is_line_(lattice.dimension == 1) {
+    cells_.reserve(body.size());
+    for (const Site& site : body) cells_.push_back(site.cell);
+  }
+
+  [[nodiscard]] std::array<Corner, 4> of(const Cell& cell) const {
+    std::array<Corner, 4> corners{{{-0.5, -0.5}, {0.5, -0.5}, {0.5, 0.5}, {-0.5, 0.5}}};
+    for (Corner& corner : corners) {
+      const Cell above{cell[0] + (corner[0] > 0.0), cell[1] + (corner[1] > 0.0 && !is_line_), 0};
+      const Corner shift = shift_of(above);
+      for (std::size_t c = 0; c < 2; ++c) corner[c] += shift[c];
+    }
+    return corners;
+  }
+
+ private:
+  /// @param above the cell whose lowest corner it is
+  [[nodiscard]] Corner shift_of(const Cell& above) const {
+    for (std::int64_t x = -1; x <= 0; ++x) {
+      for (std::int64_t y = is_line_ ? 0 : -1; y <= 0; ++y) {
+        const Cell cell{above[0] + x, above[1] + y, 0};
+        if (!std::binary_search(cells_.begin(), cells_.end(), cell)) return {};
+      }
+    }
+    std::uint64_t bits = lattice_.seed;
+    for (const std::int64_t place : above) bits = random_bits(bits, std::uint64_t(place));
+    Corner shift{};
+    for (std::size_t c = 0; c < (is_line_ ? 1u : 2u); ++c) {
+      shift[c] = lattice_.cell_perturbation * (2.0 * open_unit(random_bits(bits, c)) - 1.0);
+    }
+    return shift;
+  }
+
+  const Lattice& lattice_;
+  bool is_line_;
+  std::vector<Cell> cells_;
+};
+
+}  // namespace
+
+void perturb_cells(const Lattice& lattice, std::vector<Site>& body) {
+  if (lattice.cell_perturbation == 0.0) return;
+  const LatticeFrame frame = frame_of(lattice);
+  const Corners corners(lattice, body);
+  for (Site& site : body) {
+    const std::array<Corner, 4> of_cell = corners.of(site.cell);
+    double area = 0.0;
+    Corner moment{};
+    for (std::size_t k = 0; k < 4; ++k) {
+      const Corner &a = of_cell[k], &b = of_cell[(k + 1) % 4];
+      const double twice = a[0] * b[1] - a[1] * b[0];
+      area += 0.5 * twice;
+      for (std::size_t c = 0; c < 2; ++c) moment[c] += twice * (a[c] + b[c]) / 6.0;
+    }
+    site.share = area;
+    Coordinates along{};
+    for (int c = 0; c < lattice.dimension; ++c) {
+      along[std::size_t(c)] = moment[std::size_t(c)] / area * lattice.spacing.along(c);
+    }
+    const Coordinates shift = frame.turned(along);
+    for (std::size_t c = 0; c < 3; ++c) site.place[c] += shift[c];
+  }
+}
+
+}  // namespace peristat

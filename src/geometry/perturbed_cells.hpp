@@ -1,0 +1,17 @@
+#pragma once
+
+#include <vector>
+
+#include "src/geometry/lattice_sites.hpp"
+
+namespace peristat {
+
+/// Shifts the corners that lie between cells of the body alone, each by up to the lattice's
+/// cell_perturbation, and moves the sites to the centroids of their cells, with the shares that
+/// these have of a whole one. Cells at the boundary keep the corners on it, so that all of them
+/// fill the body as before. A shift follows from the seed and the corner's place on the lattice
+/// alone.
+/// @param body whole cells in ascending order
+void perturb_cells(const Lattice& lattice, std::vector<Site>& body);
+
+}  // namespace peristat
