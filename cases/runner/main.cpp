@@ -152,7 +152,7 @@ void add_bond_calibration(CLI::App& command, CommandLine& line) {
   add_of_bonds("--calibration", material.calibration, "bond: continuum (default) or lattice")
       ->transform(names<Calibration>(
           {{"continuum", Calibration::continuum}, {"lattice", Calibration::lattice}}));
-  add_of_bonds("--influence", material.influence, "bond: influence function, as in case files");
+  add("--influence", material.influence, "influence function, as in case files");
   add_of_bonds("--micromodulus", material.micromodulus, "bond: c [N/m6]");
   add("--law", damage.law, "of damage, as in case files")
       ->transform(names<Law>({{"critical_stretch", Law::critical_stretch},
@@ -182,7 +182,9 @@ Exit calibrate(const CommandLine& line) {
     return calibrate(line.calibration, line.bond_calibration);
   }
   refuse_options_of_bonds(line);
-  return calibrate(line.calibration, line.bond_calibration.material.damage);
+  CalibrationQuestion asked = line.calibration;
+  asked.influence = line.bond_calibration.material.influence;
+  return calibrate(asked, line.bond_calibration.material.damage);
 }
 
 RunOptions run_options(const CommandLine& line, int threads) {

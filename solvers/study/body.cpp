@@ -99,7 +99,10 @@ Model make_bond_model(const Body& body, const PointMaterials& materials, Bonds b
 void make_model(Body& body, int threads) {
   const BodySpecification& of = body.specification;
   const Stopwatch watch(body.seconds_neighbourhood);
-  Bonds bonds = make_bonds(body.points, of.surface_correction, body.setting, threads);
+  const bool is_cpd = of.material.model == MaterialModel::cpd;
+  BondSetting setting = body.setting;
+  if (is_cpd) setting.influence = {};  // effective volumes count every neighbour
+  Bonds bonds = make_bonds(body.points, of.surface_correction, setting, threads);
   refuse_coincident_points(body.points, bonds);
   const PointMaterials materials(of, body.points);
   body.region = materials.regions();
@@ -107,10 +110,9 @@ void make_model(Body& body, int threads) {
   body.factors = {materials.factors(body.points, Quantity::stiffness, threads),
                   materials.factors(body.points, Quantity::strength, threads)};
   CutBonds cut;
-  body.model = of.material.model == MaterialModel::cpd
-                   ? make_cpd_model(of, materials, body.factors, body.points, body.setting,
-                                    std::move(bonds), cut, threads)
-                   : make_bond_model(body, materials, std::move(bonds), cut);
+  body.model = is_cpd ? make_cpd_model(of, materials, body.factors, body.points, body.setting,
+                                       std::move(bonds), cut, threads)
+                      : make_bond_model(body, materials, std::move(bonds), cut);
   body.cut_weight = std::move(cut.weight);
   body.cut_bonds = std::move(cut.ends);
 }

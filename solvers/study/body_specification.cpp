@@ -178,9 +178,11 @@ void check_influence(const MaterialSpecification& material, const std::string& k
   for (const std::string& name : names) listed += (listed.empty() ? "" : ", ") + name;
   require(std::ranges::find(names, material.influence) != names.end(), key + ".influence",
           '"' + material.influence + '"', "must be one of " + listed);
-  require_absent(
-      material.model == MaterialModel::cpd && material.influence != ConstantInfluence::name,
-      key + ".influence", "is for the model bond");
+  require_absent(material.model == MaterialModel::cpd &&
+                     material.calibration == Calibration::continuum &&
+                     material.influence != ConstantInfluence::name,
+                 key + ".calibration",
+                 "of cpd is known for the constant influence function alone; give \"lattice\"");
 }
 
 }  // namespace

@@ -21,14 +21,15 @@ struct HigherConstant {
 };
 
 /// @param bonds of the whole body, which the effective volumes belong to: a crack is no surface
-/// @param left those that pre-cracks have not cut; an interaction with a cut bond is lost
+/// @param left those that have an influence and that pre-cracks have not cut; an interaction with
+///        another one is lost
 template <class Measure>
 Simplices<Measure> make_simplices(const BodySpecification& from, const Points& points,
                                   const Bonds& bonds, const Bonds& left,
-                                  const BulkNeighbourhood& bulk, double cross_section,
+                                  const BulkNeighbourhood& bulk, const Kernel& kernel,
                                   HigherConstant constant, const PointFactors& factors,
                                   int threads) {
-  Interactions<Measure> interactions(points, bonds, cross_section, threads);
+  Interactions<Measure> interactions(points, bonds, kernel.cross_section, threads);
   if (interactions.count() == 0) {
     constexpr bool is_triangle = Measure::arms == 2;
     throw InputError(is_triangle ? "material.c2" : "material.c3", number_text(constant.constant),
@@ -42,9 +43,10 @@ Simplices<Measure> make_simplices(const BodySpecification& from, const Points& p
       points, effective_volumes(interactions, neighbour_counts(bonds), bulk, from.weights));
   for (std::size_t i = 0; i < factors.stiffness.size(); ++i) shares[i] *= factors.stiffness[i];
   if (left.count() < bonds.count()) {
-    interactions = Interactions<Measure>(points, left, cross_section, threads);
+    interactions = Interactions<Measure>(points, left, kernel.cross_section, threads);
   }
   interactions.set_shares(std::move(shares));
+  interactions.set_influence(kernel);
   interactions.set_factors(std::move(constant.factors));
   return {std::move(interactions), Harmonic{constant.constant}};
 }
@@ -52,7 +54,7 @@ Simplices<Measure> make_simplices(const BodySpecification& from, const Points& p
 CpdStiffness stiffness_of(const MaterialSpecification& material, const BondSetting& setting,
                           double spacing) {
   return material.calibrated_on() == Calibration::lattice
-             ? lattice_stiffness(setting.dimension, spacing, setting.horizon, setting.cross_section)
+             ? lattice_stiffness(setting, spacing)
              : continuum_stiffness(setting.dimension, setting.horizon, setting.cross_section);
 }
 
@@ -214,18 +216,25 @@ Model make_cpd_model(const BodySpecification& from, const PointMaterials& materi
     mixed.weigh(bonds);
   }
   Bonds left = bonds;
+  if (setting.influence) {
+    left.set_weights([&](Index, Offset bond) {
+      return left.weight(bond) * setting.influence_at(left.length(bond));
+    });
+    left.remove_if(
+        [&](Index, Offset bond) { return setting.influence_at(left.length(bond)) == 0.0; });
+  }
   cut = cut_bonds(left, points, from.cracks);
   auto [potential, never_fails] = mixed.potential(left);
   Model model(std::move(left), std::move(potential), std::move(never_fails));
   std::optional<Simplices<Area>> triangles;
   std::optional<Simplices<Volume>> tetrahedra;
   if (of_triangles.constant != 0.0) {
-    triangles = make_simplices<Area>(from, points, bonds, model.bonds(), bulk,
-                                     setting.cross_section, of_triangles, factors, threads);
+    triangles = make_simplices<Area>(from, points, bonds, model.bonds(), bulk, setting,
+                                     of_triangles, factors, threads);
   }
   if (of_tetrahedra.constant != 0.0) {
-    tetrahedra = make_simplices<Volume>(from, points, bonds, model.bonds(), bulk,
-                                        setting.cross_section, of_tetrahedra, factors, threads);
+    tetrahedra = make_simplices<Volume>(from, points, bonds, model.bonds(), bulk, setting,
+                                        of_tetrahedra, factors, threads);
   }
   if (triangles || tetrahedra) {
     model.add(std::make_shared<SimplexTerm>(model.bond_term(), std::move(triangles),

@@ -32,8 +32,7 @@ TipElasticity elasticity_of(const PointMaterials::Material& material, const Body
       cpd_constants_of(*material.of, material.key, setting, body.points.spacing);
   const CpdStiffness stiffness =
       material.of->calibrated_on() == Calibration::lattice
-          ? lattice_stiffness(dimension, body.points.spacing, setting.horizon,
-                              setting.cross_section)
+          ? lattice_stiffness(setting, body.points.spacing)
           : continuum_stiffness(dimension, setting.horizon, setting.cross_section);
   const LameModuli moduli = stiffness.moduli(constants);
   const double modulus = youngs_modulus_of(moduli, dimension),

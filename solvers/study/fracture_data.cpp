@@ -298,8 +298,7 @@ FractureScale FractureScale::of(const MaterialSpecification& material, const std
   scale.micromodulus = constants.c1;
   const double largest = largest_ratio_of_tear(setting.dimension);
   if (setting.horizon <= largest * spacing * (1.0 + horizon_tolerance)) {
-    scale.tear = std::make_shared<CpdTear>(setting.dimension, spacing, setting.horizon,
-                                           setting.cross_section, constants);
+    scale.tear = std::make_shared<CpdTear>(setting, spacing, constants);
     scale.crossing = scale.tear->mean_crossing();
   } else if (material.damage.fracture_energy) {
     throw InputError(

@@ -1,6 +1,7 @@
 #include "src/materials/cpd_constants.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -8,6 +9,7 @@
 #include "src/core/number_text.hpp"
 #include "src/neighbourhood/bulk_neighbourhood.hpp"
 #include "src/neighbourhood/lattice_ball.hpp"
+#include "src/neighbourhood/side_influence.hpp"
 
 namespace peristat {
 namespace {
@@ -162,8 +164,15 @@ CpdStiffness continuum_stiffness(int dimension, double horizon, double cross_sec
 
 CpdStiffness lattice_stiffness(int dimension, double spacing, double horizon,
                                double cross_section) {
-  const BulkNeighbourhood bulk = bulk_neighbourhood(dimension, spacing, horizon, cross_section);
-  const LatticeBall ball(dimension, spacing, horizon);
+  return lattice_stiffness({dimension, horizon, cross_section}, spacing);
+}
+
+CpdStiffness lattice_stiffness(const Kernel& kernel, double spacing) {
+  const int dimension = kernel.dimension;
+  const BulkNeighbourhood bulk =
+      bulk_neighbourhood(dimension, spacing, kernel.horizon, kernel.cross_section);
+  const LatticeBall ball(dimension, spacing, kernel.horizon);
+  constexpr Coordinates here{};
   CpdStiffness stiffness;
   stiffness.dimension = dimension;
 
@@ -172,7 +181,8 @@ CpdStiffness lattice_stiffness(int dimension, double spacing, double horizon,
   for (const Coordinates& arm : ball.arms()) {
     const double length = std::hypot(arm[0], arm[1], arm[2]);
     const double nx = arm[0] / length, ny = arm[1] / length, mixed = nx * nx * ny * ny;
-    add_scaled(stiffness.of_c1, 0.5 * v1 * length, {std::pow(nx, 4), mixed, mixed});
+    add_scaled(stiffness.of_c1, 0.5 * v1 * length * kernel.influence_at(length),
+               {std::pow(nx, 4), mixed, mixed});
   }
 
   // 2/3 V2 C2 sum A P P over unordered pairs, P = I in 2D and I - m m^T in 3D
@@ -185,16 +195,20 @@ CpdStiffness lattice_stiffness(int dimension, double spacing, double horizon,
         my = (b[2] * c[0] - b[0] * c[2]) / area;
       }
       const double pxx = 1.0 - mx * mx, pyy = 1.0 - my * my, pxy = -mx * my;
-      add_scaled(stiffness.of_c2, 2.0 / 3.0 * v2 * area, {pxx * pxx, pxx * pyy, pxy * pxy});
+      const double influence = influence_of_sides(kernel, std::array{here, b, c});
+      add_scaled(stiffness.of_c2, 2.0 / 3.0 * v2 * area * influence,
+                 {pxx * pxx, pxx * pyy, pxy * pxy});
     });
   }
 
   // 6/4 V3 C3 sum V I I over unordered triplets
   if (bulk.triplets > 0) {
     const double v3 = std::pow(bulk.volume, 3) / double(bulk.triplets);
-    ball.for_each_triplet([&](double volume) {
-      add_scaled(stiffness.of_c3, 1.5 * v3 * volume, {1.0, 1.0, 0.0});
-    });
+    ball.for_each_triplet(
+        [&](const Coordinates& b, const Coordinates& c, const Coordinates& d, double volume) {
+          const double influence = influence_of_sides(kernel, std::array{here, b, c, d});
+          add_scaled(stiffness.of_c3, 1.5 * v3 * volume * influence, {1.0, 1.0, 0.0});
+        });
   }
   return stiffness;
 }

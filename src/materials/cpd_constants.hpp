@@ -1,5 +1,7 @@
 #pragma once
 
+#include "src/neighbourhood/kernel.hpp"
+
 namespace peristat {
 
 /// Constants of the harmonic potentials of one-, two- and three-neighbour interactions
@@ -78,5 +80,7 @@ struct CpdStiffness {
 /// factor of two, and is not isotropic.
 [[nodiscard]] CpdStiffness lattice_stiffness(int dimension, double spacing, double horizon,
                                              double cross_section);
+/// The same with the influence function of a kernel.
+[[nodiscard]] CpdStiffness lattice_stiffness(const Kernel& kernel, double spacing);
 
 }  // namespace peristat

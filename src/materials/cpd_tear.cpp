@@ -10,6 +10,7 @@
 
 #include "src/neighbourhood/bulk_neighbourhood.hpp"
 #include "src/neighbourhood/lattice_ball.hpp"
+#include "src/neighbourhood/side_influence.hpp"
 
 namespace peristat {
 namespace {
@@ -229,38 +230,46 @@ std::vector<WeightedDirection> directions(int dimension) {
 
 }  // namespace
 
-CpdTear::CpdTear(int dimension, double spacing, double horizon, double cross_section,
-                 const CpdConstants& constants)
-    : dimension_(dimension), c1_(constants.c1) {
-  const BulkNeighbourhood bulk = bulk_neighbourhood(dimension, spacing, horizon, cross_section);
-  const LatticeBall ball(dimension, spacing, horizon);
+CpdTear::CpdTear(const Kernel& kernel, double spacing, const CpdConstants& constants)
+    : dimension_(kernel.dimension), c1_(constants.c1) {
+  const BulkNeighbourhood bulk =
+      bulk_neighbourhood(dimension_, spacing, kernel.horizon, kernel.cross_section);
+  const LatticeBall ball(dimension_, spacing, kernel.horizon);
+  constexpr Coordinates here{};
   const auto in_spacings = [&](const Coordinates& arm) { return scaled(1.0 / spacing, arm); };
   for (std::size_t k = ball.arms().size() / 2; k < ball.arms().size(); ++k) {
     const Coordinates arm = in_spacings(ball.arms()[k]);
-    bonds_.push_back({arm, std::sqrt(dot(arm, arm))});
+    const double length = std::sqrt(dot(arm, arm));
+    bonds_.push_back({arm, length, kernel.influence_at(length * spacing)});
   }
   // w = V V1, 2 V V2 and 6 V V3, see effective_volumes.
   bond_energy_ = bulk.volume / double(bulk.neighbours) * c1_ * spacing * spacing;
   if (constants.c2 != 0.0) {
     const double weight = 2.0 * bulk.volume * bulk.volume / double(bulk.pairs);
     ball.for_each_triangle([&](const Coordinates& b, const Coordinates& c, double area) {
-      triangles_.push_back({{Coordinates{}, in_spacings(b), in_spacings(c)},
-                            weight * area * constants.c2 * spacing});
+      const double influence = influence_of_sides(kernel, std::array{here, b, c});
+      if (influence == 0.0) return;
+      triangles_.push_back({{here, in_spacings(b), in_spacings(c)},
+                            weight * area * constants.c2 * spacing * influence});
     });
   }
   if (constants.c3 != 0.0) {
     const double weight = 6.0 * std::pow(bulk.volume, 3) / double(bulk.triplets);
     ball.for_each_tetrahedron(
         [&](const Coordinates& b, const Coordinates& c, const Coordinates& d, double volume) {
-          tetrahedra_.push_back({{Coordinates{}, in_spacings(b), in_spacings(c), in_spacings(d)},
-                                 weight * volume * constants.c3 * spacing});
+          const double influence = influence_of_sides(kernel, std::array{here, b, c, d});
+          if (influence == 0.0) return;
+          tetrahedra_.push_back({{here, in_spacings(b), in_spacings(c), in_spacings(d)},
+                                 weight * volume * constants.c3 * spacing * influence});
         });
   }
 }
 
 double CpdTear::of_bonds(const AnyLaw& law, const Coordinates& normal) const {
   double sum = 0.0;
-  for (const Bond& bond : bonds_) sum += bond.length * std::abs(dot(bond.arm, normal));
+  for (const Bond& bond : bonds_) {
+    sum += bond.influence * bond.length * std::abs(dot(bond.arm, normal));
+  }
   return bond_energy_ * sum * law.work(Harmonic{1.0}, law.critical());
 }
 
@@ -294,7 +303,7 @@ double CpdTear::quadrature_points(const AnyLaw& of) const {
 
 double CpdTear::mean_crossing() const {
   double sum = 0.0;
-  for (const Bond& bond : bonds_) sum += bond.length * bond.length;
+  for (const Bond& bond : bonds_) sum += bond.influence * bond.length * bond.length;
   return bond_energy_ / c1_ * mean_of_magnitude(dimension_) * sum;
 }
 

@@ -29,9 +29,7 @@ namespace peristat {
 /// 4 x 4), weighted by the solid angle.
 class CpdTear {
  public:
-  /// @param cross_section thickness in 2D [m], 1 in 3D
-  CpdTear(int dimension, double spacing, double horizon, double cross_section,
-          const CpdConstants& constants);
+  CpdTear(const Kernel& kernel, double spacing, const CpdConstants& constants);
 
   /// G(n) [J/m2]
   [[nodiscard]] double energy(const AnyLaw& law, const Coordinates& normal) const;
@@ -54,8 +52,8 @@ class CpdTear {
     double energy;                       // w |M| C spacing / V [J/m2]
   };
   struct Bond {
-    Coordinates arm;  // in spacings
-    double length;
+    Coordinates arm;           // in spacings
+    double length, influence;  // in spacings, and omega
   };
 
   [[nodiscard]] double of_bonds(const AnyLaw& law, const Coordinates& normal) const;

@@ -12,7 +12,9 @@ BulkNeighbourhood bulk_neighbourhood(int dimension, double spacing, double horiz
   const LatticeBall ball(dimension, spacing, horizon);
   bulk.neighbours = static_cast<std::int64_t>(ball.arms().size());
   ball.for_each_pair([&](const Coordinates&, const Coordinates&, double) { bulk.pairs += 2; });
-  ball.for_each_triplet([&](double) { bulk.triplets += 6; });
+  ball.for_each_triplet([&](const Coordinates&, const Coordinates&, const Coordinates&, double) {
+    bulk.triplets += 6;
+  });
   return bulk;
 }
 

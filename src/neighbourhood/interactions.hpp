@@ -14,6 +14,7 @@
 #include "src/neighbourhood/flatness.hpp"
 #include "src/neighbourhood/local_neighbourhood.hpp"
 #include "src/neighbourhood/point_kinds.hpp"
+#include "src/neighbourhood/side_influence.hpp"
 
 namespace peristat {
 
@@ -70,6 +71,8 @@ class Interactions {
   /// An interaction's weight is the sum of its points' shares [m9 or m12] times its flatness
   /// factor. Until they are set it is the factor alone.
   void set_shares(std::vector<double> shares) { shares_ = std::move(shares); }
+  /// Multiplies the weights by the product of influences of the sides, see influence_of_sides.
+  void set_influence(const Kernel& kernel) { kernel_ = kernel; }
   /// Further factors of the weights, by the kinds of the points.
   void set_factors(FactorsOfKinds factors) { factors_ = std::move(factors); }
   /// Whether any of them is negative: such interactions have the other sign of energy.
@@ -112,6 +115,8 @@ class Interactions {
   template <int D>
   static bool make_block(const Arms<Measure::arms, D, Lanes>& arms, const Vector<2, Lanes>& shares,
                          std::uint32_t candidates, InteractionBlock& block);
+  template <int D>
+  void apply_influence(const Arms<Measure::arms, D, Lanes>& arms, InteractionBlock& block) const;
   void apply_factors(const UpperNeighbourhood& upper, const Group& group,
                      InteractionBlock& block) const;
 
@@ -121,6 +126,7 @@ class Interactions {
   std::vector<std::int32_t> per_point_;
   std::vector<double> effective_counts_;
   std::vector<double> shares_;
+  Kernel kernel_;
   FactorsOfKinds factors_;
   std::vector<double> cell_shares_;  // an interaction's cell measure M0 is their sum [m2 or m3]
   std::vector<Chunk> chunks_;
@@ -177,6 +183,21 @@ bool Interactions<Measure>::make_block(const Arms<Measure::arms, D, Lanes>& arms
   return true;
 }
 
+/// Multiplies the weights of a block's interactions by the influences of their sides.
+template <class Measure>
+template <int D>
+void Interactions<Measure>::apply_influence(const Arms<Measure::arms, D, Lanes>& arms,
+                                            InteractionBlock& block) const {
+  for (int l = 0; l < lane_count; ++l) {
+    if ((block.active >> l & 1U) == 0) continue;
+    std::array<Coordinates, Measure::arms + 1> at{};
+    for (std::size_t a = 0; a < Measure::arms; ++a) {
+      for (std::size_t c = 0; c < D; ++c) at[a + 1][c] = arms[a][c][l];
+    }
+    block.weight[l] *= influence_of_sides(kernel_, at);
+  }
+}
+
 /// Multiplies the weights of a block's interactions by the factors of their points' kinds.
 template <class Measure>
 void Interactions<Measure>::apply_factors(const UpperNeighbourhood& upper, const Group& group,
@@ -221,6 +242,7 @@ void Interactions<Measure>::find_groups(const LocalNeighbourhood<D>& local,
         arms[fixed] = local.reference.block(block.first);
         const Vector<2, Lanes> shares = plus<2>(of_fixed, scratch.of_partners.block(block.first));
         if (!make_block<D>(arms, shares, candidates, block)) continue;
+        if (kernel_.influence) apply_influence<D>(arms, block);
         if (!factors_.factor.empty()) apply_factors(upper, group, block);
         ++count;
       }

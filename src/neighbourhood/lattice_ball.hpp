@@ -68,12 +68,14 @@ class LatticeBall {
     });
   }
 
-  /// visit(volume) for every unordered triplet of mutual neighbours that is not coplanar with the
-  /// point; volume = |b.(c x d)|.
+  /// visit(b, c, d, volume) for every unordered triplet of mutual neighbours that is not coplanar
+  /// with the point; volume = |b.(c x d)|.
   template <class Visit>
   void for_each_triplet(const Visit& visit) const {
     if (dimension_ < 3) return;
-    for_each_solid(0, [&](std::size_t, std::size_t, std::size_t, double volume) { visit(volume); });
+    for_each_solid(0, [&](std::size_t j, std::size_t k, std::size_t l, double volume) {
+      visit(arms_[j], arms_[k], arms_[l], volume);
+    });
   }
 
  private:

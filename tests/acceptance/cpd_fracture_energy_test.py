@@ -102,6 +102,21 @@ class CpdFractureEnergy(unittest.TestCase):
         damage = {"law": "critical_stretch", "critical": told["critical"]}
         self.assertAlmostEqual(tear.mean(damage) / 500, 1.0, delta=1e-9)
 
+    def test_stretches_heed_the_influence_function(self):
+        constants = {"c1": 4e20, "c2": 1e28, "c3": 7e37}
+        for dimension, influence in ((2, "cubic"), (2, "gaussian"), (2, "linear"), (3, "septic"), (3, "inverse")):
+            with self.subTest(dimension=dimension, influence=influence):
+                of = dict(list(constants.items())[:dimension])
+                options = [word for key, value in of.items() for word in (f"--{key}", repr(value))]
+                run = peristat("calibrate", "--dimension", str(dimension), "--spacing", "1e-3", "--horizon-ratio", "2", *options,
+                               "--law", "linear", "--fracture-energy", "500", "--influence", influence)  # fmt: skip
+                self.assertEqual(run.code, 0, run.said)
+                told = json.loads(run.output)
+                tear = Tear(dimension, 2.0, 1e-3, 1.0, dict(zip((1, 2, 3), of.values())), influence)
+                damage = {"law": "linear"} | {key: told["damage"][key] for key in ("onset", "critical")}
+                self.assertAlmostEqual(tear.mean(damage) / 500, 1.0, delta=1e-9)
+                self.assertIsNone(told["continuum"])
+
     def test_a_strength_comes_back_and_check_tells_both(self):
         tables = self.strip(0.03, 0.0, {"law": "linear", "fracture_energy": G, "strength": 2e8})
         material = tables["material"]

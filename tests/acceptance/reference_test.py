@@ -124,6 +124,19 @@ class Clouds(unittest.TestCase):
                 compared += 1
         self.assertEqual(compared, 4 * len(LAWS))
 
+    def test_cpd_with_every_influence(self):
+        compared = 0
+        for dimension, name in itertools.product((2, 3), (*POWERS, "gaussian")):
+            with self.subTest(dimension=dimension, influence=name):
+                material = {"model": "cpd", "c1": 2.0, "c2": 0.7, "influence": name, "damage": {**LAWS["linear"], "no_fail": ["left"]}}
+                if dimension == 3:
+                    material["c3"] = 0.4
+                path = random_cloud(self.random, self.folder, dimension, count=(0, 22, 18)[dimension - 1],
+                                    horizon=self.random.uniform(2.05, 2.3), material=material)  # fmt: skip
+                self.compare(path, 0.07, 4.0)
+                compared += 1
+        self.assertEqual(compared, 2 * 8)
+
     def test_cpd_of_few_and_nearly_flat_points(self):
         """Where flatness factors lie between 0 and 1, and where those of a point sum up to less than 1."""
         between = below = 0

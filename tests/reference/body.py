@@ -67,6 +67,15 @@ def lattice_ball(dimension, ratio, edges=1.0):
     return grid[(distance > 0) & (distance <= ratio * (1 + HORIZON_TOLERANCE))]
 
 
+def influence_of_sides(name, tuples, places):
+    """Product of the influences of all pairs of a tuple's points; places in horizons."""
+    factor = numpy.ones(len(tuples))
+    for a, b in itertools.combinations(range(tuples.shape[1]), 2):
+        arm = places[tuples[:, a]] - places[tuples[:, b]]
+        factor *= influence(name, numpy.sqrt((arm**2).sum(axis=1)))
+    return factor
+
+
 def ball_volume(dimension, horizon, cross_section):
     return {1: 2 * horizon, 2: math.pi * horizon**2, 3: 4 / 3 * math.pi * horizon**3}[dimension] * cross_section
 
@@ -281,6 +290,9 @@ class Body:
             if not self.materials.are_one:
                 own = self.materials.constants(tuples, f"c{order}")
                 self.weight[order] = self.weight[order] * own / self.constants[order]
+        for order, tuples in self.tuples.items():
+            factor = influence_of_sides(self.case["material"]["influence"], tuples, self.reference / self.horizon)
+            self.tuples[order], self.weight[order] = tuples[factor > 0], (self.weight[order] * factor)[factor > 0]
 
     def _flatness(self, tuples, places, cells):
         """g(|M| / M0): 0 for what is flat, 1 from three quarters of a cell on."""

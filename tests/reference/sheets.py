@@ -131,10 +131,10 @@ def resolve_cpd(case, tables, spacing):
             continue
         assert "strength" not in table["damage"], "the reference does not calibrate"
         constants = {n: float(table.get(f"c{n}", 0.0)) for n in range(1, case.dimension + 1)}
-        tear = Tear(case.dimension, case.horizon() / spacing, spacing, case.cross_section, constants)
+        tear = Tear(case.dimension, case.horizon() / spacing, spacing, case.cross_section, constants, case["material"]["influence"])
         wanted = table["damage"]["fracture_energy"]
         brittle = {"law": "critical_stretch", "critical": 1e-6}
-        bonds = Tear(case.dimension, case.horizon() / spacing, spacing, case.cross_section, {1: constants[1]})
+        bonds = Tear(case.dimension, case.horizon() / spacing, spacing, case.cross_section, {1: constants[1]}, case["material"]["influence"])
         least = math.log(bonds.mean(brittle) / total_work(brittle))
         law = lambda ratio: with_stretches(table["damage"], 1.0, math.exp(ratio))
         excess = lambda ratio: math.log(tear.mean(law(ratio)) / wanted)

@@ -25,9 +25,9 @@ def directions(dimension):
 
 
 class Tear:
-    def __init__(self, dimension, ratio, spacing, cross_section, constants):
+    def __init__(self, dimension, ratio, spacing, cross_section, constants, influence="constant"):
         """constants: C1, C2, C3 by their order."""
-        from tests.reference.body import ball_volume, cliques, lattice_ball, measure, pairs_within
+        from tests.reference.body import ball_volume, cliques, influence_of_sides, lattice_ball, measure, pairs_within
 
         self.dimension, self.measure = dimension, measure
         ball = lattice_ball(dimension, ratio) * spacing
@@ -39,12 +39,14 @@ class Tear:
             if not constant:
                 continue
             tuples = cliques(pairs, len(places), order + 1)
-            found = places[tuples[tuples[:, 0] == 0]]
+            tuples = tuples[tuples[:, 0] == 0]
+            found, factor = places[tuples], influence_of_sides(influence, tuples, places / (ratio * spacing))
             size = abs(measure([found[:, k] - found[:, 0] for k in range(1, order + 1)]))
-            found, size = found[size > spacing**order / 2], size[size > spacing**order / 2]
+            full = size > spacing**order / 2
+            found, size, factor = found[full], size[full], factor[full]
             # Every interaction is one of each of its points.
             effective = volume**order / (math.factorial(order) * len(found))
-            self.kinds.append((found, math.factorial(order) * effective * size * constant / (order + 1)))
+            self.kinds.append((found, math.factorial(order) * effective * factor * size * constant / (order + 1)))
 
     def energy(self, damage, normal):
         """Per area of a plane of this normal."""

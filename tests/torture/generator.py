@@ -109,8 +109,6 @@ class Generator:
             material["youngs_modulus"] = self.modulus
             if self.dimension == 2:
                 material["plane"] = self.choice("stress", "strain")
-            if self.of_kernel.random() < 0.3:
-                material["influence"] = str(self.of_kernel.choice([*POWERS, "gaussian"]))
         else:
             # Constants of the same order of stiffness: bonds, triangles and tetrahedra of a horizon
             # of two spacings each bear a part.
@@ -121,6 +119,8 @@ class Generator:
             material["c2"] = self.choice(0.0, 0.3, 3.0) * self.modulus / plane
             if self.dimension == 3:
                 material["c3"] = self.choice(0.0, 0.5, 5.0) * self.modulus / horizon**12
+        if self.of_kernel.random() < 0.3:
+            material["influence"] = str(self.of_kernel.choice([*POWERS, "gaussian"]))
         law = self.choice("none", "critical_stretch", "tanh", "tanh_continuous", "linear", "exponential", "blended",
                           weights=(0.2, 0.2, 0.15, 0.2, 0.1, 0.1, 0.05))  # fmt: skip
         self.critical = self.power(-4, -1)

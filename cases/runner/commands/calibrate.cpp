@@ -204,16 +204,18 @@ InputError of_options(const InputError& error) {
 void print_calibration(const CalibrationQuestion& question, const std::string& damage) {
   const int dimension = question.dimension;
   const double horizon = question.horizon_ratio * question.spacing;
-  const CpdStiffness lattice =
-      lattice_stiffness(dimension, question.spacing, horizon, question.thickness);
+  Kernel kernel{dimension, horizon, question.thickness};
+  kernel.influence = influence_named(question.influence);
+  const CpdStiffness lattice = lattice_stiffness(kernel, question.spacing);
   const CpdStiffness continuum = continuum_stiffness(dimension, horizon, question.thickness);
   for (const CpdStiffness* stiffness : {&lattice, &continuum}) {
     require_representable(question, *stiffness);
   }
+  const bool has_continuum = !kernel.influence;
   CpdConstants on_lattice, in_continuum;
   try {
     on_lattice = constants_of(question, lattice);
-    in_continuum = constants_of(question, continuum);
+    if (has_continuum) in_continuum = constants_of(question, continuum);
   } catch (const InputError& error) {
     throw InputError(option(error.key()), error.value(), error.allowed());
   }
@@ -222,7 +224,8 @@ void print_calibration(const CalibrationQuestion& question, const std::string& d
   const auto ratio = [&](CubicElasticity CpdStiffness::*part) {
     const double of_lattice = (lattice.*part).isotropic(dimension).lambda;
     const double of_continuum = (continuum.*part).isotropic(dimension).lambda;
-    return of_continuum == 0.0 ? "null" : fmt::format("{:.6g}", of_lattice / of_continuum);
+    return of_continuum == 0.0 || !has_continuum ? "null"
+                                                 : fmt::format("{:.6g}", of_lattice / of_continuum);
   };
   fmt::print(
       "{{\n"
@@ -233,8 +236,9 @@ void print_calibration(const CalibrationQuestion& question, const std::string& d
       "  \"lattice_over_continuum\": {{\"c1\": {}, \"c2\": {}, \"c3\": {}}}{}\n"
       "}}\n",
       dimension, question.spacing, horizon, question.thickness, bulk.neighbours, bulk.pairs,
-      bulk.triplets, section(on_lattice, lattice), section(in_continuum, continuum),
-      ratio(&CpdStiffness::of_c1), ratio(&CpdStiffness::of_c2), ratio(&CpdStiffness::of_c3),
+      bulk.triplets, section(on_lattice, lattice),
+      has_continuum ? section(in_continuum, continuum) : "null", ratio(&CpdStiffness::of_c1),
+      ratio(&CpdStiffness::of_c2), ratio(&CpdStiffness::of_c3),
       damage.empty() ? "" : ",\n  \"damage\": " + damage);
 }
 
@@ -267,8 +271,10 @@ Exit calibrate(const CalibrationQuestion& question, const DamageSpecification& d
   setting.dimension = dimension;
   setting.horizon = question.horizon_ratio * question.spacing;
   setting.cross_section = question.thickness;
+  setting.influence = influence_named(question.influence);
   MaterialSpecification material;
   material.model = MaterialModel::cpd;
+  material.influence = question.influence;
   material.youngs_modulus = question.youngs_modulus;
   material.poisson_ratio = question.poisson_ratio;
   material.c1 = question.c1;
@@ -312,6 +318,8 @@ Exit calibrate(const Case& from) {
   setting.dimension = from.dimension;
   setting.horizon = question.horizon_ratio * points.spacing;
   setting.cross_section = question.thickness;
+  question.influence = from.material.influence;
+  setting.influence = influence_named(question.influence);
   const auto all =
       located_errors(from, [&] { return all_materials(from, PointMaterials(from, points)); });
   for (std::size_t k = 0; k < all.size(); ++k) {

@@ -14,6 +14,7 @@ struct CalibrationQuestion {
   double spacing = 0.0;        ///< [m]
   double horizon_ratio = 0.0;  ///< horizon / spacing
   double thickness = 1.0;      ///< 2D [m]
+  std::string influence = ConstantInfluence::name;
   std::optional<double> youngs_modulus, poisson_ratio, lambda, mu, c1, c2, c3;
 };
 

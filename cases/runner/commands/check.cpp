@@ -140,8 +140,8 @@ void print_cpd_constants(const PointMaterials::Material& of, const std::string& 
         poisson_ratio_of(moduli, dimension), elasticity.axis_poisson_ratio(dimension),
         elasticity.anisotropy());
   };
-  print_moduli("lattice", lattice_stiffness(dimension, body.points.spacing, body.setting.horizon,
-                                            body.setting.cross_section));
+  print_moduli("lattice", lattice_stiffness(body.setting, body.points.spacing));
+  if (body.setting.influence) return;  // the continuum's are known for none
   print_moduli("continuum",
                continuum_stiffness(dimension, body.setting.horizon, body.setting.cross_section));
 }

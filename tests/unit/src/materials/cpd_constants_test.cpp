@@ -2,13 +2,16 @@
 
 #include <array>
 #include <cmath>
+#include <functional>
 #include <numbers>
+#include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
 
 #include "src/core/input_error.hpp"
 #include "src/neighbourhood/bulk_neighbourhood.hpp"
+#include "src/neighbourhood/influence.hpp"
 
 namespace peristat {
 namespace {
@@ -39,8 +42,10 @@ double length_of(const Arm& b) { return std::hypot(b[0], b[1], b[2]); }
 
 /// Energy density of a lattice point far from surfaces (eq. 14 of [CPD]): the loops over ordered
 /// neighbours, pairs and triplets as printed, with measures of the deformed arms.
+/// @param omega of a length over the horizon
 double energy_density(int dimension, double spacing, double horizon, double thickness,
-                      const CpdConstants& constants, const Strain& strain) {
+                      const CpdConstants& constants, const Strain& strain,
+                      const std::function<double(double)>& omega) {
   std::vector<Arm> arms;
   const int width = int(horizon / spacing) + 1;
   for (int x = -width; x <= width; ++x) {
@@ -55,17 +60,22 @@ double energy_density(int dimension, double spacing, double horizon, double thic
   const auto near = [&](const Arm& a, const Arm& b) {
     return length_of({a[0] - b[0], a[1] - b[1], a[2] - b[2]}) < horizon * (1 + 1e-9);
   };
+  const auto influence = [&](const Arm& a, const Arm& b) {
+    return omega(length_of({a[0] - b[0], a[1] - b[1], a[2] - b[2]}) / horizon);
+  };
+  const Arm here{};
   double psi1 = 0.0, psi2 = 0.0, psi3 = 0.0, pairs = 0.0, triplets = 0.0;
   for (const Arm& b : arms) {
     const double length = length_of(b), s = length_of(deformed(b, strain)) / length - 1.0;
-    psi1 += 0.5 * constants.c1 * length * s * s;
+    psi1 += 0.5 * constants.c1 * length * s * s * influence(here, b);
     for (const Arm& c : arms) {
       const double area = area_of(b, c);
       if (!near(b, c)) continue;
       if (area > 1e-9 * horizon * horizon) {
         const double e = area_of(deformed(b, strain), deformed(c, strain)) / area - 1.0;
         ++pairs;
-        psi2 += 0.5 * constants.c2 * area * e * e;
+        psi2 += 0.5 * constants.c2 * area * e * e * influence(here, b) * influence(here, c) *
+                influence(b, c);
       }
       if (dimension == 2) continue;
       for (const Arm& d : arms) {
@@ -75,7 +85,9 @@ double energy_density(int dimension, double spacing, double horizon, double thic
         const double e =
             volume_of(deformed(b, strain), deformed(c, strain), deformed(d, strain)) / volume - 1.0;
         ++triplets;
-        psi3 += 0.5 * constants.c3 * std::abs(volume) * e * e;
+        psi3 += 0.5 * constants.c3 * std::abs(volume) * e * e * influence(here, b) *
+                influence(here, c) * influence(here, d) * influence(b, c) * influence(b, d) *
+                influence(c, d);
       }
     }
   }
@@ -89,24 +101,29 @@ double energy_density(int dimension, double spacing, double horizon, double thic
 struct Setting {
   int dimension;
   double horizon_ratio, thickness;
+  std::string influence = "constant";
 };
 
 void PrintTo(const Setting& setting, std::ostream* out) {
-  *out << setting.dimension << "D, horizon ratio " << setting.horizon_ratio;
+  *out << setting.dimension << "D, horizon ratio " << setting.horizon_ratio << ", "
+       << setting.influence;
 }
 
 std::string lattice_name(const ::testing::TestParamInfo<Setting>& tested) {
   return std::to_string(tested.param.dimension) + "DRatio" +
-         std::to_string(std::lround(1000.0 * tested.param.horizon_ratio));
+         std::to_string(std::lround(1000.0 * tested.param.horizon_ratio)) + tested.param.influence;
 }
 
 class LatticeStiffness : public ::testing::TestWithParam<Setting> {};
 
 TEST_P(LatticeStiffness, IsTheSecondDifferenceOfTheEnergyDensity) {
-  const auto [dimension, ratio, thickness] = GetParam();
+  const auto& [dimension, ratio, thickness, influence] = GetParam();
   constexpr double spacing = 0.5;
   const double horizon = ratio * spacing;
-  const CpdStiffness stiffness = lattice_stiffness(dimension, spacing, horizon, thickness);
+  Kernel kernel{dimension, horizon, thickness};
+  kernel.influence = influence_named(influence);
+  const CpdStiffness stiffness = lattice_stiffness(kernel, spacing);
+  const auto omega = [&](double x) { return kernel.influence ? kernel.influence(x) : 1.0; };
   // Each constant alone, of a size that makes the energy of order one.
   const double size = horizon * thickness;
   for (const CpdConstants& constants :
@@ -123,7 +140,7 @@ TEST_P(LatticeStiffness, IsTheSecondDifferenceOfTheEnergyDensity) {
         for (int r = 0; r < 3; ++r) {
           for (int c = 0; c < 3; ++c) strain[r][c] = sign * unit[r][c];
         }
-        sum += energy_density(dimension, spacing, horizon, thickness, constants, strain);
+        sum += energy_density(dimension, spacing, horizon, thickness, constants, strain, omega);
       }
       return sum / (h * h);
     };
@@ -141,7 +158,9 @@ TEST_P(LatticeStiffness, IsTheSecondDifferenceOfTheEnergyDensity) {
 
 INSTANTIATE_TEST_SUITE_P(Lattices, LatticeStiffness,
                          ::testing::Values(Setting{2, 2.015, 1.0}, Setting{2, 3.015, 0.3},
-                                           Setting{3, 1.5, 1.0}, Setting{3, 2.015, 1.0}),
+                                           Setting{3, 1.5, 1.0}, Setting{3, 2.015, 1.0},
+                                           Setting{2, 3.015, 0.3, "cubic"},
+                                           Setting{3, 2.015, 1.0, "gaussian"}),
                          lattice_name);
 
 /// Largest relative deviation of the isotropic parts from the continuum's, per constant.

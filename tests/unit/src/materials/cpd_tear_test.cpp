@@ -22,7 +22,7 @@ const std::vector<AnyLaw> laws{{CriticalStretch{0.02}},
 double thickness(int dimension) { return dimension == 2 ? 0.5 : 1.0; }
 
 CpdTear tear(int dimension, double ratio, const CpdConstants& constants) {
-  return {dimension, spacing, ratio * spacing, thickness(dimension), constants};
+  return {Kernel{dimension, ratio * spacing, thickness(dimension)}, spacing, constants};
 }
 
 TEST(CpdTear, OfBondsAloneIsTheirFormula) {
