@@ -52,9 +52,8 @@ std::string description(const CrackTrapping& trapping) {
   const std::string needed =
       trapping.needed ? "it runs at " + range(trapping.needed->first, trapping.needed->second)
                       : fmt::format(
-                            "not measured in {}D at this ratio and influence function, at 3 and 4 "
-                            "in 2D it runs "
-                            "at 1.14 to 1.19 with the constant one",
+                            "not measured in {}D at this ratio and influence function, the "
+                            "constant one in 2D at 3 and 4 runs at 1.14 to 1.19",
                             trapping.dimension);
   return fmt::format(
       "brittle bonds at horizon ratio {:.2g} hold a crack up: {} of K_Ic, and with law = "

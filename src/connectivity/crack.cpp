@@ -93,6 +93,18 @@ double smallest_gap(const CrackPolygon& polygon) {
   return gap;
 }
 
+// ---- outline ----
+
+/// visit(from, to) for every side.
+template <class Visit>
+void for_each_side(const CrackOutline& outline, const Visit& visit) {
+  for (std::size_t k = 0; k < outline.vertices.size(); ++k) {
+    const auto& p = outline.vertices[k];
+    const auto& q = outline.vertices[(k + 1) % outline.vertices.size()];
+    visit(Coordinates{p[0], p[1], 0.0}, Coordinates{q[0], q[1], 0.0});
+  }
+}
+
 // ---- cuts ----
 
 bool meets(const CrackSegment& segment, const Coordinates& a, const Coordinates& b, double slack) {
@@ -118,6 +130,14 @@ bool meets(const CrackPolygon& polygon, const Coordinates& a, const Coordinates&
   return false;
 }
 
+bool meets(const CrackOutline& outline, const Coordinates& a, const Coordinates& b, double slack) {
+  bool meets_any = false;
+  for_each_side(outline, [&](const Coordinates& from, const Coordinates& to) {
+    meets_any = meets_any || distance(a, b, from, to) <= slack;
+  });
+  return meets_any;
+}
+
 // ---- bounding boxes ----
 
 Box box_around(const Coordinates& a, const Coordinates& b) {
@@ -140,6 +160,12 @@ Box box_around(const CrackPolygon& polygon) {
     }
   }
   return box;
+}
+
+Box box_around(const CrackOutline& outline) {
+  CrackPolygon corners;
+  for (const auto& [x, y] : outline.vertices) corners.vertices.push_back({x, y, 0.0});
+  return box_around(corners);
 }
 
 bool overlap(const Box& one, const Box& other, double slack) {
@@ -180,6 +206,16 @@ struct Checker {
     finite("to", segment.to);
     require(segment.from != segment.to, "to", place_text(segment.to, dimension),
             "must not be from: a crack needs a length");
+  }
+
+  void operator()(const CrackOutline& outline) const {
+    fits("outline", "outline", 2);
+    require(outline.vertices.size() >= 3, "outline", "", "needs three vertices or more");
+    for_each_side(outline, [&](const Coordinates& from, const Coordinates& to) {
+      finite("outline", from);
+      require(from != to, "outline", place_text(from, 2),
+              "no vertex may be given twice in a row (the last is joined to the first)");
+    });
   }
 
   void operator()(const CrackPolygon& polygon) const {
@@ -224,9 +260,13 @@ std::vector<Crack> with_images(const std::vector<Crack>& cracks, const Images& i
       if (auto* segment = std::get_if<CrackSegment>(&crack)) {
         segment->from = kind.place(segment->from);
         segment->to = kind.place(segment->to);
+      } else if (auto* polygon = std::get_if<CrackPolygon>(&crack)) {
+        for (Coordinates& vertex : polygon->vertices) vertex = kind.place(vertex);
       } else {
-        for (Coordinates& vertex : std::get<CrackPolygon>(crack).vertices) {
-          vertex = kind.place(vertex);
+        for (auto& [x, y] : std::get<CrackOutline>(crack).vertices) {
+          const Coordinates at = kind.place({x, y, 0.0});
+          x = at[0];
+          y = at[1];
         }
       }
       all.push_back(std::move(crack));

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <string>
 #include <variant>
 #include <vector>
@@ -20,8 +21,14 @@ struct CrackPolygon {
   std::vector<Coordinates> vertices;
 };
 
+/// Sides of a closed polygon in the x-y plane (2D), like a boundary that bonds must not cross; the
+/// last vertex is joined to the first [m].
+struct CrackOutline {
+  std::vector<std::array<double, 2>> vertices;
+};
+
 /// A crack that is there from the start. It is closed: its ends or edges belong to it.
-using Crack = std::variant<CrackSegment, CrackPolygon>;
+using Crack = std::variant<CrackSegment, CrackPolygon, CrackOutline>;
 
 /// Distance from a crack, relative to the bond's length, up to which a bond touches the crack: far
 /// above the round-off of coordinates, far below a spacing.
@@ -31,11 +38,12 @@ inline constexpr double touching_tolerance = 1e-9;
 /// and up to which its edges touch each other; its square bounds the area from below.
 inline constexpr double polygon_tolerance = 1e-9;
 
-/// Refuses a crack that does not fit the dimension (segment: 2; polygon: 3; in 1D there is none),
-/// has components that are not finite or is degenerate: a segment without length, a polygon with
-/// fewer than three vertices, without area, out of plane, or with edges that cross or touch.
+/// Refuses a crack that does not fit the dimension (segment and outline: 2; polygon: 3; in 1D there
+/// is none), has components that are not finite or is degenerate: a segment or a side of an outline
+/// without length, a polygon with fewer than three vertices, without area, out of plane, or with
+/// edges that cross or touch.
 /// @param table what holds the crack ("crack[0]"); the errors name its "from",
-///              "to" or "vertices"
+///              "to", "vertices" or "outline"
 /// @throws InputError
 void check_crack(const Crack& crack, int dimension, const std::string& table);
 

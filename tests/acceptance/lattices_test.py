@@ -2,6 +2,7 @@
 
 import itertools
 import json
+import math
 import pathlib
 import tempfile
 import unittest
@@ -10,6 +11,9 @@ import h5py
 import numpy
 
 from tests.acceptance.strip import PULLED
+from tests.reference.body import Body
+from tests.reference.case import Case
+from tests.reference.clouds import toml
 from tests.reference.program import peristat
 from tests.reference.verify import verify
 
@@ -140,6 +144,46 @@ class ByTheReference(Cases):
         still, turned = self.run_case(CUT), self.run_case(CUT, ["lattice.angle=360"])
         for a, b in zip(still, turned):
             numpy.testing.assert_array_equal(a, b)
+
+
+class Shapes(Cases):
+    """The complex shapes of [GPMB] 3.1.1, with the bonds that the reference leaves them."""
+
+    HOLE = [[0.5 + 0.13 * math.cos(k * math.pi / 10), 0.5 + 0.13 * math.sin(k * math.pi / 10)] for k in range(20)]
+    SHAPES = {
+        "L": ({"spacing": [0.2, 0.1], "horizon_ratio": 0.4 / 0.02**0.5, "thickness": 1.0,
+               "shape": [{"add": "box", "min": [0, 0], "max": [2, 1]}, {"add": "box", "min": [0, 1], "max": [1, 2]}]},
+              [{"from": [1.0, 1.0], "to": [1.0, 2.0]}], 150),
+        "disk": ({"spacing": 1 / 15, "horizon_ratio": 2, "shape": [{"add": "box", "min": [0, 0], "max": [1, 1]},
+                  {"subtract": "box", "min": [-1, -1], "max": [2, 2]}, {"add": "disk", "centre": [0.5, 0.5], "radius": 0.5}]},
+                 [], 177),
+        "hole": ({"spacing": 0.05, "horizon_ratio": 3.5, "shape": [{"add": "box", "min": [0, 0], "max": [1, 1]},
+                  {"subtract": "disk", "centre": [0.5, 0.5], "radius": 0.13}]}, [{"outline": HOLE}], 376),
+    }  # fmt: skip
+
+    def test_grids_and_bonds_are_those_of_the_reference(self):
+        for name, (lattice, cracks, count) in self.SHAPES.items():
+            with self.subTest(name):
+                tables = {"dimension": 2, "lattice": lattice, "material": {"youngs_modulus": 1e9},
+                          "set": [{"name": "held", "where": "x < 0.25"}, {"name": "pulled", "where": "x > 0.7"}],
+                          "support": [{"set": "held", "displacement": [0, 0]}],
+                          "load": [{"set": "pulled", "body_force": ["1e3*load*y", 0]}]}  # fmt: skip
+                if cracks:
+                    tables["crack"] = cracks
+                places, volume, _ = self.run_case(toml(tables))
+                self.assertEqual(len(places), count)
+                self.judge()
+                whole = Body(Case(tables | {"crack": []}), places, volume)
+                left = Body(Case(tables), places, volume)
+                self.assertEqual(len(left.bonds) < len(whole.bonds), bool(cracks))
+                summary = json.loads((self.folder / "out/summary.json").read_text())
+                self.assertEqual(summary["bonds"], len(left.bonds))
+                if name == "hole":
+                    # No bond that is left passes through the polygon: its middle is farther from the hole's than the
+                    # circle that the sides touch.
+                    steps = numpy.linspace(0, 1, 51)[:, None, None]
+                    along = places[left.bonds[:, 0]] + steps * (places[left.bonds[:, 1]] - places[left.bonds[:, 0]])
+                    self.assertGreater(numpy.hypot(*(along - 0.5).transpose(2, 0, 1)).min(), 0.13 * math.cos(math.pi / 20))
 
 
 class CutCells(Cases):

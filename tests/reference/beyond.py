@@ -126,7 +126,7 @@ class Beyond:
         found = []
         for crack, along in itertools.product(self.case.get("crack"), self.maps):
             mirror, shift = [a.mirror for a in along], [a.shift for a in along]
-            moved = {key: numpy.asarray(crack[key], float) * mirror + shift for key in ("from", "to", "vertices") if key in crack}
+            moved = {key: numpy.asarray(crack[key], float) * mirror + shift for key in ("from", "to", "vertices", "outline") if key in crack}
             found.append(moved)
         return found
 

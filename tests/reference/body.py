@@ -356,7 +356,10 @@ class Body:
 
 
 def bonds_that_meet(crack, start, end):
-    """Which bonds a segment (2D) or a plane polygon (3D) cuts or touches."""
+    """Which bonds a segment or the sides of an outline (2D) or a plane polygon (3D) cut or touch."""
+    if "outline" in crack:
+        corners = numpy.array(crack["outline"], float)
+        return numpy.any([segments_meet(p, q, start, end) for p, q in zip(corners, numpy.roll(corners, -1, axis=0))], axis=0)
     if "from" in crack:
         return segments_meet(numpy.array(crack["from"], float), numpy.array(crack["to"], float), start, end)
     return segments_meet_polygon(numpy.array(crack["vertices"], float), start, end)

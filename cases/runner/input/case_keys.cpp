@@ -207,17 +207,39 @@ Table<Crack> crack_keys() {
   using K = Key<Crack>;
   constexpr auto segment = [](auto& crack) -> auto& { return std::get<CrackSegment>(crack); };
   constexpr auto polygon = [](auto& crack) -> auto& { return std::get<CrackPolygon>(crack); };
+  constexpr auto outline = [](auto& crack) -> auto& {
+    if constexpr (std::is_const_v<std::remove_reference_t<decltype(crack)>>) {
+      static const CrackOutline none;
+      const auto* const own = std::get_if<CrackOutline>(&crack);
+      return own != nullptr ? *own : none;
+    } else {
+      return crack.template emplace<CrackOutline>();
+    }
+  };
+  const auto is_outline = [](auto& crack, auto&) {
+    return std::holds_alternative<CrackOutline>(crack);
+  };
+  const std::string in_space = "is for dimension 2; 3D has vertices",
+                    beside_outline = "stands beside outline; a crack is one or the other";
   return {"crack",
-          {K("from", in(segment, &CrackSegment::from), coordinates(), "2D: one end")
-               .unless(in_dimension<3>, "is for dimension 2; 3D has vertices")
-               .required("required in 2D"),
+          {K("outline", in(outline, &CrackOutline::vertices), pairs(),
+             "2D: corners of a closed polygon whose sides cut, the last is joined to the first")
+               .unless(in_dimension<3>, in_space)
+               .written_if(is_outline)
+               .default_words("this, or `from` and `to`, in 2D")
+               .early(),
+           K("from", in(segment, &CrackSegment::from), coordinates(), "2D: one end")
+               .unless(in_dimension<3>, in_space)
+               .unless(is_outline, beside_outline)
+               .required("required in 2D without `outline`"),
            K("to", in(segment, &CrackSegment::to), coordinates(), "2D: the other end")
-               .unless(in_dimension<3>, "is for dimension 2; 3D has vertices")
+               .unless(in_dimension<3>, in_space)
+               .unless(is_outline, beside_outline)
                .moreover("not `from`")
-               .required("required in 2D"),
+               .required("required in 2D without `outline`"),
            K("vertices", in(polygon, &CrackPolygon::vertices), triples(),
              "3D: corners in order, the last is joined to the first")
-               .unless(in_dimension<2>, "is for dimension 3; 2D has from and to")
+               .unless(in_dimension<2>, "is for dimension 3; 2D has from and to, or an outline")
                .moreover("in one plane (to 10⁻⁹ of the extent) and around an area; edges must not "
                          "cross or touch")
                .required("required in 3D")},

@@ -30,6 +30,14 @@ TEST(CrackTrapping, WhatWasNotMeasuredIsSaidSo) {
   }
 }
 
+TEST(CrackTrapping, WasMeasuredOfTheConstantInfluenceFunctionAlone) {
+  BodySpecification cubic = with_law(DamageLaw::critical_stretch, 3.015e-3);
+  cubic.material.influence = "cubic";
+  const auto told = crack_trapping(cubic, 2, 1e-3);
+  ASSERT_TRUE(told);
+  EXPECT_FALSE(told->needed);
+}
+
 TEST(CrackTrapping, OtherLawsAndBodiesWithoutALatticeAreNotTold) {
   EXPECT_FALSE(crack_trapping(with_law(DamageLaw::linear, 3e-3), 2, 1e-3));
   EXPECT_FALSE(crack_trapping(with_law(DamageLaw::none, 3e-3), 2, 1e-3));

@@ -487,6 +487,39 @@ TEST(CutBonds, RemovesThoseAcrossAnyOfManyCracksOnce) {
   EXPECT_GT(expect_cut(body, {segments[0], segments[1]}, across), 20);
 }
 
+// A notched outline, which a bond may cross twice.
+TEST(CutBonds, RemovesExactlyThoseAcrossAnOutline) {
+  tests::BoxSetting box = tests::small_box(2);
+  box.horizon_ratio = 3.015;
+  box.perturbation = 0.3;
+  const BoxBody body(box);
+  const CrackOutline outline{
+      {{0.21, 0.13}, {0.72, 0.11}, {0.68, 0.53}, {0.47, 0.31}, {0.25, 0.58}}};
+  const auto across = [&](const Coordinates& a, const Coordinates& b) {
+    bool crosses = false;
+    for (std::size_t k = 0; k < outline.vertices.size(); ++k) {
+      const auto& from = outline.vertices[k];
+      const auto& to = outline.vertices[(k + 1) % outline.vertices.size()];
+      const Coordinates p{from[0], from[1], 0}, q{to[0], to[1], 0};
+      crosses =
+          crosses || (left_of(p, q, a) != left_of(p, q, b) && left_of(a, b, p) != left_of(a, b, q));
+    }
+    return crosses;
+  };
+  EXPECT_GT(expect_cut(body, {outline}, across), 50);
+}
+
+TEST(CheckCrack, RefusesOutlinesThatAreNone) {
+  const CrackOutline square{{{0, 0}, {1, 0}, {1, 1}, {0, 1}}};
+  EXPECT_EQ(refused_key(square, 2), "nothing");
+  EXPECT_EQ(refused_key(square, 3), "crack[2].outline");
+  EXPECT_EQ(refused_key(CrackOutline{{{0, 0}, {1, 0}}}, 2), "crack[2].outline");
+  EXPECT_EQ(refused_key(CrackOutline{{{0, 0}, {1, 0}, {1, 0}}}, 2), "crack[2].outline");
+  EXPECT_EQ(refused_key(CrackOutline{{{0, 0}, {1, 0}, {0, 0}}}, 2), "crack[2].outline");
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(refused_key(CrackOutline{{{0, 0}, {1, nan}, {0, 1}}}, 2), "crack[2].outline");
+}
+
 TEST(CutBonds, RemovesExactlyThoseAcrossAPlane) {
   for (double perturbation : {0.0, 0.3}) {
     tests::BoxSetting box = tests::small_box(3);
