@@ -19,6 +19,8 @@ from tests.acceptance.strip import PULLED
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 PROGRAM = os.environ["PERISTAT_PROGRAM"]
+# Cases in whose deformation one of many bonds is so close to the kink of its law that steps are too short for an order.
+CLOSE_TO_KINKS = {"crack_branching", "kalthoff_winkler", "toughness"}
 
 HISTORY_COLUMNS = [
     "step", "load_factor", "mode", "newton_iterations", "relaxation_iterations", "stored_energy",
@@ -274,8 +276,8 @@ class CommandLine(unittest.TestCase):
                 if case.parent.name == "bar" or case.name == "bimaterial.toml":  # quadratic energy: differences are exact at any step
                     self.assertIsNone(told["residual_order"])
                     continue
-                if case.parent.name == "bond_models" and None in (told["residual_order"], told["tangent_order"]):
-                    continue  # of half a million brittle bonds one is so close to its kink that steps are too short for an order
+                if case.stem in CLOSE_TO_KINKS and None in (told["residual_order"], told["tangent_order"]):
+                    continue
                 self.assertAlmostEqual(told["residual_order"], 2.0, delta=0.1)
                 self.assertAlmostEqual(told["tangent_order"], 2.0, delta=0.1)
 
