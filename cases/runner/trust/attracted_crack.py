@@ -7,6 +7,7 @@ import tomllib
 from pathlib import Path
 
 import crack_path
+from bending import mouth_sets, rollers
 from setting import FRACTURE_ENERGY, MODULUS, setting
 from specimen import Lattice, Measure, Specimen, aside
 
@@ -34,36 +35,7 @@ to = [{x}, {NOTCH}]
 name = "contacts"
 where = "(abs(x) > {0.8 * HALF} && y < {0.2 * DEPTH}) || (abs(x) < {0.1 * HALF} && y > {0.85 * DEPTH})"
 
-[[set]]
-name = "mouth_right"
-where = "x > {x} && x < {x + 1.5 * h} && y < {1.5 * h}"
-
-[[set]]
-name = "mouth_left"
-where = "x < {x} && x > {x - 1.5 * h} && y < {1.5 * h}"
-
-[[roller]]
-name = "left"
-at = [{-SUPPORT}, 0.0]
-normal = [0, 1]
-
-[[roller]]
-name = "right"
-at = [{SUPPORT}, 0.0]
-normal = [0, 1]
-
-[[roller]]
-name = "load"
-at = [0.0, {DEPTH}]
-normal = [0, 1]
-displacement = "-load"
-
-[[roller]]
-name = "middle"
-at = [0.0, {DEPTH}]
-normal = [1, 0]
-
-[[control]]
+{mouth_sets(x, h)}{rollers(SUPPORT, DEPTH)}[[control]]
 set = "mouth_right"
 weights = [1, 0]
 

@@ -6,6 +6,7 @@ import tomllib
 from pathlib import Path
 
 import crack_path
+from bending import rollers
 from setting import FRACTURE_ENERGY, MODULUS, setting
 from specimen import Lattice, Measure, Specimen
 
@@ -51,28 +52,7 @@ where = "x > {0.02 * RADIUS} && x < {0.02 * RADIUS + 1.5 * h} && y < {1.1 * h}"
 name = "mouth_left"
 where = "x < {-0.02 * RADIUS} && x > {-0.02 * RADIUS - 1.5 * h} && y < {1.1 * h}"
 
-[[roller]]
-name = "left"
-at = [{-SUPPORT}, 0.0]
-normal = [0, 1]
-
-[[roller]]
-name = "right"
-at = [{SUPPORT}, 0.0]
-normal = [0, 1]
-
-[[roller]]
-name = "load"
-at = [0.0, {RADIUS}]
-normal = [0, 1]
-displacement = "-load"
-
-[[roller]]
-name = "middle"
-at = [0.0, {RADIUS}]
-normal = [1, 0]
-
-[[control]]
+{rollers(SUPPORT, RADIUS)}[[control]]
 set = "mouth_right"
 weights = [1, 0]
 

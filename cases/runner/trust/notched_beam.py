@@ -3,6 +3,7 @@
 from pathlib import Path
 
 import lefm
+from bending import mouth_sets, rollers
 from compliance import LEAST_GROWTH, toughness
 from setting import FRACTURE_ENERGY, MODULUS, setting, under_opening
 from specimen import MIDDLE, RATIOS, Lattice, Measure, Specimen, aside, peak, rows
@@ -32,36 +33,7 @@ to = [{x}, {crack}]
 name = "ends"
 where = "(abs(x) > {1.75 * WIDTH} && y < {0.25 * WIDTH}) || (abs(x) < {0.25 * WIDTH} && y > {0.85 * WIDTH})"
 
-[[set]]
-name = "mouth_right"
-where = "x > {x} && x < {x + 1.5 * h} && y < {1.5 * h}"
-
-[[set]]
-name = "mouth_left"
-where = "x < {x} && x > {x - 1.5 * h} && y < {1.5 * h}"
-
-[[roller]]
-name = "left"
-at = [{-2 * WIDTH}, 0.0]
-normal = [0, 1]
-
-[[roller]]
-name = "right"
-at = [{2 * WIDTH}, 0.0]
-normal = [0, 1]
-
-[[roller]]
-name = "load"
-at = [0.0, {WIDTH}]
-normal = [0, 1]
-displacement = "-load"
-
-[[roller]]
-name = "middle"
-at = [0.0, {WIDTH}]
-normal = [1, 0]
-
-""" + under_opening("mouth_right", "mouth_left", "[1, 0]", 2 * mouth, lattice.refinement >= MIDDLE)  # fmt: skip
+{mouth_sets(x, h)}{rollers(2 * WIDTH, WIDTH)}""" + under_opening("mouth_right", "mouth_left", "[1, 0]", 2 * mouth, lattice.refinement >= MIDDLE)  # fmt: skip
 
     return text
 

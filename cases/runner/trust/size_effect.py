@@ -5,6 +5,7 @@ import math
 from pathlib import Path
 
 import lefm
+from bending import mouth_sets, rollers
 from other_setting import of_material
 from setting import setting, under_opening
 from specimen import Lattice, Measure, Specimen, aside, peak, rows
@@ -53,36 +54,7 @@ to = [{x}, {crack}]
 name = "ends"
 where = "(abs(x) > {1.75 * depth} && y < {0.25 * depth}) || (abs(x) < {0.25 * depth} && y > {0.85 * depth})"
 
-[[set]]
-name = "mouth_right"
-where = "x > {x} && x < {x + 1.5 * h} && y < {1.5 * h}"
-
-[[set]]
-name = "mouth_left"
-where = "x < {x} && x > {x - 1.5 * h} && y < {1.5 * h}"
-
-[[roller]]
-name = "left"
-at = [{-2 * depth}, 0.0]
-normal = [0, 1]
-
-[[roller]]
-name = "right"
-at = [{2 * depth}, 0.0]
-normal = [0, 1]
-
-[[roller]]
-name = "load"
-at = [0.0, {depth}]
-normal = [0, 1]
-displacement = "-load"
-
-[[roller]]
-name = "middle"
-at = [0.0, {depth}]
-normal = [1, 0]
-
-""" + under_opening("mouth_right", "mouth_left", "[1, 0]", 4 * mouth, follow_growth=False)  # fmt: skip
+{mouth_sets(x, h)}{rollers(2 * depth, depth)}""" + under_opening("mouth_right", "mouth_left", "[1, 0]", 4 * mouth, follow_growth=False)  # fmt: skip
 
     return text
 
