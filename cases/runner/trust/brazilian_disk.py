@@ -82,7 +82,7 @@ weights = [-1, 0]
 [loading]
 table = [0, {2.2 * opening:.6g}]
 steps = 22
-stop_below = 0.97
+stop_below = 0.985
 """  # fmt: skip
 
 

@@ -73,7 +73,7 @@ weights = [0, -1]
 [loading]
 table = [0, {0.5 * DISPLACEMENT}, {1.5 * DISPLACEMENT}]
 steps = 30
-stop_below = 0.6
+stop_below = 0.85
 """  # fmt: skip
 
     return text

@@ -40,7 +40,7 @@ every = 1000000
 def under_opening(first: str, second: str, weights: str, largest: float, follow_growth: bool) -> str:
     """Control by how far one set opens from the other [m], until the force has passed its peak, or further, until the
     crack has grown."""
-    below = 0.45 if follow_growth else 0.93
+    below = 0.45 if follow_growth else 0.97
     return f"""\
 [[control]]
 set = "{first}"
