@@ -30,6 +30,13 @@ constexpr double work_error = 0.05;
 /// multiple of the modified energy to the highest frequencies, 1 / (1 - (step / stable step)^2).
 constexpr double growth_of_instability = 100.0;
 
+/// Of what has been put in, what the scheme's energy may differ from the printed one: it is
+/// (step / stable step)^2 of what moves at the highest frequency. Well-resolved motions have some
+/// hundredths of it at most.
+constexpr double unresolved = 0.1;
+/// Before so many steps a load that sets in at once has done too little work to be a measure.
+constexpr int steps_of_onset = 10;
+
 /// A remainder of the way below this share of a step is round-off.
 constexpr double remainder = 1e-9;
 
@@ -273,6 +280,14 @@ std::string Dynamics::fault_of_balance(const Ledger& after) {
   if (!(std::abs(error) <= allowed)) {
     return "the modified energy is " + number_text(error) + " J less than what was put in, " +
            number_text(dynamics.largest_energy) + " J";
+  }
+  const double scheme = std::abs(dynamics.correction_at_start + dynamics.correction);
+  if (path_.state().steps >= steps_of_onset &&
+      !(scheme <= unresolved * std::max(dynamics.largest_energy, energy))) {
+    return "the time step does not resolve the motion: " + number_text(scheme) +
+           " J of its energy hang on the step, and " + number_text(dynamics.largest_energy) +
+           " J have been put in; take a shorter step, or begin with fields that are smooth over "
+           "a horizon";
   }
   if (!(energy <= growth_of_instability * dynamics.largest_energy)) {
     return "the motion holds " + number_text(energy) + " J, and no more than " +

@@ -17,8 +17,9 @@ namespace peristat {
 /// of the stable one follows it; one that is given ends the path where it is no longer stable.
 ///
 /// A state that is told owes the balance of its modified energy, up to what trapezoidal sums of
-/// work leave out; and its energy may not be many times what has been put in, which is how steps
-/// that are too long show.
+/// work leave out; that energy may not be far from the printed one, which is how motions show that
+/// the step does not resolve; nor may the energy be many times what has been put in, which is how
+/// steps that are too long show.
 class Dynamics : public Driver {
  public:
   explicit Dynamics(Path& path);

@@ -22,12 +22,16 @@
 #include "src/core/stopwatch.hpp"
 #include "src/core/threads.hpp"
 #include "src/neighbourhood/horizon.hpp"
+#include "src/neighbourhood/share_on_horizon.hpp"
 
 namespace peristat {
 namespace {
 
 /// Of an environment of their own, in a step: the old state, the new one, those of differences.
 constexpr double states_with_environment = 4.0;
+
+/// Share of the bonds above which those on the horizon are a shell of a lattice.
+constexpr double least_shell = 0.01;
 
 BondSetting setting_of(const BodySpecification& of, const Points& points) {
   BondSetting setting;
@@ -301,6 +305,14 @@ std::vector<std::string> describe_interactions(const Body& body) {
     lines.push_back(fmt::format("{}: storing them takes {} of {} that are free for it",
                                 storage.fits() ? "stored" : "found anew in every pass",
                                 bytes_text(storage.needed), bytes_text(storage.room)));
+  }
+  const double on_horizon = share_on_horizon(body.model.bonds(), body.setting);
+  if (on_horizon > least_shell) {
+    lines.push_back(fmt::format(
+        "{:.2g} % of the bonds are as long as the horizon, so that points moved by their "
+        "last digits have other neighbours; a ratio between the lattice's distances, "
+        "as 3.015, or a volume_correction is safe from it",
+        100.0 * on_horizon));
   }
   return lines;
 }

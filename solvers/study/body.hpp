@@ -80,8 +80,8 @@ void add_terms_of_conditions(Model& model, const Body& body);
 /// The estimate from the counts that the body has.
 [[nodiscard]] MemoryEstimate estimate_memory(const Body& body);
 
-/// Lines that tell the triangles and tetrahedra, and whether they are stored; empty for bonds
-/// alone.
+/// Lines that tell the triangles and tetrahedra, whether they are stored, and whether neighbours are
+/// such by round-off; empty for bonds whose horizon lies between distances of their points.
 [[nodiscard]] std::vector<std::string> describe_interactions(const Body& body);
 
 /// Lines that tell rigid sets, rollers, linear constraints, planes of symmetry and periods.

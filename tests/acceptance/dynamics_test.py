@@ -407,7 +407,30 @@ class Steps(Folder):
         self.assertTrue((folder / "dossier.txt").exists())
 
 
+    def test_a_motion_that_the_step_does_not_resolve(self):
+        def shaken(per_spacing):
+            return SQUARE.replace('"0.05*x*exp(-(x^2 + y^2)/0.1)", "0.05*y*exp(-(x^2 + y^2)/0.1)"',
+                                  f'"1e-4*cos({numpy.pi * per_spacing / 0.1}*x)", 0').replace("step_share = 0.5", "step_share = 0.9")  # fmt: skip
+
+        self.run_case(shaken(0.1))
+        folder = self.run_case(shaken(0.9), "zigzag", code=3)
+        self.assertIn("the time step does not resolve the motion", (folder / "dossier.txt").read_text())
+        self.run_case(shaken(0.9).replace("step_share = 0.9", "step_share = 0.2"), "shorter")
+
+
 class Check(Folder):
+    def test_neighbours_by_round_off_are_told(self):
+        case = self.folder / "case.toml"
+        for ratio, correction, is_told in (("3", "none", True), ("3.015", "none", False), ("3", "exact", False)):
+            for perturbation in ("0", "1e-6"):
+                if correction == "exact" and perturbation != "0":
+                    continue  # refused
+                case.write_text(SQUARE.replace("spacing = 0.1", f"spacing = 0.1\nhorizon_ratio = {ratio}\nperturbation = {perturbation}")
+                                + f'[quadrature]\nvolume_correction = "{correction}"\n')  # fmt: skip
+                ended = peristat("check", case)
+                self.assertEqual(ended.returncode, 0, ended.stderr)
+                self.assertEqual("of the bonds are as long as the horizon" in ended.stdout, is_told, ended.stdout)
+
     def test_tells_the_steps(self):
         case = self.folder / "case.toml"
         case.write_text(SQUARE)

@@ -422,6 +422,10 @@ class Motions(PrintedTest):
         above, below = (middles > 1e-9).sum(), (middles < -1e-9).sum()
         self.assertGreater(above, 2000)
         self.assertLess(abs(above - below), 0.02 * above)  # none on this machine
+        moved, ratio = "lattice.perturbation=1e-6", "lattice.horizon_ratio=3.015"
+        broken = lambda *settings: run("bond_models/crack_branching", *settings).history[-1]["broken_bonds"]
+        self.prints("are gone, and {} bonds break", broken(moved), within=0.05)
+        self.prints("it is {}, and {} moved", broken(ratio), broken(ratio, moved), within=0.05)
 
     def test_kalthoff_winkler(self):
         self.page = "cases/bond_models/kalthoff_winkler.toml"

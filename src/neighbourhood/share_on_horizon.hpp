@@ -1,0 +1,14 @@
+#pragma once
+
+#include "src/neighbourhood/bonds.hpp"
+#include "src/neighbourhood/kernel.hpp"
+
+namespace peristat {
+
+/// Share of the bonds that are as long as the horizon, to a thousandth of it, where a kernel ends
+/// there with a jump: those are neighbours by the last digits of the places. It is three
+/// thousandths of points without order, and a whole shell of a lattice whose horizon ratio is a
+/// distance of it.
+[[nodiscard]] double share_on_horizon(const Bonds& bonds, const Kernel& kernel);
+
+}  // namespace peristat
