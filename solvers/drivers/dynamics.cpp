@@ -6,6 +6,8 @@
 #include <utility>
 
 #include "assembly/terms/damage.hpp"
+#include "solvers/motion/newmark.hpp"
+#include "solvers/motion/velocity_verlet.hpp"
 #include "src/core/number_text.hpp"
 
 namespace peristat {
@@ -36,6 +38,9 @@ constexpr double growth_of_instability = 100.0;
 constexpr double unresolved = 0.1;
 /// Before so many steps a load that sets in at once has done too little work to be a measure.
 constexpr int steps_of_onset = 10;
+
+/// Of the given implicit step, the least that one is cut to.
+constexpr double least_step = 1.0 / 1024.0;
 
 /// A remainder of the way below this share of a step is round-off.
 constexpr double remainder = 1e-9;
@@ -71,24 +76,66 @@ Advance Dynamics::begin() {
   for (std::size_t dof = 0; dof < velocity.size(); ++dof) {
     if (path_.free().equation[dof] == FreeDofs::none) velocity[dof] = 0.0;
   }
-  VelocityVerlet motion(path_.problem(), setting(), start, std::move(velocity));
-  if (motion.at().degenerate || !motion.find_energy())
+  const auto motion = make_motion(start, std::move(velocity), {});
+  if (motion->at().degenerate || !motion->find_energy())
     return fail(Outcome::degenerate, 0.0, "the initial state");
-  if (setting().at_start) state.dynamics.stiffness = *setting().at_start;
-  const std::string refusal = choose_step(motion.at(), 0.0);
-  if (!refusal.empty()) return fail(Outcome::unstable_step, 0.0, refusal);
-  const double step = state.dynamics.step;
-  state.dynamics.correction_at_start = step * step / 8.0 * motion.squared_force();
+  if (is_implicit()) {
+    state.dynamics.step = options_.time_step;
+  } else {
+    if (setting().at_start) state.dynamics.stiffness = *setting().at_start;
+    const std::string refusal = choose_step(motion->at(), 0.0);
+    if (!refusal.empty()) return fail(Outcome::unstable_step, 0.0, refusal);
+    const double step = state.dynamics.step;
+    state.dynamics.correction_at_start = step * step / 8.0 * motion->squared_force();
+  }
   // What the body begins with counts as work that was done before.
   Ledger& entries = state.ledger.entries;
   entries = {};
   std::vector<double> damage(std::size_t(path_.damaged().points().count()));
   const DamageState damaged =
-      assess_damage(path_.damaged().model(), motion.at().history, {}, damage);
-  entries.external_work = motion.at().stored_energy + motion.kinetic_energy() +
-                          damaged.dissipated_energy + motion.sums().released;
+      assess_damage(path_.damaged().model(), motion->at().history, {}, damage);
+  entries.external_work = motion->at().stored_energy + motion->kinetic_energy() +
+                          damaged.dissipated_energy + motion->sums().released;
   state.dynamics.has_begun = true;
-  return accept(std::move(motion));
+  return accept(*motion);
+}
+
+std::unique_ptr<Motion> Dynamics::make_motion(const State& from, std::vector<double> velocity,
+                                              std::vector<double> acceleration) {
+  if (!is_implicit()) {
+    return std::make_unique<VelocityVerlet>(path_.problem(), setting(), from, std::move(velocity));
+  }
+  const SolvedBody& body = path_.body();
+  NewtonOptions newton = path_.setting().newton_options;
+  newton.counts_pivots = false;
+  return std::make_unique<Newmark>(
+      path_.problem(), setting(), from, std::move(velocity), std::move(acceleration),
+      options_.spectral_radius,
+      Newmark::Search{body.solver, body.tangent, newton, path_.setting().observer.interrupted});
+}
+
+void Dynamics::lengthen_step(double time) {
+  double& step = path_.state().dynamics.step;
+  if (step >= options_.time_step) return;
+  const double before = std::exchange(step, std::min(2.0 * step, options_.time_step));
+  path_.tell(time, {.increment = before,
+                    .outcome = name(Outcome::converged),
+                    .action = Decision::change_time_step,
+                    .next_increment = step,
+                    .reason = "the shorter steps have succeeded"});
+}
+
+bool Dynamics::shorten_step(double time, Outcome outcome) {
+  double& step = path_.state().dynamics.step;
+  const bool may_help = outcome != Outcome::interrupted && outcome != Outcome::out_of_memory;
+  if (!is_implicit() || !may_help || 0.5 * step < least_step * options_.time_step) return false;
+  const double before = std::exchange(step, 0.5 * step);
+  path_.tell(time, {.increment = before,
+                    .outcome = name(outcome),
+                    .action = Decision::change_time_step,
+                    .next_increment = step,
+                    .reason = explanation(outcome)});
+  return true;
 }
 
 Stiffness Dynamics::stiffness_at(const Trial& state) {
@@ -141,40 +188,48 @@ Advance Dynamics::move() {
   PathState& state = path_.state();
   const double end = path_.setting().conditions.programme().end();
   const auto& interrupted = path_.setting().observer.interrupted;
-  VelocityVerlet motion(path_.problem(), setting(), state.accepted, state.dynamics.velocity);
+  if (is_implicit()) lengthen_step(state.accepted.stage);
+  const auto motion =
+      make_motion(state.accepted, state.dynamics.velocity, state.dynamics.acceleration);
   int step = state.steps;
   bool is_last = false;
   do {
-    const double time = motion.time();
+    const double time = motion->time();
     const bool asks = (step - state.steps) % steps_between_interruptions == 0;
     if (interrupted && asks && interrupted()) {
       return fail(Outcome::interrupted, time, "");
     }
-    if (step >= state.dynamics.next_look) {
+    if (!is_implicit() && step >= state.dynamics.next_look) {
       state.dynamics.next_look = step;
-      const std::string refusal = choose_step(motion.at(), time);
+      const std::string refusal = choose_step(motion->at(), time);
       if (!refusal.empty()) return fail(Outcome::unstable_step, time, refusal);
     }
     double dt = state.dynamics.step, next = time + dt;
     is_last = end - time <= dt * (1.0 + remainder);
     if (is_last) dt = end - time, next = end;
     if (!(next > time)) return fail(Outcome::unstable_step, time, "the step is lost in the time");
+    Outcome outcome = Outcome::converged;
     try {
-      if (!motion.step(dt, next)) return fail(Outcome::degenerate, next, "");
+      outcome = motion->step(dt, next);
     } catch (const InputError& error) {
       return fail(Outcome::undefined_condition, next,
                   path_.refusal_of_conditions(next).value_or(error.what()));
     }
+    if (outcome != Outcome::converged) {
+      is_last = false;
+      if (shorten_step(time, outcome)) continue;
+      return fail(outcome, next, "");
+    }
     ++step;
-  } while (!is_last && step % options_.steps_per_row != 0);
+  } while (!is_last && (step == state.steps || step % options_.steps_per_row != 0));
   state.steps = step;
-  if (!motion.find_energy()) return fail(Outcome::degenerate, motion.time(), "");
-  motion.complete_sums();
-  state.dynamics.correction += motion.sums().correction;
-  return accept(std::move(motion));
+  if (!motion->find_energy()) return fail(Outcome::degenerate, motion->time(), "");
+  motion->complete_sums();
+  state.dynamics.correction += motion->sums().correction;
+  return accept(*motion);
 }
 
-MotionRecord Dynamics::motion_record(const VelocityVerlet& motion) const {
+MotionRecord Dynamics::motion_record(const Motion& motion) const {
   const PathState::Dynamics& dynamics = path_.state().dynamics;
   MotionRecord record;
   record.time = motion.time();
@@ -190,7 +245,7 @@ MotionRecord Dynamics::motion_record(const VelocityVerlet& motion) const {
   return record;
 }
 
-Ledger Dynamics::ledger_with(const VelocityVerlet& motion, double dissipated) const {
+Ledger Dynamics::ledger_with(const Motion& motion, double dissipated) const {
   const PathLedger& ledger = path_.state().ledger;
   Ledger after = ledger.entries;
   after.stored = motion.at().stored_energy;
@@ -200,7 +255,7 @@ Ledger Dynamics::ledger_with(const VelocityVerlet& motion, double dissipated) co
   return after;
 }
 
-Advance Dynamics::accept(VelocityVerlet motion) {
+Advance Dynamics::accept(Motion& motion) {
   PathState& state = path_.state();
   const double time = motion.time();
   Assembler& assembler = path_.damaged();
@@ -209,12 +264,13 @@ Advance Dynamics::accept(VelocityVerlet motion) {
   FoundStep found;
   found.record.mode = Mode::dynamics.name;
   found.record.settled = true;
+  found.record.newton_iterations = motion.sums().iterations;
   found.record.motion = motion_record(motion);
   found.record.broken_bonds = damaged.broken_bonds;
   found.growth = motion.sums().growth;
   found.energies.released = motion.sums().released;
   found.ledger = ledger_with(motion, damaged.dissipated_energy);
-  std::vector<double> velocity = motion.take_velocity();
+  std::vector<double> velocity = motion.take_velocity(), acceleration = motion.take_acceleration();
   Attempt attempt;
   attempt.at = time;
   attempt.largest_residual = -1.0;
@@ -225,6 +281,7 @@ Advance Dynamics::accept(VelocityVerlet motion) {
   state.accepted = state_of(attempt);
   add_velocity_of_supports(time, velocity);
   state.dynamics.velocity = velocity;
+  state.dynamics.acceleration = std::move(acceleration);
   state.ledger.accept(found.ledger, path_.working_force(attempt.state, attempt.external_force),
                       found.energies);
   complete_record(path_, attempt, found);
@@ -277,7 +334,8 @@ std::string Dynamics::fault_of_balance(const Ledger& after) {
       std::max({dynamics.largest_energy, std::abs(after.external_work), after.dissipated});
   const double error = after.balance_error() + dynamics.correction;
   const double allowed = work_error * std::max(dynamics.largest_energy, energy) + after.dissipated;
-  if (!(std::abs(error) <= allowed)) {
+  const bool is_damped = is_implicit() && options_.spectral_radius < 1.0;
+  if (!(-error <= allowed) || !(is_damped || error <= allowed)) {
     return "the modified energy is " + number_text(error) + " J less than what was put in, " +
            number_text(dynamics.largest_energy) + " J";
   }

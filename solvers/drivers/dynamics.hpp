@@ -1,20 +1,24 @@
 #pragma once
 
-#include <optional>
+#include <memory>
 #include <string>
+#include <vector>
 
 #include "solvers/drivers/driver.hpp"
 #include "solvers/drivers/found_step.hpp"
-#include "solvers/motion/velocity_verlet.hpp"
+#include "solvers/motion/motion.hpp"
 
 namespace peristat {
 
-/// Follows the motion in time, by the explicit scheme of VelocityVerlet, from the initial state to
-/// the end of the programme of time. Each call goes to the next state that is told, a number of
-/// time steps on; PathState::steps counts time steps. The last step ends at the end.
+/// Follows the motion in time, by explicit steps (VelocityVerlet) or implicit ones (Newmark), from
+/// the initial state to the end of the programme of time. Each call goes to the next state that is
+/// told, a number of time steps on; PathState::steps counts time steps. The last step ends at the
+/// end.
 ///
-/// Every so many time steps the stiffness of the present state is bounded. A step that is a share
-/// of the stable one follows it; one that is given ends the path where it is no longer stable.
+/// Explicit: every so many time steps the stiffness of the present state is bounded. A step that is
+/// a share of the stable one follows it; one that is given ends the path where it is no longer
+/// stable. Implicit: a step that finds nothing is halved, and the next state that is told doubles
+/// it again, up to the given one.
 ///
 /// A state that is told owes the balance of its modified energy, up to what trapezoidal sums of
 /// work leave out; that energy may not be far from the printed one, which is how motions show that
@@ -32,16 +36,24 @@ class Dynamics : public Driver {
   [[nodiscard]] const MotionSetting& setting() const;
   [[nodiscard]] Advance begin();
   [[nodiscard]] Advance move();
+  [[nodiscard]] bool is_implicit() const { return options_.scheme == MotionScheme::newmark; }
+  /// @param acceleration of implicit steps; empty: of the forces
+  [[nodiscard]] std::unique_ptr<Motion> make_motion(const State& from, std::vector<double> velocity,
+                                                    std::vector<double> acceleration);
+  /// Makes the implicit step as long as it was, after one that has failed.
+  void lengthen_step(double time);
+  /// @return whether there is a shorter implicit step to try
+  [[nodiscard]] bool shorten_step(double time, Outcome outcome);
   /// The stiffness at a state; the eigenvalue is found again where the bound has changed.
   [[nodiscard]] Stiffness stiffness_at(const Trial& state);
   /// Chooses the step for the present stiffness.
   /// @return why there is none
   [[nodiscard]] std::string choose_step(const Trial& state, double time);
-  [[nodiscard]] Advance accept(VelocityVerlet motion);
+  [[nodiscard]] Advance accept(Motion& motion);
   /// Of what is prescribed, the mean over a time step.
   void add_velocity_of_supports(double time, std::vector<double>& velocity) const;
-  [[nodiscard]] MotionRecord motion_record(const VelocityVerlet& motion) const;
-  [[nodiscard]] Ledger ledger_with(const VelocityVerlet& motion, double dissipated) const;
+  [[nodiscard]] MotionRecord motion_record(const Motion& motion) const;
+  [[nodiscard]] Ledger ledger_with(const Motion& motion, double dissipated) const;
   [[nodiscard]] std::string fault_of(const Attempt& attempt, const FoundStep& found);
   [[nodiscard]] std::string fault_of_balance(const Ledger& after);
   [[nodiscard]] Advance fail(Outcome outcome, double time, const std::string& what);

@@ -22,10 +22,18 @@ struct EventOptions {
 };
 
 /// How a body in motion is followed in time.
+/// How a motion goes from one time step to the next.
+enum class MotionScheme {
+  verlet,   ///< explicit: VelocityVerlet
+  newmark,  ///< implicit: Newmark
+};
+
 struct DynamicsOptions {
   double time_step = 0.0;   ///< [s]; 0: a share of the stable one
   double step_share = 0.9;  ///< of the stable step, which is found anew as the stiffness changes
   int steps_per_row = 100;  ///< time steps from one state that is told to the next
+  MotionScheme scheme = MotionScheme::verlet;
+  double spectral_radius = 1.0;  ///< of the implicit scheme at the highest frequencies, see Newmark
 };
 
 struct LoadSteppingOptions {

@@ -47,6 +47,7 @@ bool is_of_body(const PathState& state, const Assembler& body,
   return are_points && state.accepted.displacement.size() == dofs &&
          state.ledger.force.size() == dofs && are_sizes_of(state.accepted.history, body) &&
          is_empty_or(state.arc.direction, dofs) && is_empty_or(state.dynamics.velocity, dofs) &&
+         is_empty_or(state.dynamics.acceleration, dofs) &&
          is_empty_or(state.relaxed.motion.velocity, std::size_t(free.count()));
 }
 

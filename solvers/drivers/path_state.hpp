@@ -76,9 +76,10 @@ struct PathState {
   } events;
   /// Of mode dynamics; the stage is the time.
   struct Dynamics {
-    bool has_begun = false;        ///< the initial state has been told
-    std::vector<double> velocity;  ///< per degree of freedom, in the accepted state [m/s]
-    double step = 0.0;             ///< in force [s]
+    bool has_begun = false;            ///< the initial state has been told
+    std::vector<double> velocity;      ///< per degree of freedom, in the accepted state [m/s]
+    std::vector<double> acceleration;  ///< likewise, of implicit steps [m/s2]
+    double step = 0.0;                 ///< in force [s]
     /// (dt^2/8) F.M^-1 F at the start, and what the steps have added to it [J].
     double correction_at_start = 0.0, correction = 0.0;
     double largest_energy = 0.0;           ///< that has been put in so far [J]

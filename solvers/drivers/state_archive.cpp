@@ -135,11 +135,12 @@ void transfer(StateArchive& archive, PathState& state) {
   archive.transfer("events/response_drained", response_drained);
   archive.transfer("events/count", count);
   transfer_tangent(archive, tangent);
-  auto& [has_begun, time_velocity, time_step, correction_at_start, correction, largest_energy,
-         stiffness, last_bound, look_interval, next_look] = dynamics;
+  auto& [has_begun, time_velocity, acceleration, time_step, correction_at_start, correction,
+         largest_energy, stiffness, last_bound, look_interval, next_look] = dynamics;
   auto& [bound, eigenvalue] = stiffness;
   archive.transfer("dynamics/has_begun", has_begun);
   archive.transfer("dynamics/velocity", time_velocity);
+  archive.transfer("dynamics/acceleration", acceleration);
   archive.transfer("dynamics/step", time_step);
   archive.transfer("dynamics/correction_at_start", correction_at_start);
   archive.transfer("dynamics/correction", correction);

@@ -108,6 +108,15 @@ std::string explanation(Outcome outcome) {
   return "";
 }
 
+SharedEnvironment EquilibriumProblem::environment(const LoadPoint& at) const {
+  SharedEnvironment environment = conditions.environment(at);
+  if (!inertia) return environment;
+  auto with =
+      environment ? std::make_shared<Environment>(*environment) : std::make_shared<Environment>();
+  with->inertia = *inertia;
+  return with;
+}
+
 void share_out_jump(const EquilibriumProblem& problem, std::span<const double> from,
                     std::span<double> displacement) {
   const Constraints& constraints = problem.conditions.constraints();

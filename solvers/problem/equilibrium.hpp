@@ -45,6 +45,10 @@ struct EquilibriumProblem {
   Assembler& assembler;
   const Conditions& conditions;
   const FreeDofs& free;
+  const InertialSprings* inertia = nullptr;  ///< in a step of an implicit motion
+
+  /// What the energy depends on at a load point.
+  [[nodiscard]] SharedEnvironment environment(const LoadPoint& at) const;
 };
 
 /// A trial state with everything that a decision about it needs.

@@ -46,7 +46,7 @@ class NewtonSearch {
     evaluate(problem, external_force_, current_, options.damage);
     start_gradient_ = current_.gradient;
     start_curvature_ = current_.curvature;
-    current_.environment = problem.conditions.environment(stage);
+    current_.environment = problem.environment(stage);
     // Right after the jump bonds beside the supports are stretched as no equilibrium will ask for.
     // Where they may break, nothing would be left to measure the residual against, and the search
     // would begin in a torn body: damage is held until the predictor has spread the jump.

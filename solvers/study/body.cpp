@@ -9,8 +9,9 @@
 #include <fmt/format.h>
 #include <omp.h>
 
-#include "assembly/terms/foundation/foundation_term.hpp"
 #include "assembly/terms/pressure/pressure_term.hpp"
+#include "assembly/terms/springs/foundation_term.hpp"
+#include "assembly/terms/springs/inertia_term.hpp"
 #include "solvers/linear/available_memory.hpp"
 #include "solvers/study/bond_potential.hpp"
 #include "solvers/study/cpd_model.hpp"
@@ -250,6 +251,7 @@ void add_terms_of_conditions(Model& model, const Body& body) {
   if (!boundary.face.empty()) model.add(std::make_shared<PressureTerm>(body.points, boundary));
   const Foundations& foundations = body.conditions->foundations();
   if (!foundations.none()) model.add(std::make_shared<FoundationTerm>(body.points, foundations));
+  if (body.specification.has_inertia) model.add(std::make_shared<InertiaTerm>(body.points));
 }
 
 BodySize size_of(const Points& points) {

@@ -55,8 +55,8 @@ struct Body {
 /// @throws InputError as make_body does
 [[nodiscard]] Model make_elastic_bonds(const Body& body, Bonds bonds, const BondSetting& setting);
 
-/// Adds pressures and foundations, which the body's conditions have, to a model of its points: its
-/// own has them.
+/// Adds the pressures and foundations that the body's conditions have, and its inertia, to a model
+/// of its points: its own has them.
 void add_terms_of_conditions(Model& model, const Body& body);
 
 /// Number of threads to run on.
@@ -80,8 +80,8 @@ void add_terms_of_conditions(Model& model, const Body& body);
 /// The estimate from the counts that the body has.
 [[nodiscard]] MemoryEstimate estimate_memory(const Body& body);
 
-/// Lines that tell the triangles and tetrahedra, whether they are stored, and whether neighbours are
-/// such by round-off; empty for bonds whose horizon lies between distances of their points.
+/// Lines that tell the triangles and tetrahedra, whether they are stored, and whether neighbours
+/// are such by round-off; empty for bonds whose horizon lies between distances of their points.
 [[nodiscard]] std::vector<std::string> describe_interactions(const Body& body);
 
 /// Lines that tell rigid sets, rollers, linear constraints, planes of symmetry and periods.

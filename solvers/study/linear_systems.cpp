@@ -106,7 +106,8 @@ LinearSystems choose_linear_systems(const StudyOptions& options, const Model& mo
 
 LinearSystems choose_linear_systems(const StudyOptions& options, const Body& body,
                                     SolverLadder::Reporter tell) {
-  if (options.loading.mode == Mode::dynamics) return systems_of_motion(body);
+  const bool is_explicit = options.loading.dynamics.scheme == MotionScheme::verlet;
+  if (options.loading.mode == Mode::dynamics && is_explicit) return systems_of_motion(body);
   StudyOptions chosen = options;
   if (!body.conditions->constraints().none()) {
     if (options.tangent == TangentStorage::matrix_free) {

@@ -34,6 +34,12 @@ Study::Study(const Body& body, StudyOptions options, SolverLadder::Reporter tell
         "end_time", "",
         moves ? "is missing; mode dynamics needs it" : "is of a motion in time, for mode dynamics");
   }
+  const bool is_implicit = moves && options_.loading.dynamics.scheme == MotionScheme::newmark;
+  if (is_implicit != body.specification.has_inertia) {
+    throw InputError("has_inertia", "",
+                     is_implicit ? "must be set: implicit steps need a body with inertia"
+                                 : "is for bodies that implicit steps follow");
+  }
   if (moves) {
     motion_ = make_motion_setting(body);
   } else {
@@ -68,6 +74,7 @@ const Stiffness& Study::find_initial_stiffness() {
   tangent.linearise(assembler, {displacement, history, Damage::grows, conditions.environment(0.0)},
                     1.0);
   motion_->at_start = find_stiffness(tangent, free, motion_->mass, motion_->most_points);
+  if (options_.loading.dynamics.scheme != MotionScheme::verlet) return *motion_->at_start;
   const double step = options_.loading.dynamics.time_step;
   const double stable = motion_->at_start->stable_step();
   if (step > stable) {
@@ -90,7 +97,8 @@ LoadSteppingResult Study::follow(const LoadSteppingObserver& observer, const Sol
     result.outcome = Outcome::out_of_memory;
     return result;
   }
-  if (motion_ && !from) find_initial_stiffness();
+  const bool is_explicit = options_.loading.dynamics.scheme == MotionScheme::verlet;
+  if (motion_ && is_explicit && !from) find_initial_stiffness();
   return follow_loading({equations_->solved(), *body_.conditions, options_.loading, options_.newton,
                          observer, stand_in, motion_ ? &*motion_ : nullptr},
                         from);

@@ -57,7 +57,7 @@ class Study {
   LinearOutcome analyze();
 
   /// Of mode dynamics: the stiffness that the motion begins with.
-  /// @throws InputError ("dynamics.time_step") for a step above the stable one
+  /// @throws InputError ("dynamics.time_step") for an explicit step above the stable one
   const Stiffness& find_initial_stiffness();
 
   [[nodiscard]] const Body& body() const { return body_; }

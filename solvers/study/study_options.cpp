@@ -46,6 +46,12 @@ void check_options(const StudyOptions& options) {
   require_within(dynamics.time_step, 0.0, 1e30, "dynamics.time_step");
   require_within(dynamics.step_share, 1e-6, 0.99, "dynamics.step_share");
   require_within(dynamics.steps_per_row, 1, 1e9, "dynamics.steps_per_row");
+  require_within(dynamics.spectral_radius, 0.0, 1.0, "dynamics.spectral_radius");
+  if (dynamics.scheme == MotionScheme::newmark && dynamics.time_step == 0.0) {
+    throw InputError("dynamics.time_step", "",
+                     "is missing: implicit steps are stable at any length, so that there is no "
+                     "stable step to take a share of");
+  }
   const LinearSolverOptions& linear = options.linear;
   if (linear.method == LinearMethod::cholesky &&
       linear.preconditioner != PreconditionerKind::automatic)

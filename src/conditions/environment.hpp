@@ -5,6 +5,15 @@
 
 namespace peristat {
 
+/// What stands for the inertia of points in a step of an implicit motion: springs to where inertia
+/// alone would take them. Arrays have an entry per degree of freedom; empty: none.
+struct InertialSprings {
+  std::vector<double> stiffness{};  ///< [N/m]
+  std::vector<double> place{};      ///< displacement without stretch of the spring [m]
+
+  friend bool operator==(const InertialSprings&, const InertialSprings&) = default;
+};
+
 /// What the load makes the energy itself depend on, beside displacement and history.
 struct Environment {
   /// Per point, 0 at rest: by how much of its length the body around it would be longer if nothing
@@ -15,6 +24,7 @@ struct Environment {
   /// Displacement of the ground below each spring of the foundations, springs x dimension [m].
   /// Empty: none.
   std::vector<double> ground{};
+  InertialSprings inertia{};
 
   friend bool operator==(const Environment&, const Environment&) = default;
 };

@@ -243,7 +243,8 @@ void print_pressures(const Body& body) {
 }
 
 /// Of a motion in time: its stable step, and what its steps take.
-void print_motion(const Case& from, const Body& body, const StudyOptions& options) {
+void print_motion(const Case& from, const Body& body, const StudyOptions& options,
+                  double seconds_of_solving) {
   // Of a bond in a step, as measured; the other terms of a body take longer.
   constexpr double seconds_per_bond = 6e-9;
   const double stable = Study(body, options).find_initial_stiffness().stable_step();
@@ -252,8 +253,11 @@ void print_motion(const Case& from, const Body& body, const StudyOptions& option
   const double steps = std::ceil(dynamics.end_time / step);
   fmt::print("motion      stable time step {:.6g} s; {:.0f} steps of {:.6g} s\n", stable, steps,
              step);
-  fmt::print("time        {} on one thread, without results\n",
-             seconds_text(steps * double(body.model.bonds().count()) * seconds_per_bond));
+  const double seconds_of_step = from.dynamics.is_implicit()
+                                     ? seconds_of_solving
+                                     : double(body.model.bonds().count()) * seconds_per_bond;
+  fmt::print("time        {}{}, without results\n", seconds_text(steps * seconds_of_step),
+             from.dynamics.is_implicit() ? "" : " on one thread");
 }
 
 }  // namespace
@@ -304,7 +308,7 @@ Exit check(const Case& from, int threads) {
   fmt::print("memory      about {} of {} available\n", bytes_text(systems.bytes),
              bytes_text(available_memory()));
   if (from.solver.mode == Mode::dynamics) {
-    located_errors(from, [&] { print_motion(from, body, options); });
+    located_errors(from, [&] { print_motion(from, body, options, chosen.seconds / threads); });
   } else if (from.solver.mode == Mode::path) {
     fmt::print("time        {} for an event; how many there are, the path shows\n",
                seconds_text(chosen.seconds / threads));

@@ -13,6 +13,8 @@
 #include "assembly/operators/constrained_tangent.hpp"
 #include "cases/runner/build/body.hpp"
 #include "solvers/linear/vector_verbs.hpp"
+#include "solvers/motion/newmark.hpp"
+#include "solvers/study/motion.hpp"
 #include "src/core/expression.hpp"
 #include "src/core/input_error.hpp"
 #include "src/core/number_text.hpp"
@@ -366,10 +368,22 @@ double asymmetry_of(const std::vector<double>& block, std::size_t count) {
   return largest > 0.0 ? difference / largest : 0.0;
 }
 
-/// Eigenstrains, pressures and the ground at the end of the load; under a control at the load 1.
-SharedEnvironment environment_at_end(const Conditions& conditions) {
+/// Eigenstrains, pressures and the ground at the end of the load; under a control at the load 1. Of
+/// implicit steps also the inertia, which holds the points where they are.
+SharedEnvironment environment_at_end(const Case& from, const Body& body,
+                                     const std::vector<double>& displacement) {
+  const Conditions& conditions = *body.conditions;
   const double end = conditions.programme().end();
-  return conditions.environment(conditions.control() ? LoadPoint(end, 1.0) : LoadPoint(end));
+  const SharedEnvironment there =
+      conditions.environment(conditions.control() ? LoadPoint(end, 1.0) : LoadPoint(end));
+  if (!from.dynamics.is_implicit()) return there;
+  auto with = there ? std::make_shared<Environment>(*there) : std::make_shared<Environment>();
+  with->inertia = {make_motion_setting(body).mass, displacement};
+  const NewmarkCoefficients coefficients(from.dynamics.spectral_radius);
+  for (double& mass : with->inertia.stiffness) {
+    mass *= coefficients.stiffness_per_mass(from.dynamics.time_step);
+  }
+  return with;
 }
 
 }  // namespace
@@ -394,7 +408,7 @@ Exit check_tangent(const Case& from, const std::string& deformation, int threads
   const std::size_t dofs = displacement.size();
   std::vector<double> gradient(dofs), image(dofs), shifted(dofs), forward(dofs), backward(dofs);
   History history = assembler.initial_history();
-  const SharedEnvironment environment = environment_at_end(*body.conditions);
+  const SharedEnvironment environment = environment_at_end(from, body, displacement);
   // From event to event a body is elastic, after all drops that the deformation brings.
   const bool goes_by_events = body.specification.teeth > 0;
   if (goes_by_events) assembler.commit(displacement, history, {}, environment);

@@ -261,7 +261,7 @@ class CaseRun {
 
   /// Refuses a step that is not stable before results are touched.
   void describe_motion() {
-    if (earlier_) return;
+    if (earlier_ || from_.dynamics.is_implicit()) return;
     const Stiffness& stiffness = study_->find_initial_stiffness();
     progress_.say(fmt::format("stable time step: {:.6g} s", stiffness.stable_step()));
   }
@@ -309,7 +309,7 @@ class CaseRun {
   LoadSteppingResult follow() {
     SolvedModel& equations = study_->equations();
     study_->analyze();
-    if (!from_.dynamics.is_asked_for)
+    if (!from_.dynamics.is_asked_for || from_.dynamics.is_implicit())
       progress_.say(fmt::format("linear solver: {}{} ({})", equations.solver().describe(),
                                 equations.systems().is_stored ? "" : ", tangent matrix-free",
                                 equations.systems().chosen.reason));

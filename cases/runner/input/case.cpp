@@ -142,6 +142,7 @@ Case read_case(const std::filesystem::path& file, const std::string& text,
   resolve_size(result);
   for (const LoadTable& table : result.loading.tables) result.programme.push_back(table.entries);
   if (result.dynamics.is_asked_for) result.end_time = result.dynamics.end_time;
+  result.has_inertia = result.dynamics.is_implicit();
   result.as_resolved = document_keys().lines(result, result);
   return result;
 }

@@ -75,6 +75,11 @@ struct DynamicsSpecification {
   double time_step = 0.0;     ///< [s]; 0: a share of the stable one
   double step_share = 0.9;
   int history_every = 0;  ///< time steps from one row of the history to the next; 0: output.every
+  MotionScheme scheme = MotionScheme::verlet;
+  double spectral_radius = 1.0;  ///< of implicit steps at the highest frequencies
+
+  /// Whether each step searches an equilibrium, with the settings of the solver.
+  [[nodiscard]] bool is_implicit() const { return is_asked_for && scheme == MotionScheme::newmark; }
 };
 
 /// Table [relaxation]: steps of the load factor, and how each is relaxed.

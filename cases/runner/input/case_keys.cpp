@@ -825,32 +825,58 @@ Table<InitialSpecification> initial_keys() {
              "at the time 0, per component, of what no support prescribes")}};
 }
 
-/// Supports and loads are read as soon as it is known whether they are expressions of the time.
+constexpr const char* newmark_name = "newmark";
+
+/// Supports and loads are read as soon as it is known whether they are expressions of the time, and
+/// settings of the solver as soon as it is known whether steps search equilibria.
 void ask_for_dynamics(const Entry& at, Case& result) {
   if (!at.from.has("solver")) return;
   const TomlTable solver = at.from.table("solver");
   result.dynamics.is_asked_for = solver.has("mode") && solver.is_string("mode") &&
                                  solver.string("mode") == Mode::dynamics.name;
+  if (!at.from.has("dynamics")) return;
+  const TomlTable dynamics = at.from.table("dynamics");
+  if (dynamics.has("scheme") && dynamics.is_string("scheme") &&
+      dynamics.string("scheme") == newmark_name) {
+    result.dynamics.scheme = MotionScheme::newmark;
+  }
 }
 
 Table<DynamicsSpecification> dynamics_keys() {
   using Spec = DynamicsSpecification;
   using K = Key<Spec>;
   const auto is_given = [](auto& dynamics, auto&) { return dynamics.time_step > 0.0; };
+  const auto is_implicit = [](auto& dynamics, auto&) { return dynamics.is_implicit(); };
+  const auto has_no_share = [](auto& dynamics, auto&) {
+    return dynamics.time_step > 0.0 || dynamics.is_implicit();
+  };
   return {"dynamics",
           {K("end_time", &Spec::end_time, positive("s"), "from 0 to which the motion is followed")
                .required()
                .extends(),
+           K("scheme", &Spec::scheme,
+             choice<MotionScheme>(
+                 {{"verlet", MotionScheme::verlet}, {newmark_name, MotionScheme::newmark}}),
+             "explicit steps, or implicit ones, each of which searches an equilibrium with "
+             "inertia by Newton's method: for motions that are slow beside the stable step")
+               .early(),
+           K("spectral_radius", &Spec::spectral_radius, between(0.0, 1.0),
+             "of implicit steps: what a step leaves of the highest frequencies. 1: average "
+             "acceleration, which keeps the energy; below 1: the generalised alpha method, which "
+             "damps what steps do not resolve")
+               .written_if(is_implicit),
            K("time_step", &Spec::time_step, positive("s"),
-             "that is kept; the run ends where it is longer than the stable one. The last step is "
+             "that is kept. Explicit: the run ends where it is longer than the stable one. "
+             "Implicit: one that finds nothing is halved, down to a thousandth. The last step is "
              "shorter where it has to be")
                .written_if(is_given)
                .early()
-               .moreover("at most the stable step")
+               .moreover("explicit: at most the stable step")
                .default_words("a share of the stable step"),
            K("step_share", &Spec::step_share, between(1e-6, 0.99),
              "time step over the stable one, which is found anew as the stiffness changes")
-               .unless(is_given, "stands beside time_step; give one of them"),
+               .unless(has_no_share,
+                       "stands beside time_step, or is of explicit steps; give time_step alone"),
            K("history_every", &Spec::history_every, count_from(1, "time steps"),
              "from one row of the history to the next")
                .written_if([](auto& dynamics, auto&) { return dynamics.history_every > 0; })
@@ -875,11 +901,26 @@ void check_dynamics(const Entry& at, const Case& result) {
            "time t; give their values as expressions of it");
   }
   const TomlTable solver = at.from.table("solver");
-  for (const char* key :
-       {"linear", "preconditioner", "tangent", "predictor", "projection", "relative_tolerance",
-        "linear_tolerance", "max_iterations", "fragments", "elastic_horizon_ratio"}) {
-    if (solver.has(key))
-      solver.refuse(key, "is not heeded in mode dynamics, whose steps search no equilibrium");
+  for (const char* key : {"fragments", "elastic_horizon_ratio"}) {
+    if (solver.has(key)) solver.refuse(key, "is not heeded in mode dynamics");
+  }
+  if (result.dynamics.is_implicit()) {
+    const TomlTable dynamics = at.from.table("dynamics");
+    if (!dynamics.has("time_step")) {
+      dynamics.refuse("scheme",
+                      "needs a time_step: implicit steps have no stable one to take a share of");
+    }
+    return;
+  }
+  if (at.from.has("dynamics") && at.from.table("dynamics").has("spectral_radius"))
+    at.from.table("dynamics").refuse("spectral_radius", "is for scheme = \"newmark\"");
+  for (const char* key : {"linear", "preconditioner", "tangent", "predictor", "projection",
+                          "relative_tolerance", "linear_tolerance", "max_iterations"}) {
+    if (solver.has(key)) {
+      solver.refuse(key,
+                    "is not heeded by explicit time steps, which search no equilibrium; "
+                    "dynamics.scheme = \"newmark\" does");
+    }
   }
 }
 
@@ -1057,7 +1098,10 @@ Choices<Mode> modes() {
 Table<SolverSpecification> solver_keys() {
   using Spec = SolverSpecification;
   using K = Key<Spec>;
-  const auto searches = [](auto&, auto& from) { return !from.dynamics.is_asked_for; };
+  const auto searches = [](auto&, auto& from) {
+    return !from.dynamics.is_asked_for || from.dynamics.is_implicit();
+  };
+  const auto is_static = [](auto&, auto& from) { return !from.dynamics.is_asked_for; };
   return {
       "solver",
       {K("mode", &Spec::mode, choice(modes()),
@@ -1126,7 +1170,7 @@ Table<SolverSpecification> solver_keys() {
          "what becomes of pieces that come off: just enough of their degrees of freedom are pinned "
          "that they cannot move freely; they leave the equations and stay where they are; the run "
          "ends with outcome `fragmented`")
-           .written_if(searches)
+           .written_if(is_static)
            .then(check_fragments)
            .moreover("not `\"remove\"` with eigenstrains or a temperature"),
        K("elastic_horizon_ratio", &Spec::elastic_horizon_ratio, between(1.0, 1e3),

@@ -5,7 +5,7 @@ from pathlib import Path
 import lefm
 from compliance import LEAST_GROWTH, elastic_factor, toughness
 from setting import FRACTURE_ENERGY, MODULUS, setting, under_opening
-from specimen import MIDDLE, RATIOS, Lattice, Measure, Specimen, aside, peak, rows
+from specimen import MIDDLE, RATIOS, SPACINGS, Lattice, Measure, Specimen, aside, peak, rows
 
 WIDTH, THICKNESS = 0.04, 1e-3
 CRACK = 0.5 * WIDTH
@@ -85,6 +85,6 @@ SPECIMENS = [
             Measure("peak load", highest, of_longer_crack=lambda by: load(CRACK + by) / load(CRACK)),
             Measure("toughness by compliance", growing, allowed=0.03, at=MIDDLE),
         ),
-        finer=(0.125,),
+        spacings=(*SPACINGS, 0.125),
     )
 ]

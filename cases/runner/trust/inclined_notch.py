@@ -82,6 +82,7 @@ SPECIMENS = [
         reference="Ayatollahi et al., PMMA",
         coarsest=RADIUS / 32,
         case=text,
-        measures=(Measure("1 + distance of the paths in horizons", deviation, allowed=2.0),),
+        measures=(Measure("1 + distance of the paths in horizons", deviation, allowed=2.0, at=0.5),),
+        spacings=(1.0, 0.7, 0.5),
     )
 ]

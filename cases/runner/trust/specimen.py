@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 SPACINGS, RATIOS, ANGLES = (1.0, 0.5, 0.25), (3.015, 4.015), (0.0, 18.4349488, 26.5650512, 45.0)
-MIDDLE = SPACINGS[1]  # that of the other horizon and of the angles
+MIDDLE = SPACINGS[1]
 
 
 @dataclass(frozen=True)
@@ -53,14 +53,20 @@ class Specimen:
     coarsest: float  # spacing [m]
     case: Callable[[Lattice, float], str]  # lattice, spacing
     measures: tuple[Measure, ...]
-    finer: tuple[float, ...] = ()  # refinements beyond SPACINGS, of a specimen whose runs are cheap
+    # Refinements, the coarsest first: finer ones where runs are cheap, closer ones where cracks run far.
+    spacings: tuple[float, ...] = SPACINGS
 
     def lattices(self, quick: bool) -> list[Lattice]:
         """Three spacings or more, two horizons, four angles; quick: the coarsest alone."""
         if quick:
             return [Lattice()]
-        others = [Lattice(MIDDLE, RATIOS[1]), *(Lattice(MIDDLE, angle=angle) for angle in ANGLES[1:])]
-        return [*(Lattice(refinement) for refinement in (*SPACINGS, *self.finer)), *others]
+        others = [Lattice(self.middle, RATIOS[1]), *(Lattice(self.middle, angle=angle) for angle in ANGLES[1:])]
+        return [*map(Lattice, self.spacings), *others]
+
+    @property
+    def middle(self) -> float:
+        """The refinement of the other horizon and of the angles."""
+        return self.spacings[1]
 
     def spacing(self, lattice: Lattice) -> float:
         return self.coarsest * lattice.refinement

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 from refinement import Refinement, refine
-from specimen import MIDDLE, Lattice, Measure, Specimen
+from specimen import Lattice, Measure, Specimen
 
 CALIBRATION = "senb_05"  # the specimen that the setting, and the extension of cracks below, are from
 
@@ -71,7 +71,7 @@ class Verdict:
     @property
     def spread(self) -> float:
         """Half the range over angles and horizons at the middle spacing, of the corrected values."""
-        found = [self.corrected_on(lattice) for lattice in self.values if lattice.refinement == MIDDLE]
+        found = [self.corrected_on(lattice) for lattice in self.values if lattice.refinement == self.specimen.middle]
         return 0.5 * (max(found) - min(found)) if found else 0.0
 
     @property

@@ -50,7 +50,7 @@ TEST(VelocityVerlet, ConservesTheModifiedEnergyOfALinearBody) {
     const Energies before = energies(motion, dt);
     double error = 0.0;
     for (int step = 1; step * dt <= 1.0; ++step) {
-      ASSERT_TRUE(motion.step(dt, step * dt));
+      ASSERT_EQ(motion.step(dt, step * dt), Outcome::converged);
       const Energies now = energies(motion, dt);
       EXPECT_NEAR(now.modified, before.modified, 1e-12 * before.plain);
       error = std::max(error, std::abs(now.plain - before.plain));
@@ -76,13 +76,17 @@ TEST(VelocityVerlet, GoesBackTheWayItCame) {
   }
   VelocityVerlet there(problem.equilibrium, setting, from,
                        std::vector<double>(from.displacement.size(), 0.0));
-  for (int step = 1; step <= 50; ++step) ASSERT_TRUE(there.step(0.02, 0.02 * step));
+  for (int step = 1; step <= 50; ++step) {
+    ASSERT_EQ(there.step(0.02, 0.02 * step), Outcome::converged);
+  }
   std::vector<double> back = there.velocity();
   for (double& component : back) component = -component;
   State turned = from;
   turned.displacement = there.at().displacement;
   VelocityVerlet again(problem.equilibrium, setting, turned, std::move(back));
-  for (int step = 1; step <= 50; ++step) ASSERT_TRUE(again.step(0.02, 0.02 * step));
+  for (int step = 1; step <= 50; ++step) {
+    ASSERT_EQ(again.step(0.02, 0.02 * step), Outcome::converged);
+  }
   for (std::size_t k = 0; k < from.displacement.size(); ++k) {
     EXPECT_NEAR(again.at().displacement[k], from.displacement[k], 1e-14);
     EXPECT_NEAR(again.velocity()[k], 0.0, 1e-12);
@@ -98,7 +102,7 @@ TEST(VelocityVerlet, CountsTheWorkOfLoadsAndOfSupportsThatMove) {
   VelocityVerlet motion(problem.equilibrium, setting, start,
                         std::vector<double>(start.displacement.size(), 0.0));
   const double at_start = dt * dt / 8.0 * motion.squared_force();
-  for (int step = 1; step <= 80; ++step) ASSERT_TRUE(motion.step(dt, dt * step));
+  for (int step = 1; step <= 80; ++step) ASSERT_EQ(motion.step(dt, dt * step), Outcome::converged);
   const Energies now = energies(motion, dt);
   EXPECT_GT(motion.sums().work, 0.0);
   EXPECT_NEAR(now.modified + at_start, motion.sums().work, 1e-12 * motion.sums().work);
@@ -111,7 +115,7 @@ TEST(VelocityVerlet, NoticesValuesThatAreNotFinite) {
   std::vector<double> velocity(start.displacement.size(), 0.0);
   velocity[5] = 1e300;
   VelocityVerlet motion(problem.equilibrium, setting, start, velocity);
-  const bool is_state = motion.step(1e10, 1e10);
+  const bool is_state = motion.step(1e10, 1e10) == Outcome::converged;
   EXPECT_FALSE(is_state && motion.find_energy());
 }
 

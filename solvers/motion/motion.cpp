@@ -1,0 +1,128 @@
+#include "solvers/motion/motion.hpp"
+
+#include <cmath>
+#include <utility>
+
+namespace peristat {
+
+Motion::Motion(const EquilibriumProblem& problem, const MotionSetting& setting, const State& from,
+               std::vector<double> velocity)
+    : problem_(problem),
+      setting_(setting),
+      inverse_mass_(from.displacement.size(), 0.0),
+      external_force_(from.displacement.size()),
+      velocity_(std::move(velocity)),
+      time_(from.stage) {
+  at_.displacement = from.displacement;
+  at_.history = from.history;
+  at_.environment = from.environment;
+  at_.gradient.resize(from.displacement.size());
+  for (const Index dof : problem.free.dof) inverse_mass_[dof] = 1.0 / setting.mass[dof];
+  const Conditions& conditions = problem.conditions;
+  conditions.external_force(time_, external_force_);
+  for (const Index dof : problem.free.dof) {
+    if (conditions.loads_change() || external_force_[dof] != 0.0) loaded_.push_back(dof);
+  }
+  if (conditions.supports_move()) {
+    const auto &prescribed = conditions.prescribed(),
+               &dependent = conditions.constraints().dependent();
+    for (std::size_t dof = 0; dof < prescribed.size(); ++dof) {
+      if (prescribed[dof] && !dependent[dof]) moved_.push_back(Index(dof));
+    }
+  }
+  move_followers(problem, at_);
+  if (!find_forces()) at_.degenerate = true;
+}
+
+bool Motion::find_forces() {
+  const Evaluation found = problem_.assembler.commit_forces(at_.displacement, at_.history,
+                                                            at_.gradient, at_.environment);
+  if (at_.environment && !at_.environment->pressure.empty()) {
+    at_.follower_force.resize(at_.displacement.size());
+    problem_.assembler.follower_force(at_.at(), at_.follower_force);
+  }
+  fold_followers(problem_, external_force_, at_);
+  sums_.growth.degrading += found.growth.degrading;
+  sums_.growth.breaking += found.growth.breaking;
+  sums_.released += found.released;
+  return !found.degenerate;
+}
+
+void Motion::note_before() {
+  last_place_.resize(moved_.size());
+  last_reaction_.resize(moved_.size());
+  for (std::size_t k = 0; k < moved_.size(); ++k) {
+    last_place_[k] = at_.displacement[moved_[k]];
+    last_reaction_[k] = at_.gradient[moved_[k]];
+  }
+  if (!at_.follower_force.empty()) {
+    last_displacement_ = at_.displacement;
+    last_follower_force_ = at_.follower_force;
+  }
+}
+
+void Motion::change_loads() {
+  if (!problem_.conditions.loads_change()) return;
+  last_force_.swap(external_force_);
+  external_force_.resize(last_force_.size());
+  problem_.conditions.external_force(time_, external_force_);
+}
+
+void Motion::change_environment() {
+  if (!problem_.conditions.environment_changes()) return;
+  last_environment_ = at_.environment;
+  at_.environment = problem_.conditions.environment(time_);
+  add_half_of_heating();
+}
+
+void Motion::complete_heating() {
+  if (problem_.conditions.environment_changes()) add_half_of_heating();
+}
+
+void Motion::add_half_of_heating() {
+  const Environment& now = *at_.environment;
+  if (now.eigenstretch.empty() && now.ground.empty()) return;  // pressures have no energy
+  sums_.work += 0.5 * (energy_under(at_.environment) - energy_under(last_environment_));
+}
+
+double Motion::energy_under(const SharedEnvironment& environment) {
+  return problem_.assembler.energy({at_.displacement, at_.history, Damage::held, environment})
+      .energy;
+}
+
+void Motion::add_work_of_supports() {
+  for (std::size_t k = 0; k < moved_.size(); ++k) {
+    sums_.work += 0.5 * (last_reaction_[k] + at_.gradient[moved_[k]]) *
+                  (at_.displacement[moved_[k]] - last_place_[k]);
+  }
+  for (std::size_t k = 0; k < at_.follower_force.size(); ++k) {
+    sums_.work += 0.5 * (last_follower_force_[k] + at_.follower_force[k]) *
+                  (at_.displacement[k] - last_displacement_[k]);
+  }
+}
+
+bool Motion::find_energy() {
+  const Evaluation found = problem_.assembler.energy(at_.at());
+  at_.stored_energy = found.energy;
+  at_.degenerate |= found.degenerate || !std::isfinite(squared_force());
+  return !at_.degenerate;
+}
+
+double Motion::kinetic_energy() const {
+  double twice = 0.0;
+  for (const Index dof : problem_.free.dof) {
+    twice += setting_.mass[dof] * velocity_[dof] * velocity_[dof];
+  }
+  return 0.5 * twice;
+}
+
+double Motion::squared_force() const {
+  double sum = 0.0;
+  for (const Index dof : problem_.free.dof) {
+    const double force = external_force_[dof] - at_.gradient[dof];
+    sum += force * force * inverse_mass_[dof];
+  }
+  return sum;
+}
+
+}  // namespace peristat
