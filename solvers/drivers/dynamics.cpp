@@ -60,9 +60,12 @@ Advance Dynamics::next() {
   const PathState::Dynamics dynamics = state.dynamics;
   const int steps = state.steps;
   const Advance advance = dynamics.has_begun ? move() : begin();
-  if (path_.outcome() != Outcome::converged) {
+  if (path_.outcome() != Outcome::converged || repeats_) {
+    const double step = repeats_ ? state.dynamics.step : dynamics.step;
     state.dynamics = dynamics;
+    state.dynamics.step = step;
     state.steps = steps;
+    repeats_ = false;
   }
   return advance;
 }
@@ -125,7 +128,7 @@ void Dynamics::lengthen_step(double time) {
                     .reason = "the shorter steps have succeeded"});
 }
 
-bool Dynamics::shorten_step(double time, Outcome outcome) {
+bool Dynamics::shorten_step(double time, Outcome outcome, const std::string& reason) {
   double& step = path_.state().dynamics.step;
   const bool may_help = outcome != Outcome::interrupted && outcome != Outcome::out_of_memory;
   if (!is_implicit() || !may_help || 0.5 * step < least_step * options_.time_step) return false;
@@ -134,7 +137,7 @@ bool Dynamics::shorten_step(double time, Outcome outcome) {
                     .outcome = name(outcome),
                     .action = Decision::change_time_step,
                     .next_increment = step,
-                    .reason = explanation(outcome)});
+                    .reason = reason});
   return true;
 }
 
@@ -188,7 +191,6 @@ Advance Dynamics::move() {
   PathState& state = path_.state();
   const double end = path_.setting().conditions.programme().end();
   const auto& interrupted = path_.setting().observer.interrupted;
-  if (is_implicit()) lengthen_step(state.accepted.stage);
   const auto motion =
       make_motion(state.accepted, state.dynamics.velocity, state.dynamics.acceleration);
   int step = state.steps;
@@ -217,7 +219,7 @@ Advance Dynamics::move() {
     }
     if (outcome != Outcome::converged) {
       is_last = false;
-      if (shorten_step(time, outcome)) continue;
+      if (shorten_step(time, outcome, explanation(outcome))) continue;
       return fail(outcome, next, "");
     }
     ++step;
@@ -277,7 +279,10 @@ Advance Dynamics::accept(Motion& motion) {
   attempt.external_force = motion.external_force();
   attempt.state = motion.take();
   const std::string fault = fault_of(attempt, found);
-  if (!fault.empty()) return fail(Outcome::inconsistent, time, fault);
+  if (!fault.empty()) {
+    repeats_ = time > state.accepted.stage && shorten_step(time, Outcome::inconsistent, fault);
+    return repeats_ ? Advance::goes_on : fail(Outcome::inconsistent, time, fault);
+  }
   state.accepted = state_of(attempt);
   add_velocity_of_supports(time, velocity);
   state.dynamics.velocity = velocity;
@@ -294,6 +299,7 @@ Advance Dynamics::accept(Motion& motion) {
     tell(found.record, {attempt.state, attempt.external_force, state.pins.found.piece, velocity});
   }
   path_.last_attempt() = std::move(attempt);
+  if (is_implicit()) lengthen_step(time);
   return Advance::goes_on;
 }
 

@@ -17,8 +17,8 @@ namespace peristat {
 ///
 /// Explicit: every so many time steps the stiffness of the present state is bounded. A step that is
 /// a share of the stable one follows it; one that is given ends the path where it is no longer
-/// stable. Implicit: a step that finds nothing is halved, and the next state that is told doubles
-/// it again, up to the given one.
+/// stable. Implicit: a step that finds nothing, and one whose state breaks a balance, is halved;
+/// the next state that is told doubles it again, up to the given one.
 ///
 /// A state that is told owes the balance of its modified energy, up to what trapezoidal sums of
 /// work leave out; that energy may not be far from the printed one, which is how motions show that
@@ -40,10 +40,10 @@ class Dynamics : public Driver {
   /// @param acceleration of implicit steps; empty: of the forces
   [[nodiscard]] std::unique_ptr<Motion> make_motion(const State& from, std::vector<double> velocity,
                                                     std::vector<double> acceleration);
-  /// Makes the implicit step as long as it was, after one that has failed.
+  /// Takes the implicit step back towards the given one, after one that has failed.
   void lengthen_step(double time);
   /// @return whether there is a shorter implicit step to try
-  [[nodiscard]] bool shorten_step(double time, Outcome outcome);
+  [[nodiscard]] bool shorten_step(double time, Outcome outcome, const std::string& reason);
   /// The stiffness at a state; the eigenvalue is found again where the bound has changed.
   [[nodiscard]] Stiffness stiffness_at(const Trial& state);
   /// Chooses the step for the present stiffness.
@@ -60,6 +60,7 @@ class Dynamics : public Driver {
 
   const DynamicsOptions& options_;
   bool is_linearised_ = false;  // the tangent, near the present state
+  bool repeats_ = false;        // what was found is dropped, for shorter steps from the same state
 };
 
 }  // namespace peristat

@@ -1,4 +1,5 @@
-"""A motion in time once more: velocity Verlet on the reference's own bonds (docs/theory.md, Motion in time)."""
+"""A motion in time once more: velocity Verlet and generalised alpha on the reference's own bonds (docs/theory.md, Motion
+in time)."""
 
 import numpy
 
@@ -75,3 +76,30 @@ class Motion:
     def modified(self):
         """The energy that the scheme conserves where forces are linear, but for its dt^2/8."""
         return (self.force * self.acceleration()).sum()
+
+
+class ImplicitMotion(Motion):
+    """Judges the places that implicit steps have found, and goes on from them [Chung and Hulbert 1993]."""
+
+    def __init__(self, folder, case_text, spectral_radius):
+        super().__init__(folder, case_text)
+        self.of_inertia = (2 * spectral_radius - 1) / (spectral_radius + 1)
+        self.of_force = spectral_radius / (spectral_radius + 1)
+        self.gamma = 0.5 - self.of_inertia + self.of_force
+        self.beta = (1 - self.of_inertia + self.of_force) ** 2 / 4
+        self.a = self.acceleration()
+
+    def take(self, u, dt):
+        """Goes to a place, and tells the largest force that its balance lacks, over the largest force."""
+        before, force, load, gradient = self.u, self.force, self.load, self.gradient
+        self.time, self.number = self.time + dt, self.number + 1
+        self.u, self.history = u, self.mechanics.grown(self.history, u)
+        self.find_force()
+        a = (u - before - dt * self.v - dt**2 * (0.5 - self.beta) * self.a) / (self.beta * dt**2) * self.free
+        inertia = self.mass * ((1 - self.of_inertia) * a + self.of_inertia * self.a)
+        mean = (1 - self.of_force) * self.force + self.of_force * force
+        lacks = abs(inertia - mean).max() / max(abs(mean).max(), abs(inertia).max())
+        self.v, self.a = self.v + dt * ((1 - self.gamma) * self.a + self.gamma * a), a
+        pull = numpy.where(self.free, (load + self.load) / 2, (gradient + self.gradient) / 2)
+        self.work += (pull * (u - before)).sum()
+        return lacks
