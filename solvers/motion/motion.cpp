@@ -101,6 +101,18 @@ void Motion::add_work_of_supports() {
   }
 }
 
+void Motion::absorb(double half_step) {
+  if (setting_.absorption.empty()) return;
+  for (const Index dof : problem_.free.dof) {
+    const double rate = setting_.absorption[dof];
+    if (rate == 0.0) continue;
+    const double before = velocity_[dof];
+    velocity_[dof] *= std::exp(-rate * half_step);
+    sums_.absorbed +=
+        0.5 * setting_.mass[dof] * (before - velocity_[dof]) * (before + velocity_[dof]);
+  }
+}
+
 bool Motion::find_energy() {
   const Evaluation found = problem_.assembler.energy(at_.at());
   at_.stored_energy = found.energy;

@@ -15,11 +15,14 @@ struct MotionSums {
   double correction = 0.0;
   double released = 0.0;  ///< see Evaluation::released [J]
   DamageGrowth growth{};
-  int iterations = 0;  ///< of Newton
+  double absorbed = 0.0;  ///< kinetic energy that layers have taken [J]
+  int iterations = 0;     ///< of Newton
 };
 
 /// The motion M a = F(u, t) = f_ext(t) - dE/dx(u) on the free degrees of freedom, M the lumped
-/// mass, step by step in time. Works are trapezoidal sums over the steps.
+/// mass, step by step in time. Works are trapezoidal sums over the steps. In layers that absorb
+/// velocities decay at a rate beside that: by exp(-rate dt/2) before and after a step, of second
+/// order in it.
 ///
 /// Masses and velocities of what is prescribed do not enter: supports do the work of dE/dx alone.
 class Motion {
@@ -61,6 +64,8 @@ class Motion {
   [[nodiscard]] double squared_force() const;
 
  protected:
+  /// Lets velocities decay for half a step.
+  void absorb(double half_step);
   /// Finds the forces of the present state, and damages it.
   /// @return false if an interaction has collapsed
   [[nodiscard]] bool find_forces();

@@ -11,8 +11,10 @@ namespace peristat {
 struct MotionSetting {
   std::vector<double> mass;                    ///< lumped, positive on every free one [kg]
   std::vector<double> displacement, velocity;  ///< at the start [m], [m/s]
-  int most_points = 2;                         ///< of an interaction
-  std::optional<Stiffness> at_start{};         ///< if it is known already
+  /// Rates at which velocities decay by themselves [1/s]; empty: they do not.
+  std::vector<double> absorption{};
+  int most_points = 2;                  ///< of an interaction
+  std::optional<Stiffness> at_start{};  ///< if it is known already
 };
 
 }  // namespace peristat

@@ -31,8 +31,15 @@ Newmark::Newmark(const EquilibriumProblem& problem, const MotionSetting& setting
 }
 
 Outcome Newmark::step(double dt, double time) {
+  const std::vector<double> velocity_before = velocity_;
+  const double absorbed_before = sums_.absorbed;
+  absorb(0.5 * dt);
   NewtonResult found = find(time, inertia_of_step(dt));
-  if (found.outcome != Outcome::converged) return found.outcome;
+  if (found.outcome != Outcome::converged) {
+    velocity_ = velocity_before;
+    sums_.absorbed = absorbed_before;
+    return found.outcome;
+  }
   note_before();
   std::vector<double> force_before(velocity_.size());
   for (const Index dof : problem_.free.dof) {
@@ -47,6 +54,7 @@ Outcome Newmark::step(double dt, double time) {
   if (!find_forces()) return Outcome::degenerate;
   add_work([&](Index dof) { return at_.displacement[dof] - before[dof]; });
   accelerate(dt, force_before);
+  absorb(0.5 * dt);
   return Outcome::converged;
 }
 

@@ -42,6 +42,7 @@ Outcome VelocityVerlet::step(double dt, double time) {
     last_dt_ = dt;
   }
   note_before();
+  absorb(0.5 * dt);
   kick(0.5 * dt);
   time_ = time;
   has_moved_ = true;
@@ -54,6 +55,7 @@ Outcome VelocityVerlet::step(double dt, double time) {
   if (!find_forces()) return Outcome::degenerate;
   add_work([&](Index dof) { return dt * velocity_[dof]; });
   kick(0.5 * dt);
+  absorb(0.5 * dt);
   return Outcome::converged;
 }
 

@@ -161,8 +161,9 @@ struct BodySpecification {
   std::vector<std::vector<double>> programme{};
   /// In their place the time `t`, up to this [s]: of a body in motion.
   std::optional<double> end_time{};
-  std::vector<InitialSpecification> initial{};  ///< of a body in motion
-  bool has_inertia = false;                     ///< of one whose motion implicit steps follow
+  std::vector<InitialSpecification> initial{};      ///< of a body in motion
+  std::vector<AbsorbingSpecification> absorbing{};  ///< likewise
+  bool has_inertia = false;                         ///< of one whose motion implicit steps follow
   /// Most teeth of the saw-tooth in the place of each law of damage whose force falls smoothly; 0:
   /// the laws as they are.
   int teeth = 0;

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "solvers/study/point_materials.hpp"
+#include "src/conditions/absorption.hpp"
 #include "src/conditions/initial_state.hpp"
 #include "src/core/input_error.hpp"
 
@@ -53,6 +54,11 @@ MotionSetting make_motion_setting(const Body& body) {
   setting.velocity = std::move(initial.velocity);
   setting.displacement.resize(dofs, 0.0);
   setting.velocity.resize(dofs, 0.0);
+  const std::vector<double> rates = absorption_rates(body.points, body.specification.absorbing);
+  for (std::size_t dof = 0; dof < rates.size() * d; ++dof) {
+    setting.absorption.resize(dofs, 0.0);
+    setting.absorption[dof] = rates[dof / d];
+  }
   setting.most_points =
       body.specification.material.model == MaterialModel::bond ? 2 : body.points.dimension + 1;
   return setting;

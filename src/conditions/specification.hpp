@@ -23,6 +23,12 @@ struct InitialSpecification {
   std::array<std::string, 3> velocity{"0", "0", "0"};      ///< [m/s]
 };
 
+/// A layer that absorbs waves: an expression of x, y and z on a set or, without one, the body.
+struct AbsorbingSpecification {
+  std::string set{};
+  std::string rate{};  ///< at which velocities decay [1/s]
+};
+
 /// How deep a traction acts: in the outermost row of points alone, or spread evenly over the
 /// horizon.
 enum class Depth { row, horizon };

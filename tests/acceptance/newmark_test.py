@@ -68,7 +68,7 @@ class ClosedForms(Folder):
             for step in (0.05, 0.5):
                 folder = self.run_case(implicit(text, step, radius, end=20 * step), f"oscillator_{radius}_{step}")
                 rows, at = columns(folder), fields(folder)
-                self.assertTrue((rows["time_step"] == step).all())
+                self.assertTrue((rows["time_step"] == step).all(), "a step was cut")
                 squared_frequency = 2 * rows["stored_energy"][0] / 1e-8 / 0.1  # of the density 2 in 0.05 m3
                 of_inertia, of_force = (2 * radius - 1) / (radius + 1), radius / (radius + 1)
                 gamma, beta = 0.5 - of_inertia + of_force, (1 - of_inertia + of_force) ** 2 / 4

@@ -825,6 +825,18 @@ Table<InitialSpecification> initial_keys() {
              "at the time 0, per component, of what no support prescribes")}};
 }
 
+Table<AbsorbingSpecification> absorbing_keys() {
+  using Spec = AbsorbingSpecification;
+  using K = Key<Spec>;
+  return {"absorbing",
+          {K("set", &Spec::set, known_set(), "that absorbs")
+               .written_if([](auto& absorbing, auto&) { return !absorbing.set.empty(); })
+               .default_words("all points"),
+           K("rate", &Spec::rate, scalar_field("1/s"),
+             "at which velocities decay, beside what forces do; not of the time")
+               .required()}};
+}
+
 constexpr const char* newmark_name = "newmark";
 
 /// Supports and loads are read as soon as it is known whether they are expressions of the time, and
@@ -891,6 +903,7 @@ void check_dynamics(const Entry& at, const Case& result) {
   if (!result.dynamics.is_asked_for) {
     refuse("dynamics", "is for solver.mode = \"dynamics\"");
     refuse("initial", "is for solver.mode = \"dynamics\"");
+    refuse("absorbing", "is for solver.mode = \"dynamics\"");
     return;
   }
   refuse("crack_tip",
@@ -1636,6 +1649,7 @@ Table<Case> all_keys() {
          "tables: the displacement that is controlled in the place of `load`"),
        K("initial", &Case::initial, initial_keys(),
          "tables: displacements and velocities at the time 0"),
+       K("absorbing", &Case::absorbing, absorbing_keys(), "tables: layers that absorb waves"),
        K("loading", &Case::loading, loading_keys(), "table: the way of the loads, and its steps")
            .written_if(searches)
            .early(),

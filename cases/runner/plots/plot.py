@@ -69,6 +69,10 @@ def _draw_fields(results: ResultsFolder):
         yield "deformed", field_pictures.draw_deformed_plane(results, step)
         yield "fields", field_pictures.draw_plane_fields(results, step)
         yield from _draw_fracture(results, step)
+        if results.is_of_motion:
+            import motion_pictures
+
+            yield from motion_pictures.draw_motion(results, step)
     else:
         import solid_pictures
 

@@ -1,0 +1,35 @@
+#include "src/conditions/field_of_place.hpp"
+
+#include <numeric>
+#include <vector>
+
+#include "src/conditions/points_of_set.hpp"
+#include "src/conditions/with_key.hpp"
+#include "src/core/expression.hpp"
+
+namespace peristat {
+namespace {
+
+std::vector<Index> members_of(const Points& points, const std::string& set,
+                              const std::string& key) {
+  if (!set.empty()) return points_of_set(points, set, key);
+  std::vector<Index> all(std::size_t(points.own()));
+  std::iota(all.begin(), all.end(), Index(0));
+  return all;
+}
+
+}  // namespace
+
+void add_field_of_place(const Points& points, const std::string& set, const std::string& text,
+                        const std::string& key, const std::string& member, std::size_t stride,
+                        std::size_t offset, std::span<double> values) {
+  const std::vector<Index> members = members_of(points, set, key + ".set");
+  with_key(key + '.' + member, [&] {
+    const Expression value(text, points.dimension, points.spacing);
+    for (const Index point : members) {
+      values[std::size_t(point) * stride + offset] += value(points.position(point));
+    }
+  });
+}
+
+}  // namespace peristat
