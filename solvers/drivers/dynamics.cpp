@@ -34,8 +34,8 @@ constexpr double growth_of_instability = 100.0;
 
 /// Of what has been put in, what the scheme's energy may differ from the printed one: it is
 /// (step / stable step)^2 of what moves at the highest frequency. Well-resolved motions have some
-/// hundredths of it at most.
-constexpr double unresolved = 0.1;
+/// hundredths of it at most; beyond a half the printed energies mean nothing.
+constexpr double unresolved = 0.5;
 /// Before so many steps a load that sets in at once has done too little work to be a measure.
 constexpr int steps_of_onset = 10;
 

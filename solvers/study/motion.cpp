@@ -1,11 +1,15 @@
 #include "solvers/study/motion.hpp"
 
 #include <algorithm>
+#include <cmath>
 
+#include "solvers/linear/vector_verbs.hpp"
 #include "solvers/study/point_materials.hpp"
 #include "src/conditions/absorption.hpp"
 #include "src/conditions/initial_state.hpp"
 #include "src/core/input_error.hpp"
+#include "src/core/number_text.hpp"
+#include "src/geometry/squared_distance.hpp"
 
 namespace peristat {
 namespace {
@@ -21,6 +25,29 @@ void refuse_constraints(const ConstraintSpecification& constraints) {
   if (!constraints.rollers.empty()) refuse("rollers", "a roller");
   if (!constraints.linear.empty()) refuse("linear", "a linear constraint");
   if (!constraints.periods.empty()) refuse("periods", "a period");
+}
+
+/// Of a bond in the initial state, over its length: more than that is a slip of the pen, and so
+/// much energy that nothing else can be seen beside it.
+constexpr double longest_bond = 100.0;
+
+void refuse_wild_start(const Body& body, const std::vector<double>& displacement) {
+  const Bonds& bonds = body.model.bonds();
+  const int d = body.points.dimension;
+  std::vector<double> places = body.points.reference;
+  add_scaled(places, 1.0, displacement);
+  for (Index i = 0; i < body.points.own(); ++i) {
+    for (Offset bond = bonds.offset[i]; bond < bonds.offset[i + 1]; ++bond) {
+      const Index j = bonds.partner[bond];
+      if (j >= body.points.own()) continue;  // images go where their sources do
+      const double times = std::sqrt(squared_distance(places, d, i, j)) / bonds.length(bond);
+      if (times <= longest_bond) continue;
+      throw InputError("initial", "",
+                       "stretches a bond at " + place_text(body.points.position(i), d) + " m to " +
+                           number_text(times) + " times its length; at most " +
+                           number_text(longest_bond) + " are allowed");
+    }
+  }
 }
 
 }  // namespace
@@ -50,6 +77,7 @@ MotionSetting make_motion_setting(const Body& body) {
       setting.mass[i * d + c] = density[i] * body.points.volume[i];
   }
   InitialState initial = make_initial_state(body.points, body.specification.initial);
+  refuse_wild_start(body, initial.displacement);
   setting.displacement = std::move(initial.displacement);
   setting.velocity = std::move(initial.velocity);
   setting.displacement.resize(dofs, 0.0);

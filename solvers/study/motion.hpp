@@ -10,7 +10,8 @@ namespace peristat {
 [[nodiscard]] std::vector<double> densities_of(const Body& body);
 
 /// Masses of a body's points, density times volume, and what its motion begins with.
-/// @throws InputError as densities_of and make_initial_state do; ("rigid_sets", "rollers",
+/// @throws InputError as densities_of and make_initial_state do; ("initial") for one that stretches
+/// a bond to a hundred times its length; ("rigid_sets", "rollers",
 /// "linear", "periods")
 ///         for constraints whose masses are not those of points
 [[nodiscard]] MotionSetting make_motion_setting(const Body& body);

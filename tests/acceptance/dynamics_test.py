@@ -262,12 +262,17 @@ class Steps(Folder):
     def test_a_motion_that_the_step_does_not_resolve(self):
         def shaken(per_spacing):
             return SQUARE.replace('"0.05*x*exp(-(x^2 + y^2)/0.1)", "0.05*y*exp(-(x^2 + y^2)/0.1)"',
-                                  f'"1e-4*cos({numpy.pi * per_spacing / 0.1}*x)", 0').replace("step_share = 0.5", "step_share = 0.9")  # fmt: skip
+                                  f'"1e-4*cos({numpy.pi * per_spacing / 0.1}*(x - 0.05))*cos({numpy.pi * per_spacing / 0.1}*(y - 0.05))", 0').replace("step_share = 0.5", "step_share = 0.98")  # fmt: skip
 
         self.run_case(shaken(0.1))
-        folder = self.run_case(shaken(0.9), "zigzag", code=3)
+        folder = self.run_case(shaken(1), "zigzag", code=3)
         self.assertIn("the time step does not resolve the motion", (folder / "dossier.txt").read_text())
-        self.run_case(shaken(0.9).replace("step_share = 0.9", "step_share = 0.2"), "shorter")
+        self.run_case(shaken(1).replace("step_share = 0.98", "step_share = 0.2"), "shorter")
+
+    def test_a_displacement_that_is_no_start(self):
+        wild = SQUARE.replace('"0.05*x*exp(-(x^2 + y^2)/0.1)"', '"1/x"')
+        self.assertIn("times its length", self.refusal(wild))
+        self.assertIn("initial", self.said)
 
 
 class Check(Folder):
