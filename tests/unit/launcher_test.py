@@ -12,7 +12,7 @@ import unittest
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 
 # Prints its arguments; leaves the results folder's path; `run wait` waits for interrupts and counts
-# those of the next half second; `run end CODE` ends with that code; `run talk` goes on talking.
+# those of the next half second; `run write` writes states; `run end CODE` ends with that code; `run talk` goes on talking.
 PROGRAM = r"""#!/usr/bin/env bash
 printf '[%s]' "$@"; echo
 [[ ${PERISTAT_NOTE-} ]] && echo "$PWD/some results" >"$PERISTAT_NOTE"
@@ -29,6 +29,9 @@ if [[ ${2-} == talk ]]; then
   trap '' PIPE
   for ((i = 0; i < 20; i++)); do echo "$i" 2>/dev/null; sleep 0.02; done
   touch talked
+fi
+if [[ ${2-} == write ]]; then
+  for ((i = 1; i <= 6; i++)); do mkdir -p "some results/parts" && touch "some results/parts/00000$i.h5" && sleep 0.7; done
 fi
 [[ ${2-} == end ]] && exit "$3"
 exit 0
@@ -90,6 +93,24 @@ class Launcher(unittest.TestCase):
         result = self.launch("run", "case.toml", "--no-plots", "--threads", "1")
         self.assertIn("[run][case.toml][--threads][1]", result.stdout)
         self.assertNotIn("pictures", result.stdout)
+
+    def test_pictures_are_drawn_on_the_way(self):
+        drawn = self.folder / "drawn"
+        counting = f"open({str(drawn)!r}, 'a').write('drawn ')\n"
+        (self.root / "cases/runner/plots/plot.py").write_text(counting + PLOT)
+        result = self.launch("run", "write", "--plots-every", "2", "--threads", "1")
+        self.assertEqual((result.returncode, result.stderr), (0, ""))
+        self.assertIn("[run][write][--threads][1]", result.stdout)
+        self.assertEqual(result.stdout.count("pictures of"), 1)  # those on the way are not told
+        self.assertGreaterEqual(len(drawn.read_text().split()), 3)
+        drawn.unlink()
+        shutil.rmtree(self.folder / "some results")
+        self.launch("run", "case.toml", "--plots-every", "1")
+        self.assertEqual(len(drawn.read_text().split()), 1)
+        for wrong in (["0"], ["two"], []):
+            result = self.launch("run", "case.toml", "--plots-every", *wrong)
+            self.assertEqual(result.returncode, 2)
+            self.assertIn("--plots-every", result.stderr)
 
     def test_the_exit_code_is_the_programs(self):
         (self.folder / "some results").mkdir()

@@ -243,6 +243,22 @@ class Pictures(unittest.TestCase):
         for name in ("damage.png", "broken_bonds.png", "sequence.png", "energies.png", "crack.gif"):
             self.assertFalse((self.folder / "plots" / name).exists(), name)
 
+    def test_a_plate_in_motion(self):
+        write_folder(self.folder, lattice(30, 10))
+        with h5py.File(self.folder / "results.h5", "a") as file:
+            for group in file["steps"].values():
+                group["velocity"] = np.full((300, 2), [3.0, 4.0])
+        table = (self.folder / "history.csv").read_text().splitlines()
+        table = [table[0] + ",kinetic_energy,time_step", *(row + ",1,1" for row in table[1:])]
+        (self.folder / "history.csv").write_text("\n".join(table) + "\n")
+        self.plot()
+        for name in ("speed", "energy_decades"):
+            with Image.open(self.folder / "plots" / f"{name}.png") as picture:
+                self.assertGreater(len(set(picture.convert("RGB").getdata())), 100, name)
+        write_folder(self.folder.with_name("still"), lattice(30, 10))
+        plot.draw(self.folder.with_name("still"), "png")
+        self.assertFalse((self.folder.with_name("still") / "plots" / "speed.png").exists())
+
     def test_animation_of_many_points_and_steps_is_small(self):
         write_cracked_folder(self.folder, (160, 50), steps=100)
         self.plot()
