@@ -427,6 +427,26 @@ class Motions(PrintedTest):
         self.prints("are gone, and {} bonds break", broken(moved), within=0.05)
         self.prints("it is {}, and {} moved", broken(ratio), broken(ratio, moved), within=0.05)
 
+    def test_vibration(self):
+        self.page = "cases/cantilever/vibration.toml"
+
+        def frequency(beam):
+            t = numpy.array([row["time"] for row in beam.history])
+            y = numpy.array([row["tip_y"] for row in beam.history])
+            before = numpy.flatnonzero(y[1:-1] * y[2:] < 0) + 1
+            zeros = t[before] - y[before] * (t[before + 1] - t[before]) / (y[before + 1] - y[before])
+            return (len(zeros) - 1) / 2 / (zeros[-1] - zeros[0])
+
+        implicit = run("cantilever/vibration")
+        explicit = run("cantilever/vibration", 'dynamics.scheme="verlet"', "dynamics.time_step=8e-7", "dynamics.history_every=100",
+                       "output.every=10000")  # fmt: skip
+        euler = 3.516 / (2 * math.pi * 0.25) * math.sqrt(200e9 * 0.05**2 / 12 / 7850)
+        self.prints("swings at {} Hz, and by explicit steps at {} Hz", frequency(implicit), frequency(explicit))
+        self.prints("sqrt(E I / (rho A)) = {} Hz", euler)
+        self.assertAlmostEqual(frequency(implicit) / frequency(explicit), 1 - (2 * math.pi / 50) ** 2 / 12, delta=3e-4)
+        energy = [row["kinetic_energy"] + row["stored_energy"] for row in implicit.history]
+        self.assertLess(max(energy) - min(energy), 1e-6 * energy[0])
+
     def test_kalthoff_winkler(self):
         self.page = "cases/bond_models/kalthoff_winkler.toml"
         plate = run("bond_models/kalthoff_winkler")

@@ -3,26 +3,17 @@
 #include <cstddef>
 #include <memory>
 #include <span>
-#include <vector>
 
-#include "assembly/terms/term.hpp"
+#include "assembly/terms/springs/spring_term.hpp"
 
 namespace peristat {
 
 /// The inertia of points in a step of an implicit motion: springs to where inertia alone would take
-/// them, which the environment holds. There are none without it. Couples no points.
-class InertiaTerm : public Term {
+/// them, which the environment holds. There are none without it.
+class InertiaTerm : public SpringTerm {
  public:
-  explicit InertiaTerm(const Points& points)
-      : dofs_(points.reference.size()), offset_(std::size_t(points.count()) + 1, 0) {}
+  explicit InertiaTerm(const Points& points) : SpringTerm(points), dofs_(points.reference.size()) {}
 
-  [[nodiscard]] Couplings couplings() const override { return {offset_, {}}; }
-  [[nodiscard]] bool has_symmetric_blocks() const override { return true; }
-  /// Of the points among one another, where it has no force.
-  [[nodiscard]] Balances balances() const override { return {}; }
-  [[nodiscard]] double stored_bytes() const override {
-    return double(offset_.size() * sizeof(Offset));
-  }
   [[nodiscard]] std::unique_ptr<TermPasses> passes(const TermSetting& setting) const override;
 
   /// Calls visit(dof, k, u - g) for every component of the points.
@@ -39,7 +30,6 @@ class InertiaTerm : public Term {
 
  private:
   std::size_t dofs_;
-  std::vector<Offset> offset_;
 };
 
 }  // namespace peristat

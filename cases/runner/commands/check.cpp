@@ -250,7 +250,7 @@ void print_motion(const Case& from, const Body& body, const StudyOptions& option
   const double stable = Study(body, options).find_initial_stiffness().stable_step();
   const DynamicsSpecification& dynamics = from.dynamics;
   const double step = dynamics.time_step > 0.0 ? dynamics.time_step : dynamics.step_share * stable;
-  const double steps = std::ceil(dynamics.end_time / step);
+  const double steps = std::ceil(dynamics.end_time / step * (1.0 - 1e-9));
   fmt::print("motion      stable time step {:.6g} s; {:.0f} steps of {:.6g} s\n", stable, steps,
              step);
   const double seconds_of_step = from.dynamics.is_implicit()

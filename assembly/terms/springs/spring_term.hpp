@@ -1,0 +1,27 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "assembly/terms/term.hpp"
+
+namespace peristat {
+
+/// Springs from points to places, which couple no points: what all kinds of them have in common.
+class SpringTerm : public Term {
+ public:
+  explicit SpringTerm(const Points& points) : offset_(std::size_t(points.count()) + 1, 0) {}
+
+  [[nodiscard]] Couplings couplings() const override { return {offset_, {}}; }
+  [[nodiscard]] bool has_symmetric_blocks() const override { return true; }
+  /// Of the points among one another, where it has no force.
+  [[nodiscard]] Balances balances() const override { return {}; }
+  [[nodiscard]] double stored_bytes() const override {
+    return double(offset_.size() * sizeof(Offset));
+  }
+
+ private:
+  std::vector<Offset> offset_;
+};
+
+}  // namespace peristat
