@@ -123,15 +123,6 @@ std::vector<double> Foundations::ground(std::span<const double> loads) const {
   return ground;
 }
 
-double Foundations::energy(std::span<const double> displacement,
-                           const SharedEnvironment& environment) const {
-  double energy = 0.0;
-  for_each(displacement, environment, [&](std::size_t, double stiffness, double moved) {
-    energy += 0.5 * stiffness * moved * moved;
-  });
-  return energy;
-}
-
 void Foundations::add_force(std::span<const double> displacement,
                             const SharedEnvironment& environment, double factor,
                             std::span<double> force) const {

@@ -49,9 +49,6 @@ class Foundations {
   /// @throws InputError if it is not finite
   [[nodiscard]] std::vector<double> ground(std::span<const double> loads) const;
 
-  /// [J]
-  [[nodiscard]] double energy(std::span<const double> displacement,
-                              const SharedEnvironment& environment) const;
   /// Adds factor * k (g - u), the forces of the springs on their points [N].
   void add_force(std::span<const double> displacement, const SharedEnvironment& environment,
                  double factor, std::span<double> force) const;
