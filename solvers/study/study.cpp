@@ -12,6 +12,13 @@
 #include "src/core/number_text.hpp"
 
 namespace peristat {
+namespace {
+
+/// Of the stable explicit step: the inertia of shorter implicit ones is so many times as stiff as
+/// the body, squared, and its round-off as large as what a search is to leave.
+constexpr double shortest_implicit_step = 1e-3;
+
+}  // namespace
 
 SolvedModel::SolvedModel(const Points& points, const Model& model, const Constraints& constraints,
                          const FreeDofs& free, LinearSystems systems, int threads)
@@ -74,9 +81,18 @@ const Stiffness& Study::find_initial_stiffness() {
   tangent.linearise(assembler, {displacement, history, Damage::grows, conditions.environment(0.0)},
                     1.0);
   motion_->at_start = find_stiffness(tangent, free, motion_->mass, motion_->most_points);
-  if (options_.loading.dynamics.scheme != MotionScheme::verlet) return *motion_->at_start;
   const double step = options_.loading.dynamics.time_step;
   const double stable = motion_->at_start->stable_step();
+  if (options_.loading.dynamics.scheme == MotionScheme::newmark) {
+    if (step < shortest_implicit_step * stable && std::isfinite(stable)) {
+      throw InputError("dynamics.time_step", number_text(step),
+                       "is shorter than a thousandth of the stable explicit step, " +
+                           number_text(stable) +
+                           " s: round-off of the inertia would hide the forces; take a longer one, "
+                           "or dynamics.scheme = \"verlet\"");
+    }
+    return *motion_->at_start;
+  }
   if (step > stable) {
     throw InputError("dynamics.time_step", number_text(step),
                      "is longer than the stable step, " + number_text(stable) +
@@ -97,8 +113,7 @@ LoadSteppingResult Study::follow(const LoadSteppingObserver& observer, const Sol
     result.outcome = Outcome::out_of_memory;
     return result;
   }
-  const bool is_explicit = options_.loading.dynamics.scheme == MotionScheme::verlet;
-  if (motion_ && is_explicit && !from) find_initial_stiffness();
+  if (motion_ && !from) find_initial_stiffness();
   return follow_loading({equations_->solved(), *body_.conditions, options_.loading, options_.newton,
                          observer, stand_in, motion_ ? &*motion_ : nullptr},
                         from);

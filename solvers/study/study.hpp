@@ -57,7 +57,8 @@ class Study {
   LinearOutcome analyze();
 
   /// Of mode dynamics: the stiffness that the motion begins with.
-  /// @throws InputError ("dynamics.time_step") for an explicit step above the stable one
+  /// @throws InputError ("dynamics.time_step") for an explicit step above the stable one, and an
+  ///         implicit one below a thousandth of that
   const Stiffness& find_initial_stiffness();
 
   [[nodiscard]] const Body& body() const { return body_; }

@@ -135,6 +135,7 @@ class Refusals(Folder):
             (newmark.replace("spectral_radius = 1", "spectral_radius = 1.5"), "dynamics.spectral_radius"),
             (newmark.replace('"newmark"', '"implicit"').replace("spectral_radius = 1", ""), "dynamics.scheme"),
             (newmark.replace('"newmark"', '"verlet"'), "dynamics.spectral_radius"),
+            (newmark.replace("time_step = 0.1", "time_step = 1e-5"), "round-off of the inertia"),
             (BAR.replace('mode = "dynamics"', 'mode = "dynamics"\nrelative_tolerance = 1e-8'), "solver.relative_tolerance"),
         ):
             self.assertIn(key, self.refusal(text))

@@ -251,8 +251,8 @@ void print_motion(const Case& from, const Body& body, const StudyOptions& option
   const DynamicsSpecification& dynamics = from.dynamics;
   const double step = dynamics.time_step > 0.0 ? dynamics.time_step : dynamics.step_share * stable;
   const double steps = std::ceil(dynamics.end_time / step * (1.0 - 1e-9));
-  fmt::print("motion      stable time step {:.6g} s; {:.0f} steps of {:.6g} s\n", stable, steps,
-             step);
+  fmt::print("motion      stable {}time step {:.6g} s; {:.0f} steps of {:.6g} s\n",
+             from.dynamics.is_implicit() ? "explicit " : "", stable, steps, step);
   const double seconds_of_step = from.dynamics.is_implicit()
                                      ? seconds_of_solving
                                      : double(body.model.bonds().count()) * seconds_per_bond;

@@ -261,9 +261,11 @@ class CaseRun {
 
   /// Refuses a step that is not stable before results are touched.
   void describe_motion() {
-    if (earlier_ || from_.dynamics.is_implicit()) return;
+    if (earlier_) return;
     const Stiffness& stiffness = study_->find_initial_stiffness();
-    progress_.say(fmt::format("stable time step: {:.6g} s", stiffness.stable_step()));
+    progress_.say(fmt::format("stable {}time step: {:.6g} s",
+                              from_.dynamics.is_implicit() ? "explicit " : "",
+                              stiffness.stable_step()));
   }
 
   /// @throws InputError if the body is another one
