@@ -65,7 +65,7 @@ class ClosedForms(Folder):
         text = text.replace('"1e-3*sin(x)"', "0").replace("every = 20", "every = 1")
         text += '[[set]]\nname = "ends"\nwhere = "abs(x - 0.15) > 0.05"\n[[support]]\nset = "ends"\ndisplacement = [0]\n'
         for radius in (1, 0.7, 0):
-            for step in (0.05, 0.5):
+            for step in (0.02, 0.05):
                 folder = self.run_case(implicit(text, step, radius, end=20 * step), f"oscillator_{radius}_{step}")
                 rows, at = columns(folder), fields(folder)
                 self.assertTrue((rows["time_step"] == step).all(), "a step was cut")
@@ -81,7 +81,7 @@ class ClosedForms(Folder):
                     self.assertAlmostEqual(state["displacement"][1, 0], u, delta=1e-10 * 1e-4)
                     self.assertAlmostEqual(state["velocity"][1, 0], v, delta=1e-9 * 1e-4 * squared_frequency**0.5)
                 faded = (rows["kinetic_energy"] + rows["stored_energy"])[-1] / rows["stored_energy"][0]
-                self.assertTrue(abs(faded - 1) < 1e-10 if radius == 1 else faded < 0.999, faded)
+                self.assertTrue(abs(faded - 1) < 1e-10 if radius == 1 else faded < 1 - 1e-5, faded)
 
     def test_agrees_with_explicit_steps_to_second_order(self):
         text = SQUARE.replace("end_time = 2.0", "end_time = 1.0").replace("/0.1)", "/0.3)").replace("every = 10", "every = 100000")
@@ -100,6 +100,14 @@ class Breaking(Folder):
         explicit = columns(self.run_case(BREAKING.replace("step_share = 0.5", "time_step = 0.01")))["broken_bonds"][-1]
         self.assertGreater(explicit, 20)
         self.assertLess(abs(columns(self.run_case(implicit(BREAKING, 0.01), "implicit"))["broken_bonds"][-1] - explicit), 0.1 * explicit)
+
+    def test_long_steps_gain_no_energy_from_bonds_that_break(self):
+        for radius in (1, 0.8, 0):
+            for step in (0.1, 0.5, 2.0):
+                with self.subTest(radius=radius, step=step):
+                    rows = columns(self.run_case(implicit(BREAKING, step, radius), f"long_{radius}_{step}"))
+                    self.assertGreater(rows["broken_bonds"][-1], 10)
+                    self.assertGreater((rows["balance_error"] / rows["external_work"].max()).min(), -0.0501)
 
     def test_goes_on_to_the_last_bit(self):
         for radius in (1, 0.5):
