@@ -1,6 +1,7 @@
 #include "assembly/assembler.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 
 #include "src/core/stopwatch.hpp"
@@ -109,6 +110,57 @@ void Assembler::product(const StateView& at, std::span<const double> v, std::spa
                         double projection) {
   for_each_term(
       [&](TermPasses& term, Write how) { term.product(at, v, projection, product, how); });
+}
+
+std::vector<double> Assembler::blocks_of_springs(const StateView& at) {
+  const BlockPattern alone = BlockPattern::of_rows(
+      std::vector<Offset>(std::size_t(points_.count()) + 1, 0), std::vector<Index>());
+  Tangent springs(alone, points_.dimension);
+  springs.clear();
+  for (std::size_t k = 0; k < terms_.size(); ++k) {
+    if (!model_.terms()[k]->balances().potential) continue;
+    terms_[k]->tangent(at, 0.0, springs, Write::onto);
+  }
+  return springs.diagonal;
+}
+
+SparseRows Assembler::rows(const StateView& at, RowReach reach) {
+  const Stopwatch watch(seconds_);
+  SparseRows found;
+  for (std::size_t k = 0; k < terms_.size(); ++k) {
+    if (!model_.terms()[k]->balances().potential) found = terms_[k]->rows(at, reach);
+  }
+  const std::vector<double> springs = blocks_of_springs(at);
+  const auto d = std::size_t(points_.dimension);
+  for (std::size_t row = 0; row + 1 < found.offset.size(); ++row) {
+    const auto first = found.column.begin() + std::ptrdiff_t(found.offset[row]);
+    const auto last = found.column.begin() + std::ptrdiff_t(found.offset[row + 1]);
+    const auto own = std::lower_bound(first, last, Index(row / d * d)) - found.column.begin();
+    for (std::size_t c = 0; c < d; ++c) {
+      found.value[std::size_t(own) + c] += springs[row * d + c];
+    }
+  }
+  return found;
+}
+
+double Assembler::bytes_of_rows() const {
+  double bytes = 0.0;
+  for (const auto& term : terms_) bytes += term->bytes_of_rows();
+  return bytes;
+}
+
+void Assembler::outline_rows(const StateView& at, std::span<double> diagonal,
+                             std::span<double> row_sums) {
+  const Stopwatch watch(seconds_);
+  for (std::size_t k = 0; k < terms_.size(); ++k) {
+    if (!model_.terms()[k]->balances().potential) terms_[k]->outline_rows(at, diagonal, row_sums);
+  }
+  const std::vector<double> springs = blocks_of_springs(at);
+  const auto d = std::size_t(points_.dimension);
+  for (std::size_t k = 0; k < springs.size(); ++k) {
+    diagonal[k] += springs[k];
+    row_sums[k / d] += std::abs(springs[k]);
+  }
 }
 
 void Assembler::point_energies(const StateView& at, std::span<double> energies) {

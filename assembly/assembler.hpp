@@ -63,6 +63,12 @@ class Assembler : public Energy {
   void visit_tangent(const StateView& at, double projection, const RowVisitor& visit,
                      std::span<double> diagonal) override;
 
+  [[nodiscard]] bool has_potential() const override { return model_.balances().potential; }
+  [[nodiscard]] SparseRows rows(const StateView& at, RowReach reach) override;
+  [[nodiscard]] double bytes_of_rows() const override;
+  void outline_rows(const StateView& at, std::span<double> diagonal,
+                    std::span<double> row_sums) override;
+
   /// Energy of each point, an equal share of its interactions' [J].
   void point_energies(const StateView& at, std::span<double> energies);
 
@@ -80,6 +86,10 @@ class Assembler : public Energy {
   [[nodiscard]] double seconds_spent() const { return seconds_; }  ///< wall time of all calls [s]
 
  private:
+  /// Diagonal blocks of the terms that have a potential, points x dimension x dimension: beside one
+  /// that has none they are springs of points.
+  [[nodiscard]] std::vector<double> blocks_of_springs(const StateView& at);
+
   /// Calls visit(passes, how) for every term: the first writes its result, the others add to it.
   template <class Visit>
   void for_each_term(const Visit& visit);

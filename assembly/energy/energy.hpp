@@ -2,7 +2,9 @@
 
 #include <functional>
 #include <span>
+#include <stdexcept>
 
+#include "assembly/energy/sparse_rows.hpp"
 #include "assembly/energy/state.hpp"
 #include "src/geometry/points.hpp"
 
@@ -14,6 +16,10 @@ struct Tangent;
 /// Called with the off-diagonal blocks (i, partner) of row i of a tangent, each dimension x
 /// dimension, row major, in the order of its pattern. Rows of a thread come in ascending order.
 using RowVisitor = std::function<void(int thread, Index i, std::span<const double> blocks)>;
+
+/// Rows of the derivative of forces: all of them, or those of a stand-in between points that are
+/// next to one another.
+enum class RowReach { whole, local };
 
 /// An energy E(u) as the operators see it that are linearised from it; see Assembler.
 class Energy {
@@ -44,6 +50,21 @@ class Energy {
   /// @param diagonal blocks, overwritten; empty: not wanted
   virtual void visit_tangent(const StateView& at, double projection, const RowVisitor& visit,
                              std::span<double> diagonal) = 0;
+
+  /// Whether forces are minus the derivative of the energy. Elsewhere there are the rows of their
+  /// derivative instead of a tangent, which is not symmetric; `product` is theirs.
+  [[nodiscard]] virtual bool has_potential() const { return true; }
+  [[nodiscard]] virtual SparseRows rows(const StateView&, RowReach) {
+    throw std::logic_error("an energy has a tangent");
+  }
+  /// What all of them take [bytes].
+  [[nodiscard]] virtual double bytes_of_rows() const { return 0.0; }
+  /// Diagonal blocks of the rows, points x dimension x dimension, and numbers not less than the
+  /// sums of their absolute entries, one per degree of freedom [N/m].
+  virtual void outline_rows(const StateView&, std::span<double> /*diagonal*/,
+                            std::span<double> /*row_sums*/) {
+    throw std::logic_error("an energy has a tangent");
+  }
 };
 
 }  // namespace peristat

@@ -12,6 +12,10 @@ Model::Model(Bonds network, BondPotential potential, std::vector<char> never_fai
   add(std::move(term));
 }
 
+Model::Model(std::shared_ptr<BondTerm> bonds) : bonds_(bonds->shared_bonds()), bond_term_(bonds) {
+  add(std::move(bonds));
+}
+
 const BondTerm* Model::failing_bonds() const {
   return bond_term_ && bond_term_->can_fail() ? bond_term_.get() : nullptr;
 }

@@ -21,6 +21,9 @@ class Model {
   /// @param never_fails per bond, 1: no damage whatever the stretch; empty: none
   Model(Bonds network, BondPotential potential, std::vector<char> never_fails = {});
 
+  /// With a term of bonds that is more than the sum of theirs.
+  explicit Model(std::shared_ptr<BondTerm> bonds);
+
   void add(std::shared_ptr<Term> term) { terms_.push_back(std::move(term)); }
 
   [[nodiscard]] const Bonds& bonds() const { return *bonds_; }

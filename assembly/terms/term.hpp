@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "assembly/energy/energy.hpp"
 #include "assembly/energy/evaluation.hpp"
 #include "assembly/energy/state.hpp"
 #include "assembly/operators/block_pattern.hpp"
@@ -64,6 +65,13 @@ class TermPasses {
   /// @param diagonal overwritten; empty: not wanted
   virtual void visit_tangent(const StateView& at, double projection, const RowVisitor& visit,
                              std::span<double> diagonal);
+
+  /// Of a term without a potential: see Energy::rows and Energy::outline_rows. What others have
+  /// besides its diagonal blocks has no place there.
+  [[nodiscard]] virtual SparseRows rows(const StateView& at, RowReach reach);
+  [[nodiscard]] virtual double bytes_of_rows() const { return 0.0; }
+  virtual void outline_rows(const StateView& at, std::span<double> diagonal,
+                            std::span<double> row_sums);
 
   /// An equal share of its interactions' energy for each of their points [J].
   virtual void point_energies(const StateView& at, std::span<double> energies, Write how) = 0;

@@ -335,6 +335,7 @@ std::string Dynamics::fault_of(const Attempt& attempt, const FoundStep& found) {
 }
 
 std::string Dynamics::fault_of_balance(const Ledger& after) {
+  if (!path_.damaged().has_potential()) return {};
   PathState::Dynamics& dynamics = path_.state().dynamics;
   const double energy = after.kinetic + after.stored;
   dynamics.largest_energy =

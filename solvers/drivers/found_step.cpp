@@ -91,7 +91,7 @@ std::string complete(Path& path, Attempt& attempt, FoundStep& found) {
   if (!fault.empty()) {
     attempt.outcome = Outcome::inconsistent;
   } else if (!found.energies.relaxed && !found.energies.is_avalanche &&
-             found.growth.degrading > 0) {
+             found.growth.degrading > 0 && assembler.has_potential()) {
     fault = ledger.jump_to(found.ledger);
     if (!fault.empty()) attempt.outcome = Outcome::limit_point;
   }

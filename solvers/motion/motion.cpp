@@ -37,7 +37,7 @@ Motion::Motion(const EquilibriumProblem& problem, const MotionSetting& setting, 
 bool Motion::find_forces() {
   const Evaluation found = problem_.assembler.commit_forces(at_.displacement, at_.history,
                                                             at_.gradient, at_.environment);
-  if (at_.environment && !at_.environment->pressure.empty()) {
+  if (at_.environment && at_.environment->has_follower_force()) {
     at_.follower_force.resize(at_.displacement.size());
     problem_.assembler.follower_force(at_.at(), at_.follower_force);
   }

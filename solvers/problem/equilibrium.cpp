@@ -170,7 +170,7 @@ void evaluate(const EquilibriumProblem& problem, std::span<const double> externa
   move_followers(problem, trial);
   trial.gradient.resize(trial.displacement.size());
   const Evaluation found = problem.assembler.gradient(trial.at(damage), trial.gradient);
-  if (trial.environment && !trial.environment->pressure.empty()) {
+  if (trial.environment && trial.environment->has_follower_force()) {
     trial.follower_force.resize(trial.displacement.size());
     problem.assembler.follower_force(trial.at(damage), trial.follower_force);
   }

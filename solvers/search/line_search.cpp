@@ -26,12 +26,31 @@ double follower_work(const Trial& from, const Trial& to) {
   return work;
 }
 
+/// Forces without a potential are linear in the displacements: the whole step leads to where they
+/// balance, and no energy could judge another.
+LineSearchResult take_whole_step(const EquilibriumProblem& problem,
+                                 std::span<const double> external_force, const Trial& from,
+                                 std::span<const double> direction, Trial& trial, Damage damage) {
+  trial.history = from.history;
+  trial.environment = from.environment;
+  trial.displacement = from.displacement;
+  add_scaled(trial.displacement, 1.0, direction);
+  evaluate(problem, external_force, trial, damage);
+  LineSearchResult result;
+  result.step_length = 1.0;
+  if (trial.degenerate) result.outcome = Outcome::degenerate;
+  return result;
+}
+
 }  // namespace
 
 LineSearchResult line_search(const EquilibriumProblem& problem,
                              std::span<const double> external_force, const Trial& from,
                              std::span<const double> direction, const LineSearchOptions& options,
                              Trial& trial, Damage damage) {
+  if (!problem.assembler.has_potential()) {
+    return take_whole_step(problem, external_force, from, direction, trial, damage);
+  }
   const double slope = slope_along(direction, from, external_force);
   LineSearchResult result;
   if (!std::isfinite(slope)) result.outcome = Outcome::degenerate;

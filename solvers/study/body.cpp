@@ -14,6 +14,7 @@
 #include "assembly/terms/springs/inertia_term.hpp"
 #include "solvers/linear/available_memory.hpp"
 #include "solvers/study/bond_potential.hpp"
+#include "solvers/study/collocation_model.hpp"
 #include "solvers/study/cpd_model.hpp"
 #include "solvers/study/fracture_data.hpp"
 #include "src/connectivity/fragments.hpp"
@@ -106,7 +107,9 @@ void make_model(Body& body, int threads) {
   const Stopwatch watch(body.seconds_neighbourhood);
   const bool is_cpd = of.material.model == MaterialModel::cpd;
   BondSetting setting = body.setting;
-  if (is_cpd) setting.influence = {};  // effective volumes count every neighbour
+  const bool is_lps = of.material.model == MaterialModel::lps;
+  // Effective volumes count every neighbour, and what bonds of lps dissipate goes by their length.
+  if (is_cpd || is_lps) setting.influence = {};
   Bonds bonds = make_bonds(body.points, of.surface_correction, setting, threads);
   refuse_coincident_points(body.points, bonds);
   const PointMaterials materials(of, body.points);
@@ -115,9 +118,15 @@ void make_model(Body& body, int threads) {
   body.factors = {materials.factors(body.points, Quantity::stiffness, threads),
                   materials.factors(body.points, Quantity::strength, threads)};
   CutBonds cut;
-  body.model = is_cpd ? make_cpd_model(of, materials, body.factors, body.points, body.setting,
-                                       std::move(bonds), cut, threads)
-                      : make_bond_model(body, materials, std::move(bonds), cut);
+  if (is_lps) {
+    body.model = make_collocation_model(of, materials, body.factors, body.points, setting,
+                                        std::move(bonds), cut, body.collocation, threads);
+  } else if (is_cpd) {
+    body.model = make_cpd_model(of, materials, body.factors, body.points, body.setting,
+                                std::move(bonds), cut, threads);
+  } else {
+    body.model = make_bond_model(body, materials, std::move(bonds), cut);
+  }
   body.cut_weight = std::move(cut.weight);
   body.cut_bonds = std::move(cut.ends);
 }

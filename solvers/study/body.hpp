@@ -9,6 +9,7 @@
 #include "solvers/linear/memory_estimate.hpp"
 #include "solvers/study/body_specification.hpp"
 #include "solvers/study/bond_materials.hpp"
+#include "solvers/study/collocation_model.hpp"
 #include "src/conditions/conditions.hpp"
 
 namespace peristat {
@@ -37,6 +38,7 @@ struct Body {
   PointFactors factors;              ///< by random fields
   std::vector<double> cut_weight;    ///< per point, of the bonds that pre-cracks have cut [m6]
   std::vector<BondEnds> cut_bonds;   ///< by pre-cracks
+  CollocationSummary collocation;    ///< of model lps
   double seconds_neighbourhood = 0.0;
 
   [[nodiscard]] double horizon_ratio() const { return setting.horizon / points.spacing; }

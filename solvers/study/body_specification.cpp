@@ -119,6 +119,34 @@ void check_cpd_material(const MaterialSpecification& material, const std::string
                  has_moduli ? "follows from youngs_modulus and poisson_ratio" : "must be 0 in 2D");
 }
 
+void check_lps_material(const MaterialSpecification& material, const std::string& key,
+                        int dimension) {
+  require(dimension > 1, key + ".model", "lps", "needs dimension 2 or 3");
+  require(material.youngs_modulus.has_value(), key + ".youngs_modulus", "", "is missing");
+  require(material.poisson_ratio.has_value(), key + ".poisson_ratio", "", "is missing");
+  require(*material.poisson_ratio > -1.0 && *material.poisson_ratio < 0.5, key + ".poisson_ratio",
+          number_text(*material.poisson_ratio), "must be above -1 and below 0.5");
+  const std::string has_own = "is not for the model lps, whose constants are E and nu";
+  require_absent(material.micromodulus.has_value(), key + ".micromodulus", has_own);
+  require_absent(material.c1.has_value(), key + ".c1", has_own);
+  require_absent(material.c2 != 0.0, key + ".c2", has_own);
+  require_absent(material.c3 != 0.0, key + ".c3", has_own);
+  require_absent(material.calibration.has_value(), key + ".calibration",
+                 "is not for the model lps, whose quadrature is exact");
+  require_absent(
+      material.influence != ConstantInfluence::name && material.influence != InverseInfluence::name,
+      key + ".influence", "of the model lps is \"inverse\"");
+  require_absent(material.potential != Harmonic::name, key + ".potential",
+                 "is not for the model lps, which is linear");
+  require(
+      material.damage.law == DamageLaw::none || material.damage.law == DamageLaw::critical_stretch,
+      key + ".damage.law", "", "of the model lps is \"critical_stretch\"");
+  require_absent(material.damage.strength.has_value(), key + ".damage.strength",
+                 "is not for the model lps; give fracture_energy or critical");
+  require_absent(material.thermal_expansion.has_value(), key + ".thermal_expansion",
+                 "is not for the model lps");
+}
+
 void check_fibre(const MaterialSpecification& material, const std::string& key, int dimension) {
   if (!material.fibre) return;
   const FibreSpecification& fibre = *material.fibre;
@@ -191,6 +219,8 @@ void check_material(const MaterialSpecification& material, const std::string& ke
   check_influence(material, key);
   if (material.model == MaterialModel::bond)
     check_bond_material(material, key);
+  else if (material.model == MaterialModel::lps)
+    check_lps_material(material, key, dimension);
   else
     check_cpd_material(material, key, dimension);
   require_positive(material.youngs_modulus, key + ".youngs_modulus");
@@ -272,6 +302,14 @@ void check_weights(const BodySpecification& of, const Points& points) {
     require(points.spacing.is_square() || of.volume_correction != VolumeCorrection::linear,
             "volume_correction", "linear",
             "is for square or cubic cells; spacings that differ need \"none\" or \"exact\"");
+    return;
+  }
+  if (of.material.model == MaterialModel::lps) {
+    const std::string has_own = "is for the model bond; lps has a quadrature of its own";
+    require_absent(of.volume_correction != VolumeCorrection::none, "volume_correction", has_own);
+    require_absent(of.surface_correction != SurfaceCorrection::none, "surface_correction", has_own);
+    require_absent(of.weights != InteractionWeights::mean, "weights", "is for the model cpd");
+    require_absent(of.eigenstrains.are_there(), "eigenstrains", "are not for the model lps");
     return;
   }
   require_whole_square_cells(points);

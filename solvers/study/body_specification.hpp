@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "assembly/terms/collocation/collocation_network.hpp"
 #include "src/conditions/conditions.hpp"
 #include "src/conditions/constraint_specification.hpp"
 #include "src/connectivity/crack.hpp"
@@ -20,8 +21,8 @@
 
 namespace peristat {
 
-/// Bonds alone, or continuum-kinematics-inspired peridynamics.
-enum class MaterialModel { bond, cpd };
+/// Bonds alone, continuum-kinematics-inspired peridynamics, or the linear peridynamic solid.
+enum class MaterialModel { bond, cpd, lps };
 
 /// What constants from E and nu are to be right on.
 enum class Calibration { lattice, continuum };
@@ -94,7 +95,7 @@ struct MaterialSpecification {
   std::optional<double>
       youngs_modulus{};                   ///< [Pa]; exactly one of this, micromodulus and c1 is set
   std::optional<double> micromodulus{};   ///< c [N/m6]
-  std::optional<double> poisson_ratio{};  ///< cpd, with youngs_modulus
+  std::optional<double> poisson_ratio{};  ///< cpd, lps, with youngs_modulus
   std::optional<double> c1{};             ///< C1 [N/m6]
   double c2 = 0.0;                        ///< C2 [N/m10]; in 2D not with youngs_modulus
   double c3 = 0.0;                        ///< C3 [N/m14]; with c1 only
@@ -136,6 +137,12 @@ inline constexpr std::size_t most_materials = 200;
 /// Name of the material of the points in no region.
 inline constexpr const char* rest_name = "material";
 
+/// How the operator of model lps is summed.
+struct CollocationSpecification {
+  int degree = 5;  ///< of the polynomials that the quadrature is exact for
+  TractionForm traction_form = TractionForm::full;
+};
+
 /// What makes a body of points.
 struct BodySpecification {
   double horizon = 0.0;  ///< [m]
@@ -144,6 +151,7 @@ struct BodySpecification {
   VolumeCorrection volume_correction = VolumeCorrection::none;
   SurfaceCorrection surface_correction = SurfaceCorrection::none;
   InteractionWeights weights = InteractionWeights::mean;  ///< of cpd
+  CollocationSpecification collocation{};
   std::vector<Crack> cracks{};
   /// Of the points in no region. Without constants every point has to be in one.
   MaterialSpecification material{};

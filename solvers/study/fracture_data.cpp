@@ -9,6 +9,7 @@
 
 #include "solvers/study/bond_materials.hpp"
 #include "solvers/study/bond_potential.hpp"
+#include "solvers/study/collocation_model.hpp"
 #include "solvers/study/cpd_model.hpp"
 #include "src/core/input_error.hpp"
 #include "src/core/number_text.hpp"
@@ -329,6 +330,12 @@ DamageSpecification with_stretches(const DamageSpecification& damage, const std:
 BodySpecification with_stretches(BodySpecification of, const BondSetting& setting, double spacing) {
   const auto find = [&](MaterialSpecification& material, const std::string& key) {
     if (!material.damage.is_by_data()) return;
+    if (material.model == MaterialModel::lps) {
+      material.damage.critical =
+          lps_critical_stretch(material, setting, *material.damage.fracture_energy);
+      material.damage.fracture_energy.reset();
+      return;
+    }
     const FractureScale scale = FractureScale::of(material, key, setting, spacing);
     material.damage = with_stretches(material.damage, key, scale);
   };

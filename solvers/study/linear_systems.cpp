@@ -4,6 +4,7 @@
 
 #include "assembly/operators/constrained_tangent.hpp"
 #include "assembly/operators/matrix_free_tangent.hpp"
+#include "assembly/operators/rows_of_energy.hpp"
 #include "assembly/operators/tangent.hpp"
 #include "solvers/linear/available_memory.hpp"
 #include "solvers/linear/no_solver.hpp"
@@ -127,6 +128,7 @@ LinearSystems choose_linear_systems(const StudyOptions& options, const Body& bod
 
 std::unique_ptr<TangentOperator> LinearSystems::make_tangent(Assembler& assembler,
                                                              const Constraints& constraints) const {
+  if (!assembler.has_potential()) return std::make_unique<RowsOfEnergy>(assembler);
   if (!constraints.none()) return std::make_unique<ConstrainedTangent>(assembler, constraints);
   if (!is_stored) return std::make_unique<MatrixFreeTangent>(assembler);
   return std::make_unique<Tangent>(assembler);

@@ -18,6 +18,29 @@ namespace {
 /// the body, squared, and its round-off as large as what a search is to leave.
 constexpr double shortest_implicit_step = 1e-3;
 
+/// Forces without a potential are balanced in one step: there is no energy that could tell a
+/// stability, a direction of descent or what a crack releases.
+void refuse_modes_without_potential(const Body& body, const StudyOptions& options) {
+  if (body.model.balances().potential) return;
+  const bool is_explicit = options.loading.mode == Mode::dynamics &&
+                           options.loading.dynamics.scheme == MotionScheme::verlet;
+  if (is_explicit) {
+    throw InputError("dynamics.scheme", "verlet",
+                     "is for models with an energy; \"lps\" moves by \"newmark\"");
+  }
+  if (options.loading.mode != Mode::newton && options.loading.mode != Mode::dynamics) {
+    throw InputError("loading.mode", std::string(options.loading.mode.name),
+                     "is for models with an energy; \"lps\" takes mode newton or dynamics");
+  }
+  if (body.conditions->control()) {
+    throw InputError("controls", "", "a control is for models with an energy");
+  }
+  if (!body.conditions->constraints().none()) {
+    throw InputError("constraints", "",
+                     "rigid sets, rollers and linear constraints are for models with an energy");
+  }
+}
+
 }  // namespace
 
 SolvedModel::SolvedModel(const Points& points, const Model& model, const Constraints& constraints,
@@ -41,6 +64,7 @@ Study::Study(const Body& body, StudyOptions options, SolverLadder::Reporter tell
         "end_time", "",
         moves ? "is missing; mode dynamics needs it" : "is of a motion in time, for mode dynamics");
   }
+  refuse_modes_without_potential(body, options_);
   const bool is_implicit = moves && options_.loading.dynamics.scheme == MotionScheme::newmark;
   if (is_implicit != body.specification.has_inertia) {
     throw InputError("has_inertia", "",

@@ -39,6 +39,25 @@ std::vector<Index> points_of_body(const Points& points) {
 
 }  // namespace
 
+namespace {
+
+bool acts_on_surface(const LoadSpecification& load) {
+  using Kind = LoadSpecification::Kind;
+  return load.kind == Kind::traction || load.kind == Kind::pressure || load.kind == Kind::stress;
+}
+
+void refuse_depth_of_surface(const LoadSpecification& load, const std::string& table) {
+  const bool is_of_surface = load.depth == Depth::surface ||
+                             load.kind == LoadSpecification::Kind::stress || !load.boundary.empty();
+  if (!is_of_surface) return;
+  const std::string key = load.depth == Depth::surface ? ".depth"
+                          : load.boundary.empty()      ? ".stress"
+                                                       : ".boundary";
+  throw InputError(table + key, "", "is for tractions on the surface, of the model \"lps\" alone");
+}
+
+}  // namespace
+
 Conditions::Conditions(const Points& points, const std::vector<SupportSpecification>& supports,
                        const std::vector<LoadSpecification>& loads, LoadingProgramme programme,
                        const std::vector<ControlTerm>& control, const LoadSetting& setting,
@@ -49,6 +68,7 @@ Conditions::Conditions(const Points& points, const std::vector<SupportSpecificat
       prescribed_(points.reference.size(), 0),
       made_{Constraints(points)} {
   const std::vector<std::string> parameters = programme_.names();
+  if (setting.surface) surface_ = SurfaceTractions(*setting.surface);
   for (std::size_t k = 0; k < supports.size(); ++k) {
     const std::string table = indexed("supports", k);
     const std::vector<Index>& members = points_of_set(points, supports[k].set, table + ".set");
@@ -65,6 +85,11 @@ Conditions::Conditions(const Points& points, const std::vector<SupportSpecificat
   }
   for (std::size_t k = 0; k < loads.size(); ++k) {
     const std::string table = indexed("loads", k);
+    if (setting.surface && acts_on_surface(loads[k])) {
+      with_table(table, [&] { surface_.add(points, loads[k], parameters); });
+      continue;
+    }
+    refuse_depth_of_surface(loads[k], table);
     if (loads[k].kind == LoadSpecification::Kind::pressure) {
       add_pressure(loads[k], table);
       continue;
@@ -108,8 +133,8 @@ void Conditions::find_changes() {
   const auto value = [](const auto& of) -> const Expression& { return of.value; };
   changes_.supports = changes(prescriptions_, displacement) || changes(made_.prescriptions, value);
   changes_.loads = changes(loads_, value);
-  changes_.environment =
-      changes(eigenstretches_, value) || changes(pressures_, value) || foundations_.ground_moves();
+  changes_.environment = changes(eigenstretches_, value) || changes(pressures_, value) ||
+                         foundations_.ground_moves() || surface_.changes_with_parameters();
 }
 
 void Conditions::refuse_shared_names() const {
@@ -241,10 +266,13 @@ void Conditions::add_eigenstrains(const Eigenstrains& eigenstrains, const LoadSe
 
 SharedEnvironment Conditions::environment(const LoadPoint& at) const {
   const bool ground_moves = foundations_.ground_moves();
-  if (eigenstretches_.empty() && pressures_.empty() && !ground_moves) return nullptr;
+  if (eigenstretches_.empty() && pressures_.empty() && !ground_moves && surface_.none()) {
+    return nullptr;
+  }
   const std::vector<double> loads = parameters(at);
   auto made = std::make_shared<Environment>();
   if (ground_moves) made->ground = foundations_.ground(loads);
+  if (!surface_.none()) made->traction = surface_.at(points_, loads);
   for (const auto& [key, first, last, value] : pressures_) {
     with_key(key, [&] {
       for (std::size_t face = first; face < last; ++face) {

@@ -15,6 +15,7 @@
 #include "src/conditions/make_constraints.hpp"
 #include "src/conditions/pressed_boundary.hpp"
 #include "src/conditions/specification.hpp"
+#include "src/conditions/surface_tractions.hpp"
 #include "src/connectivity/holding.hpp"
 #include "src/core/expression.hpp"
 #include "src/geometry/points.hpp"
@@ -26,6 +27,8 @@ struct LoadSetting {
   double horizon = 0.0;                        ///< [m], for tractions
   std::vector<double> density = {};            ///< [kg/m3], for gravity
   std::vector<double> thermal_expansion = {};  ///< [1/K], for the temperature
+  /// Where tractions act on the surface; nothing: they are forces on points.
+  std::optional<std::vector<SurfaceSite>> surface = std::nullopt;
 };
 
 /// What strains the points without forces.
@@ -182,6 +185,7 @@ class Conditions {
   std::vector<Eigenstretch> eigenstretches_;
   PressedBoundary pressed_;
   std::vector<Pressure> pressures_;
+  SurfaceTractions surface_;
   Foundations foundations_;
   std::vector<char> prescribed_;
   MadeConstraints made_;

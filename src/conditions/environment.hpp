@@ -25,6 +25,11 @@ struct Environment {
   /// Empty: none.
   std::vector<double> ground{};
   InertialSprings inertia{};
+  /// On the surface at points, points x dimension [Pa]; empty: surfaces are free.
+  std::vector<double> traction{};
+
+  /// Whether some forces of the model are those of loads, not of interactions.
+  [[nodiscard]] bool has_follower_force() const { return !pressure.empty() || !traction.empty(); }
 
   friend bool operator==(const Environment&, const Environment&) = default;
 };

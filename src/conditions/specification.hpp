@@ -3,6 +3,7 @@
 #include <array>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "src/core/types.hpp"
 #include "src/geometry/side.hpp"
@@ -29,22 +30,33 @@ struct AbsorbingSpecification {
   std::string rate{};  ///< at which velocities decay [1/s]
 };
 
-/// How deep a traction acts: in the outermost row of points alone, or spread evenly over the
-/// horizon.
-enum class Depth { row, horizon };
+/// How deep a traction acts: in the outermost row of points alone, spread evenly over the horizon,
+/// or on the surface itself, which the model "lps" alone can.
+enum class Depth { row, horizon, surface };
 
 /// Load that keeps its direction: a body force density [N/m3] on a set, an expression of x, y, z
 /// and load; a total force [N], an expression of load alone, spread over a set in proportion to the
 /// volume; gravity [m/s2] on a set or, without one, the body, layers left out; a traction [Pa] on a
 /// flat part of a lattice body's boundary, the outermost plane of points on a side or a set that
 /// lies in one plane. And a load that follows the deformation: a pressure [Pa], its first value, on
-/// the exposed faces of the cells of a side or set.
+/// the exposed faces of the cells of a side or set. With the depth `surface` traction and pressure
+/// act on the body's boundary, on a side, on the boundary of a shape or where points of a set are,
+/// and so does a stress [Pa], whose traction is sigma n.
 struct LoadSpecification {
-  enum class Kind { body_force, total_force, gravity, traction, pressure } kind = Kind::body_force;
+  enum class Kind {
+    body_force,
+    total_force,
+    gravity,
+    traction,
+    pressure,
+    stress
+  } kind = Kind::body_force;
   std::string set{};
   std::array<std::string, 3> value{"0", "0", "0"};
   std::optional<Side> side{};
   Depth depth = Depth::row;
+  std::string boundary{};             ///< name of a shape
+  std::vector<std::string> stress{};  ///< xx yy xy, or xx yy zz xy yz xz
 };
 
 /// Springs along the axes between points and a ground that may move: a modulus [N/m3] on a flat
@@ -78,6 +90,8 @@ struct EigenstrainSpecification {
       return "traction";
     case LoadSpecification::Kind::pressure:
       return "pressure";
+    case LoadSpecification::Kind::stress:
+      return "stress";
   }
   return "";
 }

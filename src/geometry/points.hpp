@@ -38,6 +38,10 @@ struct Points {
   std::map<std::string, std::vector<Index>> sets;  ///< ascending point numbers by set name
   std::optional<LatticeCells> lattice{};           ///< nothing for a cloud
 
+  /// Places around the body that hold no point, all x dimension [m]: of those that quadratures by
+  /// collocation count with.
+  std::vector<double> ghosts{};
+
   Images images{};  ///< of the last points; sets name none of them
 
   [[nodiscard]] Index count() const { return static_cast<Index>(volume.size()); }

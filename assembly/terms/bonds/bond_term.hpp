@@ -26,6 +26,7 @@ class BondTerm : public Term {
         never_fails_(std::move(never_fails)) {}
 
   [[nodiscard]] const Bonds& bonds() const { return *bonds_; }
+  [[nodiscard]] const std::shared_ptr<const Bonds>& shared_bonds() const { return bonds_; }
   [[nodiscard]] const BondPotential& potential() const { return potential_; }
   [[nodiscard]] bool can_fail() const {
     return std::visit([]<class P>(const P&) { return PotentialWithHistory<P>; }, potential_);

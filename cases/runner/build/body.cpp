@@ -14,6 +14,7 @@
 #include "src/geometry/nearest_point.hpp"
 #include "src/geometry/point_file.hpp"
 #include "src/geometry/points_on_line.hpp"
+#include "src/neighbourhood/ghost_sites.hpp"
 
 namespace peristat {
 namespace {
@@ -68,6 +69,9 @@ Points make_points_of(const Case& from) {
       check_lattice(*lattice);  // first: what can't be used has no size
       require_memory_for_lattice(from, *lattice);
       points = make_points(*lattice);
+      if (from.material.model == MaterialModel::lps) {
+        points.ghosts = ghost_sites(*lattice, points, from.horizon).reference;
+      }
       if (lattice->perturbation == 0.0 && lattice->cell_perturbation == 0.0) {
         const auto& periods = from.constraints.periods;
         require_lattice_goes_on(points, from.constraints.symmetries,

@@ -26,6 +26,7 @@ constexpr auto body_is =
     [](auto&, const Case& from) { return std::holds_alternative<Body>(from.body); };
 
 bool is_cpd(const Case& from) { return from.material.model == MaterialModel::cpd; }
+bool is_lps(const Case& from) { return from.material.model == MaterialModel::lps; }
 
 /// Whether any of the materials has a law of damage.
 bool may_fail(const Case& from) {
@@ -255,7 +256,9 @@ Table<Crack> crack_keys() {
 
 Table<Case> quadrature_keys() {
   using K = Key<Case>;
-  const auto of_bond = [](auto&, const Case& from) { return !is_cpd(from); };
+  const auto of_bond = [](auto&, const Case& from) { return !is_cpd(from) && !is_lps(from); };
+  const auto of_lps = [](auto&, const Case& from) { return is_lps(from); };
+  constexpr auto collocation = [](auto& from) -> auto& { return from.collocation; };
   return {"quadrature",
           {K("volume_correction", &Case::volume_correction,
              choice<VolumeCorrection>({{"none", VolumeCorrection::none},
@@ -280,20 +283,36 @@ Table<Case> quadrature_keys() {
                  {{"mean", InteractionWeights::mean}, {"bulk", InteractionWeights::bulk}}),
              "model `cpd`: weights of interactions near surfaces, by the mean of their points' "
              "effective volumes, or as in the bulk everywhere")
-               .written_if([](auto&, const Case& from) { return is_cpd(from); })}};
+               .written_if([](auto&, const Case& from) { return is_cpd(from); }),
+           K("degree", in(collocation, &CollocationSpecification::degree),
+             count_from(least_exact_degree, "", most_exact_degree),
+             "model `lps`: of the polynomials that the quadrature is exact for")
+               .written_if(of_lps),
+           K("traction_form", in(collocation, &CollocationSpecification::traction_form),
+             choice<TractionForm>({{"full", TractionForm::full}, {"paper", TractionForm::paper}}),
+             "model `lps`: what of the displacements' continuation over the boundary counts: all "
+             "of it, which is exact for linear fields on every grid, or what [LPS] eq. 4.6 keeps")
+               .written_if(of_lps)}};
 }
 
 /// The quadrature is read before the material, whose model tells which of its keys apply.
 void check_quadrature(const Entry& at, const Case& result) {
   if (!at.from.has("quadrature")) return;
   const TomlTable quadrature = at.from.table("quadrature");
-  const std::vector<std::string> of_bond{"volume_correction", "surface_correction"};
-  for (const auto& key : is_cpd(result) ? of_bond : std::vector<std::string>{"weights"}) {
-    if (!quadrature.has(key) || quadrature.string(key) == "none") continue;
-    quadrature.refuse(key, is_cpd(result)
-                               ? "is for model \"bond\"; the effective volumes of cpd need none"
-                               : "is for model \"cpd\"");
-  }
+  const std::vector<std::string> of_bond{"volume_correction", "surface_correction"},
+      of_cpd{"weights"}, of_lps{"degree", "traction_form"};
+  const auto refuse = [&](const std::vector<std::string>& keys, const std::string& what) {
+    for (const std::string& key : keys) {
+      const bool is_none =
+          key != "degree" && quadrature.has(key) && quadrature.string(key) == "none";
+      if (quadrature.has(key) && !is_none) quadrature.refuse(key, what);
+    }
+  };
+  if (is_cpd(result))
+    refuse(of_bond, "is for model \"bond\"; the effective volumes of cpd need none");
+  if (is_lps(result)) refuse(of_bond, "is for model \"bond\"; lps has a quadrature of its own");
+  if (!is_cpd(result)) refuse(of_cpd, "is for model \"cpd\"");
+  if (!is_lps(result)) refuse(of_lps, "is for model \"lps\"");
 }
 
 /// What follows from the materials. Without [material] the first region tells model and plane.
@@ -473,6 +492,7 @@ Table<MaterialSpecification> material_keys(const std::string& name) {
   using K = Key<Spec>;
   const auto of_cpd = [](auto& material, auto&) { return material.model == MaterialModel::cpd; };
   const auto of_bond = [](auto& material, auto&) { return material.model == MaterialModel::bond; };
+  const auto of_lps = [](auto& material, auto&) { return material.model == MaterialModel::lps; };
   const auto has_moduli = [](auto& material, auto&) { return material.youngs_modulus.has_value(); };
   const auto has_constants = [](auto& material, auto&) { return material.c1.has_value(); };
   const auto has_micromodulus = [](auto& material, auto&) {
@@ -492,21 +512,27 @@ Table<MaterialSpecification> material_keys(const std::string& name) {
   return {
       name,
       {K("model", &Spec::model,
-         choice<MaterialModel>({{"bond", MaterialModel::bond}, {"cpd", MaterialModel::cpd}}),
+         choice<MaterialModel>({{"bond", MaterialModel::bond},
+                                {"cpd", MaterialModel::cpd},
+                                {"lps", MaterialModel::lps}}),
          "bond-based peridynamics, whose Poisson ratio is 1/4 (3D and plane strain) or 1/3 (plane "
-         "stress); or continuum-kinematics-inspired peridynamics with one-, two- and "
-         "three-neighbour interactions, dimension 2 and 3")
+         "stress); continuum-kinematics-inspired peridynamics with one-, two- and "
+         "three-neighbour interactions, dimension 2 and 3; or the "
+         "[linear peridynamic solid](theory.md#linear-peridynamic-solid) of any Poisson ratio by "
+         "collocation, for small displacements, dimension 2 and 3")
            .then([](auto& at, auto& material) {
-             if (material.model == MaterialModel::cpd && at.so_far.dimension == 1)
+             if (at.so_far.dimension > 1) return;
+             if (material.model == MaterialModel::cpd)
                at.refuse("cpd needs dimension 2 or 3; in 1D it is the bond model");
+             if (material.model == MaterialModel::lps) at.refuse("lps needs dimension 2 or 3");
            })
            .early(),
        K("potential", &Spec::potential, choice(bond_potentials()),
          "of whole bonds, a function of their stretch, and below its onset of a damage law"),
        K("plane", &Spec::plane,
          choice<PlaneState>({{"stress", PlaneState::stress}, {"strain", PlaneState::strain}}),
-         "`bond`: state of a plane body, dimension 2 only (`cpd` in 2D is purely two-dimensional, "
-         "neither)")
+         "`bond`, `lps`: state of a plane body, dimension 2 only (`cpd` in 2D is purely "
+         "two-dimensional, neither)")
            .unless(of_cpd, for_bond)
            .unless(in_dimension<1>, "is for dimension 2 only")
            .unless(in_dimension<3>, "is for dimension 2 only"),
@@ -516,22 +542,27 @@ Table<MaterialSpecification> material_keys(const std::string& name) {
          "constants, "
          "moduli and fracture energy go with it. `cpd`: of triangles and tetrahedra the product of "
          "those of their sides, with constants of the lattice"),
-       K("youngs_modulus", &Spec::youngs_modulus, positive("Pa"), "in both models").one_of(),
+       K("youngs_modulus", &Spec::youngs_modulus, positive("Pa"), "in all models").one_of(),
        K("micromodulus", &Spec::micromodulus, positive("N/m6", 1e150),
          "`bond`: bond constant c of the pairwise force c·stretch")
            .unless(of_cpd, for_bond)
+           .unless(of_lps, for_bond)
            .one_of(),
-       K("poisson_ratio", &Spec::poisson_ratio, between(-1.0, 1.0), "`cpd`, with `youngs_modulus`")
-           .unless(of_bond, for_cpd)
+       K("poisson_ratio", &Spec::poisson_ratio, between(-1.0, 1.0),
+         "`cpd`, `lps`, with `youngs_modulus`")
+           .unless(of_bond, "is for models \"cpd\" and \"lps\"")
            .unless(has_constants, with_moduli)
-           .moreover("in 3D to 0.5, both excluded; with damage from 1/3 (2D) or 1/4 (3D) on")
+           .moreover("`lps`: to 0.5; `cpd`: in 3D to 0.5, all excluded; with damage from 1/3 (2D) "
+                     "or 1/4 (3D) on")
            .required("required with `youngs_modulus`"),
        K("c1", &Spec::c1, positive("N/m6", 1e200), "`cpd`: one-neighbour constant")
            .unless(of_bond, for_cpd)
+           .unless(of_lps, for_cpd)
            .one_of(),
        K("c2", &Spec::c2, stiffness("N/m10"),
          "`cpd`: two-neighbour constant; in 3D also beside `youngs_modulus`, in 2D it then follows")
            .unless(of_bond, for_cpd)
+           .unless(of_lps, for_cpd)
            .unless(
                [](auto& material, const Case& so_far) {
                  return material.youngs_modulus && so_far.dimension == 2;
@@ -542,6 +573,7 @@ Table<MaterialSpecification> material_keys(const std::string& name) {
        K("c3", &Spec::c3, stiffness("N/m14"),
          "`cpd`: three-neighbour constant, 3D; follows from `youngs_modulus`")
            .unless(of_bond, for_cpd)
+           .unless(of_lps, for_cpd)
            .unless(has_moduli,
                    "follows from youngs_modulus and poisson_ratio; give c1 for a free c3")
            .then([](auto& at, auto& material) {
@@ -556,6 +588,7 @@ Table<MaterialSpecification> material_keys(const std::string& name) {
          "with their corrections (`bond`: in the mean over all directions) or integrals")
            .unless(has_constants, with_moduli)
            .unless(has_micromodulus, "goes with youngs_modulus, not with micromodulus")
+           .unless(of_lps, "is not for model \"lps\", whose quadrature is exact")
            .default_words("`\"lattice\"` with `cpd`, `\"continuum\"` with `bond`"),
        K("thermal_expansion", &Spec::thermal_expansion, between(-1.0, 1.0, "per K"),
          "of lengths, α: for `[temperature]`"),
@@ -568,6 +601,7 @@ Table<MaterialSpecification> material_keys(const std::string& name) {
          "the direction of the bond")
            .written_if([](auto& material, auto&) { return material.fibre.has_value(); })
            .unless(of_cpd, for_bond)
+           .unless(of_lps, for_bond)
            .unless(in_dimension<1>, "needs dimension 2 or 3")
            .otherwise([](auto&, auto&) {}, "none"),
        K("scatter", &Spec::scatter, scatter_keys(name),
@@ -708,14 +742,16 @@ Key<LoadSpecification> load_value(LoadSpecification::Kind kind, const std::strin
 /// Where a load acts depends on its kind.
 void check_place_of_load(const Entry& at, const LoadSpecification& load) {
   using Kind = LoadSpecification::Kind;
-  const bool is_on_boundary = load.kind == Kind::traction || load.kind == Kind::pressure;
+  const bool is_on_boundary =
+      load.kind == Kind::traction || load.kind == Kind::pressure || load.kind == Kind::stress;
   if (!is_on_boundary && at.from.has("side"))
     at.from.refuse("side", "is for a traction or a pressure");
   if (load.kind != Kind::traction && at.from.has("depth"))
     at.from.refuse("depth", "is for a traction");
   const bool needs_set = load.kind == Kind::body_force || load.kind == Kind::total_force;
   if (needs_set) static_cast<void>(at.from.string("set"));
-  if (is_on_boundary && load.set.empty() && !load.side)
+  const bool is_on_surface = is_lps(at.so_far);
+  if (is_on_boundary && load.set.empty() && !load.side && !is_on_surface)
     at.refuse(std::string("a ") + load_key(load.kind) + " needs a side or a set that it acts on");
 }
 
@@ -725,39 +761,49 @@ Table<LoadSpecification> load_keys() {
   using Kind = Spec::Kind;
   const auto is_traction = [](auto& load, auto&) { return load.kind == Kind::traction; };
   constexpr auto pressure = [](auto& load) -> auto& { return load.value[0]; };
-  return {
-      "load",
-      {K("set", &Spec::set, known_set(), "that is loaded")
-           .early()
-           .written_if([](auto& load, auto&) { return !load.set.empty(); })
-           .default_words("required, but for `gravity`, which then acts on the whole body, and "
-                          "`traction` and `pressure` with a `side`"),
-       load_value(Kind::body_force, "N/m3", "force density per component"),
-       load_value(Kind::total_force, "N",
-                  "force on the whole set per component, spread in proportion to the volume"),
-       load_value(Kind::gravity, "m/s2",
-                  "acceleration per component, times `material.density`; layers weigh nothing"),
-       load_value(Kind::traction, "Pa",
-                  "force per area per component on a flat part of the boundary, which keeps "
-                  "its direction; on a lattice only"),
-       K("pressure", pressure, scalar_field("Pa"),
-         "on the exposed faces of the cells of the set's points, or of a side: it follows them "
-         "as they deform, and pushes where it is positive; on a lattice only")
-           .then([](auto&, auto& load) { load.kind = Kind::pressure; })
-           .written_if([](auto& load, auto&) { return load.kind == Kind::pressure; })
-           .one_of(),
-       K("side", &Spec::side, optional_side(),
-         "`traction`, `pressure`: the body's outermost plane of points on a side, as of "
-         "`[[lattice.layer]]`")
-           .written_if([](auto& load, auto&) { return load.side.has_value(); })
-           .default_words("`traction`, `pressure`: this or a `set` is required, for a traction "
-                          "one in one plane of points"),
-       K("depth", &Spec::depth, choice<Depth>({{"row", Depth::row}, {"horizon", Depth::horizon}}),
-         "`traction`: borne by the outermost row of points, or spread evenly over a horizon "
-         "below the boundary")
-           .written_if(is_traction)},
-      {},
-      check_place_of_load};
+  return {"load",
+          {K("set", &Spec::set, known_set(), "that is loaded")
+               .early()
+               .written_if([](auto& load, auto&) { return !load.set.empty(); })
+               .default_words("required, but for `gravity`, which then acts on the whole body, and "
+                              "`traction` and `pressure` with a `side`"),
+           load_value(Kind::body_force, "N/m3", "force density per component"),
+           load_value(Kind::total_force, "N",
+                      "force on the whole set per component, spread in proportion to the volume"),
+           load_value(Kind::gravity, "m/s2",
+                      "acceleration per component, times `material.density`; layers weigh nothing"),
+           load_value(Kind::traction, "Pa",
+                      "force per area per component on a flat part of the boundary, which keeps "
+                      "its direction; on a lattice only"),
+           K("pressure", pressure, scalar_field("Pa"),
+             "on the exposed faces of the cells of the set's points, or of a side: it follows them "
+             "as they deform, and pushes where it is positive; on a lattice only")
+               .then([](auto&, auto& load) { load.kind = Kind::pressure; })
+               .written_if([](auto& load, auto&) { return load.kind == Kind::pressure; })
+               .one_of(),
+           K("stress", &Spec::stress, stress_components(),
+             "model `lps`: of the surroundings, [xx, yy, xy] or [xx, yy, zz, xy, yz, xz]; it loads "
+             "the surface by its traction, the stress times the outward normal")
+               .then([](auto&, auto& load) { load.kind = Kind::stress; })
+               .written_if([](auto& load, auto&) { return load.kind == Kind::stress; })
+               .one_of(),
+           K("boundary", &Spec::boundary, text(),
+             "model `lps`: the boundary of a shape of `[[lattice.shape]]`, by its `name`")
+               .written_if([](auto& load, auto&) { return !load.boundary.empty(); }),
+           K("side", &Spec::side, optional_side(),
+             "`traction`, `pressure`: the body's outermost plane of points on a side, as of "
+             "`[[lattice.layer]]`")
+               .written_if([](auto& load, auto&) { return load.side.has_value(); })
+               .default_words("`traction`, `pressure`: this or a `set` is required, for a traction "
+                              "one in one plane of points"),
+           K("depth", &Spec::depth,
+             choice<Depth>(
+                 {{"row", Depth::row}, {"horizon", Depth::horizon}, {"surface", Depth::surface}}),
+             "`traction`: borne by the outermost row of points, spread evenly over a horizon "
+             "below the boundary, or on the surface itself, as model `lps` alone has it, always")
+               .written_if(is_traction)},
+          {},
+          check_place_of_load};
 }
 
 Table<EigenstrainSpecification> eigenstrain_keys() {

@@ -437,6 +437,20 @@ Kind<std::array<std::string, 3>> displacement_components() {
       true, "a foundation's ground has a place in every component; give no stiffness instead", "m");
 }
 
+Kind<std::vector<std::string>> stress_components() {
+  const auto read = [](const Entry& at) {
+    const std::size_t entries = at.so_far.dimension == 2 ? 3 : 6;
+    std::vector<std::string> values = at.from.components(at.key, entries);
+    for (std::size_t c = 0; c < values.size(); ++c) {
+      if (values[c] == "free") at.from.refuse(at.key, c, "write 0 for no stress");
+      check_component(at, c, values[c], at.so_far.dimension);
+    }
+    return values;
+  };
+  return {read, [](const auto& values, const Case&) { return array_text(values, toml_string); },
+          "numbers or expressions of place and `load` (mode `dynamics`: `t`)", "Pa"};
+}
+
 Kind<std::array<std::string, 3>> force_components(bool is_total, const std::string& unit) {
   return located_components(
       !is_total, "only displacements of supports can be free; write 0 for no force", unit);

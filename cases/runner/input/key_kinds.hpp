@@ -103,6 +103,9 @@ enum class Components { axes, rotations, of_load };
 [[nodiscard]] Kind<std::array<std::string, 3>> force_components(bool is_total,
                                                                 const std::string& unit);
 
+/// Per entry of a stress, xx yy xy or xx yy zz xy yz xz, an expression of place and load.
+[[nodiscard]] Kind<std::vector<std::string>> stress_components();
+
 /// "[a, b]"
 template <class Items, class Text>
 [[nodiscard]] std::string array_text(const Items& items, Text text) {

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <vector>
+
+#include "assembly/operators/unsymmetric_tangent.hpp"
+
+namespace peristat {
+
+/// Derivative of forces that have no potential: products are computed anew each time, rows when
+/// they are asked for. The energy outlives it.
+struct RowsOfEnergy final : UnsymmetricTangent {
+  explicit RowsOfEnergy(Energy& energy);
+
+  [[nodiscard]] std::vector<double> positions() const override;
+  /// Whatever the projection: the operator is linear.
+  void linearise(Energy& energy, const StateView& at, double projection) override;
+  void multiply(std::span<const double> v, std::span<double> result) const override;
+  void for_each_row(const RowVisitor& visit) const override;
+  /// Numbers that are not less.
+  void absolute_row_sums(std::span<double> sums) const override;
+
+  [[nodiscard]] SparseRows rows() const override;
+  [[nodiscard]] double bytes_of_rows() const override { return energy_->bytes_of_rows(); }
+  [[nodiscard]] SparseRows local_rows() const override;
+
+ private:
+  [[nodiscard]] StateView at() const { return {displacement_, history_, damage_, environment_}; }
+
+  Energy* energy_;
+  std::vector<double> displacement_;
+  History history_;
+  Damage damage_ = Damage::grows;
+  SharedEnvironment environment_;
+  std::vector<double> row_sums_;
+};
+
+}  // namespace peristat

@@ -1,0 +1,571 @@
+#include "assembly/terms/collocation/collocation_operator.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "src/core/threads.hpp"
+#include "src/measures/small_algebra.hpp"
+
+namespace peristat {
+namespace {
+
+/// A sum of vectors that is less than this share of the sum of their lengths has no direction.
+constexpr double no_direction = 1e-9;
+
+/// Singular values of a shape tensor below this share of the largest are none: bonds along one line
+/// tell nothing of what is across it.
+constexpr double flat_shape = 1e-10;
+
+/// Where a symmetric tensor of third order keeps an entry.
+template <int D>
+struct ThirdOrder {
+  std::array<std::array<std::array<int, D>, D>, D> place{};
+  constexpr ThirdOrder() {
+    int next = 0;
+    for (int a = 0; a < D; ++a) {
+      for (int b = a; b < D; ++b) {
+        for (int c = b; c < D; ++c, ++next) {
+          place[a][b][c] = place[a][c][b] = place[b][a][c] = next;
+          place[b][c][a] = place[c][a][b] = place[c][b][a] = next;
+        }
+      }
+    }
+  }
+};
+template <int D>
+constexpr ThirdOrder<D> third_order{};
+
+/// S : A
+template <int D>
+Vector<D, double> contracted(const double* third, const Matrix<D, double>& tensor) {
+  Vector<D, double> result{};
+  for (int a = 0; a < D; ++a) {
+    for (int b = 0; b < D; ++b) {
+      for (int c = 0; c < D; ++c) {
+        result[a] += third[third_order<D>.place[a][b][c]] * tensor[b][c];
+      }
+    }
+  }
+  return result;
+}
+
+/// Eigenvalues and vectors (in columns) of a symmetric matrix, by Jacobi's rotations.
+template <int D>
+void find_spectrum(Matrix<D, double> a, Vector<D, double>& values, Matrix<D, double>& vectors) {
+  vectors = {};
+  for (int c = 0; c < D; ++c) vectors[c][c] = 1.0;
+  constexpr int sweeps = 12;  // convergence is quadratic
+  for (int sweep = 0; sweep < sweeps; ++sweep) {
+    for (int p = 0; p < D; ++p) {
+      for (int q = p + 1; q < D; ++q) {
+        if (a[p][q] == 0.0) continue;
+        const double theta = 0.5 * (a[q][q] - a[p][p]) / a[p][q];
+        const double t = std::copysign(1.0, theta) / (std::abs(theta) + std::hypot(1.0, theta));
+        const double cosine = 1.0 / std::hypot(1.0, t), sine = t * cosine;
+        for (int k = 0; k < D; ++k) {
+          const double kp = a[k][p], kq = a[k][q];
+          a[k][p] = cosine * kp - sine * kq;
+          a[k][q] = sine * kp + cosine * kq;
+        }
+        for (int k = 0; k < D; ++k) {
+          const double pk = a[p][k], qk = a[q][k];
+          a[p][k] = cosine * pk - sine * qk;
+          a[q][k] = sine * pk + cosine * qk;
+          const double kp = vectors[k][p], kq = vectors[k][q];
+          vectors[k][p] = cosine * kp - sine * kq;
+          vectors[k][q] = sine * kp + cosine * kq;
+        }
+      }
+    }
+  }
+  for (int c = 0; c < D; ++c) values[c] = a[c][c];
+}
+
+/// Pseudo-inverse of a positive semidefinite matrix, written row by row.
+template <int D>
+void write_inverse(const Matrix<D, double>& shape, double* inverse) {
+  Vector<D, double> values;
+  Matrix<D, double> vectors;
+  find_spectrum<D>(shape, values, vectors);
+  const double largest = *std::max_element(values.begin(), values.end());
+  std::fill_n(inverse, D * D, 0.0);
+  for (int k = 0; k < D; ++k) {
+    if (!(values[k] > flat_shape * largest)) continue;
+    for (int r = 0; r < D; ++r) {
+      for (int c = 0; c < D; ++c) {
+        inverse[r * D + c] += vectors[r][k] * vectors[c][k] / values[k];
+      }
+    }
+  }
+}
+
+double harmonic_mean(double a, double b) {
+  if (a == b) return a;
+  const double sum = a + b;
+  return sum != 0.0 ? 2.0 * a * b / sum : 0.0;
+}
+
+}  // namespace
+
+template <int D>
+struct CollocationOperator::Kernels {
+  using V = Vector<D, double>;
+  using M = Matrix<D, double>;
+  static constexpr double bond_factor = 2.0 * D * (D + 2);  // C_beta
+
+  CollocationOperator& op;
+  const CollocationNetwork& net;
+  const LameConstants& material;
+
+  explicit Kernels(CollocationOperator& of)
+      : op(of), net(*of.setting_.network), material(*of.setting_.constants) {}
+
+  template <class Body>
+  void for_points(const Body& body) const {
+    const Index count = net.points();
+    run_on_threads(op.threads_, [&](int thread) {
+      const Index first = Index(std::int64_t(count) * thread / op.threads_);
+      const Index last = Index(std::int64_t(count) * (thread + 1) / op.threads_);
+      for (Index i = first; i < last; ++i) body(i);
+    });
+  }
+
+  [[nodiscard]] V place(Index i) const {
+    V at;
+    for (int c = 0; c < D; ++c) at[c] = op.points_.reference[std::size_t(i) * D + c];
+    return at;
+  }
+  [[nodiscard]] static V of(std::span<const double> field, Index i) {
+    V at;
+    for (int c = 0; c < D; ++c) at[c] = field[std::size_t(i) * D + c];
+    return at;
+  }
+
+  /// Calls visit(entry, j, k, xi) for the unbroken neighbours.
+  template <class Visit>
+  void for_neighbours(Index i, const Visit& visit) const {
+    const double* share = op.share_.empty() ? net.kernel_share.data() : op.share_.data();
+    const V here = place(i);
+    for (Offset e = net.offset[i]; e < net.offset[i + 1]; ++e) {
+      if (share[e] == 0.0) continue;
+      const Index j = net.neighbour[e];
+      visit(e, j, share[e], minus<D>(place(j), here));
+    }
+  }
+
+  [[nodiscard]] V shaped(Index i, const V& xi) const {
+    const double* inverse = &op.shape_[std::size_t(i) * D * D];
+    V result{};
+    for (int r = 0; r < D; ++r) {
+      for (int c = 0; c < D; ++c) result[r] += inverse[r * D + c] * xi[c];
+    }
+    return result;
+  }
+
+  [[nodiscard]] double mean_mu(Index i, Index j) const {
+    return harmonic_mean(material.mu[i], material.mu[j]);
+  }
+  [[nodiscard]] double mean_lambda(Index i, Index j) const {
+    return harmonic_mean(material.lambda[i], material.lambda[j]);
+  }
+
+  void update_point(Index i) const {
+    M shape{};
+    V out{};
+    double lengths = 0.0;
+    for_neighbours(i, [&](Offset, Index, double k, const V& xi) {
+      add_outer<D>(double(D) * k, xi, xi, shape);
+      const double r = std::sqrt(dot<D>(xi, xi));
+      for (int c = 0; c < D; ++c) out[c] -= k * r * xi[c];
+      lengths += std::abs(k) * r * r;
+    });
+    write_inverse<D>(shape, &op.shape_[std::size_t(i) * D * D]);
+    constexpr int entries = third_moment_entries(D);
+    double* first = &op.first_[std::size_t(i) * D];
+    double* third = &op.third_[std::size_t(i) * entries];
+    std::copy_n(&net.missing_first[std::size_t(i) * D], D, first);
+    std::copy_n(&net.missing_third[std::size_t(i) * entries], entries, third);
+    bool lacks_some = std::any_of(third, third + entries, [](double s) { return s != 0.0; }) ||
+                      std::any_of(first, first + D, [](double a) { return a != 0.0; });
+    if (!op.share_.empty()) {
+      const V here = place(i);
+      for (Offset e = net.offset[i]; e < net.offset[i + 1]; ++e) {
+        if (op.share_[e] != 0.0) continue;
+        const V xi = minus<D>(place(net.neighbour[e]), here);
+        add_missing<D>(xi.data(), net.kernel_share[e], first, third);
+        lacks_some = true;
+      }
+    }
+    double* normal = &op.normal_[std::size_t(i) * D];
+    const double size = std::sqrt(dot<D>(out, out));
+    const bool has_normal = lacks_some && size > no_direction * lengths;
+    for (int c = 0; c < D; ++c) normal[c] = has_normal ? out[c] / size : 0.0;
+  }
+
+  /// B(theta, T)
+  [[nodiscard]] V missing_force(Index i, double theta, const V& traction) const {
+    const double lambda = material.lambda[i], mu = material.mu[i];
+    const V n = of(op.normal_, i);
+    V force;
+    for (int c = 0; c < D; ++c) {
+      force[c] = -2.0 * D * (lambda - mu) * theta * op.first_[std::size_t(i) * D + c];
+    }
+    if (dot<D>(n, n) == 0.0) return force;
+    const double normal_traction = dot<D>(traction, n);
+    const double along = 0.5 * (normal_traction - lambda * theta);
+    const double across =
+        D == 2 ? 0.5 * ((lambda + 2.0 * mu) * theta - normal_traction) : 0.5 * (mu * theta - along);
+    M even{}, odd{};
+    for (int r = 0; r < D; ++r) {
+      const double tangential = traction[r] - normal_traction * n[r];
+      for (int c = 0; c < D; ++c) {
+        even[r][c] += (along - across) * n[r] * n[c] + (r == c ? across : 0.0);
+        odd[r][c] += 0.5 * tangential * n[c];
+        odd[c][r] += 0.5 * tangential * n[c];
+      }
+    }
+    const double* third = &op.third_[std::size_t(i) * third_moment_entries(D)];
+    const V of_even = contracted<D>(third, even), of_odd = contracted<D>(third, odd);
+    V q = plus<D>(of_even, of_odd);
+    if (op.setting_.form == TractionForm::paper) {
+      const double from_even = dot<D>(n, of_even), from_odd = dot<D>(n, of_odd);
+      for (int c = 0; c < D; ++c) q[c] = (from_even - from_odd) * n[c] + of_odd[c];
+    }
+    for (int c = 0; c < D; ++c) force[c] -= bond_factor * q[c];
+    return force;
+  }
+
+  [[nodiscard]] double theta_at(std::span<const double> u, Index i) const {
+    const V here = of(u, i);
+    M moments{};
+    for_neighbours(i, [&](Offset, Index j, double k, const V& xi) {
+      add_outer<D>(k, xi, minus<D>(of(u, j), here), moments);
+    });
+    const double* inverse = &op.shape_[std::size_t(i) * D * D];
+    double theta = 0.0;
+    for (int r = 0; r < D; ++r) {
+      for (int c = 0; c < D; ++c) theta += inverse[r * D + c] * moments[r][c];
+    }
+    return D * theta;
+  }
+
+  [[nodiscard]] V force_at(std::span<const double> u, std::span<const double> traction,
+                           Index i) const {
+    const V here = of(u, i);
+    const double lambda = material.lambda[i], mu = material.mu[i], theta = op.theta_[i];
+    V force{};
+    for_neighbours(i, [&](Offset, Index j, double k, const V& xi) {
+      const double mu_ij = harmonic_mean(mu, material.mu[j]);
+      const double lambda_ij = harmonic_mean(lambda, material.lambda[j]);
+      const double squared = dot<D>(xi, xi);
+      const double stretch = dot<D>(xi, minus<D>(of(u, j), here)) / squared;
+      const double factor =
+          -k * (D * (lambda_ij - mu_ij) * (theta + op.theta_[j]) + bond_factor * mu_ij * stretch);
+      for (int c = 0; c < D; ++c) force[c] += factor * xi[c];
+    });
+    const V pulled = traction.empty() ? V{} : of(traction, i);
+    return plus<D>(force, missing_force(i, theta, pulled));
+  }
+
+  void forces(std::span<const double> u, std::span<const double> traction,
+              std::span<double> force) const {
+    op.theta_.resize(std::size_t(net.points()));
+    for_points([&](Index i) { op.theta_[i] = theta_at(u, i); });
+    for_points([&](Index i) {
+      const V at = force_at(u, traction, i);
+      for (int c = 0; c < D; ++c) force[std::size_t(i) * D + c] = op.points_.volume[i] * at[c];
+    });
+  }
+
+  void add_traction_forces(std::span<const double> traction, std::span<double> force) const {
+    for_points([&](Index i) {
+      const V at = missing_force(i, 0.0, of(traction, i));
+      for (int c = 0; c < D; ++c) force[std::size_t(i) * D + c] -= op.points_.volume[i] * at[c];
+    });
+  }
+
+  [[nodiscard]] M gradient_at(std::span<const double> u, Index i) const {
+    const V here = of(u, i);
+    M gradient{};
+    for_neighbours(i, [&](Offset, Index j, double k, const V& xi) {
+      add_outer<D>(double(D) * k, minus<D>(of(u, j), here), shaped(i, xi), gradient);
+    });
+    return gradient;
+  }
+
+  /// w; the part of bonds in the missing part of the ball is that of the whole ball under the
+  /// nonlocal strain, which the quadrature has exactly, less that of what is there.
+  [[nodiscard]] double energy_density(std::span<const double> u, Index i) const {
+    const M gradient = gradient_at(u, i);
+    M strain;
+    double theta = 0.0, squared_strain = 0.0;
+    for (int r = 0; r < D; ++r) {
+      theta += gradient[r][r];
+      for (int c = 0; c < D; ++c) {
+        strain[r][c] = 0.5 * (gradient[r][c] + gradient[c][r]);
+        squared_strain += strain[r][c] * strain[r][c];
+      }
+    }
+    const V here = of(u, i);
+    double bonds = (theta * theta + 2.0 * squared_strain) / (D * (D + 2));
+    for_neighbours(i, [&](Offset, Index j, double k, const V& xi) {
+      const double squared = dot<D>(xi, xi);
+      const double along = dot<D>(xi, minus<D>(of(u, j), here));
+      double linear = 0.0;
+      for (int r = 0; r < D; ++r) linear += xi[r] * dot<D>(strain[r], xi);
+      bonds += k * (along - linear) * (along + linear) / squared;
+    });
+    const double lambda = material.lambda[i], mu = material.mu[i];
+    return 0.5 * (lambda - mu) * theta * theta + 0.25 * bond_factor * mu * bonds;
+  }
+
+  // --- rows -------------------------------------------------------------------------------------
+
+  /// What theta of a point and of its neighbours do to the force on it: g of the point itself, and
+  /// of each entry by visit(entry, j, g, bond block factor, xi).
+  template <class Visit>
+  V for_couplings(Index i, const Visit& visit) const {
+    V own = missing_force(i, 1.0, V{});
+    for_neighbours(i, [&](Offset e, Index j, double k, const V& xi) {
+      const double mu = mean_mu(i, j);
+      const V g = scaled<D>(-D * k * (mean_lambda(i, j) - mu), xi);
+      own = plus<D>(own, g);
+      visit(e, j, g, -bond_factor * mu * k / dot<D>(xi, xi), xi);
+    });
+    return own;
+  }
+
+  /// theta of a point is sum_l t_l . (u_l - u_i).
+  template <class Visit>
+  void for_dilatation(Index i, const Visit& visit) const {
+    for_neighbours(i, [&](Offset, Index j, double k, const V& xi) {
+      visit(j, scaled<D>(D * k, shaped(i, xi)));
+    });
+  }
+
+  /// Blocks of one row, found by their column.
+  struct RowBuffer {
+    std::vector<Index> place;  // per point; -1: none
+    std::vector<Index> columns;
+    std::vector<M> blocks;
+    explicit RowBuffer(Index points) : place(std::size_t(points), -1) {}
+    M& at(Index column) {
+      Index& where = place[std::size_t(column)];
+      if (where < 0) {
+        where = Index(columns.size());
+        columns.push_back(column);
+        blocks.emplace_back();
+      }
+      return blocks[std::size_t(where)];
+    }
+    void clear() {
+      for (const Index column : columns) place[std::size_t(column)] = -1;
+      columns.clear();
+      blocks.clear();
+    }
+  };
+
+  void add_dilatation(Index m, const V& g, RowBuffer& row) const {
+    for_dilatation(m, [&](Index l, const V& t) {
+      add_outer<D>(1.0, g, t, row.at(l));
+      add_outer<D>(-1.0, g, t, row.at(m));
+    });
+  }
+
+  void fill_row(Index i, RowBuffer& row) const {
+    row.clear();
+    row.at(i);
+    const V own = for_couplings(i, [&](Offset, Index j, const V& g, double factor, const V& xi) {
+      add_outer<D>(factor, xi, xi, row.at(j));
+      add_outer<D>(-factor, xi, xi, row.at(i));
+      add_dilatation(j, g, row);
+    });
+    add_dilatation(i, own, row);
+  }
+
+  [[nodiscard]] SparseRows rows() const {
+    const auto count = std::size_t(net.points());
+    std::vector<Offset> blocks(count);
+    SparseRows result;
+    const auto sweep = [&](const auto& use) {
+      run_on_threads(op.threads_, [&](int thread) {
+        RowBuffer row(net.points());
+        const Index first = Index(std::int64_t(count) * thread / op.threads_);
+        const Index last = Index(std::int64_t(count) * (thread + 1) / op.threads_);
+        for (Index i = first; i < last; ++i) {
+          fill_row(i, row);
+          use(i, row);
+        }
+      });
+    };
+    sweep([&](Index i, RowBuffer& row) { blocks[std::size_t(i)] = Offset(row.columns.size()); });
+    result.offset.assign(count * D + 1, 0);
+    for (std::size_t i = 0; i < count; ++i) {
+      for (int r = 0; r < D; ++r) {
+        result.offset[i * D + r + 1] = result.offset[i * D + r] + blocks[i] * D;
+      }
+    }
+    result.column.resize(std::size_t(result.offset.back()));
+    result.value.resize(std::size_t(result.offset.back()));
+    sweep([&](Index i, RowBuffer& row) {
+      std::vector<Index> ascending = row.columns;
+      std::sort(ascending.begin(), ascending.end());
+      for (int r = 0; r < D; ++r) {
+        auto to = std::size_t(result.offset[std::size_t(i) * D + r]);
+        for (const Index j : ascending) {
+          const M& block = row.blocks[std::size_t(row.place[std::size_t(j)])];
+          for (int c = 0; c < D; ++c, ++to) {
+            result.column[to] = j * D + c;
+            result.value[to] = op.points_.volume[i] * block[r][c];
+          }
+        }
+      }
+    });
+    return result;
+  }
+
+  [[nodiscard]] std::vector<double> diagonal() const {
+    std::vector<double> blocks(std::size_t(net.points()) * D * D);
+    for_points([&](Index i) {
+      M block{};
+      const V own = for_couplings(i, [&](Offset, Index j, const V& g, double factor, const V& xi) {
+        add_outer<D>(-factor, xi, xi, block);
+        for_dilatation(j, [&](Index l, const V& t) {
+          if (l == i) add_outer<D>(1.0, g, t, block);
+        });
+      });
+      for_dilatation(i, [&](Index, const V& t) { add_outer<D>(-1.0, own, t, block); });
+      for (int r = 0; r < D; ++r) {
+        for (int c = 0; c < D; ++c) {
+          blocks[std::size_t(i) * D * D + r * D + c] = op.points_.volume[i] * block[r][c];
+        }
+      }
+    });
+    return blocks;
+  }
+
+  [[nodiscard]] std::vector<double> bounds_of_row_sums() const {
+    std::vector<double> of_dilatation(std::size_t(net.points()));
+    for_points([&](Index i) {
+      double sum = 0.0;
+      for_dilatation(i, [&](Index, const V& t) {
+        for (int c = 0; c < D; ++c) sum += 2.0 * std::abs(t[c]);
+      });
+      of_dilatation[i] = sum;
+    });
+    std::vector<double> bounds(std::size_t(net.points()) * D);
+    for_points([&](Index i) {
+      V sum{};
+      const V own = for_couplings(i, [&](Offset, Index j, const V& g, double factor, const V& xi) {
+        for (int r = 0; r < D; ++r) {
+          sum[r] += std::abs(g[r]) * of_dilatation[j];
+          for (int c = 0; c < D; ++c) sum[r] += 2.0 * std::abs(factor * xi[r] * xi[c]);
+        }
+      });
+      for (int r = 0; r < D; ++r) {
+        bounds[std::size_t(i) * D + r] =
+            op.points_.volume[i] * (sum[r] + std::abs(own[r]) * of_dilatation[i]);
+      }
+    });
+    return bounds;
+  }
+};
+
+CollocationOperator::CollocationOperator(const Points& points, CollocationSetting setting,
+                                         int threads)
+    : points_(points), setting_(std::move(setting)), threads_(threads) {
+  const auto count = std::size_t(setting_.network->points());
+  const auto d = std::size_t(setting_.network->dimension);
+  shape_.resize(count * d * d);
+  first_.resize(count * d);
+  normal_.resize(count * d);
+  third_.resize(count * std::size_t(third_moment_entries(setting_.network->dimension)));
+  update({});
+}
+CollocationOperator::~CollocationOperator() = default;
+
+template <class Visit>
+auto CollocationOperator::dispatch(const Visit& visit) {
+  if (setting_.network->dimension == 2) return visit(Kernels<2>(*this));
+  return visit(Kernels<3>(*this));
+}
+
+void CollocationOperator::update(std::span<const char> broken) {
+  const bool is_known =
+      is_up_to_date_ && std::equal(broken.begin(), broken.end(), broken_.begin(), broken_.end());
+  if (is_known) return;
+  broken_.assign(broken.begin(), broken.end());
+  const CollocationNetwork& network = *setting_.network;
+  share_.clear();
+  if (std::find(broken.begin(), broken.end(), char(1)) != broken.end()) {
+    share_ = network.kernel_share;
+    for (std::size_t e = 0; e < share_.size(); ++e) {
+      if (broken[std::size_t(network.bond[e])]) share_[e] = 0.0;
+    }
+  }
+  dispatch(
+      [&](const auto& kernels) { kernels.for_points([&](Index i) { kernels.update_point(i); }); });
+  is_up_to_date_ = true;
+}
+
+void CollocationOperator::forces(std::span<const double> displacement,
+                                 std::span<const double> traction, std::span<double> force) {
+  dispatch([&](const auto& kernels) { kernels.forces(displacement, traction, force); });
+}
+
+void CollocationOperator::add_traction_forces(std::span<const double> traction,
+                                              std::span<double> force) {
+  dispatch([&](const auto& kernels) { kernels.add_traction_forces(traction, force); });
+}
+
+void CollocationOperator::dilatations(std::span<const double> displacement,
+                                      std::span<double> theta) {
+  dispatch([&](const auto& kernels) {
+    kernels.for_points([&](Index i) { theta[i] = kernels.theta_at(displacement, i); });
+  });
+}
+
+void CollocationOperator::displacement_gradients(std::span<const double> displacement,
+                                                 std::span<double> gradients) {
+  dispatch([&](const auto& kernels) {
+    kernels.for_points([&](Index i) {
+      const auto gradient = kernels.gradient_at(displacement, i);
+      const std::size_t d = gradient.size();
+      for (std::size_t r = 0; r < d; ++r) {
+        std::copy_n(gradient[r].begin(), d, &gradients[std::size_t(i) * d * d + r * d]);
+      }
+    });
+  });
+}
+
+void CollocationOperator::energies(std::span<const double> displacement, std::span<double> energy) {
+  dispatch([&](const auto& kernels) {
+    kernels.for_points(
+        [&](Index i) { energy[i] = points_.volume[i] * kernels.energy_density(displacement, i); });
+  });
+}
+
+SparseRows CollocationOperator::rows() {
+  return dispatch([](const auto& kernels) { return kernels.rows(); });
+}
+
+std::vector<double> CollocationOperator::diagonal() {
+  return dispatch([](const auto& kernels) { return kernels.diagonal(); });
+}
+
+std::vector<double> CollocationOperator::bounds_of_row_sums() {
+  return dispatch([](const auto& kernels) { return kernels.bounds_of_row_sums(); });
+}
+
+double CollocationOperator::bytes_of_rows() const {
+  const CollocationNetwork& network = *setting_.network;
+  const double points = network.points(), d = network.dimension;
+  // Couplings reach two horizons: 2^d as many points as one.
+  const double per_point = double(network.neighbour.size()) / std::max(points, 1.0) + 1.0;
+  const double blocks = points * std::min(points, std::pow(2.0, d) * per_point);
+  return blocks * d * d * double(sizeof(Index) + sizeof(double));
+}
+
+}  // namespace peristat

@@ -1,0 +1,101 @@
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "assembly/operators/unsymmetric_tangent.hpp"
+#include "assembly/terms/collocation/collocation_network.hpp"
+#include "src/geometry/points.hpp"
+
+namespace peristat {
+
+/// What a collocation operator is made of; constant in a solve.
+struct CollocationSetting {
+  std::shared_ptr<const CollocationNetwork> network;
+  std::shared_ptr<const LameConstants> constants;
+  TractionForm form = TractionForm::full;
+};
+
+/// The linear peridynamic solid at the points themselves ([LPS] sec. 4), with d the dimension:
+///
+///   theta_i = d sum_j k_ij xi . M_i eta,   M_i = (d sum_j k_ij xi xi)^-1
+///   (L u)_i = sum_j k_ij (-d (lambda_ij - mu_ij) xi (theta_i + theta_j)
+///                         - 2 d (d + 2) mu_ij xi (xi . eta) / r^2) + B_i(theta_i, T_i)
+///
+/// over the unbroken bonds, xi the reference vector to the neighbour and eta the difference of the
+/// displacements: both are linear in u. In the missing part of the ball, outside the body or beyond
+/// broken bonds, u is continued linearly with the dilatation theta_i and the traction T_i on the
+/// surface there, whose normal n_i = -sum_j omega_ij xi / |...| is outward:
+///
+///   B_i = -2 d (lambda - mu) theta_i a_i - 2 d (d + 2) S_i : mu E_i
+///
+/// with a_i = sum k xi and S_i = sum k xi xi xi / r^2 over what is missing, and mu E_i from
+/// sigma_i n_i = T_i and tr E_i = theta_i; in 3D the tangential strains are equal ([LPS] eq.
+/// 4.6-4.8 is the form `paper`). Patch tests are exact with the form `full`.
+///
+/// The rows have no common energy, and the operator is not symmetric: where neighbourhoods are
+/// alike and whole it is.
+class CollocationOperator {
+ public:
+  /// All references outlive it; `broken` may change with `update`.
+  CollocationOperator(const Points& points, CollocationSetting setting, int threads);
+  ~CollocationOperator();
+
+  /// Takes up which bonds are broken, by their numbers in the model's network; empty: none.
+  /// Nothing is done if that is known.
+  void update(std::span<const char> broken);
+
+  /// V (L u) [N], with the part of the tractions.
+  /// @param traction at points, points x dimension [Pa]; empty: free surfaces
+  void forces(std::span<const double> displacement, std::span<const double> traction,
+              std::span<double> force);
+  /// Adds the part of the tractions alone, -V B(0, T), to the forces of the loads [N].
+  void add_traction_forces(std::span<const double> traction, std::span<double> force);
+
+  /// Dilatation of points.
+  void dilatations(std::span<const double> displacement, std::span<double> theta);
+  /// Nonlocal displacement gradients H_i = d sum_j k_ij eta (M_i xi), points x d x d, row major,
+  /// exact for linear fields; their trace is the dilatation.
+  void displacement_gradients(std::span<const double> displacement, std::span<double> gradients);
+  /// V w of points [J],
+  ///
+  ///   w = (lambda - mu) theta^2 / 2 + d (d + 2) mu / 2 sum k (xi . eta)^2 / r^2
+  ///
+  /// ([LPS] sec. 2; the printed W is twice the energy), with the nonlocal strain in the missing
+  /// part of the ball.
+  void energies(std::span<const double> displacement, std::span<double> energy);
+
+  /// Outward normals, points x dimension; zero where nothing is missing, or all around.
+  [[nodiscard]] std::span<const double> normals() const { return normal_; }
+
+  /// All rows of dV(L u)/du [N/m].
+  [[nodiscard]] SparseRows rows();
+  /// Blocks (i, i) of it, points x d x d.
+  [[nodiscard]] std::vector<double> diagonal();
+  /// Not less than the sums of the absolute entries of rows [N/m].
+  [[nodiscard]] std::vector<double> bounds_of_row_sums();
+  /// What rows() takes, about [bytes].
+  [[nodiscard]] double bytes_of_rows() const;
+
+ private:
+  template <int D>
+  struct Kernels;
+  /// Calls visit(Kernels<D>{*this}).
+  template <class Visit>
+  auto dispatch(const Visit& visit);
+
+  const Points& points_;
+  CollocationSetting setting_;
+  int threads_;
+  std::vector<char> broken_;  // as known
+  bool is_up_to_date_ = false;
+  std::vector<double> share_;   // k_ij of unbroken neighbours, 0 of others; empty: all unbroken
+  std::vector<double> shape_;   // M, points x d x d
+  std::vector<double> first_;   // a, points x d
+  std::vector<double> third_;   // S, points x entries
+  std::vector<double> normal_;  // points x d
+  std::vector<double> theta_;   // of forces()
+};
+
+}  // namespace peristat

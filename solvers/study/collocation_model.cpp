@@ -1,0 +1,89 @@
+#include "solvers/study/collocation_model.hpp"
+
+#include <cmath>
+#include <memory>
+#include <utility>
+
+#include "assembly/terms/collocation/collocation_term.hpp"
+#include "assembly/terms/collocation/make_collocation_network.hpp"
+#include "src/core/input_error.hpp"
+#include "src/core/number_text.hpp"
+
+namespace peristat {
+namespace {
+
+/// Micromodulus of bonds that dissipate what a crack of the solid does.
+double modulus_of_crack(const MaterialSpecification& material, const BondSetting& setting) {
+  const double energy = crack_energy_of_dilation(lame_constants(material, setting.dimension),
+                                                 setting.horizon, setting.dimension);
+  return 4.0 * energy / (mean_of_magnitude(setting.dimension) * setting.moment(2));
+}
+
+void require_lattice(const Points& points) {
+  const auto refuse = [](const std::string& key, const std::string& value,
+                         const std::string& what) { throw InputError(key, value, what); };
+  if (!points.lattice || !points.spacing.is_square()) {
+    refuse("material.model", "lps",
+           "needs a lattice of squares or cubes: balls that reach over the surface are filled up "
+           "with its places");
+  }
+  if (points.own() < points.count()) {
+    refuse("material.model", "lps", "does not go with planes of symmetry and periods");
+  }
+  if (!points.neighbours.empty()) {
+    refuse("material.model", "lps", "finds its own neighbours");
+  }
+}
+
+}  // namespace
+
+LamePair lame_constants(const MaterialSpecification& material, int dimension) {
+  return lame_constants(*material.youngs_modulus, *material.poisson_ratio, dimension,
+                        material.plane);
+}
+
+double lps_critical_stretch(const MaterialSpecification& material, const BondSetting& setting,
+                            double fracture_energy) {
+  return std::sqrt(fracture_energy /
+                   crack_energy_of_dilation(lame_constants(material, setting.dimension),
+                                            setting.horizon, setting.dimension));
+}
+
+Model make_collocation_model(const BodySpecification& from, const PointMaterials& materials,
+                             const PointFactors& factors, const Points& points,
+                             const BondSetting& setting, Bonds bonds, CutBonds& cut,
+                             CollocationSummary& summary, int threads) {
+  require_lattice(points);
+  std::vector<DirectedConstant> moduli;
+  auto constants = std::make_shared<LameConstants>();
+  std::vector<LamePair> of_material;
+  for (const auto& material : all_materials(from, materials)) {
+    moduli.push_back({{modulus_of_crack(*material.of, setting), 0.0, 0.0}, {}});
+    of_material.push_back(lame_constants(*material.of, points.dimension));
+  }
+  for (Index i = 0; i < points.count(); ++i) {
+    const LamePair& pair = of_material[materials.of(i)];
+    const double factor = factors.stiffness.empty() ? 1.0 : factors.stiffness[std::size_t(i)];
+    constants->lambda.push_back(factor * pair.lambda);
+    constants->mu.push_back(factor * pair.mu);
+  }
+  const BondMaterials mixed(from, materials, factors, points, std::move(moduli));
+  if (!from.is_uniform()) {
+    refuse_idle_interfaces(from, materials, bonds);
+    mixed.weigh(bonds);
+  }
+  cut = cut_bonds(bonds, points, from.cracks);
+  MadeCollocationNetwork made =
+      make_collocation_network(points, bonds, setting.horizon, from.collocation.degree, threads);
+  summary = {made.negative, made.lowered, made.solves, made.lowest};
+  auto local = std::make_shared<CollocationNetwork>(make_local_network(points, bonds));
+  auto whole = std::make_shared<CollocationNetwork>(std::move(made.network));
+  auto [potential, never_fails] = mixed.potential(bonds);
+  const TractionForm form = from.collocation.traction_form;
+  return Model(std::make_shared<CollocationTerm>(
+      std::make_shared<const Bonds>(std::move(bonds)), std::move(potential), std::move(never_fails),
+      CollocationSetting{std::move(whole), constants, form},
+      CollocationSetting{std::move(local), constants, form}));
+}
+
+}  // namespace peristat

@@ -1,0 +1,123 @@
+#include "src/conditions/surface_tractions.hpp"
+
+#include <algorithm>
+#include <array>
+
+#include "src/conditions/points_of_set.hpp"
+#include "src/core/input_error.hpp"
+
+namespace peristat {
+namespace {
+
+/// Places of the entries of a stress: xx yy xy, or xx yy zz xy yz xz.
+constexpr std::array<std::array<int, 2>, 3> plane_entries{{{0, 0}, {1, 1}, {0, 1}}};
+constexpr std::array<std::array<int, 2>, 6> solid_entries{
+    {{0, 0}, {1, 1}, {2, 2}, {0, 1}, {1, 2}, {0, 2}}};
+
+std::span<const std::array<int, 2>> stress_entries(int dimension) {
+  if (dimension == 2) return plane_entries;
+  return solid_entries;
+}
+
+/// Texts of a load's expressions.
+std::vector<std::string> texts_of(const LoadSpecification& load, int dimension) {
+  using Kind = LoadSpecification::Kind;
+  if (load.kind == Kind::pressure) return {load.value[0]};
+  if (load.kind == Kind::traction) {
+    return {load.value.begin(), load.value.begin() + dimension};
+  }
+  return load.stress;
+}
+
+}  // namespace
+
+void SurfaceTractions::add(const Points& points, const LoadSpecification& load,
+                           const std::vector<std::string>& parameters) {
+  Load made{load.kind, {}, {}};
+  std::vector<Index> members;
+  if (!load.set.empty()) members = points_of_set(points, load.set, "set");
+  const auto acts_at = [&](const SurfaceSite& site) {
+    if (load.side && site.side != load.side) return false;
+    if (!load.boundary.empty() && site.name != load.boundary) return false;
+    return load.set.empty() || std::binary_search(members.begin(), members.end(), site.point);
+  };
+  for (std::size_t k = 0; k < sites_.size(); ++k) {
+    if (acts_at(sites_[k])) made.sites.push_back(k);
+  }
+  if (made.sites.empty()) {
+    const std::string key = load.side                ? "side"
+                            : !load.boundary.empty() ? "boundary"
+                            : !load.set.empty()      ? "set"
+                                                     : "";
+    const std::string value = load.side                ? name(*load.side)
+                              : !load.boundary.empty() ? load.boundary
+                                                       : load.set;
+    throw InputError(key, value.empty() ? "" : '"' + value + '"',
+                     "there is no free boundary here that a traction could act on; name a side "
+                     "of the body without a layer, or a shape of lattice.shape by its name");
+  }
+  const std::vector<std::string> texts = texts_of(load, points.dimension);
+  if (load.kind == LoadSpecification::Kind::stress &&
+      texts.size() != stress_entries(points.dimension).size()) {
+    throw InputError("stress", "",
+                     points.dimension == 2 ? "needs the components xx, yy, xy"
+                                           : "needs the components xx, yy, zz, xy, yz, xz");
+  }
+  for (const std::string& text : texts) {
+    made.value.emplace_back(text, points.dimension, points.spacing, parameters);
+  }
+  loads_.push_back(std::move(made));
+}
+
+bool SurfaceTractions::changes_with_parameters() const {
+  return std::any_of(loads_.begin(), loads_.end(), [](const Load& load) {
+    return std::any_of(load.value.begin(), load.value.end(),
+                       [](const Expression& value) { return value.has_parameters(); });
+  });
+}
+
+Coordinates SurfaceTractions::traction(const Load& load, const SurfaceSite& site, int dimension,
+                                       std::span<const double> loads) const {
+  Coordinates result{};
+  switch (load.kind) {
+    case LoadSpecification::Kind::pressure: {
+      const double pressure = load.value[0](site.place, loads);
+      for (int c = 0; c < dimension; ++c) result[c] = -site.share * pressure * site.normal[c];
+      break;
+    }
+    case LoadSpecification::Kind::stress: {
+      const Coordinates& normal = site.is_only ? site.point_normal : site.normal;
+      const auto entries = stress_entries(dimension);
+      for (std::size_t k = 0; k < entries.size(); ++k) {
+        const double stress = site.share * load.value[k](site.place, loads);
+        const auto [r, c] = entries[k];
+        result[r] += stress * normal[c];
+        if (r != c) result[c] += stress * normal[r];
+      }
+      break;
+    }
+    default:
+      for (int c = 0; c < dimension; ++c) {
+        result[c] = site.share * load.value[c](site.place, loads);
+      }
+  }
+  return result;
+}
+
+std::vector<double> SurfaceTractions::at(const Points& points,
+                                         std::span<const double> loads) const {
+  const auto d = std::size_t(points.dimension);
+  std::vector<double> tractions(points.reference.size(), 0.0);
+  for (const Load& load : loads_) {
+    for (const std::size_t k : load.sites) {
+      const SurfaceSite& site = sites_[k];
+      const Coordinates of_load = traction(load, site, points.dimension, loads);
+      for (std::size_t c = 0; c < d; ++c) {
+        tractions[std::size_t(site.point) * d + c] += of_load[c];
+      }
+    }
+  }
+  return tractions;
+}
+
+}  // namespace peristat

@@ -1,0 +1,63 @@
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "src/conditions/specification.hpp"
+#include "src/core/expression.hpp"
+#include "src/geometry/points.hpp"
+
+namespace peristat {
+
+/// A face of the boundary over which the ball around a point reaches.
+struct SurfaceSite {
+  Index point = 0;
+  std::optional<Side> side{};  ///< of the body's box, if it is one
+  std::string name{};          ///< of the face's shape; empty: it has none
+  Coordinates place{};         ///< on the face, nearest to the point [m]
+  Coordinates normal{};        ///< of the face there, outward
+  Coordinates point_normal{};  ///< of the point, by its neighbourhood
+  /// Part a_f of the point's traction T = sum_f a_f t_f that is the face's, with n = sum_f a_f e_f
+  /// of the point's normal: 1 where the face is the only one.
+  double share = 1.0;
+  bool is_only = true;
+};
+
+/// Tractions on the surface at points, of models that take them as they are ([LPS] sec. 4.2). At a
+/// point with one face a traction keeps its vector, and a stress gives sigma n with the normal of
+/// the point, which is what makes a linear field exact on every grid.
+class SurfaceTractions {
+ public:
+  SurfaceTractions() = default;
+  explicit SurfaceTractions(std::vector<SurfaceSite> sites) : sites_(std::move(sites)) {}
+
+  /// Takes up a traction, a pressure or a stress.
+  /// @throws InputError ("side", "boundary") for a part of the boundary that no point is at, and
+  ///         for expressions that can't be read
+  void add(const Points& points, const LoadSpecification& load,
+           const std::vector<std::string>& parameters);
+
+  [[nodiscard]] bool none() const { return loads_.empty(); }
+  [[nodiscard]] bool changes_with_parameters() const;
+
+  /// Tractions at points under load parameters, points x dimension [Pa].
+  /// @throws InputError if one is not finite
+  [[nodiscard]] std::vector<double> at(const Points& points, std::span<const double> loads) const;
+
+ private:
+  struct Load {
+    LoadSpecification::Kind kind;
+    std::vector<std::size_t> sites;
+    std::vector<Expression> value;  // components; pressure; or stress xx yy (zz) xy (yz xz)
+  };
+  [[nodiscard]] Coordinates traction(const Load& load, const SurfaceSite& site, int dimension,
+                                     std::span<const double> loads) const;
+
+  std::vector<SurfaceSite> sites_;
+  std::vector<Load> loads_;
+};
+
+}  // namespace peristat
