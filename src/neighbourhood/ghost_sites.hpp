@@ -1,0 +1,31 @@
+#pragma once
+
+#include <vector>
+
+#include "src/geometry/lattice.hpp"
+#include "src/geometry/lattice_frame.hpp"
+
+namespace peristat {
+
+/// Places of a lattice that hold no point.
+struct GhostSites {
+  std::vector<Cell> cell;         ///< ascending
+  std::vector<double> reference;  ///< positions, count x dimension, row major [m]
+
+  [[nodiscard]] Index count() const { return static_cast<Index>(cell.size()); }
+};
+
+/// The places of a lattice within a radius of one of its points, layers' points included, that
+/// hold none: with them every point has the neighbours that it would have in an unbounded lattice.
+/// Where the lattice is perturbed they are, too, each by up to `perturbation` spacings along each
+/// of the lattice's axes, which follow from the seed and the place alone: what is cut out of the
+/// body has no part in it. (The body's own shifts are drawn one after another, so that a ghost does
+/// not stand where a larger body of the same seed has its point.) Corners of cells that are shifted
+/// (`cell_perturbation`) shift no ghosts.
+/// @param points what make_points makes of the lattice, in any order; images hold their places, but
+///               need no ghosts
+/// @param radius closed, with the tolerance of a horizon [m]
+/// @throws InputError ("radius") if it can't be used or if points and ghosts can't be numbered
+[[nodiscard]] GhostSites ghost_sites(const Lattice& lattice, const Points& points, double radius);
+
+}  // namespace peristat
