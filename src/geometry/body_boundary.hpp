@@ -18,7 +18,8 @@ namespace peristat {
 ///
 /// In 2D faces are found exactly. In 3D they are exact where the perpendicular from the place meets
 /// the face; beside it, where others cut it off, to about 1e-6 of the body's size, and what is
-/// narrower than 1/32 of the distance asked for may be missed.
+/// narrower than 1/32 of the distance asked for may be missed. Where surfaces touch, places within
+/// about 1e-4 of the size count as cut off; of shapes that share a surface the first is named.
 ///
 /// `near` may be called by many threads if `where` of the covers may.
 class BodyBoundary {

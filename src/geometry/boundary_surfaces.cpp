@@ -30,10 +30,35 @@ Coordinates across(const Coordinates& axis) {
 /// Surfaces of a shape.
 struct Surfaces {
   std::size_t shape;
+  const ShapeStep& step;
+  double beyond;  // the shape, of covers [m]
   std::vector<Surface>& surfaces;
 
-  void plane(std::size_t side, const Coordinates& at, const Coordinates& normal) {
-    surfaces.push_back({Kind::plane, {shape, side}, at, normal, 0.0});
+  Surface& next(Kind kind, std::size_t side) {
+    Surface& surface = surfaces.emplace_back();
+    surface.kind = kind;
+    surface.part = {shape, side};
+    surface.sign = step.action == ShapeStep::Action::add ? 1.0 : -1.0;
+    surface.bounds = bounds(step.shape);
+    for (std::size_t c = 0; c < 3; ++c) {
+      surface.bounds.min[c] -= beyond;
+      surface.bounds.max[c] += beyond;
+    }
+    return surface;
+  }
+
+  Surface& plane(std::size_t side, const Coordinates& at, const Coordinates& normal) {
+    Surface& surface = next(Kind::plane, side);
+    surface.middle = at;
+    surface.axis = normal;
+    return surface;
+  }
+
+  void round(Kind kind, const Coordinates& middle, const Coordinates& axis, double radius) {
+    Surface& surface = next(kind, 0);
+    surface.middle = middle;
+    surface.axis = axis;
+    surface.radius = radius;
   }
 
   void operator()(const Box& box) {
@@ -42,7 +67,9 @@ struct Surfaces {
         Coordinates at{}, normal{};
         at[c] = upper ? box.max[c] : box.min[c];
         normal[c] = upper ? 1.0 : -1.0;
-        if (std::isfinite(at[c])) plane(2 * c + (upper ? 1 : 0), at, normal);
+        if (!std::isfinite(at[c])) continue;
+        Surface& surface = plane(2 * c + (upper ? 1 : 0), at, normal);
+        surface.bounds.min[c] = surface.bounds.max[c] = at[c];
       }
     }
   }
@@ -64,29 +91,36 @@ struct Surfaces {
 
   void operator()(const Cylinder& of) {
     const Coordinates axis = unit(of.axis);
-    surfaces.push_back({Kind::cylinder, {shape, 0}, of.centre, axis, of.radius});
+    round(Kind::cylinder, of.centre, axis, of.radius);
     if (!std::isfinite(of.length)) return;
     const Coordinates half = scaled<3>(0.5 * of.length, axis);
     plane(1, minus<3>(of.centre, half), scaled<3>(-1.0, axis));
     plane(2, plus<3>(of.centre, half), axis);
   }
 
-  void operator()(const Sphere& of) {
-    surfaces.push_back({Kind::sphere, {shape, 0}, of.centre, {}, of.radius});
-  }
+  void operator()(const Sphere& of) { round(Kind::sphere, of.centre, {}, of.radius); }
 
   void operator()(const Disk&) {}  // check_lattice refuses it in 3D
 };
 
-/// Whether two are the same places.
+/// Whether two are the same places with the body on the same side.
 bool are_one(const Surface& a, const Surface& b, double slack) {
   if (a.kind != b.kind || std::abs(a.radius - b.radius) > slack) return false;
+  const double facing = a.kind == Kind::plane ? dot<3>(a.axis, b.axis) : 1.0;
+  if (a.sign * b.sign * facing < 0.0) return false;
   const Coordinates between = minus<3>(b.middle, a.middle);
   if (a.kind == Kind::sphere) return length(between) < slack;
   if (length(cross(a.axis, b.axis)) > 1e-7) return false;
   const double along = dot<3>(between, a.axis);
   if (a.kind == Kind::plane) return std::abs(along) < slack;
   return length(minus<3>(between, scaled<3>(along, a.axis))) < slack;
+}
+
+double distance_to(const Box& box, const Coordinates& place) {
+  double squared = 0.0;
+  for (std::size_t c = 0; c < 3; ++c)
+    squared += std::pow(std::max({0.0, box.min[c] - place[c], place[c] - box.max[c]}), 2);
+  return std::sqrt(squared);
 }
 
 }  // namespace
@@ -129,51 +163,71 @@ Coordinates Surface::reached(const Coordinates& from, const Coordinates& directi
 BoundarySurfaces::BoundarySurfaces(const CollaredBody& body, const std::vector<ShapeStep>& shapes,
                                    const Box& bounds, double nudge)
     : body_(body), bounds_(bounds), nudge_(nudge) {
+  double beyond = 0.0;
+  for (const Cover& cover : body.covers()) beyond = std::max(beyond, cover.depth);
   std::vector<Surface> all;
-  for (std::size_t k = 0; k < shapes.size(); ++k) std::visit(Surfaces{k, all}, shapes[k].shape);
+  for (std::size_t k = 0; k < shapes.size(); ++k)
+    std::visit(Surfaces{k, shapes[k], beyond, all}, shapes[k].shape);
   for (const Surface& surface : all) {
-    const bool is_known = std::any_of(surfaces_.begin(), surfaces_.end(), [&](const Surface& one) {
+    const auto known = std::find_if(surfaces_.begin(), surfaces_.end(), [&](const Surface& one) {
       return are_one(one, surface, 4.0 * nudge_);
     });
-    if (!is_known) surfaces_.push_back(surface);
+    if (known == surfaces_.end()) {
+      surfaces_.push_back(surface);
+      continue;
+    }
+    for (std::size_t c = 0; c < 3; ++c) {
+      known->bounds.min[c] = std::min(known->bounds.min[c], surface.bounds.min[c]);
+      known->bounds.max[c] = std::max(known->bounds.max[c], surface.bounds.max[c]);
+    }
   }
 }
 
-bool BoundarySurfaces::is_exposed(const Surface& surface, double sign,
-                                  const Coordinates& at) const {
-  const Coordinates step = scaled<3>(sign * nudge_, surface.normal(at));
+bool BoundarySurfaces::is_exposed(const Surface& surface, const Coordinates& at) const {
+  const Coordinates step = scaled<3>(surface.sign * nudge_, surface.normal(at));
   return body_.contains(minus<3>(at, step)) && !body_.contains(plus<3>(at, step));
 }
 
-std::optional<double> BoundarySurfaces::way_to_exposed(const Surface& surface, double sign,
-                                                       const Coordinates& from,
-                                                       const Coordinates& direction,
-                                                       double most) const {
+std::optional<Coordinates> BoundarySurfaces::first_exposed(const Surface& surface,
+                                                           const Coordinates& place,
+                                                           double distance,
+                                                           const Coordinates& direction,
+                                                           double most) const {
   constexpr int steps = 32;
+  const Coordinates from = surface.foot(place);
   double before = 0.0;
   for (int step = 1; step <= steps; ++step) {
     double way = most * step / steps;
-    if (!is_exposed(surface, sign, surface.reached(from, direction, way))) {
+    Coordinates at = surface.reached(from, direction, way);
+    if (!is_exposed(surface, at)) {
+      if (length(minus<3>(at, place)) > distance) return std::nullopt;  // and farther from here on
       before = way;
       continue;
     }
     while (way - before > 1e-3 * nudge_) {
       const double middle = 0.5 * (before + way);
       if (middle <= before || middle >= way) break;
-      (is_exposed(surface, sign, surface.reached(from, direction, middle)) ? way : before) = middle;
+      const Coordinates between = surface.reached(from, direction, middle);
+      if (is_exposed(surface, between)) {
+        way = middle;
+        at = between;
+      } else {
+        before = middle;
+      }
     }
-    return way;
+    if (length(minus<3>(at, place)) > distance) return std::nullopt;
+    return at;
   }
   return std::nullopt;
 }
 
-std::optional<Coordinates> BoundarySurfaces::nearest(const Surface& surface, double sign,
+std::optional<Coordinates> BoundarySurfaces::nearest(const Surface& surface,
                                                      const Coordinates& place,
                                                      double distance) const {
   const Coordinates foot = surface.foot(place);
   const double height = length(minus<3>(foot, place));
   if (height > distance) return std::nullopt;
-  if (is_exposed(surface, sign, foot)) return foot;
+  if (is_exposed(surface, foot)) return foot;
   // Cut off here: ways in all directions lead away from the place, each to its nearest part.
   double most = 2.0 * distance;
   if (surface.kind == Kind::plane)
@@ -181,43 +235,36 @@ std::optional<Coordinates> BoundarySurfaces::nearest(const Surface& surface, dou
   else
     most = std::min(0.5 * std::numbers::pi * most, std::numbers::pi * surface.radius);
   const std::array<Coordinates, 2> tangents = surface.tangents(foot);
-  const auto at_angle = [&](double angle) -> std::optional<Coordinates> {
+  std::optional<Coordinates> best;
+  double least = distance, best_angle = 0.0;
+  const auto try_angle = [&](double angle) {
     const Coordinates direction =
         plus<3>(scaled<3>(std::cos(angle), tangents[0]), scaled<3>(std::sin(angle), tangents[1]));
-    const auto way = way_to_exposed(surface, sign, foot, direction, most);
-    if (!way) return std::nullopt;
-    return surface.reached(foot, direction, *way);
-  };
-  double best = std::numeric_limits<double>::infinity(), best_angle = 0.0;
-  const auto try_angle = [&](double angle) {
-    const auto at = at_angle(angle);
-    const double away = at ? length(minus<3>(*at, place)) : std::numeric_limits<double>::infinity();
-    if (away < best) {
-      best = away;
-      best_angle = angle;
-    }
+    const auto at = first_exposed(surface, place, least, direction, most);
+    if (!at) return;
+    best = at;
+    best_angle = angle;
+    least = length(minus<3>(*at, place));
   };
   constexpr int angles = 64;
   constexpr double between = 2.0 * std::numbers::pi / angles;
   for (int k = 0; k < angles; ++k) try_angle(between * k);
-  for (double width = 0.5 * between; width > 1e-7 && std::isfinite(best); width *= 0.5) {
+  for (double width = 0.5 * between; width > 1e-7 && best; width *= 0.5) {
     const double middle = best_angle;
     try_angle(middle - width);
     try_angle(middle + width);
   }
-  if (!(best <= distance)) return std::nullopt;
-  return at_angle(best_angle);
+  return best;
 }
 
 void BoundarySurfaces::append_feet(const Coordinates& place, double distance,
                                    std::vector<Foot>& feet) const {
   for (const Surface& surface : surfaces_) {
-    for (const double sign : {1.0, -1.0}) {
-      const auto at = nearest(surface, sign, place, distance);
-      if (!at) continue;
-      feet.push_back(
-          {surface.part, *at, scaled<3>(sign, surface.normal(*at)), length(minus<3>(*at, place))});
-    }
+    if (distance_to(surface.bounds, place) > distance) continue;
+    const auto at = nearest(surface, place, distance);
+    if (!at) continue;
+    feet.push_back({surface.part, *at, scaled<3>(surface.sign, surface.normal(*at)),
+                    length(minus<3>(*at, place))});
   }
 }
 
@@ -225,11 +272,10 @@ std::optional<double> BoundarySurfaces::outermost(const Side& side) const {
   const auto axis = std::size_t(side.axis);
   const double height = side.sign > 0 ? bounds_.max[axis] : bounds_.min[axis];
   for (const Surface& surface : surfaces_) {
-    if (surface.kind != Kind::plane || std::abs(surface.axis[axis]) < 1.0 - 1e-9 ||
+    if (surface.kind != Kind::plane || side.sign * surface.sign * surface.axis[axis] < 1.0 - 1e-9 ||
         std::abs(surface.middle[axis] - height) > 8.0 * nudge_) {
       continue;
     }
-    const double sign = side.sign * (surface.axis[axis] > 0.0 ? 1.0 : -1.0);
     // Some part of it that is as wide as a part of the body.
     constexpr int parts = 64;
     const std::size_t u = (axis + 1) % 3, v = (axis + 2) % 3;
@@ -237,7 +283,7 @@ std::optional<double> BoundarySurfaces::outermost(const Side& side) const {
     for (int k = 0; k < parts * parts; ++k) {
       at[u] = bounds_.min[u] + (bounds_.max[u] - bounds_.min[u]) * (k % parts + 0.5) / parts;
       at[v] = bounds_.min[v] + (bounds_.max[v] - bounds_.min[v]) * (k / parts + 0.5) / parts;
-      if (is_exposed(surface, sign, at)) return height;
+      if (is_exposed(surface, at)) return height;
     }
   }
   return std::nullopt;

@@ -30,6 +30,9 @@ class BoundarySurfaces : public BoundaryFaces {
     Coordinates middle{};  ///< a place on the plane or the axis; the sphere's centre [m]
     Coordinates axis{};    ///< unit vector: normal of the plane out of the shape; the axis
     double radius = 0.0;   ///< [m]
+    Box bounds{};          ///< that hold what may be a boundary
+    /// Of the normal out of the body relative to that out of the shape: 1 where it is added.
+    double sign = 1.0;
 
     /// Out of the shape.
     [[nodiscard]] Coordinates normal(const Coordinates& at) const;
@@ -43,14 +46,15 @@ class BoundarySurfaces : public BoundaryFaces {
   };
 
  private:
-  [[nodiscard]] bool is_exposed(const Surface& surface, double sign, const Coordinates& at) const;
+  [[nodiscard]] bool is_exposed(const Surface& surface, const Coordinates& at) const;
   /// Nearest exposed place, if it is within a distance.
-  [[nodiscard]] std::optional<Coordinates> nearest(const Surface& surface, double sign,
-                                                   const Coordinates& place, double distance) const;
-  [[nodiscard]] std::optional<double> way_to_exposed(const Surface& surface, double sign,
-                                                     const Coordinates& from,
-                                                     const Coordinates& direction,
-                                                     double most) const;
+  [[nodiscard]] std::optional<Coordinates> nearest(const Surface& surface, const Coordinates& place,
+                                                   double distance) const;
+  /// First exposed place on a way along the surface, if it is within a distance of a place.
+  [[nodiscard]] std::optional<Coordinates> first_exposed(const Surface& surface,
+                                                         const Coordinates& place, double distance,
+                                                         const Coordinates& direction,
+                                                         double most) const;
 
   const CollaredBody& body_;
   Box bounds_;

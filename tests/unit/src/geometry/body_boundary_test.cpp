@@ -13,6 +13,7 @@
 #include "src/core/input_error.hpp"
 #include "src/geometry/covers.hpp"
 #include "src/geometry/lattice_sites.hpp"
+#include "tests/bodies.hpp"
 
 namespace peristat {
 namespace {
@@ -399,6 +400,106 @@ TEST(BodyBoundary, OfALatticeIsNotBelowItsLayers) {
 TEST(BodyBoundary, OfOneDimensionIsRefused) {
   const Shapes shapes{{add, box(0, 0, 1, 0)}};
   EXPECT_THROW(BodyBoundary(1, shapes, {}, 0.1), InputError);
+}
+
+/// Boxes, round shapes and polygons, added and taken away at random.
+Shapes random_shapes(int dimension, tests::Random& random) {
+  const double high = dimension == 3 ? 1.0 : 0.0;
+  Shapes shapes{{add, Box{{-1, -1, -high}, {1, 1, high}}}};
+  for (int k = 0; k < 6; ++k) {
+    const Coordinates at{random.number(), random.number(), high * random.number()};
+    const double size = 0.15 + 0.2 * (1.0 + random.number());
+    ShapeStep step{random.number() < 0.2 ? add : subtract, {}};
+    const int kind = k % 3;
+    if (kind == 0) {
+      Box of{at, at};
+      for (std::size_t c = 0; c < std::size_t(dimension); ++c) {
+        of.min[c] -= size;
+        of.max[c] += 0.7 * size;
+      }
+      step.shape = of;
+    } else if (kind == 1 && dimension == 2) {
+      step.shape = Disk{at, size};
+    } else if (kind == 1) {
+      step.shape = Sphere{at, size};
+    } else if (dimension == 2) {
+      step.shape = Polygon{
+          {{at[0], at[1]}, {at[0] + size, at[1] + 0.3 * size}, {at[0] + 0.2 * size, at[1] + size}}};
+    } else {
+      step.shape =
+          Cylinder{at, {random.number(), random.number(), random.number()}, 0.5 * size, 3.0 * size};
+    }
+    shapes.push_back(step);
+  }
+  return shapes;
+}
+
+/// Shortest way from a place out of the body, along many directions.
+double way_out(const Solid& body, int dimension, const Coordinates& place, int directions,
+               tests::Random& random) {
+  double shortest = infinity;
+  for (int k = 0; k < directions; ++k) {
+    Coordinates along{std::cos(2.0 * std::numbers::pi * k / directions),
+                      std::sin(2.0 * std::numbers::pi * k / directions), 0.0};
+    if (dimension == 3) along = {random.number(), random.number(), random.number()};
+    const double length = std::hypot(along[0], along[1], along[2]);
+    for (double& component : along) component /= length;
+    std::vector<double> t;
+    const Line line{place, along};
+    body.append_crossings(line, t);
+    std::sort(t.begin(), t.end());
+    for (const double at : t) {
+      if (at <= 0.0 || body.contains(line.at(at + 1e-6))) continue;
+      shortest = std::min(shortest, at);
+      break;
+    }
+  }
+  return shortest;
+}
+
+TEST(BodyBoundary, OfAnyBodyIsWhereItEnds) {
+  for (const int dimension : {2, 3}) {
+    tests::Random random(std::uint64_t(10 + dimension));
+    int places = 0, far = 0;
+    for (int body = 0; body < (dimension == 2 ? 40 : 20); ++body) {
+      const Shapes shapes = random_shapes(dimension, random);
+      const Solid solid(dimension, shapes);
+      const BodyBoundary boundary(dimension, shapes, {}, 0.02);
+      for (int k = 0; k < 25; ++k) {
+        const Coordinates place{random.number(), random.number(),
+                                dimension == 3 ? random.number() : 0.0};
+        if (!solid.contains(place)) continue;
+        const auto feet = boundary.near(place, 0.4);
+        for (const Foot& foot : feet) {
+          Coordinates below = foot.at, above = foot.at;
+          double length = 0.0;
+          for (std::size_t c = 0; c < 3; ++c) {
+            below[c] -= 1e-6 * foot.normal[c];
+            above[c] += 1e-6 * foot.normal[c];
+            length += foot.normal[c] * foot.normal[c];
+          }
+          EXPECT_NEAR(length, 1.0, 1e-12);
+          // On an edge one of them may stand beside it.
+          const double off = std::abs(foot.distance - std::abs(foot.depth(place)));
+          EXPECT_TRUE(off > 1e-9 || (solid.contains(below) && !solid.contains(above)))
+              << "body " << body << " of " << dimension << "D";
+        }
+        const double out = way_out(solid, dimension, place, dimension == 2 ? 720 : 1000, random);
+        const double nearest = feet.empty() ? infinity : feet.front().distance;
+        ++places;
+        if (out > 0.4) {
+          ++far;
+          EXPECT_TRUE(nearest > 0.4 || out < 0.45);
+          continue;
+        }
+        // A way in one of the directions is longer by the curvature of the distance.
+        EXPECT_LE(nearest, out + 1e-6) << "body " << body << " of " << dimension << "D";
+        EXPECT_GE(nearest, out - (dimension == 2 ? 0.01 : 0.06))
+            << "body " << body << " of " << dimension << "D";
+      }
+    }
+    EXPECT_GT(places - far, 150);
+  }
 }
 
 }  // namespace
