@@ -29,9 +29,11 @@ ROWS = {
     "tetrahedra_product": ("interaction", 1e6, "M tetrahedra/s", None),
     "triangles_tangent": ("interaction", 1e6, "M triangles/s", None),
     "triangles_gradient": ("interaction", 1e6, "M triangles/s", None),
+    "optimised_weights": ("point", 1e3, "k points/s", None),
     "factorisation": ("flop", 1e9, "GF/s", None),
 }
 FACTORISATION_SHARE = {"100": 0.45, "300": 0.65}
+WEIGHTS_TARGET = {"2": 1 / 15e-6, "3": 1 / 300e-6}  # points/s
 PRODUCTS_PER_ITERATION = 1.7  # of relaxation
 LAWS = ["elastic", "tanh", "tanh with 2 % of the bonds broken"]
 
@@ -49,7 +51,7 @@ def measure(program, threads, options):
         if run["run_type"] != "iteration":
             continue
         name = run["run_name"].replace("/real_time", "").replace("dimension:", "").replace("width:", "")
-        rate = next(run[key] for key in ("bond", "interaction", "flop", "byte") if key in run)
+        rate = next(run[key] for key in ("bond", "interaction", "point", "flop", "byte") if key in run)
         best[name] = max(best.get(name, 0.0), rate)
     return best
 
@@ -83,6 +85,10 @@ def print_table(threads, one, many):
             share = FACTORISATION_SHARE[case]
             told = f"{case}² points | {unit_text} ({rate / dgemm:.0%} of DGEMM)"
             goal = f"{share * dgemm / unit:.1f} ({share:.0%} of DGEMM)"
+        elif kind == "optimised_weights":
+            dimension, horizon, percent = (part.split(":")[-1] for part in case.split("/"))
+            told = f"{dimension}D, horizon {horizon}, perturbed by {percent} % | {unit_text}"
+            goal = f"{scale * WEIGHTS_TARGET[dimension] / unit:.0f}" if percent != "0" else ""
         elif kind.startswith("t") and "/" in case:
             horizon, stored = (part.split(":")[1] for part in case.split("/"))
             how = "stored" if stored == "1" else "found anew"

@@ -15,6 +15,7 @@
 #include "src/conditions/loading_programme.hpp"
 #include "src/core/expression.hpp"
 #include "src/core/number_text.hpp"
+#include "src/neighbourhood/optimised_weights.hpp"
 
 namespace peristat {
 namespace {

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <array>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "src/geometry/boundary_faces.hpp"
+#include "src/geometry/collared_body.hpp"
+#include "src/geometry/solid.hpp"
+
+namespace peristat {
+
+/// The boundary of a body made of shapes: the parts of their boundaries that have the body on one
+/// side and nothing on the other. Covered sides are none, and those beside them go on straight over
+/// the depth of the cover. Parts of one line, circle, plane, cylinder or sphere are one face; in
+/// 2D also parts that meet at less than smooth_angle.
+///
+/// In 2D faces are found exactly. In 3D they are exact where the perpendicular from the place meets
+/// the face; beside it, where others cut it off, to about 1e-6 of the body's size, and what is
+/// narrower than 1/32 of the distance asked for may be missed. Where surfaces touch, places within
+/// about 1e-4 of the size count as cut off; of shapes that share a surface the first is named.
+///
+/// `near` may be called by many threads if `where` of the covers may.
+class BodyBoundary {
+ public:
+  /// @param shapes must outlive this
+  /// @param spacing of the body's points [m]
+  /// @throws InputError ("dimension"; "layers") in 1D, or if a side beside a cover does not stand
+  ///         across it (2D), so that it can't go on straight
+  BodyBoundary(int dimension, const std::vector<ShapeStep>& shapes, std::vector<Cover> covers,
+               double spacing);
+  ~BodyBoundary();
+
+  /// The nearest place of every face within a distance (closed, to 1e-8 of it), the nearest first.
+  /// Of faces whose normals differ by less than smooth_angle the nearest alone.
+  [[nodiscard]] std::vector<Foot> near(const Coordinates& place, double distance) const;
+
+  /// Height along the side's axis of the body's outermost face there, if that is flat [m].
+  [[nodiscard]] std::optional<double> outermost(const Side& side) const;
+
+  /// Whether a foot is on the body's outermost flat face on a side.
+  [[nodiscard]] bool is_on(const Foot& foot, const Side& side) const;
+
+ private:
+  Solid solid_;
+  CollaredBody body_;
+  double nudge_;
+  std::array<std::optional<double>, 6> outermost_{};  // by 2 axis + (sign > 0)
+  std::unique_ptr<BoundaryFaces> faces_;
+};
+
+}  // namespace peristat
