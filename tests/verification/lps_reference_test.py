@@ -313,6 +313,17 @@ class Invariance(unittest.TestCase):
                 self.assertLess(abs(solid.dilatation(motion)).max(), ROUND_OFF)
                 self.assertLess(solid.energy(motion), ROUND_OFF**2)
 
+    def test_points_with_few_bonds_see_what_these_span(self):
+        solid = block(2, 7, 3.5)
+        middle, h = solid.points[24], 1 / 7
+        places = numpy.round((solid.places - solid.places[middle]) / h).astype(int)
+        expected = GRADIENT[2]
+        for kept, seen in (([(1, 0), (-2, 0)], expected @ numpy.diag([1, 0])), ([(2, 0), (3, 1)], expected)):
+            away = [j for j in range(len(places)) if tuple(places[j]) not in kept and j != middle]
+            few = block(2, 7, 3.5, broken=[(j, middle) for j in away])
+            gradient = few.gradient(linear(few)[0])[few.row[middle]]
+            self.assertLess(abs(gradient - seen).max(), OF_SOLUTIONS)
+
     def test_points_without_bonds_or_normals_are_at_rest(self):
         solid = block(2, 7, 3.0)
         middle = solid.points[24]
