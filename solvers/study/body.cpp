@@ -17,6 +17,7 @@
 #include "solvers/study/collocation_model.hpp"
 #include "solvers/study/cpd_model.hpp"
 #include "solvers/study/fracture_data.hpp"
+#include "solvers/study/surface_sites.hpp"
 #include "src/connectivity/fragments.hpp"
 #include "src/connectivity/free_motion.hpp"
 #include "src/core/input_error.hpp"
@@ -246,9 +247,15 @@ std::unique_ptr<const Body> make_body(Points points, const BodySpecification& of
   require_memory(estimate_memory(expected).least_bytes(),
                  fmt::format("the body with {} points", body.points.count()));
   make_model(body, threads);
-  body.conditions = std::make_unique<Conditions>(
-      body.points, of.supports, of.loads, programme_of(of), of.controls,
-      load_setting(of, body.points), of.eigenstrains, of.constraints, of.foundations);
+  LoadSetting loads = load_setting(of, body.points);
+  if (of.material.model == MaterialModel::lps) {
+    loads.surface = surface_sites(body.points, body.model, of.boundary.get(), of.boundary_names,
+                                  body.setting.horizon, threads);
+    body.specification.boundary.reset();
+  }
+  body.conditions = std::make_unique<Conditions>(body.points, of.supports, of.loads,
+                                                 programme_of(of), of.controls, loads,
+                                                 of.eigenstrains, of.constraints, of.foundations);
   add_terms_of_conditions(body.model, body);
   const Stopwatch watch(body.seconds_neighbourhood);
   store_interactions(body, threads);

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -10,6 +11,7 @@
 #include "src/conditions/conditions.hpp"
 #include "src/conditions/constraint_specification.hpp"
 #include "src/connectivity/crack.hpp"
+#include "src/geometry/body_boundary.hpp"
 #include "src/geometry/point_set.hpp"
 #include "src/materials/bond_constants.hpp"
 #include "src/materials/effective_volumes.hpp"
@@ -152,6 +154,10 @@ struct BodySpecification {
   SurfaceCorrection surface_correction = SurfaceCorrection::none;
   InteractionWeights weights = InteractionWeights::mean;  ///< of cpd
   CollocationSpecification collocation{};
+  /// Faces of the body and names of their shapes, for tractions of model lps; null: nobody knows
+  /// them. A body does not keep them.
+  std::shared_ptr<const BodyBoundary> boundary{};
+  std::vector<std::string> boundary_names{};
   std::vector<Crack> cracks{};
   /// Of the points in no region. Without constants every point has to be in one.
   MaterialSpecification material{};

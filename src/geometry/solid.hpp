@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <string>
 #include <vector>
 
 #include "src/geometry/shape.hpp"
@@ -14,6 +15,7 @@ namespace peristat {
 struct ShapeStep {
   enum class Action { add, subtract } action = Action::add;
   Shape shape{};
+  std::string name{};  ///< by which loads find its boundary; may be empty
 };
 
 /// A part of space, as far as measuring its share of a cell needs it.

@@ -11,6 +11,7 @@
 #include "src/connectivity/free_motion.hpp"
 #include "src/core/input_error.hpp"
 #include "src/core/number_text.hpp"
+#include "src/geometry/covers.hpp"
 #include "src/geometry/nearest_point.hpp"
 #include "src/geometry/point_file.hpp"
 #include "src/geometry/points_on_line.hpp"
@@ -110,9 +111,25 @@ Points make_points_of(const Case& from) {
   });
 }
 
+namespace {
+
+/// The faces of the body, for tractions.
+void find_boundary(const Case& from, const Points& points, BodySpecification& of) {
+  const Lattice* lattice = lattice_of(from);
+  if (from.material.model != MaterialModel::lps || lattice == nullptr) return;
+  std::vector<Coordinates> places;
+  for (Index i = 0; i < points.own(); ++i) places.push_back(points.position(i));
+  of.boundary = std::make_shared<const BodyBoundary>(from.dimension, lattice->shapes,
+                                                     covers_of(*lattice, places), points.spacing);
+  for (const ShapeStep& step : lattice->shapes) of.boundary_names.push_back(step.name);
+}
+
+}  // namespace
+
 std::unique_ptr<const Body> make_body(const Case& from, int threads) {
   Points points = make_points_of(from);
   BodySpecification of = from;
+  located_errors(from, [&] { find_boundary(from, points, of); });
   if (from.solver.mode == Mode::path) of.teeth = from.loading.teeth;
   if (tells_stress(from)) of.evaluation_bytes_per_point = stress_bytes_per_point(from.dimension);
   return located_errors(from, [&] { return make_body(std::move(points), of, threads); });

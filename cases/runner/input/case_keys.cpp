@@ -80,7 +80,9 @@ Table<ShapeStep> shape_step_keys() {
            K("subtract", &ShapeStep::shape, shape_beside(), "kind of the shape to take away")
                .then([](auto&, auto& step) { step.action = Action::subtract; })
                .written_if([](auto& step, auto&) { return step.action == Action::subtract; })
-               .one_of()}};
+               .one_of(),
+           K("name", &ShapeStep::name, text(), "of the shape, by which loads find its boundary")
+               .written_if([](auto& step, auto&) { return !step.name.empty(); })}};
 }
 
 Table<Layer> layer_keys() {
