@@ -8,9 +8,12 @@
 
 namespace peristat {
 
+struct UnsymmetricTangent;
+
 /// Tangent K = d2E/dx2 [N/m] of the stored energy over all degrees of freedom, as solvers see it:
 /// they multiply by it, and read its blocks (i, j), i <= j, each dimension x dimension, row major;
-/// block (j, i) is the transpose of block (i, j).
+/// block (j, i) is the transpose of block (i, j). Of an UnsymmetricTangent they only multiply, or
+/// ask for its rows.
 struct TangentOperator {
   TangentOperator(const BlockPattern& of, int dimension_of_points, int threads);
   virtual ~TangentOperator() = default;
@@ -41,11 +44,14 @@ struct TangentOperator {
 
   /// Sums of the absolute entries of each row, sum_j |K_ij| [N/m]: Gershgorin's bound of the
   /// largest eigenvalue, per degree of freedom.
-  void absolute_row_sums(std::span<double> sums) const;
+  virtual void absolute_row_sums(std::span<double> sums) const;
 
   /// Itself with its stored blocks, or nothing if they are computed anew each time.
   [[nodiscard]] virtual const Tangent* as_tangent() const { return nullptr; }
   [[nodiscard]] virtual Tangent* as_tangent() { return nullptr; }
+
+  /// Itself with its rows, or nothing if it is symmetric.
+  [[nodiscard]] virtual const UnsymmetricTangent* as_unsymmetric() const { return nullptr; }
 };
 
 }  // namespace peristat

@@ -15,7 +15,8 @@ namespace peristat {
 
 /// Found by argument: in the namespace of the method.
 void PrintTo(KrylovMethod method, std::ostream* out) {
-  *out << std::vector<std::string>{"ConjugateGradients", "Minres", "Gmres"}[std::size_t(method)];
+  *out << std::vector<std::string>{"ConjugateGradients", "Minres", "Gmres",
+                                   "Bicgstab"}[std::size_t(method)];
 }
 
 namespace {
@@ -78,7 +79,7 @@ std::string name_of(const testing::TestParamInfo<KrylovMethod>& tested) {
 
 INSTANTIATE_TEST_SUITE_P(Methods, Krylov,
                          testing::Values(KrylovMethod::conjugate_gradients, KrylovMethod::minres,
-                                         KrylovMethod::gmres),
+                                         KrylovMethod::gmres, KrylovMethod::bicgstab),
                          name_of);
 
 TEST_P(Krylov, AgreesWithADenseSolve) {
