@@ -14,8 +14,9 @@ namespace peristat {
 /// threshold pivoting. A fill-reducing order is found once per pattern, and a matrix that comes
 /// again, to the last bit, is not factorised again.
 ///
-/// Works on one thread: its products are too small to be shared (two threads took between as long
-/// and thirty times as long), and so its bits do not depend on their number.
+/// Works on one thread: its products are so small that two threads wait for each other more than
+/// they win (on busy cores up to thirty times as long), and so its bits do not depend on their
+/// number.
 class LuFactor {
  public:
   /// @param most_bytes matrix and factor may take; factorize ends as out_of_memory where they are

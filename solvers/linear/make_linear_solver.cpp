@@ -30,9 +30,9 @@ constexpr double small_factorisation = 1e8, affordable_factorisation = 2e10;
 /// Iterations in one solve that no choice of the user's own should exceed.
 constexpr int most_iterations = 20'000;
 
-/// Iterations of GMRES with the local operator for a solve, and solves of a load step; a factor
-/// that is that of the last tangent is not made again.
-constexpr double iterations_of_gmres = 70.0, solves_of_a_step = 3.0;
+/// Products for a solve by GMRES with the local operator, and by BiCGStab where masses dominate;
+/// and solves of a load step, which need one factorisation where the tangent stays the same.
+constexpr double products_of_gmres = 70.0, products_with_inertia = 10.0, solves_of_a_step = 3.0;
 
 /// Of these, most that GMRES keeps vectors of, least, and the share of the memory for them.
 constexpr double most_vectors = 200.0, least_vectors = 30.0, share_of_vectors = 0.25;
@@ -161,7 +161,9 @@ struct UnsymmetricSeconds {
   explicit UnsymmetricSeconds(const LinearProblem& problem)
       : direct(problem.factor_flops / speeds::unsymmetric_factorisation +
                problem.factor_bytes / speeds::fresh_memory),
-        iterative(solves_of_a_step * iterations_of_gmres * 2.0 * problem.bonds / speeds::product) {}
+        iterative(solves_of_a_step *
+                  (problem.has_inertia ? products_with_inertia : products_of_gmres) * 2.0 *
+                  problem.bonds / speeds::product) {}
 };
 
 ChosenSolver choose_unsymmetric(const LinearProblem& problem, SolverLadder::Reporter tell) {
