@@ -152,12 +152,14 @@ struct GridSystem {
     find_right_hand_side();
   }
 
-  /// All components of the first row of points, and single components of others.
+  /// All components of the first row of points (in 1D, of three points), and single components of
+  /// others.
   static std::vector<char> held(const GridOperator& of, bool is_held) {
     std::vector<char> prescribed(std::size_t(of.dofs()), 0);
     if (!is_held) return prescribed;
     for (std::size_t k = 0; k < std::size_t(of.dofs()); ++k) {
-      const bool in_first_row = k < std::size_t(of.setting.side * of.dimension);
+      const bool in_first_row =
+          k < std::size_t(of.dimension == 1 ? 3 : of.setting.side * of.dimension);
       prescribed[k] = char(in_first_row || k % 37 == 5);
     }
     return prescribed;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <random>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -20,9 +21,8 @@ using Long = SuiteSparse_long;
 /// Rows from which METIS gains more in the factor than it costs over AMD, as measured.
 constexpr Index smallest_for_metis = 10'000;
 
-/// A pivot below this fraction of the largest is zero up to round-off. As in Cholesky; rows are
-/// scaled by the sums of their absolute entries here, so that units and materials don't matter.
-constexpr double zero_pivot = 1e3 * std::numeric_limits<double>::epsilon();
+/// A condition number of which no digit of a solution is left.
+constexpr double singular_condition = 1.0 / std::numeric_limits<double>::epsilon();
 
 /// Memory of UMFPACK: working arrays over the factor, and bytes per entry of the matrix, as
 /// measured within a factor of 1.5 (1.2 to 1.6 times the factor in 2D and 3D).
@@ -120,6 +120,46 @@ struct LuFactor::Umfpack {
     return LinearOutcome::out_of_memory;
   }
 
+  void apply_inverse(const std::vector<double>& b, double* x) const {
+    // Of the transpose's transpose. Without refinement the matrix is not looked at.
+    umfpack_dl_solve(UMFPACK_Aat, nullptr, nullptr, nullptr, x, b.data(), numeric, control.data(),
+                     nullptr);
+  }
+
+  [[nodiscard]] std::vector<double> row_sums() const {
+    std::vector<double> sums(std::size_t(size()), 0.0);
+    for (std::size_t r = 0; r < sums.size(); ++r) {
+      for (auto k = std::size_t(begin[r]); k < std::size_t(begin[r + 1]); ++k) {
+        sums[r] += std::abs(value[k]);
+      }
+    }
+    return sums;
+  }
+
+  /// From below, of the matrix A with its rows scaled to sums of one, so that units and materials
+  /// don't matter: growth under A^-1 D, D the row sums, of a vector that has been through it once.
+  [[nodiscard]] double condition() const {
+    const auto largest = [](const std::vector<double>& v) {
+      double most = 0.0;
+      for (const double entry : v) most = std::max(most, std::abs(entry));
+      return most;
+    };
+    const std::vector<double> sums = row_sums();
+    std::vector<double> v(sums.size()), image(sums.size());
+    std::mt19937_64 bits(1);
+    for (double& entry : v) entry = 2.0 * double(bits() >> 11) * 0x1p-53 - 1.0;
+    double growth = 0.0;
+    for (int k = 0; k < 2; ++k) {
+      const double before = largest(v);
+      for (std::size_t r = 0; r < v.size(); ++r) v[r] *= sums[r] / before;
+      apply_inverse(v, image.data());
+      v.swap(image);
+      growth = largest(v);
+      if (!(growth < singular_condition)) break;
+    }
+    return growth;
+  }
+
   LinearOutcome find_numbers() {
     release_numbers();
     ++factorisations;
@@ -129,7 +169,7 @@ struct LuFactor::Umfpack {
     if (outcome == LinearOutcome::solved) {
       entries = info[UMFPACK_LNZ] + info[UMFPACK_UNZ];
       flops = info[UMFPACK_FLOPS];
-      if (!(info[UMFPACK_RCOND] > zero_pivot)) outcome = LinearOutcome::singular;
+      if (!(condition() < singular_condition)) outcome = LinearOutcome::singular;
     }
     if (outcome != LinearOutcome::solved) release_numbers();
     return outcome;
@@ -163,24 +203,12 @@ LinearOutcome LuFactor::factorize(SparseRows matrix) {
 bool LuFactor::is_ready() const { return umfpack_->numeric != nullptr; }
 
 void LuFactor::solve(std::span<double> v) const {
-  const Umfpack& own = *umfpack_;
-  const std::vector<double> b(v.begin(), v.end());
-  // Of the transpose's transpose. Without refinement the matrix is not looked at.
-  umfpack_dl_solve(UMFPACK_Aat, nullptr, nullptr, nullptr, v.data(), b.data(), own.numeric,
-                   own.control.data(), nullptr);
+  umfpack_->apply_inverse({v.begin(), v.end()}, v.data());
 }
 
 double LuFactor::largest_row_sum() const {
-  const Umfpack& own = *umfpack_;
-  double largest = 0.0;
-  for (Long r = 0; r < own.size(); ++r) {
-    double sum = 0.0;
-    for (Long k = own.begin[std::size_t(r)]; k < own.begin[std::size_t(r) + 1]; ++k) {
-      sum += std::abs(own.value[std::size_t(k)]);
-    }
-    largest = std::max(largest, sum);
-  }
-  return largest;
+  const std::vector<double> sums = umfpack_->row_sums();
+  return sums.empty() ? 0.0 : *std::max_element(sums.begin(), sums.end());
 }
 
 int LuFactor::orders() const { return umfpack_->orders; }

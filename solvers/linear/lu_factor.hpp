@@ -27,8 +27,9 @@ class LuFactor {
   /// Drops the numbers and the order.
   void reset();
 
-  /// @return solved; singular for a pivot of zero up to round-off, and for values that are not
-  ///         finite; out_of_memory
+  /// @return solved; singular where the condition number leaves no digit, and for values that are
+  ///         not finite; out_of_memory. Pivots would not tell: without symmetry the last one of a
+  ///         singular matrix may be 1e-6 of the largest.
   [[nodiscard]] LinearOutcome factorize(SparseRows matrix);
   /// Whether there are factors of the last matrix.
   [[nodiscard]] bool is_ready() const;

@@ -17,7 +17,7 @@ class SparseLu : public LinearSolver {
 
   LinearOutcome analyze(const BlockPattern& pattern, const FreeDofs& free) override;
   void count_pivots(bool /*counts*/) override {}  // their signs tell nothing here
-  /// @return singular for a pivot of zero up to round-off
+  /// @return singular where the condition number leaves no digit
   /// @throws std::logic_error for a symmetric tangent
   LinearOutcome factorize(const TangentOperator& tangent, FactorUse use) override;
   LinearOutcome solve(std::span<const double> b, std::span<double> x, double tolerance) override;
