@@ -47,7 +47,7 @@ TEST(LocalOperator, IsTheInverseOfANeighbourlyTangent) {
 
 TEST(LocalOperator, KeepsTheIterationsOfGmresFewWhateverTheSize) {
   std::vector<int> iterations;
-  for (const int side : {16, 64}) {
+  for (const int side : {12, 40}) {
     GridSystem system(grid(2, side, 3.01));
     IterativeSolver solver = with_local_operator(KrylovMethod::gmres);
     ASSERT_EQ(analyze_and_solve(system, solver, 1e-10), LinearOutcome::solved);
@@ -59,10 +59,9 @@ TEST(LocalOperator, KeepsTheIterationsOfGmresFewWhateverTheSize) {
                            std::make_unique<BlockJacobi>(BlockJacobi::Blocks::points), 1000, 200);
     ASSERT_EQ(analyze_and_solve(system, jacobi, 1e-10), LinearOutcome::solved);
     EXPECT_LT(system.error(), 1e-7);
-    if (side == 64) EXPECT_GT(jacobi.last_iterations(), 2 * iterations.back());
+    EXPECT_GT(jacobi.last_iterations(), 2 * iterations.back());
   }
-  EXPECT_LT(iterations[1], 45);
-  EXPECT_LT(iterations[1], 1.4 * iterations[0]);
+  EXPECT_LE(iterations[1], iterations[0] + 4);
 }
 
 TEST(LocalOperator, ServesBicgstabToo) {
