@@ -146,8 +146,8 @@ LuEstimate estimate_lu(int dimension, double unknowns, double entries_per_row) {
   if (dimension == 2) {
     estimate = {0.6 * e * n * std::log2(n), 0.35 * e * e * std::pow(n, 1.5)};
   } else if (dimension == 3) {
-    estimate = {2.2 * std::pow(e, 2.0 / 3.0) * std::pow(n, 4.0 / 3.0),
-                0.16 * std::pow(e, 4.0 / 3.0) * n * n};
+    estimate = {2.6 * std::pow(e, 2.0 / 3.0) * std::pow(n, 4.0 / 3.0),
+                0.2 * std::pow(e, 4.0 / 3.0) * n * n};
   }
   // A full matrix at most.
   return {std::min(estimate.entries, n * n), std::min(estimate.flops, 2.0 / 3.0 * n * n * n)};

@@ -51,9 +51,9 @@ struct LuEstimate {
 };
 
 /// Separators are as thick as rows are long: L and U have 0.6 e n log2 n entries in 2D and
-/// 2.2 e^(2/3) n^(4/3) in 3D, the factorisation takes 0.35 e^2 n^(3/2) and 0.16 e^(4/3) n^2 flops;
+/// 2.6 e^(2/3) n^(4/3) in 3D, the factorisation takes 0.35 e^2 n^(3/2) and 0.2 e^(4/3) n^2 flops;
 /// fitted to UMFPACK's counts for 2 000 to 500 000 unknowns n with 17 to 440 entries e in a row,
-/// and right within a factor of 1.8.
+/// and right within a factor of 2 in entries and 3 in flops.
 [[nodiscard]] LuEstimate estimate_lu(int dimension, double unknowns, double entries_per_row);
 
 /// Bonds of a point, each counted at one of its ends: half the volume of the horizon in cells.

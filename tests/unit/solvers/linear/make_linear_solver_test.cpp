@@ -178,7 +178,7 @@ TEST(MakeLinearSolver, RefusesWhatDoesNotGoWithTheTangent) {
   expect_for({gmres, PreconditionerKind::local_operator}, false, true);
 }
 
-TEST(EstimateLu, IsWithinAFactorOfTwoOfWhatUmfpackTakes) {
+TEST(EstimateLu, IsOfTheSizeOfWhatUmfpackTakes) {
   for (const auto& [dimension, side, reach] :
        {std::tuple{2, 40, 3.01}, std::tuple{2, 100, 1.5}, std::tuple{3, 12, 2.1}}) {
     GridSetting of;
@@ -193,8 +193,8 @@ TEST(EstimateLu, IsWithinAFactorOfTwoOfWhatUmfpackTakes) {
         estimate_lu(dimension, system.free.count(), entries_per_row(system));
     EXPECT_LT(estimate.entries / solver.factor().entries(), 2.0);
     EXPECT_GT(estimate.entries / solver.factor().entries(), 0.5);
-    EXPECT_LT(estimate.flops / solver.factor().flops(), 2.5);
-    EXPECT_GT(estimate.flops / solver.factor().flops(), 0.4);
+    EXPECT_LT(estimate.flops / solver.factor().flops(), 3.0);
+    EXPECT_GT(estimate.flops / solver.factor().flops(), 1.0 / 3.0);
   }
   // Never more than a full matrix.
   EXPECT_EQ(estimate_lu(3, 100.0, 100.0).entries, 1e4);
