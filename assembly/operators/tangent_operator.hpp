@@ -12,7 +12,8 @@ struct UnsymmetricTangent;
 
 /// Tangent K = d2E/dx2 [N/m] of the stored energy over all degrees of freedom, as solvers see it:
 /// they multiply by it, and read its blocks (i, j), i <= j, each dimension x dimension, row major;
-/// block (j, i) is the transpose of block (i, j).
+/// block (j, i) is the transpose of block (i, j). Of an UnsymmetricTangent they only multiply, or
+/// ask for its rows.
 struct TangentOperator {
   TangentOperator(const BlockPattern& of, int dimension_of_points, int threads);
   virtual ~TangentOperator() = default;

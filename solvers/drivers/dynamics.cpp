@@ -335,7 +335,6 @@ std::string Dynamics::fault_of(const Attempt& attempt, const FoundStep& found) {
 }
 
 std::string Dynamics::fault_of_balance(const Ledger& after) {
-  if (!path_.damaged().has_potential()) return {};
   PathState::Dynamics& dynamics = path_.state().dynamics;
   const double energy = after.kinetic + after.stored;
   dynamics.largest_energy =
@@ -347,12 +346,13 @@ std::string Dynamics::fault_of_balance(const Ledger& after) {
       work_error * std::max(dynamics.largest_energy, is_implicit() ? 0.0 : energy) +
       (is_implicit() ? 0.0 : after.dissipated);
   const bool is_damped = is_implicit() && options_.spectral_radius < 1.0;  // which loses energy
-  if (!(-error <= allowed) || !(is_damped || error <= allowed)) {
+  const bool balances = path_.damaged().has_potential();
+  if (balances && (!(-error <= allowed) || !(is_damped || error <= allowed))) {
     return "the modified energy is " + number_text(error) + " J less than what was put in, " +
            number_text(dynamics.largest_energy) + " J";
   }
   const double scheme = std::abs(dynamics.correction_at_start + dynamics.correction);
-  if (path_.state().steps >= steps_of_onset &&
+  if (balances && path_.state().steps >= steps_of_onset &&
       !(scheme <= unresolved * std::max(dynamics.largest_energy, energy))) {
     return "the time step does not resolve the motion: " + number_text(scheme) +
            " J of its energy hang on the step, and " + number_text(dynamics.largest_energy) +

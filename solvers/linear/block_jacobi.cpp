@@ -100,6 +100,26 @@ void add_all(const FreeDofs& free, const std::vector<double>& upper_halves, int 
   }
 }
 
+/// Means of blocks and their transposes: what an unsymmetric tangent is preconditioned by.
+std::vector<double> symmetric_parts(std::vector<double> blocks, std::size_t d) {
+  for (std::size_t first = 0; first < blocks.size(); first += d * d) {
+    for (std::size_t r = 0; r < d; ++r) {
+      for (std::size_t c = r + 1; c < d; ++c) {
+        double &upper = blocks[first + r * d + c], &lower = blocks[first + c * d + r];
+        upper = lower = 0.5 * (upper + lower);
+      }
+    }
+  }
+  return blocks;
+}
+
+LinearOutcome invert_all(const FreeDofs& free, const std::vector<double>& blocks, int dimension,
+                         bool entries_only, std::vector<double>& upper_halves) {
+  if (dimension == 1) return invert_all<1>(free, blocks, entries_only, upper_halves);
+  if (dimension == 2) return invert_all<2>(free, blocks, entries_only, upper_halves);
+  return invert_all<3>(free, blocks, entries_only, upper_halves);
+}
+
 }  // namespace
 
 void BlockJacobi::analyze(const BlockPattern&, const FreeDofs& free) { free_ = &free; }
@@ -109,9 +129,12 @@ LinearOutcome BlockJacobi::build(const TangentOperator& tangent) {
   const int d = tangent.dimension;
   const bool entries_only = blocks_ == Blocks::entries;
   inverse_.resize(std::size_t(tangent.pattern.points()) * upper_half(d));
-  if (d == 1) return invert_all<1>(*free_, tangent.diagonal, entries_only, inverse_);
-  if (d == 2) return invert_all<2>(*free_, tangent.diagonal, entries_only, inverse_);
-  return invert_all<3>(*free_, tangent.diagonal, entries_only, inverse_);
+  if (!tangent.as_unsymmetric()) {
+    return invert_all(*free_, tangent.diagonal, d, entries_only, inverse_);
+  }
+  const auto blocks = symmetric_parts(tangent.diagonal, std::size_t(d));
+  const LinearOutcome outcome = invert_all(*free_, blocks, d, entries_only, inverse_);
+  return outcome == LinearOutcome::solved ? outcome : LinearOutcome::inaccurate;
 }
 
 void BlockJacobi::apply(std::span<const double> residual, std::span<double> correction) {

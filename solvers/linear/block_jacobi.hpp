@@ -6,14 +6,15 @@
 
 namespace peristat {
 
-/// M = the diagonal of K_ff, or its diagonal blocks, one per point.
+/// M = the diagonal of K_ff, or its diagonal blocks, one per point; of an unsymmetric tangent their
+/// symmetric parts.
 class BlockJacobi : public Preconditioner {
  public:
   enum class Blocks { entries, points };
   explicit BlockJacobi(Blocks blocks) : blocks_(blocks) {}
 
   void analyze(const BlockPattern& pattern, const FreeDofs& free) override;
-  /// Negative or zero pivots of a diagonal block are the tangent's, too.
+  /// Negative or zero pivots of a diagonal block are the tangent's, too, if it is symmetric.
   [[nodiscard]] LinearOutcome build(const TangentOperator& tangent) override;
   void apply(std::span<const double> residual, std::span<double> correction) override;
   [[nodiscard]] std::string describe() const override;

@@ -18,13 +18,29 @@ constexpr double worn_out = 1.5;
 /// slender body's displacements are so large that no solver's residual goes below.
 constexpr double round_off = 20.0 * std::numeric_limits<double>::epsilon();
 
+const char* words_for(KrylovMethod method) {
+  switch (method) {
+    case KrylovMethod::conjugate_gradients:
+      break;
+    case KrylovMethod::minres:
+      return "MINRES";
+    case KrylovMethod::gmres:
+      return "GMRES";
+    case KrylovMethod::bicgstab:
+      return "BiCGStab";
+  }
+  return "conjugate gradients";
+}
+
 }  // namespace
 
 IterativeSolver::IterativeSolver(KrylovMethod method,
-                                 std::unique_ptr<Preconditioner> preconditioner, int max_iterations)
+                                 std::unique_ptr<Preconditioner> preconditioner, int max_iterations,
+                                 int restart)
     : method_(method),
       preconditioner_(std::move(preconditioner)),
-      max_iterations_(max_iterations) {}
+      max_iterations_(max_iterations),
+      restart_(restart) {}
 
 LinearOutcome IterativeSolver::analyze(const BlockPattern& pattern, const FreeDofs& free) {
   const Stopwatch watch(statistics_.seconds);
@@ -57,8 +73,9 @@ LinearOutcome IterativeSolver::factorize(const TangentOperator& tangent, FactorU
   }
   const std::size_t d = std::size_t(tangent.dimension);
   for (const Index dof : free_->dof) {
-    // A point without stiffness.
-    if (tangent.diagonal[std::size_t(dof) * d + std::size_t(dof) % d] == 0.0) {
+    // A point without stiffness; without symmetry others may hold it.
+    if (!tangent.as_unsymmetric() &&
+        tangent.diagonal[std::size_t(dof) * d + std::size_t(dof) % d] == 0.0) {
       return LinearOutcome::singular;
     }
   }
@@ -81,6 +98,7 @@ LinearOutcome IterativeSolver::iterate(std::span<const double> b, std::span<doub
   options.method = method_;
   options.tolerance = tolerance;
   options.max_iterations = max_iterations_;
+  options.restart = restart_;
   const KrylovResult result = solve_krylov(
       int(size),
       [&](const double* v, double* product) {
@@ -121,10 +139,7 @@ LinearOutcome IterativeSolver::solve(std::span<const double> b, std::span<double
 }
 
 std::string IterativeSolver::describe() const {
-  const char* method = method_ == KrylovMethod::minres  ? "MINRES"
-                       : method_ == KrylovMethod::gmres ? "GMRES"
-                                                        : "conjugate gradients";
-  return fmt::format("{} preconditioned by {}", method, preconditioner_->describe());
+  return fmt::format("{} preconditioned by {}", words_for(method_), preconditioner_->describe());
 }
 
 }  // namespace peristat

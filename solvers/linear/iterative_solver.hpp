@@ -15,8 +15,9 @@ namespace peristat {
 /// more than one and a half times the iterations per digit of the first one after it was built.
 class IterativeSolver : public LinearSolver {
  public:
+  /// @param restart vectors that GMRES keeps before it begins anew
   IterativeSolver(KrylovMethod method, std::unique_ptr<Preconditioner> preconditioner,
-                  int max_iterations);
+                  int max_iterations, int restart = KrylovOptions{}.restart);
 
   LinearOutcome analyze(const BlockPattern& pattern, const FreeDofs& free) override;
   void count_pivots(bool) override {}  // they are never known
@@ -36,7 +37,7 @@ class IterativeSolver : public LinearSolver {
 
   KrylovMethod method_;
   std::unique_ptr<Preconditioner> preconditioner_;
-  int max_iterations_;
+  int max_iterations_, restart_;
   const FreeDofs* free_ = nullptr;
   const TangentOperator* tangent_ = nullptr;
   LinearStatistics statistics_;

@@ -11,7 +11,7 @@
 #include "solvers/linear/load_module.hpp"
 #include "solvers/linear/lower_triangle.hpp"
 #include "solvers/linear/mumps/module.hpp"
-#include "solvers/linear/vector_verbs.hpp"
+#include "solvers/linear/refinement.hpp"
 #include "src/core/stopwatch.hpp"
 
 namespace peristat {
@@ -19,13 +19,6 @@ namespace {
 
 /// Address space of MUMPS' libraries, and what they allocate at once.
 constexpr std::size_t room_for_mumps = std::size_t(64) << 20;
-
-/// Largest relative residual of a solve, after refinement. Beside a critical point the solution is
-/// so large that its last digits leave more: it still solves a system that is this near.
-constexpr double accepted_residual = 1e-6, accepted_backward_error = 1e-12;
-
-/// Corrections of a solution by its residual: more do not help where two did not.
-constexpr int most_refinements = 2;
 
 const mumps::Module& module() {
   static const mumps::Module* const loaded = [] {
@@ -61,7 +54,6 @@ struct Ldlt::Implementation {
   const Tangent* tangent = nullptr;
   std::optional<Inertia> inertia;
   LinearStatistics statistics;
-  std::vector<double> full_in, full_out;
 
   void list_entries(const BlockPattern& pattern) {
     entries = {};
@@ -87,18 +79,10 @@ struct Ldlt::Implementation {
     }
   }
 
-  double largest_row_sum() {
-    tangent->absolute_row_sums(full_out);
-    return *std::max_element(full_out.begin(), full_out.end());
-  }
-
-  /// residual = b - K x
-  void find_residual(std::span<const double> b, std::span<const double> x,
-                     std::span<double> residual) {
-    free->extend_by_zero(x, full_in);
-    tangent->multiply(full_in, full_out);
-    free->restrict_to_free(full_out, residual);
-    for (std::size_t e = 0; e < b.size(); ++e) residual[e] = b[e] - residual[e];
+  double largest_row_sum() const {
+    std::vector<double> sums(free->equation.size());
+    tangent->absolute_row_sums(sums);
+    return *std::max_element(sums.begin(), sums.end());
   }
 };
 
@@ -110,8 +94,6 @@ LinearOutcome Ldlt::analyze(const BlockPattern& pattern, const FreeDofs& free) {
   const Stopwatch watch(own.statistics.seconds);
   own.free = &free;
   own.inertia.reset();
-  own.full_in.resize(free.equation.size());
-  own.full_out.resize(free.equation.size());
   own.list_entries(pattern);
   if (free.count() == 0) return LinearOutcome::solved;
   own.factor = module().make_symmetric_factor();
@@ -144,21 +126,9 @@ LinearOutcome Ldlt::solve(std::span<const double> b, std::span<double> x, double
   Implementation& own = *implementation_;
   const Stopwatch watch(own.statistics.seconds);
   if (b.empty()) return LinearOutcome::solved;
-  std::copy(b.begin(), b.end(), x.begin());
-  own.factor->solve(x.data());
-  const double size = norm(b);
-  std::vector<double> residual(b.size());
-  own.find_residual(b, x, residual);
-  constexpr double fine = 1e-12;
-  for (int k = 0; k < most_refinements && norm(residual) > fine * size; ++k) {
-    own.factor->solve(residual.data());
-    add_scaled(x, 1.0, residual);
-    own.find_residual(b, x, residual);
-  }
-  const bool is_accurate =
-      norm(residual) <= accepted_residual * size ||
-      norm(residual) <= accepted_backward_error * own.largest_row_sum() * norm(x);
-  return is_accurate ? LinearOutcome::solved : LinearOutcome::inaccurate;
+  const FactorSolve factor{[&](std::span<double> v) { own.factor->solve(v.data()); },
+                           [&] { return own.largest_row_sum(); }};
+  return solve_refined(*own.tangent, *own.free, factor, b, x);
 }
 
 std::optional<Inertia> Ldlt::inertia() const { return implementation_->inertia; }

@@ -1,6 +1,7 @@
 #include "solvers/linear/make_linear_solver.hpp"
 
 #include <algorithm>
+#include <stdexcept>
 
 #include <fmt/format.h>
 
@@ -9,7 +10,9 @@
 #include "solvers/linear/cholesky.hpp"
 #include "solvers/linear/iterative_solver.hpp"
 #include "solvers/linear/ldlt.hpp"
+#include "solvers/linear/local_operator.hpp"
 #include "solvers/linear/rigid_pieces.hpp"
+#include "solvers/linear/sparse_lu.hpp"
 #include "solvers/linear/speeds.hpp"
 #include "solvers/linear/surrogate.hpp"
 
@@ -27,6 +30,19 @@ constexpr double small_factorisation = 1e8, affordable_factorisation = 2e10;
 /// Iterations in one solve that no choice of the user's own should exceed.
 constexpr int most_iterations = 20'000;
 
+/// Products for a solve by GMRES with the local operator, and by BiCGStab where masses dominate;
+/// and solves of a load step, which need one factorisation where the tangent stays the same.
+constexpr double products_of_gmres = 70.0, products_with_inertia = 10.0, solves_of_a_step = 3.0;
+
+/// Of these, most that GMRES keeps vectors of, least, and the share of the memory for them.
+constexpr double most_vectors = 200.0, least_vectors = 30.0, share_of_vectors = 0.25;
+
+/// Iterations after which GMRES with the local operator is given up, where there is another way.
+constexpr int patience_of_gmres = 600;
+
+/// Iterations for a system of masses with a little stiffness: two to five are the rule.
+constexpr int patience_with_inertia = 100;
+
 std::unique_ptr<Preconditioner> make_preconditioner(PreconditionerKind kind) {
   switch (kind) {
     case PreconditionerKind::jacobi:
@@ -41,6 +57,8 @@ std::unique_ptr<Preconditioner> make_preconditioner(PreconditionerKind kind) {
       return std::make_unique<AssembledPreconditioner>(MatrixPreconditionerKind::chebyshev);
     case PreconditionerKind::multigrid:
       return std::make_unique<AssembledPreconditioner>(MatrixPreconditionerKind::multigrid);
+    case PreconditionerKind::local_operator:
+      return std::make_unique<LocalOperator>();
     case PreconditionerKind::rigid_pieces:
     case PreconditionerKind::automatic:
       break;
@@ -56,6 +74,7 @@ std::unique_ptr<LinearSolver> make_iterative(
 
 KrylovMethod krylov_method(LinearMethod method) {
   if (method == LinearMethod::minres) return KrylovMethod::minres;
+  if (method == LinearMethod::bicgstab) return KrylovMethod::bicgstab;
   return method == LinearMethod::gmres ? KrylovMethod::gmres : KrylovMethod::conjugate_gradients;
 }
 
@@ -117,7 +136,137 @@ ChosenSolver choose(const LinearProblem& problem, SolverLadder::Reporter tell) {
           is_direct ? direct : iterative, fmt::format("auto: {}", reason)};
 }
 
+/// Vectors that GMRES keeps before it begins anew.
+int restart_for(const LinearProblem& problem) {
+  const double vector = 8.0 * std::max(problem.unknowns, 1.0);
+  const double room = share_of_vectors * problem.available_bytes / vector;
+  return static_cast<int>(std::clamp(room, least_vectors, most_vectors));
+}
+
+std::unique_ptr<LinearSolver> make_unsymmetric(LinearMethod method, PreconditionerKind kind,
+                                               const LinearProblem& problem, int max_iterations) {
+  if (method == LinearMethod::lu) return std::make_unique<SparseLu>(problem.available_bytes);
+  if (kind == PreconditionerKind::automatic) kind = PreconditionerKind::local_operator;
+  auto preconditioner = kind == PreconditionerKind::local_operator
+                            ? std::make_unique<LocalOperator>(problem.available_bytes)
+                            : make_preconditioner(kind);
+  return std::make_unique<IterativeSolver>(krylov_method(method), std::move(preconditioner),
+                                           max_iterations, restart_for(problem));
+}
+
+/// Estimated seconds of a load step with an unsymmetric tangent, which passes over its bonds twice
+/// in a product.
+struct UnsymmetricSeconds {
+  double direct, iterative;
+  explicit UnsymmetricSeconds(const LinearProblem& problem)
+      : direct(problem.factor_flops / speeds::unsymmetric_factorisation +
+               problem.factor_bytes / speeds::fresh_memory),
+        iterative(solves_of_a_step *
+                  (problem.has_inertia ? products_with_inertia : products_of_gmres) * 2.0 *
+                  problem.bonds / speeds::product) {}
+};
+
+ChosenSolver choose_unsymmetric(const LinearProblem& problem, SolverLadder::Reporter tell) {
+  const auto rung = [problem](const char* name, LinearMethod method, PreconditionerKind kind,
+                              int most) {
+    return SolverLadder::Rung{name, [=] { return make_unsymmetric(method, kind, problem, most); }};
+  };
+  const auto lu = rung("lu", LinearMethod::lu, PreconditionerKind::automatic, 0);
+  const auto gmres = rung("gmres with local_operator", LinearMethod::gmres,
+                          PreconditionerKind::local_operator, patience_of_gmres);
+  const auto patient = rung("gmres with block_jacobi", LinearMethod::gmres,
+                            PreconditionerKind::block_jacobi, most_iterations);
+  const auto light = rung("bicgstab with block_jacobi", LinearMethod::bicgstab,
+                          PreconditionerKind::block_jacobi, patience_with_inertia);
+  const auto [direct, iterative] = UnsymmetricSeconds(problem);
+  const bool fits = problem.factor_bytes <= problem.available_bytes;
+  const bool is_small = problem.factor_flops <= small_factorisation;
+  const bool is_direct = !problem.has_inertia && fits && (is_small || direct <= iterative);
+  std::vector<SolverLadder::Rung> rungs;
+  std::string reason;
+  if (problem.has_inertia) {
+    rungs = {light, gmres, fits ? lu : patient};
+    reason = "masses dominate";
+  } else if (is_direct) {
+    rungs = {lu, gmres, patient};
+    reason =
+        is_small
+            ? fmt::format("a factorisation of {:.2g} flops is small", problem.factor_flops)
+            : fmt::format("a factorisation is estimated at {:.2g} s, iterations at {:.2g} s a step",
+                          direct, iterative);
+  } else {
+    rungs = {gmres, fits ? lu : patient};
+    reason = fits ? fmt::format(
+                        "a factorisation is estimated at {:.2g} s, iterations at {:.2g} s a step",
+                        direct, iterative)
+                  : fmt::format("a factor would need about {:.2g} GB of {:.2g} GB available",
+                                problem.factor_bytes / 1e9, problem.available_bytes / 1e9);
+  }
+  return {std::make_unique<SolverLadder>(std::move(rungs), std::move(tell)), is_direct,
+          is_direct ? direct : iterative,
+          fmt::format("auto: {}, the tangent is not symmetric", reason)};
+}
+
+ChosenSolver make_unsymmetric_solver(const LinearSolverOptions& options,
+                                     const LinearProblem& problem, SolverLadder::Reporter tell) {
+  const auto& [method, preconditioner] = options;
+  for (const std::string& why :
+       {what_is_against(method, false), what_is_against(preconditioner, false)}) {
+    if (!why.empty()) throw std::logic_error("make_linear_solver: " + why);
+  }
+  const auto [direct, iterative] = UnsymmetricSeconds(problem);
+  if (method != LinearMethod::automatic) {
+    const bool is_direct = method == LinearMethod::lu;
+    return {make_unsymmetric(method, preconditioner, problem, most_iterations), is_direct,
+            is_direct ? direct : iterative, "as the case asks"};
+  }
+  if (preconditioner != PreconditionerKind::automatic) {
+    return {make_unsymmetric(LinearMethod::gmres, preconditioner, problem, most_iterations), false,
+            iterative, "as the case asks"};
+  }
+  return choose_unsymmetric(problem, std::move(tell));
+}
+
 }  // namespace
+
+std::string what_is_against(LinearMethod method, bool is_symmetric) {
+  switch (method) {
+    case LinearMethod::automatic:
+    case LinearMethod::gmres:
+      return "";
+    case LinearMethod::lu:
+    case LinearMethod::bicgstab:
+      if (!is_symmetric) return "";
+      return "is for models whose tangent is not symmetric; take cholesky, pcg, minres or gmres";
+    case LinearMethod::cholesky:
+    case LinearMethod::ldlt:
+    case LinearMethod::conjugate_gradients:
+    case LinearMethod::minres:
+      break;
+  }
+  if (is_symmetric) return "";
+  return "is for symmetric tangents, and this model's is not; take lu, gmres or bicgstab";
+}
+
+std::string what_is_against(PreconditionerKind preconditioner, bool is_symmetric) {
+  switch (preconditioner) {
+    case PreconditionerKind::automatic:
+    case PreconditionerKind::jacobi:
+    case PreconditionerKind::block_jacobi:
+      return "";
+    case PreconditionerKind::local_operator:
+      return is_symmetric ? "is for models whose tangent is not symmetric; take rigid_pieces" : "";
+    case PreconditionerKind::rigid_pieces:
+    case PreconditionerKind::surrogate:
+    case PreconditionerKind::riluk:
+    case PreconditionerKind::chebyshev:
+    case PreconditionerKind::multigrid:
+      break;
+  }
+  if (is_symmetric) return "";
+  return "is for symmetric tangents, and this model's is not; take local_operator, block_jacobi or "
+         "jacobi";
+}
 
 bool can_be_matrix_free(const LinearSolverOptions& options) {
   return options.method != LinearMethod::cholesky && options.method != LinearMethod::ldlt &&
@@ -128,6 +277,11 @@ bool can_be_matrix_free(const LinearSolverOptions& options) {
 
 ChosenSolver make_linear_solver(const LinearSolverOptions& options, const LinearProblem& problem,
                                 SolverLadder::Reporter tell) {
+  if (!problem.is_symmetric) return make_unsymmetric_solver(options, problem, std::move(tell));
+  for (const std::string& why :
+       {what_is_against(options.method, true), what_is_against(options.preconditioner, true)}) {
+    if (!why.empty()) throw std::logic_error("make_linear_solver: " + why);
+  }
   switch (options.method) {
     case LinearMethod::cholesky:
       return {std::make_unique<Cholesky>(FactorReuse{}, problem.available_bytes), true,
@@ -142,6 +296,8 @@ ChosenSolver make_linear_solver(const LinearSolverOptions& options, const Linear
           make_iterative(options.preconditioner, most_iterations, krylov_method(options.method)),
           false, Seconds(problem).iterative, "as the case asks"};
     case LinearMethod::automatic:
+    case LinearMethod::lu:
+    case LinearMethod::bicgstab:
       break;
   }
   return choose(problem, std::move(tell));

@@ -84,12 +84,46 @@ double surrogate_bytes(const BodySize& size) {
   return 8.0 * d * d * (3.0 * blocks + factor);
 }
 
+/// Of an unsymmetric tangent's rows that are factorised: as they are told, and as UMFPACK takes
+/// them with its own workspace.
+constexpr double lu_bytes_per_entry = 12.0 + 26.0;
+
+/// UMFPACK's workspace over the factor.
+constexpr double lu_overhead = 1.5;
+
+/// Neighbours in the short-range stand-in of an unsymmetric tangent, with the point itself.
+constexpr std::array<double, 3> local_neighbours{3.0, 9.0, 27.0};
+
+double lu_bytes(const BodySize& size, double entries_per_row) {
+  const LuEstimate factor = estimate_lu(size.dimension, size.free_dofs, entries_per_row);
+  return lu_bytes_per_entry * entries_per_row * size.points * size.dimension +
+         8.0 * lu_overhead * factor.entries;
+}
+
+double local_operator_bytes(const BodySize& size) {
+  return lu_bytes(size, local_neighbours[std::size_t(size.dimension) - 1] * size.dimension);
+}
+
+/// GMRES without rigid pieces may need this many vectors.
+constexpr double vectors_of_unsymmetric_gmres = 70.0;
+
 /// Bytes per entry of the whole matrix that a preconditioner of Trilinos takes, as measured: two
 /// copies of the compressed rows, and in RILUK the factors, in multigrid the coarser levels.
 double trilinos_bytes_per_entry(PreconditionerKind kind) {
   return kind == PreconditionerKind::chebyshev ? 24.0
          : kind == PreconditionerKind::riluk   ? 36.0
                                                : 33.0;
+}
+
+/// Of an iterative solver with its preconditioner.
+double unsymmetric_bytes(const BodySize& size, const LinearSolverOptions& options) {
+  const double d = size.dimension;
+  const bool keeps_vectors = options.method != LinearMethod::bicgstab;
+  const double vectors = keeps_vectors ? vectors_of_unsymmetric_gmres : 12.0;
+  const double bytes = trilinos_bytes + 8.0 * size.points * (vectors * d + d + 0.5 * d * (d + 1.0));
+  const bool is_local = options.preconditioner == PreconditionerKind::automatic ||
+                        options.preconditioner == PreconditionerKind::local_operator;
+  return bytes + (is_local ? local_operator_bytes(size) : 0.0);
 }
 
 }  // namespace
@@ -104,6 +138,19 @@ double bonds_per_point(int dimension, double horizon_ratio) {
     default:
       return 2.0 / 3.0 * std::numbers::pi * m * m * m;
   }
+}
+
+LuEstimate estimate_lu(int dimension, double unknowns, double entries_per_row) {
+  const double n = std::max(unknowns, 2.0), e = std::min(entries_per_row, n);
+  LuEstimate estimate{n * e, 0.5 * n * e * e};  // of a band
+  if (dimension == 2) {
+    estimate = {0.6 * e * n * std::log2(n), 0.35 * e * e * std::pow(n, 1.5)};
+  } else if (dimension == 3) {
+    estimate = {2.6 * std::pow(e, 2.0 / 3.0) * std::pow(n, 4.0 / 3.0),
+                0.2 * std::pow(e, 4.0 / 3.0) * n * n};
+  }
+  // A full matrix at most.
+  return {std::min(estimate.entries, n * n), std::min(estimate.flops, 2.0 / 3.0 * n * n * n)};
 }
 
 MemoryEstimate estimate_memory(const BodySize& size) {
@@ -128,6 +175,12 @@ MemoryEstimate estimate_memory(const BodySize& size) {
   estimate.factor_entries = std::min(natural_entries, dissection_entries);
   estimate.factor_flops = std::min(natural_flops, dissection_flops);
 
+  if (!size.is_symmetric()) {
+    const LuEstimate factor = estimate_lu(dimension, size.free_dofs, size.entries_per_row);
+    estimate.factor_entries = factor.entries;
+    estimate.factor_flops = factor.flops;
+  }
+
   const double block = size.has_symmetric_blocks ? 0.5 * d * (d + 1.0) : d * d;
   estimate.body_bytes = body_bytes(size) + 8.0 * size.points * d * (d + 1.0);
   estimate.tangent_bytes = 8.0 * size.bonds * block;
@@ -142,6 +195,7 @@ MemoryEstimate estimate_memory(const BodySize& size) {
 }
 
 double MemoryEstimate::iterative_bytes(const LinearSolverOptions& options) const {
+  if (!size.is_symmetric()) return unsymmetric_bytes(size, options);
   double bytes = trilinos_bytes + krylov_bytes(size, options.method == LinearMethod::gmres);
   const double d = size.dimension;
   switch (options.preconditioner) {
@@ -149,6 +203,7 @@ double MemoryEstimate::iterative_bytes(const LinearSolverOptions& options) const
     case PreconditionerKind::block_jacobi:
       return bytes;
     case PreconditionerKind::automatic:
+    case PreconditionerKind::local_operator:  // has no symmetric tangents
     case PreconditionerKind::rigid_pieces:
       return bytes + rigid_pieces_bytes(size);
     case PreconditionerKind::surrogate:
@@ -165,6 +220,7 @@ double MemoryEstimate::iterative_bytes(const LinearSolverOptions& options) const
 }
 
 double MemoryEstimate::direct_bytes(LinearMethod method) const {
+  if (!size.is_symmetric()) return lu_bytes(size, size.entries_per_row);
   if (method == LinearMethod::ldlt) {
     const double d = size.dimension;
     return ldlt_library_bytes + ldlt_bytes_per_entry * d * d * (size.bonds + size.points) +

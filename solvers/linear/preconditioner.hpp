@@ -9,7 +9,8 @@
 
 namespace peristat {
 
-/// Approximate inverse of K_ff, symmetric and positive definite.
+/// Approximate inverse of K_ff; symmetric and positive definite, but for those of unsymmetric
+/// tangents.
 class Preconditioner {
  public:
   virtual ~Preconditioner() = default;

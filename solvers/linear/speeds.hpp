@@ -6,8 +6,9 @@ namespace peristat {
 /// solvers go by: they are constants, so that choices don't depend on how fast a machine happens to
 /// be.
 namespace speeds {
-inline constexpr double factorisation = 3e10;  ///< [flop/s]
-inline constexpr double solve = 1e10;          ///< reading a factor in triangular solves [bytes/s]
+inline constexpr double factorisation = 3e10;              ///< [flop/s]
+inline constexpr double unsymmetric_factorisation = 1e10;  ///< UMFPACK, on one thread [flop/s]
+inline constexpr double solve = 1e10;        ///< reading a factor in triangular solves [bytes/s]
 inline constexpr double fresh_memory = 1e9;  ///< which a small factorisation mostly takes [bytes/s]
 inline constexpr double product = 1.5e8;     ///< matrix-free [bonds/s]
 }  // namespace speeds

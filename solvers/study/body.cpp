@@ -298,6 +298,12 @@ MemoryEstimate estimate_memory(const Body& body) {
   size.has_symmetric_blocks = body.model.has_symmetric_blocks();
   size.is_constrained = !body.conditions->constraints().none();
   size.free_dofs = double(std::count(prescribed.begin(), prescribed.end(), 0));
+  if (!body.model.balances().potential) {
+    // Couplings reach two horizons: 2^d as many points as one.
+    const double near = 2.0 * size.bonds / std::max(size.points, 1.0) + 1.0;
+    size.entries_per_row =
+        size.dimension * std::min(size.points, std::pow(2.0, size.dimension) * near);
+  }
   MemoryEstimate estimate = estimate_memory(size);
   for (const auto& term : body.model.terms()) estimate.body_bytes += term->stored_bytes();
   estimate.body_bytes +=

@@ -32,6 +32,13 @@ void require_ldlt(const StudyOptions& options) {
   }
 }
 
+void require_agreement(const LinearSolverOptions& linear, bool is_symmetric) {
+  const std::string method = what_is_against(linear.method, is_symmetric);
+  if (!method.empty()) throw InputError("linear.method", "", method);
+  const std::string preconditioner = what_is_against(linear.preconditioner, is_symmetric);
+  if (!preconditioner.empty()) throw InputError("linear.preconditioner", "", preconditioner);
+}
+
 /// Vectors of the flow beside those of Newton's search: a state, two directions, works, the way.
 constexpr double vectors_of_flow = 9.0;
 
@@ -67,13 +74,18 @@ bool flows(const StudyOptions& options, const Model& model) {
 LinearSystems choose_linear_systems(const StudyOptions& options, const Model& model,
                                     const MemoryEstimate& estimate, SolverLadder::Reporter tell) {
   LinearSolverOptions linear = options.linear;
+  const bool is_symmetric = estimate.size.is_symmetric();
+  require_agreement(linear, is_symmetric);
   // Who names a preconditioner wants it used.
-  if (linear.method == LinearMethod::automatic &&
+  if (is_symmetric && linear.method == LinearMethod::automatic &&
       linear.preconditioner != PreconditionerKind::automatic)
     linear.method = LinearMethod::conjugate_gradients;
   if (options.tangent == TangentStorage::matrix_free && !model.visits_rows())
     throw InputError("tangent", "matrix_free", "is for bonds alone");
   LinearProblem problem;
+  problem.is_symmetric = is_symmetric;
+  problem.unknowns = estimate.size.free_dofs;
+  problem.has_inertia = options.loading.mode == Mode::dynamics;
   problem.bonds = estimate.size.bonds;
   problem.factor_flops = estimate.factor_flops;
   problem.factor_bytes = estimate.direct_bytes(linear.method);

@@ -53,7 +53,7 @@ void check_options(const StudyOptions& options) {
                      "stable step to take a share of");
   }
   const LinearSolverOptions& linear = options.linear;
-  if (linear.method == LinearMethod::cholesky &&
+  if ((linear.method == LinearMethod::cholesky || linear.method == LinearMethod::lu) &&
       linear.preconditioner != PreconditionerKind::automatic)
     throw InputError("linear.preconditioner", "", "is for iterative solvers");
   if (options.tangent == TangentStorage::matrix_free && !can_be_matrix_free(linear))

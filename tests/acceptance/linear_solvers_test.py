@@ -91,6 +91,10 @@ class LinearSolvers(unittest.TestCase):
             (("solver.preconditioner=ilu",), "rigid_pieces"),
             (("solver.linear=cholesky", "solver.preconditioner=surrogate"), "solver.preconditioner"),
             (("solver.linear=cg",), "did you mean pcg"),
+            (("solver.linear=lu",), "solver.linear = lu: is for models whose tangent is not symmetric"),
+            (("solver.linear=bicgstab",), "solver.linear = bicgstab: is for models whose tangent is not"),
+            (("solver.preconditioner=local_operator",),
+             "solver.preconditioner = local_operator: is for models whose tangent is not"),
         ):
             with self.subTest(settings=settings):
                 run = self.peristat("check", BEAM, *settings)

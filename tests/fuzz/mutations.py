@@ -33,7 +33,7 @@ WORDS = """dimension title lattice points spacing horizon_ratio thickness area o
     strain temperature change thermal_expansion volumes neighbours dynamics end_time time_step step_share history_every initial velocity scheme
     spectral_radius absorbing""".split()
 CHOICES = """none linear exact exact_centroids volume energy mean bulk bond cpd stress strain lattice continuum critical_stretch tanh tanh_continuous linear exponential blended piecewise_constant cubic quintic septic gaussian inverse newton
-    relaxation adaptive flow dynamic auto cholesky pcg minres gmres jacobi block_jacobi rigid_pieces surrogate riluk chebyshev multigrid stored
+    relaxation adaptive flow dynamic auto cholesky pcg minres gmres lu bicgstab local_operator jacobi block_jacobi rigid_pieces surrogate riluk chebyshev multigrid stored
     matrix_free consistent never always hold remove stop fixed moving at_equilibrium transient kinetic cell_centres nodes box disk polygon
     cylinder sphere x- x+ y- y+ z- z+ displacement force damage stretch energy_density poisson_ratio opening crack_length
     arc_length dynamics verlet newmark branch straight cells fractional harmonic arithmetic weaker stiffness strength weibull row horizon x y z""".split()

@@ -376,7 +376,13 @@ struct CollocationOperator::Kernels {
 
   void fill_row(Index i, RowBuffer& row) const {
     row.clear();
+    // Whatever is broken, so that the rows keep their pattern.
     row.at(i);
+    for (Offset e = net.offset[i]; e < net.offset[i + 1]; ++e) {
+      const Index j = net.neighbour[e];
+      row.at(j);
+      for (Offset f = net.offset[j]; f < net.offset[j + 1]; ++f) row.at(net.neighbour[f]);
+    }
     const V own = for_couplings(i, [&](Offset, Index j, const V& g, double factor, const V& xi) {
       add_outer<D>(factor, xi, xi, row.at(j));
       add_outer<D>(-factor, xi, xi, row.at(i));

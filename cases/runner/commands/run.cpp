@@ -22,6 +22,7 @@
 #include "cases/runner/results/recorder.hpp"
 #include "cases/runner/results/results.hpp"
 #include "solvers/linear/cholesky.hpp"
+#include "solvers/linear/lu_factor.hpp"
 #include "solvers/study/crack_trapping.hpp"
 #include "solvers/study/found_loads.hpp"
 #include "solvers/study/study.hpp"
@@ -194,6 +195,7 @@ std::map<std::string, std::string> versions() {
   return {{"peristat", PERISTAT_VERSION},
           {"hdf5", fmt::format("{}.{}.{}", major, minor, release)},
           {"cholmod", Cholesky::library_version()},
+          {"umfpack", LuFactor::library_version()},
           {"compiler", fmt::format("GCC {}", __VERSION__)}};
 }
 

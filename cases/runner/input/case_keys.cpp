@@ -1113,12 +1113,25 @@ Table<LoadingSpecification> loading_keys() {
   return keys;
 }
 
+/// Whether the model's tangent is symmetric, as that of an energy is.
+bool has_symmetric_tangent(const Case& from) { return !is_lps(from); }
+
+void check_linear(const Entry& at, const SolverSpecification& solver) {
+  const std::string why = what_is_against(solver.linear, has_symmetric_tangent(at.so_far));
+  if (!why.empty()) at.refuse(why);
+}
+
 void check_preconditioner(const Entry& at, SolverSpecification& solver) {
   if (solver.preconditioner == PreconditionerKind::automatic) return;
-  if (solver.linear == LinearMethod::cholesky)
-    at.refuse("is for iterative solvers, not for solver.linear = \"cholesky\"");
+  const bool is_symmetric = has_symmetric_tangent(at.so_far);
+  const std::string why = what_is_against(solver.preconditioner, is_symmetric);
+  if (!why.empty()) at.refuse(why);
+  if (solver.linear == LinearMethod::cholesky || solver.linear == LinearMethod::lu)
+    at.refuse("is for iterative solvers, not for solver.linear = \"cholesky\" and \"lu\"");
   // Who names a preconditioner wants it used.
-  if (solver.linear == LinearMethod::automatic) solver.linear = LinearMethod::conjugate_gradients;
+  if (solver.linear == LinearMethod::automatic) {
+    solver.linear = is_symmetric ? LinearMethod::conjugate_gradients : LinearMethod::gmres;
+  }
 }
 
 void check_tangent(const Entry& at, const SolverSpecification& solver) {
@@ -1177,11 +1190,16 @@ Table<SolverSpecification> solver_keys() {
                                {"cholesky", LinearMethod::cholesky},
                                {"pcg", LinearMethod::conjugate_gradients},
                                {"minres", LinearMethod::minres},
-                               {"gmres", LinearMethod::gmres}}),
+                               {"gmres", LinearMethod::gmres},
+                               {"lu", LinearMethod::lu},
+                               {"bicgstab", LinearMethod::bicgstab}}),
          "solver of the linear systems ([linear-solvers.md](linear-solvers.md)); `\"auto\"` "
-         "chooses, says why, and falls back where it fails")
+         "chooses, says why, and falls back where it fails. `\"lu\"` and `\"bicgstab\"` are for "
+         "models whose tangent is not symmetric, `\"gmres\"` is for all, the others are for those "
+         "whose is")
            .written_if(searches)
-           .extends(),
+           .extends()
+           .then(check_linear),
        K("preconditioner", &Spec::preconditioner,
          choice<PreconditionerKind>({{"auto", PreconditionerKind::automatic},
                                      {"jacobi", PreconditionerKind::jacobi},
@@ -1190,9 +1208,12 @@ Table<SolverSpecification> solver_keys() {
                                      {"surrogate", PreconditionerKind::surrogate},
                                      {"riluk", PreconditionerKind::riluk},
                                      {"chebyshev", PreconditionerKind::chebyshev},
-                                     {"multigrid", PreconditionerKind::multigrid}}),
-         "of the last three, not for `\"cholesky\"`; with `linear = \"auto\"` it means `\"pcg\"`; "
-         "`\"auto\"` is `\"rigid_pieces\"`")
+                                     {"multigrid", PreconditionerKind::multigrid},
+                                     {"local_operator", PreconditionerKind::local_operator}}),
+         "of the iterative ones, not for `\"cholesky\"` and `\"lu\"`; with `linear = \"auto\"` it "
+         "means `\"pcg\"`; `\"auto\"` is `\"rigid_pieces\"`. Where the tangent is not symmetric: "
+         "`\"local_operator\"`, which `\"auto\"` is and with which `linear = \"auto\"` means "
+         "`\"gmres\"`, `\"jacobi\"` and `\"block_jacobi\"`")
            .written_if(searches)
            .extends()
            .then(check_preconditioner),

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include <BelosBiCGStabIter.hpp>
 #include <BelosBlockGmresSolMgr.hpp>
 #include <BelosLinearProblem.hpp>
 #include <BelosMinresIter.hpp>
@@ -225,6 +226,22 @@ Run run_minres(const RCP<Problem>& problem, double start_norm, double target, in
   return outcome_of(*rule, iteration.getNumIters());
 }
 
+/// Where it breaks down, it ends as converged and refinement starts it anew from what it has.
+Run run_bicgstab(const RCP<Problem>& problem, double target, int max_iterations) {
+  const RCP<StoppingRule> rule = rcp(new StoppingRule(target, max_iterations));
+  Teuchos::ParameterList parameters;
+  Belos::BiCGStabIter<double, Vector, Operator> iteration(problem, silence(), rule, parameters);
+  Belos::BiCGStabIterationState<double, Vector> start;
+  start.R = problem->getInitResVec();
+  try {
+    iteration.initializeBiCGStab(start);
+    iteration.iterate();
+  } catch (const std::exception&) {
+    return {KrylovOutcome::breakdown, iteration.getNumIters()};
+  }
+  return outcome_of(*rule, iteration.getNumIters());
+}
+
 Run run_gmres(const RCP<Problem>& problem, double relative_target, int max_iterations,
               int restart) {
   const RCP<Teuchos::ParameterList> parameters = rcp(new Teuchos::ParameterList);
@@ -261,7 +278,10 @@ Run run_belos(const RCP<const Map>& rows, const VectorMap& matrix, const VectorM
   residual = std::vector<double>();
 
   const RCP<Problem> problem = rcp(new Problem(matrix_operator, d, r));
-  problem->setHermitian();
+  if (options.method == KrylovMethod::conjugate_gradients ||
+      options.method == KrylovMethod::minres) {
+    problem->setHermitian();
+  }
   // From the right, also where the method makes no difference: from the left, Belos would
   // precondition the start's residual once for nothing.
   if (preconditioner) problem->setRightPrec(rcp(new MapOperator(rows, preconditioner)));
@@ -275,6 +295,8 @@ Run run_belos(const RCP<const Map>& rows, const VectorMap& matrix, const VectorM
     problem->setLSIndex({0});
     run = options.method == KrylovMethod::minres
               ? run_minres(problem, residual_norm, target, max_iterations)
+          : options.method == KrylovMethod::bicgstab
+              ? run_bicgstab(problem, target, max_iterations)
               : run_conjugate_gradients(problem, target, max_iterations);
     problem->setCurrLS();
   }

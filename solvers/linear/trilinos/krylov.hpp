@@ -10,6 +10,7 @@ enum class KrylovMethod {
   conjugate_gradients,  ///< matrix and preconditioner symmetric positive definite
   minres,               ///< matrix symmetric, preconditioner symmetric positive definite
   gmres,                ///< any matrix, any linear preconditioner, from the right
+  bicgstab,  ///< the same without vectors to keep; for matrices near their preconditioner
 };
 
 /// How an iterative solve ended.

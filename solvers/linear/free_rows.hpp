@@ -1,0 +1,12 @@
+#pragma once
+
+#include "assembly/operators/unsymmetric_tangent.hpp"
+#include "solvers/linear/free_dofs.hpp"
+
+namespace peristat {
+
+/// K_ff from the rows of K: one row and one column per equation.
+/// @param rows taken over: what leaves makes room in place
+[[nodiscard]] SparseRows free_rows(SparseRows rows, const FreeDofs& free);
+
+}  // namespace peristat
