@@ -513,8 +513,8 @@ Exit check_tangent(const Case& from, const std::string& deformation, int threads
       "}}\n",
       text, found.energy, norm(gradient), frobenius_norm(tangent), asymmetry,
       relative_force_sum(points, internal_force),
-      relative_moment_sum(points, displacement, internal_force), error_of_residual, of_tangent.error,
-      has_potential ? of_residual.order_text() : "null", of_tangent.order_text());
+      relative_moment_sum(points, displacement, internal_force), error_of_residual,
+      of_tangent.error, has_potential ? of_residual.order_text() : "null", of_tangent.order_text());
   if (!has_potential) {
     fmt::print(stderr,
                "forces by collocation have no potential: the asymmetry is meant, and the energy is "
