@@ -52,6 +52,7 @@ std::vector<SurfaceSite> surface_sites(const Points& points, const Model& model,
     std::erase_if(feet, [&](const Foot& foot) { return foot.depth(place) < 0.0; });
     const std::vector<double> shares =
         feet.empty() ? std::vector<double>() : shares_of(feet, normal);
+    Coordinates rest = normal;
     for (std::size_t f = 0; f < feet.size(); ++f) {
       SurfaceSite site;
       site.point = i;
@@ -62,11 +63,16 @@ std::vector<SurfaceSite> surface_sites(const Points& points, const Model& model,
       if (feet[f].part.shape < names.size()) site.name = names[feet[f].part.shape];
       site.place = feet[f].at;
       site.normal = feet[f].normal;
-      site.point_normal = normal;
       site.share = shares[f];
-      site.is_only = feet.size() == 1;
+      for (std::size_t c = 0; c < d; ++c) {
+        site.part_of_normal[c] = shares[f] * feet[f].normal[c];
+        rest[c] -= site.part_of_normal[c];
+      }
       sites.push_back(std::move(site));
     }
+    if (feet.empty()) continue;
+    Coordinates& nearest = sites[sites.size() - feet.size()].part_of_normal;
+    for (std::size_t c = 0; c < d; ++c) nearest[c] += rest[c];
   }
   return sites;
 }

@@ -86,10 +86,10 @@ Coordinates SurfaceTractions::traction(const Load& load, const SurfaceSite& site
       break;
     }
     case LoadSpecification::Kind::stress: {
-      const Coordinates& normal = site.is_only ? site.point_normal : site.normal;
+      const Coordinates& normal = site.part_of_normal;
       const auto entries = stress_entries(dimension);
       for (std::size_t k = 0; k < entries.size(); ++k) {
-        const double stress = site.share * load.value[k](site.place, loads);
+        const double stress = load.value[k](site.place, loads);
         const auto [r, c] = entries[k];
         result[r] += stress * normal[c];
         if (r != c) result[c] += stress * normal[r];

@@ -19,11 +19,11 @@ struct SurfaceSite {
   std::string name{};          ///< of the face's shape; empty: it has none
   Coordinates place{};         ///< on the face, nearest to the point [m]
   Coordinates normal{};        ///< of the face there, outward
-  Coordinates point_normal{};  ///< of the point, by its neighbourhood
   /// Part a_f of the point's traction T = sum_f a_f t_f that is the face's, with n = sum_f a_f e_f
   /// of the point's normal: 1 where the face is the only one.
   double share = 1.0;
-  bool is_only = true;
+  /// The same part a_f e_f of the point's normal; what the faces don't span is the nearest one's.
+  Coordinates part_of_normal{};
 };
 
 /// Tractions on the surface at points, of models that take them as they are ([LPS] sec. 4.2). At a

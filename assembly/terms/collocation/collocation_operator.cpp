@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <utility>
 
 #include "src/core/threads.hpp"
@@ -101,6 +102,9 @@ void write_inverse(const Matrix<D, double>& shape, double* inverse) {
   }
 }
 
+/// Share of sum k r^2 below which a point is torn: a straight crack leaves it half of its ball.
+constexpr double torn_share = 0.4;
+
 double harmonic_mean(double a, double b) {
   if (a == b) return a;
   const double sum = a + b;
@@ -171,6 +175,19 @@ struct CollocationOperator::Kernels {
     return harmonic_mean(material.lambda[i], material.lambda[j]);
   }
 
+  /// @param shape d sum k xi xi of what is unbroken
+  [[nodiscard]] bool is_torn(Index i, const M& shape) const {
+    if (op.share_.empty()) return false;
+    double left = 0.0, had = 0.0;
+    for (int c = 0; c < D; ++c) left += shape[c][c] / D;
+    const V here = place(i);
+    for (Offset e = net.offset[i]; e < net.offset[i + 1]; ++e) {
+      const V xi = minus<D>(place(net.neighbour[e]), here);
+      had += net.kernel_share[e] * dot<D>(xi, xi);
+    }
+    return left < torn_share * had;
+  }
+
   void update_point(Index i) const {
     M shape{};
     V out{};
@@ -181,6 +198,11 @@ struct CollocationOperator::Kernels {
       for (int c = 0; c < D; ++c) out[c] -= k * r * xi[c];
       lengths += std::abs(k) * r * r;
     });
+    op.torn_[i] = is_torn(i, shape);
+    if (op.torn_[i]) {
+      shape = {};
+      for (int c = 0; c < D; ++c) shape[c][c] = 1.0;
+    }
     write_inverse<D>(shape, &op.shape_[std::size_t(i) * D * D]);
     constexpr int entries = third_moment_entries(D);
     double* first = &op.first_[std::size_t(i) * D];
@@ -208,6 +230,7 @@ struct CollocationOperator::Kernels {
   [[nodiscard]] V missing_force(Index i, double theta, const V& traction) const {
     const double lambda = material.lambda[i], mu = material.mu[i];
     const V n = of(op.normal_, i);
+    if (op.torn_[i]) theta = 0.0;
     V force;
     for (int c = 0; c < D; ++c) {
       force[c] = -2.0 * D * (lambda - mu) * theta * op.first_[std::size_t(i) * D + c];
@@ -237,6 +260,54 @@ struct CollocationOperator::Kernels {
     return force;
   }
 
+  /// Whether the force on a point has a part of missing_shear.
+  [[nodiscard]] bool has_missing_shear(Index i) const {
+    if (D == 2 || op.setting_.form == TractionForm::paper || op.torn_[i]) return false;
+    const V n = of(op.normal_, i);
+    return dot<D>(n, n) != 0.0;
+  }
+
+  /// Part of B that is the deviator in the tangential plane of a nonlocal displacement gradient.
+  [[nodiscard]] V missing_shear(Index i, const M& gradient) const {
+    const V n = of(op.normal_, i);
+    V along{};  // E n
+    M strain;
+    for (int r = 0; r < D; ++r) {
+      for (int c = 0; c < D; ++c) {
+        strain[r][c] = 0.5 * (gradient[r][c] + gradient[c][r]);
+        along[r] += strain[r][c] * n[c];
+      }
+    }
+    const double normal = dot<D>(along, n);
+    double trace = -normal;
+    for (int c = 0; c < D; ++c) trace += strain[c][c];
+    M deviator;
+    for (int r = 0; r < D; ++r) {
+      for (int c = 0; c < D; ++c) {
+        deviator[r][c] = strain[r][c] - along[r] * n[c] - n[r] * along[c] +
+                         (normal + 0.5 * trace) * n[r] * n[c] - (r == c ? 0.5 * trace : 0.0);
+      }
+    }
+    const double* third = &op.third_[std::size_t(i) * third_moment_entries(D)];
+    return scaled<D>(-bond_factor * material.mu[i], contracted<D>(third, deviator));
+  }
+
+  /// Calls visit(l, block): missing_shear of the gradient of u is sum_l block (u_l - u_i).
+  template <class Visit>
+  void for_missing_shear(Index i, const Visit& visit) const {
+    if (!has_missing_shear(i)) return;
+    for_dilatation(i, [&](Index l, const V& t) {
+      M block;
+      for (int c = 0; c < D; ++c) {
+        M gradient{};
+        gradient[c] = t;
+        const V column = missing_shear(i, gradient);
+        for (int r = 0; r < D; ++r) block[r][c] = column[r];
+      }
+      visit(l, block);
+    });
+  }
+
   [[nodiscard]] double theta_at(std::span<const double> u, Index i) const {
     const V here = of(u, i);
     M moments{};
@@ -257,8 +328,8 @@ struct CollocationOperator::Kernels {
     const double lambda = material.lambda[i], mu = material.mu[i], theta = op.theta_[i];
     V force{};
     for_neighbours(i, [&](Offset, Index j, double k, const V& xi) {
-      const double mu_ij = harmonic_mean(mu, material.mu[j]);
-      const double lambda_ij = harmonic_mean(lambda, material.lambda[j]);
+      const double mu_ij = op.is_uniform_ ? mu : harmonic_mean(mu, material.mu[j]);
+      const double lambda_ij = op.is_uniform_ ? lambda : harmonic_mean(lambda, material.lambda[j]);
       const double squared = dot<D>(xi, xi);
       const double stretch = dot<D>(xi, minus<D>(of(u, j), here)) / squared;
       const double factor =
@@ -266,7 +337,8 @@ struct CollocationOperator::Kernels {
       for (int c = 0; c < D; ++c) force[c] += factor * xi[c];
     });
     const V pulled = traction.empty() ? V{} : of(traction, i);
-    return plus<D>(force, missing_force(i, theta, pulled));
+    force = plus<D>(force, missing_force(i, theta, pulled));
+    return has_missing_shear(i) ? plus<D>(force, missing_shear(i, gradient_at(u, i))) : force;
   }
 
   void forces(std::span<const double> u, std::span<const double> traction,
@@ -295,9 +367,30 @@ struct CollocationOperator::Kernels {
     return gradient;
   }
 
+  /// Whether nothing of the ball is missing.
+  [[nodiscard]] bool is_whole(Index i) const {
+    constexpr int entries = third_moment_entries(D);
+    const double* third = &op.third_[std::size_t(i) * entries];
+    return std::all_of(third, third + entries, [](double s) { return s == 0.0; });
+  }
+
+  [[nodiscard]] double whole_energy_density(std::span<const double> u, Index i) const {
+    const V here = of(u, i);
+    double theta = 0.0, bonds = 0.0;
+    for_neighbours(i, [&](Offset, Index j, double k, const V& xi) {
+      const double along = dot<D>(xi, minus<D>(of(u, j), here));
+      theta += k * along;
+      bonds += k * along * along / dot<D>(xi, xi);
+    });
+    theta *= D;
+    const double lambda = material.lambda[i], mu = material.mu[i];
+    return 0.5 * (lambda - mu) * theta * theta + 0.25 * bond_factor * mu * bonds;
+  }
+
   /// w; the part of bonds in the missing part of the ball is that of the whole ball under the
   /// nonlocal strain, which the quadrature has exactly, less that of what is there.
   [[nodiscard]] double energy_density(std::span<const double> u, Index i) const {
+    if (is_whole(i)) return whole_energy_density(u, i);
     const M gradient = gradient_at(u, i);
     M strain;
     double theta = 0.0, squared_strain = 0.0;
@@ -335,6 +428,14 @@ struct CollocationOperator::Kernels {
       visit(e, j, g, -bond_factor * mu * k / dot<D>(xi, xi), xi);
     });
     return own;
+  }
+
+  /// k_ij of unbroken neighbours, which are neighbours in both directions.
+  [[nodiscard]] double share_of(Index i, Index j) const {
+    const auto first = net.neighbour.begin() + net.offset[i];
+    const auto last = net.neighbour.begin() + net.offset[i + 1];
+    const auto entry = std::lower_bound(first, last, j) - net.neighbour.begin();
+    return (op.share_.empty() ? net.kernel_share : op.share_)[std::size_t(entry)];
   }
 
   /// theta of a point is sum_l t_l . (u_l - u_i).
@@ -389,6 +490,16 @@ struct CollocationOperator::Kernels {
       add_dilatation(j, g, row);
     });
     add_dilatation(i, own, row);
+    for_missing_shear(i, [&](Index l, const M& block) {
+      add_block(1.0, block, row.at(l));
+      add_block(-1.0, block, row.at(i));
+    });
+  }
+
+  static void add_block(double factor, const M& block, M& sum) {
+    for (int r = 0; r < D; ++r) {
+      for (int c = 0; c < D; ++c) sum[r][c] += factor * block[r][c];
+    }
   }
 
   [[nodiscard]] SparseRows rows() const {
@@ -438,11 +549,11 @@ struct CollocationOperator::Kernels {
       M block{};
       const V own = for_couplings(i, [&](Offset, Index j, const V& g, double factor, const V& xi) {
         add_outer<D>(-factor, xi, xi, block);
-        for_dilatation(j, [&](Index l, const V& t) {
-          if (l == i) add_outer<D>(1.0, g, t, block);
-        });
+        const double back = share_of(j, i);
+        add_outer<D>(1.0, g, scaled<D>(-D * back, shaped(j, xi)), block);
       });
       for_dilatation(i, [&](Index, const V& t) { add_outer<D>(-1.0, own, t, block); });
+      for_missing_shear(i, [&](Index, const M& of_pair) { add_block(-1.0, of_pair, block); });
       for (int r = 0; r < D; ++r) {
         for (int c = 0; c < D; ++c) {
           blocks[std::size_t(i) * D * D + r * D + c] = op.points_.volume[i] * block[r][c];
@@ -470,6 +581,11 @@ struct CollocationOperator::Kernels {
           for (int c = 0; c < D; ++c) sum[r] += 2.0 * std::abs(factor * xi[r] * xi[c]);
         }
       });
+      for_missing_shear(i, [&](Index, const M& block) {
+        for (int r = 0; r < D; ++r) {
+          for (int c = 0; c < D; ++c) sum[r] += 2.0 * std::abs(block[r][c]);
+        }
+      });
       for (int r = 0; r < D; ++r) {
         bounds[std::size_t(i) * D + r] =
             op.points_.volume[i] * (sum[r] + std::abs(own[r]) * of_dilatation[i]);
@@ -487,7 +603,13 @@ CollocationOperator::CollocationOperator(const Points& points, CollocationSettin
   shape_.resize(count * d * d);
   first_.resize(count * d);
   normal_.resize(count * d);
+  torn_.resize(count);
   third_.resize(count * std::size_t(third_moment_entries(setting_.network->dimension)));
+  const LameConstants& constants = *setting_.constants;
+  const auto are_equal = [](const std::vector<double>& values) {
+    return std::adjacent_find(values.begin(), values.end(), std::not_equal_to<>()) == values.end();
+  };
+  is_uniform_ = are_equal(constants.lambda) && are_equal(constants.mu);
   update({});
 }
 CollocationOperator::~CollocationOperator() = default;
@@ -502,18 +624,34 @@ void CollocationOperator::update(std::span<const char> broken) {
   const bool is_known =
       is_up_to_date_ && std::equal(broken.begin(), broken.end(), broken_.begin(), broken_.end());
   if (is_known) return;
-  broken_.assign(broken.begin(), broken.end());
+  const std::vector<char> changed = take_up(broken);
+  outline_.reset();
+  dispatch([&](const auto& kernels) {
+    kernels.for_points([&](Index i) {
+      if (changed[std::size_t(i)]) kernels.update_point(i);
+    });
+  });
+}
+
+std::vector<char> CollocationOperator::take_up(std::span<const char> broken) {
   const CollocationNetwork& network = *setting_.network;
-  share_.clear();
-  if (std::find(broken.begin(), broken.end(), char(1)) != broken.end()) {
-    share_ = network.kernel_share;
-    for (std::size_t e = 0; e < share_.size(); ++e) {
-      if (broken[std::size_t(network.bond[e])]) share_[e] = 0.0;
+  const std::vector<char> before = std::exchange(broken_, {broken.begin(), broken.end()});
+  const auto is_broken = [](const std::vector<char>& bonds, Offset bond) {
+    return !bonds.empty() && bonds[std::size_t(bond)] != 0;
+  };
+  const bool is_first = !std::exchange(is_up_to_date_, true);
+  const bool are_some = std::find(broken_.begin(), broken_.end(), char(1)) != broken_.end();
+  if (are_some && share_.empty()) share_ = network.kernel_share;
+  std::vector<char> changed(std::size_t(network.points()), is_first);
+  for (Index i = 0; i < network.points(); ++i) {
+    for (Offset e = network.offset[i]; e < network.offset[i + 1]; ++e) {
+      const bool is = is_broken(broken_, network.bond[e]);
+      if (is == is_broken(before, network.bond[e])) continue;
+      changed[std::size_t(i)] = 1;
+      share_[std::size_t(e)] = is ? 0.0 : network.kernel_share[std::size_t(e)];
     }
   }
-  dispatch(
-      [&](const auto& kernels) { kernels.for_points([&](Index i) { kernels.update_point(i); }); });
-  is_up_to_date_ = true;
+  return changed;
 }
 
 void CollocationOperator::forces(std::span<const double> displacement,
@@ -557,12 +695,13 @@ SparseRows CollocationOperator::rows() {
   return dispatch([](const auto& kernels) { return kernels.rows(); });
 }
 
-std::vector<double> CollocationOperator::diagonal() {
-  return dispatch([](const auto& kernels) { return kernels.diagonal(); });
-}
-
-std::vector<double> CollocationOperator::bounds_of_row_sums() {
-  return dispatch([](const auto& kernels) { return kernels.bounds_of_row_sums(); });
+const CollocationOperator::Outline& CollocationOperator::outline() {
+  if (!outline_) {
+    outline_ = dispatch([](const auto& kernels) {
+      return Outline{kernels.diagonal(), kernels.bounds_of_row_sums()};
+    });
+  }
+  return *outline_;
 }
 
 double CollocationOperator::bytes_of_rows() const {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -31,8 +32,13 @@ struct CollocationSetting {
 ///   B_i = -2 d (lambda - mu) theta_i a_i - 2 d (d + 2) S_i : mu E_i
 ///
 /// with a_i = sum k xi and S_i = sum k xi xi xi / r^2 over what is missing, and mu E_i from
-/// sigma_i n_i = T_i and tr E_i = theta_i; in 3D the tangential strains are equal ([LPS] eq.
-/// 4.6-4.8 is the form `paper`). Patch tests are exact with the form `full`.
+/// sigma_i n_i = T_i and tr E_i = theta_i ([LPS] eq. 4.6-4.8 is the form `paper`). In 3D these tell
+/// the mean of the tangential strains alone: what they differ by is that of the nonlocal strain
+/// with the form `full`, and nothing with `paper`. Patch tests are exact with the form `full`.
+///
+/// Points that have lost more than three fifths of what they had of their balls are torn: debris,
+/// of which nothing is continued. There M_i = 1 and B_i = B_i(0, T_i), with which the operator
+/// stays positive however few bonds are left; the inverse of a tensor of few bonds would not.
 ///
 /// The rows have no common energy, and the operator is not symmetric: where neighbourhoods are
 /// alike and whole it is.
@@ -72,15 +78,22 @@ class CollocationOperator {
   /// All rows of dV(L u)/du [N/m].
   [[nodiscard]] SparseRows rows();
   /// Blocks (i, i) of it, points x d x d.
-  [[nodiscard]] std::vector<double> diagonal();
+  [[nodiscard]] const std::vector<double>& diagonal() { return outline().diagonal; }
   /// Not less than the sums of the absolute entries of rows [N/m].
-  [[nodiscard]] std::vector<double> bounds_of_row_sums();
+  [[nodiscard]] const std::vector<double>& bounds_of_row_sums() { return outline().row_sums; }
   /// What rows() takes, about [bytes].
   [[nodiscard]] double bytes_of_rows() const;
 
  private:
   template <int D>
   struct Kernels;
+  struct Outline {
+    std::vector<double> diagonal, row_sums;
+  };
+  const Outline& outline();
+  /// Takes up which bonds are broken.
+  /// @return per point, whether one of its own has changed
+  std::vector<char> take_up(std::span<const char> broken);
   /// Calls visit(Kernels<D>{*this}).
   template <class Visit>
   auto dispatch(const Visit& visit);
@@ -90,12 +103,15 @@ class CollocationOperator {
   int threads_;
   std::vector<char> broken_;  // as known
   bool is_up_to_date_ = false;
-  std::vector<double> share_;   // k_ij of unbroken neighbours, 0 of others; empty: all unbroken
-  std::vector<double> shape_;   // M, points x d x d
-  std::vector<double> first_;   // a, points x d
-  std::vector<double> third_;   // S, points x entries
-  std::vector<double> normal_;  // points x d
-  std::vector<double> theta_;   // of forces()
+  bool is_uniform_ = false;         // one pair of constants
+  std::optional<Outline> outline_;  // of the present bonds
+  std::vector<double> share_;       // k_ij of unbroken neighbours, 0 of others; empty: all unbroken
+  std::vector<double> shape_;       // M, points x d x d
+  std::vector<double> first_;       // a, points x d
+  std::vector<double> third_;       // S, points x entries
+  std::vector<char> torn_;          // per point
+  std::vector<double> normal_;      // points x d
+  std::vector<double> theta_;       // of forces()
 };
 
 }  // namespace peristat

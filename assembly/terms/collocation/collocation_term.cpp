@@ -72,7 +72,7 @@ class CollocationPasses : public TermPasses {
   void outline_rows(const StateView& at, std::span<double> diagonal,
                     std::span<double> row_sums) override {
     update(at);
-    const std::vector<double> blocks = whole_.diagonal(), bounds = whole_.bounds_of_row_sums();
+    const std::vector<double>&blocks = whole_.diagonal(), &bounds = whole_.bounds_of_row_sums();
     std::copy(blocks.begin(), blocks.end(), diagonal.begin());
     std::copy(bounds.begin(), bounds.end(), row_sums.begin());
   }
