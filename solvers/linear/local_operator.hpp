@@ -1,20 +1,27 @@
 #pragma once
 
 #include <limits>
+#include <memory>
 
+#include "assembly/operators/tangent.hpp"
+#include "solvers/linear/cholesky.hpp"
 #include "solvers/linear/lu_factor.hpp"
 #include "solvers/linear/preconditioner.hpp"
 
 namespace peristat {
 
-/// M = the short-range stand-in of an unsymmetric tangent (UnsymmetricTangent::local_rows), by its
-/// factors L U. Its long waves have the stiffness of K, so that the number of iterations hardly
-/// depends on the size of the body. Not symmetric: for GMRES and BiCGStab.
+/// M = the short-range stand-in of an unsymmetric tangent (UnsymmetricTangent::local_rows). Its
+/// long waves have the stiffness of K, so that the number of iterations hardly depends on the size
+/// of the body.
+///
+/// Where the stand-in is nearly symmetric its symmetric part is factorised as L L^T, on all threads
+/// and with half of the entries; elsewhere, and where that is not positive definite, the stand-in
+/// itself as L U. For GMRES and BiCGStab.
 class LocalOperator : public Preconditioner {
  public:
-  /// @param most_bytes see LuFactor
+  /// @param most_bytes matrix and factors may take
   explicit LocalOperator(double most_bytes = std::numeric_limits<double>::infinity())
-      : factor_(most_bytes) {}
+      : most_bytes_(most_bytes), factor_(most_bytes) {}
 
   void analyze(const BlockPattern& pattern, const FreeDofs& free) override;
   /// @return inaccurate where the stand-in is singular: K itself need not be
@@ -24,9 +31,16 @@ class LocalOperator : public Preconditioner {
   [[nodiscard]] std::string describe() const override { return "local operator"; }
 
   [[nodiscard]] const LuFactor& factor() const { return factor_; }
+  /// Whether the symmetric part stands in.
+  [[nodiscard]] bool is_symmetric() const { return cholesky_ != nullptr; }
 
  private:
+  LinearOutcome build_symmetric(const SparseRows& rows, int dimension, int threads);
+
+  double most_bytes_;
   LuFactor factor_;
+  std::unique_ptr<Tangent> symmetric_;  // the symmetric part
+  std::unique_ptr<Cholesky> cholesky_;  // null: L U
   const FreeDofs* free_ = nullptr;
 };
 

@@ -204,6 +204,12 @@ struct CollocationOperator::Kernels {
       for (int c = 0; c < D; ++c) shape[c][c] = 1.0;
     }
     write_inverse<D>(shape, &op.shape_[std::size_t(i) * D * D]);
+    double* t = &op.dilation_[std::size_t(net.offset[i]) * D];
+    std::fill_n(t, std::size_t(net.offset[i + 1] - net.offset[i]) * D, 0.0);
+    for_neighbours(i, [&](Offset e, Index, double k, const V& xi) {
+      const V direction = scaled<D>(double(D) * k, shaped(i, xi));
+      std::copy_n(direction.begin(), D, t + (e - net.offset[i]) * D);
+    });
     constexpr int entries = third_moment_entries(D);
     double* first = &op.first_[std::size_t(i) * D];
     double* third = &op.third_[std::size_t(i) * entries];
@@ -310,16 +316,13 @@ struct CollocationOperator::Kernels {
 
   [[nodiscard]] double theta_at(std::span<const double> u, Index i) const {
     const V here = of(u, i);
-    M moments{};
-    for_neighbours(i, [&](Offset, Index j, double k, const V& xi) {
-      add_outer<D>(k, xi, minus<D>(of(u, j), here), moments);
-    });
-    const double* inverse = &op.shape_[std::size_t(i) * D * D];
+    const double* t = &op.dilation_[std::size_t(net.offset[i]) * D];
     double theta = 0.0;
-    for (int r = 0; r < D; ++r) {
-      for (int c = 0; c < D; ++c) theta += inverse[r * D + c] * moments[r][c];
+    for (Offset e = net.offset[i]; e < net.offset[i + 1]; ++e, t += D) {
+      const double* there = &u[std::size_t(net.neighbour[e]) * D];
+      for (int c = 0; c < D; ++c) theta += t[c] * (there[c] - here[c]);
     }
-    return D * theta;
+    return theta;
   }
 
   [[nodiscard]] V force_at(std::span<const double> u, std::span<const double> traction,
@@ -604,6 +607,7 @@ CollocationOperator::CollocationOperator(const Points& points, CollocationSettin
   first_.resize(count * d);
   normal_.resize(count * d);
   torn_.resize(count);
+  dilation_.resize(setting_.network->neighbour.size() * d);
   third_.resize(count * std::size_t(third_moment_entries(setting_.network->dimension)));
   const LameConstants& constants = *setting_.constants;
   const auto are_equal = [](const std::vector<double>& values) {

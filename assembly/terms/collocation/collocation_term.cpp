@@ -176,10 +176,11 @@ double CollocationTerm::stored_bytes() const {
   const CollocationNetwork &whole = *whole_.network, &local = *local_.network;
   const double entries = double(whole.neighbour.size() + local.neighbour.size());
   const double d = whole.dimension, third = third_moment_entries(whole.dimension);
-  // Of an entry neighbour, bond, share and, once bonds break, share again; of a point what is
+  // Of an entry neighbour, bond, share and, once bonds break, share again, and what it is to the
+  // dilatation; of a point what is
   // missing from the start and now, shape, normal, dilatation, constants.
   return BondTerm::stored_bytes() +
-         entries * double(sizeof(Index) + sizeof(Offset) + 2 * sizeof(double)) +
+         entries * (double(sizeof(Index) + sizeof(Offset)) + (2.0 + d) * sizeof(double)) +
          8.0 * double(whole.points()) * (4.0 * d + 3.0 * third + d * d + 4.0);
 }
 
