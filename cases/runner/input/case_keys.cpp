@@ -97,6 +97,18 @@ Table<Case> lattice_keys() {
       {K("spacing", in(lattice, &Lattice::spacing), spacing(),
          "distance of neighbouring points, or one along each of the lattice's axes")
            .required(),
+       K("points", in(lattice, &Lattice::arrangement),
+         choice<Arrangement>(
+             {{"lattice", Arrangement::lattice}, {"blue_noise", Arrangement::blue_noise}}),
+         "where they stand: on the lattice, or at random with about the spacing as the distance "
+         "from their neighbours, with the volumes of their Voronoi cells")
+           .unless(in_dimension<1>, "is for dimensions 2 and 3")
+           .moreover("`blue_noise` with model `bond`"),
+       K("lloyd_steps", in(lattice, &Lattice::lloyd_steps), integer(0, 1000, ""),
+         "how often points of blue noise move to the centroids of their Voronoi cells")
+           .unless([](auto&,
+                      auto& from) { return lattice(from).arrangement != Arrangement::blue_noise; },
+                   "is for points = \"blue_noise\""),
        K("angle", in(lattice, &Lattice::angle), between(-360.0, 360.0, "degrees"),
          "that the lattice is turned by under the body, anticlockwise about the origin, in 3D "
          "about the z axis; shapes, layers and sets stay")
@@ -138,7 +150,7 @@ Table<Case> lattice_keys() {
            .moreover("model `bond`"),
        K("seed", in(lattice, &Lattice::seed),
          count_from(0, "", std::numeric_limits<std::int64_t>::max()),
-         "of the random shifts; the same seed gives the same points"),
+         "of the random shifts and places; the same seed gives the same points"),
        K("shape", in(lattice, &Lattice::shapes), shape_step_keys(), "tables: the body")
            .then([](auto& at, auto& result) {
              if (lattice(result).shapes.empty())
