@@ -89,14 +89,32 @@ double cells_in_body(const Lattice& lattice) {
   return sum;
 }
 
+struct Parts {
+  std::vector<PartInBody> of_place;
+  /// Of whole cells in 2D, from their centroids.
+  std::vector<std::vector<std::array<double, 2>>> polygon;
+};
+
+std::vector<std::array<double, 2>> polygon_of(const ConvexCell& cell) {
+  const Coordinates from = minus<3>(cell.place, cell.centroid);
+  std::vector<std::array<double, 2>> polygon;
+  for (const Coordinates& corner : cell.corners)
+    polygon.push_back({from[0] + corner[0], from[1] + corner[1]});
+  return polygon;
+}
+
 /// Parts of the places' cells in the body.
-std::vector<PartInBody> parts_of(const Lattice& lattice, const Solid& body,
-                                 const std::vector<Coordinates>& places, Accuracy accuracy) {
-  std::vector<PartInBody> parts(places.size());
+Parts parts_of(const Lattice& lattice, const Solid& body, const std::vector<Coordinates>& places,
+               Accuracy accuracy) {
+  Parts parts{std::vector<PartInBody>(places.size()), {}};
+  const bool has_polygons = lattice.dimension == 2 && accuracy == Accuracy::fine;
+  if (has_polygons) parts.polygon.resize(places.size());
   for_each_voronoi_cell(lattice.dimension, body.bounds(), lattice.spacing, places,
                         [&](std::size_t number, const ConvexCell& cell) {
-                          parts[number] = part_in_body(cell, body, accuracy);
-                          PartInBody& part = parts[number];
+                          PartInBody& part = parts.of_place[number];
+                          part = part_in_body(cell, body, accuracy);
+                          if (has_polygons && part.is_whole)
+                            parts.polygon[number] = polygon_of(cell);
                           if (!body.contains(part.centroid)) part.centroid = places[number];
                         });
   return parts;
@@ -109,7 +127,7 @@ std::vector<Coordinates> poisson_disk_places(const Solid& body, std::size_t coun
   const Box box = body.bounds();
   Grid grid(body.dimension(), box, spacing);
   double distance = spacing;
-  const double shrink = 1.0 - 1.0 / (30.0 * double(count));
+  const double shrink = 1.0 - 0.01 / double(count);
   for (std::uint64_t dart = 0; grid.places().size() < count; ++dart) {
     const std::uint64_t bits = random_bits(seed, dart);
     Coordinates place{};
@@ -136,20 +154,24 @@ Points make_blue_noise_points(const Lattice& lattice) {
   std::vector<Coordinates> places =
       poisson_disk_places(body, std::size_t(cells), lattice.spacing, lattice.seed);
   for (int step = 0; step < lattice.lloyd_steps; ++step) {
-    const std::vector<PartInBody> parts = parts_of(lattice, body, places, Accuracy::rough);
-    for (std::size_t k = 0; k < places.size(); ++k) places[k] = parts[k].centroid;
+    const Parts parts = parts_of(lattice, body, places, Accuracy::rough);
+    for (std::size_t k = 0; k < places.size(); ++k) places[k] = parts.of_place[k].centroid;
   }
-  const std::vector<PartInBody> parts = parts_of(lattice, body, places, Accuracy::fine);
+  const Parts parts = parts_of(lattice, body, places, Accuracy::fine);
 
   Points points;
   points.dimension = lattice.dimension;
   points.spacing = lattice.spacing;
   points.cell_volume = std::pow(lattice.spacing, lattice.dimension) * lattice.cross_section;
-  for (const PartInBody& part : parts) {
+  for (const PartInBody& part : parts.of_place) {
     points.reference.insert(points.reference.end(), part.centroid.begin(),
                             part.centroid.begin() + lattice.dimension);
     points.volume.push_back(part.volume * lattice.cross_section);
   }
+  const bool are_polygons =
+      lattice.dimension == 2 && std::ranges::all_of(parts.of_place, &PartInBody::is_whole);
+  for (std::size_t k = 0; are_polygons && k < parts.polygon.size(); ++k)
+    points.polygons.append(parts.polygon[k]);
   return renumbered(points, locality_order(points.dimension, points.spacing, points.reference));
 }
 

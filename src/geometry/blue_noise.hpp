@@ -11,10 +11,9 @@ namespace peristat {
 
 /// Random places in a body that keep a distance from one another, as many as asked for: darts are
 /// thrown at the body's box, and one that meets the body and no place within the distance stays.
-/// The distance begins at the spacing and falls by a factor of 1 - 1/(30 count) with every dart
-/// that is too near (McCool and Fiume 1992), so that the body is full in the end: about 0.8
-/// spacings in 2D and 0.85 in 3D, if the spacing is the mean one. What comes out follows from the
-/// seed alone.
+/// The distance begins at the spacing and falls by a factor of 1 - 1/(100 count) with every dart
+/// that is too near (McCool and Fiume 1992), so that the body is full in the end: 0.7 spacings
+/// in 2D and 0.8 in 3D, if the spacing is the mean one. What comes out follows from the seed alone.
 /// @param spacing of a lattice of as many points [m]
 [[nodiscard]] std::vector<Coordinates> poisson_disk_places(const Solid& body, std::size_t count,
                                                            double spacing, std::uint64_t seed);

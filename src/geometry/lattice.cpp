@@ -205,10 +205,12 @@ Points make_points(const Lattice& lattice) {
   const std::vector<Index> order =
       locality_order(lattice.dimension, lattice.spacing, points.reference);
   points = renumbered(points, order);
-  perturb_cells(lattice, body);
-  for (std::size_t k = 0; k < order.size() && lattice.cell_perturbation > 0.0; ++k) {
+  const CellPolygons cells = perturb_cells(lattice, body);
+  for (std::size_t k = 0; k < order.size() && !cells.empty(); ++k) {
     const auto site = std::size_t(order[k]);
-    if (site >= body.size()) continue;
+    const bool is_of_body = site < body.size();
+    points.polygons.append(is_of_body ? cells.of(site) : whole_cell(lattice));
+    if (!is_of_body) continue;
     points.volume[k] = cell_volume * body[site].share;
     std::copy_n(body[site].place.begin(), lattice.dimension,
                 points.reference.begin() + std::ptrdiff_t(k) * lattice.dimension);
