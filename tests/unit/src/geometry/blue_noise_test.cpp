@@ -156,6 +156,14 @@ TEST(BlueNoise, FollowsFromTheSeed) {
   EXPECT_NE(make_points(lattice).reference, one.reference);
 }
 
+// Integers and what IEEE 754 rounds: these are the places of seed 1 on every machine.
+TEST(BlueNoise, PlacesAreTheSameEverywhere) {
+  const std::vector<ShapeStep> shapes{square};
+  const std::vector<Coordinates> places = poisson_disk_places(Solid(2, shapes), 100, 0.1, 1);
+  EXPECT_EQ(places.front(), (Coordinates{0.44093178170424896, 0.29098681336104526, 0.0}));
+  EXPECT_EQ(places.back(), (Coordinates{-0.35855522230840442, -0.044032872170911008, 0.0}));
+}
+
 TEST(BlueNoise, RefusesWhatNeedsALattice) {
   const auto refusal = [](auto change) {
     Lattice lattice = blue_noise(2, 0.1, {square});
