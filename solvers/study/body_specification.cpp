@@ -406,7 +406,7 @@ void require_whole_square_cells(const Points& points) {
   };
   require(std::none_of(points.volume.begin(), points.volume.end(), is_cut), "material.model", "cpd",
           "needs whole cells: its effective volumes count neighbours, whatever their volume is; "
-          "give volumes = \"cells\", or model = \"bond\"");
+          "give points = \"lattice\" with volumes = \"cells\", or model = \"bond\"");
 }
 
 namespace {

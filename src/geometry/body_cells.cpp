@@ -10,7 +10,7 @@ namespace peristat {
 BodyCells::BodyCells(const Points& points) : of_(points) {
   if (!points.lattice) {
     throw InputError("", "",
-                     "needs points on a lattice: those of a file have no cells and no sides");
+                     "needs points on a lattice: those of a file and of blue noise have no sides");
   }
   if (points.angle != 0.0 || !points.spacing.is_square() || points.cell_volume > 0.0) {
     throw InputError("", "",

@@ -9,6 +9,7 @@
 
 #include "src/core/input_error.hpp"
 #include "src/core/number_text.hpp"
+#include "src/geometry/blue_noise.hpp"
 #include "src/geometry/lattice_sites.hpp"
 #include "src/geometry/numbering.hpp"
 #include "src/geometry/perturbed_cells.hpp"
@@ -86,6 +87,28 @@ void perturb(const Lattice& lattice, const std::vector<bool>& is_body, Points& p
   }
 }
 
+/// What has a meaning on a lattice alone.
+void check_blue_noise(const Lattice& lattice) {
+  const auto require = [](bool fits, const std::string& allowed) {
+    if (!fits) throw InputError("arrangement", "blue_noise", allowed);
+  };
+  require(lattice.dimension > 1, "is for dimensions 2 and 3; in 1D there is cell_perturbation");
+  require(lattice.spacing.is_square(), "needs one spacing");
+  require(lattice.angle == 0.0, "has no axes that an angle could turn");
+  require(lattice.origin == LatticeOrigin::cell_centres,
+          "has no points at corners; leave origin out");
+  require(lattice.volumes == CellVolumes::whole,
+          "cuts cells at the body's boundary in any case; leave volumes out");
+  require(lattice.perturbation == 0.0 && lattice.cell_perturbation == 0.0,
+          "is random already; perturbation and cell_perturbation must be 0");
+  require(lattice.layers.empty(),
+          "has no planes of points that layers could go on with; make the body larger and hold a "
+          "set of its points");
+  if (lattice.lloyd_steps < 0) {
+    throw InputError("lloyd_steps", std::to_string(lattice.lloyd_steps), "must not be negative");
+  }
+}
+
 }  // namespace
 
 void check_lattice(const Lattice& lattice) {
@@ -133,6 +156,7 @@ void check_lattice(const Lattice& lattice) {
   }
   for (std::size_t k = 0; k < lattice.shapes.size(); ++k) check_shape_step(lattice, k);
   for (std::size_t k = 0; k < lattice.layers.size(); ++k) check_layer(lattice, k);
+  if (lattice.arrangement == Arrangement::blue_noise) check_blue_noise(lattice);
 }
 
 double estimate_points(const Lattice& lattice) {
@@ -144,6 +168,7 @@ double estimate_points(const Lattice& lattice) {
 Points make_points(const Lattice& lattice) {
   check_lattice(lattice);
   require_numbers(lattice);
+  if (lattice.arrangement == Arrangement::blue_noise) return make_blue_noise_points(lattice);
   std::vector<Site> body = body_sites(lattice);
   if (body.empty()) {
     throw InputError(
@@ -180,10 +205,12 @@ Points make_points(const Lattice& lattice) {
   const std::vector<Index> order =
       locality_order(lattice.dimension, lattice.spacing, points.reference);
   points = renumbered(points, order);
-  perturb_cells(lattice, body);
-  for (std::size_t k = 0; k < order.size() && lattice.cell_perturbation > 0.0; ++k) {
+  const CellPolygons cells = perturb_cells(lattice, body);
+  for (std::size_t k = 0; k < order.size() && !cells.empty(); ++k) {
     const auto site = std::size_t(order[k]);
-    if (site >= body.size()) continue;
+    const bool is_of_body = site < body.size();
+    points.polygons.append(is_of_body ? cells.of(site) : whole_cell(lattice));
+    if (!is_of_body) continue;
     points.volume[k] = cell_volume * body[site].share;
     std::copy_n(body[site].place.begin(), lattice.dimension,
                 points.reference.begin() + std::ptrdiff_t(k) * lattice.dimension);

@@ -17,8 +17,13 @@ enum class LatticeOrigin { cell_centres, nodes };
 /// that of the part of the cell that lies in the body, whether the cell's place does or not.
 enum class CellVolumes { whole, fractional };
 
+/// Where points stand: on the lattice, or at random with about the same distance from their
+/// neighbours, see blue_noise.hpp.
+enum class Arrangement { lattice, blue_noise };
+
 struct Lattice {
   int dimension = 2;
+  Arrangement arrangement = Arrangement::lattice;
   Spacing spacing = 0.0;  ///< along the lattice's axes [m]
   double angle = 0.0;     ///< that the lattice is turned by about z through the origin [degrees]
   double cross_section = 1.0;  ///< 1D: area [m2]; 2D: thickness [m]; 3D: 1
@@ -31,6 +36,7 @@ struct Lattice {
   /// Largest random shift of the corners of cells inside the body along each of the lattice's axes,
   /// in spacings, below 1/4, so that cells stay convex ([GPMB] app. B); dimensions 1 and 2.
   double cell_perturbation = 0.0;
+  int lloyd_steps = 5;  ///< of blue noise, how often points move to the centroids of their cells
   std::uint64_t seed = 1;
 };
 
@@ -51,6 +57,7 @@ inline constexpr double smallest_share = 0.01;
 /// the sum of the body's is its volume, as exactly as piece_of tells. The layers' points stay on
 /// the lattice when it is perturbed; a seed gives the same perturbation everywhere. Points of
 /// perturbed cells stand at their centroids and have their volumes.
+/// Blue noise is that of make_blue_noise_points.
 /// @throws InputError if a shape or value can't be used, if no point is left, or if a layer that
 ///         needs a flat face has none
 [[nodiscard]] Points make_points(const Lattice& lattice);

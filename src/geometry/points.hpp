@@ -8,6 +8,7 @@
 
 #include "src/core/spacing.hpp"
 #include "src/core/types.hpp"
+#include "src/geometry/cell_polygons.hpp"
 #include "src/geometry/images.hpp"
 
 namespace peristat {
@@ -37,6 +38,9 @@ struct Points {
   std::vector<NeighbourShares> neighbours{};
   std::map<std::string, std::vector<Index>> sets;  ///< ascending point numbers by set name
   std::optional<LatticeCells> lattice{};           ///< nothing for a cloud
+  /// Of points that stand for themselves; nothing where cells are a lattice's, or are cut by the
+  /// body's boundary, or where there are none.
+  CellPolygons polygons{};
 
   /// Places around the body that hold no point, all x dimension [m]: of those that quadratures by
   /// collocation count with.

@@ -59,6 +59,14 @@ Solid Solid::near(const Coordinates& place, double distance) const {
   return result;
 }
 
+bool Solid::holds_hull_of(const std::vector<Coordinates>& places) const {
+  if (steps_.size() != 1 || steps_.front()->action != ShapeStep::Action::add) return false;
+  const Shape& shape = steps_.front()->shape;
+  return !std::holds_alternative<Polygon>(shape) &&
+         std::all_of(places.begin(), places.end(),
+                     [&](const Coordinates& place) { return peristat::contains(shape, place); });
+}
+
 Box Solid::bounds() const {
   constexpr double infinity = std::numeric_limits<double>::infinity();
   Box box{{infinity, infinity, infinity}, {-infinity, -infinity, -infinity}};

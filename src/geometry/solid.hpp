@@ -54,6 +54,9 @@ class Solid : public Region {
   /// The same within a distance of a place, of no more steps than count there.
   [[nodiscard]] Solid near(const Coordinates& place, double distance) const;
 
+  /// Whether it is one convex shape that contains all of the places, and so all between them.
+  [[nodiscard]] bool holds_hull_of(const std::vector<Coordinates>& places) const;
+
   [[nodiscard]] int dimension() const { return dimension_; }
 
   /// Box around all that is added.

@@ -11,6 +11,7 @@
 #include "src/core/number_text.hpp"
 #include "src/geometry/squared_distance.hpp"
 #include "src/neighbourhood/lattice_kernel.hpp"
+#include "src/neighbourhood/polygon_kernel.hpp"
 #include "src/neighbourhood/search.hpp"
 
 namespace peristat {
@@ -42,15 +43,20 @@ LatticeStep step_between(const Points& points, Index i, Index j) {
   return rounded;
 }
 
-/// Refuses points that are not the middles of a lattice's whole cells.
+/// Refuses points that are neither the middles of a lattice's whole cells nor those of polygons.
 void require_whole_cells(const Points& points) {
   constexpr double round_off = 1e-6;  // of a spacing, far beyond what places lose
   const auto refuse = [](const std::string& what) {
     throw InputError("volume_correction", "exact",
-                     "needs the whole cells of a regular lattice, of which it takes the parts "
-                     "within the horizon: " +
+                     "needs the whole cells of a regular lattice, or polygons, of which it takes "
+                     "the parts within the horizon: " +
                          what);
   };
+  if (!points.lattice && points.cell_volume > 0.0) {
+    refuse(points.dimension == 3 ? "Voronoi cells are polyhedra in 3D; give \"linear\" or \"none\""
+                                 : "the body's boundary cuts Voronoi cells to other shapes than "
+                                   "convex polygons; give \"linear\" or \"none\"");
+  }
   if (!points.lattice) refuse("points of a file have no cells; give \"linear\" or \"none\"");
   const double whole = points.cross_section() * std::pow(points.spacing, points.dimension);
   for (Index i = 0; i < points.count(); ++i) {
@@ -104,6 +110,10 @@ class BondShares {
  public:
   BondShares(const Points& points, const Kernel& kernel) : points_(points), kernel_(kernel) {
     if (!kernel.has_exact_shares()) return;
+    if (!points.polygons.empty()) {
+      polygons_.emplace(points, kernel);
+      return;
+    }
     require_whole_cells(points);
     lattice_.emplace(kernel, points.spacing);
   }
@@ -111,6 +121,7 @@ class BondShares {
   /// Mean share of each other's volume that the points of a bond count, times the influence.
   [[nodiscard]] double operator()(Index i, Index j, double length) const {
     if (lattice_) return lattice_->factor(step_between(points_, i, j));
+    if (polygons_) return polygons_->factor(i, j, length);
     return mean_share(i, j, length) * kernel_.influence_at(length);
   }
 
@@ -133,6 +144,7 @@ class BondShares {
   const Points& points_;
   const Kernel& kernel_;
   std::optional<LatticeKernel> lattice_;
+  std::optional<PolygonKernel> polygons_;
 };
 
 void weigh_volumes(Bonds& bonds, const Points& points, const Kernel& kernel) {
@@ -145,7 +157,10 @@ void weigh_volumes(Bonds& bonds, const Points& points, const Kernel& kernel) {
 
 /// Radius that the neighbour search needs [m].
 double search_radius(const Points& points, const Kernel& kernel) {
-  if (kernel.has_exact_shares()) return kernel.search_radius(points.spacing);
+  if (kernel.has_exact_shares()) {
+    return points.polygons.empty() ? kernel.search_radius(points.spacing)
+                                   : PolygonKernel(points, kernel).search_radius();
+  }
   double largest = 0.0;
   for (Index i = 0; i < points.count(); ++i) {
     largest = std::max(largest, cell_size(points, i, kernel.cross_section));

@@ -116,7 +116,7 @@ def read_points(case):
 
 
 class NotUnderstood(Exception):
-    """What the program can read and the reference can't: an expression of muParser alone."""
+    """What the program can read and the reference can't: an expression of muParser alone, or cells that results don't tell."""
 
 
 FUNCTIONS = {name: getattr(numpy, name) for name in "sin cos tan sinh cosh tanh exp sqrt abs sign log2 log10".split()}

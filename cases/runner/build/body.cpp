@@ -70,10 +70,10 @@ Points make_points_of(const Case& from) {
       check_lattice(*lattice);  // first: what can't be used has no size
       require_memory_for_lattice(from, *lattice);
       points = make_points(*lattice);
-      if (from.material.model == MaterialModel::lps) {
+      if (points.lattice && from.material.model == MaterialModel::lps) {
         points.ghosts = ghost_sites(*lattice, points, from.horizon).reference;
       }
-      if (lattice->perturbation == 0.0 && lattice->cell_perturbation == 0.0) {
+      if (points.lattice && lattice->perturbation == 0.0 && lattice->cell_perturbation == 0.0) {
         const auto& periods = from.constraints.periods;
         require_lattice_goes_on(points, from.constraints.symmetries,
                                 {periods.begin(), periods.end()});

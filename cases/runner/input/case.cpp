@@ -49,6 +49,8 @@ void resolve_size(Case& result) {
 const std::map<std::string, std::string>& keys_of_members() {
   static const std::map<std::string, std::string> keys{
       {"spacing", "lattice.spacing"},
+      {"arrangement", "lattice.points"},
+      {"lloyd_steps", "lattice.lloyd_steps"},
       {"perturbation", "lattice.perturbation"},
       {"cell_perturbation", "lattice.cell_perturbation"},
       {"angle", "lattice.angle"},

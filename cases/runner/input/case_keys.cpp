@@ -101,6 +101,19 @@ Table<Case> lattice_keys() {
       {K("spacing", in(lattice, &Lattice::spacing), spacing(),
          "distance of neighbouring points, or one along each of the lattice's axes")
            .required(),
+       K("points", in(lattice, &Lattice::arrangement),
+         choice<Arrangement>(
+             {{"lattice", Arrangement::lattice}, {"blue_noise", Arrangement::blue_noise}}),
+         "where they stand: on the lattice, or at random with about the spacing as the distance "
+         "from their neighbours, with the volumes of their Voronoi cells")
+           .unless(in_dimension<1>, "is for dimensions 2 and 3")
+           .moreover("`blue_noise` with model `bond`")
+           .early(),
+       K("lloyd_steps", in(lattice, &Lattice::lloyd_steps), integer(0, 100, ""),
+         "how often points of blue noise move to the centroids of their Voronoi cells")
+           .unless([](auto& from,
+                      auto&) { return lattice(from).arrangement != Arrangement::blue_noise; },
+                   "is for points = \"blue_noise\""),
        K("angle", in(lattice, &Lattice::angle), between(-360.0, 360.0, "degrees"),
          "that the lattice is turned by under the body, anticlockwise about the origin, in 3D "
          "about the z axis; shapes, layers and sets stay")
@@ -142,7 +155,7 @@ Table<Case> lattice_keys() {
            .moreover("model `bond`"),
        K("seed", in(lattice, &Lattice::seed),
          count_from(0, "", std::numeric_limits<std::int64_t>::max()),
-         "of the random shifts; the same seed gives the same points"),
+         "of the random shifts and places; the same seed gives the same points"),
        K("shape", in(lattice, &Lattice::shapes), shape_step_keys(), "tables: the body")
            .then([](auto& at, auto& result) {
              if (lattice(result).shapes.empty())
@@ -271,7 +284,7 @@ Table<Case> quadrature_keys() {
              "share of a neighbour's volume that counts near the edge of the horizon: all; linear "
              "over half a spacing to either side; what its cell has within the horizon; the same, "
              "with length and influence of the bond those of that part's centroid. The last two "
-             "are for whole cells of a regular lattice")
+             "are for whole cells of a lattice, of which `cell_perturbation` may shift the corners")
                .written_if(of_bond),
            K("surface_correction", &Case::surface_correction,
              choice<SurfaceCorrection>({{"none", SurfaceCorrection::none},

@@ -12,6 +12,7 @@
 
 #include "src/core/input_error.hpp"
 #include "src/geometry/box_in_ball.hpp"
+#include "src/geometry/lattice.hpp"
 #include "src/neighbourhood/influence.hpp"
 #include "tests/bodies.hpp"
 
@@ -329,6 +330,70 @@ TEST(EnergyMethod, ReducesTheErrorAtSurfaces) {
           << dimension << "D";
     }
   }
+}
+
+// Cells that are polygons: every pair whose cells reach into the other's horizon has a bond of the
+// mean of both parts, and nobody else has one; the search looks as far as corners reach.
+TEST(Bonds, OfPolygonsHaveTheMeanOfTheirParts) {
+  Lattice lattice;
+  lattice.spacing = 0.1;
+  lattice.shapes = {{ShapeStep::Action::add, Box{{0, 0, 0}, {1.2, 1.0, 0}}}};
+  for (const bool is_random : {false, true}) {
+    lattice.arrangement = is_random ? Arrangement::blue_noise : Arrangement::lattice;
+    lattice.cell_perturbation = is_random ? 0.0 : 0.24;
+    const Points points = make_points(lattice);
+    BondSetting setting;
+    setting.horizon = 0.25;
+    setting.volume_correction = VolumeCorrection::exact;
+    const Bonds bonds = make_bonds(points, SurfaceCorrection::none, setting, 1);
+    std::map<std::pair<Index, Index>, double> found;
+    for (Index i = 0; i < points.count(); ++i) {
+      for (Offset bond = bonds.offset[i]; bond < bonds.offset[i + 1]; ++bond)
+        found[{i, bonds.partner[bond]}] = bonds.weight(bond);
+    }
+    std::size_t expected = 0, cut = 0;
+    for (Index i = 0; i < points.count(); ++i) {
+      for (Index j = i + 1; j < points.count(); ++j) {
+        const auto part = [&](Index of, Index about) {
+          const Coordinates at = points.position(of), from = points.position(about);
+          std::vector<PlaneVector> corners = points.polygons.of(std::size_t(of));
+          for (PlaneVector& corner : corners)
+            for (std::size_t c = 0; c < 2; ++c) corner[c] += at[c] - from[c];
+          const double share = polygon_in_disk(corners, 0.25).area / points.volume[std::size_t(of)];
+          cut += share > 1e-9 && share < 1.0 - 1e-9;
+          return share < least_share ? 0.0 : share;
+        };
+        const double both = 0.5 * (part(i, j) + part(j, i));
+        if (both == 0.0) continue;
+        ++expected;
+        const double weight = both * points.volume[std::size_t(i)] * points.volume[std::size_t(j)];
+        const auto bond = found.find({i, j});
+        ASSERT_NE(bond, found.end());
+        EXPECT_NEAR(bond->second / weight, 1.0, 1e-9);
+      }
+    }
+    EXPECT_EQ(found.size(), expected);
+    EXPECT_GT(cut, 500u);
+  }
+}
+
+// Where a cell is no polygon nobody knows its part: a round rim, and polyhedra.
+TEST(Bonds, OfCutVoronoiCellsHaveNoExactParts) {
+  Lattice lattice;
+  lattice.spacing = 0.1;
+  lattice.arrangement = Arrangement::blue_noise;
+  BondSetting setting;
+  setting.horizon = 0.25;
+  setting.volume_correction = VolumeCorrection::exact;
+  const auto make = [&] {
+    static_cast<void>(make_bonds(make_points(lattice), SurfaceCorrection::none, setting, 1));
+  };
+  lattice.shapes = {{ShapeStep::Action::add, Disk{{0, 0, 0}, 0.6}}};
+  EXPECT_THROW(make(), InputError);
+  lattice.shapes = {{ShapeStep::Action::add, Box{{0, 0, 0}, {0.6, 0.6, 0.6}}}};
+  EXPECT_NO_THROW(make());
+  lattice.dimension = setting.dimension = 3;
+  EXPECT_THROW(make(), InputError);
 }
 
 TEST(ConfinedEnergyError, IsTheLargestOverPointsAndAxes) {
