@@ -1,6 +1,7 @@
 #include "solvers/linear/make_linear_solver.hpp"
 
 #include <algorithm>
+#include <stdexcept>
 
 #include <fmt/format.h>
 
@@ -10,6 +11,7 @@
 #include "solvers/linear/iterative_solver.hpp"
 #include "solvers/linear/ldlt.hpp"
 #include "solvers/linear/rigid_pieces.hpp"
+#include "solvers/linear/sines.hpp"
 #include "solvers/linear/speeds.hpp"
 #include "solvers/linear/surrogate.hpp"
 
@@ -27,7 +29,9 @@ constexpr double small_factorisation = 1e8, affordable_factorisation = 2e10;
 /// Iterations in one solve that no choice of the user's own should exceed.
 constexpr int most_iterations = 20'000;
 
-std::unique_ptr<Preconditioner> make_preconditioner(PreconditionerKind kind) {
+using SharedBox = std::shared_ptr<const LatticeBox>;
+
+std::unique_ptr<Preconditioner> make_preconditioner(PreconditionerKind kind, const SharedBox& box) {
   switch (kind) {
     case PreconditionerKind::jacobi:
       return std::make_unique<BlockJacobi>(BlockJacobi::Blocks::entries);
@@ -35,6 +39,9 @@ std::unique_ptr<Preconditioner> make_preconditioner(PreconditionerKind kind) {
       return std::make_unique<BlockJacobi>(BlockJacobi::Blocks::points);
     case PreconditionerKind::surrogate:
       return std::make_unique<Surrogate>();
+    case PreconditionerKind::sines:
+      if (!box) throw std::logic_error("sines need the box of a lattice");
+      return std::make_unique<Sines>(box);
     case PreconditionerKind::riluk:
       return std::make_unique<AssembledPreconditioner>(MatrixPreconditionerKind::riluk);
     case PreconditionerKind::chebyshev:
@@ -49,9 +56,9 @@ std::unique_ptr<Preconditioner> make_preconditioner(PreconditionerKind kind) {
 }
 
 std::unique_ptr<LinearSolver> make_iterative(
-    PreconditionerKind kind, int max_iterations,
+    PreconditionerKind kind, int max_iterations, const SharedBox& box = {},
     KrylovMethod method = KrylovMethod::conjugate_gradients) {
-  return std::make_unique<IterativeSolver>(method, make_preconditioner(kind), max_iterations);
+  return std::make_unique<IterativeSolver>(method, make_preconditioner(kind, box), max_iterations);
 }
 
 KrylovMethod krylov_method(LinearMethod method) {
@@ -138,9 +145,9 @@ ChosenSolver make_linear_solver(const LinearSolverOptions& options, const Linear
     case LinearMethod::conjugate_gradients:
     case LinearMethod::minres:
     case LinearMethod::gmres:
-      return {
-          make_iterative(options.preconditioner, most_iterations, krylov_method(options.method)),
-          false, Seconds(problem).iterative, "as the case asks"};
+      return {make_iterative(options.preconditioner, most_iterations, problem.box,
+                             krylov_method(options.method)),
+              false, Seconds(problem).iterative, "as the case asks"};
     case LinearMethod::automatic:
       break;
   }

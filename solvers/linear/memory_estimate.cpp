@@ -84,6 +84,12 @@ double surrogate_bytes(const BodySize& size) {
   return 8.0 * d * d * (3.0 * blocks + factor);
 }
 
+/// What sines add: the place of each point, and per place of the box a value and the symbols of the
+/// components in single precision.
+double sines_bytes(const BodySize& size) {
+  return 4.0 * size.points + (8.0 + 4.0 * size.dimension) * size.places;
+}
+
 /// Bytes per entry of the whole matrix that a preconditioner of Trilinos takes, as measured: two
 /// copies of the compressed rows, and in RILUK the factors, in multigrid the coarser levels.
 double trilinos_bytes_per_entry(PreconditionerKind kind) {
@@ -153,6 +159,8 @@ double MemoryEstimate::iterative_bytes(const LinearSolverOptions& options) const
       return bytes + rigid_pieces_bytes(size);
     case PreconditionerKind::surrogate:
       return bytes + surrogate_bytes(size);
+    case PreconditionerKind::sines:
+      return bytes + sines_bytes(size);
     case PreconditionerKind::multigrid:
       bytes += multigrid_bytes;
       [[fallthrough]];

@@ -259,6 +259,7 @@ BodySize size_of(const Points& points) {
   size.dimension = points.dimension;
   size.points = double(points.count());
   size.free_dofs = double(points.reference.size());
+  size.places = 1.0;
   for (int c = 0; c < points.dimension; ++c) {
     double least = std::numeric_limits<double>::infinity(), most = -least;
     for (Index i = 0; i < points.count(); ++i) {
@@ -267,6 +268,7 @@ BodySize size_of(const Points& points) {
       most = std::max(most, at);
     }
     size.longest = std::max(size.longest, (most - least) / points.spacing + 1.0);
+    size.places *= (most - least) / points.spacing.along(c) + 1.0;
   }
   return size;
 }

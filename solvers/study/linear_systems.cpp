@@ -1,5 +1,7 @@
 #include "solvers/study/linear_systems.hpp"
 
+#include <optional>
+#include <string>
 #include <utility>
 
 #include "assembly/operators/constrained_tangent.hpp"
@@ -63,8 +65,30 @@ bool flows(const StudyOptions& options, const Model& model) {
 
 }  // namespace
 
+std::shared_ptr<const LatticeBox> box_for_sines(const StudyOptions& options, const Body& body) {
+  if (options.linear.preconditioner != PreconditionerKind::sines) return nullptr;
+  const auto refuse = [](const std::string& why) {
+    throw InputError("linear.preconditioner", "sines",
+                     why + "; take \"rigid_pieces\" or \"surrogate\"");
+  };
+  if (!body.conditions->constraints().none()) {
+    refuse(
+        "is for bodies without rigid sets, rollers, linear constraints, planes of symmetry and "
+        "periods, whose equations are not those of points on a lattice");
+  }
+  if (body.points.angle != 0.0) {
+    refuse("is for lattices along the axes: the sides of a box of this one are not the body's");
+  }
+  std::string why_not;
+  std::optional<LatticeBox> box = lattice_box(body.points, why_not);
+  if (!box) refuse("needs points on a lattice: " + why_not);
+  return std::make_shared<LatticeBox>(std::move(*box));
+}
+
 LinearSystems choose_linear_systems(const StudyOptions& options, const Model& model,
-                                    const MemoryEstimate& estimate, SolverLadder::Reporter tell) {
+                                    const MemoryEstimate& estimate,
+                                    std::shared_ptr<const LatticeBox> box,
+                                    SolverLadder::Reporter tell) {
   LinearSolverOptions linear = options.linear;
   // Who names a preconditioner wants it used.
   if (linear.method == LinearMethod::automatic &&
@@ -81,6 +105,7 @@ LinearSystems choose_linear_systems(const StudyOptions& options, const Model& mo
   problem.may_soften = model.has_history() && options.loading.mode == Mode::newton;
   const bool goes_by_events = options.loading.mode == Mode::path;
   problem.solves_often = flows(options, model) || goes_by_events;
+  problem.box = std::move(box);
   problem.is_stored = options.tangent != TangentStorage::matrix_free;
   LinearSystems systems;
   systems.chosen = make_linear_solver(linear, problem, tell);
@@ -122,7 +147,8 @@ LinearSystems choose_linear_systems(const StudyOptions& options, const Body& bod
     chosen.linear = {LinearMethod::ldlt, PreconditionerKind::automatic};
     chosen.tangent = TangentStorage::stored;
   }
-  return choose_linear_systems(chosen, body.model, estimate_memory(body), std::move(tell));
+  return choose_linear_systems(chosen, body.model, estimate_memory(body),
+                               box_for_sines(chosen, body), std::move(tell));
 }
 
 std::unique_ptr<TangentOperator> LinearSystems::make_tangent(Assembler& assembler,

@@ -1139,6 +1139,7 @@ Table<SolverSpecification> solver_keys() {
                                      {"block_jacobi", PreconditionerKind::block_jacobi},
                                      {"rigid_pieces", PreconditionerKind::rigid_pieces},
                                      {"surrogate", PreconditionerKind::surrogate},
+                                     {"sines", PreconditionerKind::sines},
                                      {"riluk", PreconditionerKind::riluk},
                                      {"chebyshev", PreconditionerKind::chebyshev},
                                      {"multigrid", PreconditionerKind::multigrid}}),
