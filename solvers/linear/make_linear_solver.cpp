@@ -22,6 +22,12 @@ namespace {
 /// 15 iterations, and builds of the preconditioner, each worth 30.
 constexpr double products_of_a_step = 120.0;
 
+/// With sines some four solves of 12 iterations, and builds worth 2.
+constexpr double iterations_of_a_step_with_sines = 48.0, products_of_builds_of_sines = 4.0;
+
+/// Iterations after which sines were the wrong choice.
+constexpr int patience_with_sines = 100;
+
 /// Factorisations up to this are done whatever the alternative [flop], and up to the second for the
 /// sake of pivots.
 constexpr double small_factorisation = 1e8, affordable_factorisation = 2e10;
@@ -73,7 +79,13 @@ struct Seconds {
       : direct(problem.factor_flops / speeds::factorisation +
                problem.factor_bytes / speeds::fresh_memory),
         product(problem.bonds / speeds::product),
-        iterative(products_of_a_step * product) {}
+        iterative(products_of_a_step * product) {
+    if (!problem.box) return;
+    const double transforms =
+        2.0 * problem.box->dimension * double(problem.box->count()) / speeds::transform;
+    iterative = iterations_of_a_step_with_sines * (product + transforms) +
+                products_of_builds_of_sines * product;
+  }
 };
 
 ChosenSolver choose(const LinearProblem& problem, SolverLadder::Reporter tell) {
@@ -87,6 +99,10 @@ ChosenSolver choose(const LinearProblem& problem, SolverLadder::Reporter tell) {
   const SolverLadder::Rung pieces{
       "pcg with rigid_pieces",
       [patience] { return make_iterative(PreconditionerKind::rigid_pieces, patience); }};
+  const SolverLadder::Rung sines{"pcg with sines", [box = problem.box] {
+                                   return make_iterative(PreconditionerKind::sines,
+                                                         patience_with_sines, box);
+                                 }};
   const SolverLadder::Rung surrogate{
       "pcg with surrogate",
       [patience] { return make_iterative(PreconditionerKind::surrogate, patience); }};
@@ -119,6 +135,7 @@ ChosenSolver choose(const LinearProblem& problem, SolverLadder::Reporter tell) {
             ? std::string("a factorisation needs the stored tangent")
             : fmt::format("a factor would need about {:.2g} GB of {:.2g} GB available",
                           problem.factor_bytes / 1e9, problem.available_bytes / 1e9);
+    if (problem.box) rungs.insert(rungs.begin(), sines);
   }
   return {std::make_unique<SolverLadder>(std::move(rungs), std::move(tell)), is_direct,
           is_direct ? direct : iterative, fmt::format("auto: {}", reason)};

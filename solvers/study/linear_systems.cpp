@@ -9,6 +9,7 @@
 #include "assembly/operators/tangent.hpp"
 #include "solvers/linear/available_memory.hpp"
 #include "solvers/linear/no_solver.hpp"
+#include "solvers/linear/sines_estimate.hpp"
 #include "solvers/search/updated_tangent.hpp"
 #include "solvers/study/found_loads.hpp"
 #include "src/core/input_error.hpp"
@@ -56,6 +57,22 @@ LinearSystems systems_of_motion(const Body& body) {
   return systems;
 }
 
+/// The box of a body that sines are estimated to be the best choice for, if `automatic` is asked.
+std::shared_ptr<const LatticeBox> box_for_choice(const StudyOptions& options, const Body& body) {
+  const BodySpecification& of = body.specification;
+  const bool is_free = options.linear.method == LinearMethod::automatic &&
+                       options.linear.preconditioner == PreconditionerKind::automatic;
+  const bool is_whole = !body.model.has_history() && body.cut_bonds.empty();
+  if (!is_free || !is_whole || !of.is_uniform() || of.has_inertia || !body.model.visits_rows() ||
+      !body.conditions->constraints().none() || body.points.angle != 0.0) {
+    return nullptr;
+  }
+  std::string why_not;
+  std::optional<LatticeBox> box = lattice_box(body.points, why_not);
+  if (!box || !suits_sines(*box, body.conditions->prescribed())) return nullptr;
+  return std::make_shared<LatticeBox>(std::move(*box));
+}
+
 bool flows(const StudyOptions& options, const Model& model) {
   const LoadSteppingOptions& loading = options.loading;
   const bool relaxes =
@@ -66,7 +83,8 @@ bool flows(const StudyOptions& options, const Model& model) {
 }  // namespace
 
 std::shared_ptr<const LatticeBox> box_for_sines(const StudyOptions& options, const Body& body) {
-  if (options.linear.preconditioner != PreconditionerKind::sines) return nullptr;
+  if (options.linear.preconditioner != PreconditionerKind::sines)
+    return box_for_choice(options, body);
   const auto refuse = [](const std::string& why) {
     throw InputError("linear.preconditioner", "sines",
                      why + "; take \"rigid_pieces\" or \"surrogate\"");
@@ -117,6 +135,7 @@ LinearSystems choose_linear_systems(const StudyOptions& options, const Model& mo
     systems.chosen = make_linear_solver(linear, problem, std::move(tell));
   }
   systems.is_stored = problem.is_stored;
+  if (problem.box) linear.preconditioner = PreconditionerKind::sines;
   systems.bytes = estimate.bytes(systems.chosen.is_direct, systems.is_stored, linear);
   const double bytes_of_vector = 8.0 * estimate.size.points * estimate.size.dimension;
   if (goes_by_events) {

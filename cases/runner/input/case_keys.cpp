@@ -1144,7 +1144,8 @@ Table<SolverSpecification> solver_keys() {
                                      {"chebyshev", PreconditionerKind::chebyshev},
                                      {"multigrid", PreconditionerKind::multigrid}}),
          "of the last three, not for `\"cholesky\"`; with `linear = \"auto\"` it means `\"pcg\"`; "
-         "`\"auto\"` is `\"rigid_pieces\"`")
+         "`\"auto\"` is `\"rigid_pieces\"`. `\"sines\"` is for points on a lattice along the axes, "
+         "without constraints and images")
            .written_if(searches)
            .extends()
            .then(check_preconditioner),
