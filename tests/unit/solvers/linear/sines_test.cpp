@@ -14,6 +14,7 @@
 #include "assembly/operators/tangent.hpp"
 #include "solvers/linear/block_jacobi.hpp"
 #include "solvers/linear/iterative_solver.hpp"
+#include "solvers/linear/make_linear_solver.hpp"
 #include "src/geometry/lattice.hpp"
 #include "tests/bodies.hpp"
 
@@ -263,6 +264,36 @@ TEST(Sines, StiffnessAgainstTranslationsIsInTheSymbol) {
   ASSERT_EQ(solver.factorize(tangent, FactorUse::factorize_now), LinearOutcome::solved);
   ASSERT_EQ(solver.solve(b, x, 1e-8), LinearOutcome::solved);
   EXPECT_LE(solver.last_iterations(), 10);
+}
+
+TEST(Sines, AreTheFirstRungWhereABoxIsGivenAndGiveWayToRigidPieces) {
+  LinearProblem problem;
+  problem.bonds = 1e6;
+  problem.factor_flops = 1e12;
+  problem.factor_bytes = 1e9;
+  problem.is_stored = false;
+  const auto ladder_for = [&](System& system, std::string& told) {
+    problem.box = system.box;
+    ChosenSolver chosen = make_linear_solver({}, problem, [&](const auto& why) { told = why; });
+    EXPECT_FALSE(chosen.is_direct);
+    EXPECT_EQ(chosen.solver->analyze(system.tangent.pattern, system.free), LinearOutcome::solved);
+    const std::vector<double> b = tests::Random(3).vector(std::size_t(system.free.count()));
+    std::vector<double> x(b.size());
+    EXPECT_EQ(chosen.solver->factorize(system.tangent, FactorUse::factorize_now),
+              LinearOutcome::solved);
+    EXPECT_EQ(chosen.solver->solve(b, x, 1e-8), LinearOutcome::solved);
+    return std::move(chosen.solver);
+  };
+  std::string told;
+  System plate(box_points({30.0, 30.0, 0.0}, 2), setting_of(2), at_ends(0));
+  EXPECT_EQ(ladder_for(plate, told)->rung(), 0);
+  EXPECT_EQ(told, "");
+  // A slender bar, for which nobody should give a box, takes more iterations than they are given.
+  System bar(box_points({160.0, 4.0, 4.0}, 3), setting_of(3), at_ends(0));
+  const auto solver = ladder_for(bar, told);
+  EXPECT_EQ(solver->rung(), 1);
+  EXPECT_NE(told.find("pcg with sines"), std::string::npos) << told;
+  EXPECT_NE(solver->describe().find("rigid pieces"), std::string::npos);
 }
 
 TEST(Sines, AreNoneWhereNothingIsStiffOrDegreesOfFreedomAreNotThePoints) {
