@@ -132,6 +132,11 @@ struct Sines::Symbols {
     for (int a = 0; a < dimension; ++a) {
       result.below[a] = end(a, 0);
       result.above[a] = end(a, 1);
+      // Rather beyond a free side than into a support.
+      const Index more = good_size(result.extent[a]) - result.extent[a];
+      const bool goes_below = result.below[a] == RowEnd::free && result.above[a] == RowEnd::held;
+      if (goes_below) result.first[a] -= more;
+      result.extent[a] += more;
     }
     return result;
   }

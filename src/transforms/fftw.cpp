@@ -1,6 +1,7 @@
 #include "src/transforms/fftw.hpp"
 
 #include <algorithm>
+#include <mutex>
 #include <new>
 #include <stdexcept>
 
@@ -9,26 +10,25 @@
 namespace peristat::fftw {
 namespace {
 
-std::mutex& planner_mutex() {
+/// Lines that are transformed together: two cache lines of doubles side by side.
+constexpr Index lines_of_batch = 16;
+
+/// FFTW's planner is one for the process, and none of its calls may meet.
+std::mutex& planner() {
   static std::mutex mutex;
   return mutex;
 }
 
 }  // namespace
 
-Planner::Planner(int threads) : hold_(planner_mutex()) {
-  static const bool has_threads = fftw_init_threads() != 0;
-  if (has_threads) fftw_plan_with_nthreads(threads);
+Plan::Plan(const std::function<void*()>& make) {
+  const std::lock_guard hold(planner());
+  plan_.reset(make());
+  if (!plan_) throw std::logic_error("FFTW has no plan for such a transform");
 }
-
-Plan::Plan(void* plan) : plan_(plan) {
-  if (plan == nullptr) throw std::logic_error("FFTW has no plan for such a transform");
-}
-
-void Plan::execute() const { fftw_execute(static_cast<fftw_plan>(plan_.get())); }
 
 void Plan::Destroy::operator()(void* plan) const {
-  const std::lock_guard hold(planner_mutex());
+  const std::lock_guard hold(planner());
   fftw_destroy_plan(static_cast<fftw_plan>(plan));
 }
 
@@ -38,5 +38,28 @@ Buffer::Buffer(std::size_t count) : data_(fftw_alloc_real(count)), count_(count)
 }
 
 void Buffer::Free::operator()(double* data) const { fftw_free(data); }
+
+AxisPass::AxisPass(const Lines& lines, const Make& make) : lines_(lines) {
+  const bool are_rows = lines.inner == 1;
+  across_ = are_rows ? lines.outer : lines.inner;
+  batch_ = std::min(lines_of_batch, across_);
+  const int stride = lines.inner, distance = are_rows ? lines.count : 1;
+  whole_ = Plan([&] { return make(batch_, stride, distance); });
+  const Index rest = across_ % batch_;
+  if (rest > 0) rest_ = Plan([&] { return make(rest, stride, distance); });
+}
+
+void AxisPass::execute(int threads, const Execute& execute) const {
+  const bool are_rows = lines_.inner == 1;
+  const Offset batches = (across_ + batch_ - 1) / batch_;
+  const Offset all = are_rows ? batches : batches * lines_.outer;
+#pragma omp parallel for num_threads(threads) schedule(static)
+  for (Offset k = 0; k < all; ++k) {
+    const Offset first = k % batches * batch_;
+    const Offset plane = k / batches * lines_.count * lines_.inner;
+    execute((first + batch_ <= across_ ? whole_ : rest_).get(),
+            std::size_t(plane + first * (are_rows ? lines_.count : 1)));
+  }
+}
 
 }  // namespace peristat::fftw

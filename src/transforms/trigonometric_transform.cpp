@@ -32,31 +32,43 @@ double TransformAxis::wave_number(Index mode) const {
 
 struct TrigonometricTransform::Plans {
   fftw::Buffer values;
-  fftw::Plan to_modes, to_places;
+  int threads = 1;
+  std::vector<fftw::AxisPass> to_modes, to_places;  // by axis
+
+  void execute(const std::vector<fftw::AxisPass>& passes) const {
+    for (const fftw::AxisPass& pass : passes) {
+      pass.execute(threads, [data = values.data()](void* plan, std::size_t element) {
+        fftw_execute_r2r(static_cast<fftw_plan>(plan), data + element, data + element);
+      });
+    }
+  }
 };
 
 TrigonometricTransform::TrigonometricTransform(std::span<const TransformAxis> axes, int threads)
     : axes_(axes.begin(), axes.end()), plans_(std::make_unique<Plans>()) {
-  std::vector<int> extent;
-  std::vector<fftw_r2r_kind> to_modes, to_places;
   for (const TransformAxis& axis : axes_) {
     if (axis.count < 1) throw std::logic_error("a transform of no places");
-    extent.push_back(axis.count);
-    const Kinds kinds = kinds_of(axis);
-    to_modes.push_back(kinds.to_modes);
-    to_places.push_back(kinds.to_places);
     count_ *= std::size_t(axis.count);
   }
   plans_->values = fftw::Buffer(count_);
-  double* const data = plans_->values.data();
-  const fftw::Planner planner(threads);
-  // Estimated plans: measured ones differ from run to run, and with them the last bits.
-  const auto plan = [&](const std::vector<fftw_r2r_kind>& kinds) {
-    return fftw::Plan(
-        fftw_plan_r2r(int(extent.size()), extent.data(), data, data, kinds.data(), FFTW_ESTIMATE));
-  };
-  plans_->to_modes = plan(to_modes);
-  plans_->to_places = plan(to_places);
+  plans_->threads = threads;
+  fftw::Lines lines{1, 1, static_cast<Index>(count_)};
+  for (const TransformAxis& axis : axes_) {
+    lines.count = axis.count;
+    lines.inner /= axis.count;
+    const auto pass = [&](fftw_r2r_kind kind) {
+      return fftw::AxisPass(lines, [&](int many, int stride, int distance) -> void* {
+        double* const data = plans_->values.data();
+        // Lines begin anywhere.
+        return fftw_plan_many_r2r(1, &axis.count, many, data, nullptr, stride, distance, data,
+                                  nullptr, stride, distance, &kind, FFTW_ESTIMATE | FFTW_UNALIGNED);
+      });
+    };
+    const Kinds kinds = kinds_of(axis);
+    plans_->to_modes.push_back(pass(kinds.to_modes));
+    plans_->to_places.push_back(pass(kinds.to_places));
+    lines.outer *= axis.count;
+  }
 }
 
 TrigonometricTransform::~TrigonometricTransform() = default;
@@ -66,8 +78,19 @@ TrigonometricTransform& TrigonometricTransform::operator=(TrigonometricTransform
 
 std::span<double> TrigonometricTransform::values() { return plans_->values.values(); }
 
-void TrigonometricTransform::to_modes() { plans_->to_modes.execute(); }
-void TrigonometricTransform::to_places() { plans_->to_places.execute(); }
+void TrigonometricTransform::to_modes() { plans_->execute(plans_->to_modes); }
+void TrigonometricTransform::to_places() { plans_->execute(plans_->to_places); }
+
+Index good_size(Index n) {
+  const auto is_good = [](Index size) {
+    for (const Index prime : {2, 3, 5, 7, 11, 13}) {
+      while (size % prime == 0) size /= prime;
+    }
+    return size == 1;
+  };
+  while (!is_good(n)) ++n;
+  return n;
+}
 
 double TrigonometricTransform::factor() const {
   double factor = 1.0;

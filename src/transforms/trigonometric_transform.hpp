@@ -29,8 +29,8 @@ struct TransformAxis {
 ///
 /// k_j as told by wave_number (discrete cosine and sine transforms of kind II, and of kind IV
 /// between a free and a held end). Every operator that commutes with shifts and reflections of the
-/// unbounded lattice is diagonal in them. The same axes and threads give the same numbers to the
-/// last bit, whatever else the process does.
+/// unbounded lattice is diagonal in them. The same axes give the same numbers to the last bit,
+/// whatever the number of threads.
 class TrigonometricTransform {
  public:
   /// @param axes one to three, the last one's places are next to each other
@@ -55,5 +55,9 @@ class TrigonometricTransform {
   std::size_t count_ = 1;
   std::unique_ptr<Plans> plans_;
 };
+
+/// The next number of places, n itself or a few more, that transforms are fast for: without prime
+/// factors above 13. Beside one with a large prime factor they take a fifth to a third of the time.
+[[nodiscard]] Index good_size(Index n);
 
 }  // namespace peristat
