@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "src/transforms/good_size.hpp"
 #include "src/transforms/trigonometric_transform.hpp"
 
 namespace peristat {

@@ -81,17 +81,6 @@ std::span<double> TrigonometricTransform::values() { return plans_->values.value
 void TrigonometricTransform::to_modes() { plans_->execute(plans_->to_modes); }
 void TrigonometricTransform::to_places() { plans_->execute(plans_->to_places); }
 
-Index good_size(Index n) {
-  const auto is_good = [](Index size) {
-    for (const Index prime : {2, 3, 5, 7, 11, 13}) {
-      while (size % prime == 0) size /= prime;
-    }
-    return size == 1;
-  };
-  while (!is_good(n)) ++n;
-  return n;
-}
-
 double TrigonometricTransform::factor() const {
   double factor = 1.0;
   for (const TransformAxis& axis : axes_) factor *= 2.0 * double(axis.count);

@@ -56,8 +56,4 @@ class TrigonometricTransform {
   std::unique_ptr<Plans> plans_;
 };
 
-/// The next number of places, n itself or a few more, that transforms are fast for: without prime
-/// factors above 13. Beside one with a large prime factor they take a fifth to a third of the time.
-[[nodiscard]] Index good_size(Index n);
-
 }  // namespace peristat

@@ -23,6 +23,7 @@ ROOMS = [
     "src/materials",
     "src/constraints",
     "src/conditions",
+    "assembly/convolutions",
     "assembly/energy",
     "assembly/operators",
     "assembly/terms",

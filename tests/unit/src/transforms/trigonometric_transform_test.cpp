@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "src/transforms/good_size.hpp"
 #include "tests/bodies.hpp"
 
 namespace peristat {
