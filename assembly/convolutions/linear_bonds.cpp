@@ -8,6 +8,14 @@
 namespace peristat {
 namespace {
 
+/// The lattice's axes as the last ones of the box: the last one has the real values of a row.
+template <class T>
+std::array<T, 3> as_last(const std::array<T, 3>& of_lattice, int dimension) {
+  std::array<T, 3> result{};
+  std::copy_n(of_lattice.begin(), dimension, result.end() - dimension);
+  return result;
+}
+
 /// The box with room for what the springs reach.
 std::array<ConvolutionAxis, 3> axes_of(const LatticeBox& box,
                                        const std::array<bool, 3>& is_periodic,
@@ -23,7 +31,7 @@ std::array<ConvolutionAxis, 3> axes_of(const LatticeBox& box,
       throw std::logic_error("a period must be longer than bonds: points would see themselves");
     }
   }
-  return axes;
+  return as_last(axes, box.dimension);
 }
 
 /// field_j := sum_i C_ij field_i, mode by mode.
@@ -64,11 +72,12 @@ LinearBonds::LinearBonds(const LatticeBox& box, const std::array<bool, 3>& is_pe
   const FourierTransform& transform = convolution_.transform();
   where_.reserve(box.place.size());
   for (const Index place : box.place) {
-    const std::array<Index, 3> at = box.numbers(place);
+    const std::array<Index, 3> at = as_last(box.numbers(place), dimension_);
     where_.push_back(transform.at(at[0], at[1], at[2]));
   }
   std::vector<KernelValue> kernel;
-  for (const LatticeSpring& spring : springs) kernel.push_back({spring.step, 0.0});
+  for (const LatticeSpring& spring : springs)
+    kernel.push_back({as_last(spring.step, dimension_), 0.0});
   for (int i = 0; i < dimension_; ++i) {
     for (int j = i; j < dimension_; ++j) {
       for (std::size_t s = 0; s < springs.size(); ++s) {
