@@ -44,6 +44,8 @@ class LinearBonds {
   /// states.
   void multiply(std::span<const double> v, std::span<double> product);
 
+  [[nodiscard]] const FourierTransform& transform() const { return convolution_.transform(); }
+
   /// Diagonal blocks of K, points x dimension x dimension, row major [N/m].
   [[nodiscard]] std::vector<double> diagonal() const;
 
