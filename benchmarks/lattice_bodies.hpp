@@ -11,21 +11,25 @@ namespace peristat::benchmark_bodies {
 /// A box of unit-spaced lattice points with horizon 3.015, the setting of all benchmarks.
 inline constexpr double horizon = 3.015;
 
-[[nodiscard]] inline Points box(int dimension, const std::array<int, 3>& extent) {
+[[nodiscard]] inline Points box(int dimension, const std::array<int, 3>& extent,
+                                const std::vector<ShapeStep>& changes = {}) {
   Lattice lattice;
   lattice.dimension = dimension;
   lattice.spacing = 1.0;
   Box shape;
   for (int c = 0; c < dimension; ++c) shape.max[c] = extent[c];
   lattice.shapes.push_back({ShapeStep::Action::add, shape});
+  lattice.shapes.insert(lattice.shapes.end(), changes.begin(), changes.end());
   return make_points(lattice);
 }
 
-[[nodiscard]] inline BondSetting setting(int dimension) { return {{dimension, horizon}}; }
+[[nodiscard]] inline BondSetting setting(int dimension, double reach = horizon) {
+  return {{dimension, reach}};
+}
 
 /// Bonds with the micromodulus of a unit Young's modulus.
-[[nodiscard]] inline Model model(const Points& points) {
-  const BondSetting bond = setting(points.dimension);
+[[nodiscard]] inline Model model(const Points& points, double reach = horizon) {
+  const BondSetting bond = setting(points.dimension, reach);
   return Model(make_bonds(points, SurfaceCorrection::none, bond, 1),
                Harmonic{micromodulus(1.0, bond)});
 }

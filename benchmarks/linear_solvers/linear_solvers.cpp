@@ -1,7 +1,8 @@
 // Linear solvers side by side: ./peristat bench --linear [BODY...] [--solvers a,b,...]
 //
-// Each body is a lattice of horizon 3.015 at rest, held over three layers at one end, with a random
-// right-hand side; K x = b is solved to a relative residual of 1e-8. Prints a table.
+// Each body is a lattice at rest, of horizon 3.015 or the one after an r in its name, held over
+// three layers at one end, plates with a hole at both, with a random right-hand side; K x = b is
+// solved to a relative residual of 1e-8. Prints a table.
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
@@ -30,6 +31,14 @@ struct BodyShape {
   int dimension = 3;
   std::array<int, 3> extent{};
   bool is_cracked = false;  // two thirds through, in the middle
+  double horizon = benchmark_bodies::horizon;
+  bool has_hole = false;  // a fifth wide, in the middle; cracks run from it on both sides
+
+  /// A square plate with a hole.
+  static BodyShape with_hole(int size, double horizon = benchmark_bodies::horizon,
+                             bool is_cracked = false) {
+    return {2, {size, size, 0}, is_cracked, horizon, true};
+  }
 };
 
 const std::vector<std::pair<std::string, BodyShape>> bodies{
@@ -49,6 +58,21 @@ const std::vector<std::pair<std::string, BodyShape>> bodies{
     {"plate-300", {2, {300, 300, 0}}},
     {"plate-300-cracked", {2, {300, 300, 0}, true}},
     {"plate-1000", {2, {1000, 1000, 0}}},
+    {"cube-30-r5", {3, {30, 30, 30}, false, 5.1}},
+    {"cube-100", {3, {100, 100, 100}}},
+    {"hole-50", BodyShape::with_hole(50)},
+    {"hole-100", BodyShape::with_hole(100)},
+    {"hole-200", BodyShape::with_hole(200)},
+    {"hole-300", BodyShape::with_hole(300)},
+    {"hole-50-r5", BodyShape::with_hole(50, 5.1)},
+    {"hole-100-r5", BodyShape::with_hole(100, 5.1)},
+    {"hole-200-r5", BodyShape::with_hole(200, 5.1)},
+    {"hole-300-r5", BodyShape::with_hole(300, 5.1)},
+    {"hole-50-r8", BodyShape::with_hole(50, 8.015)},
+    {"hole-100-r8", BodyShape::with_hole(100, 8.015)},
+    {"hole-200-r8", BodyShape::with_hole(200, 8.015)},
+    {"hole-300-r8", BodyShape::with_hole(300, 8.015)},
+    {"hole-100-cracked", BodyShape::with_hole(100, benchmark_bodies::horizon, true)},
 };
 
 struct SolverKind {
@@ -65,6 +89,7 @@ const std::vector<std::pair<std::string, SolverKind>> solvers{
     {"rigid_pieces", {pcg, PreconditionerKind::rigid_pieces, false}},
     {"rigid_pieces-stored", {pcg, PreconditionerKind::rigid_pieces, true}},
     {"surrogate", {pcg, PreconditionerKind::surrogate, false}},
+    {"sines", {pcg, PreconditionerKind::sines, false}},
     {"multigrid", {pcg, PreconditionerKind::multigrid, true}},
     {"riluk", {pcg, PreconditionerKind::riluk, true}},
     {"chebyshev", {pcg, PreconditionerKind::chebyshev, true}},
@@ -76,27 +101,51 @@ double seconds_of(const std::function<void()>& work) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
+/// Two thirds through from one side; with a hole, along the middle on both of its sides, as far as
+/// its radius.
 void cut(Model& model, const Points& points, const BodyShape& shape) {
-  const double plane = 0.5 * shape.extent[0], height = 2.0 / 3.0 * shape.extent[1];
+  const int across = shape.has_hole ? 1 : 0, along = 1 - across;
+  const double plane = 0.5 * shape.extent[across], length = shape.extent[along];
   Bonds bonds = model.bonds();
   bonds.remove_if([&](Index i, Offset bond) {
     const Coordinates a = points.position(i), b = points.position(bonds.partner[bond]);
-    return (a[0] - plane) * (b[0] - plane) < 0.0 && 0.5 * (a[1] + b[1]) < height;
+    const double at = 0.5 * (a[along] + b[along]);
+    const bool is_cut =
+        shape.has_hole ? std::abs(at - 0.5 * length) < 0.2 * length : at < 2.0 / 3.0 * length;
+    return (a[across] - plane) * (b[across] - plane) < 0.0 && is_cut;
   });
   model = Model(std::move(bonds), model.bond_term()->potential());
 }
 
+Points points_of(const BodyShape& shape) {
+  if (!shape.has_hole) return benchmark_bodies::box(shape.dimension, shape.extent);
+  const double middle = 0.5 * shape.extent[0];
+  return benchmark_bodies::box(
+      shape.dimension, shape.extent,
+      {{ShapeStep::Action::subtract, Disk{{middle, middle}, 0.2 * middle}}});
+}
+
+/// Flags of the degrees of freedom that are held.
+std::vector<char> held(const Points& points, const BodyShape& shape) {
+  std::vector<char> prescribed(points.reference.size(), 0);
+  const auto d = std::size_t(shape.dimension), axis = std::size_t(shape.has_hole ? 1 : 0);
+  for (std::size_t k = 0; k < prescribed.size(); ++k) {
+    const double at = points.reference[k - k % d + axis];
+    prescribed[k] = at < 3.0 || (shape.has_hole && at > shape.extent[1] - 3.0);
+  }
+  return prescribed;
+}
+
 void measure(const std::string& name, const BodyShape& shape,
              const std::vector<std::string>& wanted) {
-  const Points points = benchmark_bodies::box(shape.dimension, shape.extent);
-  Model model = benchmark_bodies::model(points);
+  const Points points = points_of(shape);
+  Model model = benchmark_bodies::model(points, shape.horizon);
   if (shape.is_cracked) cut(model, points, shape);
   Assembler assembler(points, model, omp_get_max_threads());
-  std::vector<char> prescribed(points.reference.size(), 0);
-  for (std::size_t k = 0; k < prescribed.size(); ++k) {
-    prescribed[k] = points.reference[k - k % std::size_t(shape.dimension)] < 3.0;
-  }
-  const FreeDofs free(prescribed, shape.dimension);
+  const FreeDofs free(held(points, shape), shape.dimension);
+  std::string why_not;
+  LinearProblem problem;
+  problem.box = std::make_shared<LatticeBox>(lattice_box(points, why_not).value());
   const BlockPattern pattern(model.bonds());
   std::vector<double> b(std::size_t(free.count())), x(b.size());
   std::mt19937_64 engine(3);
@@ -111,7 +160,7 @@ void measure(const std::string& name, const BodyShape& shape,
     } else {
       tangent = std::make_unique<MatrixFreeTangent>(assembler);
     }
-    const auto solver = make_linear_solver({kind.method, kind.preconditioner}, {}, {}).solver;
+    const auto solver = make_linear_solver({kind.method, kind.preconditioner}, problem, {}).solver;
     LinearOutcome outcome = LinearOutcome::solved;
     const double analysis = seconds_of([&] { outcome = solver->analyze(pattern, free); });
     const double assembly = seconds_of([&] { tangent->linearise(assembler, at_rest, 0.0); });

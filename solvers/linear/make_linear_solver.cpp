@@ -12,6 +12,7 @@
 #include "solvers/linear/ldlt.hpp"
 #include "solvers/linear/local_operator.hpp"
 #include "solvers/linear/rigid_pieces.hpp"
+#include "solvers/linear/sines.hpp"
 #include "solvers/linear/sparse_lu.hpp"
 #include "solvers/linear/speeds.hpp"
 #include "solvers/linear/surrogate.hpp"
@@ -22,6 +23,12 @@ namespace {
 /// Products that a load step takes by conjugate gradients with rigid pieces: some four solves of
 /// 15 iterations, and builds of the preconditioner, each worth 30.
 constexpr double products_of_a_step = 120.0;
+
+/// With sines some four solves of 12 iterations, and builds worth 2.
+constexpr double iterations_of_a_step_with_sines = 48.0, products_of_builds_of_sines = 4.0;
+
+/// Iterations after which sines were the wrong choice.
+constexpr int patience_with_sines = 100;
 
 /// Factorisations up to this are done whatever the alternative [flop], and up to the second for the
 /// sake of pivots.
@@ -43,7 +50,9 @@ constexpr int patience_of_gmres = 600;
 /// Iterations for a system of masses with a little stiffness: two to five are the rule.
 constexpr int patience_with_inertia = 100;
 
-std::unique_ptr<Preconditioner> make_preconditioner(PreconditionerKind kind) {
+using SharedBox = std::shared_ptr<const LatticeBox>;
+
+std::unique_ptr<Preconditioner> make_preconditioner(PreconditionerKind kind, const SharedBox& box) {
   switch (kind) {
     case PreconditionerKind::jacobi:
       return std::make_unique<BlockJacobi>(BlockJacobi::Blocks::entries);
@@ -51,6 +60,9 @@ std::unique_ptr<Preconditioner> make_preconditioner(PreconditionerKind kind) {
       return std::make_unique<BlockJacobi>(BlockJacobi::Blocks::points);
     case PreconditionerKind::surrogate:
       return std::make_unique<Surrogate>();
+    case PreconditionerKind::sines:
+      if (!box) throw std::logic_error("sines need the box of a lattice");
+      return std::make_unique<Sines>(box);
     case PreconditionerKind::riluk:
       return std::make_unique<AssembledPreconditioner>(MatrixPreconditionerKind::riluk);
     case PreconditionerKind::chebyshev:
@@ -67,9 +79,9 @@ std::unique_ptr<Preconditioner> make_preconditioner(PreconditionerKind kind) {
 }
 
 std::unique_ptr<LinearSolver> make_iterative(
-    PreconditionerKind kind, int max_iterations,
+    PreconditionerKind kind, int max_iterations, const SharedBox& box = {},
     KrylovMethod method = KrylovMethod::conjugate_gradients) {
-  return std::make_unique<IterativeSolver>(method, make_preconditioner(kind), max_iterations);
+  return std::make_unique<IterativeSolver>(method, make_preconditioner(kind, box), max_iterations);
 }
 
 KrylovMethod krylov_method(LinearMethod method) {
@@ -85,7 +97,13 @@ struct Seconds {
       : direct(problem.factor_flops / speeds::factorisation +
                problem.factor_bytes / speeds::fresh_memory),
         product(problem.bonds / speeds::product),
-        iterative(products_of_a_step * product) {}
+        iterative(products_of_a_step * product) {
+    if (!problem.box) return;
+    const double transforms =
+        2.0 * problem.box->dimension * double(problem.box->count()) / speeds::transform;
+    iterative = iterations_of_a_step_with_sines * (product + transforms) +
+                products_of_builds_of_sines * product;
+  }
 };
 
 ChosenSolver choose(const LinearProblem& problem, SolverLadder::Reporter tell) {
@@ -99,6 +117,10 @@ ChosenSolver choose(const LinearProblem& problem, SolverLadder::Reporter tell) {
   const SolverLadder::Rung pieces{
       "pcg with rigid_pieces",
       [patience] { return make_iterative(PreconditionerKind::rigid_pieces, patience); }};
+  const SolverLadder::Rung sines{"pcg with sines", [box = problem.box] {
+                                   return make_iterative(PreconditionerKind::sines,
+                                                         patience_with_sines, box);
+                                 }};
   const SolverLadder::Rung surrogate{
       "pcg with surrogate",
       [patience] { return make_iterative(PreconditionerKind::surrogate, patience); }};
@@ -131,6 +153,7 @@ ChosenSolver choose(const LinearProblem& problem, SolverLadder::Reporter tell) {
             ? std::string("a factorisation needs the stored tangent")
             : fmt::format("a factor would need about {:.2g} GB of {:.2g} GB available",
                           problem.factor_bytes / 1e9, problem.available_bytes / 1e9);
+    if (problem.box) rungs.insert(rungs.begin(), sines);
   }
   return {std::make_unique<SolverLadder>(std::move(rungs), std::move(tell)), is_direct,
           is_direct ? direct : iterative, fmt::format("auto: {}", reason)};
@@ -149,7 +172,7 @@ std::unique_ptr<LinearSolver> make_unsymmetric(LinearMethod method, Precondition
   if (kind == PreconditionerKind::automatic) kind = PreconditionerKind::local_operator;
   auto preconditioner = kind == PreconditionerKind::local_operator
                             ? std::make_unique<LocalOperator>(problem.available_bytes)
-                            : make_preconditioner(kind);
+                            : make_preconditioner(kind, {});
   return std::make_unique<IterativeSolver>(krylov_method(method), std::move(preconditioner),
                                            max_iterations, restart_for(problem));
 }
@@ -258,6 +281,7 @@ std::string what_is_against(PreconditionerKind preconditioner, bool is_symmetric
       return is_symmetric ? "is for models whose tangent is not symmetric; take rigid_pieces" : "";
     case PreconditionerKind::rigid_pieces:
     case PreconditionerKind::surrogate:
+    case PreconditionerKind::sines:
     case PreconditionerKind::riluk:
     case PreconditionerKind::chebyshev:
     case PreconditionerKind::multigrid:
@@ -292,9 +316,9 @@ ChosenSolver make_linear_solver(const LinearSolverOptions& options, const Linear
     case LinearMethod::conjugate_gradients:
     case LinearMethod::minres:
     case LinearMethod::gmres:
-      return {
-          make_iterative(options.preconditioner, most_iterations, krylov_method(options.method)),
-          false, Seconds(problem).iterative, "as the case asks"};
+      return {make_iterative(options.preconditioner, most_iterations, problem.box,
+                             krylov_method(options.method)),
+              false, Seconds(problem).iterative, "as the case asks"};
     case LinearMethod::automatic:
     case LinearMethod::lu:
     case LinearMethod::bicgstab:

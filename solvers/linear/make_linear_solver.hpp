@@ -6,6 +6,7 @@
 
 #include "solvers/linear/linear_solver.hpp"
 #include "solvers/linear/solver_ladder.hpp"
+#include "src/geometry/lattice_box.hpp"
 
 namespace peristat {
 
@@ -28,6 +29,7 @@ enum class PreconditionerKind {
   block_jacobi,
   rigid_pieces,
   surrogate,
+  sines,  ///< for bodies on a lattice: see LinearProblem::box
   riluk,
   chebyshev,
   multigrid,
@@ -59,6 +61,8 @@ struct LinearProblem {
   bool may_soften = false;    ///< damage grows in implicit steps: stability is in question
   bool solves_often = false;  ///< many systems have the same tangent
   bool has_inertia = false;   ///< masses are part of the tangent, as in implicit time steps
+  /// Where the points stand, which sines need; nothing: they can't be taken.
+  std::shared_ptr<const LatticeBox> box{};
 };
 
 /// A solver with the reason for its choice, in words.

@@ -107,6 +107,12 @@ double local_operator_bytes(const BodySize& size) {
 /// GMRES without rigid pieces may need this many vectors.
 constexpr double vectors_of_unsymmetric_gmres = 70.0;
 
+/// What sines add: the place of each point, and per place of the box a value and the symbols of the
+/// components in single precision.
+double sines_bytes(const BodySize& size) {
+  return 4.0 * size.points + (8.0 + 4.0 * size.dimension) * size.places;
+}
+
 /// Bytes per entry of the whole matrix that a preconditioner of Trilinos takes, as measured: two
 /// copies of the compressed rows, and in RILUK the factors, in multigrid the coarser levels.
 double trilinos_bytes_per_entry(PreconditionerKind kind) {
@@ -208,6 +214,8 @@ double MemoryEstimate::iterative_bytes(const LinearSolverOptions& options) const
       return bytes + rigid_pieces_bytes(size);
     case PreconditionerKind::surrogate:
       return bytes + surrogate_bytes(size);
+    case PreconditionerKind::sines:
+      return bytes + sines_bytes(size);
     case PreconditionerKind::multigrid:
       bytes += multigrid_bytes;
       [[fallthrough]];

@@ -9,6 +9,7 @@ struct BodySize {
   int dimension = 0;
   double points = 0.0;
   double longest = 1.0;  ///< points along the longest direction
+  double places = 0.0;   ///< of the lattice in the box around the points
   double horizon_ratio = 0.0;
   double bonds = 0.0;
   double bytes_per_bond = 6.0;       ///< partner and kind, see BondKinds

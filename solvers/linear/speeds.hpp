@@ -11,6 +11,7 @@ inline constexpr double unsymmetric_factorisation = 1e10;  ///< UMFPACK, on one 
 inline constexpr double solve = 1e10;        ///< reading a factor in triangular solves [bytes/s]
 inline constexpr double fresh_memory = 1e9;  ///< which a small factorisation mostly takes [bytes/s]
 inline constexpr double product = 1.5e8;     ///< matrix-free [bonds/s]
+inline constexpr double transform = 8e7;     ///< by sines and cosines, there or back [places/s]
 }  // namespace speeds
 
 /// Iterations of conjugate gradients, each reading the factor twice, that half a factorisation

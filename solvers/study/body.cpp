@@ -275,6 +275,7 @@ BodySize size_of(const Points& points) {
   size.dimension = points.dimension;
   size.points = double(points.count());
   size.free_dofs = double(points.reference.size());
+  size.places = 1.0;
   for (int c = 0; c < points.dimension; ++c) {
     double least = std::numeric_limits<double>::infinity(), most = -least;
     for (Index i = 0; i < points.count(); ++i) {
@@ -283,6 +284,7 @@ BodySize size_of(const Points& points) {
       most = std::max(most, at);
     }
     size.longest = std::max(size.longest, (most - least) / points.spacing + 1.0);
+    size.places *= (most - least) / points.spacing.along(c) + 1.0;
   }
   return size;
 }

@@ -1,5 +1,7 @@
 #include "solvers/study/linear_systems.hpp"
 
+#include <optional>
+#include <string>
 #include <utility>
 
 #include "assembly/operators/constrained_tangent.hpp"
@@ -8,6 +10,7 @@
 #include "assembly/operators/tangent.hpp"
 #include "solvers/linear/available_memory.hpp"
 #include "solvers/linear/no_solver.hpp"
+#include "solvers/linear/sines_estimate.hpp"
 #include "solvers/search/updated_tangent.hpp"
 #include "solvers/study/found_loads.hpp"
 #include "src/core/input_error.hpp"
@@ -62,6 +65,22 @@ LinearSystems systems_of_motion(const Body& body) {
   return systems;
 }
 
+/// The box of a body that sines are estimated to be the best choice for, if `automatic` is asked.
+std::shared_ptr<const LatticeBox> box_for_choice(const StudyOptions& options, const Body& body) {
+  const BodySpecification& of = body.specification;
+  const bool is_free = options.linear.method == LinearMethod::automatic &&
+                       options.linear.preconditioner == PreconditionerKind::automatic;
+  const bool is_whole = !body.model.has_history() && body.cut_bonds.empty();
+  if (!is_free || !is_whole || !of.is_uniform() || of.has_inertia || !body.model.visits_rows() ||
+      !body.conditions->constraints().none() || body.points.angle != 0.0) {
+    return nullptr;
+  }
+  std::string why_not;
+  std::optional<LatticeBox> box = lattice_box(body.points, why_not);
+  if (!box || !suits_sines(*box, body.conditions->prescribed())) return nullptr;
+  return std::make_shared<LatticeBox>(std::move(*box));
+}
+
 bool flows(const StudyOptions& options, const Model& model) {
   const LoadSteppingOptions& loading = options.loading;
   const bool relaxes =
@@ -71,8 +90,31 @@ bool flows(const StudyOptions& options, const Model& model) {
 
 }  // namespace
 
+std::shared_ptr<const LatticeBox> box_for_sines(const StudyOptions& options, const Body& body) {
+  if (options.linear.preconditioner != PreconditionerKind::sines)
+    return box_for_choice(options, body);
+  const auto refuse = [](const std::string& why) {
+    throw InputError("linear.preconditioner", "sines",
+                     why + "; take \"rigid_pieces\" or \"surrogate\"");
+  };
+  if (!body.conditions->constraints().none()) {
+    refuse(
+        "is for bodies without rigid sets, rollers, linear constraints, planes of symmetry and "
+        "periods, whose equations are not those of points on a lattice");
+  }
+  if (body.points.angle != 0.0) {
+    refuse("is for lattices along the axes: the sides of a box of this one are not the body's");
+  }
+  std::string why_not;
+  std::optional<LatticeBox> box = lattice_box(body.points, why_not);
+  if (!box) refuse("needs points on a lattice: " + why_not);
+  return std::make_shared<LatticeBox>(std::move(*box));
+}
+
 LinearSystems choose_linear_systems(const StudyOptions& options, const Model& model,
-                                    const MemoryEstimate& estimate, SolverLadder::Reporter tell) {
+                                    const MemoryEstimate& estimate,
+                                    std::shared_ptr<const LatticeBox> box,
+                                    SolverLadder::Reporter tell) {
   LinearSolverOptions linear = options.linear;
   const bool is_symmetric = estimate.size.is_symmetric();
   require_agreement(linear, is_symmetric);
@@ -94,6 +136,7 @@ LinearSystems choose_linear_systems(const StudyOptions& options, const Model& mo
   problem.may_soften = model.has_history() && options.loading.mode == Mode::newton;
   const bool goes_by_events = options.loading.mode == Mode::path;
   problem.solves_often = flows(options, model) || goes_by_events;
+  problem.box = std::move(box);
   problem.is_stored = options.tangent != TangentStorage::matrix_free;
   LinearSystems systems;
   systems.chosen = make_linear_solver(linear, problem, tell);
@@ -105,6 +148,7 @@ LinearSystems choose_linear_systems(const StudyOptions& options, const Model& mo
     systems.chosen = make_linear_solver(linear, problem, std::move(tell));
   }
   systems.is_stored = problem.is_stored;
+  if (problem.box) linear.preconditioner = PreconditionerKind::sines;
   systems.bytes = estimate.bytes(systems.chosen.is_direct, systems.is_stored, linear);
   const double bytes_of_vector = 8.0 * estimate.size.points * estimate.size.dimension;
   if (goes_by_events) {
@@ -135,7 +179,8 @@ LinearSystems choose_linear_systems(const StudyOptions& options, const Body& bod
     chosen.linear = {LinearMethod::ldlt, PreconditionerKind::automatic};
     chosen.tangent = TangentStorage::stored;
   }
-  return choose_linear_systems(chosen, body.model, estimate_memory(body), std::move(tell));
+  return choose_linear_systems(chosen, body.model, estimate_memory(body),
+                               box_for_sines(chosen, body), std::move(tell));
 }
 
 std::unique_ptr<TangentOperator> LinearSystems::make_tangent(Assembler& assembler,

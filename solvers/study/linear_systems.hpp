@@ -19,6 +19,12 @@ struct LinearSystems {
                                                               const Constraints& constraints) const;
 };
 
+/// Where the points of a body stand that sines are asked for, or may be chosen for by `automatic`;
+/// nothing for others.
+/// @throws InputError ("linear.preconditioner") where sines are asked for and can't be taken
+[[nodiscard]] std::shared_ptr<const LatticeBox> box_for_sines(const StudyOptions& options,
+                                                              const Body& body);
+
 /// Of a body under its conditions.
 /// @param tell see make_linear_solver
 /// @throws InputError ("tangent", "linear.method", "linear.preconditioner") for what does not go
@@ -28,10 +34,12 @@ struct LinearSystems {
 
 /// Of a model whose loads are given.
 /// @param estimate what the body is estimated to need
+/// @param box see box_for_sines
 /// @param tell see make_linear_solver
 /// @throws InputError ("tangent") if the model's can't do without being stored
 [[nodiscard]] LinearSystems choose_linear_systems(const StudyOptions& options, const Model& model,
                                                   const MemoryEstimate& estimate,
+                                                  std::shared_ptr<const LatticeBox> box,
                                                   SolverLadder::Reporter tell);
 
 }  // namespace peristat

@@ -12,6 +12,7 @@ import unittest
 PROGRAM = os.environ["PERISTAT_PROGRAM"]
 CASES = pathlib.Path(__file__).resolve().parents[2] / "cases"
 BEAM = CASES / "cantilever" / "beam.toml"
+PLATE = CASES / "plate_with_hole" / "elastic.toml"
 # A shorter and coarser beam: 20 x 5 x 5 points and the clamp.
 SMALL = ["lattice.spacing=0.02", "lattice.shape[0].max=[0.4, 0.05, 0.05]", "set[0].where='x > 0.4 - spacing'"]
 
@@ -41,7 +42,7 @@ class LinearSolvers(unittest.TestCase):
         tip = direct["probes"]["tip"]
         counted = {}
         for linear in ("pcg", "minres", "gmres"):
-            for preconditioner in ("auto", "jacobi", "block_jacobi", "rigid_pieces", "surrogate", "riluk",
+            for preconditioner in ("auto", "jacobi", "block_jacobi", "rigid_pieces", "surrogate", "sines", "riluk",
                                    "chebyshev", "multigrid"):  # fmt: skip
                 with self.subTest(linear=linear, preconditioner=preconditioner):
                     told, summary = self.run_case(BEAM, *SMALL, f"solver.linear={linear}",
@@ -68,6 +69,9 @@ class LinearSolvers(unittest.TestCase):
         told = self.peristat("check", BEAM).stdout
         self.assertRegex(told, r"solver +conjugate gradients preconditioned by rigid pieces \(auto: a factorisation "
                                r"is estimated at .* s, iterations at .* s a step\)")  # fmt: skip
+        told = self.peristat("check", PLATE, "lattice.spacing=2.5e-4").stdout
+        self.assertRegex(told, r"solver +conjugate gradients preconditioned by sines on 606 x 200 places \(auto: a "
+                               r"factorisation is estimated at .* s, iterations at .* s a step\)")  # fmt: skip
         told = self.peristat("check", CASES / "bar/tension.toml").stdout
         self.assertRegex(told, r"solver +CHOLMOD .* \(auto: .*\)")
         told = self.peristat("check", CASES / "plate_with_hole/square.toml", "solver.mode=newton").stdout
@@ -103,6 +107,33 @@ class LinearSolvers(unittest.TestCase):
         run = self.peristat("check", CASES / "cpd/square.toml", "solver.tangent=matrix_free")
         self.assertEqual(run.returncode, 2, run.stdout + run.stderr)
         self.assertIn('material.model = "bond"', run.stderr)
+
+    def test_sines_say_what_they_are_not_for(self):
+        pinned = self.folder / "pinned.toml"
+        text = PLATE.read_text()
+        left = text.index('[[support]]\nset = "left"')
+        rigid = '[[rigid]]\nset = "left"\n\n'
+        pinned.write_text(text[:left] + rigid + text[text.index('[[support]]\nset = "right"'):])
+        for case, settings, fragment in (
+            (PLATE, ("lattice.angle=30",), "is for lattices along the axes"),
+            (pinned, (), "is for bodies without rigid sets"),
+            (CASES / "buckling" / "arch.toml", ("solver.mode='newton'",), "the points stand on no lattice"),
+        ):
+            for command in ("check", "run"):
+                with self.subTest(case=case.name, command=command):
+                    run = self.peristat(command, case, "solver.preconditioner=sines", *settings)
+                    self.assertEqual(run.returncode, 2, run.stdout + run.stderr)
+                    self.assertIn(fragment, run.stderr)
+                    self.assertIn("solver.preconditioner = sines", run.stderr)
+                    self.assertIn("rigid_pieces", run.stderr)
+
+    def test_auto_keeps_rigid_pieces_where_sines_are_no_good(self):
+        fine = "lattice.spacing=2.5e-4"
+        for settings in (("lattice.angle=90",), ("crack=[{from=[-0.01, 0.01], to=[0.01, 0.01]}]",)):
+            with self.subTest(settings=settings):
+                told = self.peristat("check", PLATE, fine, *settings)
+                self.assertEqual(told.returncode, 0, told.stdout + told.stderr)
+                self.assertIn("preconditioned by rigid pieces", told.stdout)
 
     def beam_of(self, half_width):
         return [f"lattice.shape[0].min=[0, -{half_width}, -{half_width}]",

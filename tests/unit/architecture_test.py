@@ -14,6 +14,7 @@ FLOORS = ["src", "assembly", "solvers", "cases"]
 # Rooms of the floors, each of which may include itself and those before it.
 ROOMS = [
     "src/core",
+    "src/transforms",
     "src/measures",
     "src/potentials",
     "src/geometry",
@@ -22,6 +23,7 @@ ROOMS = [
     "src/materials",
     "src/constraints",
     "src/conditions",
+    "assembly/convolutions",
     "assembly/energy",
     "assembly/operators",
     "assembly/terms",

@@ -297,8 +297,9 @@ Exit check(const Case& from, int threads) {
                                    : constrained_pattern(body.model.pattern(), constraints);
   std::string reason;
   const StudyOptions options = study_options(from, threads);
-  const LinearSystems systems =
-      choose_linear_systems(options, body, [&](const std::string& told) { reason = told; });
+  const LinearSystems systems = located_errors(from, [&] {
+    return choose_linear_systems(options, body, [&](const std::string& told) { reason = told; });
+  });
   const ChosenSolver& chosen = systems.chosen;
   require_memory(systems.bytes, fmt::format("the case with {} points", points.count()));
   if (chosen.solver->analyze(pattern, free) == LinearOutcome::solved) {

@@ -147,7 +147,8 @@ std::unique_ptr<SolvedModel> solved_stand_in(const Case& from, const Study& stud
   size.free_dofs = double(study.free().count());
   return std::make_unique<SolvedModel>(
       points, stand_in, study.body().conditions->constraints(), study.free(),
-      choose_linear_systems(study.options(), stand_in, estimate_memory(size), {}),
+      choose_linear_systems(study.options(), stand_in, estimate_memory(size),
+                            box_for_sines(study.options(), study.body()), {}),
       study.options().threads);
 }
 

@@ -1219,12 +1219,15 @@ Table<SolverSpecification> solver_keys() {
                                      {"block_jacobi", PreconditionerKind::block_jacobi},
                                      {"rigid_pieces", PreconditionerKind::rigid_pieces},
                                      {"surrogate", PreconditionerKind::surrogate},
+                                     {"sines", PreconditionerKind::sines},
                                      {"riluk", PreconditionerKind::riluk},
                                      {"chebyshev", PreconditionerKind::chebyshev},
                                      {"multigrid", PreconditionerKind::multigrid},
                                      {"local_operator", PreconditionerKind::local_operator}}),
          "of the iterative ones, not for `\"cholesky\"` and `\"lu\"`; with `linear = \"auto\"` it "
-         "means `\"pcg\"`; `\"auto\"` is `\"rigid_pieces\"`. Where the tangent is not symmetric: "
+         "means `\"pcg\"`; `\"auto\"` is `\"rigid_pieces\"`. `\"sines\"` is for points on a "
+         "lattice along the axes, "
+         "without constraints and images. Where the tangent is not symmetric: "
          "`\"local_operator\"`, which `\"auto\"` is and with which `linear = \"auto\"` means "
          "`\"gmres\"`, `\"jacobi\"` and `\"block_jacobi\"`")
            .written_if(searches)

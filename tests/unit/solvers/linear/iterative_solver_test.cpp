@@ -15,6 +15,7 @@
 #include "solvers/linear/block_jacobi.hpp"
 #include "solvers/linear/cholesky.hpp"
 #include "solvers/linear/rigid_pieces.hpp"
+#include "solvers/linear/sines.hpp"
 #include "solvers/linear/surrogate.hpp"
 #include "tests/bodies.hpp"
 
@@ -26,9 +27,19 @@ using tests::BoxSetting;
 
 constexpr KrylovMethod cg = KrylovMethod::conjugate_gradients;
 
-enum class Kind { jacobi, block_jacobi, rigid_pieces, surrogate, riluk, chebyshev, multigrid };
+enum class Kind {
+  jacobi,
+  block_jacobi,
+  rigid_pieces,
+  surrogate,
+  sines,
+  riluk,
+  chebyshev,
+  multigrid
+};
 
-std::unique_ptr<Preconditioner> make(Kind kind) {
+std::unique_ptr<Preconditioner> make(Kind kind, const Points& points) {
+  std::string why_not;
   switch (kind) {
     case Kind::jacobi:
       return std::make_unique<BlockJacobi>(BlockJacobi::Blocks::entries);
@@ -36,6 +47,9 @@ std::unique_ptr<Preconditioner> make(Kind kind) {
       return std::make_unique<BlockJacobi>(BlockJacobi::Blocks::points);
     case Kind::rigid_pieces:
       return std::make_unique<RigidPieces>();
+    case Kind::sines:
+      return std::make_unique<Sines>(
+          std::make_shared<LatticeBox>(lattice_box(points, why_not).value()));
     case Kind::riluk:
       return std::make_unique<AssembledPreconditioner>(MatrixPreconditionerKind::riluk);
     case Kind::chebyshev:
@@ -49,12 +63,14 @@ std::unique_ptr<Preconditioner> make(Kind kind) {
 }
 
 std::string name_of(Kind kind) {
-  return std::vector<std::string>{"jacobi", "block_jacobi", "rigid_pieces", "surrogate",
-                                  "riluk",  "chebyshev",    "multigrid"}[std::size_t(kind)];
+  return std::vector<std::string>{
+      "jacobi", "block_jacobi", "rigid_pieces", "surrogate",
+      "sines",  "riluk",        "chebyshev",    "multigrid"}[std::size_t(kind)];
 }
 
-constexpr Kind all_kinds[] = {Kind::jacobi, Kind::block_jacobi, Kind::rigid_pieces, Kind::surrogate,
-                              Kind::riluk,  Kind::chebyshev,    Kind::multigrid};
+constexpr Kind all_kinds[] = {Kind::jacobi,    Kind::block_jacobi, Kind::rigid_pieces,
+                              Kind::surrogate, Kind::sines,        Kind::riluk,
+                              Kind::chebyshev, Kind::multigrid};
 bool feels_size(Kind kind) {
   return kind == Kind::jacobi || kind == Kind::block_jacobi || kind == Kind::chebyshev;
 }
@@ -127,7 +143,7 @@ struct System {
 
   /// Iterations to a tolerance, or -1 with a failure.
   int iterations(Kind kind, double tolerance = 1e-8, KrylovMethod method = cg) {
-    IterativeSolver solver(method, make(kind), 5000);
+    IterativeSolver solver(method, make(kind, body.points), 5000);
     EXPECT_EQ(solver.analyze(tangent.pattern, free), LinearOutcome::solved);
     const LinearOutcome outcome = solve(solver, tolerance);
     EXPECT_EQ(outcome, LinearOutcome::solved) << name_of(kind) << ' ' << name(outcome);
@@ -212,7 +228,7 @@ TEST(IterativeSolver, SolvesWhatTheDirectSolverSolves) {
     for (const Kind kind : all_kinds) {
       for (const KrylovMethod method : all_methods) {
         SCOPED_TRACE(body->name + ", " + name_of(kind) + ", method " + std::to_string(int(method)));
-        IterativeSolver solver(method, make(kind), 5000);
+        IterativeSolver solver(method, make(kind, system.body.points), 5000);
         ASSERT_EQ(solver.analyze(system.tangent.pattern, system.free), LinearOutcome::solved);
         const LinearOutcome outcome = system.solve(solver, 1e-12);
         // GMRES forgets at each restart and stalls where the others need many iterations.
@@ -236,10 +252,10 @@ TEST(IterativeSolver, IteratesAlikeWithAndWithoutStoredBlocks) {
     tangent.linearise(assembler, std::vector<double>(system.body.dofs(), 0.0), 0.0);
     const std::vector<double> expected = system.direct_solution();
     for (const Kind kind :
-         {Kind::jacobi, Kind::block_jacobi, Kind::rigid_pieces, Kind::surrogate}) {
+         {Kind::jacobi, Kind::block_jacobi, Kind::rigid_pieces, Kind::surrogate, Kind::sines}) {
       SCOPED_TRACE(name_of(kind));
       const int stored_iterations = system.iterations(kind, 1e-10);
-      IterativeSolver solver(cg, make(kind), 5000);
+      IterativeSolver solver(cg, make(kind, system.body.points), 5000);
       ASSERT_EQ(solver.analyze(tangent.pattern, system.free), LinearOutcome::solved);
       ASSERT_EQ(solver.factorize(tangent, FactorUse::factorize_now), LinearOutcome::solved);
       ASSERT_EQ(solver.solve(system.b, system.x, 1e-10), LinearOutcome::solved);
@@ -343,7 +359,7 @@ TEST(IterativeSolver, NegativeCurvatureIsTold) {
     Cholesky direct;
     ASSERT_EQ(direct.analyze(system.tangent.pattern, system.free), LinearOutcome::solved);
     ASSERT_EQ(system.solve(direct), LinearOutcome::not_positive_definite);
-    IterativeSolver solver(cg, make(kind), 5000);
+    IterativeSolver solver(cg, make(kind, system.body.points), 5000);
     ASSERT_EQ(solver.analyze(system.tangent.pattern, system.free), LinearOutcome::solved);
     const LinearOutcome outcome = system.solve(solver);
     if (kind == Kind::multigrid) {
@@ -368,7 +384,7 @@ TEST(IterativeSolver, MinresAndGmresSolveIndefiniteSystems) {
   system.linearise(state);
   for (const KrylovMethod method : {KrylovMethod::minres, KrylovMethod::gmres}) {
     // Only a positive definite preconditioner can be built of an indefinite tangent.
-    IterativeSolver solver(method, make(Kind::chebyshev), 5000);
+    IterativeSolver solver(method, make(Kind::chebyshev, system.body.points), 5000);
     ASSERT_EQ(solver.analyze(system.tangent.pattern, system.free), LinearOutcome::solved);
     const LinearOutcome outcome = system.solve(solver, 1e-8);
     ASSERT_EQ(outcome, LinearOutcome::solved) << name(outcome);
@@ -385,13 +401,13 @@ TEST(IterativeSolver, OutcomesOfWhatCannotBeSolved) {
     SCOPED_TRACE(name_of(kind));
     System system(box_of(2, {20, 15, 0}));
     if (kind != Kind::multigrid) {  // which is exact here
-      IterativeSolver impatient(cg, make(kind), 2);
+      IterativeSolver impatient(cg, make(kind, system.body.points), 2);
       ASSERT_EQ(impatient.analyze(system.tangent.pattern, system.free), LinearOutcome::solved);
       EXPECT_EQ(system.solve(impatient), LinearOutcome::inaccurate);
       EXPECT_EQ(impatient.last_iterations(), 2);
     }
 
-    IterativeSolver solver(cg, make(kind), 500);
+    IterativeSolver solver(cg, make(kind, system.body.points), 500);
     ASSERT_EQ(solver.analyze(system.tangent.pattern, system.free), LinearOutcome::solved);
     system.b.assign(system.b.size(), 0.0);
     EXPECT_EQ(system.solve(solver), LinearOutcome::solved);
@@ -414,7 +430,7 @@ TEST(IterativeSolver, OutcomesOfWhatCannotBeSolved) {
 
 TEST(IterativeSolver, KeepsAPreconditionerUntilItIsWorn) {
   System system(box_of(2, {20, 15, 0}));
-  IterativeSolver solver(cg, make(Kind::rigid_pieces), 2000);
+  IterativeSolver solver(cg, make(Kind::rigid_pieces, system.body.points), 2000);
   ASSERT_EQ(solver.analyze(system.tangent.pattern, system.free), LinearOutcome::solved);
   ASSERT_EQ(system.solve(solver, 1e-10, FactorUse::may_reuse), LinearOutcome::solved);
   EXPECT_EQ(solver.statistics().factorisations, 1);
@@ -429,7 +445,7 @@ TEST(IterativeSolver, KeepsAPreconditionerUntilItIsWorn) {
   EXPECT_EQ(solver.statistics().factorisations, 2);
   EXPECT_LT(solver.last_iterations(), with_the_old / 1.5);
   // What is too little for the old one is enough for a new one, within the same solve.
-  IterativeSolver strict(cg, make(Kind::rigid_pieces), with_the_old * 2 / 3);
+  IterativeSolver strict(cg, make(Kind::rigid_pieces, system.body.points), with_the_old * 2 / 3);
   ASSERT_EQ(strict.analyze(system.tangent.pattern, system.free), LinearOutcome::solved);
   system.linearise(std::vector<double>(system.body.dofs(), 0.0));
   ASSERT_EQ(system.solve(strict, 1e-10, FactorUse::may_reuse), LinearOutcome::solved);

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <vector>
+
+#include "src/core/spacing.hpp"
+#include "src/core/types.hpp"
+#include "src/neighbourhood/lattice_kernel.hpp"
+
+namespace peristat {
+
+/// Stiffness of the bond between two points of a lattice at rest.
+struct LatticeSpring {
+  LatticeStep step{};       ///< from one point to the other, along the lattice's axes
+  Coordinates direction{};  ///< n, unit vector along it in the axes of the body
+  double stiffness = 0.0;   ///< k [N/m]
+};
+
+/// The harmonic bonds of a point of a lattice, linearised at rest: energy k (n.(u' - u))^2 / 2 with
+///
+///   k = c w / r,   w = V^2 nu omega,
+///
+/// of two opposite bonds one. Weights are those that make_bonds gives without a surface correction.
+/// @param angle of the lattice's axes to x and y about z [degrees]
+/// @param micromodulus c [N/m6]
+/// @param volume V of each point [m3]
+[[nodiscard]] std::vector<LatticeSpring> lattice_springs(const Kernel& kernel,
+                                                         const Spacing& spacing, double angle,
+                                                         double micromodulus, double volume);
+
+}  // namespace peristat

@@ -1,0 +1,75 @@
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "assembly/convolutions/lattice_springs.hpp"
+#include "src/geometry/lattice_box.hpp"
+#include "src/transforms/convolution.hpp"
+
+namespace peristat {
+
+/// Bonds linearised at rest, on a lattice, as convolutions ([FCBM] app. A): with q in [0, 1] the
+/// integrity of a point, which a bond has that of both its points, and C = k n n of each step,
+///
+///   v_i = [C_ij * q u_j],   P_ij = [C_ij * q],
+///   f_i = q (v_i - P_ij u_j)                                                    [N]
+///   w   = q ([C_ij * q u_i u_j] - 2 u_i v_i + P_ij u_i u_j) / 4                 [J]
+///
+/// (sums over repeated j; w is the half of each bond's energy k (n.(u' - u))^2 / 2, whose sum is
+/// the energy whose derivative is -f). Places without a point have q = 0. No bond is stored: four
+/// real transforms in 2D and six in 3D give the forces, four and seven more the energies, whatever
+/// the horizon. The mean of u is taken off first: a free translation would cost digits of w.
+class LinearBonds {
+ public:
+  /// @param box the points and their places
+  /// @param is_periodic axes along which the lattice goes on as it began: points see their images
+  /// @param springs of two opposite steps one
+  /// @throws std::logic_error for a period that bonds are as long as
+  LinearBonds(const LatticeBox& box, const std::array<bool, 3>& is_periodic,
+              std::span<const LatticeSpring> springs, int threads);
+
+  /// @param integrity q per point; 1 at first
+  void set_integrity(std::span<const double> integrity);
+
+  /// @param displacement u, points x dimension [m]
+  /// @param force f, as many [N]
+  void find_forces(std::span<const double> displacement, std::span<double> force);
+  /// @param energy w, per point [J]
+  void find_forces_and_energies(std::span<const double> displacement, std::span<double> force,
+                                std::span<double> energy);
+
+  /// product = K v with the tangent K = -df/du [N/m], which is symmetric and the same in all
+  /// states.
+  void multiply(std::span<const double> v, std::span<double> product);
+
+  [[nodiscard]] const FourierTransform& transform() const { return convolution_.transform(); }
+
+  /// Diagonal blocks of K, points x dimension x dimension, row major [N/m].
+  [[nodiscard]] std::vector<double> diagonal() const;
+
+ private:
+  [[nodiscard]] std::size_t pairs() const {
+    return std::size_t(dimension_) * std::size_t(dimension_ + 1) / 2;
+  }
+  /// Number of the pair (i, j) of components, whichever comes first.
+  [[nodiscard]] std::size_t pair(int i, int j) const;
+  void take_up(std::span<const double> displacement);
+  void convolve_displacements();
+  void convolve_squares();
+  void clear(fftw::Buffer& field) const;
+
+  int dimension_;
+  std::ptrdiff_t points_;
+  Convolution convolution_;
+  std::vector<std::size_t> where_;               // a point's place in a field
+  std::vector<std::vector<double>> amplitudes_;  // of C, by pair
+  std::vector<double> integrity_;                // q
+  std::vector<double> sums_;                     // P, points x pairs
+  std::vector<double> displacement_;             // without its mean
+  std::vector<fftw::Buffer> fields_;             // by component
+  std::array<fftw::Buffer, 2> squares_;          // for energies, made when they are first asked for
+};
+
+}  // namespace peristat
