@@ -54,6 +54,7 @@ const std::map<std::string, std::string>& keys_of_members() {
       {"angle", "lattice.angle"},
       {"volume_correction", "quadrature.volume_correction"},
       {"surface_correction", "quadrature.surface_correction"},
+      {"degree", "quadrature.degree"},
       {"shapes", "lattice.shape"},
       {"layers", "lattice.layer"},
       {"cracks", "crack"},
@@ -85,6 +86,7 @@ std::string key_of(const Case& from, std::string member) {
            (from.dimension == 1 ? "area" : "thickness");
   if (member == "horizon") return lattice != nullptr ? "lattice.horizon_ratio" : "points.horizon";
   if (member.starts_with("points") && lattice != nullptr) return "lattice.shape";
+  if (member == "loading.mode") return "solver.mode";
   if (member == "points.reference") return "points.file";
   if (member == "neighbours") return "points.neighbours";
   const std::size_t end = std::min(member.find_first_of("[."), member.size());

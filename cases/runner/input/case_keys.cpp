@@ -754,6 +754,8 @@ void check_place_of_load(const Entry& at, const LoadSpecification& load) {
   const bool needs_set = load.kind == Kind::body_force || load.kind == Kind::total_force;
   if (needs_set) static_cast<void>(at.from.string("set"));
   const bool is_on_surface = is_lps(at.so_far);
+  if (is_on_surface && at.from.has("depth") && load.depth != Depth::surface)
+    at.from.refuse("depth", "of model lps is \"surface\", on which its tractions act");
   if (is_on_boundary && load.set.empty() && !load.side && !is_on_surface)
     at.refuse(std::string("a ") + load_key(load.kind) + " needs a side or a set that it acts on");
 }
