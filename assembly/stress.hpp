@@ -19,8 +19,8 @@ namespace peristat {
 ///   sigma  = P F^T / det F, Cauchy [Pa]; symmetric where the state is homogeneous within the
 ///            horizon. What follows is of its symmetric part
 ///
-/// Of the linear solid of model lps F - I is its nonlocal gradient of the displacements, whose trace
-/// is the dilatation; E = (F + F^T) / 2 - I, and sigma = P = lambda tr(E) I + 2 mu E.
+/// Of the linear solid of model lps F - I is its nonlocal gradient of the displacements, whose
+/// trace is the dilatation; E = (F + F^T) / 2 - I, and sigma = P = lambda tr(E) I + 2 mu E.
 ///
 /// A point without such an F, or with det F <= 0, has F = I, E = 0 and sigma = 0; P is its own.
 struct Stress {
