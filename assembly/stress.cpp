@@ -42,7 +42,8 @@ void find_principal(const TensorOf<D>& stress, double* values, double* direction
 
 template <int D>
 Stress stress_from(const Points& points, DeformationGradients gradients,
-                   std::vector<double> virials, double out_of_plane, bool is_linear) {
+                   std::vector<double> virials, const std::vector<double>& out_of_plane,
+                   bool is_linear) {
   using Tensor = TensorOf<D>;
   const auto own = std::size_t(points.own());
   constexpr std::size_t entries = std::size_t(D) * D;
@@ -74,7 +75,8 @@ Stress stress_from(const Points& points, DeformationGradients gradients,
       F.setIdentity();
     }
     const Tensor symmetric = 0.5 * (sigma + sigma.transpose());
-    found.von_mises[i] = von_mises<D>(symmetric, out_of_plane);
+    const double across = out_of_plane[out_of_plane.size() == 1 ? 0 : i];
+    found.von_mises[i] = von_mises<D>(symmetric, across);
     find_principal<D>(symmetric, &found.principal[i * D], &found.principal_direction[i * entries]);
   }
   return found;
@@ -100,7 +102,8 @@ void use_nonlocal_gradients(Assembler& assembler, const CollocationTerm& term, c
 
 }  // namespace
 
-Stress find_stress(Assembler& assembler, const StateView& at, double out_of_plane) {
+Stress find_stress(Assembler& assembler, const StateView& at,
+                   const std::vector<double>& out_of_plane) {
   const Points& points = assembler.points();
   std::vector<double> virials(std::size_t(points.count()) *
                               std::size_t(points.dimension * points.dimension));

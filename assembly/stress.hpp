@@ -32,7 +32,8 @@ struct Stress {
 };
 
 /// @param out_of_plane 2D: stress across the plane over the sum of those in it, nu in plane strain
-///        and 0 in plane stress
-[[nodiscard]] Stress find_stress(Assembler& assembler, const StateView& at, double out_of_plane);
+///        and 0 in plane stress; of all points alike, or of each
+[[nodiscard]] Stress find_stress(Assembler& assembler, const StateView& at,
+                                 const std::vector<double>& out_of_plane);
 
 }  // namespace peristat

@@ -186,6 +186,16 @@ class Patches(CommandLine):
         self.assertLess(abs(step.green_lagrange_strain[free] - strain).max(), EXACT)
         self.assertLess(abs(step.cauchy_stress[free] - [[xx, xy], [xy, yy]]).max(), EXACT)
 
+    def test_stress_across_the_plane_is_that_of_each_material(self):
+        region = '[[set]]\nname = "upper"\nwhere = "y > 0.5"\n[[region]]\nset = "upper"\n[region.material]\n'
+        region += "youngs_modulus = 1.0\npoisson_ratio = 0.1\n"
+        found = self.results(patch() + region, "output.stress=true")
+        step, ratio = found.steps[-1], numpy.where(found.sets["upper"], 0.1, 0.3)
+        xx, xy, _, yy = step.cauchy_stress.reshape(-1, 4).T
+        zz = ratio * (xx + yy)
+        expected = numpy.sqrt(((xx - yy) ** 2 + (yy - zz) ** 2 + (zz - xx) ** 2) / 2 + 3 * xy**2)
+        self.assertLess(abs(step.von_mises - expected).max(), 1e-12)
+
     def test_shipped_case(self):
         for settings in ((), ("lattice.perturbation=0",)):
             probes = self.results(CASES / "patch.toml", *settings).summary["probes"]
