@@ -5,6 +5,8 @@
 #include <Eigen/Eigenvalues>
 
 #include "assembly/terms/bonds/deformation_gradients.hpp"
+#include "assembly/terms/collocation/collocation_term.hpp"
+#include "assembly/terms/damage.hpp"
 #include "src/geometry/image_tensors.hpp"
 
 namespace peristat {
@@ -40,7 +42,8 @@ void find_principal(const TensorOf<D>& stress, double* values, double* direction
 
 template <int D>
 Stress stress_from(const Points& points, DeformationGradients gradients,
-                   std::vector<double> virials, double out_of_plane) {
+                   std::vector<double> virials, const std::vector<double>& out_of_plane,
+                   bool is_linear) {
   using Tensor = TensorOf<D>;
   const auto own = std::size_t(points.own());
   constexpr std::size_t entries = std::size_t(D) * D;
@@ -60,8 +63,11 @@ Stress stress_from(const Points& points, DeformationGradients gradients,
     const Tensor H = F;
     F += Tensor::Identity();
     const double volume_ratio = F.determinant();
-    found.is_determined[i] = found.is_determined[i] && volume_ratio > 0.0;
-    if (found.is_determined[i]) {
+    found.is_determined[i] = found.is_determined[i] && (is_linear || volume_ratio > 0.0);
+    if (found.is_determined[i] && is_linear) {
+      E = 0.5 * (H + H.transpose());
+      sigma = P;
+    } else if (found.is_determined[i]) {
       // Of H, not of F^T F - I: small strains keep their digits.
       E = 0.5 * (H + H.transpose() + H.transpose() * H);
       sigma = P * F.transpose() / volume_ratio;
@@ -69,7 +75,8 @@ Stress stress_from(const Points& points, DeformationGradients gradients,
       F.setIdentity();
     }
     const Tensor symmetric = 0.5 * (sigma + sigma.transpose());
-    found.von_mises[i] = von_mises<D>(symmetric, out_of_plane);
+    const double across = out_of_plane[out_of_plane.size() == 1 ? 0 : i];
+    found.von_mises[i] = von_mises<D>(symmetric, across);
     find_principal<D>(symmetric, &found.principal[i * D], &found.principal_direction[i * entries]);
   }
   return found;
@@ -77,20 +84,46 @@ Stress stress_from(const Points& points, DeformationGradients gradients,
 
 }  // namespace
 
-Stress find_stress(Assembler& assembler, const StateView& at, double out_of_plane) {
+namespace {
+
+/// What a linear solid's own dilatations and stresses are found from, in the place of the fit.
+void use_nonlocal_gradients(Assembler& assembler, const CollocationTerm& term, const StateView& at,
+                            DeformationGradients& gradients) {
+  const Points& points = assembler.points();
+  CollocationOperator solid(points, term.whole(), 1);
+  solid.update(broken_bonds(assembler.model(), at.history));
+  std::vector<double> found(gradients.displacement.size());
+  solid.displacement_gradients(at.displacement, found);
+  const auto entries = std::size_t(points.dimension * points.dimension);
+  for (std::size_t k = 0; k < found.size(); ++k) {
+    if (gradients.is_determined[k / entries]) gradients.displacement[k] = found[k];
+  }
+}
+
+}  // namespace
+
+Stress find_stress(Assembler& assembler, const StateView& at,
+                   const std::vector<double>& out_of_plane) {
   const Points& points = assembler.points();
   std::vector<double> virials(std::size_t(points.count()) *
                               std::size_t(points.dimension * points.dimension));
   assembler.virials(at, virials);
   gather_image_tensors(points, virials);
   DeformationGradients gradients = deformation_gradients(points, assembler.model(), at);
+  const auto* const solid =
+      dynamic_cast<const CollocationTerm*>(assembler.model().bond_term().get());
+  if (solid) use_nonlocal_gradients(assembler, *solid, at, gradients);
+  const bool is_linear = solid != nullptr;
   switch (points.dimension) {
     case 1:
-      return stress_from<1>(points, std::move(gradients), std::move(virials), out_of_plane);
+      return stress_from<1>(points, std::move(gradients), std::move(virials), out_of_plane,
+                            is_linear);
     case 2:
-      return stress_from<2>(points, std::move(gradients), std::move(virials), out_of_plane);
+      return stress_from<2>(points, std::move(gradients), std::move(virials), out_of_plane,
+                            is_linear);
     default:
-      return stress_from<3>(points, std::move(gradients), std::move(virials), out_of_plane);
+      return stress_from<3>(points, std::move(gradients), std::move(virials), out_of_plane,
+                            is_linear);
   }
 }
 

@@ -19,6 +19,9 @@ namespace peristat {
 ///   sigma  = P F^T / det F, Cauchy [Pa]; symmetric where the state is homogeneous within the
 ///            horizon. What follows is of its symmetric part
 ///
+/// Of the linear solid of model lps F - I is its nonlocal gradient of the displacements, whose
+/// trace is the dilatation; E = (F + F^T) / 2 - I, and sigma = P = lambda tr(E) I + 2 mu E.
+///
 /// A point without such an F, or with det F <= 0, has F = I, E = 0 and sigma = 0; P is its own.
 struct Stress {
   std::vector<double> deformation_gradient, strain, first_piola, cauchy;
@@ -29,7 +32,8 @@ struct Stress {
 };
 
 /// @param out_of_plane 2D: stress across the plane over the sum of those in it, nu in plane strain
-///        and 0 in plane stress
-[[nodiscard]] Stress find_stress(Assembler& assembler, const StateView& at, double out_of_plane);
+///        and 0 in plane stress; of all points alike, or of each
+[[nodiscard]] Stress find_stress(Assembler& assembler, const StateView& at,
+                                 const std::vector<double>& out_of_plane);
 
 }  // namespace peristat

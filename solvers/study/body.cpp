@@ -256,6 +256,9 @@ std::unique_ptr<const Body> make_body(Points points, const BodySpecification& of
   body.conditions = std::make_unique<Conditions>(body.points, of.supports, of.loads,
                                                  programme_of(of), of.controls, loads,
                                                  of.eigenstrains, of.constraints, of.foundations);
+  if (loads.surface) {
+    refuse_points_on_faces(body.points, *loads.surface, body.conditions->prescribed());
+  }
   add_terms_of_conditions(body.model, body);
   const Stopwatch watch(body.seconds_neighbourhood);
   store_interactions(body, threads);

@@ -1,17 +1,24 @@
 #include "solvers/study/surface_sites.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <memory>
 #include <stdexcept>
 
 #include <Eigen/QR>
 
 #include "assembly/terms/collocation/collocation_term.hpp"
+#include "src/core/input_error.hpp"
+#include "src/core/number_text.hpp"
 
 namespace peristat {
 namespace {
 
 using Matrix = Eigen::MatrixXd;
 using Vector = Eigen::VectorXd;
+
+/// Depth below a face, in spacings, of points that stand on it.
+constexpr double on_face = 1e-6;
 
 /// a_f of least squares, of all the one of least norm.
 std::vector<double> shares_of(const std::vector<Foot>& feet, const Coordinates& normal) {
@@ -49,7 +56,9 @@ std::vector<SurfaceSite> surface_sites(const Points& points, const Model& model,
     const Coordinates place = points.position(i);
     std::vector<Foot> feet = boundary->near(place, horizon);
     // In front of a face a point is beyond a concave corner or a gap.
-    std::erase_if(feet, [&](const Foot& foot) { return foot.depth(place) < 0.0; });
+    std::erase_if(feet, [&](const Foot& foot) {
+      return foot.depth(place) < -on_face * points.spacing.largest();
+    });
     const std::vector<double> shares =
         feet.empty() ? std::vector<double>() : shares_of(feet, normal);
     Coordinates rest = normal;
@@ -75,6 +84,27 @@ std::vector<SurfaceSite> surface_sites(const Points& points, const Model& model,
     for (std::size_t c = 0; c < d; ++c) nearest[c] += rest[c];
   }
   return sites;
+}
+
+void refuse_points_on_faces(const Points& points, const std::vector<SurfaceSite>& sites,
+                            const std::vector<char>& prescribed) {
+  const auto d = std::size_t(points.dimension);
+  const double least = on_face * points.spacing.largest();
+  for (const SurfaceSite& site : sites) {
+    const auto first = prescribed.begin() + std::ptrdiff_t(std::size_t(site.point) * d);
+    if (std::all_of(first, first + std::ptrdiff_t(d), [](char held) { return held != 0; }))
+      continue;
+    const Coordinates place = points.position(site.point);
+    double squared = 0.0;
+    for (std::size_t c = 0; c < d; ++c) squared += std::pow(place[c] - site.place[c], 2);
+    if (squared > least * least) continue;
+    throw InputError("material.model", "lps",
+                     "needs points inside the body, about half a spacing below its free faces: the "
+                     "one at " +
+                         place_text(place, points.dimension) +
+                         " m stands on a face; put the lattice's origin at \"cells\", or move the "
+                         "shape by half a spacing");
+  }
 }
 
 }  // namespace peristat

@@ -18,4 +18,11 @@ namespace peristat {
                                                      const std::vector<std::string>& names,
                                                      double horizon, int threads);
 
+/// Refuses free points on a face of the body: their missing half balls would begin half a spacing
+/// too deep, and tractions act there.
+/// @param prescribed per degree of freedom
+/// @throws InputError ("material.model")
+void refuse_points_on_faces(const Points& points, const std::vector<SurfaceSite>& sites,
+                            const std::vector<char>& prescribed);
+
 }  // namespace peristat

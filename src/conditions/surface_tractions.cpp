@@ -4,7 +4,10 @@
 #include <array>
 
 #include "src/conditions/points_of_set.hpp"
+#include "src/conditions/with_key.hpp"
 #include "src/core/input_error.hpp"
+#include "src/core/number_text.hpp"
+#include "src/measures/small_algebra.hpp"
 
 namespace peristat {
 namespace {
@@ -17,6 +20,15 @@ constexpr std::array<std::array<int, 2>, 6> solid_entries{
 std::span<const std::array<int, 2>> stress_entries(int dimension) {
   if (dimension == 2) return plane_entries;
   return solid_entries;
+}
+
+/// Cosine between the normals of faces that face away from each other.
+constexpr double opposite = -0.7;
+
+std::string key_of(LoadSpecification::Kind kind) {
+  using Kind = LoadSpecification::Kind;
+  if (kind == Kind::pressure) return ".pressure";
+  return kind == Kind::stress ? ".stress" : ".traction";
 }
 
 /// Texts of a load's expressions.
@@ -32,10 +44,11 @@ std::vector<std::string> texts_of(const LoadSpecification& load, int dimension) 
 }  // namespace
 
 void SurfaceTractions::add(const Points& points, const LoadSpecification& load,
-                           const std::vector<std::string>& parameters) {
-  Load made{load.kind, {}, {}};
+                           const std::vector<std::string>& parameters, const std::string& table,
+                           const std::vector<char>& prescribed) {
+  Load made{load.kind, table + key_of(load.kind), {}, {}};
   std::vector<Index> members;
-  if (!load.set.empty()) members = points_of_set(points, load.set, "set");
+  if (!load.set.empty()) members = points_of_set(points, load.set, table + ".set");
   const auto acts_at = [&](const SurfaceSite& site) {
     if (load.side && site.side != load.side) return false;
     if (!load.boundary.empty() && site.name != load.boundary) return false;
@@ -45,10 +58,10 @@ void SurfaceTractions::add(const Points& points, const LoadSpecification& load,
     if (acts_at(sites_[k])) made.sites.push_back(k);
   }
   if (made.sites.empty()) {
-    const std::string key = load.side                ? "side"
-                            : !load.boundary.empty() ? "boundary"
-                            : !load.set.empty()      ? "set"
-                                                     : "";
+    const std::string key = table + (load.side                ? ".side"
+                                     : !load.boundary.empty() ? ".boundary"
+                                     : !load.set.empty()      ? ".set"
+                                                              : "");
     const std::string value = load.side                ? name(*load.side)
                               : !load.boundary.empty() ? load.boundary
                                                        : load.set;
@@ -59,14 +72,44 @@ void SurfaceTractions::add(const Points& points, const LoadSpecification& load,
   const std::vector<std::string> texts = texts_of(load, points.dimension);
   if (load.kind == LoadSpecification::Kind::stress &&
       texts.size() != stress_entries(points.dimension).size()) {
-    throw InputError("stress", "",
+    throw InputError(made.key, "",
                      points.dimension == 2 ? "needs the components xx, yy, xy"
                                            : "needs the components xx, yy, zz, xy, yz, xz");
   }
   for (const std::string& text : texts) {
-    made.value.emplace_back(text, points.dimension, points.spacing, parameters);
+    with_key(made.key,
+             [&] { made.value.emplace_back(text, points.dimension, points.spacing, parameters); });
   }
+  if (load.kind != LoadSpecification::Kind::stress) refuse_one_sided(points, made, prescribed);
   loads_.push_back(std::move(made));
+}
+
+void SurfaceTractions::refuse_one_sided(const Points& points, const Load& load,
+                                        const std::vector<char>& prescribed) const {
+  // A pressure on both faces is a stress between them; a traction that is the same on both is none.
+  const bool is_balanced = load.kind == LoadSpecification::Kind::pressure;
+  const auto d = std::size_t(points.dimension);
+  std::vector<char> is_loaded(sites_.size(), 0);
+  for (const std::size_t k : load.sites) is_loaded[k] = 1;
+  for (const std::size_t k : load.sites) {
+    const SurfaceSite& site = sites_[k];
+    const auto first = prescribed.begin() + std::ptrdiff_t(std::size_t(site.point) * d);
+    if (std::all_of(first, first + std::ptrdiff_t(d), [](char held) { return held != 0; }))
+      continue;
+    // The sites of a point stand behind one another.
+    std::size_t begin = k;
+    while (begin > 0 && sites_[begin - 1].point == site.point) --begin;
+    for (std::size_t other = begin; other < sites_.size(); ++other) {
+      if (sites_[other].point != site.point) break;
+      if (dot<3>(sites_[other].normal, site.normal) > opposite) continue;
+      if (is_balanced && is_loaded[other]) continue;
+      throw InputError(load.key, "",
+                       "acts on one of two faces that are less than two horizons apart, at " +
+                           place_text(points.position(site.point), points.dimension) +
+                           " m, where a part of it would be lost; a finer lattice helps, or, if "
+                           "the stress is known, a load stress");
+    }
+  }
 }
 
 bool SurfaceTractions::changes_with_parameters() const {
@@ -111,7 +154,8 @@ std::vector<double> SurfaceTractions::at(const Points& points,
   for (const Load& load : loads_) {
     for (const std::size_t k : load.sites) {
       const SurfaceSite& site = sites_[k];
-      const Coordinates of_load = traction(load, site, points.dimension, loads);
+      const Coordinates of_load =
+          with_key(load.key, [&] { return traction(load, site, points.dimension, loads); });
       for (std::size_t c = 0; c < d; ++c) {
         tractions[std::size_t(site.point) * d + c] += of_load[c];
       }

@@ -35,10 +35,15 @@ class SurfaceTractions {
   explicit SurfaceTractions(std::vector<SurfaceSite> sites) : sites_(std::move(sites)) {}
 
   /// Takes up a traction, a pressure or a stress.
-  /// @throws InputError ("side", "boundary") for a part of the boundary that no point is at, and
-  ///         for expressions that can't be read
+  /// @param table of the load, for errors
+  /// @param prescribed per degree of freedom: forces on held points move nothing
+  /// @throws InputError ("TABLE.side", "TABLE.boundary", …) for a part of the boundary that no
+  /// point
+  ///         is at, for expressions that can't be read, and for a traction on one of two faces that
+  ///         are less than two horizons apart: a point between them knows but one traction
   void add(const Points& points, const LoadSpecification& load,
-           const std::vector<std::string>& parameters);
+           const std::vector<std::string>& parameters, const std::string& table,
+           const std::vector<char>& prescribed);
 
   [[nodiscard]] bool none() const { return loads_.empty(); }
   [[nodiscard]] bool changes_with_parameters() const;
@@ -50,9 +55,12 @@ class SurfaceTractions {
  private:
   struct Load {
     LoadSpecification::Kind kind;
+    std::string key;  // of its value, for errors
     std::vector<std::size_t> sites;
     std::vector<Expression> value;  // components; pressure; or stress xx yy (zz) xy (yz xz)
   };
+  void refuse_one_sided(const Points& points, const Load& load,
+                        const std::vector<char>& prescribed) const;
   [[nodiscard]] Coordinates traction(const Load& load, const SurfaceSite& site, int dimension,
                                      std::span<const double> loads) const;
 

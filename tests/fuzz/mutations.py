@@ -31,8 +31,8 @@ WORDS = """dimension title lattice points spacing horizon_ratio thickness area o
     rule fibre angle direction transverse_modulus shear_modulus transverse_critical scatter of distribution weibull_modulus
     correlation_length rigid roller at normal constraint term symmetry period gradient rotation gravity traction pressure depth eigenstrain
     strain temperature change thermal_expansion volumes neighbours dynamics end_time time_step step_share history_every initial velocity scheme
-    spectral_radius absorbing""".split()
-CHOICES = """blue_noise none linear exact exact_centroids volume energy mean bulk bond cpd lps collocation full paper surface stress strain lattice continuum critical_stretch tanh tanh_continuous linear exponential blended piecewise_constant cubic quintic septic gaussian inverse newton
+    spectral_radius absorbing degree traction_form boundary statistic expected""".split()
+CHOICES = """rms_error max_error divergence blue_noise none linear exact exact_centroids volume energy mean bulk bond cpd lps collocation full paper surface stress strain lattice continuum critical_stretch tanh tanh_continuous linear exponential blended piecewise_constant cubic quintic septic gaussian inverse newton
     relaxation adaptive flow dynamic auto cholesky pcg minres gmres lu bicgstab local_operator jacobi block_jacobi rigid_pieces surrogate riluk chebyshev multigrid stored
     matrix_free consistent never always hold remove stop fixed moving at_equilibrium transient kinetic cell_centres nodes box disk polygon
     cylinder sphere x- x+ y- y+ z- z+ displacement force damage stretch energy_density poisson_ratio opening crack_length

@@ -7,7 +7,7 @@ import tempfile
 import unittest
 
 from tests.printed.comparison import PrintedTest
-from tests.printed.page import numbers
+from tests.printed.page import Printed, numbers
 from tests.printed.runs import run
 from tests.reference.program import ROOT, peristat
 
@@ -118,6 +118,72 @@ class Fracture(PrintedTest):
         self.prints("in that to {};", breaks[1])
         self.prints("{} broken bonds in", plate.summary["broken_bonds"], within=COUNTS)
         self.prints("broken bonds in {} steps", plate.summary["steps"])
+
+
+class LinearSolid(PrintedTest):
+    """The table of rates."""
+
+    page = "docs/linear-solid.md"
+    ALL_ROUND = "lattice.shape[0].max=[2.945243112740431, 2.945243112740431]"
+    CORNER = "lattice.shape[0].max=[1.5707963267948966, 1.5707963267948966]"
+    NEARLY = (
+        "material.poisson_ratio=0.49",
+        'load[0].body_force=["5.47651006711409*sin(0.4*x)*sin(0.4*y)", "-5.47651006711409*cos(0.4*x)*cos(0.4*y)"]',
+        'load[1].stress=["13.4228187919463*cos(0.4*x)*sin(0.4*y)", "13.4228187919463*cos(0.4*x)*sin(0.4*y)", '
+        '"0.268456375838926*sin(0.4*x)*cos(0.4*y)"]',
+    )
+    PERTURBED = "lattice.perturbation=0.2"
+
+    @staticmethod
+    def known(components, divergence):
+        field = "[" + ", ".join(f'"{component}"' for component in components) + "]"
+        return (f"support[0].displacement={field}", f"probe[0].expected={field}", f'probe[1].expected=["{divergence}"]')
+
+    @classmethod
+    def inclusion(cls, outer, inner, field, of_inclusion):
+        far, near = field
+        outside = f"{far} - {near}/(x^2+y^2)"
+        support, *_ = cls.known((f"x*({outside})", f"y*({outside})"), "0")
+        _, *expected = cls.known([f"{c}*(x^2+y^2 < 0.04 ? {of_inclusion} : {outside})" for c in "xy"],
+                                 f"x^2+y^2 < 0.04 ? 2*{of_inclusion} : 2*{far}")  # fmt: skip
+        return (f"material.poisson_ratio={outer}", f"region[0].material.poisson_ratio={inner}", support, *expected)
+
+    def studies(self):
+        """Case and changes of every row."""
+        for setting in ((self.ALL_ROUND,), (), (self.CORNER,)):
+            for changes in ((), self.NEARLY, (self.PERTURBED,)):
+                yield "manufactured", *setting, *changes
+        yield "manufactured", self.CORNER, 'quadrature.traction_form="paper"'
+        squared = "(x^2+y^2)"
+        hole = [
+            f"0.0745*(10.2*x + 0.816*x/{squared} + 0.4*(x^3-3*x*y^2)/{squared}^2 - 0.016*(x^3-3*x*y^2)/{squared}^3)",
+            f"0.0745*(-9.8*y - 0.016*y/{squared} + 0.4*(3*x^2*y-y^3)/{squared}^2 - 0.016*(3*x^2*y-y^3)/{squared}^3)",
+        ]
+        disk = [f"0.002384*{c} + 0.2682*{c}/{squared}" for c in "xy"]
+        yield ("hole",)
+        yield "hole", self.NEARLY[0], *self.known(hole, f"0.0298*(1 - 0.08*(x^2-y^2)/{squared}^2)")
+        yield ("disk",)
+        yield "disk", self.NEARLY[0], *self.known(disk, "0.004768")
+        yield ("inclusion",)
+        yield "inclusion", *self.inclusion(0.49, 0.49, (0.029507843137255, 0.000584313725490197), 0.0149)
+        yield "inclusion", *self.inclusion(0.25, 0.49, (0.421633333333333, 0.0162693333333333), 0.0149)
+
+    def test_rates(self):
+        lines = (ROOT / self.page).read_text().split("| case |")[1].split("\n\n")[0].splitlines()[2:]
+        studies = list(self.studies())
+        self.assertEqual(len(lines), len(studies))
+        coarsest = {"manufactured": math.pi / 16, "hole": 1 / 16, "inclusion": 1 / 16, "disk": 1 / 12}
+        for line, (case, *changes) in zip(lines, studies):
+            name, *cells = [cell.strip() for cell in line.strip("|").split("|")]
+            spacings = [coarsest[case] / 2**level for level in range(4)]
+            probes = [run(f"lps/{case}", *changes, f"lattice.spacing={spacing!r}").summary["probes"] for spacing in spacings]
+            for (printed, rates), probe in zip((cells[:2], cells[2:]), ("error", "error_of_strain")):
+                found = [values[probe] for values in probes]
+                told = [Printed(text) for text in printed.split() + rates.split()]
+                expected = found + [math.log2(a / b) for a, b in zip(found, found[1:])]
+                self.assertEqual(len(told), len(expected))
+                for number, value in zip(told, expected):
+                    self.assertLessEqual(abs(number.value - value), number.rounding * (1 + 1e-6), f"{name}: {probe}")
 
 
 class Cpd(PrintedTest):

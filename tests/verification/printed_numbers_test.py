@@ -21,6 +21,24 @@ from tests.reference.program import ROOT, peristat
 ENERGY = "quadrature.surface_correction=energy"
 
 
+class LinearSolid(PrintedTest):
+    def test_headers(self):
+        sides = {"manufactured": math.pi, "hole": 1.0, "disk": 4.0 / 3.0, "inclusion": 1.0}
+        levels = {"manufactured": 4, "hole": 4, "disk": 3, "inclusion": 3}
+        for case, side in sides.items():
+            self.page = f"cases/lps/{case}.toml"
+            spacings = [side / 16 / 2**level for level in range(levels[case])]
+            probes = [run(f"lps/{case}", f"lattice.spacing={spacing!r}").summary["probes"] for spacing in spacings]
+            places = " ".join(["{}"] * len(probes))
+            self.prints(f'"error" [m] {places}', *(values["error"] for values in probes))
+            self.prints(f'"error_of_strain" {places}', *(values["error_of_strain"] for values in probes))
+
+    def test_patch(self):
+        self.page = "cases/lps/patch.toml"
+        form = run("lps/patch", "quadrature.traction_form=paper")
+        self.prints('"error" is {} m, at a corner', form.summary["probes"]["error"])
+
+
 class Bar(PrintedTest):
     page = "cases/bar/tension.toml"
 

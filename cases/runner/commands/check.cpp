@@ -14,6 +14,7 @@
 #include "solvers/linear/make_linear_solver.hpp"
 #include "solvers/study/bond_materials.hpp"
 #include "solvers/study/bond_potential.hpp"
+#include "solvers/study/collocation_model.hpp"
 #include "solvers/study/cpd_model.hpp"
 #include "solvers/study/crack_tips.hpp"
 #include "solvers/study/crack_trapping.hpp"
@@ -112,6 +113,14 @@ void print_fracture(const PointMaterials::Material& of, const std::string& name,
                     const BondSetting& setting, double spacing) {
   const DamageSpecification& damage = of.of->damage;
   if (damage.law == DamageLaw::none || of.of->fibre) return;
+  if (of.of->model == MaterialModel::lps) {
+    const double per_square = crack_energy_of_dilation(lame_constants(*of.of, setting.dimension),
+                                                       setting.horizon, setting.dimension);
+    fmt::print("{} critical stretch {:.6g}: fracture energy {:.6g} J/m2 under a uniform dilation\n",
+               heading("fracture", name), damage.critical,
+               per_square * damage.critical * damage.critical);
+    return;
+  }
   const FractureScale scale = FractureScale::of(*of.of, of.key, setting, spacing);
   const std::string begin = damage.softens() ? fmt::format("onset {:.6g}, ", damage.onset) : "";
   const std::string strength =
@@ -158,19 +167,42 @@ void print_quadrature(const Case& from, const Body& body, int threads) {
       confined_energy_error(body.points, bonds, body.setting));
 }
 
+/// Lame's constants of model lps.
+void print_lame_constants(const PointMaterials::Material& of, const std::string& name,
+                          int dimension) {
+  const LamePair constants = lame_constants(*of.of, dimension);
+  fmt::print("{} lambda {:.6g} Pa, mu {:.6g} Pa\n", heading("constants", name), constants.lambda,
+             constants.mu);
+}
+
+/// What the weights of model lps are like.
+void print_collocation(const Case& from, const Body& body) {
+  const CollocationSummary& of = body.collocation;
+  fmt::print(
+      "quadrature  exact to degree {}; {} of {} neighbourhoods solved for, {} weights below 0",
+      from.collocation.degree, of.solves, body.points.count(), of.negative);
+  fmt::print(", the lowest is {:.4g} of a cell", of.lowest);
+  if (of.lowered > 0) fmt::print("; at {} points only to a lower degree", of.lowered);
+  fmt::print("\n");
+}
+
 void print_constants(const Case& from, const Body& body, int threads) {
   const BodySpecification& of = body.specification;  // its stretches are found
   const PointMaterials materials(of, body.points);
   const auto all = all_materials(of, materials);
   const bool is_bond = from.material.model == MaterialModel::bond;
+  const bool is_lps = from.material.model == MaterialModel::lps;
   for (const auto& material : all) {
     const std::string name = from.regions.empty() ? "" : material.name;
     if (is_bond)
       print_bond_constants(material, name, body.setting);
+    else if (is_lps)
+      print_lame_constants(material, name, from.dimension);
     else
       print_cpd_constants(material, name, body);
   }
   if (is_bond) print_quadrature(from, body, threads);
+  if (is_lps) print_collocation(from, body);
   for (const auto& material : all) {
     print_fracture(material, from.regions.empty() ? "" : material.name, body.setting,
                    body.points.spacing);

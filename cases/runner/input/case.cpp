@@ -56,6 +56,7 @@ const std::map<std::string, std::string>& keys_of_members() {
       {"angle", "lattice.angle"},
       {"volume_correction", "quadrature.volume_correction"},
       {"surface_correction", "quadrature.surface_correction"},
+      {"degree", "quadrature.degree"},
       {"shapes", "lattice.shape"},
       {"layers", "lattice.layer"},
       {"cracks", "crack"},
@@ -87,6 +88,7 @@ std::string key_of(const Case& from, std::string member) {
            (from.dimension == 1 ? "area" : "thickness");
   if (member == "horizon") return lattice != nullptr ? "lattice.horizon_ratio" : "points.horizon";
   if (member.starts_with("points") && lattice != nullptr) return "lattice.shape";
+  if (member == "loading.mode") return "solver.mode";
   if (member == "points.reference") return "points.file";
   if (member == "neighbours") return "points.neighbours";
   if (member == "linear.preconditioner") return "solver.preconditioner";

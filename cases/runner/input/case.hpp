@@ -99,7 +99,12 @@ struct OutputSpecification {
 };
 
 /// What becomes of a field's values over a set.
-enum class Statistic { mean, max, min };
+enum class Statistic { mean, max, min, rms_error, max_error };
+
+/// Whether it judges the difference from expected values.
+[[nodiscard]] constexpr bool is_of_error(Statistic statistic) {
+  return statistic == Statistic::rms_error || statistic == Statistic::max_error;
+}
 
 /// A number of a field at every accepted step: over a set, at the point nearest to a place, or of
 /// every point along a line, which makes a table of its own. Exactly one of `set`, `at` and `from`
@@ -111,6 +116,8 @@ struct ProbeSpecification {
   std::string field = "displacement";
   std::string component;  ///< of a vector or tensor; empty: all
   Statistic statistic = Statistic::mean;
+  /// Errors: what the components should be, expressions of place and load parameters.
+  std::vector<std::string> expected{};
   int axis = 0;       ///< poisson_ratio: direction that is pulled; crack_length: of the crack
   std::string other;  ///< opening: set whose mean displacement is taken off
 };

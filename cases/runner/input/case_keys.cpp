@@ -767,6 +767,8 @@ void check_place_of_load(const Entry& at, const LoadSpecification& load) {
   const bool needs_set = load.kind == Kind::body_force || load.kind == Kind::total_force;
   if (needs_set) static_cast<void>(at.from.string("set"));
   const bool is_on_surface = is_lps(at.so_far);
+  if (is_on_surface && at.from.has("depth") && load.depth != Depth::surface)
+    at.from.refuse("depth", "of model lps is \"surface\", on which its tractions act");
   if (is_on_boundary && load.set.empty() && !load.side && !is_on_surface)
     at.refuse(std::string("a ") + load_key(load.kind) + " needs a side or a set that it acts on");
 }
@@ -1552,6 +1554,15 @@ void check_component(const Entry& at, const ProbeSpecification& probe) {
     at.refuse("is none of " + probe.field + ", which has " + listed(components));
 }
 
+/// Whether there is an expression for each component.
+void check_expected(const Entry& at, const ProbeSpecification& probe) {
+  const ProbeField* const field = probe_field(probe.field);
+  const std::size_t all = std::max<std::size_t>(1, field->components(at.so_far.dimension).size());
+  const std::size_t components = probe.component.empty() ? all : 1;
+  if (probe.expected.size() != components)
+    at.refuse("needs as many expressions as there are components: " + std::to_string(components));
+}
+
 Table<CrackTipSpecification> crack_tip_keys() {
   using Spec = CrackTipSpecification;
   using K = Key<Spec>;
@@ -1651,14 +1662,31 @@ Table<ProbeSpecification> probe_keys() {
            .written_if([](auto& probe, auto&) { return !probe.component.empty(); })
            .then(check_component),
        K("statistic", &Spec::statistic,
-         choice<Statistic>(
-             {{"mean", Statistic::mean}, {"max", Statistic::max}, {"min", Statistic::min}}),
-         "over the points of the set, of each component; the mean counts every point alike")
+         choice<Statistic>({{"mean", Statistic::mean},
+                            {"max", Statistic::max},
+                            {"min", Statistic::min},
+                            {"rms_error", Statistic::rms_error},
+                            {"max_error", Statistic::max_error}}),
+         "over the points of the set, of each component; the mean counts every point alike. "
+         "`rms_error`, `max_error`: one number, the root mean square or the largest of the lengths "
+         "of the differences from `expected`")
            .written_if(
                [](auto& probe, auto& from) { return !probe.set.empty() && !is_whole(probe, from); })
            .then([](auto& at, auto& probe) {
              if (at.from.has(at.key) && (probe.set.empty() || is_whole(probe, at.so_far)))
                at.refuse("is for a field over a set");
+           }),
+       K("expected", &Spec::expected, expected_components(),
+         "what the components should be at a point's reference place")
+           .written_if([](auto& probe, auto&) { return is_of_error(probe.statistic); })
+           .default_words("required with `rms_error` and `max_error`")
+           .then([](auto& at, auto& probe) {
+             const bool is_given = at.from.has(at.key);
+             if (is_given && !is_of_error(probe.statistic))
+               at.refuse("goes with statistic \"rms_error\" or \"max_error\"");
+             if (!is_given && is_of_error(probe.statistic))
+               at.from.refuse("", "this statistic needs expected");
+             if (is_given) check_expected(at, probe);
            }),
        K("axis", &Spec::axis, axis(),
          "`poisson_ratio`: direction of the pull; `crack_length`, `crack_begin`, `crack_end`: "

@@ -451,6 +451,21 @@ Kind<std::vector<std::string>> stress_components() {
           "numbers or expressions of place and `load` (mode `dynamics`: `t`)", "Pa"};
 }
 
+Kind<std::vector<std::string>> expected_components() {
+  const auto read = [](const Entry& at) {
+    constexpr std::size_t any = 0;
+    std::vector<std::string> values = at.from.components(at.key, any);
+    for (std::size_t c = 0; c < values.size(); ++c) {
+      check_component(at, c, values[c], at.so_far.dimension);
+    }
+    return values;
+  };
+  return {read, [](const auto& values, const Case&) { return array_text(values, toml_string); },
+          "list of numbers or expressions of place and `load` (mode `dynamics`: `t`), one for each "
+          "component of the field",
+          ""};
+}
+
 Kind<std::array<std::string, 3>> force_components(bool is_total, const std::string& unit) {
   return located_components(
       !is_total, "only displacements of supports can be free; write 0 for no force", unit);

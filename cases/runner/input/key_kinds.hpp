@@ -105,6 +105,8 @@ enum class Components { axes, rotations, of_load };
 
 /// Per entry of a stress, xx yy xy or xx yy zz xy yz xz, an expression of place and load.
 [[nodiscard]] Kind<std::vector<std::string>> stress_components();
+/// Expressions of place and parameters, of as many components as there may be.
+[[nodiscard]] Kind<std::vector<std::string>> expected_components();
 
 /// "[a, b]"
 template <class Items, class Text>

@@ -16,6 +16,7 @@ const std::vector<ProbeField>& fields() {
       {"energy_density", "J/m3"},
       {"deformation_gradient", "1", Kind::tensor, true},
       {"strain", "1", Kind::symmetric, true},
+      {"divergence", "1", Kind::scalar, true},
       {"first_piola_stress", "Pa", Kind::tensor, true},
       {"stress", "Pa", Kind::symmetric, true},
       {"von_mises", "Pa", Kind::scalar, true},

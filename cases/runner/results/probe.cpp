@@ -11,6 +11,7 @@
 
 #include "cases/runner/input/probe_fields.hpp"
 #include "cases/runner/results/crack_measures.hpp"
+#include "src/core/expression.hpp"
 #include "src/geometry/nearest_point.hpp"
 
 namespace peristat {
@@ -71,6 +72,39 @@ std::vector<double> mean_of(const std::vector<double>& values, const std::vector
   return mean;
 }
 
+/// tr F - d of a point.
+double divergence_at(const std::vector<double>& gradients, int dimension, Index point) {
+  const auto d = std::size_t(dimension);
+  double divergence = 0.0;
+  for (std::size_t c = 0; c < d; ++c) {
+    divergence += gradients[std::size_t(point) * d * d + c * d + c] - 1.0;
+  }
+  return divergence;
+}
+
+/// Root mean square, or the largest, of the lengths of what separates a set from expected values.
+double error_over_set(const ProbeSpecification& probe, const Points& points,
+                      const StepFields& fields, const LoadValues& loads) {
+  std::vector<Expression> expected;
+  for (const std::string& text : probe.expected) {
+    expected.emplace_back(text, points.dimension, points.spacing, loads.names);
+  }
+  const std::vector<Index>& members = points.sets.at(probe.set);
+  double sum = 0.0, largest = 0.0;
+  for (const Index point : members) {
+    const std::vector<double> values = values_at(probe, points.dimension, fields, point);
+    double squared = 0.0;
+    for (std::size_t c = 0; c < values.size(); ++c) {
+      const double difference = values[c] - expected[c](points.position(point), loads.values);
+      squared += difference * difference;
+    }
+    sum += squared;
+    largest = std::max(largest, std::sqrt(squared));
+  }
+  return probe.statistic == Statistic::max_error ? largest
+                                                 : std::sqrt(sum / double(members.size()));
+}
+
 std::vector<double> over_set(const ProbeSpecification& probe, const Points& points,
                              const StepFields& fields) {
   const std::vector<Index>& members = points.sets.at(probe.set);
@@ -99,6 +133,8 @@ std::vector<std::string> chosen_components(const ProbeSpecification& probe, int 
 std::vector<double> values_at(const ProbeSpecification& probe, int dimension,
                               const StepFields& fields, Index point) {
   const ProbeField& field = *probe_field(probe.field);
+  if (field.name == "divergence")
+    return {divergence_at(*fields.deformation_gradient, dimension, point)};
   const std::vector<double>& values = values_of(field, fields);
   const auto components = field.components(dimension);
   const std::size_t width = std::max<std::size_t>(components.size(), 1);
@@ -113,12 +149,14 @@ ProbeColumns columns_of(const ProbeSpecification& probe, int dimension) {
     return {probe.name, 1, measure->unit};
   }
   if (probe.field == "opening") return {probe.name, dimension, "m"};
+  if (is_of_error(probe.statistic)) return {probe.name, 1, probe_field(probe.field)->unit};
   return {probe.name, int(chosen_components(probe, dimension).size()),
           probe_field(probe.field)->unit};
 }
 
 std::vector<double> probe_values(const ProbeSpecification& probe, const Points& points,
-                                 const StepFields& fields, const CrackState& crack) {
+                                 const StepFields& fields, const CrackState& crack,
+                                 const LoadValues& loads) {
   if (probe.field == "poisson_ratio") {
     return {fitted_poisson_ratio(probe, points, *fields.displacement)};
   }
@@ -136,6 +174,7 @@ std::vector<double> probe_values(const ProbeSpecification& probe, const Points& 
     for (std::size_t c = 0; c < opening.size(); ++c) opening[c] -= other[c];
     return opening;
   }
+  if (is_of_error(probe.statistic)) return {error_over_set(probe, points, fields, loads)};
   return over_set(probe, points, fields);
 }
 

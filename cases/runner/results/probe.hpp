@@ -1,5 +1,6 @@
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "cases/runner/input/case.hpp"
@@ -7,6 +8,12 @@
 #include "cases/runner/results/results.hpp"
 
 namespace peristat {
+
+/// The load parameters of a step, which expressions may use.
+struct LoadValues {
+  std::vector<std::string> names{};
+  std::vector<double> values{};
+};
 
 /// Components that a probe looks at; one without a name of a scalar.
 [[nodiscard]] std::vector<std::string> chosen_components(const ProbeSpecification& probe,
@@ -23,9 +30,11 @@ namespace peristat {
 /// the point nearest to a place (of points as near the one with the lowest number), one value per
 /// component; for "poisson_ratio" that of the homogeneous deformation that fits the set best, for
 /// "opening" the mean displacement of the set minus that of the other, and what a CrackMeasure
-/// tells.
+/// tells. Of an error, one value: the root mean square or the largest of |v - v_expected|.
+/// @throws InputError ("expected[c]") if an expected value is not finite
 [[nodiscard]] std::vector<double> probe_values(const ProbeSpecification& probe,
                                                const Points& points, const StepFields& fields,
-                                               const CrackState& crack);
+                                               const CrackState& crack,
+                                               const LoadValues& loads = {});
 
 }  // namespace peristat

@@ -90,9 +90,13 @@ void Recorder::accepted(StepRecord record, const AcceptedState& state) {
   record.max_damage = made.max_damage;
   record_broken_bonds(record, at.history);
   const StepFields all = made.view(true), view = made.view(case_.output.stress);
+  const LoadingProgramme& programme = body_.conditions->programme();
+  LoadValues loads{programme.names(), programme.at(record.stage)};
+  if (body_.conditions->control()) loads.values.front() = record.load_factor;
   for (const ProbeSpecification& probe : case_.probes) {
     if (probe.from) continue;
-    record.probes[probe.name] = probe_values(probe, points_, all, crack_state(record, probe.name));
+    record.probes[probe.name] =
+        probe_values(probe, points_, all, crack_state(record, probe.name), loads);
   }
   note_growth(record);
   const std::string without_release = add_crack_tip_values(

@@ -31,14 +31,19 @@ std::vector<double> symmetric(const std::vector<double>& tensors, std::size_t d)
 
 /// Stress across a plane body over the sum of those in it. Model "cpd" is purely two-dimensional:
 /// nothing is across it.
-double out_of_plane(const Body& body) {
+std::vector<double> out_of_plane(const Body& body) {
   const MaterialModel model = body.specification.material.model;
   const bool is_plane_strain = model != MaterialModel::cpd && body.points.dimension == 2 &&
                                body.setting.plane == PlaneState::strain;
-  if (!is_plane_strain) return 0.0;
-  if (model == MaterialModel::bond) return poisson_ratio(body.setting);
+  if (!is_plane_strain) return {0.0};
+  if (model == MaterialModel::bond) return {poisson_ratio(body.setting)};
   const PointMaterials materials(body.specification, body.points);
-  return *materials.all().front().of->poisson_ratio;
+  const auto& all = materials.all();
+  std::vector<double> ratios;
+  for (Index i = 0; i < body.points.own(); ++i) {
+    ratios.push_back(*all[materials.of(i)].of->poisson_ratio);
+  }
+  return ratios;
 }
 
 std::vector<double> missing_neighbourhood(const Body& body, const StateView& at,

@@ -75,7 +75,7 @@ TEST(Stress, AHomogeneousDeformationIsFoundAtEveryPointWithASymmetricStressInThe
       }
     }
     Assembler assembler(body.points, body.model, 2);
-    const Stress stress = find_stress(assembler, displacement, 0.0);
+    const Stress stress = find_stress(assembler, displacement, {0.0});
     for (std::size_t k = 0; k < stress.deformation_gradient.size(); ++k) {
       const std::size_t r = k / d % d, c = k % d;
       EXPECT_NEAR(stress.deformation_gradient[k], F[r][c], round_off);
@@ -91,7 +91,7 @@ TEST(Stress, PointsWithoutADeformationGradientAreToldSo) {
   Model loose(Bonds{std::vector<Offset>(body.points.volume.size() + 1), {}, {}});
   loose.add(body.model.terms().front());
   Assembler assembler(body.points, loose, 1);
-  const Stress stress = find_stress(assembler, body.random_state(4), 0.0);
+  const Stress stress = find_stress(assembler, body.random_state(4), {0.0});
   for (std::size_t i = 0; i < stress.von_mises.size(); ++i) {
     EXPECT_FALSE(stress.is_determined[i]);
     EXPECT_EQ(stress.deformation_gradient[i], 1.0);
