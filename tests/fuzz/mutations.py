@@ -22,7 +22,7 @@ EXPRESSIONS = ["1/0", "0/0", "load/0", "ln(-1)", "sqrt(-load)", "1e308*10*load",
 STRUCTURES = ["[]", "{}", "[[]]", "[1, 2]", "[1, 2, 3, 4]", "[1, \"a\"]", "[" * 500 + "]" * 500, "{a = {b = {c = 1}}}", "[" + "0," * 50_000 + "]",
               "{ disk = { centre = [0, 0], radius = -1 } }", "{ box = {} }", '["free", "free", "free"]', "[nan, inf]", "[[0, 0], [1, 1]]"]  # fmt: skip
 WORDS = """dimension title lattice points spacing horizon_ratio thickness area origin perturbation cell_perturbation seed shape layer add subtract min max
-    centre radius axis length vertices name side where file horizon set crack from to outline quadrature volume_correction weights
+    centre radius axis length vertices name side where file horizon set crack from to outline quadrature form volume_correction weights
     surface_correction material model plane influence youngs_modulus micromodulus poisson_ratio calibration c1 c2 c3 density damage law onset
     critical rate peak hardening fracture_energy strength no_fail support displacement load body_force total_force loading steps adaptive smallest_step largest_step
     max_broken_bonds stop_below solver mode linear preconditioner tangent predictor projection relative_tolerance max_iterations fragments
@@ -32,7 +32,7 @@ WORDS = """dimension title lattice points spacing horizon_ratio thickness area o
     correlation_length rigid roller at normal constraint term symmetry period gradient rotation gravity traction pressure depth eigenstrain
     strain temperature change thermal_expansion volumes neighbours dynamics end_time time_step step_share history_every initial velocity scheme
     spectral_radius absorbing""".split()
-CHOICES = """none linear exact exact_centroids volume energy mean bulk bond cpd stress strain lattice continuum critical_stretch tanh tanh_continuous linear exponential blended piecewise_constant cubic quintic septic gaussian inverse newton
+CHOICES = """none linear exact exact_centroids volume energy collocation mean bulk bond cpd lps stress strain lattice continuum critical_stretch tanh tanh_continuous linear exponential blended piecewise_constant cubic quintic septic gaussian inverse newton
     relaxation adaptive flow dynamic auto cholesky pcg minres gmres lu bicgstab local_operator jacobi block_jacobi rigid_pieces surrogate riluk chebyshev multigrid stored
     matrix_free consistent never always hold remove stop fixed moving at_equilibrium transient kinetic cell_centres nodes box disk polygon
     cylinder sphere x- x+ y- y+ z- z+ displacement force damage stretch energy_density poisson_ratio opening crack_length
@@ -40,7 +40,7 @@ CHOICES = """none linear exact exact_centroids volume energy mean bulk bond cpd 
 KEYS = """dimension lattice.spacing lattice.horizon_ratio lattice.thickness lattice.area lattice.origin lattice.perturbation lattice.seed
     lattice.shape[0].min lattice.shape[0].max lattice.shape[0].add lattice.shape[1].radius lattice.shape[9].add lattice.layer[0].thickness
     lattice.layer[0].where points.horizon points.file set[0].where crack[0].from crack[0].to crack[0].outline quadrature.volume_correction
-    quadrature.surface_correction quadrature.weights material.model material.plane material.influence material.youngs_modulus material.micromodulus
+    quadrature.surface_correction quadrature.form quadrature.weights material.model material.plane material.influence material.youngs_modulus material.micromodulus
     material.poisson_ratio material.c1 material.c2 material.c3 material.damage material.damage.law material.damage.onset
     material.damage.critical material.damage.rate material.damage.no_fail support[0].displacement support[1].displacement support[0].set
     load[0].total_force load[0].body_force loading.steps loading.adaptive loading.smallest_step loading.largest_step
