@@ -1,6 +1,6 @@
 #pragma once
 
-#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -74,6 +74,36 @@ class StateKernels {
   }
 
   [[nodiscard]] std::span<const double> energies() const { return energy_; }
+
+  /// What bonds lose depends on, as it was before they did.
+  struct Before {
+    std::vector<double> kernel, pressure;
+  };
+  [[nodiscard]] Before remembered() const { return {{kernel_.begin(), kernel_.end()}, pressure_}; }
+
+  /// Pi loses the sum of delta kappa [(b_i + b_j) (xi . eta)^2 / (2 r^2) + (p_i + p_j) xi . eta], b
+  /// V d (d + 2) mu / M and p the mean of the pressures before and after; of the parts share(bond,
+  /// stretch) counts. After find_states of the same field.
+  template <class Share>
+  [[nodiscard]] double losses(std::span<const double> u, const Before& before,
+                              const Share& share) const {
+    double sum = 0.0;
+    for (Index i = 0; i < bonds_.points(); ++i) {
+      for (Offset bond = bonds_.offset[i]; bond < bonds_.offset[i + 1]; ++bond) {
+        const double lost = before.kernel[std::size_t(bond)] - kernel_[std::size_t(bond)];
+        if (lost == 0.0) continue;
+        const Index j = bonds_.partner[bond];
+        const V xi = arm(i, j), eta = minus<D>(of(u, j), of(u, i)), now = plus<D>(xi, eta);
+        const double squared = dot<D>(xi, xi), along = dot<D>(xi, eta);
+        const double pressure = 0.5 * (before.pressure[std::size_t(i)] + pressure_[i] +
+                                       before.pressure[std::size_t(j)] + pressure_[j]);
+        const double density = 0.5 * (deviatoric_[i] + deviatoric_[j]) * along * along / squared;
+        const double stretch = std::sqrt(dot<D>(now, now) / squared) - 1.0;
+        sum += lost * (density + pressure * along) * share(bond, stretch);
+      }
+    }
+    return sum;
+  }
 
   /// dPi/du, after find_states of the same field.
   void write_forces(std::span<const double> u, std::span<double> force, bool onto) const {

@@ -41,8 +41,8 @@ class StatePasses : public TermPasses {
       return this->gradient({displacement, history, Damage::grows, environment}, gradient, how);
     }
     const History before = history;
-    const double energy_before =
-        this->gradient({displacement, before, Damage::grows, environment}, {}, how).energy;
+    static_cast<void>(this->gradient({displacement, before, Damage::grows, environment}, {}, how));
+    const auto remembered = kernels_.remembered();
     const DamageGrowth committed =
         stretches_.commit_forces(displacement, environment, history, {}, Write::over).growth;
     Evaluation found =
@@ -51,8 +51,8 @@ class StatePasses : public TermPasses {
     found.moves_equilibrium = true;
     // Where a bond was stretched against the dilatation the energy may rise as it breaks; that is
     // no dissipation, and has to come from somewhere else.
-    const double lost = std::max(energy_before - found.energy, 0.0);
-    found.released = lost - (dissipated_by_law(history) - dissipated_by_law(before));
+    const double dissipated = std::max(dissipated_of(displacement, remembered, before), 0.0);
+    found.released = dissipated - (dissipated_by_law(history) - dissipated_by_law(before));
     return found;
   }
 
@@ -104,6 +104,22 @@ class StatePasses : public TermPasses {
         return law.of_bond(bond).integrity_after(stretch[std::size_t(bond)]);
       });
     });
+  }
+
+  /// Bonds that have broken beyond the stretch that they bear did so when they passed it, when they
+  /// held the square of the ratio less; the rest is not dissipated, but overshoot.
+  [[nodiscard]] double dissipated_of(std::span<const double> displacement,
+                                     const typename StateKernels<D>::Before& remembered,
+                                     const History& before) const {
+    const std::span<const double> history = before.of(slot_);
+    double sum = 0.0;
+    term_.with_damage_law([&](const auto& law) {
+      sum = kernels_.losses(displacement, remembered, [&](Offset bond, double stretch) {
+        const double ratio = law.of_bond(bond).borne(history[std::size_t(bond)]) / stretch;
+        return std::min(ratio * ratio, 1.0);
+      });
+    });
+    return sum;
   }
 
   [[nodiscard]] double dissipated_by_law(const History& history) const {

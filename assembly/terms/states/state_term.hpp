@@ -27,8 +27,9 @@ namespace peristat {
 ///
 /// Bonds break as those of brittle bond models do, by their stretch in the deformed configuration:
 /// as a term of bonds it remembers that. What a commit takes away, at fixed displacements, counts
-/// as dissipated: by the law what a bond of the network's modulus dissipates, and the difference,
-/// of either sign, as released.
+/// as dissipated, of every bond what it held when it passed the stretch that it bears: by the law
+/// what a bond of the network's modulus dissipates, and the difference, of either sign, as
+/// released.
 class StateTerm : public BondTerm {
  public:
   /// @param bonds those that are left, with the weights that histories are told with
