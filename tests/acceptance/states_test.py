@@ -119,14 +119,14 @@ class States(Folder):
                 self.assertLess(told["residual_error"], 1e-11)
                 self.assertLess(told["force_sum"], 1e-12)
 
-    def judge(self, folder, text, critical=0.01):
+    def judge(self, folder, text, spared=("low", "high"), critical=0.01):
         """Every state is one of the reference's equilibria, and no bond bears more than it can; returns what broke."""
         results = Results(folder)
         whole, rows = solid(results, text), {row["step"]: row for row in results.table("history")}
         free = numpy.ones_like(results.reference, bool)
         free[results.sets["low"]] = False
         free[results.sets["high"], 1] = False
-        spared = {pair for pair in whole.number if any(results.sets[name][list(pair)].any() for name in ("low", "high"))}
+        whole_ones = {pair for pair in whole.number if any(results.sets[name][list(pair)].any() for name in spared)}
         broken, forces_of = set(), []
         for step in results.steps:
             if step.history is not None:
@@ -134,14 +134,14 @@ class States(Folder):
                 for first, second, stretch in zip(*(step.history[name].tolist() for name in names)):
                     if stretch >= critical:
                         broken.add((first, second))
-            self.assertFalse(broken & spared)
+            self.assertFalse(broken & whole_ones)
             own, row = whole.without(broken), rows[step.number]
             force = own.forces(step.displacement)
             self.assertLess(numpy.linalg.norm(force[free]), 1e-8 * max(numpy.linalg.norm(force), 1e-3))
             self.assertAlmostEqual(row["stored_energy"], own.energies(step.displacement).sum(), delta=1e-10 * (row["stored_energy"] + 1e-9))
             self.assertEqual(row["broken_bonds"], len(broken))
-            breakable = own.left & ~numpy.array([pair in spared for pair in whole.number])
-            self.assertLess(own.stretches(step.displacement)[breakable].max(), critical * (1 + 1e-9))
+            breakable = own.left & ~numpy.array([pair in whole_ones for pair in whole.number])
+            self.assertLess(own.stretches(step.displacement)[breakable].max(initial=0), critical * (1 + 1e-9))
             reaction = force[results.sets["high"], 1].sum()
             self.assertAlmostEqual(row["reaction_y:high"], reaction, delta=1e-8 * (abs(reaction) + 1e-3))
             forces_of.append(reaction)
@@ -149,12 +149,14 @@ class States(Folder):
         return broken
 
     def test_every_state_of_a_torn_plate_is_an_equilibrium(self):
-        # Implicit steps alone end where the crack runs.
-        for mode, code, least in (("newton", 3, 1), ("adaptive", 0, 20), ("relaxation", 0, 20)):
+        # Implicit steps alone can't follow a crack that runs: there few bonds may break.
+        near = PULLED.replace('["low", "high"]', '["far"]') + '[[set]]\nname = "far"\nwhere = "max(abs(x - 0.45), abs(y - 0.6)/4) > 0.06"\n'
+        for mode, case, spared, least in (("newton", near, ("far",), 3), ("adaptive", PULLED, ("low", "high"), 20),
+                                          ("relaxation", PULLED, ("low", "high"), 20)):  # fmt: skip
             with self.subTest(mode):
-                text = PULLED + f'[solver]\nmode = "{mode}"\n'
-                folder = self.run_case(text, mode, code=code)
-                self.assertGreaterEqual(len(self.judge(folder, text)), least)
+                text = case + f'[solver]\nmode = "{mode}"\n'
+                folder = self.run_case(text, mode)
+                self.assertGreaterEqual(len(self.judge(folder, text, spared)), least)
                 rows = columns(folder)
                 self.assertGreater(rows["dissipated_energy"][-1], 0)
                 self.assertTrue((numpy.diff(rows["dissipated_energy"]) >= 0).all())
