@@ -224,6 +224,25 @@ class States(Folder):
         self.assertAlmostEqual(rows["control"][-1], 1e-3, delta=1e-12)
         self.assertGreater(rows["load_factor"][-1], 0)
 
+    def test_goes_with_other_terms_and_constraints(self):
+        # Around the whole body: elsewhere the stiffness of a pressure is not symmetric.
+        pressed = PLATE + '[[set]]\nname = "all"\nwhere = "x > 0"\n[[load]]\nset = "all"\npressure = 20.0\n'
+        told = self.check_tangent(pressed, "x + 1e-2*sin(3*x + y); y + 1e-2*x*y")
+        self.assertLess(told["tangent_error"], 1e-8)
+        self.assertLess(told["residual_error"], 1e-8)
+        # A support and a roller that hold the same; a set that is rigid and one that moves as such.
+        ways = [PULL, PULL.replace('[[support]]\nset = "high"\ndisplacement = ["free", "0.012*load"]',
+                                   '[[roller]]\nset = "high"\nnormal = [0, 1]\ndisplacement = "0.012*load"')]  # fmt: skip
+        self.assertNotEqual(*ways)
+        one, other = (Results(self.run_case(PLATE + CRACK + way, f"way_{k}")).steps[-1].displacement for k, way in enumerate(ways))
+        self.assertLess(abs(one - other).max(), 1e-9 * abs(one).max())
+        held = PULL.replace('["free", "0.012*load"]', '[0, "0.012*load"]')
+        rigid = PULL.replace('[[support]]\nset = "high"\ndisplacement = ["free", "0.012*load"]',
+                             '[[rigid]]\nset = "high"\ndisplacement = [0, "0.012*load"]\nrotation = [0]')  # fmt: skip
+        self.assertNotIn('set = "high"\ndisplacement = ["free"', rigid)
+        one, other = (Results(self.run_case(PLATE + CRACK + way, f"set_{k}")).steps[-1].displacement for k, way in enumerate((held, rigid)))
+        self.assertLess(abs(one - other).max(), 1e-9 * abs(one).max())
+
     def test_refusals(self):
         collocated = PLATE.replace('form = "energy"\n', "")
         for text, words in (
