@@ -37,6 +37,16 @@ youngs_modulus = 3e3
 poisson_ratio = 0.2
 density = 2.0
 """
+REGION = """\
+[[set]]
+name = "right"
+where = "x > 0.8"
+[[region]]
+set = "right"
+[region.material]
+youngs_modulus = 9e3
+poisson_ratio = 0.4
+"""
 CRACK = '[[crack]]\nfrom = [0, 0.6]\nto = [0.4, 0.6]\n'
 DAMAGE = '[material.damage]\nlaw = "critical_stretch"\ncritical = 0.01\nno_fail = ["low", "high"]\n'
 PULL = """\
@@ -69,13 +79,19 @@ def cut(text, **changes):
 
 
 def solid(results, text, **more):
+    whole, text = text, text.replace(REGION, "")
     material = {key: float(value) for key, value in re.findall(r"(?m)^(youngs_modulus|poisson_ratio) = (.*)$", text)}
     material |= dict(re.findall(r'(?m)^(plane|influence) = "(.*)"$', text))
     spacing = float(re.search(r"(?m)^spacing = (.*)$", text)[1])
     ratio = float(re.search(r"(?m)^horizon_ratio = (.*)$", text)[1])
     size = spacing if 'volume_correction = "linear"' in text else None
     cracks = [{"from": [0, 0.6], "to": [0.4, 0.6]}] if "[[crack]]" in text else []
-    return solid_of(material, results.reference, results.volume, ratio * spacing, size=size, cracks=cracks, **more)
+    own = solid_of(material, results.reference, results.volume, ratio * spacing, size=size, cracks=cracks, **more)
+    if REGION in whole:
+        other = solid_of(material | {"youngs_modulus": 9e3, "poisson_ratio": 0.4}, results.reference, results.volume, ratio * spacing)
+        right = results.reference[:, 0] > 0.8
+        own.lame_lambda, own.mu = (numpy.where(right, *pair) for pair in ((other.lame_lambda, own.lame_lambda), (other.mu, own.mu)))
+    return own
 
 
 class States(Folder):
@@ -96,7 +112,8 @@ class States(Folder):
         space = cut(PLATE, dimension=3, horizon_ratio=2.015, min="[0, 0, 0]", max="[0.5, 0.6, 0.4]").replace("thickness = 0.5\n", "")
         cases = {"stress": PLATE, "cracked": PLATE + CRACK, "space": space,
                  "strain": PLATE + 'plane = "strain"\n', "nearly_incompressible": cut(PLATE, poisson_ratio=0.49) + 'plane = "strain"\n',
-                 "auxetic": cut(PLATE, poisson_ratio=-0.5)}  # fmt: skip
+                 "auxetic": cut(PLATE, poisson_ratio=-0.5), "regions": PLATE + REGION, "cracked_regions": PLATE + CRACK + REGION,
+                 "perturbed": PLATE.replace("thickness = 0.5", "thickness = 0.5\nperturbation = 0.2")}  # fmt: skip
         for kernel in ("constant", "quintic", "gaussian"):
             cases[kernel] = PLATE + f'influence = "{kernel}"\n'
         for case in ("stress", "quintic"):
@@ -251,6 +268,7 @@ class States(Folder):
             (PLATE.replace('form = "energy"', 'form = "energy"\nsurface_correction = "volume"') + PULL, ("surface_correction",)),
             (PLATE.replace('form = "energy"', 'form = "force"') + PULL, ("quadrature.form", "energy")),
             (PULLED + '[solver]\nmode = "path"\n', ("mode", "path")),
+            (PLATE + REGION + '[[interface]]\nrule = "weaker"\n' + PULL, ("interface", "energy")),
             (PLATE + PULL + '[[symmetry]]\naxis = "x"\n', ("symmetry",)),
             (PLATE + PULL + '[solver]\ntangent = "matrix_free"\n', ("matrix_free",)),
             (PLATE + PULL + '[[load]]\nside = "y+"\ntraction = [0, 1]\ndepth = "surface"\n', ("depth",)),
