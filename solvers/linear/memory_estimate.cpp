@@ -56,7 +56,8 @@ double rigid_pieces_bytes(const BodySize& size) {
   const double d = size.dimension, points = size.points;
   const double motions = 0.5 * d * (d + 1.0);
   // Boxes of 5/3 horizons; in 3D larger ones where their factor would take 100 bytes per point.
-  double pieces = points / std::pow(5.0 / 3.0 * size.horizon_ratio, d);
+  const double ratio = size.coupling_ratio > 0.0 ? size.coupling_ratio : size.horizon_ratio;
+  double pieces = points / std::pow(5.0 / 3.0 * ratio, d);
   if (size.dimension == 3) pieces = std::min(pieces, std::pow(0.0434 * points, 0.75));
   const double coarse = motions * pieces;
   const double factor =
@@ -161,7 +162,8 @@ LuEstimate estimate_lu(int dimension, double unknowns, double entries_per_row) {
 
 MemoryEstimate estimate_memory(const BodySize& size) {
   const int dimension = size.dimension;
-  const double horizon_ratio = size.horizon_ratio;
+  const double horizon_ratio = size.coupling_ratio > 0.0 ? size.coupling_ratio : size.horizon_ratio;
+  const double blocks = size.stored_blocks();
   MemoryEstimate estimate;
   estimate.size = size;
   const double d = dimension;
@@ -189,10 +191,10 @@ MemoryEstimate estimate_memory(const BodySize& size) {
 
   const double block = size.has_symmetric_blocks ? 0.5 * d * (d + 1.0) : d * d;
   estimate.body_bytes = body_bytes(size) + 8.0 * size.points * d * (d + 1.0);
-  estimate.tangent_bytes = 8.0 * size.bonds * block;
+  estimate.tangent_bytes = 8.0 * blocks * block;
   // The reduced tangent in whole blocks, where each is, and its pattern.
-  if (size.is_constrained) estimate.tangent_bytes += size.bonds * (8.0 * d * d + 8.0 + 4.0);
-  estimate.matrix_bytes = 16.0 * (size.bonds + size.points) * d * d;
+  if (size.is_constrained) estimate.tangent_bytes += blocks * (8.0 * d * d + 8.0 + 4.0);
+  estimate.matrix_bytes = 16.0 * (blocks + size.points) * d * d;
   // Then the direct solver takes conjugate gradients with an old factor, too.
   if (affordable_iterations(estimate.factor_flops, estimate.factor_entries) > 1.0) {
     estimate.matrix_bytes += trilinos_bytes;
@@ -222,7 +224,7 @@ double MemoryEstimate::iterative_bytes(const LinearSolverOptions& options) const
     case PreconditionerKind::riluk:
     case PreconditionerKind::chebyshev:
       return bytes + trilinos_bytes_per_entry(options.preconditioner) * d * d *
-                         (2.0 * size.bonds + size.points);
+                         (2.0 * size.stored_blocks() + size.points);
   }
   return bytes;
 }
@@ -231,7 +233,8 @@ double MemoryEstimate::direct_bytes(LinearMethod method) const {
   if (!size.is_symmetric()) return lu_bytes(size, size.entries_per_row);
   if (method == LinearMethod::ldlt) {
     const double d = size.dimension;
-    return ldlt_library_bytes + ldlt_bytes_per_entry * d * d * (size.bonds + size.points) +
+    return ldlt_library_bytes +
+           ldlt_bytes_per_entry * d * d * (size.stored_blocks() + size.points) +
            8.0 * ldlt_overhead[std::size_t(size.dimension) - 1] * factor_entries;
   }
   return matrix_bytes + 8.0 * factor_overhead * factor_entries;

@@ -12,13 +12,16 @@ struct BodySize {
   double places = 0.0;   ///< of the lattice in the box around the points
   double horizon_ratio = 0.0;
   double bonds = 0.0;
-  double bytes_per_bond = 6.0;       ///< partner and kind, see BondKinds
-  bool has_history = false;          ///< bonds may be damaged
+  double blocks = 0.0;          ///< that a stored tangent has beside the diagonal; 0: bonds
+  double coupling_ratio = 0.0;  ///< horizon that these reach over the spacing; 0: that of bonds
+  double bytes_per_bond = 6.0;  ///< partner and kind, see BondKinds
+  bool has_history = false;     ///< bonds may be damaged
   bool has_symmetric_blocks = true;  ///< off-diagonal blocks of the tangent are
   bool is_constrained = false;       ///< degrees of freedom follow others
   double free_dofs = 0.0;
   double entries_per_row = 0.0;  ///< of an unsymmetric tangent; 0: the tangent is symmetric
 
+  [[nodiscard]] double stored_blocks() const { return blocks > 0.0 ? blocks : bonds; }
   [[nodiscard]] bool is_symmetric() const { return entries_per_row == 0.0; }
 };
 

@@ -17,6 +17,7 @@
 #include "solvers/study/collocation_model.hpp"
 #include "solvers/study/cpd_model.hpp"
 #include "solvers/study/fracture_data.hpp"
+#include "solvers/study/state_model.hpp"
 #include "solvers/study/surface_sites.hpp"
 #include "src/connectivity/fragments.hpp"
 #include "src/connectivity/free_motion.hpp"
@@ -102,15 +103,22 @@ Model make_bond_model(const Body& body, const PointMaterials& materials, Bonds b
   return Model(std::move(bonds), std::move(potential), std::move(never_fails));
 }
 
+/// Points that a third one sees are coupled: as many blocks as bonds of twice the horizon.
+void reach_twice(BodySize& size) {
+  size.has_symmetric_blocks = false;
+  size.coupling_ratio = 2.0 * size.horizon_ratio;
+  size.blocks = expected_bonds(size.points, size.dimension, size.coupling_ratio);
+}
+
 /// Model of a body, and what its pre-cracks have cut.
 void make_model(Body& body, int threads) {
   const BodySpecification& of = body.specification;
   const Stopwatch watch(body.seconds_neighbourhood);
   const bool is_cpd = of.material.model == MaterialModel::cpd;
   BondSetting setting = body.setting;
-  const bool is_lps = of.material.model == MaterialModel::lps;
   // Effective volumes count every neighbour, and what bonds of lps dissipate goes by their length.
-  if (is_cpd || is_lps) setting.influence = {};
+  if (is_cpd || of.is_collocated()) setting.influence = {};
+  if (of.has_states()) setting = state_setting(std::move(setting));
   Bonds bonds = make_bonds(body.points, of.surface_correction, setting, threads);
   refuse_coincident_points(body.points, bonds);
   const PointMaterials materials(of, body.points);
@@ -119,7 +127,10 @@ void make_model(Body& body, int threads) {
   body.factors = {materials.factors(body.points, Quantity::stiffness, threads),
                   materials.factors(body.points, Quantity::strength, threads)};
   CutBonds cut;
-  if (is_lps) {
+  if (of.has_states()) {
+    body.model = make_state_model(of, materials, body.factors, body.points, setting,
+                                  std::move(bonds), cut, threads);
+  } else if (of.is_collocated()) {
     body.model = make_collocation_model(of, materials, body.factors, body.points, setting,
                                         std::move(bonds), cut, body.collocation, threads);
   } else if (is_cpd) {
@@ -244,11 +255,13 @@ std::unique_ptr<const Body> make_body(Points points, const BodySpecification& of
   expected.horizon_ratio =
       reach_ratio(of.volume_correction, body.points.dimension, body.horizon_ratio());
   expected.bonds = expected_bonds(expected.points, body.points.dimension, expected.horizon_ratio);
-  require_memory(estimate_memory(expected).least_bytes(),
+  if (of.has_states()) reach_twice(expected);
+  // States have no product without a stored tangent.
+  require_memory(estimate_memory(expected).bytes(false, of.has_states(), {}),
                  fmt::format("the body with {} points", body.points.count()));
   make_model(body, threads);
   LoadSetting loads = load_setting(of, body.points);
-  if (of.material.model == MaterialModel::lps) {
+  if (of.is_collocated()) {
     loads.surface = surface_sites(body.points, body.model, of.boundary.get(), of.boundary_names,
                                   body.setting.horizon, threads);
     body.specification.boundary.reset();
@@ -303,6 +316,10 @@ MemoryEstimate estimate_memory(const Body& body) {
   size.has_symmetric_blocks = body.model.has_symmetric_blocks();
   size.is_constrained = !body.conditions->constraints().none();
   size.free_dofs = double(std::count(prescribed.begin(), prescribed.end(), 0));
+  for (const auto& term : body.model.terms()) {
+    size.blocks = std::max(size.blocks, double(term->couplings().partner.size()));
+  }
+  if (body.specification.has_states()) size.coupling_ratio = 2.0 * size.horizon_ratio;
   if (!body.model.balances().potential) {
     // Couplings reach two horizons: 2^d as many points as one.
     const double near = 2.0 * size.bonds / std::max(size.points, 1.0) + 1.0;

@@ -131,11 +131,7 @@ void check_lps_material(const MaterialSpecification& material, const std::string
   require_absent(material.c1.has_value(), key + ".c1", has_own);
   require_absent(material.c2 != 0.0, key + ".c2", has_own);
   require_absent(material.c3 != 0.0, key + ".c3", has_own);
-  require_absent(material.calibration.has_value(), key + ".calibration",
-                 "is not for the model lps, whose quadrature is exact");
-  require_absent(
-      material.influence != ConstantInfluence::name && material.influence != InverseInfluence::name,
-      key + ".influence", "of the model lps is \"inverse\"");
+  require_absent(material.calibration.has_value(), key + ".calibration", has_own);
   require_absent(material.potential != Harmonic::name, key + ".potential",
                  "is not for the model lps, which is linear");
   require(
@@ -295,21 +291,42 @@ void check_regions(const BodySpecification& of, int dimension) {
   }
 }
 
+/// Refuses what the quadrature of model lps does not take in its form.
+void check_solid(const BodySpecification& of) {
+  require_absent(of.weights != InteractionWeights::mean, "weights", "is for the model cpd");
+  require_absent(of.eigenstrains.are_there(), "eigenstrains", "are not for the model lps");
+  require_absent(of.surface_correction != SurfaceCorrection::none, "surface_correction",
+                 "is for the model bond; the states of lps are those of the neighbours there are");
+  const CollocationSpecification defaults;
+  if (of.form == SolidForm::energy) {
+    require_absent(of.collocation.degree != defaults.degree, "collocation.degree",
+                   "is for the form collocation");
+    require_absent(of.collocation.traction_form != defaults.traction_form,
+                   "collocation.traction_form", "is for the form collocation");
+    require_absent(!of.interfaces.empty(), "interfaces",
+                   "are not for the form energy, whose dilatations have the constants of points");
+    return;
+  }
+  require_absent(of.volume_correction != VolumeCorrection::none, "volume_correction",
+                 "is for the model bond and the form energy; collocation has a quadrature of its "
+                 "own");
+  require_absent(of.material.influence != ConstantInfluence::name &&
+                     of.material.influence != InverseInfluence::name,
+                 "material.influence", "of the model lps by collocation is \"inverse\"");
+}
+
 /// Refuses what belongs to the other model's weights.
 void check_weights(const BodySpecification& of, const Points& points) {
+  require_absent(of.form != SolidForm::collocation && !of.has_states(), "form",
+                 "is for the model lps");
+  if (of.material.model == MaterialModel::lps) check_solid(of);
   if (of.material.model == MaterialModel::bond) {
     require_absent(of.weights != InteractionWeights::mean, "weights", "is for the model cpd");
+  }
+  if (of.material.model != MaterialModel::cpd) {
     require(points.spacing.is_square() || of.volume_correction != VolumeCorrection::linear,
             "volume_correction", "linear",
             "is for square or cubic cells; spacings that differ need \"none\" or \"exact\"");
-    return;
-  }
-  if (of.material.model == MaterialModel::lps) {
-    const std::string has_own = "is for the model bond; lps has a quadrature of its own";
-    require_absent(of.volume_correction != VolumeCorrection::none, "volume_correction", has_own);
-    require_absent(of.surface_correction != SurfaceCorrection::none, "surface_correction", has_own);
-    require_absent(of.weights != InteractionWeights::mean, "weights", "is for the model cpd");
-    require_absent(of.eigenstrains.are_there(), "eigenstrains", "are not for the model lps");
     return;
   }
   require_whole_square_cells(points);

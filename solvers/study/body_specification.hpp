@@ -93,7 +93,9 @@ struct MaterialSpecification {
   MaterialModel model = MaterialModel::bond;
   std::string potential = Harmonic::name;  ///< of whole bonds, see WholeBondPotentials
   PlaneState plane = PlaneState::stress;
-  std::string influence = ConstantInfluence::name;  ///< omega of bonds, see Influences
+  /// omega of bonds, see Influences; of lps with the form `energy` its kernel K, which in its other
+  /// form is the inverse one whatever stands here
+  std::string influence = ConstantInfluence::name;
   std::optional<double>
       youngs_modulus{};                   ///< [Pa]; exactly one of this, micromodulus and c1 is set
   std::optional<double> micromodulus{};   ///< c [N/m6]
@@ -139,7 +141,11 @@ inline constexpr std::size_t most_materials = 200;
 /// Name of the material of the points in no region.
 inline constexpr const char* rest_name = "material";
 
-/// How the operator of model lps is summed.
+/// Whether forces of model lps are those of [LPS] at points, exact for linear displacements, or the
+/// derivative of an energy.
+enum class SolidForm { collocation, energy };
+
+/// How the operator of model lps is summed in the form of collocation.
 struct CollocationSpecification {
   int degree = 5;  ///< of the polynomials that the quadrature is exact for
   TractionForm traction_form = TractionForm::full;
@@ -153,7 +159,8 @@ struct BodySpecification {
   VolumeCorrection volume_correction = VolumeCorrection::none;
   SurfaceCorrection surface_correction = SurfaceCorrection::none;
   InteractionWeights weights = InteractionWeights::mean;  ///< of cpd
-  CollocationSpecification collocation{};
+  SolidForm form = SolidForm::collocation;                ///< of lps
+  CollocationSpecification collocation{};                 ///< of lps in that form
   /// Faces of the body and names of their shapes, for tractions of model lps; null: nobody knows
   /// them. A body does not keep them.
   std::shared_ptr<const BodyBoundary> boundary{};
@@ -184,6 +191,13 @@ struct BodySpecification {
   /// Memory that is to be left for what is found of a state beside the search for it [bytes].
   double evaluation_bytes_per_point = 0.0;
 
+  /// Whether it is of model lps, in the one form or the other.
+  [[nodiscard]] bool is_collocated() const {
+    return material.model == MaterialModel::lps && form == SolidForm::collocation;
+  }
+  [[nodiscard]] bool has_states() const {
+    return material.model == MaterialModel::lps && form == SolidForm::energy;
+  }
   /// Whether all bonds follow from one micromodulus and one law.
   [[nodiscard]] bool is_uniform() const {
     return regions.empty() && !material.fibre && material.scatter.empty();

@@ -27,6 +27,12 @@ TipElasticity elasticity_of(const PointMaterials::Material& material, const Body
     return is_thin ? TipElasticity::plane_stress(modulus, nu)
                    : TipElasticity::plane_strain(modulus, nu);
   }
+  if (material.of->model == MaterialModel::lps) {
+    const double modulus = *material.of->youngs_modulus, nu = *material.of->poisson_ratio;
+    const bool is_thin = dimension == 2 && body.setting.plane == PlaneState::stress;
+    return is_thin ? TipElasticity::plane_stress(modulus, nu)
+                   : TipElasticity::plane_strain(modulus, nu);
+  }
   const BondSetting& setting = body.setting;
   const CpdConstants constants =
       cpd_constants_of(*material.of, material.key, setting, body.points.spacing);

@@ -11,6 +11,7 @@
 #include "solvers/study/bond_potential.hpp"
 #include "solvers/study/collocation_model.hpp"
 #include "solvers/study/cpd_model.hpp"
+#include "solvers/study/state_model.hpp"
 #include "src/core/input_error.hpp"
 #include "src/core/number_text.hpp"
 #include "src/neighbourhood/horizon.hpp"
@@ -331,8 +332,9 @@ BodySpecification with_stretches(BodySpecification of, const BondSetting& settin
   const auto find = [&](MaterialSpecification& material, const std::string& key) {
     if (!material.damage.is_by_data()) return;
     if (material.model == MaterialModel::lps) {
-      material.damage.critical =
-          lps_critical_stretch(material, setting, *material.damage.fracture_energy);
+      const double energy = *material.damage.fracture_energy;
+      material.damage.critical = of.has_states() ? state_critical_stretch(material, setting, energy)
+                                                 : lps_critical_stretch(material, setting, energy);
       material.damage.fracture_energy.reset();
       return;
     }

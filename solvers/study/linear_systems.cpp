@@ -128,7 +128,7 @@ LinearSystems choose_linear_systems(const StudyOptions& options, const Model& mo
   problem.is_symmetric = is_symmetric;
   problem.unknowns = estimate.size.free_dofs;
   problem.has_inertia = options.loading.mode == Mode::dynamics;
-  problem.bonds = estimate.size.bonds;
+  problem.bonds = estimate.size.stored_blocks();
   problem.factor_flops = estimate.factor_flops;
   problem.factor_bytes = estimate.direct_bytes(linear.method);
   problem.available_bytes = available_memory() - estimate.body_bytes - estimate.tangent_bytes;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "assembly/terms/states/state_term.hpp"
 #include "solvers/linear/vector_verbs.hpp"
 #include "solvers/study/point_materials.hpp"
 #include "src/conditions/absorption.hpp"
@@ -89,6 +90,9 @@ MotionSetting make_motion_setting(const Body& body) {
   }
   setting.most_points =
       body.specification.material.model == MaterialModel::bond ? 2 : body.points.dimension + 1;
+  if (const auto* states = dynamic_cast<const StateTerm*>(body.model.bond_term().get())) {
+    setting.most_points = int(std::ceil(states->bound_over_blocks(body.points.dimension)));
+  }
   return setting;
 }
 

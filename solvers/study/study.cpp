@@ -41,6 +41,14 @@ void refuse_modes_without_potential(const Body& body, const StudyOptions& option
   }
 }
 
+/// Mode path takes what a bond loses for what the body does.
+void refuse_events_of_states(const Body& body, const StudyOptions& options) {
+  if (!body.specification.has_states() || options.loading.mode != Mode::path) return;
+  throw InputError("loading.mode", std::string(options.loading.mode.name),
+                   "is for models \"bond\" and \"cpd\": with a bond of \"lps\" its points lose "
+                   "dilatation");
+}
+
 }  // namespace
 
 SolvedModel::SolvedModel(const Points& points, const Model& model, const Constraints& constraints,
@@ -65,6 +73,7 @@ Study::Study(const Body& body, StudyOptions options, SolverLadder::Reporter tell
         moves ? "is missing; mode dynamics needs it" : "is of a motion in time, for mode dynamics");
   }
   refuse_modes_without_potential(body, options_);
+  refuse_events_of_states(body, options_);
   const bool is_implicit = moves && options_.loading.dynamics.scheme == MotionScheme::newmark;
   if (is_implicit != body.specification.has_inertia) {
     throw InputError("has_inertia", "",

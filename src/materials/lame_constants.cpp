@@ -18,4 +18,10 @@ double crack_energy_of_dilation(const LamePair& constants, double horizon, int d
                         : horizon * (9.0 * lambda + 6.0 * mu) / 5.0;
 }
 
+double crack_energy_of_dilation(const LamePair& constants, const Kernel& of_bonds) {
+  const double d = of_bonds.dimension;
+  return 0.5 * d * (d * constants.lambda + 2.0 * constants.mu) *
+         mean_of_magnitude(of_bonds.dimension) * of_bonds.moment(2) / of_bonds.moment(1);
+}
+
 }  // namespace peristat

@@ -24,4 +24,13 @@ struct LamePair {
 [[nodiscard]] double crack_energy_of_dilation(const LamePair& constants, double horizon,
                                               int dimension);
 
+/// The same with a kernel K(r) of any form:
+///
+///   d (d lambda + 2 mu) / 2  <|n_x|> int K r^3 dV / int K r^2 dV,   <|n_x|> = 2/pi | 1/2.
+///
+/// Every bond counts with its equal share of the dilatations of its points, which is what all of
+/// them hold as long as the crack is not there.
+/// @param of_bonds with the influence K(r) r / delta
+[[nodiscard]] double crack_energy_of_dilation(const LamePair& constants, const Kernel& of_bonds);
+
 }  // namespace peristat

@@ -126,6 +126,18 @@ class CrackTips(Programmes):
                 row = self.run_case(text + '[[period]]\naxis = "z"\nfrom = 0\nto = 5e-3\n')[-1]
                 self.assertAlmostEqual(row[f"tip_{name}"] / 1e6, 1, delta=0.06)
 
+    def test_the_linear_solid_as_an_energy(self):
+        """Its elasticity is that of its E and nu, whatever the state of the plane."""
+        for nu, plane_state in ((0.1, "stress"), (0.4, "stress"), (0.1, "strain"), (0.4, "strain")):
+            with self.subTest(nu=nu, plane=plane_state):
+                own = Elasticity(E, nu, plane_state == "stress")
+                material = f'model = "lps"\nyoungs_modulus = {E}\npoisson_ratio = {nu}\nplane = "{plane_state}"\n'
+                material += '[quadrature]\nform = "energy"\nvolume_correction = "linear"'
+                row = self.run_case(square(williams(0, own.shear, own.kolosov), material=material), "lattice.spacing=5e-4")[-1]
+                modulus = E if plane_state == "stress" else E / (1 - nu**2)
+                self.assertAlmostEqual(row["tip_K1"] / 1e6, 1, delta=0.03)
+                self.assertAlmostEqual(row["tip_J"] / (row["tip_K1"] ** 2 / modulus), 1, delta=0.03)
+
     def test_cpd(self):
         constants = {"c1": 1.2e22, "c2": 2e32}
         told = peristat("calibrate", "--dimension", 2, "--spacing", 1e-3, "--horizon-ratio", 3.015, "--thickness", 1e-3,

@@ -70,7 +70,7 @@ Points make_points_of(const Case& from) {
       check_lattice(*lattice);  // first: what can't be used has no size
       require_memory_for_lattice(from, *lattice);
       points = make_points(*lattice);
-      if (points.lattice && from.material.model == MaterialModel::lps) {
+      if (points.lattice && from.is_collocated()) {
         points.ghosts = ghost_sites(*lattice, points, from.horizon).reference;
       }
       if (points.lattice && lattice->perturbation == 0.0 && lattice->cell_perturbation == 0.0) {
@@ -116,7 +116,7 @@ namespace {
 /// The faces of the body, for tractions.
 void find_boundary(const Case& from, const Points& points, BodySpecification& of) {
   const Lattice* lattice = lattice_of(from);
-  if (from.material.model != MaterialModel::lps || lattice == nullptr) return;
+  if (!from.is_collocated() || lattice == nullptr) return;
   std::vector<Coordinates> places;
   for (Index i = 0; i < points.own(); ++i) places.push_back(points.position(i));
   of.boundary = std::make_shared<const BodyBoundary>(from.dimension, lattice->shapes,

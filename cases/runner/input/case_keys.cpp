@@ -15,6 +15,7 @@
 #include "src/conditions/loading_programme.hpp"
 #include "src/core/expression.hpp"
 #include "src/core/number_text.hpp"
+#include "src/neighbourhood/influence.hpp"
 #include "src/neighbourhood/optimised_weights.hpp"
 
 namespace peristat {
@@ -272,43 +273,57 @@ Table<Crack> crack_keys() {
 
 Table<Case> quadrature_keys() {
   using K = Key<Case>;
+  const auto of_kernel = [](auto&, const Case& from) {
+    return !is_cpd(from) && !from.is_collocated();
+  };
   const auto of_bond = [](auto&, const Case& from) { return !is_cpd(from) && !is_lps(from); };
   const auto of_lps = [](auto&, const Case& from) { return is_lps(from); };
+  const auto of_collocation = [](auto&, const Case& from) { return from.is_collocated(); };
   constexpr auto collocation = [](auto& from) -> auto& { return from.collocation; };
-  return {"quadrature",
-          {K("volume_correction", &Case::volume_correction,
-             choice<VolumeCorrection>({{"none", VolumeCorrection::none},
-                                       {"linear", VolumeCorrection::linear},
-                                       {"exact", VolumeCorrection::exact},
-                                       {"exact_centroids", VolumeCorrection::exact_centroids}}),
-             "share of a neighbour's volume that counts near the edge of the horizon: all; linear "
-             "over half a spacing to either side; what its cell has within the horizon; the same, "
-             "with length and influence of the bond those of that part's centroid. The last two "
-             "are for whole cells of a lattice, of which `cell_perturbation` may shift the corners")
-               .written_if(of_bond),
-           K("surface_correction", &Case::surface_correction,
-             choice<SurfaceCorrection>({{"none", SurfaceCorrection::none},
-                                        {"volume", SurfaceCorrection::volume},
-                                        {"energy", SurfaceCorrection::energy}}),
-             "factor that restores the stiffness of points whose neighbourhood is cut by a "
-             "surface: none, by the volume of the neighbourhood, or by the energy of simple "
-             "deformations")
-               .written_if(of_bond),
-           K("weights", &Case::weights,
-             choice<InteractionWeights>(
-                 {{"mean", InteractionWeights::mean}, {"bulk", InteractionWeights::bulk}}),
-             "model `cpd`: weights of interactions near surfaces, by the mean of their points' "
-             "effective volumes, or as in the bulk everywhere")
-               .written_if([](auto&, const Case& from) { return is_cpd(from); }),
-           K("degree", in(collocation, &CollocationSpecification::degree),
-             count_from(least_exact_degree, "", most_exact_degree),
-             "model `lps`: of the polynomials that the quadrature is exact for")
-               .written_if(of_lps),
-           K("traction_form", in(collocation, &CollocationSpecification::traction_form),
-             choice<TractionForm>({{"full", TractionForm::full}, {"paper", TractionForm::paper}}),
-             "model `lps`: what of the displacements' continuation over the boundary counts: all "
-             "of it, which is exact for linear fields on every grid, or what [LPS] eq. 4.6 keeps")
-               .written_if(of_lps)}};
+  return {
+      "quadrature",
+      {K("form", &Case::form,
+         choice<SolidForm>(
+             {{"collocation", SolidForm::collocation}, {"energy", SolidForm::energy}}),
+         "model `lps`: forces at points by a quadrature that is exact for linear displacements "
+         "up to the surface, which have no potential; or those of an "
+         "[energy](theory.md#the-solid-as-an-energy), symmetric, as the other models' are, with "
+         "all modes and loads that these have but mode `path`")
+           .written_if(of_lps),
+       K("volume_correction", &Case::volume_correction,
+         choice<VolumeCorrection>({{"none", VolumeCorrection::none},
+                                   {"linear", VolumeCorrection::linear},
+                                   {"exact", VolumeCorrection::exact},
+                                   {"exact_centroids", VolumeCorrection::exact_centroids}}),
+         "share of a neighbour's volume that counts near the edge of the horizon: all; linear "
+         "over half a spacing to either side; what its cell has within the horizon; the same, "
+         "with length and influence of the bond those of that part's centroid. The last two "
+         "are for whole cells of a lattice, of which `cell_perturbation` may shift the corners")
+           .written_if(of_kernel),
+       K("surface_correction", &Case::surface_correction,
+         choice<SurfaceCorrection>({{"none", SurfaceCorrection::none},
+                                    {"volume", SurfaceCorrection::volume},
+                                    {"energy", SurfaceCorrection::energy}}),
+         "factor that restores the stiffness of points whose neighbourhood is cut by a "
+         "surface: none, by the volume of the neighbourhood, or by the energy of simple "
+         "deformations")
+           .written_if(of_bond),
+       K("weights", &Case::weights,
+         choice<InteractionWeights>(
+             {{"mean", InteractionWeights::mean}, {"bulk", InteractionWeights::bulk}}),
+         "model `cpd`: weights of interactions near surfaces, by the mean of their points' "
+         "effective volumes, or as in the bulk everywhere")
+           .written_if([](auto&, const Case& from) { return is_cpd(from); }),
+       K("degree", in(collocation, &CollocationSpecification::degree),
+         count_from(least_exact_degree, "", most_exact_degree),
+         "model `lps` by collocation: of the polynomials that the quadrature is exact for")
+           .written_if(of_collocation),
+       K("traction_form", in(collocation, &CollocationSpecification::traction_form),
+         choice<TractionForm>({{"full", TractionForm::full}, {"paper", TractionForm::paper}}),
+         "model `lps` by collocation: what of the displacements' continuation over the boundary "
+         "counts: all of it, which is exact for linear fields on every grid, or what [LPS] eq. "
+         "4.6 keeps")
+           .written_if(of_collocation)}};
 }
 
 /// The quadrature is read before the material, whose model tells which of its keys apply.
@@ -316,7 +331,7 @@ void check_quadrature(const Entry& at, const Case& result) {
   if (!at.from.has("quadrature")) return;
   const TomlTable quadrature = at.from.table("quadrature");
   const std::vector<std::string> of_bond{"volume_correction", "surface_correction"},
-      of_cpd{"weights"}, of_lps{"degree", "traction_form"};
+      of_cpd{"weights"}, of_lps{"form"}, of_collocation{"degree", "traction_form"};
   const auto refuse = [&](const std::vector<std::string>& keys, const std::string& what) {
     for (const std::string& key : keys) {
       const bool is_none =
@@ -326,9 +341,15 @@ void check_quadrature(const Entry& at, const Case& result) {
   };
   if (is_cpd(result))
     refuse(of_bond, "is for model \"bond\"; the effective volumes of cpd need none");
-  if (is_lps(result)) refuse(of_bond, "is for model \"bond\"; lps has a quadrature of its own");
+  if (result.is_collocated())
+    refuse(of_bond, "is for model \"bond\"; lps has a quadrature of its own");
+  if (result.has_states())
+    refuse({"surface_correction"},
+           "is for model \"bond\"; the states of lps are those of the "
+           "neighbours there are");
   if (!is_cpd(result)) refuse(of_cpd, "is for model \"cpd\"");
   if (!is_lps(result)) refuse(of_lps, "is for model \"lps\"");
+  if (!result.is_collocated()) refuse(of_collocation, "is for model \"lps\" by collocation");
 }
 
 /// What follows from the materials. Without [material] the first region tells model and plane.
@@ -534,9 +555,13 @@ Table<MaterialSpecification> material_keys(const std::string& name) {
          "bond-based peridynamics, whose Poisson ratio is 1/4 (3D and plane strain) or 1/3 (plane "
          "stress); continuum-kinematics-inspired peridynamics with one-, two- and "
          "three-neighbour interactions, dimension 2 and 3; or the "
-         "[linear peridynamic solid](theory.md#linear-peridynamic-solid) of any Poisson ratio by "
-         "collocation, for small displacements, dimension 2 and 3")
-           .then([](auto& at, auto& material) {
+         "[linear peridynamic solid](theory.md#linear-peridynamic-solid) of any Poisson ratio, by "
+         "collocation or as an energy, for small displacements, dimension 2 and 3")
+           .then([name](auto& at, auto& material) {
+             const bool tells_body = name == "material" || (!at.so_far.material.has_constants() &&
+                                                            at.so_far.regions.empty());
+             if (tells_body && material.model == MaterialModel::lps)
+               material.influence = InverseInfluence::name;
              if (at.so_far.dimension > 1) return;
              if (material.model == MaterialModel::cpd)
                at.refuse("cpd needs dimension 2 or 3; in 1D it is the bond model");
@@ -557,7 +582,10 @@ Table<MaterialSpecification> material_keys(const std::string& name) {
          "[GPMB]'s of order 0, 0.5, 1, 3, 5 and 7, $e^{-(r/\\delta)^2}$, or $\\delta/r$; "
          "constants, "
          "moduli and fracture energy go with it. `cpd`: of triangles and tetrahedra the product of "
-         "those of their sides, with constants of the lattice"),
+         "those of their sides, with constants of the lattice. `lps` as an energy: the kernel "
+         "K(r), "
+         "by collocation the inverse one alone")
+           .default_words("`\"constant\"`, with `lps` `\"inverse\"`"),
        K("youngs_modulus", &Spec::youngs_modulus, positive("Pa"), "in all models").one_of(),
        K("micromodulus", &Spec::micromodulus, positive("N/m6", 1e150),
          "`bond`: bond constant c of the pairwise force c·stretch")
@@ -604,7 +632,7 @@ Table<MaterialSpecification> material_keys(const std::string& name) {
          "with their corrections (`bond`: in the mean over all directions) or integrals")
            .unless(has_constants, with_moduli)
            .unless(has_micromodulus, "goes with youngs_modulus, not with micromodulus")
-           .unless(of_lps, "is not for model \"lps\", whose quadrature is exact")
+           .unless(of_lps, "is not for model \"lps\"")
            .default_words("`\"lattice\"` with `cpd`, `\"continuum\"` with `bond`"),
        K("thermal_expansion", &Spec::thermal_expansion, between(-1.0, 1.0, "per K"),
          "of lengths, α: for `[temperature]`"),
@@ -766,7 +794,7 @@ void check_place_of_load(const Entry& at, const LoadSpecification& load) {
     at.from.refuse("depth", "is for a traction");
   const bool needs_set = load.kind == Kind::body_force || load.kind == Kind::total_force;
   if (needs_set) static_cast<void>(at.from.string("set"));
-  const bool is_on_surface = is_lps(at.so_far);
+  const bool is_on_surface = at.so_far.is_collocated();
   if (is_on_surface && at.from.has("depth") && load.depth != Depth::surface)
     at.from.refuse("depth", "of model lps is \"surface\", on which its tractions act");
   if (is_on_boundary && load.set.empty() && !load.side && !is_on_surface)
@@ -1129,7 +1157,7 @@ Table<LoadingSpecification> loading_keys() {
 }
 
 /// Whether the model's tangent is symmetric, as that of an energy is.
-bool has_symmetric_tangent(const Case& from) { return !is_lps(from); }
+bool has_symmetric_tangent(const Case& from) { return !from.is_collocated(); }
 
 void check_linear(const Entry& at, const SolverSpecification& solver) {
   const std::string why = what_is_against(solver.linear, has_symmetric_tangent(at.so_far));

@@ -1,0 +1,121 @@
+#include "assembly/terms/states/state_network.hpp"
+
+#include <algorithm>
+
+#include "src/core/threads.hpp"
+
+namespace peristat {
+namespace {
+
+double squared_length(const Points& points, Index i, Index j) {
+  const auto d = std::size_t(points.dimension);
+  double squared = 0.0;
+  for (std::size_t c = 0; c < d; ++c) {
+    const double along =
+        points.reference[std::size_t(j) * d + c] - points.reference[std::size_t(i) * d + c];
+    squared += along * along;
+  }
+  return squared;
+}
+
+/// Marks points once per row without clearing in between.
+class Marks {
+ public:
+  explicit Marks(Index points) : row_(std::size_t(points), -1) {}
+  /// Whether the point is met for the first time in this row.
+  bool meet(Index point, Index row) {
+    if (row_[std::size_t(point)] == row) return false;
+    row_[std::size_t(point)] = row;
+    return true;
+  }
+
+ private:
+  std::vector<Index> row_;
+};
+
+}  // namespace
+
+std::vector<double> kernel_of_weights(const Bonds& bonds) {
+  std::vector<double> kernel(std::size_t(bonds.count()));
+  for (Offset bond = 0; bond < bonds.count(); ++bond) {
+    kernel[std::size_t(bond)] = bonds.weight(bond) * bonds.inverse_length(bond);
+  }
+  return kernel;
+}
+
+std::vector<double> moments_of(const Points& points, const Bonds& bonds,
+                               const std::vector<double>& kernel) {
+  std::vector<double> moment(points.volume.size(), 0.0);
+  for (Index i = 0; i < bonds.points(); ++i) {
+    for (Offset bond = bonds.offset[i]; bond < bonds.offset[i + 1]; ++bond) {
+      const Index j = bonds.partner[bond];
+      const double part = kernel[std::size_t(bond)] * squared_length(points, i, j);
+      moment[std::size_t(i)] += part;
+      moment[std::size_t(j)] += part;
+    }
+  }
+  return moment;
+}
+
+StateNetwork::StateNetwork(const Bonds& bonds, bool reaches_twice, int threads) {
+  const Index points = bonds.points();
+  offset.assign(std::size_t(points) + 1, 0);
+  for (const Index upper : bonds.partner) ++offset[std::size_t(upper) + 1];
+  for (Index i = 0; i < points; ++i) offset[i + 1] += offset[i];
+  std::vector<Offset> next(offset.begin(), offset.end() - 1);
+  lower.resize(std::size_t(bonds.count()));
+  bond.resize(std::size_t(bonds.count()));
+  for (Index i = 0; i < points; ++i) {
+    for (Offset b = bonds.offset[i]; b < bonds.offset[i + 1]; ++b) {
+      const auto place = std::size_t(next[bonds.partner[b]]++);
+      lower[place] = i;
+      bond[place] = b;
+    }
+  }
+  if (!reaches_twice) {
+    block_offset = bonds.offset;
+    partner = bonds.partner;
+    return;
+  }
+  // Counted first and then written, so that no more is allocated than is kept.
+  const auto for_rows = [&](const auto& row) {
+    run_on_threads(threads, [&](int thread) {
+      Marks marks(points);
+      const Index first = Index(std::int64_t(points) * thread / threads);
+      const Index last = Index(std::int64_t(points) * (thread + 1) / threads);
+      for (Index i = first; i < last; ++i) {
+        const auto meet = [&](Index j) {
+          if (j > i && marks.meet(j, i)) row(i, j);
+        };
+        const auto meet_neighbours_of = [&](Index centre) {
+          meet(centre);
+          for (Offset e = offset[centre]; e < offset[centre + 1]; ++e) meet(lower[e]);
+          for (Offset b = bonds.offset[centre]; b < bonds.offset[centre + 1]; ++b) {
+            meet(bonds.partner[b]);
+          }
+        };
+        meet_neighbours_of(i);
+        for (Offset e = offset[i]; e < offset[i + 1]; ++e) meet_neighbours_of(lower[e]);
+        for (Offset b = bonds.offset[i]; b < bonds.offset[i + 1]; ++b) {
+          meet_neighbours_of(bonds.partner[b]);
+        }
+      }
+    });
+  };
+  block_offset.assign(std::size_t(points) + 1, 0);
+  for_rows([&](Index i, Index) { ++block_offset[std::size_t(i) + 1]; });
+  for (Index i = 0; i < points; ++i) block_offset[i + 1] += block_offset[i];
+  partner.resize(std::size_t(block_offset.back()));
+  next.assign(block_offset.begin(), block_offset.end() - 1);
+  for_rows([&](Index i, Index j) { partner[std::size_t(next[i]++)] = j; });
+  for (Index i = 0; i < points; ++i) {
+    std::sort(partner.begin() + block_offset[i], partner.begin() + block_offset[i + 1]);
+  }
+}
+
+double StateNetwork::bytes() const {
+  return double(sizeof(Offset)) * double(offset.size() + block_offset.size() + bond.size()) +
+         double(sizeof(Index)) * double(lower.size() + partner.size());
+}
+
+}  // namespace peristat

@@ -1,0 +1,191 @@
+#include "assembly/terms/states/state_term.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+
+#include "assembly/terms/bonds/bond_passes.hpp"
+#include "assembly/terms/model.hpp"
+#include "assembly/terms/states/state_kernels.hpp"
+#include "assembly/terms/workspace.hpp"
+
+namespace peristat {
+namespace {
+
+template <int D>
+class StatePasses : public TermPasses {
+ public:
+  StatePasses(const StateTerm& term, const TermSetting& setting)
+      : term_(term),
+        slot_(setting.model.slot_of(term)),
+        stretches_(term, setting),
+        pattern_(setting.pattern),
+        kernels_(setting.points, term.bonds(), term.shares(), term.network(),
+                 setting.workspace.threads()) {}
+
+  Evaluation gradient(const StateView& at, std::span<double> gradient, Write how) override {
+    take_integrities(at);
+    const double energy = kernels_.find_states(at.displacement);
+    if (!gradient.empty()) kernels_.write_forces(at.displacement, gradient, how == Write::onto);
+    Evaluation found;
+    found.energy = energy;
+    found.degenerate = !std::isfinite(energy);
+    return found;
+  }
+
+  Evaluation commit(std::span<const double> displacement, const SharedEnvironment& environment,
+                    History& history, std::span<double> gradient, Write how) override {
+    const DamageGrowth grown = growth({displacement, history, Damage::grows, environment});
+    if (grown.degrading == 0) {
+      return this->gradient({displacement, history, Damage::grows, environment}, gradient, how);
+    }
+    const History before = history;
+    static_cast<void>(this->gradient({displacement, before, Damage::grows, environment}, {}, how));
+    const auto remembered = kernels_.remembered();
+    const DamageGrowth committed =
+        stretches_.commit_forces(displacement, environment, history, {}, Write::over).growth;
+    Evaluation found =
+        this->gradient({displacement, history, Damage::grows, environment}, gradient, how);
+    found.growth = committed;
+    found.moves_equilibrium = true;
+    // Where a bond was stretched against the dilatation the energy may rise as it breaks; that is
+    // no dissipation, and has to come from somewhere else.
+    const double dissipated = std::max(dissipated_of(displacement, remembered, before), 0.0);
+    found.released = dissipated - (dissipated_by_law(history) - dissipated_by_law(before));
+    return found;
+  }
+
+  DamageGrowth growth(const StateView& at) override {
+    return term_.can_fail() ? stretches_.growth(at) : DamageGrowth{};
+  }
+
+  /// @param projection changes nothing: Pi is convex
+  void tangent(const StateView& at, double /*projection*/, Tangent& tangent, Write how) override {
+    if (tangent.blocks != Tangent::Blocks::whole) {
+      throw std::logic_error("the blocks of states are not symmetric");
+    }
+    if (how == Write::over) tangent.clear();
+    take_integrities(at);
+    kernels_.add_tangent(pattern_, tangent.off_diagonal, tangent.diagonal);
+  }
+
+  void product(const StateView& at, std::span<const double> v, double /*projection*/,
+               std::span<double> product, Write how) override {
+    take_integrities(at);
+    kernels_.find_states(v);
+    kernels_.write_forces(v, product, how == Write::onto);
+  }
+
+  void point_energies(const StateView& at, std::span<double> energies, Write how) override {
+    take_integrities(at);
+    kernels_.find_states(at.displacement);
+    const std::span<const double> found = kernels_.energies();
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      energies[i] = how == Write::over ? found[i] : energies[i] + found[i];
+    }
+  }
+
+  void add_virials(const StateView& at, std::span<double> virials) override {
+    take_integrities(at);
+    kernels_.find_states(at.displacement);
+    kernels_.add_virials(at.displacement, virials);
+  }
+
+ private:
+  void take_integrities(const StateView& at) {
+    if (!term_.can_fail()) return;
+    const std::span<const double> stretch = at.history.of(slot_);
+    if (stretch.size() < std::size_t(term_.bonds().count())) {
+      throw std::logic_error("bonds that can be damaged are evaluated after their history");
+    }
+    term_.with_damage_law([&](const auto& law) {
+      kernels_.scale([&](Offset bond) {
+        return law.of_bond(bond).integrity_after(stretch[std::size_t(bond)]);
+      });
+    });
+  }
+
+  /// Bonds that have broken beyond the stretch that they bear did so when they passed it, when they
+  /// held the square of the ratio less; the rest is not dissipated, but overshoot.
+  [[nodiscard]] double dissipated_of(std::span<const double> displacement,
+                                     const typename StateKernels<D>::Before& remembered,
+                                     const History& before) const {
+    const std::span<const double> history = before.of(slot_);
+    double sum = 0.0;
+    term_.with_damage_law([&](const auto& law) {
+      sum = kernels_.losses(displacement, remembered, [&](Offset bond, double stretch) {
+        const double ratio = law.of_bond(bond).borne(history[std::size_t(bond)]) / stretch;
+        return std::min(ratio * ratio, 1.0);
+      });
+    });
+    return sum;
+  }
+
+  [[nodiscard]] double dissipated_by_law(const History& history) const {
+    const std::span<const double> stretch = history.of(slot_);
+    const Bonds& bonds = term_.bonds();
+    double sum = 0.0;
+    term_.with_damage_law([&](const auto& law) {
+      for (Offset bond = 0; bond < bonds.count(); ++bond) {
+        sum += bonds.weight(bond) * bonds.length(bond) *
+               law.of_bond(bond).dissipated(stretch[std::size_t(bond)]);
+      }
+    });
+    return sum;
+  }
+
+  const StateTerm& term_;
+  std::size_t slot_;
+  BondPasses stretches_;  // of its bonds, whose own forces count for nothing
+  const BlockPattern& pattern_;
+  StateKernels<D> kernels_;
+};
+
+}  // namespace
+
+StateTerm::StateTerm(std::shared_ptr<const Bonds> bonds, BondPotential potential,
+                     std::vector<char> never_fails, StateShares shares, int threads)
+    : BondTerm(std::move(bonds), std::move(potential), std::move(never_fails)),
+      shares_(std::move(shares)),
+      network_(this->bonds(),
+               std::ranges::any_of(shares_.constants,
+                                   [](const LamePair& of) { return of.lambda != of.mu; }),
+               threads) {
+  const auto points = std::size_t(this->bonds().points());
+  if (shares_.kernel.size() != std::size_t(this->bonds().count()) ||
+      shares_.moment.size() != points || shares_.constants.size() != points) {
+    throw std::logic_error("states have a share of every bond and a moment of every point");
+  }
+}
+
+double StateTerm::bound_over_blocks(int dimension) const {
+  const double d = dimension;
+  double most = 1.0, least = 1.0;
+  for (const auto& [lambda, mu] : shares_.constants) {
+    const double ratio = (d * lambda + 2.0 * mu) / ((d + 2.0) * mu);
+    most = std::max(most, ratio);
+    least = std::min(least, ratio);
+  }
+  return 2.0 * most / least;
+}
+
+double StateTerm::stored_bytes() const {
+  const double bonds = double(shares_.kernel.size()), points = double(shares_.moment.size());
+  // Shares, and those that damage leaves; of a point moment, constants and what passes find.
+  return BondTerm::stored_bytes() + network_.bytes() + 8.0 * bonds * (can_fail() ? 2.0 : 1.0) +
+         8.0 * points * (1.0 + 2.0 + 4.0);
+}
+
+std::unique_ptr<TermPasses> StateTerm::passes(const TermSetting& setting) const {
+  switch (setting.points.dimension) {
+    case 2:
+      return std::make_unique<StatePasses<2>>(*this, setting);
+    case 3:
+      return std::make_unique<StatePasses<3>>(*this, setting);
+    default:
+      throw std::logic_error("states are of dimension 2 or 3");
+  }
+}
+
+}  // namespace peristat

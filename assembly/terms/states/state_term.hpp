@@ -1,0 +1,63 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "assembly/terms/bonds/bond_term.hpp"
+#include "assembly/terms/states/state_network.hpp"
+
+namespace peristat {
+
+/// The linear peridynamic solid as an energy, for small displacements: with xi the bond in the
+/// reference, r its length, eta the difference of displacements, d the dimension and T_ij the
+/// integrity that its history leaves to a bond,
+///
+///   Pi = sum_i V_i [ (lambda_i - mu_i) theta_i^2 / 2
+///                    + d (d + 2) mu_i / 2 (1/M_i) sum_j T_ij kappa_ij (xi . eta)^2 / r^2 ],
+///   theta_i = (d / M_i) sum_j T_ij kappa_ij xi . eta,   M_i = sum_j kappa_ij r^2,
+///
+/// kappa_ij = K(r) V_i V_j nu_ij symmetric, M_i of the whole neighbourhood: neither cracks nor
+/// damage change it, so that what is cut from the start and what breaks on the way is the same. At
+/// surfaces it is that of the neighbours that are there.
+///
+/// Pi is quadratic, and no point's part of it is negative: theta^2 <= d^2 (1/M) sum T kappa
+/// (xi . eta)^2 / r^2 by Cauchy and Schwarz, so that it is at least (lambda + 2 mu / d) theta^2
+/// / 2. Forces of bonds are central along their direction in the reference: they add up to zero,
+/// and so do their moments about places in the reference, not in the present one.
+///
+/// Bonds break as those of brittle bond models do, by their stretch in the deformed configuration:
+/// as a term of bonds it remembers that. What a commit takes away, at fixed displacements, counts
+/// as dissipated, of every bond what it held when it passed the stretch that it bears: by the law
+/// what a bond of the network's modulus dissipates, and the difference, of either sign, as
+/// released.
+class StateTerm : public BondTerm {
+ public:
+  /// @param bonds those that are left, with the weights that histories are told with
+  /// @throws std::logic_error for shares of other bonds or points
+  StateTerm(std::shared_ptr<const Bonds> bonds, BondPotential potential,
+            std::vector<char> never_fails, StateShares shares, int threads);
+
+  [[nodiscard]] const StateShares& shares() const { return shares_; }
+  [[nodiscard]] const StateNetwork& network() const { return network_; }
+
+  /// A number c so that no eigenvalue of M^-1 K, M the masses of points, exceeds c times the
+  /// largest of the diagonal blocks: Pi is at most R times the bonds' part, R the largest of 1 and
+  /// (d lambda + 2 mu) / ((d + 2) mu), at least R' times it, R' the smallest of these, and of pairs
+  /// of points the number is 2. So c = 2 R / R'.
+  [[nodiscard]] double bound_over_blocks(int dimension) const;
+
+  [[nodiscard]] Couplings couplings() const override {
+    return {network_.block_offset, network_.partner};
+  }
+  [[nodiscard]] bool has_symmetric_blocks() const override { return false; }
+  [[nodiscard]] bool visits_rows() const override { return false; }
+  [[nodiscard]] Balances balances() const override { return {true, false, true, true}; }
+  [[nodiscard]] double stored_bytes() const override;
+  [[nodiscard]] std::unique_ptr<TermPasses> passes(const TermSetting& setting) const override;
+
+ private:
+  StateShares shares_;
+  StateNetwork network_;
+};
+
+}  // namespace peristat

@@ -1,0 +1,28 @@
+#pragma once
+
+#include "assembly/terms/model.hpp"
+#include "solvers/study/bond_materials.hpp"
+#include "src/connectivity/crack.hpp"
+
+namespace peristat {
+
+/// What the bonds of a body of model "lps" with the form "energy" count with: their influence is
+/// K(r) r / delta, so that a bond stores as much in a dilation as one of the bond model.
+/// @param setting with the influence K
+[[nodiscard]] BondSetting state_setting(BondSetting setting);
+
+/// Stretch at which its bonds break so that a plane crack takes the fracture energy under a uniform
+/// dilation, see crack_energy_of_dilation.
+/// @param setting with the influence K
+[[nodiscard]] double state_critical_stretch(const MaterialSpecification& material,
+                                            const BondSetting& setting, double fracture_energy);
+
+/// Model of a body of model "lps" with the form "energy", and what its pre-cracks have cut.
+/// @param setting see state_setting, with which the bonds were made
+/// @throws InputError ("material.model") for planes of symmetry, periods and given neighbours
+[[nodiscard]] Model make_state_model(const BodySpecification& from, const PointMaterials& materials,
+                                     const PointFactors& factors, const Points& points,
+                                     const BondSetting& setting, Bonds bonds, CutBonds& cut,
+                                     int threads);
+
+}  // namespace peristat
