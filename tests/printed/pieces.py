@@ -1,0 +1,32 @@
+"""Pieces that a body has broken into, as far as they have kept their bonds."""
+
+import h5py
+import numpy as np
+
+
+def pieces(folder, horizon, damage=0.5, least=10):
+    """Numbers of points, descending, of the pieces of at least so many points whose damage is below a value, which
+    unbroken bonds hold together."""
+    with h5py.File(folder / "results.h5") as file:
+        places = file["points/reference"][...]
+        damages = list(file["steps"].values())[-1]["damage"][...]
+        broken = np.column_stack([file["broken_bonds/first_point"][...], file["broken_bonds/second_point"][...]])
+    whole = np.flatnonzero(damages < damage)
+    count = len(places)
+    gone = {(min(pair), max(pair)) for pair in broken.tolist()}
+    root = list(range(count))
+
+    def find(point):
+        while root[point] != point:
+            root[point] = root[root[point]]
+            point = root[point]
+        return point
+
+    for number, point in enumerate(whole):
+        others = whole[number + 1 :]
+        near = others[np.linalg.norm(places[others] - places[point], axis=1) <= horizon * (1 + 1e-8)]
+        for other in near.tolist():
+            if (int(point), other) not in gone:
+                root[find(other)] = find(int(point))
+    sizes = np.bincount([find(int(point)) for point in whole], minlength=count)
+    return sorted((int(size) for size in sizes if size >= least), reverse=True)
