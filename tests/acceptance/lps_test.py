@@ -1,5 +1,6 @@
 """The linear peridynamic solid through the command line: patch tests, known solutions, refusals."""
 
+import json
 import math
 import os
 import pathlib
@@ -367,6 +368,170 @@ class Told(CommandLine):
         self.assertAlmostEqual(probes["max_error"], 5e-4, delta=1e-15)
         history = (self.folder / "out" / "history.csv").read_text().splitlines()[0]
         self.assertIn(",rms_error,max_error,", history)
+
+
+CUBE = """dimension = 3
+[lattice]
+spacing = 0.2
+horizon_ratio = 3.2
+perturbation = {perturbation}
+seed = 3
+[[lattice.shape]]
+add = "box"
+min = [0.0, 0.0, 0.0]
+max = [1.0, 1.0, 1.0]
+[[lattice.layer]]
+name = "held"
+side = "x-"
+thickness = 7
+[quadrature]
+traction_form = "{form}"
+[material]
+model = "lps"
+youngs_modulus = 1.0
+poisson_ratio = 0.3
+[[support]]
+set = "held"
+displacement = ["3e-3*x + 2e-3*y + 1e-3*z", "1e-3*y - 4e-3*x", "2e-3*z - 1e-3*y"]
+[[load]]
+stress = {stress}
+[solver]
+linear = "lu"
+relative_tolerance = 1e-13
+"""
+
+
+class Solids(CommandLine):
+    """Linear displacements of a cube that is held at one face, with five faces, eight edges and four corners."""
+
+    def error(self, form="full", perturbation=0.0):
+        first, second = lps.lame(1.0, 0.3, "strain")
+        normal = [first * 6e-3 + 2 * second * strain for strain in (3e-3, 1e-3, 2e-3)]
+        shear = [second * strain for strain in (-2e-3, -1e-3, 1e-3)]
+        found = self.results(CUBE.format(form=form, perturbation=perturbation, stress=[repr(float(s)) for s in normal + shear]))
+        x, y, z = found.reference.T
+        expected = numpy.stack([3e-3 * x + 2e-3 * y + 1e-3 * z, 1e-3 * y - 4e-3 * x, 2e-3 * z - 1e-3 * y], 1)
+        return abs(found.steps[-1].displacement - expected)[~found.sets["held"]].max()
+
+    def test_full(self):
+        self.assertLess(self.error(), EXACT)
+
+    def test_full_on_a_perturbed_lattice(self):
+        self.assertLess(self.error(perturbation=0.15), EXACT)
+
+    def test_paper_is_not_exact_at_edges(self):
+        self.assertGreater(self.error("paper"), 1e-5)
+
+
+MOTION = """dimension = 2
+[lattice]
+spacing = 0.05
+horizon_ratio = 3.5
+perturbation = 0.2
+[[lattice.shape]]
+add = "box"
+min = [0.0, 0.0]
+max = [1.0, 1.0]
+[[lattice.layer]]
+name = "held"
+side = "x-"
+thickness = 8
+[material]
+model = "lps"
+plane = "strain"
+youngs_modulus = 1.0
+poisson_ratio = 0.3
+density = 3.0
+[[support]]
+set = "held"
+displacement = ["t*t*(3e-3*x + 2e-3*y)", "t*t*(1e-3*y - 4e-3*x)"]
+[[set]]
+name = "body"
+where = "x > 0"
+[[load]]
+set = "body"
+body_force = ["6*(3e-3*x + 2e-3*y)", "6*(1e-3*y - 4e-3*x)"]
+[[load]]
+stress = {stress}
+[solver]
+mode = "dynamics"
+relative_tolerance = 1e-13
+[dynamics]
+scheme = "newmark"
+end_time = 2.0
+time_step = {step}
+[output]
+every = 1
+"""
+
+STRIP = """dimension = 2
+[lattice]
+spacing = 1e-3
+horizon_ratio = 3.5
+[[lattice.shape]]
+add = "box"
+min = [0.0, 0.0]
+max = [0.04, 0.02]
+[[lattice.layer]]
+name = "bottom"
+side = "y-"
+thickness = 7
+[[lattice.layer]]
+name = "top"
+side = "y+"
+thickness = 7
+[[crack]]
+from = [-0.01, 0.01]
+to = [0.012, 0.01]
+[material]
+model = "lps"
+plane = "stress"
+youngs_modulus = 72e9
+poisson_ratio = 0.23
+[material.damage]
+law = "critical_stretch"
+fracture_energy = 3.8
+no_fail = ["bottom", "top"]
+[[support]]
+set = "bottom"
+displacement = [0.0, 0.0]
+[[support]]
+set = "top"
+displacement = ["0", "3e-6*load"]
+[loading]
+steps = 6
+"""
+
+
+class Motions(CommandLine):
+    def test_quadratic_in_time(self):
+        """Newmark's mean acceleration is exact for motions quadratic in time, whatever the step."""
+        tractions = [f"t*t*({value!r})" for value in stress(0.3)]
+        for step in (0.5, 0.25):
+            found = self.results(MOTION.format(stress=tractions, step=step))
+            x, y = found.reference.T[:2]
+            expected = 4.0 * numpy.stack([3e-3 * x + 2e-3 * y, 1e-3 * y - 4e-3 * x], 1)
+            self.assertLess(abs(found.steps[-1].displacement[:, :2] - expected).max(), 1e-11)
+
+    def test_threads(self):
+        settings = "dynamics.end_time=9e-6", "dynamics.history_every=16", "output.every=48"
+        one, two = (self.results(CASES / "crack_branching.toml", *settings, threads=threads).steps[-1] for threads in (1, 2))
+        self.assertGreater(one.damage.max(), 0.3)
+        numpy.testing.assert_array_equal(one.damage, two.damage)
+        numpy.testing.assert_allclose(one.displacement, two.displacement, atol=1e-12 * abs(one.displacement).max())
+
+
+class LoadSteps(CommandLine):
+    def test_a_strip_tears(self):
+        """What a straight crack dissipates is its area times the fracture energy, but for the ends of its path."""
+        found = self.results(STRIP)
+        summary = json.loads((self.folder / "out" / "summary.json").read_text())
+        area = 0.028  # for a metre of thickness
+        self.assertAlmostEqual(summary["energy"]["dissipated"] / (3.8 * area), 1.0, delta=0.1)
+        moved = found.steps[-1].displacement[:, 1]
+        upper = found.reference[:, 1] > 0.01
+        numpy.testing.assert_allclose(moved[upper], 3e-6, atol=1e-11)  # without stress
+        numpy.testing.assert_allclose(moved[~upper], 0.0, atol=1e-11)
 
 
 if __name__ == "__main__":
