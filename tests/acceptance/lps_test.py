@@ -521,6 +521,19 @@ class Motions(CommandLine):
         numpy.testing.assert_allclose(one.displacement, two.displacement, atol=1e-12 * abs(one.displacement).max())
 
 
+class Iterations(CommandLine):
+    def test_they_depend_on_neither_size_nor_perturbation(self):
+        """Of GMRES with the operator between neighbours of the unperturbed lattice, in all solves of the step."""
+        for poisson, most in ((0.3, 35), (0.49, 120)):
+            for sides in (16, 48):
+                for perturbation in (0, 0.2):
+                    with self.subTest(poisson=poisson, sides=sides, perturbation=perturbation):
+                        self.results(CASES / "manufactured.toml", "solver.linear=gmres", f"lattice.spacing={math.pi / sides!r}",
+                                     f"material.poisson_ratio={poisson}", f"lattice.perturbation={perturbation}")  # fmt: skip
+                        summary = json.loads((self.folder / "out" / "summary.json").read_text())
+                        self.assertLessEqual(summary["linear_iterations"], most)
+
+
 class LoadSteps(CommandLine):
     def test_a_strip_tears(self):
         """What a straight crack dissipates is its area times the fracture energy, but for the ends of its path."""

@@ -138,7 +138,7 @@ struct CollocationOperator::Kernels {
 
   [[nodiscard]] V place(Index i) const {
     V at;
-    for (int c = 0; c < D; ++c) at[c] = op.points_.reference[std::size_t(i) * D + c];
+    for (int c = 0; c < D; ++c) at[c] = op.reference_[std::size_t(i) * D + c];
     return at;
   }
   [[nodiscard]] static V of(std::span<const double> field, Index i) {
@@ -601,6 +601,8 @@ struct CollocationOperator::Kernels {
 CollocationOperator::CollocationOperator(const Points& points, CollocationSetting setting,
                                          int threads)
     : points_(points), setting_(std::move(setting)), threads_(threads) {
+  const std::vector<double>& places = setting_.network->places;
+  reference_ = places.empty() ? std::span<const double>(points.reference) : places;
   const auto count = std::size_t(setting_.network->points());
   const auto d = std::size_t(setting_.network->dimension);
   shape_.resize(count * d * d);

@@ -100,6 +100,7 @@ class CollocationOperator {
 
   const Points& points_;
   CollocationSetting setting_;
+  std::span<const double> reference_;  // positions
   int threads_;
   std::vector<char> broken_;  // as known
   bool is_up_to_date_ = false;

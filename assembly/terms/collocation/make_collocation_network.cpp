@@ -83,6 +83,7 @@ class Builder {
     if (d_ == 2) peristat::add_missing<2>(xi, share, first, third);
     if (d_ == 3) peristat::add_missing<3>(xi, share, first, third);
   }
+  void add_place(double coordinate) { network_.places.push_back(coordinate); }
   void end_point() { network_.offset.push_back(Offset(network_.neighbour.size())); }
   [[nodiscard]] CollocationNetwork take() { return std::move(network_); }
 
@@ -147,8 +148,16 @@ CollocationNetwork make_local_network(const Points& points, const Bonds& bonds) 
     return cell;
   };
   std::map<Cell, Index> point_at;
-  for (Index i = 0; i < points.count(); ++i) point_at[cell_of(i)] = i;
   Builder builder(points);
+  for (Index i = 0; i < points.count(); ++i) {
+    const Cell cell = cell_of(i);
+    point_at[cell] = i;
+    const Coordinates from_origin =
+        frame.turned({double(cell[0]) * h, double(cell[1]) * h, double(cell[2]) * h});
+    for (int c = 0; c < points.dimension; ++c) {
+      builder.add_place(points.lattice->origin[c] + from_origin[c]);
+    }
+  }
   const int depth = is_plane ? 0 : 1;
   for (Index i = 0; i < points.count(); ++i) {
     const Cell own = cell_of(i);

@@ -28,8 +28,9 @@ struct MadeCollocationNetwork {
 ///
 ///   1 / (8 h^2), 1 / (16 h^2) in 2D,   1 / (30 h^2) both in 3D.
 ///
-/// It stands in for the operator where a system is to be solved nearly. On perturbed lattices
-/// neighbours are those that the lattice has, with its shares.
+/// It stands in for the operator where a system is to be solved nearly. On perturbed lattices it is
+/// that of the lattice without the perturbation: with the shares of the lattice between points that
+/// are moved forces of linear displacements would be wrong.
 /// @throws std::logic_error for points on no lattice of squares or cubes
 [[nodiscard]] CollocationNetwork make_local_network(const Points& points, const Bonds& bonds);
 
