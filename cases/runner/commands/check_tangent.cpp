@@ -443,7 +443,8 @@ Exit check_tangent(const Case& from, const std::string& deformation, int threads
   tangent.linearise(assembler, state, 0.0);
   std::vector<double> direction = test_direction(points, constraints.dependent());
   double largest_step = 0.05;
-  if (!goes_by_events) {
+  // Without a potential forces know of damage once it is committed only.
+  if (!goes_by_events && assembler.has_potential()) {
     largest_step = keep_off_kinks(body, displacement, gradient, direction, largest_step);
   }
   tangent.multiply(direction, image);
