@@ -269,7 +269,7 @@ class CommandLine(unittest.TestCase):
                 self.assertGreater(told["tangent_frobenius_norm"], 0.0)
                 if case.parent.name == "lps":  # linear forces without an energy
                     self.assertLess(told["tangent_error"], 1e-12)
-                    self.assertGreater(told["asymmetry"], 1e-4)
+                    self.assertGreater(told["asymmetry"], 1e-5)  # of the largest entry: of motions, inertia
                     self.assertIsNone(told["residual_error"])
                     self.assertIn("the asymmetry is meant", run.stderr)
                     continue
