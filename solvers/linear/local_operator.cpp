@@ -12,7 +12,7 @@ namespace peristat {
 namespace {
 
 /// Frobenius norm of the skew part over that of the whole up to which the symmetric part stands in.
-constexpr double nearly_symmetric = 0.1;
+constexpr double nearly_symmetric = 0.03;
 
 /// Of a solve by factors, which need not be refined.
 constexpr double rough = 1e-3;

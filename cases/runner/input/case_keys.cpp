@@ -847,7 +847,9 @@ Table<LoadSpecification> load_keys() {
                  {{"row", Depth::row}, {"horizon", Depth::horizon}, {"surface", Depth::surface}}),
              "`traction`: borne by the outermost row of points, spread evenly over a horizon "
              "below the boundary, or on the surface itself, as model `lps` alone has it, always")
-               .written_if(is_traction)},
+               .written_if([=](auto& load, const Case& from) {
+                 return is_traction(load, from) && !from.is_collocated();
+               })},
           {},
           check_place_of_load};
 }
