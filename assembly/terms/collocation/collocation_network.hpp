@@ -12,7 +12,7 @@ namespace peristat {
 /// it, or what is even in the tangential direction ([LPS] eq. 4.6).
 enum class TractionForm { full, paper };
 
-/// Entries of a symmetric tensor of third order: xxx xxy xyy yyy in 2D.
+/// Entries of a symmetric tensor of third order, in ascending order of their axes.
 constexpr int third_moment_entries(int dimension) { return dimension == 2 ? 4 : 10; }
 
 /// Neighbours of points in both directions with the weights of a quadrature, frozen in the

@@ -6,6 +6,8 @@
 #include <functional>
 #include <utility>
 
+#include <Eigen/Eigenvalues>
+
 #include "src/core/threads.hpp"
 #include "src/measures/small_algebra.hpp"
 
@@ -52,54 +54,20 @@ Vector<D, double> contracted(const double* third, const Matrix<D, double>& tenso
   return result;
 }
 
-/// Eigenvalues and vectors (in columns) of a symmetric matrix, by Jacobi's rotations.
-template <int D>
-void find_spectrum(Matrix<D, double> a, Vector<D, double>& values, Matrix<D, double>& vectors) {
-  vectors = {};
-  for (int c = 0; c < D; ++c) vectors[c][c] = 1.0;
-  constexpr int sweeps = 12;  // convergence is quadratic
-  for (int sweep = 0; sweep < sweeps; ++sweep) {
-    for (int p = 0; p < D; ++p) {
-      for (int q = p + 1; q < D; ++q) {
-        if (a[p][q] == 0.0) continue;
-        const double theta = 0.5 * (a[q][q] - a[p][p]) / a[p][q];
-        const double t = std::copysign(1.0, theta) / (std::abs(theta) + std::hypot(1.0, theta));
-        const double cosine = 1.0 / std::hypot(1.0, t), sine = t * cosine;
-        for (int k = 0; k < D; ++k) {
-          const double kp = a[k][p], kq = a[k][q];
-          a[k][p] = cosine * kp - sine * kq;
-          a[k][q] = sine * kp + cosine * kq;
-        }
-        for (int k = 0; k < D; ++k) {
-          const double pk = a[p][k], qk = a[q][k];
-          a[p][k] = cosine * pk - sine * qk;
-          a[q][k] = sine * pk + cosine * qk;
-          const double kp = vectors[k][p], kq = vectors[k][q];
-          vectors[k][p] = cosine * kp - sine * kq;
-          vectors[k][q] = sine * kp + cosine * kq;
-        }
-      }
-    }
-  }
-  for (int c = 0; c < D; ++c) values[c] = a[c][c];
-}
-
 /// Pseudo-inverse of a positive semidefinite matrix, written row by row.
 template <int D>
 void write_inverse(const Matrix<D, double>& shape, double* inverse) {
-  Vector<D, double> values;
-  Matrix<D, double> vectors;
-  find_spectrum<D>(shape, values, vectors);
-  const double largest = *std::max_element(values.begin(), values.end());
-  std::fill_n(inverse, D * D, 0.0);
+  using Tensor = Eigen::Matrix<double, D, D, Eigen::RowMajor>;
+  const Eigen::SelfAdjointEigenSolver<Tensor> spectrum(
+      Eigen::Map<const Tensor>(shape.front().data()));
+  const auto& values = spectrum.eigenvalues();  // ascending
+  Tensor sum = Tensor::Zero();
   for (int k = 0; k < D; ++k) {
-    if (!(values[k] > flat_shape * largest)) continue;
-    for (int r = 0; r < D; ++r) {
-      for (int c = 0; c < D; ++c) {
-        inverse[r * D + c] += vectors[r][k] * vectors[c][k] / values[k];
-      }
-    }
+    if (!(values(k) > flat_shape * values(D - 1))) continue;
+    const auto vector = spectrum.eigenvectors().col(k);
+    sum += vector * vector.transpose() / values(k);
   }
+  Eigen::Map<Tensor>(inverse, D, D) = sum;
 }
 
 /// Share of sum k r^2 below which a point is torn: a straight crack leaves it half of its ball.
@@ -668,13 +636,6 @@ void CollocationOperator::forces(std::span<const double> displacement,
 void CollocationOperator::add_traction_forces(std::span<const double> traction,
                                               std::span<double> force) {
   dispatch([&](const auto& kernels) { kernels.add_traction_forces(traction, force); });
-}
-
-void CollocationOperator::dilatations(std::span<const double> displacement,
-                                      std::span<double> theta) {
-  dispatch([&](const auto& kernels) {
-    kernels.for_points([&](Index i) { theta[i] = kernels.theta_at(displacement, i); });
-  });
 }
 
 void CollocationOperator::displacement_gradients(std::span<const double> displacement,

@@ -59,8 +59,6 @@ class CollocationOperator {
   /// Adds the part of the tractions alone, -V B(0, T), to the forces of the loads [N].
   void add_traction_forces(std::span<const double> traction, std::span<double> force);
 
-  /// Dilatation of points.
-  void dilatations(std::span<const double> displacement, std::span<double> theta);
   /// Nonlocal displacement gradients H_i = d sum_j k_ij eta (M_i xi), points x d x d, row major,
   /// exact for linear fields; their trace is the dilatation.
   void displacement_gradients(std::span<const double> displacement, std::span<double> gradients);
