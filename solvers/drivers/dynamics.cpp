@@ -34,7 +34,7 @@ constexpr double growth_of_instability = 100.0;
 
 /// The same where forces have no potential, whose energy is no balance: kinetic and stored energy
 /// of torn bodies came to 1.17 of what was put in, of one that was unstable to 4 and more.
-constexpr double growth_without_potential = 1.5;
+constexpr double growth_without_potential = 1.3;
 
 /// Of what has been put in, what the scheme's energy may differ from the printed one: it is
 /// (step / stable step)^2 of what moves at the highest frequency. Well-resolved motions have some

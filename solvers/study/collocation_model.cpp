@@ -1,5 +1,6 @@
 #include "solvers/study/collocation_model.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <utility>
@@ -33,6 +34,33 @@ void require_lattice(const Points& points) {
   if (!points.neighbours.empty()) {
     refuse("material.model", "lps", "finds its own neighbours");
   }
+}
+
+/// A square corner has a whole ball two bonds away, an angle of 30 degrees one that is four away.
+constexpr int farthest_whole_ball = 4;
+
+/// Between faces less than two horizons apart no ball is whole, and what surfaces there lack is
+/// made up from points that lack as much: the operator has eigenvalues of the other sign, so that
+/// a strip bends against its load.
+void refuse_thin_bodies(const Points& points, const CollocationNetwork& network) {
+  std::vector<char> is_near = network.is_whole;
+  for (int bonds = 0; bonds < farthest_whole_ball; ++bonds) {
+    const std::vector<char> before = is_near;
+    for (Index i = 0; i < network.points(); ++i) {
+      for (Offset e = network.offset[i]; e < network.offset[i + 1] && is_near[i] == 0; ++e) {
+        is_near[i] = before[std::size_t(network.neighbour[std::size_t(e)])];
+      }
+    }
+  }
+  const auto thin = std::find(is_near.begin(), is_near.end(), 0);
+  if (thin == is_near.end()) return;
+  const auto at = static_cast<Index>(thin - is_near.begin());
+  throw InputError("material.model", "lps",
+                   "needs bodies thicker than two horizons: no point within four bonds of the one "
+                   "at " +
+                       place_text(points.position(at), points.dimension) +
+                       " m has a whole ball; take a smaller spacing or horizon_ratio, or "
+                       "quadrature.form = \"energy\"");
 }
 
 }  // namespace
@@ -76,6 +104,7 @@ Model make_collocation_model(const BodySpecification& from, const PointMaterials
   MadeCollocationNetwork made =
       make_collocation_network(points, bonds, setting.horizon, from.collocation.degree, threads);
   summary = {made.negative, made.lowered, made.solves, made.lowest};
+  refuse_thin_bodies(points, made.network);
   auto local = std::make_shared<CollocationNetwork>(make_local_network(points, bonds));
   auto whole = std::make_shared<CollocationNetwork>(std::move(made.network));
   auto [potential, never_fails] = mixed.potential(bonds);

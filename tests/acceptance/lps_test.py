@@ -135,8 +135,8 @@ class Patches(CommandLine):
         self.assert_exact(shapes=hole)
         self.assert_exact("perturbation = 0.2\nseed = 5", shapes=hole, poisson=0.49)
 
-    def test_bodies_thinner_than_the_horizon(self):
-        for rows in (2, 3, 5):
+    def test_bodies_of_two_horizons(self):
+        for rows in (7, 8):
             with self.subTest(rows=rows):
                 self.assert_exact(size=(1.0, 0.05 * rows))
 
@@ -289,13 +289,20 @@ class Refusals(CommandLine):
                             patch(loads='[[load]]\nboundary = "hole"\npressure = 1\n'))  # fmt: skip
 
     def test_tractions_that_would_be_lost(self):
-        """In thin bodies a point has two faces and one traction."""
+        """In necks a point has two faces and one traction."""
+        neck = '[[lattice.shape]]\nsubtract = "box"\nmin = [0.4, -1.0]\nmax = [0.6, 0.25]\n'
         for value in ("traction = [0, 1]", "pressure = 1"):
             load = f'[[load]]\nside = "y+"\n{value}\n'
-            self.assert_refused(r"load\[0\]\..*less than two horizons apart", patch(loads=load, size=(1.0, 0.25)))
+            self.assert_refused(r"load\[0\]\..*less than two horizons apart", patch(loads=load, size=(1.0, 0.5), shapes=neck))
             self.assertEqual(self.peristat("run", patch(loads=load, size=(1.0, 0.5))).returncode, 0)
-        both = self.peristat("run", patch(loads="[[load]]\npressure = 1\n", size=(1.0, 0.25)))
+        both = self.peristat("run", patch(loads="[[load]]\npressure = 1\n", size=(1.0, 0.5), shapes=neck))
         self.assertEqual(both.returncode, 0, both.stderr)
+
+    def test_thin_bodies(self):
+        """Their operator has eigenvalues of the other sign: cantilevers would bend as the load does not."""
+        for rows in (1, 3, 6):
+            self.assert_refused(r"material.model = lps: needs bodies thicker than two horizons",
+                                patch(size=(1.0, 0.05 * rows), layers=("x-",)))  # fmt: skip
 
     def test_other_depths(self):
         load = '[[load]]\nside = "y+"\ntraction = [0, 1]\ndepth = "row"\n'
@@ -379,7 +386,7 @@ seed = 3
 [[lattice.shape]]
 add = "box"
 min = [0.0, 0.0, 0.0]
-max = [1.0, 1.0, 1.0]
+max = [1.4, 1.4, 1.4]
 [[lattice.layer]]
 name = "held"
 side = "x-"
@@ -519,6 +526,89 @@ class Motions(CommandLine):
         self.assertGreater(one.damage.max(), 0.3)
         numpy.testing.assert_array_equal(one.damage, two.damage)
         numpy.testing.assert_allclose(one.displacement, two.displacement, atol=1e-12 * abs(one.displacement).max())
+
+
+CANTILEVER = """dimension = 2
+[lattice]
+spacing = 0.05
+horizon_ratio = 3.5
+[[lattice.shape]]
+add = "box"
+min = [0.0, 0.0]
+max = [3.0, {height}]
+[[lattice.layer]]
+name = "held"
+side = "x-"
+thickness = 8
+[material]
+model = "lps"
+plane = "stress"
+youngs_modulus = 1.0
+poisson_ratio = 0.1
+density = 1.0
+[[support]]
+set = "held"
+displacement = [0.0, 0.0]
+[[set]]
+name = "body"
+where = "x > 0"
+[[set]]
+name = "tip"
+where = "x > 2.95"
+[[probe]]
+name = "tip"
+set = "tip"
+statistic = "mean"
+field = "displacement"
+component = "y"
+"""
+
+WEIGHT = """[[load]]
+set = "body"
+body_force = [0.0, 1e-5]
+"""
+
+PUSH = """[[initial]]
+set = "body"
+velocity = ["0.01*x", "0.01*sin(3*x)"]
+[solver]
+mode = "dynamics"
+[dynamics]
+scheme = "newmark"
+end_time = 40.0
+time_step = 0.02
+history_every = 100
+[output]
+every = 500
+"""
+
+
+class ThinBodies(CommandLine):
+    def summary(self):
+        return json.loads((self.folder / "out" / "summary.json").read_text())
+
+    def test_cantilevers_bend_as_the_page_tells(self):
+        """Deflections over those of Timoshenko's beam, and what of the weight no reaction bears."""
+        gaps = {}
+        for rows, told in ((7, 0.23), (8, 0.43), (10, 0.75), (14, 1.01), (20, 1.09), (28, 1.09)):
+            height = 0.05 * rows
+            self.results(CANTILEVER.format(height=height) + WEIGHT)
+            weight, inertia, shear = 1e-5 * height, height**3 / 12, 1 / 2.2
+            beam = weight * 3.0**4 / (8 * inertia) + weight * 3.0**2 / (2 * 5 / 6 * shear * height)
+            self.assertAlmostEqual(self.summary()["probes"]["tip"] / beam, told, delta=0.006)
+            gaps[rows] = self.summary()["unbalanced_force"] / (3.0 * weight)
+        for rows, told in ((7, 1.13), (14, 0.46), (28, 0.06)):
+            self.assertAlmostEqual(gaps[rows], told, delta=0.006)
+
+    def test_motions_that_gain_energy_end(self):
+        strip = CANTILEVER.replace("[3.0, {height}]", "[4.0, {height}]")
+        ended = self.peristat("run", strip.format(height=0.35) + PUSH)
+        self.assertEqual(ended.returncode, 3, ended.stderr)
+        self.assertRegex((self.folder / "out" / "decisions.csv").read_text(), "the motion holds .* J, and no more than .* J have been put in")
+        for rows, gained in ((8, 1.22), (10, 1.04)):
+            self.results(strip.format(height=0.05 * rows) + PUSH)
+            energy = self.summary()["energy"]
+            self.assertAlmostEqual(1 - energy["balance_error"] / energy["external_work"], gained, delta=0.006)
 
 
 class Iterations(CommandLine):

@@ -2,6 +2,7 @@
 
 import contextlib
 import csv
+import os
 import pathlib
 import random
 import shutil
@@ -463,9 +464,10 @@ class Faults(Resumed):
 class LossOfPower(Resumed):
     def test_an_older_state_that_had_reached_the_disk_is_taken(self):
         whole = self.folder / "whole"
-        settings = ["loading.steps=80", "lattice.spacing=2e-4"]  # some seconds
+        settings = ["loading.steps=160", "lattice.spacing=2e-4"]  # some seconds
         self.run_case(out=whole, text=PULLED, settings=settings)
         words = [word for setting in settings for word in ("--set", setting)]
+        os.sync()  # or the run waits for what others have written
         process = subprocess.Popen([PROGRAM, "run", self.case(PULLED), "--output", self.out, "--threads", "1", "--quiet",
                                     *words])  # fmt: skip
         while not (self.out / "parts/safe_checkpoint").exists():

@@ -29,6 +29,7 @@ struct CollocationNetwork {
   /// Sums of k xi [1/m] and k xi xi xi / r^2 [1/m] over what is missing from the start: places
   /// outside the body, and points beyond a pre-crack.
   std::vector<double> missing_first, missing_third;
+  std::vector<char> is_whole;  ///< whether nothing of a point's ball is missing from the start
   /// Where points stand in the place of the body's own reference; empty: there [m].
   std::vector<double> places{};
 

@@ -183,20 +183,20 @@ struct CollocationOperator::Kernels {
     double* third = &op.third_[std::size_t(i) * entries];
     std::copy_n(&net.missing_first[std::size_t(i) * D], D, first);
     std::copy_n(&net.missing_third[std::size_t(i) * entries], entries, third);
-    bool lacks_some = std::any_of(third, third + entries, [](double s) { return s != 0.0; }) ||
-                      std::any_of(first, first + D, [](double a) { return a != 0.0; });
+    bool is_whole = net.is_whole[i] != 0;
     if (!op.share_.empty()) {
       const V here = place(i);
       for (Offset e = net.offset[i]; e < net.offset[i + 1]; ++e) {
         if (op.share_[e] != 0.0) continue;
         const V xi = minus<D>(place(net.neighbour[e]), here);
         add_missing<D>(xi.data(), net.kernel_share[e], first, third);
-        lacks_some = true;
+        is_whole = false;
       }
     }
     double* normal = &op.normal_[std::size_t(i) * D];
     const double size = std::sqrt(dot<D>(out, out));
-    const bool has_normal = lacks_some && size > no_direction * lengths;
+    op.whole_[i] = is_whole;
+    const bool has_normal = !is_whole && size > no_direction * lengths;
     for (int c = 0; c < D; ++c) normal[c] = has_normal ? out[c] / size : 0.0;
   }
 
@@ -338,13 +338,6 @@ struct CollocationOperator::Kernels {
     return gradient;
   }
 
-  /// Whether nothing of the ball is missing.
-  [[nodiscard]] bool is_whole(Index i) const {
-    constexpr int entries = third_moment_entries(D);
-    const double* third = &op.third_[std::size_t(i) * entries];
-    return std::all_of(third, third + entries, [](double s) { return s == 0.0; });
-  }
-
   [[nodiscard]] double whole_energy_density(std::span<const double> u, Index i) const {
     const V here = of(u, i);
     double theta = 0.0, bonds = 0.0;
@@ -361,7 +354,7 @@ struct CollocationOperator::Kernels {
   /// w; the part of bonds in the missing part of the ball is that of the whole ball under the
   /// nonlocal strain, which the quadrature has exactly, less that of what is there.
   [[nodiscard]] double energy_density(std::span<const double> u, Index i) const {
-    if (is_whole(i)) return whole_energy_density(u, i);
+    if (op.whole_[i] != 0) return whole_energy_density(u, i);
     const M gradient = gradient_at(u, i);
     M strain;
     double theta = 0.0, squared_strain = 0.0;
@@ -577,6 +570,7 @@ CollocationOperator::CollocationOperator(const Points& points, CollocationSettin
   first_.resize(count * d);
   normal_.resize(count * d);
   torn_.resize(count);
+  whole_.resize(count);
   dilation_.resize(setting_.network->neighbour.size() * d);
   third_.resize(count * std::size_t(third_moment_entries(setting_.network->dimension)));
   const LameConstants& constants = *setting_.constants;

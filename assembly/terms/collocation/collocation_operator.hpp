@@ -109,7 +109,7 @@ class CollocationOperator {
   std::vector<double> first_;       // a, points x d
   std::vector<double> third_;       // S, points x entries
   std::vector<double> dilation_;    // t_ij = d k_ij M_i xi: theta_i = sum t_ij . (u_j - u_i)
-  std::vector<char> torn_;          // per point
+  std::vector<char> torn_, whole_;  // per point
   std::vector<double> normal_;      // points x d
   std::vector<double> theta_;       // of forces()
 };

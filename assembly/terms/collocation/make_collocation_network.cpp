@@ -70,6 +70,7 @@ class Builder {
     network_.missing_first.assign(points.reference.size(), 0.0);
     network_.missing_third.assign(
         points.volume.size() * std::size_t(third_moment_entries(points.dimension)), 0.0);
+    network_.is_whole.assign(points.volume.size(), 1);
   }
   void add(Index neighbour, Offset bond, double share) {
     network_.neighbour.push_back(neighbour);
@@ -78,6 +79,7 @@ class Builder {
   }
   void add_missing(const double* xi, double share) {
     const auto i = network_.offset.size() - 1;
+    network_.is_whole[i] = 0;
     double* first = &network_.missing_first[i * d_];
     double* third = &network_.missing_third[i * std::size_t(third_moment_entries(int(d_)))];
     if (d_ == 2) peristat::add_missing<2>(xi, share, first, third);

@@ -46,6 +46,9 @@ std::filesystem::path identity(const std::filesystem::path& case_file) {
   return error ? std::filesystem::absolute(case_file) : file;
 }
 
+/// Of the largest reaction.
+constexpr double worth_telling = 0.02;
+
 /// Whose reactions are told.
 std::vector<std::string> support_sets(const Case& from) {
   std::vector<std::string> sets;
@@ -176,6 +179,18 @@ std::string status_of(Outcome outcome) {
   return outcome == Outcome::inconsistent ? "inconsistent" : "not_converged";
 }
 
+/// Where forces have no potential their sum is an error that can be seen.
+void report_unbalanced_force(const StepRecord& last, Progress& progress) {
+  double largest = 0.0;
+  for (const auto& [set, force] : last.reactions) {
+    largest = std::max(largest, std::hypot(force[0], force[1], force[2]));
+  }
+  if (last.unbalanced_force <= worth_telling * largest) return;
+  progress.say(fmt::format(
+      "loads and reactions differ by {:.3g} N: horizon and spacing are coarse for this body",
+      last.unbalanced_force));
+}
+
 void report_result(const Recorder& recorder, Progress& progress) {
   if (!recorder.last()) return;
   const StepRecord& last = *recorder.last();
@@ -183,6 +198,7 @@ void report_result(const Recorder& recorder, Progress& progress) {
     progress.say(fmt::format("reaction on {}: ({:.6g}, {:.6g}, {:.6g}) N", set, force[0], force[1],
                              force[2]));
   }
+  report_unbalanced_force(last, progress);
   for (const auto& [probe, values] : last.probes) {
     progress.say(fmt::format("{}: {:.6g}", probe, fmt::join(values, ", ")));
   }

@@ -128,6 +128,7 @@ std::string summary_json(const Summary& summary, const StepTotals& totals,
   all.add("max_displacement", summary.max_displacement);
   all.add("energy", energy);
   all.add("reactions", reactions);
+  if (last.unbalanced_force > 0.0) all.add("unbalanced_force", last.unbalanced_force);
   all.add("probes", probes);
   all.add("seconds", seconds);
   all.add("peak_memory_bytes", peak_memory_bytes);

@@ -138,7 +138,7 @@ TEST(CollocationOperator, StaysPositiveHoweverFewBondsAreLeft) {
       of.update(block.broken(share, seed));
       const Eigen::EigenSolver<Eigen::MatrixXd> spectrum(dense(of.rows()), false);
       const Eigen::VectorXd real = spectrum.eigenvalues().real();
-      EXPECT_GT(real.minCoeff(), -1e-3 * real.maxCoeff()) << share << ' ' << seed;
+      EXPECT_GT(real.minCoeff(), -1e-12 * real.maxCoeff()) << share << ' ' << seed;
     }
   }
 }
