@@ -142,6 +142,10 @@ void add_bond_calibration(CLI::App& command, CommandLine& line) {
                                  {"linear", Volume::linear},
                                  {"exact", Volume::exact},
                                  {"exact_centroids", Volume::exact_centroids}}));
+  using Shape = HorizonShape;
+  add_of_bonds("--horizon-shape", asked.horizon_shape, "bond: ball (default), box or diamond")
+      ->transform(
+          names<Shape>({{"ball", Shape::ball}, {"box", Shape::box}, {"diamond", Shape::diamond}}));
   add_of_bonds("--surface-correction", asked.surface_correction,
                "bond: none (default), volume or energy")
       ->transform(names<Surface>(

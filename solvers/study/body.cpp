@@ -42,6 +42,7 @@ BondSetting setting_of(const BodySpecification& of, const Points& points) {
   setting.dimension = points.dimension;
   setting.plane = of.material.plane;
   setting.volume_correction = of.volume_correction;
+  setting.shape = of.horizon_shape;
   setting.influence = influence_named(of.material.influence);
   setting.horizon = of.horizon;
   setting.cross_section = points.dimension == 3     ? 1.0
@@ -214,8 +215,9 @@ Model make_elastic_bonds(const Body& body, Bonds bonds, const BondSetting& setti
   return Model(std::move(bonds), std::move(potential));
 }
 
-double reach_ratio(VolumeCorrection correction, int dimension, double horizon_ratio) {
-  const double m = horizon_ratio, pi = std::numbers::pi;
+double reach_ratio(VolumeCorrection correction, HorizonShape shape, int dimension,
+                   double horizon_ratio) {
+  const double m = horizon_ratio * farthest_of(shape, dimension), pi = std::numbers::pi;
   if (!Kernel{.volume_correction = correction}.has_exact_shares()) return m;
   if (dimension == 1) return m + 0.5;
   if (dimension == 2) return std::sqrt((pi * m * m + 4.0 * m + 1.0) / pi);
@@ -246,14 +248,15 @@ std::unique_ptr<const Body> make_body(Points points, const BodySpecification& of
   const std::vector<Period> periods(of.constraints.periods.begin(), of.constraints.periods.end());
   // A partial volume reaches half a cell's diagonal beyond the horizon.
   const bool is_whole = of.volume_correction == VolumeCorrection::none;
-  const double reach = of.horizon + (is_whole ? 0.0 : body.points.spacing.largest());
+  const double reach = of.horizon * farthest_of(of.horizon_shape, body.points.dimension) +
+                       (is_whole ? 0.0 : body.points.spacing.largest());
   add_images(body.points, of.constraints.symmetries, periods, reach);
   body.setting = setting_of(of, body.points);
   body.specification = with_stretches(of, body.setting, body.points.spacing);
   require_resolved(body.points, body.setting.horizon);
   BodySize expected = size_of(body.points);
-  expected.horizon_ratio =
-      reach_ratio(of.volume_correction, body.points.dimension, body.horizon_ratio());
+  expected.horizon_ratio = reach_ratio(of.volume_correction, of.horizon_shape,
+                                       body.points.dimension, body.horizon_ratio());
   expected.bonds = expected_bonds(expected.points, body.points.dimension, expected.horizon_ratio);
   if (of.has_states()) reach_twice(expected);
   // States have no product without a stored tangent.
@@ -308,8 +311,8 @@ BodySize size_of(const Points& points) {
 MemoryEstimate estimate_memory(const Body& body) {
   const auto& prescribed = body.conditions->prescribed();
   BodySize size = size_of(body.points);
-  size.horizon_ratio =
-      reach_ratio(body.setting.volume_correction, body.points.dimension, body.horizon_ratio());
+  size.horizon_ratio = reach_ratio(body.setting.volume_correction, body.setting.shape,
+                                   body.points.dimension, body.horizon_ratio());
   size.bonds = double(body.model.bonds().count());
   size.bytes_per_bond = double(sizeof(Index) + body.model.bonds().kind.bytes_per_bond());
   size.has_history = body.model.has_history();
@@ -352,7 +355,9 @@ std::vector<std::string> describe_interactions(const Body& body) {
                                 storage.fits() ? "stored" : "found anew in every pass",
                                 bytes_text(storage.needed), bytes_text(storage.room)));
   }
-  const double on_horizon = share_on_horizon(body.model.bonds(), body.setting);
+  const double on_horizon = share_on_horizon(
+      body.model.bonds(), body.setting,
+      [&](Index i, Index j) { return norm_between(body.points, i, j, body.setting.shape); });
   if (on_horizon > least_shell) {
     lines.push_back(fmt::format(
         "{:.2g} % of the bonds are as long as the horizon, so that points moved by their "

@@ -74,7 +74,8 @@ void add_terms_of_conditions(Model& model, const Body& body);
 /// horizon ratio itself unless shares of cells are exact. By Steiner's formula cells of edge 1 that
 /// meet a ball of radius m are 2m + 1, pi m^2 + 4m + 1 and 4/3 pi m^3 + 3 pi m^2 + 6m + 1 in the
 /// mean.
-[[nodiscard]] double reach_ratio(VolumeCorrection correction, int dimension, double horizon_ratio);
+[[nodiscard]] double reach_ratio(VolumeCorrection correction, HorizonShape shape, int dimension,
+                                 double horizon_ratio);
 
 /// Bonds of so many points, as far as horizon and dimension tell.
 [[nodiscard]] double expected_bonds(double points, int dimension, double horizon_ratio);

@@ -349,6 +349,23 @@ void check_horizon(const BodySpecification& of, const Points& points) {
                    of.horizon / points.spacing);
 }
 
+void check_horizon_shape(const BodySpecification& of, const Points& points) {
+  if (of.horizon_shape == HorizonShape::ball) return;
+  const auto refuse = [](const std::string& what) { throw InputError("horizon_shape", "", what); };
+  if (of.material.model != MaterialModel::bond) refuse("is for the model bond");
+  if (points.dimension == 1) refuse("is for 2D and 3D");
+  const auto has_fibres = [](const RegionSpecification& region) {
+    return region.material.fibre.has_value();
+  };
+  if (of.material.fibre || std::any_of(of.regions.begin(), of.regions.end(), has_fibres)) {
+    refuse("must be \"ball\" with fibres: their moduli are harmonics of a bond's direction");
+  }
+  if (of.volume_correction != VolumeCorrection::none) {
+    refuse("has no parts of cells: volume_correction must be \"none\"");
+  }
+  if (!points.neighbours.empty()) refuse("is for neighbours that are found");
+}
+
 /// Refuses what would come on top of given shares, or has nothing to do with them.
 void check_neighbours(const BodySpecification& of, const Points& points) {
   if (points.neighbours.empty()) return;
@@ -477,6 +494,7 @@ void check_specification(const BodySpecification& of, const Points& points) {
   check_horizon(of, points);
   check_cross_section(of, points);
   check_neighbours(of, points);
+  check_horizon_shape(of, points);
   const bool has_rest = of.regions.empty() || of.material.has_constants();
   if (has_rest) check_material(of.material, "material", points.dimension);
   require_lattice_to_calibrate_on(of, points);

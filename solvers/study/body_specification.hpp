@@ -157,6 +157,7 @@ struct BodySpecification {
   /// 1D: area [m2]; 2D: thickness [m]; 3D: 1. 0: as the points have it.
   double cross_section = 0.0;
   VolumeCorrection volume_correction = VolumeCorrection::none;
+  HorizonShape horizon_shape = HorizonShape::ball;  ///< along the lattice's axes
   SurfaceCorrection surface_correction = SurfaceCorrection::none;
   InteractionWeights weights = InteractionWeights::mean;  ///< of cpd
   SolidForm form = SolidForm::collocation;                ///< of lps

@@ -85,7 +85,7 @@ bool has_isotropic_materials(const BodySpecification& of) {
              return scatter.of == ScatterSpecification::Quantity::stiffness;
            });
   };
-  return is_isotropic(of.material) &&
+  return of.horizon_shape == HorizonShape::ball && is_isotropic(of.material) &&
          std::all_of(of.regions.begin(), of.regions.end(), [&](const RegionSpecification& region) {
            return is_isotropic(region.material);
          });
@@ -102,7 +102,7 @@ std::vector<CrackTip> make_crack_tips(const Body& body,
     if (body.specification.eigenstrains.are_there()) {
       throw InputError(key, "", "does not go with eigenstrains or a temperature");
     }
-    CrackTip tip{{body.points, tips[k], {body.setting.horizon, body.setting.cross_section}, key},
+    CrackTip tip{{body.points, tips[k], {body.setting.reach(), body.setting.cross_section}, key},
                  nullptr};
     refuse_held_rings(body, tip.integrals, key);
     const std::size_t material = material_about(body, materials, tip.integrals, key);

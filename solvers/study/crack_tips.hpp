@@ -9,7 +9,8 @@
 
 namespace peristat {
 
-/// Whether stress intensity factors have a meaning: no fibres, and no random stiffness.
+/// Whether stress intensity factors have a meaning: no fibres, no random stiffness, and
+/// balls for neighbourhoods.
 [[nodiscard]] bool has_isotropic_materials(const BodySpecification& of);
 
 /// What is told of a crack's tip.

@@ -34,9 +34,9 @@ Crack segment_ahead(const CrackTipSpecification& tip, const Points& points) {
 void refuse_what_has_no_rate(const Body& body, const CrackTipSpecification& tip,
                              const std::string& key) {
   const Conditions& conditions = *body.conditions;
-  if (!(tip.cut >= body.setting.horizon * (1.0 - 1e-9))) {
+  if (!(tip.cut >= body.setting.reach() * (1.0 - 1e-9))) {
     throw InputError(key, number_text(tip.cut),
-                     "must be a horizon at least, " + number_text(body.setting.horizon) +
+                     "must be a horizon at least, " + number_text(body.setting.reach()) +
                          " m: a shorter cut leaves bonds across it");
   }
   if (conditions.control()) throw InputError(key, "", "does not go with a [[control]]");

@@ -22,8 +22,8 @@ double cell_size(const Points& points, Index point, double cross_section) {
   return std::pow(points.volume[point] / cross_section, 1.0 / points.dimension);
 }
 
-/// Steps along the lattice's axes, not rounded.
-Coordinates spacings_between(const Points& points, Index i, Index j) {
+/// Vector from a point to another along the lattice's axes [m].
+Coordinates arm_along_lattice(const Points& points, Index i, Index j) {
   const Coordinates from = points.position(i), to = points.position(j);
   Coordinates arm{};
   for (std::size_t c = 0; c < 3; ++c) arm[c] = to[c] - from[c];
@@ -32,6 +32,12 @@ Coordinates spacings_between(const Points& points, Index i, Index j) {
     const double cosine = std::cos(angle), sine = std::sin(angle);
     arm = {cosine * arm[0] + sine * arm[1], cosine * arm[1] - sine * arm[0], arm[2]};
   }
+  return arm;
+}
+
+/// Steps along the lattice's axes, not rounded.
+Coordinates spacings_between(const Points& points, Index i, Index j) {
+  Coordinates arm = arm_along_lattice(points, i, j);
   for (int c = 0; c < 3; ++c) arm[std::size_t(c)] /= points.spacing.along(c);
   return arm;
 }
@@ -122,7 +128,11 @@ class BondShares {
   [[nodiscard]] double operator()(Index i, Index j, double length) const {
     if (lattice_) return lattice_->factor(step_between(points_, i, j));
     if (polygons_) return polygons_->factor(i, j, length);
-    return mean_share(i, j, length) * kernel_.influence_at(length);
+    if (kernel_.shape == HorizonShape::ball) {
+      return mean_share(i, j, length) * kernel_.influence_at(length);
+    }
+    const double norm = norm_between(points_, i, j, kernel_.shape);
+    return kernel_.partial_volume(norm, points_.spacing) * kernel_.influence_at(norm);
   }
 
  private:
@@ -248,6 +258,10 @@ void apply_energy_method(Bonds& bonds, const Points& points, const BondSetting& 
 }
 
 }  // namespace
+
+double norm_between(const Points& points, Index i, Index j, HorizonShape shape) {
+  return norm_of(shape, arm_along_lattice(points, i, j));
+}
 
 void drop_weightless(Bonds& bonds) {
   bonds.remove_if([&](Index, Offset bond) { return bonds.weight(bond) == 0.0; });

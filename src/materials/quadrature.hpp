@@ -9,6 +9,9 @@
 
 namespace peristat {
 
+/// Norm of the vector between two points along the axes of their lattice; of a cloud x, y, z [m].
+[[nodiscard]] double norm_between(const Points& points, Index i, Index j, HorizonShape shape);
+
 /// Takes out bonds that store no energy.
 void drop_weightless(Bonds& bonds);
 

@@ -29,7 +29,7 @@ double Kernel::influence_at(double distance) const {
 }
 
 double Kernel::search_radius(const Spacing& largest_size) const {
-  if (volume_correction == VolumeCorrection::none) return horizon;
+  if (volume_correction == VolumeCorrection::none) return reach();
   if (volume_correction == VolumeCorrection::linear) return horizon + 0.5 * largest_size;
   double squared = 0.0;  // of the diagonal
   for (int c = 0; c < dimension; ++c) squared += largest_size.along(c) * largest_size.along(c);
@@ -45,7 +45,8 @@ double Kernel::moment(int k) const {
           ? integral([&](double ratio) { return influence(ratio) * std::pow(ratio, power - 1); },
                      0.0, 1.0)
           : 1.0 / power;
-  return cross_section * unit_sphere * radial * std::pow(horizon, power);
+  return cross_section * unit_sphere * radial * std::pow(horizon, power) *
+         mean_of_reach(shape, dimension, power);
 }
 
 double Kernel::lattice_moment(int k, const Spacing& spacing) const {

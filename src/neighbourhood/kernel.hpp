@@ -4,6 +4,7 @@
 
 #include "src/core/spacing.hpp"
 #include "src/neighbourhood/horizon.hpp"
+#include "src/neighbourhood/horizon_shape.hpp"
 
 namespace peristat {
 
@@ -26,12 +27,14 @@ inline constexpr double least_share = horizon_tolerance;
 [[nodiscard]] double linear_partial_volume(double distance, double horizon, double size);
 
 /// What a point sees, and how much of it counts: horizon, influence function and partial volumes.
+/// Distances whose share or influence is asked for are those of the shape's norm.
 struct Kernel {
   int dimension = 2;
   double horizon = 0.0;        ///< delta [m]
   double cross_section = 1.0;  ///< 1D: area A [m2]; 2D: thickness h [m]; 3D: 1
   VolumeCorrection volume_correction = VolumeCorrection::none;
-  /// omega(r / delta), by which the weight of a bond is multiplied, see Influence; empty: 1
+  HorizonShape shape = HorizonShape::ball;  ///< others have no volume correction
+  /// omega(norm / delta), by which the weight of a bond is multiplied, see Influence; empty: 1
   std::function<double(double relative_distance)> influence{};
 
   /// omega, with what round-off leaves of a distance at the horizon taken for the horizon, and of
@@ -40,7 +43,7 @@ struct Kernel {
 
   /// Whether some points that the search finds do not count.
   [[nodiscard]] bool may_be_weightless() const {
-    return influence || volume_correction != VolumeCorrection::none;
+    return influence || volume_correction != VolumeCorrection::none || shape != HorizonShape::ball;
   }
 
   /// Whether shares depend on where in a lattice's cells the horizon runs, see LatticeKernel.
@@ -49,13 +52,16 @@ struct Kernel {
            volume_correction == VolumeCorrection::exact_centroids;
   }
 
+  /// Largest distance of points that see each other, partial volumes left out [m].
+  [[nodiscard]] double reach() const { return horizon * farthest_of(shape, dimension); }
+
   /// Share of a volume of some size at a distance that counts, unless shares are exact.
   [[nodiscard]] double partial_volume(double distance, double size) const;
 
   /// Farthest distance at which cells up to a size count [m].
   [[nodiscard]] double search_radius(const Spacing& largest_size) const;
 
-  /// m_k = int omega r^k dV over the ball of the horizon [m^(k+3)]; m_0 is V_H where omega is 1.
+  /// m_k = int omega r^k dV over the shape of the horizon [m^(k+3)]; m_0 is V_H where omega is 1.
   [[nodiscard]] double moment(int k) const;
 
   /// The same sum over the neighbours of a point inside a lattice, with their partial volumes.

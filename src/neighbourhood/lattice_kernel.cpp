@@ -56,13 +56,15 @@ double LatticeKernel::distance(const LatticeStep& step) const {
 double LatticeKernel::find_factor(const LatticeStep& step) const {
   const double between = distance(step);
   if (between == 0.0) return 0.0;
-  if (!kernel_.has_exact_shares()) {
-    return kernel_.partial_volume(between, spacing_) * kernel_.influence_at(between);
-  }
   Coordinates centre{}, edges{};
   for (int c = 0; c < kernel_.dimension; ++c) {
     edges[std::size_t(c)] = spacing_.along(c);
     centre[std::size_t(c)] = spacing_.along(c) * step[std::size_t(c)];
+  }
+  if (!kernel_.has_exact_shares()) {
+    const double at =
+        kernel_.shape == HorizonShape::ball ? between : norm_of(kernel_.shape, centre);
+    return kernel_.partial_volume(at, spacing_) * kernel_.influence_at(at);
   }
   const auto [share, centroid] = box_in_ball(centre, edges, kernel_.horizon, kernel_.dimension);
   if (share < least_share) return 0.0;

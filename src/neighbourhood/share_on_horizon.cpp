@@ -2,14 +2,18 @@
 
 namespace peristat {
 
-double share_on_horizon(const Bonds& bonds, const Kernel& kernel) {
+double share_on_horizon(const Bonds& bonds, const Kernel& kernel,
+                        const std::function<double(Index i, Index j)>& norm) {
   constexpr double shell = 1e-3;
   const bool ends_with_a_jump = kernel.volume_correction == VolumeCorrection::none &&
                                 kernel.influence_at(kernel.horizon) > 0.0;
   if (!ends_with_a_jump || bonds.count() == 0) return 0.0;
   Offset there = 0;
-  for (Offset bond = 0; bond < bonds.count(); ++bond) {
-    there += bonds.length(bond) >= (1.0 - shell) * kernel.horizon;
+  for (Index i = 0; i < bonds.points(); ++i) {
+    for (Offset bond = bonds.offset[i]; bond < bonds.offset[i + 1]; ++bond) {
+      const double at = norm ? norm(i, bonds.partner[bond]) : bonds.length(bond);
+      there += at >= (1.0 - shell) * kernel.horizon;
+    }
   }
   return double(there) / double(bonds.count());
 }

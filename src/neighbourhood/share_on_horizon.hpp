@@ -1,5 +1,7 @@
 #pragma once
 
+#include <functional>
+
 #include "src/neighbourhood/bonds.hpp"
 #include "src/neighbourhood/kernel.hpp"
 
@@ -9,6 +11,8 @@ namespace peristat {
 /// there with a jump: those are neighbours by the last digits of the places. It is three
 /// thousandths of points without order, and a whole shell of a lattice whose horizon ratio is a
 /// distance of it.
-[[nodiscard]] double share_on_horizon(const Bonds& bonds, const Kernel& kernel);
+/// @param norm of a bond in the kernel's shape [m]; empty: its length
+[[nodiscard]] double share_on_horizon(const Bonds& bonds, const Kernel& kernel,
+                                      const std::function<double(Index i, Index j)>& norm = {});
 
 }  // namespace peristat

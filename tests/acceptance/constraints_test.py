@@ -135,6 +135,8 @@ class Symmetry(Constrained):
         # Bonds that reach half a cell beyond the horizon have images, too.
         for volume in ("linear", "exact", "exact_centroids"):
             self.compare(("x", "xy"), correction="energy", hole=HOLE, settings=(f"quadrature.volume_correction='{volume}'",))
+        # So have the corners of boxes.
+        self.compare(("x", "xy"), correction="volume", hole=HOLE, settings=("quadrature.horizon_shape='box'",))
 
     def test_parts_of_cpd_bodies_are_the_whole(self):
         self.compare(("x", "xy"), material=CPD_2D, hole=HOLE)

@@ -154,6 +154,21 @@ class ByTheReference(Cases):
                                     f"material.influence={next(kernels)}"])  # fmt: skip
                 self.judge()
 
+    def test_runs_with_boxes_and_diamonds(self):
+        lattices = ([], ["lattice.angle=20"], ["lattice.spacing=[1.3e-3, 0.9e-3]", "lattice.horizon_ratio=2.5"],
+                    ["lattice.perturbation=0.2"], ["lattice.horizon_ratio=3"])  # fmt: skip
+        kernels = itertools.cycle(("constant", "cubic", "inverse"))
+        for lattice, shape, surface in itertools.product(lattices, ("box", "diamond"), ("none", "volume", "energy")):
+            with self.subTest(lattice=lattice, shape=shape, surface=surface):
+                self.run_case(CUT, [*lattice, f"quadrature.horizon_shape={shape}", f"quadrature.surface_correction={surface}",
+                                    f"material.influence={next(kernels)}"])  # fmt: skip
+                self.judge()
+        text = SQUARE.format(dimension=3, low=[-0.35] * 3, high=[0.35] * 3, where="abs(x) > 0.25",
+                             displacement=json.dumps(["1e-3*x*load", "2e-4*sin(9*x)", "1e-4*z*x"]))  # fmt: skip
+        for shape in ("box", "diamond"):
+            self.run_case(text, [f"quadrature.horizon_shape={shape}", "lattice.horizon_ratio=2"])
+            self.judge()
+
     def test_runs_with_the_parts_of_cubes_and_of_intervals(self):
         for dimension, half in ((1, 0.6), (3, 0.35)):
             text = SQUARE.format(dimension=dimension, low=[-half] * dimension, high=[half] * dimension, where="abs(x) > 0.25",
@@ -324,6 +339,27 @@ class BlueNoise(Cases):
                 self.assertAlmostEqual(reaction[correction] / reaction["linear"], 1, delta=0.06)
 
 
+class HorizonShapes(unittest.TestCase):
+    def calibrate(self, dimension, shape, ratio, *options):
+        ended = peristat("calibrate", "--model", "bond", "--dimension", dimension, "--spacing", 1, "--horizon-ratio", ratio,
+                         "--horizon-shape", shape, "--youngs-modulus", 1, *options)  # fmt: skip
+        return json.loads(ended.said)
+
+    def test_moduli_are_those_of_the_page(self):
+        for shape, axis, diagonal in (("box", 0.85, 1.13), ("diamond", 1.13, 0.85)):
+            told = self.calibrate(2, shape, 60.5)["youngs_modulus"]
+            self.assertAlmostEqual(told["axes"][0], axis, delta=0.005)
+            self.assertAlmostEqual(told["diagonals"][0], diagonal, delta=0.005)
+        cube = self.calibrate(3, "box", 20.5)["youngs_modulus"]
+        self.assertAlmostEqual(cube["axes"][0], 0.74, delta=0.005)
+        self.assertAlmostEqual(cube["space_diagonal"][0], 1.16, delta=0.005)
+
+    def test_fracture_energy_is_the_mean_over_all_planes(self):
+        tear = self.calibrate(2, "box", 60.5, "--law", "critical_stretch", "--fracture-energy", 1)["damage"]["fracture_energy"]
+        for name, told in (("mean", 1.0), ("least", 0.956), ("most", 1.035)):
+            self.assertAlmostEqual(tear[name], told, delta=5e-4)
+
+
 class Refusals(Cases):
     def test_what_does_not_hold_is_refused_with_its_key(self):
         cpd = 'material={model="cpd", youngs_modulus=1e9, poisson_ratio=0.4}'
@@ -339,6 +375,14 @@ class Refusals(Cases):
             self.refusal(CUT, ["lattice.perturbation=0.1", correction], "quadrature.volume_correction", "beside the lattice")
             self.refusal(HOLED, [correction], "quadrature.volume_correction", "cuts Voronoi cells")
             self.refusal(PULLED, [cpd, correction], "quadrature.volume_correction", "is for model \"bond\"")
+        box = "quadrature.horizon_shape=box"
+        for correction in ("linear", "exact"):
+            self.refusal(CUT, [box, f"quadrature.volume_correction={correction}"], "quadrature.horizon_shape", "parts of cells")
+        self.refusal(PULLED, [cpd, box], "quadrature.horizon_shape", "is for model \"bond\"")
+        self.refusal(SQUARE.format(dimension=1, low=[0], high=[1], where="x > 0.5", displacement="[0]"),
+                     [box], "quadrature.horizon_shape", "2D and 3D")  # fmt: skip
+        fibres = "material.fibre={angle=0, transverse_modulus=1e8, shear_modulus=1e8}"
+        self.refusal(PULLED, [box, fibres], "quadrature.horizon_shape", "fibres")
         self.refusal(CUT, ["lattice.volumes=fractional", cpd], "material.model", "whole cells")
         self.refusal(PULLED, ["lattice.spacing=[1e-4, 2e-3]"], "lattice.horizon_ratio", "largest spacing")
         self.refusal(PULLED, ["lattice.spacing=[1e-3]"], "lattice.spacing", "2 numbers")

@@ -97,6 +97,43 @@ def constant_factor(dimension, plane, horizon, cross_section):
     return 12 / (math.pi * horizon**4)
 
 
+def shape_norm(shape, vectors):
+    """Largest component or sum of components."""
+    return abs(vectors).max(axis=1) if shape == "box" else abs(vectors).sum(axis=1)
+
+
+def turned_back(vectors, angle):
+    """Vectors along axes that are turned by an angle about z."""
+    result = vectors.copy()
+    if vectors.shape[1] > 1:
+        x, y = vectors[:, 0], vectors[:, 1]
+        result[:, 0], result[:, 1] = math.cos(angle) * x + math.sin(angle) * y, math.cos(angle) * y - math.sin(angle) * x
+    return result
+
+
+def mean_of_reach(shape, dimension, power):
+    """Mean over all directions of norm^-power: Gauss's rule over the angles, between the norm's kinks."""
+    if shape == "ball" or dimension == 1:
+        return 1.0
+    nodes, weights = numpy.polynomial.legendre.leggauss(40)
+
+    def over(begin, end):
+        return begin + (end - begin) * (nodes + 1) / 2, weights * (end - begin) / 2
+
+    flat, of_flat = over(0.0, math.pi / 4)
+    flat, of_flat = numpy.append(flat, math.pi / 2 - flat), numpy.append(of_flat, of_flat)
+    around = numpy.stack([numpy.cos(flat), numpy.sin(flat)], 1)
+    if dimension == 2:
+        return (of_flat * shape_norm(shape, around) ** -power).sum() / (math.pi / 2)
+    total = 0.0
+    for (cosine, sine), weight in zip(around, of_flat):
+        edge = math.atan2(1.0, max(cosine, sine))  # where the height is as large as the largest flat component
+        for polar, of_polar in (over(0.0, edge), over(edge, math.pi / 2)):
+            directions = numpy.stack([numpy.sin(polar) * cosine, numpy.sin(polar) * sine, numpy.cos(polar)], 1)
+            total += weight * (of_polar * numpy.sin(polar) * shape_norm(shape, directions) ** -power).sum()
+    return total / (math.pi / 2)
+
+
 def confined_modulus_factor(dimension, plane):
     """c11 / E: stress over strain along an axis with the other strains held at zero."""
     if dimension == 1:
@@ -123,9 +160,11 @@ class Body:
         self.spacing = case.spacing(volume)
         self.cross_section = case.cross_section
         self.is_cpd = case["material"]["model"] == "cpd"
+        is_box = case["quadrature"].get("horizon_shape") == "box"
+        self.farthest = self.horizon * (math.sqrt(self.dimension) if is_box else 1.0)
         volume = numpy.asarray(volume, float)
         largest = (volume.max() / self.cross_section) ** (1 / self.dimension)
-        self.beyond = Beyond(case, numpy.asarray(reference, float), self.spacing, self.horizon + largest)
+        self.beyond = Beyond(case, numpy.asarray(reference, float), self.spacing, self.farthest + largest)
         self.reference, self.own, self.source = self.beyond.places, self.beyond.own, self.beyond.source
         self.volume = volume[self.source]
         self.sets = {name: flags[self.source] for name, flags in (sets or {}).items()}
@@ -156,6 +195,8 @@ class Body:
     def _make_bonds(self):
         material, quadrature = self.materials.tables[0], self.case["quadrature"]
         factor = micromodulus_factor(self.dimension, self.case["material"], self.horizon, self.cross_section)
+        shape = quadrature.get("horizon_shape", "ball")
+        factor /= mean_of_reach(shape, self.dimension, 1 + self.dimension)
         if "micromodulus" in material:
             self.constants = {1: float(material["micromodulus"])}
         else:
@@ -166,7 +207,7 @@ class Body:
         given = self._given_pairs()
         exact = quadrature["volume_correction"].startswith("exact")
         reach = numpy.sqrt((self.case.spacings**2).sum()) / 2 if exact else size.max() / 2 if linear else 0
-        pairs = given[0] if given else pairs_within(self.reference, self.horizon + reach, self.own)
+        pairs = given[0] if given else pairs_within(self.reference, self.farthest + reach, self.own)
         i, j = pairs.T
         arm = self.reference[j] - self.reference[i]
         length = numpy.sqrt((arm**2).sum(axis=1))
@@ -178,6 +219,9 @@ class Body:
             return numpy.where(inside < HORIZON_TOLERANCE, 0, inside)  # round-off at the far end
 
         name, counted = self.case["material"]["influence"], length / self.horizon
+        if shape != "ball":
+            angle = math.radians(self.case["lattice"].get("angle", 0.0)) if self.case.is_lattice else 0.0
+            counted = shape_norm(shape, turned_back(arm, angle)) / self.horizon
         if exact:
             if self.case["lattice"].get("points") == "blue_noise" or self.case["lattice"].get("cell_perturbation"):
                 raise NotUnderstood("parts of cells that are polygons: results don't tell their corners")
@@ -186,6 +230,8 @@ class Body:
                 mean_share, counted = mean_share * of_centroids / counted, of_centroids
         else:
             mean_share = given[1] if given else (share(size[j]) + share(size[i])) / 2
+        if shape != "ball":
+            mean_share = mean_share * (counted <= 1 + HORIZON_TOLERANCE)
         mean_share = mean_share * influence(name, counted)
         weight = self.volume[i] * self.volume[j] * mean_share
         keep = weight > 0
@@ -220,8 +266,11 @@ class Body:
         correction, name = self.case["quadrature"]["volume_correction"], self.case["material"]["influence"]
         ratio = self.horizon / self.spacing
         edges = self.case.spacings / self.spacing if self.case.is_lattice else 1.0
-        ball = lattice_ball(self.dimension, ratio + (0.0 if correction == "none" else 1.0), edges)
-        distance = numpy.sqrt((ball**2).sum(axis=1))
+        shape = self.case["quadrature"].get("horizon_shape", "ball")
+        ball = lattice_ball(self.dimension, self.farthest / self.spacing + (0.0 if correction == "none" else 1.0), edges)
+        if shape != "ball":
+            ball = ball[shape_norm(shape, ball) <= ratio * (1 + HORIZON_TOLERANCE)]
+        distance = numpy.sqrt((ball**2).sum(axis=1)) if shape == "ball" else shape_norm(shape, ball)
         counted = distance / ratio
         if correction.startswith("exact"):
             shares, of_centroids = lattice_shares(ball * self.spacing, self.case.spacings, 0.0, self.horizon)

@@ -147,6 +147,8 @@ class Generator:
                       "surface_correction": self.choice("none", "volume", "energy")}  # fmt: skip
         if has_whole_cells and self.of_kernel.random() < 0.3:
             quadrature["volume_correction"] = str(self.of_kernel.choice(["exact", "exact_centroids"]))
+        elif self.dimension > 1 and quadrature["volume_correction"] == "none" and self.of_kernel.random() < 0.3:
+            quadrature["horizon_shape"] = str(self.of_kernel.choice(["box", "diamond"]))
         return quadrature
 
     # ---- conditions and solution -----------------------------------------------------------------

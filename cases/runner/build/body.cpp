@@ -47,7 +47,8 @@ void require_memory_for_lattice(const Case& from, const Lattice& lattice) {
   size.dimension = from.dimension;
   size.points = points;
   size.longest = std::pow(points, 1.0 / from.dimension);
-  size.horizon_ratio = reach_ratio(from.volume_correction, from.dimension, from.horizon_ratio);
+  size.horizon_ratio =
+      reach_ratio(from.volume_correction, from.horizon_shape, from.dimension, from.horizon_ratio);
   size.bonds = expected_bonds(points, from.dimension, size.horizon_ratio);
   size.free_dofs = points * from.dimension;
   const Box box = lattice.shapes.empty() ? Box{} : bounds(lattice.shapes.front().shape);

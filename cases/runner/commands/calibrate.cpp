@@ -168,6 +168,11 @@ void check_place(const CalibrationQuestion& where, const BondCalibrationQuestion
     refuse("thickness", where.thickness, "is for --dimension 2");
   if (where.dimension != 1 && question.area != 1.0)
     refuse("area", question.area, "is for --dimension 1");
+  if (question.horizon_shape != HorizonShape::ball &&
+      (where.dimension == 1 || question.volume_correction != VolumeCorrection::none)) {
+    throw InputError("--horizon-shape", "",
+                     "box and diamond are for --dimension 2 and 3 without a --volume-correction");
+  }
   for (const auto& [key, value] :
        {std::pair("poisson_ratio", where.poisson_ratio), std::pair("lambda", where.lambda),
         std::pair("mu", where.mu), std::pair("c1", where.c1), std::pair("c2", where.c2),
@@ -251,6 +256,7 @@ Exit calibrate(const CalibrationQuestion& where, BondCalibrationQuestion questio
   setting.horizon = where.horizon_ratio * where.spacing;
   setting.cross_section = where.dimension == 1 ? question.area : where.thickness;
   setting.volume_correction = question.volume_correction;
+  setting.shape = question.horizon_shape;
   setting.plane = question.material.plane;
   setting.influence = influence_named(question.material.influence);
   setting.lattice = {where.spacing, question.angle, question.surface_correction};

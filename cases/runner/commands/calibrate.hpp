@@ -23,6 +23,7 @@ struct BondCalibrationQuestion {
   double area = 1.0;   ///< 1D [m2]
   double angle = 0.0;  ///< of the lattice, which turns a correction by energy [degrees]
   VolumeCorrection volume_correction = VolumeCorrection::none;
+  HorizonShape horizon_shape = HorizonShape::ball;
   SurfaceCorrection surface_correction = SurfaceCorrection::none;
   MaterialSpecification material{};
 };

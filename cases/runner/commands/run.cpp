@@ -144,8 +144,8 @@ std::unique_ptr<SolvedModel> solved_stand_in(const Case& from, const Study& stud
                                              const Model& stand_in) {
   const Points& points = study.body().points;
   BodySize size = size_of(points);
-  size.horizon_ratio =
-      reach_ratio(from.volume_correction, from.dimension, from.solver.elastic_horizon_ratio);
+  size.horizon_ratio = reach_ratio(from.volume_correction, from.horizon_shape, from.dimension,
+                                   from.solver.elastic_horizon_ratio);
   size.bonds = double(stand_in.bonds().count());
   size.free_dofs = double(study.free().count());
   return std::make_unique<SolvedModel>(

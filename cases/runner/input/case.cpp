@@ -56,6 +56,7 @@ const std::map<std::string, std::string>& keys_of_members() {
       {"angle", "lattice.angle"},
       {"volume_correction", "quadrature.volume_correction"},
       {"surface_correction", "quadrature.surface_correction"},
+      {"horizon_shape", "quadrature.horizon_shape"},
       {"degree", "quadrature.degree"},
       {"shapes", "lattice.shape"},
       {"layers", "lattice.layer"},

@@ -300,6 +300,15 @@ Table<Case> quadrature_keys() {
          "with length and influence of the bond those of that part's centroid. The last two "
          "are for whole cells of a lattice, of which `cell_perturbation` may shift the corners")
            .written_if(of_kernel),
+       K("horizon_shape", &Case::horizon_shape,
+         choice<HorizonShape>({{"ball", HorizonShape::ball},
+                               {"box", HorizonShape::box},
+                               {"diamond", HorizonShape::diamond}}),
+         "which neighbours a point sees: those whose distance, whose largest component or whose "
+         "sum of components along the lattice's axes is at most the horizon. Boxes and diamonds "
+         "are stiffer along some directions than along others: "
+         "[moduli](theory.md#horizon-shapes) are means over all of them")
+           .written_if(of_bond),
        K("surface_correction", &Case::surface_correction,
          choice<SurfaceCorrection>({{"none", SurfaceCorrection::none},
                                     {"volume", SurfaceCorrection::volume},
@@ -330,12 +339,13 @@ Table<Case> quadrature_keys() {
 void check_quadrature(const Entry& at, const Case& result) {
   if (!at.from.has("quadrature")) return;
   const TomlTable quadrature = at.from.table("quadrature");
-  const std::vector<std::string> of_bond{"volume_correction", "surface_correction"},
+  const std::vector<std::string> of_bond{"volume_correction", "surface_correction",
+                                         "horizon_shape"},
       of_cpd{"weights"}, of_lps{"form"}, of_collocation{"degree", "traction_form"};
   const auto refuse = [&](const std::vector<std::string>& keys, const std::string& what) {
     for (const std::string& key : keys) {
-      const bool is_none =
-          key != "degree" && quadrature.has(key) && quadrature.string(key) == "none";
+      const bool is_none = key != "degree" && quadrature.has(key) &&
+                           (quadrature.string(key) == "none" || quadrature.string(key) == "ball");
       if (quadrature.has(key) && !is_none) quadrature.refuse(key, what);
     }
   };
@@ -344,7 +354,7 @@ void check_quadrature(const Entry& at, const Case& result) {
   if (result.is_collocated())
     refuse(of_bond, "is for model \"bond\"; lps has a quadrature of its own");
   if (result.has_states())
-    refuse({"surface_correction"},
+    refuse({"surface_correction", "horizon_shape"},
            "is for model \"bond\"; the states of lps are those of the "
            "neighbours there are");
   if (!is_cpd(result)) refuse(of_cpd, "is for model \"cpd\"");
