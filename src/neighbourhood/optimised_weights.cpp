@@ -210,7 +210,8 @@ class WeightSolver {
   Eigen::VectorXd goal_, missing_;
   Eigen::MatrixXd normal_;
   std::vector<std::size_t> moment_of_;  // by entry of the lower half
-  Eigen::LLT<Eigen::MatrixXd> factors_;
+  // Of some matrix, as what Eigen leaves undefined without one must not be copied.
+  Eigen::LLT<Eigen::MatrixXd> factors_{Eigen::MatrixXd::Identity(1, 1)};
 
   std::size_t count_ = 0;  // arms
   std::vector<std::array<Lanes, 3>> arms_;

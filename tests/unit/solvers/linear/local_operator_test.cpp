@@ -68,7 +68,8 @@ TEST(LocalOperator, ServesBicgstabToo) {
   for (const int dimension : {1, 2, 3}) {
     GridSystem system(grid(dimension, dimension == 3 ? 9 : 30, 2.5));
     IterativeSolver solver = with_local_operator(KrylovMethod::bicgstab);
-    ASSERT_EQ(analyze_and_solve(system, solver, 1e-10), LinearOutcome::solved);
+    // The error of the solution is up to some thousand times that of the residual.
+    ASSERT_EQ(analyze_and_solve(system, solver, 1e-11), LinearOutcome::solved);
     EXPECT_LT(system.error(), 1e-7);
     EXPECT_GT(solver.last_iterations(), 1);
     EXPECT_EQ(solver.describe(), "BiCGStab preconditioned by local operator");
