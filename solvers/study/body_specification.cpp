@@ -303,6 +303,8 @@ void check_solid(const BodySpecification& of) {
                    "is for the form collocation");
     require_absent(of.collocation.traction_form != defaults.traction_form,
                    "collocation.traction_form", "is for the form collocation");
+    require_absent(of.collocation.normals != defaults.normals, "collocation.normals",
+                   "is for the form collocation");
     require_absent(!of.interfaces.empty(), "interfaces",
                    "are not for the form energy, whose dilatations have the constants of points");
     return;

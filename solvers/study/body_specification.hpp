@@ -145,10 +145,15 @@ inline constexpr const char* rest_name = "material";
 /// derivative of an energy.
 enum class SolidForm { collocation, energy };
 
+/// Normals of model lps where balls are cut: those of the neighbourhoods, or, at points below one
+/// face, that have lost no bond, the face's.
+enum class NormalSource { numerical, exact };
+
 /// How the operator of model lps is summed in the form of collocation.
 struct CollocationSpecification {
   int degree = 5;  ///< of the polynomials that the quadrature is exact for
   TractionForm traction_form = TractionForm::full;
+  NormalSource normals = NormalSource::numerical;
 };
 
 /// What makes a body of points.

@@ -63,6 +63,26 @@ void refuse_thin_bodies(const Points& points, const CollocationNetwork& network)
                        "quadrature.form = \"energy\"");
 }
 
+/// Normals of the face above a point, where there is one alone and nothing is cut.
+std::vector<double> normals_of_faces(const BodySpecification& from, const Points& points,
+                                     double horizon, const CollocationNetwork& network,
+                                     const CutBonds& cut) {
+  if (!from.boundary) {
+    throw InputError("quadrature.normals", "exact",
+                     "needs a lattice in shapes, whose faces tell the normals");
+  }
+  const auto d = std::size_t(points.dimension);
+  std::vector<double> normals(points.reference.size(), 0.0);
+  for (Index i = 0; i < points.count(); ++i) {
+    const auto at = std::size_t(i);
+    if (network.is_whole[at] != 0 || (!cut.weight.empty() && cut.weight[at] != 0.0)) continue;
+    const std::vector<Foot> feet = from.boundary->above(points.position(i), horizon);
+    if (feet.size() != 1) continue;
+    for (std::size_t c = 0; c < d; ++c) normals[at * d + c] = feet.front().normal[c];
+  }
+  return normals;
+}
+
 }  // namespace
 
 LamePair lame_constants(const MaterialSpecification& material, int dimension) {
@@ -105,6 +125,9 @@ Model make_collocation_model(const BodySpecification& from, const PointMaterials
       make_collocation_network(points, bonds, setting.horizon, from.collocation.degree, threads);
   summary = {made.negative, made.lowered, made.solves, made.lowest};
   refuse_thin_bodies(points, made.network);
+  if (from.collocation.normals == NormalSource::exact) {
+    made.network.normals = normals_of_faces(from, points, setting.horizon, made.network, cut);
+  }
   auto local = std::make_shared<CollocationNetwork>(make_local_network(points, bonds));
   auto whole = std::make_shared<CollocationNetwork>(std::move(made.network));
   auto [potential, never_fails] = mixed.potential(bonds);

@@ -54,11 +54,7 @@ std::vector<SurfaceSite> surface_sites(const Points& points, const Model& model,
     }
     if (!has_normal) continue;
     const Coordinates place = points.position(i);
-    std::vector<Foot> feet = boundary->near(place, horizon);
-    // In front of a face a point is beyond a concave corner or a gap.
-    std::erase_if(feet, [&](const Foot& foot) {
-      return foot.depth(place) < -on_face * points.spacing.largest();
-    });
+    const std::vector<Foot> feet = boundary->above(place, horizon);
     const std::vector<double> shares =
         feet.empty() ? std::vector<double>() : shares_of(feet, normal);
     Coordinates rest = normal;

@@ -50,7 +50,8 @@ BodyBoundary::BodyBoundary(int dimension, const std::vector<ShapeStep>& shapes,
                            std::vector<Cover> covers, double spacing)
     : solid_(dimension, shapes),
       body_(solid_, std::move(covers), spacing),
-      nudge_(nudge_of(solid_.bounds(), dimension, shapes)) {
+      nudge_(nudge_of(solid_.bounds(), dimension, shapes)),
+      spacing_(spacing) {
   if (dimension == 2) {
     faces_ = std::make_unique<BoundaryCurves>(body_, shapes, solid_.bounds(), nudge_);
   } else if (dimension == 3) {
@@ -78,6 +79,13 @@ std::vector<Foot> BodyBoundary::near(const Coordinates& place, double distance) 
     if (!goes_on) kept.push_back(foot);
   }
   return kept;
+}
+
+std::vector<Foot> BodyBoundary::above(const Coordinates& place, double distance) const {
+  constexpr double round_off = 1e-6;  // of a spacing
+  std::vector<Foot> feet = near(place, distance);
+  std::erase_if(feet, [&](const Foot& foot) { return foot.depth(place) < -round_off * spacing_; });
+  return feet;
 }
 
 std::optional<double> BodyBoundary::outermost(const Side& side) const {

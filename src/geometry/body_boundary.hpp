@@ -36,6 +36,10 @@ class BodyBoundary {
   /// Of faces whose normals differ by less than smooth_angle the nearest alone.
   [[nodiscard]] std::vector<Foot> near(const Coordinates& place, double distance) const;
 
+  /// The same of the faces that the place is below: beyond a concave corner or a gap it is in
+  /// front.
+  [[nodiscard]] std::vector<Foot> above(const Coordinates& place, double distance) const;
+
   /// Height along the side's axis of the body's outermost face there, if that is flat [m].
   [[nodiscard]] std::optional<double> outermost(const Side& side) const;
 
@@ -45,7 +49,7 @@ class BodyBoundary {
  private:
   Solid solid_;
   CollaredBody body_;
-  double nudge_;
+  double nudge_, spacing_;
   std::array<std::optional<double>, 6> outermost_{};  // by 2 axis + (sign > 0)
   std::unique_ptr<BoundaryFaces> faces_;
 };

@@ -130,6 +130,12 @@ class Patches(CommandLine):
             with self.subTest(lattice):
                 self.assert_exact(lattice, layers=("x-",))
 
+    def test_normals_of_faces(self):
+        """A linear field is exact whatever the normals, as tractions have the same."""
+        hole = '[[lattice.shape]]\nsubtract = "disk"\ncentre = [0.5, 0.5]\nradius = 0.2\nname = "hole"\n'
+        self.assert_exact(quadrature='normals = "exact"', shapes=hole)
+        self.assert_exact("perturbation = 0.2\nseed = 5", quadrature='normals = "exact"', shapes=hole, layers=("x-",))
+
     def test_holes(self):
         hole = '[[lattice.shape]]\nsubtract = "disk"\ncentre = [0.5, 0.5]\nradius = 0.2\nname = "hole"\n'
         self.assert_exact(shapes=hole)
@@ -229,8 +235,25 @@ class KnownSolutions(CommandLine):
                 self.assertGreater(scale, 0)
                 self.assertLess(residual, 1e-9 * scale)
 
+    def test_normals_of_the_faces(self):
+        settings = "quadrature.normals=exact", "solver.linear=lu", "solver.relative_tolerance=1e-13"
+        found = self.results(CASES / "hole.toml", *settings)
+        residual, scale = residual_of(found, "hole", of_faces)
+        self.assertLess(residual, 1e-9 * scale)
+        self.assertGreater(residual_of(found, "hole")[0], 1e-4 * scale)
 
-def residual_of(found, case):
+
+def of_faces(solid):
+    """Normals of the hole about the origin, its radius 0.2 m, in the place of the numerical ones."""
+    normals = numpy.zeros(solid.places.shape)
+    normals[solid.rows] = solid.normals
+    distance = numpy.linalg.norm(solid.places, axis=1)
+    near = (distance < 0.2 + solid.horizon) & normals.any(axis=1)
+    normals[near] = -solid.places[near] / distance[near, None]
+    return normals
+
+
+def residual_of(found, case, normals_of=None):
     """Largest residual of the body's points, and the largest force without equilibrium [N/m3]."""
     spacing = math.pi / 16 if case == "manufactured" else 1 / 16
     carried = found.reference[:, :2]
@@ -249,6 +272,8 @@ def residual_of(found, case):
     if case == "inclusion":
         factor[: len(carried)][found.sets["inclusion"]] = 2.0
     solid = lps.Solid(places, 3.5 * spacing, body, first * factor, second * factor, collar=collar)
+    if normals_of:
+        solid = lps.Solid(places, 3.5 * spacing, body, first * factor, second * factor, collar=collar, normals=normals_of(solid))
     displacement = numpy.concatenate([found.steps[-1].displacement[:, :2], numpy.full(ghosts.shape, numpy.nan)])
     x, y = places[solid.points].T
     force, tractions = 0.0, None

@@ -30,6 +30,9 @@ struct CollocationNetwork {
   /// outside the body, and points beyond a pre-crack.
   std::vector<double> missing_first, missing_third;
   std::vector<char> is_whole;  ///< whether nothing of a point's ball is missing from the start
+  /// Outward normals of points that have all of their bonds, points x dimension; zero, or empty:
+  /// those of the neighbourhood.
+  std::vector<double> normals{};
   /// Where points stand in the place of the body's own reference; empty: there [m].
   std::vector<double> places{};
 

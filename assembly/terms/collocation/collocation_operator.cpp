@@ -156,6 +156,14 @@ struct CollocationOperator::Kernels {
     return left < torn_share * had;
   }
 
+  void use_known_normal(Index i, double* normal) const {
+    if (net.normals.empty()) return;
+    const double* known = &net.normals[std::size_t(i) * D];
+    if (std::any_of(known, known + D, [](double c) { return c != 0.0; })) {
+      std::copy_n(known, D, normal);
+    }
+  }
+
   void update_point(Index i) const {
     M shape{};
     V out{};
@@ -183,7 +191,7 @@ struct CollocationOperator::Kernels {
     double* third = &op.third_[std::size_t(i) * entries];
     std::copy_n(&net.missing_first[std::size_t(i) * D], D, first);
     std::copy_n(&net.missing_third[std::size_t(i) * entries], entries, third);
-    bool is_whole = net.is_whole[i] != 0;
+    bool is_whole = net.is_whole[i] != 0, has_lost_bonds = false;
     if (!op.share_.empty()) {
       const V here = place(i);
       for (Offset e = net.offset[i]; e < net.offset[i + 1]; ++e) {
@@ -191,6 +199,7 @@ struct CollocationOperator::Kernels {
         const V xi = minus<D>(place(net.neighbour[e]), here);
         add_missing<D>(xi.data(), net.kernel_share[e], first, third);
         is_whole = false;
+        has_lost_bonds = true;
       }
     }
     double* normal = &op.normal_[std::size_t(i) * D];
@@ -198,6 +207,7 @@ struct CollocationOperator::Kernels {
     op.whole_[i] = is_whole;
     const bool has_normal = !is_whole && size > no_direction * lengths;
     for (int c = 0; c < D; ++c) normal[c] = has_normal ? out[c] / size : 0.0;
+    if (!has_lost_bonds) use_known_normal(i, normal);
   }
 
   /// B(theta, T)

@@ -332,6 +332,12 @@ Table<Case> quadrature_keys() {
          "model `lps` by collocation: what of the displacements' continuation over the boundary "
          "counts: all of it, which is exact for linear fields on every grid, or what [LPS] eq. "
          "4.6 keeps")
+           .written_if(of_collocation),
+       K("normals", in(collocation, &CollocationSpecification::normals),
+         choice<NormalSource>(
+             {{"numerical", NormalSource::numerical}, {"exact", NormalSource::exact}}),
+         "model `lps` by collocation: normals of surfaces from the neighbourhoods, or from the "
+         "shapes' faces, at points that have one face and all of their bonds")
            .written_if(of_collocation)}};
 }
 
@@ -341,7 +347,7 @@ void check_quadrature(const Entry& at, const Case& result) {
   const TomlTable quadrature = at.from.table("quadrature");
   const std::vector<std::string> of_bond{"volume_correction", "surface_correction",
                                          "horizon_shape"},
-      of_cpd{"weights"}, of_lps{"form"}, of_collocation{"degree", "traction_form"};
+      of_cpd{"weights"}, of_lps{"form"}, of_collocation{"degree", "traction_form", "normals"};
   const auto refuse = [&](const std::vector<std::string>& keys, const std::string& what) {
     for (const std::string& key : keys) {
       const bool is_none = key != "degree" && quadrature.has(key) &&
