@@ -181,6 +181,14 @@ struct GridSystem {
     return outcome;
   }
 
+  /// |A x - b| / |b|
+  [[nodiscard]] double residual() const {
+    std::vector<double> full(free.equation.size()), product(full.size()), left(b.size());
+    free.extend_by_zero(x, full);
+    tangent.multiply(full, product);
+    free.restrict_to_free(product, left);
+    return distance(left, b) / norm(b);
+  }
   [[nodiscard]] double error() const { return distance(x, expected) / norm(expected); }
 
   GridOperator tangent;

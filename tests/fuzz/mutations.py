@@ -35,7 +35,7 @@ WORDS = """dimension title lattice points spacing horizon_ratio thickness area o
 CHOICES = """rms_error max_error divergence blue_noise none linear exact exact_centroids volume energy mean bulk bond cpd lps collocation full paper surface stress strain lattice continuum critical_stretch tanh tanh_continuous linear exponential blended piecewise_constant cubic quintic septic gaussian inverse newton
     relaxation adaptive flow dynamic auto cholesky pcg minres gmres lu bicgstab local_operator jacobi block_jacobi rigid_pieces surrogate riluk chebyshev multigrid stored
     matrix_free consistent never always hold remove stop fixed moving at_equilibrium transient kinetic cell_centres nodes box disk polygon
-    cylinder sphere x- x+ y- y+ z- z+ displacement force damage stretch energy_density poisson_ratio opening crack_length
+    cylinder sphere x- x+ y- y+ z- z+ displacement force damage stretch energy_density poisson_ratio opening crack_length crack_angle
     arc_length dynamics verlet newmark branch straight cells fractional harmonic arithmetic weaker stiffness strength weibull row horizon x y z""".split()
 KEYS = """dimension lattice.spacing lattice.horizon_ratio lattice.thickness lattice.area lattice.origin lattice.points lattice.lloyd_steps lattice.perturbation lattice.cell_perturbation lattice.seed
     lattice.shape[0].min lattice.shape[0].max lattice.shape[0].add lattice.shape[1].radius lattice.shape[9].add lattice.layer[0].thickness

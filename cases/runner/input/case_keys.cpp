@@ -1652,7 +1652,8 @@ Table<ProbeSpecification> probe_keys() {
   using K = Key<Spec>;
   const auto has_no_axis = [](auto& probe, auto&) {
     return probe.field != "poisson_ratio" && probe.field != "crack_length" &&
-           probe.field != "crack_begin" && probe.field != "crack_end";
+           probe.field != "crack_begin" && probe.field != "crack_end" &&
+           probe.field != "crack_angle";
   };
   const auto has_no_other = [](auto& probe, auto&) { return probe.field != "opening"; };
   return {
@@ -1678,12 +1679,15 @@ Table<ProbeSpecification> probe_keys() {
        K("field", &Spec::field, one_of(probe_field_names()),
          "displacement, opening, length and place in m, area in m², force in N, energy densities "
          "in "
-         "J/m³, velocity in m/s, stress in Pa, work of fracture and crack resistance in J/m²; "
+         "J/m³, velocity in m/s, stress in Pa, angles in degrees, work of fracture and crack "
+         "resistance in J/m²; "
          "`stress` is Cauchy's, `strain` Green and Lagrange's")
            .then([](auto& at, auto& probe) {
              if (probe.field == "poisson_ratio" && at.so_far.dimension == 1)
                at.refuse("there is no Poisson's ratio in dimension 1");
-             const bool has_area = probe.field == "crack_area" ||
+             if (probe.field == "crack_angle" && at.so_far.dimension != 2)
+               at.refuse("is for dimension 2");
+             const bool has_area = probe.field == "crack_area" || probe.field == "crack_angle" ||
                                    probe.field == "work_of_fracture" ||
                                    probe.field == "crack_resistance";
              if (has_area && !std::holds_alternative<Lattice>(at.so_far.body))
@@ -1736,10 +1740,10 @@ Table<ProbeSpecification> probe_keys() {
            }),
        K("axis", &Spec::axis, axis(),
          "`poisson_ratio`: direction of the pull; `crack_length`, `crack_begin`, `crack_end`: "
-         "direction in which the crack runs")
+         "direction in which the crack runs; `crack_angle`: that it is counted from")
            .unless(has_no_axis,
-                   "is for fields \"poisson_ratio\", \"crack_length\", \"crack_begin\" and "
-                   "\"crack_end\""),
+                   "is for fields \"poisson_ratio\", \"crack_length\", \"crack_begin\", "
+                   "\"crack_end\" and \"crack_angle\""),
        K("other", &Spec::other, known_set(), "`opening`: the set on the other side of the crack")
            .unless(has_no_other, "is for field \"opening\"")
            .required("required with it")}};

@@ -60,7 +60,7 @@ std::vector<std::string> probe_field_names() {
   // The first fields that there were keep their places in the reference.
   names.insert(names.begin() + 5,
                {"poisson_ratio", "opening", "crack_length", "crack_begin", "crack_end",
-                "crack_area", "work_of_fracture", "crack_resistance"});
+                "crack_angle", "crack_area", "work_of_fracture", "crack_resistance"});
   return names;
 }
 

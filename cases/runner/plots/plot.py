@@ -51,6 +51,10 @@ def draw_all(results: ResultsFolder):
 
     if found := resistances(results):
         yield "resistance", draw_resistances(results, found)
+    from tip_picture import draw_tips, running_tips
+
+    if tips := running_tips(results):
+        yield "tips", draw_tips(results, tips)
     from convergence_picture import draw_convergence, has_iterations
 
     if has_iterations(results):

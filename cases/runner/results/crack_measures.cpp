@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <numeric>
 #include <utility>
 
@@ -86,6 +87,38 @@ double area(const Points& points, Members set, std::span<const BondEnds> separat
   return std::accumulate(faces.begin(), faces.end(), 0.0);
 }
 
+/// Direction of the line of least squares through the middles of separated faces, in 2D [degrees].
+double angle(const Points& points, Members set, int axis, const CrackState& crack) {
+  struct Face {
+    double x, y, area;
+    auto operator<=>(const Face&) const = default;
+  };
+  std::vector<Face> faces;  // in an order of their own, as in area()
+  const auto along = std::size_t(axis), across = std::size_t(1 - axis);
+  for (const BondEnds& ends : crack.separated) {
+    const double size = touches(ends, set) ? face_between(points, ends) : 0.0;
+    if (size == 0.0) continue;
+    const Coordinates a = points.position(ends[0]), b = points.position(ends[1]);
+    faces.push_back({0.5 * (a[along] + b[along]), 0.5 * (a[across] + b[across]), size});
+  }
+  std::ranges::sort(faces);
+  double area = 0.0, x = 0.0, y = 0.0, xx = 0.0, xy = 0.0, yy = 0.0;
+  for (const Face& face : faces) {
+    area += face.area;
+    x += face.area * face.x;
+    y += face.area * face.y;
+  }
+  for (const Face& face : faces) {
+    const double from_x = face.x - x / area, from_y = face.y - y / area;
+    xx += face.area * from_x * from_x;
+    xy += face.area * from_x * from_y;
+    yy += face.area * from_y * from_y;
+  }
+  constexpr double round = 1e-9;  // a cloud that is as long along all directions
+  if (std::hypot(xx - yy, 2.0 * xy) <= round * (xx + yy)) return 0.0;
+  return 90.0 / std::numbers::pi * std::atan2(2.0 * xy, xx - yy);
+}
+
 const std::vector<CrackMeasure>& measures() {
   static const std::vector<CrackMeasure> all{
       {"crack_length", "m", true,
@@ -101,6 +134,7 @@ const std::vector<CrackMeasure>& measures() {
        [](const Points& points, Members set, int axis, const CrackState& crack) {
          return extent(points, set, axis, crack)[1];
        }},
+      {"crack_angle", "degree", true, angle},
       {"crack_area", "m2", false,
        [](const Points& points, Members set, int, const CrackState& crack) {
          return area(points, set, crack.separated);

@@ -35,6 +35,7 @@ from separations import crosses, separate  # noqa: E402
 from resistance_picture import draw_resistances, resistances  # noqa: E402
 from results_folder import read_results_folder  # noqa: E402
 from style import round_factor  # noqa: E402
+from tip_picture import tip_speeds  # noqa: E402
 
 SPACING = 1e-3
 HISTORY = (
@@ -475,6 +476,13 @@ class Pictures(unittest.TestCase):
         np.testing.assert_allclose(curve.get_xdata(), [5, 7, 9, 11], rtol=1e-12)  # mm
         np.testing.assert_allclose(curve.get_ydata(), 30.0, rtol=1e-12)
         np.testing.assert_allclose(asked.get_ydata(), 30.0, rtol=1e-12)
+
+    def test_speeds_of_tips_are_slopes(self):
+        times = np.linspace(0.0, 1e-5, 41)
+        at, speeds = tip_speeds(times, 0.05 + 1e-3 * np.floor(2000.0 * times / 1e-3 + 1e-9), 4e-3)
+        np.testing.assert_allclose(speeds, 2000.0, rtol=0.05)  # though the tip advances a spacing at a time
+        self.assertTrue(0.0 < at.min() and at.max() < 1e-5)
+        self.assertEqual(len(tip_speeds(times, np.full(41, 0.05), 4e-3)[0]), 0)  # it never moves
 
     def test_resistance_without_a_length_is_named(self):
         self.with_resistance("damage")

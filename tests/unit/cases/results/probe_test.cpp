@@ -98,6 +98,27 @@ TEST(CrackLength, IsFoundOnAPerturbedLattice) {
   EXPECT_NEAR(length_of(cut.ends, body.points), 2.0, 1.5 * spacing);
 }
 
+TEST(CrackAngle, IsThatOfAStraightCrackOnItsWayThroughTheLattice) {
+  const BoxBody body = plate(2, 3.015);
+  ProbeSpecification probe;
+  probe.set = "all";
+  probe.field = "crack_angle";
+  const auto angle = [&](const Coordinates& from, const Coordinates& to, int axis) {
+    Bonds bonds = body.model.bonds();
+    const CutBonds cut = cut_bonds(bonds, body.points, {CrackSegment{from, to}});
+    probe.axis = axis;
+    return probe_values(probe, body.points, {}, {cut.ends}).at(0);
+  };
+  EXPECT_NEAR(angle({0.5, 0.6, 0}, {3.0, 0.6, 0}, 0), 0.0, 1e-12);
+  EXPECT_NEAR(angle({0.5, 0.6, 0}, {3.0, 0.6, 0}, 1), 90.0, 1e-12);
+  // Steps of a spacing in 20 of way: a degree or two.
+  EXPECT_NEAR(angle({0.5, 0.1, 0}, {2.0, 1.1, 0}, 0), std::atan2(1.0, 1.5) * 180.0 / M_PI, 2.0);
+  EXPECT_NEAR(angle({0.5, 1.1, 0}, {2.0, 0.1, 0}, 0), -std::atan2(1.0, 1.5) * 180.0 / M_PI, 2.0);
+  EXPECT_NEAR(angle({0.5, 0.1, 0}, {2.0, 1.1, 0}, 1), 90.0 - std::atan2(1.0, 1.5) * 180.0 / M_PI,
+              2.0);
+  EXPECT_EQ(angle({5.0, 0.1, 0}, {6.0, 0.1, 0}, 0), 0.0);  // there is none
+}
+
 TEST(CrackLength, GoesOnOverAPeriod) {
   const BoxBody body = periodic_plate({0, 0.0, 4.0});
   // Over the side, inside, through the whole cell, and farther than that.

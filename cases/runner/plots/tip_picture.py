@@ -1,0 +1,62 @@
+"""Picture of running cracks: where their tips are in time, and how fast they run."""
+
+import numpy as np
+
+from style import LENGTHS, LINES, heading, new_figure, number, time_unit, unit_for
+
+TIP_FIELDS = ("crack_end", "crack_begin")
+SPACINGS = 4  # to both sides, over which a speed is taken: a tip advances a spacing at a time
+
+
+def running_tips(results) -> list[tuple[str, np.ndarray, np.ndarray]]:
+    """Name, times and places of probes of tips that move while the body does."""
+    times = results.numbers("time") if results.is_of_motion else None
+    if times is None:
+        return []
+    found = []
+    for probe in results.tables("probe"):
+        places = results.numbers(str(probe.get("name"))) if probe.get("field") in TIP_FIELDS else None
+        if places is not None and len(set(places)) > 2:
+            found.append((str(probe["name"]), times, places))
+    return found
+
+
+def tip_speeds(times, places, reach) -> tuple[np.ndarray, np.ndarray]:
+    """Times and slopes of the straight lines of least squares through the rows within `reach` of way to both sides.
+
+    Only between the first and the last place where the tip has gone as far from where it began and will go to its end.
+    """
+    way = np.abs(np.diff(places)).cumsum()
+    way = np.append(0.0, way)
+    at, speeds = [], []
+    for k, time in enumerate(times):
+        near = abs(way - way[k]) <= reach
+        if way[k] < reach or way[-1] - way[k] < reach or np.ptp(times[near]) == 0.0:
+            continue
+        at.append(time)
+        speeds.append(np.polyfit(times[near] - time, places[near], 1)[0])
+    return np.array(at), np.array(speeds)
+
+
+def draw_tips(results, tips):
+    figure = new_figure(12.0, 8.5)
+    above, below = figure.add_axes([0.1, 0.5, 0.85, 0.36]), figure.add_axes([0.1, 0.1, 0.85, 0.34])
+    unit, size = time_unit(max(times.max() for _, times, _ in tips))
+    length_unit, length = unit_for(max(abs(places).max() for *_, places in tips), LENGTHS)
+    reach = SPACINGS * results.spacing
+    largest = 0.0
+    for k, (name, times, places) in enumerate(tips):
+        there = places != 0.0
+        options = {"color": LINES[k % len(LINES)], "linestyle": ("-", "--", ":")[k % 3]}
+        above.plot(times[there] / size, places[there] / length, label=name.replace("$", r"\$"), **options)
+        at, speeds = tip_speeds(times[there], places[there], reach)
+        below.plot(at / size, speeds, **options)
+        largest = max([largest, *abs(speeds)])
+    above.set_ylabel(f"tip [{length_unit}]")
+    above.legend(loc="best", fontsize=12)
+    above.tick_params(labelbottom=False)
+    below.set_xlim(above.get_xlim())
+    below.set_xlabel(f"time [{unit}]")
+    below.set_ylabel("speed [m/s]")
+    heading(figure, results, ["tips of cracks", f"speeds over {2 * SPACINGS} spacings", f"at most {number(round(largest))} m/s"])
+    return figure
