@@ -553,6 +553,28 @@ class Motions(CommandLine):
         numpy.testing.assert_allclose(one.displacement, two.displacement, atol=1e-12 * abs(one.displacement).max())
 
 
+class SuboptimalRates(CommandLine):
+    ABOVE = ("lattice.shape[0].max=[2.945243112740431, 1.5707963267948966]", "set[0].where=abs(x) < pi/2 && y > -pi/2",
+             "set[1].where=abs(x) > pi/2 || y < -pi/2")  # fmt: skip
+
+    def test_patches_of_the_form_paper_are_as_the_page_tells(self):
+        """Root mean squares over eight seeds, on the page's first two lattices."""
+        told = {(): ((4.46e-2, 2.16e-2), (2.55e-2, 1.30e-2)), self.ABOVE: ((9.51e-3, 6.88e-3), (5.86e-3, 5.90e-3)),
+                (*self.ABOVE, "quadrature.normals=exact"): ((1.84e-2, 1.80e-2), (1.23e-2, 1.42e-2))}  # fmt: skip
+        common = ("quadrature.traction_form=paper", "probe[0].statistic=rms_error", "probe[1].statistic=rms_error")
+        for settings, levels in told.items():
+            for cells, expected in zip((16, 32), levels):
+                with self.subTest(settings=settings, cells=cells):
+                    squares = []
+                    for seed in range(1, 9):
+                        found = self.results(CASES / "patch.toml", *common, *settings, f"lattice.seed={seed}",
+                                             f"lattice.spacing={math.pi / cells!r}")  # fmt: skip
+                        probes = found.summary["probes"]
+                        squares.append([probes["error"] ** 2, probes["error_of_strain"] ** 2])
+                    found = numpy.sqrt(numpy.mean(squares, axis=0))
+                    numpy.testing.assert_allclose(found, expected, rtol=5e-3)  # three digits
+
+
 CANTILEVER = """dimension = 2
 [lattice]
 spacing = 0.05

@@ -209,6 +209,20 @@ class LinearSolidInMotion(PrintedTest):
         mirrored = [order[tuple((place * (1, -1)).round(7).tolist())] for place in places]
         self.assertLess(abs(damage - damage[mirrored]).max(), 1e-12)
 
+    def test_v_notch(self):
+        self.page = "cases/lps/v_notch.toml"
+        plate = run("lps/v_notch", threads=2)
+        self.prints("the first bonds break at {} us", 1e6 * plate.first("broken_bonds")["time"])
+        last = plate.history[-1]
+        # As above a crack on a plane of symmetry chooses by round-off; steps of the lattice do the rest.
+        self.prints("leave at {} degrees", last["branch_angle"], within=0.05)
+        self.prints("{} bonds are broken after", last["broken_bonds"], within=0.02)
+        for row in plate.history:
+            self.assertEqual(row["upper_tip"], row["lower_tip"])
+        broken = plate.points("reference")[plate.field("damage") > 0.35]
+        ahead = broken[abs(broken[:, 1]) > 2e-3, 0].min()  # of the crack's own rows
+        self.prints("branches at {} m", ahead, within=0.1)
+
     def test_fragmenting_ring(self):
         self.page = "cases/lps/fragmenting_ring.toml"
         ring = run("lps/fragmenting_ring", threads=2)
