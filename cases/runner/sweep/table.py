@@ -15,7 +15,8 @@ ENERGIES = {
     "external_work": "external_work", "balance_error": "balance_error",
 }  # fmt: skip
 FIELD_UNITS = {
-    "displacement": "m", "opening": "m", "crack_length": "m", "force": "N", "energy_density": "J/m³",
+    "displacement": "m", "opening": "m", "crack_length": "m", "crack_begin": "m", "crack_end": "m", "crack_angle": "°",
+    "force": "N", "energy_density": "J/m³",
     "first_piola_stress": "Pa", "stress": "Pa", "von_mises": "Pa", "principal_stress": "Pa",
 }  # fmt: skip
 COSTS = ["seconds_total", "peak_memory_bytes"]
