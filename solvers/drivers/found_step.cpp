@@ -31,13 +31,6 @@ void note_force(Path& path, const StepRecord& record) {
                        number_text(force.largest) + " N"});
 }
 
-/// Norm of the sum of the forces on all points [N].
-double norm_of_sum(const std::vector<double>& forces, int dimension) {
-  Coordinates sum{};
-  for (std::size_t k = 0; k < forces.size(); ++k) sum[k % std::size_t(dimension)] += forces[k];
-  return std::hypot(sum[0], sum[1], sum[2]);
-}
-
 }  // namespace
 
 void complete_record(const Path& path, const Attempt& attempt, FoundStep& found) {
@@ -56,10 +49,6 @@ void complete_record(const Path& path, const Attempt& attempt, FoundStep& found)
   record.numerical_work = found.ledger.numerical_work;
   record.balance_error = found.ledger.balance_error();
   record.pin_force = path.state().pins.force(attempt.state, attempt.external_force);
-  const Assembler& assembler = path.body().assembler;
-  if (!assembler.has_potential()) {
-    record.unbalanced_force = norm_of_sum(attempt.state.gradient, assembler.points().dimension);
-  }
   record.reactions =
       path.setting().conditions.reactions(attempt.state.gradient, attempt.external_force,
                                           attempt.state.displacement, attempt.state.environment);
@@ -152,6 +141,9 @@ Advance accept(Path& path, Attempt attempt, FoundStep found, double next) {
                     path.options().fragments);
   }
   complete_record(path, attempt, found);
+  if (!path.body().assembler.has_potential()) {
+    found.record.unbalanced_force = sum_of_internal_forces(path.problem(), attempt.state);
+  }
   note_force(path, found.record);
   if (const auto& tell = path.setting().observer.accepted) {
     tell(found.record, {attempt.state, attempt.external_force, state.pins.found.piece});

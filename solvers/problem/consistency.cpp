@@ -158,6 +158,11 @@ std::string check_magnitude(const FoundState& found) {
 
 }  // namespace
 
+double sum_of_internal_forces(const EquilibriumProblem& problem, const Trial& trial) {
+  const Coordinates sum = resultants_of(problem, trial).force;
+  return std::hypot(sum[0], sum[1], sum[2]);
+}
+
 std::string find_inconsistency(const EquilibriumProblem& problem, Assembler& damaged,
                                const TangentOperator& tangent, const FoundState& found) {
   std::string fault = check_magnitude(found);

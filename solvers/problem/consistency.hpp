@@ -31,6 +31,9 @@ struct FoundState {
   Ledger before, after;
 };
 
+/// Norm of the sum of the forces between points, which is zero where these act in pairs [N].
+[[nodiscard]] double sum_of_internal_forces(const EquilibriumProblem& problem, const Trial& trial);
+
 /// Looks for a balance that a found state breaks, after its damage has been committed. These checks
 /// are cheap beside the step, and independent of the search that has found the state:
 ///

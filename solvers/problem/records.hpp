@@ -70,7 +70,7 @@ struct StepRecord {
   double max_damage = 0.0;
   double max_stretch = 0.0;
   double pin_force = 0.0;  ///< on what has come off and is pinned: 2-norm, 0 if nothing pulls [N]
-  /// Norm of the sum of all internal forces [N]; 0 where these have a potential.
+  /// Norm of the sum of all internal forces [N]; 0 where these have a potential, and in motions.
   double unbalanced_force = 0.0;
   double control = 0.0;  ///< controlled displacement; 0 without a control [m]
   /// Of the tangent by which a control or an arc length has found the state, or at it: 0 where it

@@ -324,6 +324,9 @@ class BlueNoise(Cases):
         self.assertAlmostEqual((whole["bonds"] - cut["bonds"]) / (7 * 2 / 3 * 3.015**3), 1, delta=0.15)
         self.assertGreater(cut["broken_bonds"], 50)
 
+    def test_cracks_have_no_area(self):
+        self.refusal(HOLED, ['probe=[{name="area", field="crack_area", set="left"}]'], "probe[0].field", "points on a lattice")
+
     def test_squares_may_have_exact_parts(self):
         """Cells that the body does not cut are polygons, as perturbed cells of a lattice are."""
         box = HOLED.replace(HOLED[HOLED.index("[[lattice.shape]]\nsubtract"):HOLED.index("[[set]]")], "")

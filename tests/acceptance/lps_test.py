@@ -545,6 +545,10 @@ class Motions(CommandLine):
             expected = 4.0 * numpy.stack([3e-3 * x + 2e-3 * y, 1e-3 * y - 4e-3 * x], 1)
             self.assertLess(abs(found.steps[-1].displacement[:, :2] - expected).max(), 1e-11)
 
+    def test_inertia_is_no_unbalanced_force(self):
+        found = self.results(MOTION.format(stress=[f"t*t*({value!r})" for value in stress(0.3)], step=0.5))
+        self.assertNotIn("unbalanced_force", found.summary)
+
     def test_threads(self):
         settings = "dynamics.end_time=9e-6", "dynamics.history_every=16", "output.every=48"
         one, two = (self.results(CASES / "crack_branching.toml", *settings, threads=threads).steps[-1] for threads in (1, 2))

@@ -213,6 +213,8 @@ class LinearSolidInMotion(PrintedTest):
         self.page = "cases/lps/v_notch.toml"
         plate = run("lps/v_notch", threads=2)
         self.prints("the first bonds break at {} us", 1e6 * plate.first("broken_bonds")["time"])
+        tip = {round(1e6 * row["time"], 3): row["upper_tip"] for row in plate.history}
+        self.prints("its tip at {} m after 20 us and at {} m after 32 us", tip[20.0], tip[32.0])
         last = plate.history[-1]
         # As above a crack on a plane of symmetry chooses by round-off; steps of the lattice do the rest.
         self.prints("leave at {} degrees", last["branch_angle"], within=0.05)

@@ -46,9 +46,6 @@ std::filesystem::path identity(const std::filesystem::path& case_file) {
   return error ? std::filesystem::absolute(case_file) : file;
 }
 
-/// Of the largest reaction.
-constexpr double worth_telling = 0.02;
-
 /// Whose reactions are told.
 std::vector<std::string> support_sets(const Case& from) {
   std::vector<std::string> sets;
@@ -181,6 +178,7 @@ std::string status_of(Outcome outcome) {
 
 /// Where forces have no potential their sum is an error that can be seen.
 void report_unbalanced_force(const StepRecord& last, Progress& progress) {
+  constexpr double worth_telling = 0.02;  // of the largest reaction
   double largest = 0.0;
   for (const auto& [set, force] : last.reactions) {
     largest = std::max(largest, std::hypot(force[0], force[1], force[2]));

@@ -1690,7 +1690,8 @@ Table<ProbeSpecification> probe_keys() {
              const bool has_area = probe.field == "crack_area" || probe.field == "crack_angle" ||
                                    probe.field == "work_of_fracture" ||
                                    probe.field == "crack_resistance";
-             if (has_area && !std::holds_alternative<Lattice>(at.so_far.body))
+             const Lattice* const cells = std::get_if<Lattice>(&at.so_far.body);
+             if (has_area && (cells == nullptr || cells->arrangement == Arrangement::blue_noise))
                at.refuse("is for points on a lattice, which have faces between them");
              const ProbeField* const field = probe_field(probe.field);
              if (field != nullptr && field->is_of_motion && !at.so_far.dynamics.is_asked_for)

@@ -58,5 +58,6 @@ def draw_tips(results, tips):
     below.set_xlim(above.get_xlim())
     below.set_xlabel(f"time [{unit}]")
     below.set_ylabel("speed [m/s]")
-    heading(figure, results, ["tips of cracks", f"speeds over {2 * SPACINGS} spacings", f"at most {number(round(largest))} m/s"])
+    told = [f"speeds over {2 * SPACINGS} spacings", f"at most {number(round(largest))} m/s"] if largest > 0.0 else []
+    heading(figure, results, ["tips of cracks", *told])
     return figure

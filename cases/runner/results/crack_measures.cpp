@@ -2,9 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <cstdlib>
 #include <numbers>
 #include <numeric>
 #include <utility>
+
+#include "src/geometry/lattice_frame.hpp"
 
 namespace peristat {
 namespace {
@@ -57,31 +61,52 @@ std::array<double, 2> extent(const Points& points, Members set, int axis, const 
   return {begin - 0.5 * spacing, end + 0.5 * spacing};
 }
 
-/// Of the face between next neighbours on the lattice, or 0; half where a period has it twice.
-double face_between(const Points& points, const BondEnds& ends) {
-  const auto [i, j] = ends;
-  Coordinates arm{};
-  double length = 0.0, edge = 0.0;
-  int along = 0;
-  for (int c = 0; c < points.dimension; ++c) {
-    arm[std::size_t(c)] = points.position(j)[std::size_t(c)] - points.position(i)[std::size_t(c)];
-    length = std::hypot(length, arm[std::size_t(c)]);
-    if (std::abs(arm[std::size_t(c)]) > edge) edge = std::abs(arm[std::size_t(along = c)]);
+/// The faces between the cells of a lattice. Points belong to the place that they were moved from.
+class CellFaces {
+ public:
+  explicit CellFaces(const Points& points)
+      : points_(points),
+        frame_(points.dimension, {}, 0.0, points.spacing, points.angle),
+        origin_(frame_.spacings_to(points.lattice.value().origin)) {}
+
+  /// Of the one between next neighbours, or 0; half where a period has it twice.
+  [[nodiscard]] double area(const BondEnds& ends) const {
+    const auto [i, j] = ends;
+    const Cell from = cell_of(i), to = cell_of(j);
+    std::int64_t steps = 0;
+    int along = 0;
+    for (int c = 0; c < points_.dimension; ++c) {
+      const std::int64_t apart = std::abs(to[std::size_t(c)] - from[std::size_t(c)]);
+      if (apart != 0) along = c;
+      steps += apart;
+    }
+    if (steps != 1) return 0.0;
+    const bool is_over_period =
+        points_.is_image(j) && points_.image_kind(j).periods != std::array<int, 3>{};
+    const double volume =
+        0.5 * (points_.volume[points_.source(i)] + points_.volume[points_.source(j)]);
+    return (is_over_period ? 0.5 : 1.0) * volume / points_.spacing.along(along);
   }
-  const double spacing = points.angle == 0.0 ? points.spacing.along(along) : double(points.spacing);
-  constexpr double next = 1.25;  // between the spacing and a square's diagonal, also if perturbed
-  if (length > next * spacing) return 0.0;
-  const bool is_over_period =
-      points.is_image(j) && points.image_kind(j).periods != std::array<int, 3>{};
-  const double volume = 0.5 * (points.volume[points.source(i)] + points.volume[points.source(j)]);
-  return (is_over_period ? 0.5 : 1.0) * volume / spacing;
-}
+
+ private:
+  [[nodiscard]] Cell cell_of(Index point) const {
+    const Coordinates at = frame_.spacings_to(points_.position(point));
+    Cell cell{};
+    for (std::size_t c = 0; c < 3; ++c) cell[c] = std::llround(at[c] - origin_[c]);
+    return cell;
+  }
+
+  const Points& points_;
+  LatticeFrame frame_;
+  Coordinates origin_;
+};
 
 /// Summed by size: a run that was resumed knows its broken bonds in another order.
 double area(const Points& points, Members set, std::span<const BondEnds> separated) {
+  const CellFaces of_cells(points);
   std::vector<double> faces;
   for (const BondEnds& ends : separated) {
-    if (touches(ends, set)) faces.push_back(face_between(points, ends));
+    if (touches(ends, set)) faces.push_back(of_cells.area(ends));
   }
   std::sort(faces.begin(), faces.end());
   return std::accumulate(faces.begin(), faces.end(), 0.0);
@@ -93,10 +118,11 @@ double angle(const Points& points, Members set, int axis, const CrackState& crac
     double x, y, area;
     auto operator<=>(const Face&) const = default;
   };
+  const CellFaces of_cells(points);
   std::vector<Face> faces;  // in an order of their own, as in area()
   const auto along = std::size_t(axis), across = std::size_t(1 - axis);
   for (const BondEnds& ends : crack.separated) {
-    const double size = touches(ends, set) ? face_between(points, ends) : 0.0;
+    const double size = touches(ends, set) ? of_cells.area(ends) : 0.0;
     if (size == 0.0) continue;
     const Coordinates a = points.position(ends[0]), b = points.position(ends[1]);
     faces.push_back({0.5 * (a[along] + b[along]), 0.5 * (a[across] + b[across]), size});

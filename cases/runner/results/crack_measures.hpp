@@ -31,10 +31,9 @@ struct CrackState {
 ///   are no more than half a spacing apart along it; each stands for a strip of one spacing. Only
 ///   those, because where along an inclined bond the crack passes is not known.
 /// - crack_begin, crack_end [m]: where that extent begins and ends along the axis.
-/// - crack_angle [degree], in 2D: of the crack's direction to the axis, from there to the other
-/// one,
-///   -90 to 90: of the line of least squares through the middles of the cell faces below, weighed
-///   by their areas; 0 if these have no direction. Over a branch it tells how that runs.
+/// - crack_angle [degree], in 2D: of the crack to the axis, from there to the other one, -90 to 90:
+///   of the line of least squares through the middles of the cell faces below, weighed by their
+///   areas; 0 if these have no direction. Over a branch it tells how that runs.
 /// - crack_area [m2]: of the cell faces between the points of those that join next neighbours, the
 ///   crack's area by its projections on the axes of the lattice.
 /// - work_of_fracture [J/m2]: work that is not stored any more over the area that has grown since

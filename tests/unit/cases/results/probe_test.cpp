@@ -167,6 +167,18 @@ TEST(CrackMeasure, AreaIsThatOfTheFacesBetweenTheCells) {
   }
 }
 
+TEST(CrackMeasure, AreaIsTheSameOnPerturbedLattices) {
+  for (const int dimension : {2, 3}) {
+    for (const double perturbation : {0.1, 0.3, 0.49}) {  // no point leaves its row
+      const BoxBody body = plate(dimension, 3.015, perturbation);
+      Bonds bonds = body.model.bonds();
+      const CutBonds cut = cut_bonds(bonds, body.points, {crack(dimension, -1.0, 5.0)});
+      const double width = dimension == 3 ? 3 * spacing : 0.5;
+      EXPECT_NEAR(measured("crack_area", {cut.ends}, body.points), 4.0 * width, 1e-12);
+    }
+  }
+}
+
 TEST(CrackMeasure, AreaOfASlantingCrackIsThatOfItsProjections) {
   const BoxBody body = plate(2, 3.015);
   Bonds bonds = body.model.bonds();
