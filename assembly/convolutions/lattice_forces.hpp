@@ -1,0 +1,39 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+namespace peristat {
+
+/// Forces that points of a lattice exert on one another, each with an integrity q in [0, 1] that
+/// all it takes part in has as a factor. Arrays are points x dimension, row major.
+class LatticeForces {
+ public:
+  virtual ~LatticeForces() = default;
+
+  /// @param integrity q per point; 1 at first
+  virtual void set_integrity(std::span<const double> integrity) = 0;
+
+  /// @param displacement u [m]
+  /// @param force f [N]
+  virtual void find_forces(std::span<const double> displacement, std::span<double> force) = 0;
+
+  /// @param energy w per point, whose sum has the derivative -f [J]
+  virtual void find_forces_and_energies(std::span<const double> displacement,
+                                        std::span<double> force, std::span<double> energy) = 0;
+
+  /// product = K v with the tangent K = -df/du at u [N/m].
+  virtual void multiply(std::span<const double> displacement, std::span<const double> v,
+                        std::span<double> product) = 0;
+
+  /// Of the tangent at rest.
+  /// @param diagonal blocks of K, points x dimension x dimension [N/m]
+  /// @param row_sums numbers not less than the sums of the absolute entries of each row [N/m]
+  virtual void outline_tangent(std::span<double> diagonal, std::span<double> row_sums) = 0;
+
+  /// Memory that it holds.
+  [[nodiscard]] virtual double bytes() const = 0;
+};
+
+}  // namespace peristat
