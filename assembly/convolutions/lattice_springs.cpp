@@ -16,8 +16,10 @@ std::vector<LatticeSpring> lattice_springs(const Kernel& kernel, const Spacing& 
     for (int c = 0; c < kernel.dimension; ++c) {
       along[c] = step[std::size_t(c)] * spacing.along(c) / length;
     }
-    springs.push_back(
-        {step, frame.turned(along), micromodulus * volume * volume * factor / length});
+    LatticeSpring spring{step, frame.turned(along), {}, 0.0};
+    for (std::size_t c = 0; c < 3; ++c) spring.arm[c] = length * spring.direction[c];
+    spring.stiffness = micromodulus * volume * volume * factor / length;
+    springs.push_back(spring);
   });
   return springs;
 }

@@ -12,6 +12,7 @@ namespace peristat {
 struct LatticeSpring {
   LatticeStep step{};       ///< from one point to the other, along the lattice's axes
   Coordinates direction{};  ///< n, unit vector along it in the axes of the body
+  Coordinates arm{};        ///< xi, the vector itself [m]
   double stiffness = 0.0;   ///< k [N/m]
 };
 
