@@ -78,6 +78,7 @@ void ImplicitStepping::establish(ImplicitStep& step) {
       const State from = state_of(attempt);
       const Outcome pinned = pin_loose(from, step);
       if (pinned != Outcome::converged) return attempt.outcome = pinned;
+      step.found.energies.is_avalanche = !path_.damaged().model().failing_bonds();
       NewtonOptions again = path_.setting().newton_options;
       again.scale = attempt.scale;
       const int before = attempt.iterations;
