@@ -3,8 +3,8 @@
 #include <span>
 #include <vector>
 
-#include "assembly/energy/energy.hpp"
 #include "assembly/convolutions/lattice_stencil.hpp"
+#include "assembly/energy/energy.hpp"
 #include "assembly/operators/block_pattern.hpp"
 
 namespace peristat {

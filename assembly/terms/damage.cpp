@@ -27,7 +27,7 @@ DamageState assess_points(const LinearTerm& term, std::span<const double> histor
       term.neighbours(history.empty() ? whole : history.first(damage.size()));
   state.dissipated_energy = history.empty() ? 0.0 : history.back();
   const double count = 0.5 * std::accumulate(left.count.begin(), left.count.end(), 0.0);
-  state.broken_bonds = static_cast<Index>(std::round(term.count_of_bonds() - count));
+  state.broken_bonds = static_cast<Index>(std::round(double(term.count()) - count));
   for (std::size_t i = 0; i < damage.size(); ++i) {
     const double of_point = term.whole_weight()[i] + (cut_weight.empty() ? 0.0 : cut_weight[i]);
     if (!history.empty() && history[i] == 0.0) {

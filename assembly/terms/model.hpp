@@ -24,6 +24,11 @@ class Model {
   /// With a term of bonds that is more than the sum of theirs.
   explicit Model(std::shared_ptr<BondTerm> bonds);
 
+  /// Bonds of their term, otherwise those of the network.
+  [[nodiscard]] Offset count_of_bonds() const {
+    return bond_term_ ? bond_term_->count() : bonds_->count();
+  }
+
   void add(std::shared_ptr<Term> term) { terms_.push_back(std::move(term)); }
 
   [[nodiscard]] const Bonds& bonds() const { return *bonds_; }

@@ -27,6 +27,8 @@ class BondTerm : public Term {
 
   [[nodiscard]] const Bonds& bonds() const { return *bonds_; }
   [[nodiscard]] const std::shared_ptr<const Bonds>& shared_bonds() const { return bonds_; }
+  /// Bonds that there are.
+  [[nodiscard]] virtual Offset count() const { return bonds_->count(); }
   [[nodiscard]] const BondPotential& potential() const { return potential_; }
   [[nodiscard]] bool can_fail() const {
     return std::visit([]<class P>(const P&) { return PotentialWithHistory<P>; }, potential_);

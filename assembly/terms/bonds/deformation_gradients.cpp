@@ -21,8 +21,9 @@ template <int D>
 Moments moments(const Points& points, const Model& model, const StateView& at) {
   const std::size_t entries = std::size_t(points.count()) * D * D;
   Moments sums{std::vector<double>(entries), std::vector<double>(entries)};
-  const std::vector<char> broken = broken_bonds(model, at.history);
-  const Bonds& bonds = model.bonds();
+  const DamagedNetwork network = damaged_network(model, at.history);
+  const std::vector<char>& broken = network.broken;
+  const Bonds& bonds = *network.bonds;
   for (Index i = 0; i < bonds.points(); ++i) {
     for (Offset bond = bonds.offset[i]; bond < bonds.offset[i + 1]; ++bond) {
       if (!broken.empty() && broken[bond]) continue;

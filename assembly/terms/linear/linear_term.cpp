@@ -222,7 +222,8 @@ LinearTerm::LinearTerm(std::shared_ptr<const Bonds> bonds, double micromodulus,
   if (lattice_) no_couplings_.assign(points + 1, 0);
   NeighbourSums whole = neighbours(std::vector<double>(points, 1.0));
   whole_weight_ = std::move(whole.weight);
-  count_ = std::round(0.5 * std::accumulate(whole.count.begin(), whole.count.end(), 0.0));
+  for (const double count : whole.count) neighbours_.push_back(std::int32_t(std::lround(count)));
+  count_ = std::accumulate(neighbours_.begin(), neighbours_.end(), Offset(0)) / 2;
 }
 
 NeighbourSums LinearTerm::neighbours(std::span<const double> integrity) const {
@@ -236,6 +237,11 @@ NeighbourSums LinearTerm::neighbours(std::span<const double> integrity) const {
     sums.count[i] -= cut.count[i];
   }
   return sums;
+}
+
+std::vector<InteractionCount> LinearTerm::counts() const {
+  if (!lattice_) return BondTerm::counts();
+  return {{"bonds", count_, "neighbours", "neighbours within the horizon, #N1", neighbours_}};
 }
 
 Couplings LinearTerm::couplings() const {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -49,8 +50,8 @@ class LinearTerm : public BondTerm {
   [[nodiscard]] bool is_convolved() const { return lattice_.has_value(); }
   [[nodiscard]] const std::optional<ConvolvedLattice>& lattice() const { return lattice_; }
 
-  /// Bonds that there are, each counted once, and those that a point takes part in.
-  [[nodiscard]] double count_of_bonds() const { return count_; }
+  [[nodiscard]] Offset count() const override { return count_; }
+  [[nodiscard]] std::vector<InteractionCount> counts() const override;
   [[nodiscard]] const std::vector<double>& whole_weight() const { return whole_weight_; }
   [[nodiscard]] NeighbourSums neighbours(std::span<const double> integrity) const;
 
@@ -68,9 +69,10 @@ class LinearTerm : public BondTerm {
   std::vector<double> bearable_;
   std::optional<ConvolvedLattice> lattice_;
   int threads_;
-  std::vector<Offset> no_couplings_;  // of a lattice that is convolved
-  std::vector<double> whole_weight_;  // per point, of a body without damage [m6]
-  double count_ = 0.0;
+  std::vector<Offset> no_couplings_;      // of a lattice that is convolved
+  std::vector<double> whole_weight_;      // per point, of a body without damage [m6]
+  std::vector<std::int32_t> neighbours_;  // that each has
+  Offset count_ = 0;
 };
 
 }  // namespace peristat

@@ -135,7 +135,15 @@ std::unique_ptr<const Body> make_body(const Case& from, int threads) {
   of.force_operator = from.solver.force_operator;
   located_errors(from, [&] { find_boundary(from, points, of); });
   if (from.solver.mode == Mode::path) of.teeth = from.loading.teeth;
-  if (tells_stress(from)) of.evaluation_bytes_per_point = stress_bytes_per_point(from.dimension);
+  if (tells_stress(from)) {
+    of.evaluation_bytes_per_point = stress_bytes_per_point(from.dimension);
+    // Of convolutions the bonds are found for it.
+    constexpr double bytes_per_bond = 6.0;
+    if (of.is_convolved()) {
+      of.evaluation_bytes_per_point +=
+          bytes_per_bond * bonds_per_point(from.dimension, from.horizon_ratio);
+    }
+  }
   return located_errors(from, [&] { return make_body(std::move(points), of, threads); });
 }
 

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "assembly/operators/constrained_tangent.hpp"
+#include "assembly/terms/linear/linear_term.hpp"
 #include "assembly/terms/pressure/pressure_term.hpp"
 #include "cases/runner/build/body.hpp"
 #include "cases/runner/build/solver_options.hpp"
@@ -113,6 +114,11 @@ void print_fracture(const PointMaterials::Material& of, const std::string& name,
                     const BondSetting& setting, double spacing) {
   const DamageSpecification& damage = of.of->damage;
   if (damage.law == DamageLaw::none || of.of->fibre) return;
+  if (damage.law == DamageLaw::energy_density) {
+    fmt::print("{} points fail at {:.6g} J/m3\n", heading("fracture", name),
+               *damage.fracture_energy / (2.0 * setting.horizon));
+    return;
+  }
   if (of.of->model == MaterialModel::lps) {
     const double per_square = crack_energy_of_dilation(lame_constants(*of.of, setting.dimension),
                                                        setting.horizon, setting.dimension);
@@ -274,22 +280,48 @@ void print_pressures(const Body& body) {
   }
 }
 
+/// Of an explicit step, as measured; other terms than bonds take longer.
+double seconds_of_forces(const Body& body) {
+  constexpr double seconds_per_bond = 6e-9, seconds_per_place = 2e-7;
+  const auto* const term = dynamic_cast<const LinearTerm*>(body.model.bond_term().get());
+  if (term != nullptr && term->is_convolved()) {
+    return double(term->lattice()->box.count()) * seconds_per_place;
+  }
+  return double(body.model.bonds().count()) * seconds_per_bond;
+}
+
 /// Of a motion in time: its stable step, and what its steps take.
 void print_motion(const Case& from, const Body& body, const StudyOptions& options,
                   double seconds_of_solving) {
-  // Of a bond in a step, as measured; the other terms of a body take longer.
-  constexpr double seconds_per_bond = 6e-9;
   const double stable = Study(body, options).find_initial_stiffness().stable_step();
   const DynamicsSpecification& dynamics = from.dynamics;
   const double step = dynamics.time_step > 0.0 ? dynamics.time_step : dynamics.step_share * stable;
   const double steps = std::ceil(dynamics.end_time / step * (1.0 - 1e-9));
   fmt::print("motion      stable {}time step {:.6g} s; {:.0f} steps of {:.6g} s\n",
              from.dynamics.is_implicit() ? "explicit " : "", stable, steps, step);
-  const double seconds_of_step = from.dynamics.is_implicit()
-                                     ? seconds_of_solving
-                                     : double(body.model.bonds().count()) * seconds_per_bond;
+  const double seconds_of_step =
+      from.dynamics.is_implicit() ? seconds_of_solving : seconds_of_forces(body);
   fmt::print("time        {}{}, without results\n", seconds_text(steps * seconds_of_step),
              from.dynamics.is_implicit() ? "" : " on one thread");
+}
+
+const LinearTerm* convolved(const Body& body) {
+  const auto* const term = dynamic_cast<const LinearTerm*>(body.model.bond_term().get());
+  return term != nullptr && term->is_convolved() ? term : nullptr;
+}
+
+Offset count_of_bonds(const Body& body) {
+  const LinearTerm* const term = convolved(body);
+  return term ? term->count() : weighted_bonds(body.model.bonds());
+}
+
+NeighbourCounts neighbours_of(const Body& body) {
+  const LinearTerm* const term = convolved(body);
+  if (!term) return count_neighbours(body.model.bonds(), body.points.own());
+  const std::vector<std::int32_t> of_point = term->counts().front().per_point;
+  const auto [least, most] = std::ranges::minmax(of_point);
+  return {least, most, Index(std::ranges::count(of_point, 0)),
+          2.0 * double(term->count()) / double(of_point.size())};
 }
 
 }  // namespace
@@ -298,13 +330,12 @@ Exit check(const Case& from, int threads) {
   const std::unique_ptr<const Body> made = make_body(from, threads);
   const Body& body = *made;
   const Points& points = body.points;
-  const NeighbourCounts neighbours = count_neighbours(body.model.bonds(), points.own());
+  const NeighbourCounts neighbours = neighbours_of(body);
   fmt::print("case        {}\n", from.title.empty() ? from.file : from.title);
   fmt::print("points      {} in {}D, spacing {}, horizon {:g} m ({:.4g} spacings)\n", points.own(),
              points.dimension, spacing_text(points), body.setting.horizon, body.horizon_ratio());
   fmt::print("bonds       {}; neighbours per point {} to {}, {:.1f} on average\n",
-             weighted_bonds(body.model.bonds()), neighbours.least, neighbours.most,
-             neighbours.mean);
+             count_of_bonds(body), neighbours.least, neighbours.most, neighbours.mean);
   for (const std::string& line : describe_interactions(body)) {
     fmt::print("interaction {}\n", line);
   }

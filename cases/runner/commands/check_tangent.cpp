@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include "assembly/operators/constrained_tangent.hpp"
+#include "assembly/operators/convolved_tangent.hpp"
 #include "assembly/operators/rows_of_energy.hpp"
 #include "cases/runner/build/body.hpp"
 #include "solvers/linear/vector_verbs.hpp"
@@ -298,13 +299,17 @@ double relative_moment_sum(const Points& points, const std::vector<double>& disp
 std::unique_ptr<TangentOperator> make_tangent(Assembler& assembler,
                                               const Constraints& constraints) {
   if (!assembler.has_potential()) return std::make_unique<RowsOfEnergy>(assembler);
+  if (!assembler.has_rows()) return std::make_unique<ConvolvedTangent>(assembler);
   if (constraints.none()) return std::make_unique<Tangent>(assembler);
   return std::make_unique<ConstrainedTangent>(assembler, constraints);
 }
 
-double frobenius_norm(const TangentOperator& tangent) {
-  if (const Tangent* stored = tangent.as_tangent()) return stored->frobenius_norm();
-  return norm(tangent.as_unsymmetric()->rows().value);
+/// As JSON: null of a tangent without entries.
+std::string frobenius_norm(const TangentOperator& tangent) {
+  const Tangent* const stored = tangent.as_tangent();
+  if (!stored && !tangent.as_unsymmetric()) return "null";
+  return fmt::format(
+      "{:.17g}", stored ? stored->frobenius_norm() : norm(tangent.as_unsymmetric()->rows().value));
 }
 
 /// Gradients that differenced_block evaluates for a column.
@@ -503,7 +508,7 @@ Exit check_tangent(const Case& from, const std::string& deformation, int threads
       "  \"deformation\": \"{}\",\n"
       "  \"energy\": {:.17g},\n"
       "  \"residual_norm\": {:.17g},\n"
-      "  \"tangent_frobenius_norm\": {:.17g},\n"
+      "  \"tangent_frobenius_norm\": {},\n"
       "  \"asymmetry\": {:.6g},\n"
       "  \"force_sum\": {:.6g},\n"
       "  \"moment_sum\": {:.6g},\n"

@@ -265,7 +265,7 @@ class CaseRun {
     const Index points = body_->points.own();
     const FreeDofs& free = study_->free();
     progress_.say(fmt::format("{} points, {} bonds, {} free degrees of freedom, {} threads", points,
-                              body_->model.bonds().count(), free.count(), options_.threads));
+                              body_->model.count_of_bonds(), free.count(), options_.threads));
     for (const std::string& line : describe_interactions(*body_)) progress_.say(line);
     count(*body_, free, options_, summary_);
     // Loads that can't be found are refused before results are touched.

@@ -94,6 +94,8 @@ std::string key_of(const Case& from, std::string member) {
   if (member == "points.reference") return "points.file";
   if (member == "neighbours") return "points.neighbours";
   if (member == "linear.preconditioner") return "solver.preconditioner";
+  if (member == "linear.method") return "solver.linear";
+  if (member == "tangent") return "solver.tangent";
   const std::size_t end = std::min(member.find_first_of("[."), member.size());
   const auto known = keys_of_members().find(member.substr(0, end));
   if (known == keys_of_members().end()) return member;

@@ -170,8 +170,7 @@ TEST(LinearBonds, MultiplyLikeTheTangentAtRest) {
       EXPECT_GE(bounds[k], (1.0 - 1e-12) * sums[k]);
       EXPECT_LE(bounds[k], 1.5 * sums[k] + 1e-12 * tests::norm(sums));
     }
-    EXPECT_LE(tests::distance(diagonal, tangent.diagonal),
-              1e-13 * tests::norm(tangent.diagonal));
+    EXPECT_LE(tests::distance(diagonal, tangent.diagonal), 1e-13 * tests::norm(tangent.diagonal));
   }
 }
 
