@@ -279,4 +279,44 @@ inline void expect_outline(LatticeForces& forces, const HoledBody& body, double 
   EXPECT_LE(largest(bounds), most_slack * largest(sums));
 }
 
+/// R, a turn about an axis that is none of the lattice's.
+inline std::array<std::array<double, 3>, 3> turn(int d) {
+  const double c = std::cos(2.0), s = std::sin(2.0);
+  if (d == 2) return {{{c, -s, 0.0}, {s, c, 0.0}, {0.0, 0.0, 1.0}}};
+  const std::array<double, 3> n{2.0 / 3.0, -1.0 / 3.0, 2.0 / 3.0};
+  const std::array<std::array<double, 3>, 3> cross{
+      {{0.0, -n[2], n[1]}, {n[2], 0.0, -n[0]}, {-n[1], n[0], 0.0}}};
+  std::array<std::array<double, 3>, 3> result{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t j = 0; j < 3; ++j) {
+      result[i][j] = (i == j ? c : 0.0) + (1.0 - c) * n[i] * n[j] + s * cross[i][j];
+    }
+  }
+  return result;
+}
+
+inline std::vector<double> turned(const std::vector<double>& field, int d) {
+  const auto R = turn(d);
+  std::vector<double> result(field.size());
+  for (std::size_t k = 0; k < field.size(); ++k) {
+    for (std::size_t c = 0; c < std::size_t(d); ++c) {
+      result[k] += R[k % std::size_t(d)][c] * field[k / std::size_t(d) * std::size_t(d) + c];
+    }
+  }
+  return result;
+}
+
+inline void expect_to_turn_with_the_body(LatticeForces& forces, const HoledBody& body,
+                                         double tolerance) {
+  const int d = body.dimension();
+  const std::vector<double> u = body.random(5);
+  const ForcesAndEnergies before = evaluate(forces, u, body.count());
+  // R (x + u) - x
+  std::vector<double> after = turned(moved(body.points.reference, 1.0, u), d);
+  after = moved(after, -1.0, body.points.reference);
+  ASSERT_GT(norm(after), 5.0 * norm(u));
+  expect_equal(evaluate(forces, after, body.count()), {turned(before.force, d), before.energy},
+               tolerance);
+}
+
 }  // namespace peristat::tests

@@ -20,9 +20,10 @@ namespace peristat {
 ///
 /// A law of l^2 alone is a polynomial of u, cubic in the force: products of u' and kernels, which
 /// are convolutions, times products of u. The harmonic bond's length l is none. Both are the same
-/// at small strains; at a strain e the Green bond's force is 1 + 3 e / 2 times as large. It does
-/// not change when the body turns, but digits get lost where displacements are many horizons and
-/// strains are small: forces are differences of numbers as large as s u^3.
+/// at small strains; at a strain e the Green bond's force is 1 + 3 e / 2 times as large. Forces and
+/// energies turn with the body, but are differences of numbers as large as s u^3 and s u^4, u
+/// without its mean: of a body n spacings wide with strains e that has turned round, round-off
+/// leaves them relative errors of 2e-16 n^3 / e and 1e-16 n^4 / e^2, as measured.
 ///
 /// The product with the tangent is exact: rates of fields make rates of sums.
 class GreenBonds : public LatticeForces {
