@@ -5,6 +5,7 @@
 #include <cmath>
 #include <functional>
 #include <map>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -317,6 +318,34 @@ inline void expect_to_turn_with_the_body(LatticeForces& forces, const HoledBody&
   ASSERT_GT(norm(after), 5.0 * norm(u));
   expect_equal(evaluate(forces, after, body.count()), {turned(before.force, d), before.energy},
                tolerance);
+}
+
+/// A whole rectangle of points.
+inline LatticeBox rectangle(Index along, Index across) {
+  LatticeBox box;
+  box.dimension = 2;
+  box.extent = {along, across, 1};
+  for (Index place = 0; place < along * across; ++place) box.place.push_back(place);
+  return box;
+}
+
+using MakeForces = std::function<std::unique_ptr<LatticeForces>(
+    const LatticeBox& box, const std::array<bool, 3>& is_periodic)>;
+
+/// A period does what it does between two others.
+inline void expect_to_see_images(const MakeForces& make) {
+  const std::size_t points = 9 * 7;
+  const auto period = make(rectangle(9, 7), {true, false, false});
+  const auto three = make(rectangle(27, 7), {});
+  const std::vector<double> u = Random(5).vector(2 * points, 0.01);
+  std::vector<double> repeated;
+  for (int copy = 0; copy < 3; ++copy) repeated.insert(repeated.end(), u.begin(), u.end());
+  const ForcesAndEnergies all = evaluate(*three, repeated, 3 * points);
+  const auto middle = [&](const std::vector<double>& field) {
+    const auto size = std::ptrdiff_t(field.size() / 3);
+    return std::vector<double>(field.begin() + size, field.end() - size);
+  };
+  expect_equal(evaluate(*period, u, points), {middle(all.force), middle(all.energy)}, 1e-13);
 }
 
 }  // namespace peristat::tests

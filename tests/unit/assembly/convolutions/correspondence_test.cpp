@@ -258,5 +258,25 @@ TEST(Correspondence, TakesSoManyTransforms) {
   }
 }
 
+TEST(Correspondence, SeesImages) {
+  const HoledBody body({{9, 9}, 3.015});
+  tests::expect_to_see_images([&](const LatticeBox& box, const std::array<bool, 3>& periods) {
+    return std::make_unique<Correspondence>(box, periods, body.arms(), setting_of(body), 1);
+  });
+}
+
+TEST(Correspondence, IsOfPlanesAndSpaces) {
+  LatticeBox bar;
+  bar.dimension = 1;
+  bar.extent = {4, 1, 1};
+  bar.place = {0, 1, 2, 3};
+  const std::vector<LatticeArm> arms{{{1, 0, 0}, {0.1, 0.0, 0.0}, 1.0}};
+  EXPECT_THROW(Correspondence(bar, open, arms, {{1.0, 1.0}, 1.0, 1.0}, 1), std::logic_error);
+  EXPECT_THROW(Correspondence(tests::rectangle(3, 9), {true, false, false},
+                              std::vector<LatticeArm>{{{3, 0, 0}, {0.3, 0.0, 0.0}, 1.0}},
+                              {{1.0, 1.0}, 1.0, 1.0}, 1),
+               std::logic_error);
+}
+
 }  // namespace
 }  // namespace peristat

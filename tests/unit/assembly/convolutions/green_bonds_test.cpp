@@ -186,5 +186,12 @@ TEST(GreenBonds, RememberNoSumsOfAnotherIntegrity) {
   EXPECT_EQ(of_used, of_fresh);
 }
 
+TEST(GreenBonds, SeeImages) {
+  const HoledBody body({{9, 9}, 3.015});
+  tests::expect_to_see_images([&](const LatticeBox& box, const std::array<bool, 3>& periods) {
+    return std::make_unique<GreenBonds>(box, periods, springs_of(body), 1);
+  });
+}
+
 }  // namespace
 }  // namespace peristat

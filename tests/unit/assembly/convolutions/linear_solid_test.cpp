@@ -232,5 +232,14 @@ TEST(LinearSolid, IsOfPlanesAndSpaces) {
   EXPECT_THROW(LinearSolid(bar, open, arms, {{1.0, 1.0}, 1.0}, 1), std::logic_error);
 }
 
+TEST(LinearSolid, SeesImages) {
+  const HoledBody body({{9, 9}, 3.015});
+  for (const SolidForm form : {SolidForm::energy, SolidForm::printed}) {
+    tests::expect_to_see_images([&](const LatticeBox& box, const std::array<bool, 3>& periods) {
+      return std::make_unique<LinearSolid>(box, periods, body.arms(), setting_of(body, form), 1);
+    });
+  }
+}
+
 }  // namespace
 }  // namespace peristat
