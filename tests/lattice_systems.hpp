@@ -348,4 +348,20 @@ inline void expect_to_see_images(const MakeForces& make) {
   expect_equal(evaluate(*period, u, points), {middle(all.force), middle(all.energy)}, 1e-13);
 }
 
+/// Products are those of an operator that knows nothing yet, whatever was found before.
+inline void expect_to_remember_nothing_else(LatticeForces& used, LatticeForces& fresh,
+                                            const HoledBody& body) {
+  const std::vector<double> u = body.random(5), v = body.random(6), w = body.random(7);
+  std::vector<double> of_used(u.size()), of_fresh(u.size());
+  used.find_forces(u, of_used);
+  used.set_integrity(body.mask());
+  fresh.set_integrity(body.mask());
+  for (const std::vector<double>& at : {u, w}) {
+    used.multiply(at, v, of_used);
+    fresh.multiply(at, v, of_fresh);
+    EXPECT_EQ(of_used, of_fresh);
+    evaluate(fresh, v, body.count());  // leaves the next product to be found from the start
+  }
+}
+
 }  // namespace peristat::tests

@@ -258,6 +258,12 @@ TEST(Correspondence, TakesSoManyTransforms) {
   }
 }
 
+TEST(Correspondence, RemembersNothingElse) {
+  const HoledBody body({{13, 10}});
+  Correspondence used = material_of(body), fresh = material_of(body);
+  tests::expect_to_remember_nothing_else(used, fresh, body);
+}
+
 TEST(Correspondence, SeesImages) {
   const HoledBody body({{9, 9}, 3.015});
   tests::expect_to_see_images([&](const LatticeBox& box, const std::array<bool, 3>& periods) {

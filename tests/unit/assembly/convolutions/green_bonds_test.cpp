@@ -173,17 +173,10 @@ TEST(GreenBonds, TakeSoManyTransforms) {
   }
 }
 
-TEST(GreenBonds, RememberNoSumsOfAnotherIntegrity) {
+TEST(GreenBonds, RememberNothingElse) {
   const HoledBody body({{13, 10}});
   GreenBonds used = bonds_of(body), fresh = bonds_of(body);
-  const std::vector<double> u = body.random(5), v = body.random(6);
-  std::vector<double> of_used(u.size()), of_fresh(u.size());
-  used.find_forces(u, of_used);
-  used.set_integrity(body.mask());
-  fresh.set_integrity(body.mask());
-  used.multiply(u, v, of_used);
-  fresh.multiply(u, v, of_fresh);
-  EXPECT_EQ(of_used, of_fresh);
+  tests::expect_to_remember_nothing_else(used, fresh, body);
 }
 
 TEST(GreenBonds, SeeImages) {

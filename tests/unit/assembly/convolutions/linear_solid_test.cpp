@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "assembly/assembler.hpp"
+#include "assembly/convolutions/linear_bonds.hpp"
 #include "assembly/terms/states/state_term.hpp"
 #include "tests/lattice_systems.hpp"
 
@@ -230,6 +231,34 @@ TEST(LinearSolid, IsOfPlanesAndSpaces) {
   bar.place = {0, 1, 2, 3};
   const std::vector<LatticeArm> arms{{{1, 0, 0}, {0.1, 0.0, 0.0}, 1.0}};
   EXPECT_THROW(LinearSolid(bar, open, arms, {{1.0, 1.0}, 1.0}, 1), std::logic_error);
+}
+
+TEST(LinearSolid, IsOneOfBondsWhereLambdaIsMuAndNeighbourhoodsAreWhole) {
+  // Poisson's ratio 1/4: no forces of dilatations, and k = 2 d (d + 2) mu V kappa / M.
+  const HoledBody body({{7, 6, 9}, 2.015, VolumeCorrection::linear});
+  LatticeBox box;
+  box.dimension = 3;
+  box.extent = {7, 6, 9};
+  for (Index place = 0; place < 7 * 6 * 9; ++place) box.place.push_back(place);
+  const std::vector<LatticeArm> arms = body.arms();
+  double moment = 0.0;
+  for (const LatticeArm& arm : arms) {
+    moment += 2.0 * arm.share * tests::dot(arm.xi, arm.xi);
+  }
+  const double mu = 0.9, V = body.volume();
+  std::vector<LatticeSpring> springs;
+  for (const LatticeArm& arm : arms) {
+    const double length = tests::norm(arm.xi);
+    const Coordinates n{arm.xi[0] / length, arm.xi[1] / length, arm.xi[2] / length};
+    springs.push_back({arm.step, n, 2.0 * 3 * 5 * mu * V * arm.share / moment, length});
+  }
+  const std::array<bool, 3> everywhere{true, true, true};
+  LinearSolid solid(box, everywhere, arms, {{mu, mu}, V}, 1);
+  LinearBonds bonds(box, everywhere, springs, 1);
+  const std::vector<double> u = tests::Random(5).vector(3 * box.place.size(), 0.01);
+  ForcesAndEnergies expected{std::vector<double>(u.size()), std::vector<double>(box.place.size())};
+  bonds.find_forces_and_energies(u, expected.force, expected.energy);
+  tests::expect_equal(tests::evaluate(solid, u, box.place.size()), expected, 1e-13);
 }
 
 TEST(LinearSolid, SeesImages) {
