@@ -112,13 +112,27 @@ void Assembler::product(const StateView& at, std::span<const double> v, std::spa
       [&](TermPasses& term, Write how) { term.product(at, v, projection, product, how); });
 }
 
+LatticeStencil Assembler::stencil(const StateView& at) {
+  LatticeStencil found;
+  for (const auto& passes : terms_) {
+    LatticeStencil of_term = passes->stencil(at);
+    if (!of_term.empty()) found = std::move(of_term);
+  }
+  return found;
+}
+
+bool Assembler::is_outlined(std::size_t term) const {
+  const Term& of = *model_.terms()[term];
+  return !of.balances().potential || !of.has_rows();
+}
+
 std::vector<double> Assembler::blocks_of_springs(const StateView& at) {
   const BlockPattern alone = BlockPattern::of_rows(
       std::vector<Offset>(std::size_t(points_.count()) + 1, 0), std::vector<Index>());
   Tangent springs(alone, points_.dimension);
   springs.clear();
   for (std::size_t k = 0; k < terms_.size(); ++k) {
-    if (!model_.terms()[k]->balances().potential) continue;
+    if (is_outlined(k)) continue;
     terms_[k]->tangent(at, 0.0, springs, Write::onto);
   }
   return springs.diagonal;
@@ -128,7 +142,7 @@ SparseRows Assembler::rows(const StateView& at, RowReach reach) {
   const Stopwatch watch(seconds_);
   SparseRows found;
   for (std::size_t k = 0; k < terms_.size(); ++k) {
-    if (!model_.terms()[k]->balances().potential) found = terms_[k]->rows(at, reach);
+    if (is_outlined(k)) found = terms_[k]->rows(at, reach);
   }
   const std::vector<double> springs = blocks_of_springs(at);
   const auto d = std::size_t(points_.dimension);
@@ -153,7 +167,7 @@ void Assembler::outline_rows(const StateView& at, std::span<double> diagonal,
                              std::span<double> row_sums) {
   const Stopwatch watch(seconds_);
   for (std::size_t k = 0; k < terms_.size(); ++k) {
-    if (!model_.terms()[k]->balances().potential) terms_[k]->outline_rows(at, diagonal, row_sums);
+    if (is_outlined(k)) terms_[k]->outline_rows(at, diagonal, row_sums);
   }
   const std::vector<double> springs = blocks_of_springs(at);
   const auto d = std::size_t(points_.dimension);

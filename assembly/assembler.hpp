@@ -64,6 +64,8 @@ class Assembler : public Energy {
                      std::span<double> diagonal) override;
 
   [[nodiscard]] bool has_potential() const override { return model_.balances().potential; }
+  [[nodiscard]] bool has_rows() const override { return model_.has_rows(); }
+  [[nodiscard]] LatticeStencil stencil(const StateView& at) override;
   [[nodiscard]] SparseRows rows(const StateView& at, RowReach reach) override;
   [[nodiscard]] double bytes_of_rows() const override;
   void outline_rows(const StateView& at, std::span<double> diagonal,
@@ -86,8 +88,10 @@ class Assembler : public Energy {
   [[nodiscard]] double seconds_spent() const { return seconds_; }  ///< wall time of all calls [s]
 
  private:
-  /// Diagonal blocks of the terms that have a potential, points x dimension x dimension: beside one
-  /// that has none they are springs of points.
+  /// Whether a term tells no more of its tangent than an outline.
+  [[nodiscard]] bool is_outlined(std::size_t term) const;
+  /// Diagonal blocks of all other terms, points x dimension x dimension: beside one that is
+  /// outlined they are springs of points.
   [[nodiscard]] std::vector<double> blocks_of_springs(const StateView& at);
 
   /// Calls visit(passes, how) for every term: the first writes its result, the others add to it.

@@ -186,6 +186,34 @@ inline void expect_forces_of_energy(LatticeForces& forces, const std::vector<dou
   EXPECT_NEAR(derivative, -dot(evaluate(forces, u, points).force, v), tolerance * scale);
 }
 
+/// A point's virial is the derivative of its energy where all points get a displacement gradient,
+/// one of whose components counts.
+inline void expect_virials_of_energies(LatticeForces& forces, const HoledBody& body,
+                                       double tolerance) {
+  const auto d = std::size_t(body.dimension());
+  const std::vector<double> u = body.random(5);
+  std::vector<double> virials(u.size() * d), expected(u.size() * d);
+  // It adds to what is there: halves of two are one.
+  forces.add_virials(u, virials);
+  forces.add_virials(u, virials);
+  for (double& entry : virials) entry *= 0.5;
+  for (std::size_t ac = 0; ac < d * d; ++ac) {
+    std::vector<double> v(u.size(), 0.0);
+    for (std::size_t i = 0; i < body.count(); ++i) {
+      v[i * d + ac / d] = 0.1 * body.points.reference[i * d + ac % d];
+    }
+    const auto at = [&](double step) {
+      return evaluate(forces, moved(u, step, v), body.count()).energy;
+    };
+    const std::vector<double> a = at(1.0), b = at(-1.0), c = at(2.0), e = at(-2.0);
+    for (std::size_t i = 0; i < body.count(); ++i) {
+      expected[i * d * d + ac] = 10.0 * (8.0 * (a[i] - b[i]) - (c[i] - e[i])) / 12.0;
+    }
+  }
+  ASSERT_GT(norm(expected), 0.0);
+  EXPECT_LE(distance(virials, expected), tolerance * norm(expected));
+}
+
 inline void expect_tangent_of_forces(LatticeForces& forces, const std::vector<double>& u,
                                      const std::vector<double>& v, std::size_t points,
                                      double tolerance = 1e-12) {
@@ -260,8 +288,13 @@ inline void expect_nothing_at_lonely_points(LatticeForces& forces, const HoledBo
 inline void expect_outline(LatticeForces& forces, const HoledBody& body, double most_slack) {
   const auto d = std::size_t(body.dimension());
   const std::size_t size = body.count() * d;
-  std::vector<double> diagonal(size * d, 7.0), bounds(size, 7.0), sums(size, 0.0);
+  std::vector<double> diagonal(size * d), bounds(size), sums(size, 0.0);
+  // It adds to what is there: halves of two are one.
   forces.outline_tangent(diagonal, bounds);
+  forces.outline_tangent(diagonal, bounds);
+  for (std::vector<double>* found : {&diagonal, &bounds}) {
+    for (double& entry : *found) entry *= 0.5;
+  }
   std::vector<double> blocks(size * d), column(size), unit(size, 0.0);
   const std::vector<double> rest(size, 0.0);
   for (std::size_t k = 0; k < size; ++k) {

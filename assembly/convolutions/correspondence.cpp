@@ -159,18 +159,24 @@ void Correspondence::renew_shapes() {
   });
 }
 
-/// H, or its rate for the rate of u, and fields 0 ... D - 1 of u.
+/// sum q' kappa eta xi, or its rate for the rate of u, and fields 0 ... D - 1 of u.
 template <int D>
-void Correspondence::find_gradients(const std::vector<double>& u, std::vector<double>& gradients) {
-  gradients.resize(fields_.points() * D * D);
+void Correspondence::find_moments(const std::vector<double>& u, std::vector<double>& moments) {
+  moments.resize(fields_.points() * D * D);
   for (std::size_t i = 0; i < D; ++i) {
     fields_.fill(i, [&](std::size_t x) { return u[x * D + i]; });
     for (std::size_t j = 0; j < D; ++j) {
       fields_.find_sums(arm_[j], i, [&](std::size_t x, double sum) {
-        gradients[(x * D + i) * D + j] = sum - u[x * D + i] * arms_left_[x * D + j];
+        moments[(x * D + i) * D + j] = sum - u[x * D + i] * arms_left_[x * D + j];
       });
     }
   }
+}
+
+/// H, or its rate for the rate of u, and fields 0 ... D - 1 of u.
+template <int D>
+void Correspondence::find_gradients(const std::vector<double>& u, std::vector<double>& gradients) {
+  find_moments<D>(u, gradients);
   fields_.for_points([&](std::size_t x) {
     Tensors<D> gradient(&gradients[x * D * D]);
     gradient *= ConstTensors<D>(&inverse_shapes_[x * D * D]);
@@ -302,7 +308,9 @@ void Correspondence::outline_tangent(std::span<double> diagonal, std::span<doubl
     if constexpr (D > 1) {
       outline_blocks<D>(diagonal);
       add_neighbours_blocks<D>(diagonal);
-      bound_rows<D>(row_sums);
+      std::vector<double> bounds(row_sums.size());
+      bound_rows<D>(bounds);
+      add_rounded_up(bounds, row_sums);
     }
   });
 }
@@ -317,10 +325,9 @@ void Correspondence::outline_blocks(std::span<double> diagonal) {
   fields_.for_points([&](std::size_t i) {
     const ConstVectors<D> arms(&arms_left_[i * D]);
     const Eigen::Matrix<double, D, 1> g = -(ConstTensors<D>(&inverse_shapes_[i * D * D]) * arms);
-    Tensors<D> block(&diagonal[i * D * D]);
-    block = V * (lambda + mu) * g * g.transpose();
+    Eigen::Matrix<double, D, D> block = V * (lambda + mu) * g * g.transpose();
     block.diagonal().array() += V * mu * g.squaredNorm() + beta * (2.0 * sizes_[i] + g.dot(arms));
-    block *= fields_.integrity(i);
+    Tensors<D>(&diagonal[i * D * D]) += fields_.integrity(i) * block;
   });
 }
 
@@ -395,7 +402,32 @@ void Correspondence::bound_rows(std::span<double> row_sums) {
     const double row = fields_.integrity(i) * (sum + weight[i] * arms + 4.0 * beta * sizes_[i]);
     for (std::size_t c = 0; c < D; ++c) row_sums[i * D + c] = row;
   });
-  round_up(row_sums);
+}
+
+void Correspondence::add_virials(std::span<const double> displacement, std::span<double> virials) {
+  std::vector<double> u;  // products may be asked for at the state that is known
+  fields_.take_off_mean(displacement, u);
+  if (fields_.dimension() == 2) add_virials<2>(u, virials);
+  if (fields_.dimension() == 3) add_virials<3>(u, virials);
+}
+
+/// q (V F S + beta sum q' kappa z xi) per point: H K is all of sum q' kappa eta xi where there is
+/// an H, and z has nothing of it.
+template <int D>
+void Correspondence::add_virials(const std::vector<double>& u, std::span<double> virials) {
+  std::vector<double> moments;
+  find_moments<D>(u, moments);
+  fields_.for_points([&](std::size_t i) {
+    const ConstTensors<D> moment(&moments[i * D * D]), inverse(&inverse_shapes_[i * D * D]);
+    Eigen::Matrix<double, D, D> virial = setting_.stabilisation * moment;
+    if (!inverse.isZero(0.0)) {
+      Matrix<D, double> H;
+      Tensors<D>(H[0].data()) = moment * inverse;
+      const Matrix<D, double> stress = first_stress<D, double>(H, setting_.constants);
+      virial = setting_.volume * ConstTensors<D>(stress[0].data());
+    }
+    Tensors<D>(&virials[i * D * D]) += fields_.integrity(i) * virial;
+  });
 }
 
 double Correspondence::bytes() const {

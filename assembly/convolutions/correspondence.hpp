@@ -64,7 +64,10 @@ class Correspondence : public LatticeForces {
   /// transforms; sums by the triangle inequality over what each gradient contributes,
   /// which is up to fifteen times too much.
   void outline_tangent(std::span<double> diagonal, std::span<double> row_sums) override;
-  [[nodiscard]] double bytes() const override;
+  /// V F S, and where there is no H what the stabilisation has.
+  void add_virials(std::span<const double> displacement, std::span<double> virials) override;
+  /// Memory that it holds.
+  [[nodiscard]] double bytes() const;
 
   [[nodiscard]] const LatticeFields& fields() const { return fields_; }
 
@@ -72,6 +75,8 @@ class Correspondence : public LatticeForces {
   void take_up(std::span<const double> displacement);
   template <int D>
   void renew_shapes();
+  template <int D>
+  void find_moments(const std::vector<double>& u, std::vector<double>& moments);
   template <int D>
   void find_gradients(const std::vector<double>& u, std::vector<double>& gradients);
   template <int D>
@@ -88,6 +93,8 @@ class Correspondence : public LatticeForces {
   void add_neighbours_blocks(std::span<double> diagonal);
   template <int D>
   void bound_rows(std::span<double> row_sums);
+  template <int D>
+  void add_virials(const std::vector<double>& u, std::span<double> virials);
 
   std::vector<LatticeArm> arms_;
   Setting setting_;

@@ -18,6 +18,12 @@ std::vector<LatticeStep> steps_of(std::span<const LatticeSpring> springs) {
   return steps;
 }
 
+/// s
+double size_of(const LatticeSpring& spring) {
+  const Coordinates& arm = spring.arm;
+  return spring.stiffness / (arm[0] * arm[0] + arm[1] * arm[1] + arm[2] * arm[2]);
+}
+
 /// Numbers of the fields, q times
 ///   u_i | u_i u_j | u^2 u_i | u^4.
 template <int D>
@@ -111,50 +117,65 @@ GreenBonds::GreenBonds(const LatticeBox& box, const std::array<bool, 3>& is_peri
                        std::span<const LatticeSpring> springs, int threads)
     : springs_(springs.begin(), springs.end()),
       fields_(box, is_periodic, steps_of(springs), threads) {
-  const auto spectrum = [&](Parity parity, const auto& value) {
-    return fields_.spectrum(parity, [&](std::size_t s) { return value(springs_[s]); });
+  kernels_ = make_kernels(false, [](const LatticeSpring&) { return 1.0; });
+  for (const LatticeSpring& spring : springs_) whole_size_ += 2.0 * size_of(spring);
+  set_integrity(std::vector<double>(box.place.size(), 1.0));
+}
+
+/// The kernels times a factor of each spring, which may turn round with the step.
+template <class Factor>
+GreenBonds::Kernels GreenBonds::make_kernels(bool is_odd, const Factor& factor) const {
+  const auto spectrum = [&](bool turns, const auto& value) {
+    return fields_.spectrum(turns == is_odd ? Parity::even : Parity::odd, [&](std::size_t s) {
+      return value(springs_[s]) * factor(springs_[s]);
+    });
   };
-  for (int i = 0; i < box.dimension; ++i) {
-    arm_.push_back(spectrum(Parity::odd, [i](const LatticeSpring& of) {
-      return of.stiffness * of.direction[i] / of.length;
-    }));
-    for (int j = i; j < box.dimension; ++j) {
-      square_.push_back(spectrum(Parity::even, [i, j](const LatticeSpring& of) {
+  Kernels kernels;
+  for (int i = 0; i < fields_.dimension(); ++i) {
+    kernels.arm.push_back(
+        spectrum(true, [i](const LatticeSpring& of) { return size_of(of) * of.arm[i]; }));
+    for (int j = i; j < fields_.dimension(); ++j) {
+      kernels.square.push_back(spectrum(false, [i, j](const LatticeSpring& of) {
         return of.stiffness * of.direction[i] * of.direction[j];
       }));
     }
   }
-  const auto size = [](const LatticeSpring& of) { return of.stiffness / of.length / of.length; };
-  size_ = spectrum(Parity::even, size);
-  for (const LatticeSpring& spring : springs_) whole_size_ += 2.0 * size(spring);
-  set_integrity(std::vector<double>(box.place.size(), 1.0));
+  kernels.size = spectrum(false, size_of);
+  return kernels;
 }
 
 void GreenBonds::set_integrity(std::span<const double> integrity) {
   fields_.set_integrity(integrity);
   state_.clear();
-  with_dimension(fields_.dimension(),
-                 [&](auto dimension) { renew_constants<decltype(dimension)::value>(); });
+  with_dimension(fields_.dimension(), [&](auto dimension) {
+    constexpr int D = decltype(dimension)::value;
+    using At = Constants<D>;
+    find_constants<D>(kernels_, constants_);
+    fields_.leave_out_lonely(whole_size_,
+                             [&](std::size_t i) { return constants_[i * At::count + At::size]; });
+  });
 }
 
 template <int D>
-void GreenBonds::renew_constants() {
+void GreenBonds::find_constants(const Kernels& kernels, std::vector<double>& constants) {
   using At = Constants<D>;
-  constants_.resize(fields_.points() * At::count);
+  constants.resize(fields_.points() * At::count);
   const auto take_to = [&](std::size_t at) {
-    return [this, at](std::size_t i, double sum) { constants_[i * At::count + at] = sum; };
+    return [&constants, at](std::size_t i, double sum) { constants[i * At::count + at] = sum; };
   };
   fields_.fill(0, [](std::size_t) { return 1.0; });
-  for (std::size_t p = 0; p < pairs_of(D); ++p) fields_.find_sums(square_[p], 0, take_to(p));
-  for (std::size_t c = 0; c < D; ++c) fields_.find_sums(arm_[c], 0, take_to(At::arms + c));
-  fields_.find_sums(size_, 0, take_to(At::size));
+  for (std::size_t p = 0; p < pairs_of(D); ++p) {
+    fields_.find_sums(kernels.square[p], 0, take_to(p));
+  }
+  for (std::size_t c = 0; c < D; ++c) fields_.find_sums(kernels.arm[c], 0, take_to(At::arms + c));
+  fields_.find_sums(kernels.size, 0, take_to(At::size));
   fields_.leave_out_lonely(whole_size_,
                            [&](std::size_t i) { return constants_[i * At::count + At::size]; });
 }
 
 /// @param get (point) u, or u with its rate, of which the sums have the rates
 template <int D, class Get>
-void GreenBonds::find_sums(const Get& get, std::vector<double>& sums) {
+void GreenBonds::find_sums(const Kernels& kernels, const Get& get, std::vector<double>& sums) {
   using In = Fields<D>;
   using To = Sums<D>;
   sums.resize(fields_.points() * To::count);
@@ -167,9 +188,9 @@ void GreenBonds::find_sums(const Get& get, std::vector<double>& sums) {
       const auto u = get(x);
       return part(dot<D>(u, u) * u[i]);
     });
-    fields_.find_sums(size_, i, take_to(To::sizes + i));
+    fields_.find_sums(kernels.size, i, take_to(To::sizes + i));
     for (std::size_t j = 0; j < D; ++j) {
-      fields_.find_sums(arm_[j], i, take_to(To::arms + i * D + j));
+      fields_.find_sums(kernels.arm[j], i, take_to(To::arms + i * D + j));
     }
     for (std::size_t j = i; j < D; ++j) {
       const std::size_t pair = pair_of(int(i), int(j), D);
@@ -177,16 +198,16 @@ void GreenBonds::find_sums(const Get& get, std::vector<double>& sums) {
         const auto u = get(x);
         return part(u[i] * u[j]);
       });
-      fields_.find_sums(size_, In::squares + pair, take_to(To::squares + pair));
+      fields_.find_sums(kernels.size, In::squares + pair, take_to(To::squares + pair));
     }
   }
   for (std::size_t i = 0; i < D; ++i) {
-    std::vector<Product> products{{&size_, In::cubes + i, 0.5}};
+    std::vector<Product> products{{&kernels.size, In::cubes + i, 0.5}};
     for (std::size_t j = 0; j < D; ++j) {
       const std::size_t pair = pair_of(int(i), int(j), D);
-      products.push_back({&square_[pair], j});
-      products.push_back({&arm_[j], In::squares + pair});
-      products.push_back({&arm_[i], In::squares + pair_of(int(j), int(j), D), 0.5});
+      products.push_back({&kernels.square[pair], j});
+      products.push_back({&kernels.arm[j], In::squares + pair});
+      products.push_back({&kernels.arm[i], In::squares + pair_of(int(j), int(j), D), 0.5});
     }
     fields_.find_sums(products, take_to(i));
   }
@@ -198,7 +219,8 @@ void GreenBonds::take_up(std::span<const double> displacement) {
   fields_.take_off_mean(displacement, displacement_);
   with_dimension(fields_.dimension(), [&](auto dimension) {
     constexpr int D = decltype(dimension)::value;
-    find_sums<D>([&](std::size_t x) { return vector_at<D>(displacement_, x); }, sums_);
+    find_sums<D>(
+        kernels_, [&](std::size_t x) { return vector_at<D>(displacement_, x); }, sums_);
   });
 }
 
@@ -234,12 +256,12 @@ void GreenBonds::find_energies(std::span<double> energy) {
     const Vector<D, double> u = vector_at<D>(displacement_, i);
     return dot<D>(u, u) * dot<D>(u, u);
   });
-  std::vector<Product> products{{&size_, In::quartic, 0.25}};
+  std::vector<Product> products{{&kernels_.size, In::quartic, 0.25}};
   for (int i = 0; i < D; ++i) {
-    products.push_back({&arm_[std::size_t(i)], In::cubes + std::size_t(i)});
+    products.push_back({&kernels_.arm[std::size_t(i)], In::cubes + std::size_t(i)});
     for (int j = i; j < D; ++j) {
       const std::size_t pair = pair_of(i, j, D);
-      products.push_back({&square_[pair], In::squares + pair, i == j ? 1.0 : 2.0});
+      products.push_back({&kernels_.square[pair], In::squares + pair, i == j ? 1.0 : 2.0});
     }
   }
   fields_.find_sums(products, [&](std::size_t i, double sum) {
@@ -266,7 +288,7 @@ void GreenBonds::find_rates(std::span<double> product) {
     }
     return at;
   };
-  find_sums<D>(get, rates_);
+  find_sums<D>(kernels_, get, rates_);
   fields_.for_points([&](std::size_t i) {
     const double *const sums = &sums_[i * Sums<D>::count], *const rates =
                                                                &rates_[i * Sums<D>::count];
@@ -280,9 +302,11 @@ void GreenBonds::find_rates(std::span<double> product) {
 }
 
 void GreenBonds::outline_tangent(std::span<double> diagonal, std::span<double> row_sums) {
-  with_dimension(fields_.dimension(),
-                 [&](auto dimension) { outline<decltype(dimension)::value>(diagonal, row_sums); });
-  round_up(row_sums);
+  std::vector<double> bounds(row_sums.size());
+  with_dimension(fields_.dimension(), [&](auto dimension) {
+    outline<decltype(dimension)::value>(diagonal, bounds);
+  });
+  add_rounded_up(bounds, row_sums);
 }
 
 /// At rest K has -q q' k n n of bonds and their sums on its diagonal.
@@ -299,10 +323,38 @@ void GreenBonds::outline(std::span<double> diagonal, std::span<double> row_sums)
       const std::size_t row = i * D + std::size_t(r);
       for (int c = 0; c < D; ++c) {
         const double entry = constants_[i * Constants<D>::count + pair_of(r, c, D)];
-        diagonal[row * D + std::size_t(c)] = fields_.integrity(i) * entry;
+        diagonal[row * D + std::size_t(c)] += fields_.integrity(i) * entry;
         sum += std::abs(entry);
       }
       row_sums[row] = fields_.integrity(i) * sum;
+    });
+  }
+}
+
+void GreenBonds::add_virials(std::span<const double> displacement, std::span<double> virials) {
+  std::vector<double> u;  // products may be asked for at the state that is known
+  fields_.take_off_mean(displacement, u);
+  with_dimension(fields_.dimension(),
+                 [&](auto dimension) { add_virials<decltype(dimension)::value>(u, virials); });
+}
+
+/// q / 2 sum q' s g (xi + eta) xi per point: forces with kernels times a component of xi.
+template <int D>
+void GreenBonds::add_virials(const std::vector<double>& u, std::span<double> virials) {
+  std::vector<double> constants, sums;
+  for (std::size_t c = 0; c < D; ++c) {
+    const Kernels kernels = make_kernels(true, [c](const LatticeSpring& of) { return of.arm[c]; });
+    find_constants<D>(kernels, constants);
+    find_sums<D>(
+        kernels, [&](std::size_t x) { return vector_at<D>(u, x); }, sums);
+    fields_.for_points([&](std::size_t i) {
+      const double* const of_point = &sums[i * Sums<D>::count];
+      const Vector<D, double> found = force_of<D>(
+          vector_at<D>(u, i), [&](std::size_t k) { return of_point[k]; },
+          &constants[i * Constants<D>::count]);
+      for (std::size_t a = 0; a < D; ++a) {
+        virials[(i * D + a) * D + c] += 0.5 * fields_.integrity(i) * found[a];
+      }
     });
   }
 }
@@ -313,7 +365,7 @@ double GreenBonds::bytes() const {
        {&constants_, &state_, &displacement_, &direction_, &sums_, &rates_}) {
     numbers += double(kept->size());
   }
-  const auto spectra = double(square_.size() + arm_.size() + 1);
+  const auto spectra = double(kernels_.square.size() + kernels_.arm.size() + 1);
   return 8.0 * numbers + fields_.bytes() + spectra * fields_.spectrum_bytes();
 }
 

@@ -47,16 +47,28 @@ class GreenBonds : public LatticeForces {
                 std::span<double> product) override;
   /// Blocks are exact, and the sums as exact as |n_i n_j| of the bonds is.
   void outline_tangent(std::span<double> diagonal, std::span<double> row_sums) override;
-  [[nodiscard]] double bytes() const override;
+  /// By the kernels times each component of xi, which are made and dropped again.
+  void add_virials(std::span<const double> displacement, std::span<double> virials) override;
+  /// Memory that it holds.
+  [[nodiscard]] double bytes() const;
 
   [[nodiscard]] const LatticeFields& fields() const { return fields_; }
 
  private:
   void take_up(std::span<const double> displacement);
+  /// What sums are made with.
+  struct Kernels {
+    std::vector<LatticeSpectrum> square;  // s xi xi = k n n, by pair
+    std::vector<LatticeSpectrum> arm;     // s xi, by component
+    LatticeSpectrum size;                 // s
+  };
+
+  template <class Factor>
+  [[nodiscard]] Kernels make_kernels(bool is_odd, const Factor& factor) const;
   template <int D>
-  void renew_constants();
+  void find_constants(const Kernels& kernels, std::vector<double>& constants);
   template <int D, class Get>
-  void find_sums(const Get& get, std::vector<double>& sums);
+  void find_sums(const Kernels& kernels, const Get& get, std::vector<double>& sums);
   template <int D>
   void add_up(std::span<double> force) const;
   template <int D>
@@ -65,12 +77,12 @@ class GreenBonds : public LatticeForces {
   void find_rates(std::span<double> product);
   template <int D>
   void outline(std::span<double> diagonal, std::span<double> row_sums);
+  template <int D>
+  void add_virials(const std::vector<double>& u, std::span<double> virials);
 
   std::vector<LatticeSpring> springs_;
   LatticeFields fields_;
-  std::vector<LatticeSpectrum> square_;  // s xi xi = k n n, by pair
-  std::vector<LatticeSpectrum> arm_;     // s xi, by component
-  LatticeSpectrum size_;                 // s
+  Kernels kernels_;
   double whole_size_ = 0.0;
   std::vector<double> constants_;     // sums of q' times these three, per point
   std::vector<double> state_;         // u that sums_ belong to; empty: none

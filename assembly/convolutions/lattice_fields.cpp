@@ -134,10 +134,12 @@ double LatticeFields::bytes() const {
   return 16.0 * double(transform().modes()) * double(fields_.size() + 1) + 16.0 * double(points());
 }
 
-void round_up(std::span<double> sums) {
+void add_rounded_up(std::span<const double> sums, std::span<double> total) {
   if (sums.empty()) return;
   const double margin = 1e-13 * *std::max_element(sums.begin(), sums.end());
-  for (double& sum : sums) sum = std::max(sum, 0.0) * (1.0 + 1e-10) + margin;
+  for (std::size_t k = 0; k < sums.size(); ++k) {
+    total[k] += std::max(sums[k], 0.0) * (1.0 + 1e-10) + margin;
+  }
 }
 
 }  // namespace peristat

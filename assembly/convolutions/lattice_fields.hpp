@@ -145,8 +145,8 @@ class LatticeFields {
   std::size_t transforms_ = 0;
 };
 
-/// Makes numbers not less than sums of absolute values that convolutions have found, which may be
-/// too small by round-off of the largest of them.
-void round_up(std::span<double> sums);
+/// total += numbers not less than sums of absolute values that convolutions have found, which may
+/// be too small by round-off of the largest of them.
+void add_rounded_up(std::span<const double> sums, std::span<double> total);
 
 }  // namespace peristat

@@ -1,8 +1,8 @@
 #pragma once
 
-#include <cstddef>
 #include <span>
-#include <vector>
+
+#include "assembly/convolutions/lattice_stencil.hpp"
 
 namespace peristat {
 
@@ -32,8 +32,13 @@ class LatticeForces {
   /// @param row_sums numbers not less than the sums of the absolute entries of each row [N/m]
   virtual void outline_tangent(std::span<double> diagonal, std::span<double> row_sums) = 0;
 
-  /// Memory that it holds.
-  [[nodiscard]] virtual double bytes() const = 0;
+  /// The same by steps along the lattice.
+  [[nodiscard]] virtual LatticeStencil stencil() { return {}; }
+
+  /// Adds each point's half of what its forces times their reference arms are, see
+  /// TermPasses::add_virials.
+  /// @param virials points x dimension x dimension [J]
+  virtual void add_virials(std::span<const double> displacement, std::span<double> virials) = 0;
 };
 
 }  // namespace peristat

@@ -21,30 +21,31 @@ void for_each_half(const Kernel& kernel, const Spacing& spacing, double angle, c
   });
 }
 
+Coordinates scaled(double length, Coordinates direction) {
+  for (double& component : direction) component *= length;
+  return direction;
+}
+
 }  // namespace
 
 std::vector<LatticeSpring> lattice_springs(const Kernel& kernel, const Spacing& spacing,
                                            double angle, double micromodulus, double volume) {
   std::vector<LatticeSpring> springs;
-  for_each_half(
-      kernel, spacing, angle,
-      [&](const LatticeStep& step, const Coordinates& direction, double length, double factor) {
-        const double stiffness = micromodulus * volume * volume * factor / length;
-        springs.push_back({step, direction, stiffness, length});
-      });
+  for_each_half(kernel, spacing, angle,
+                [&](const LatticeStep& step, const Coordinates& n, double length, double factor) {
+                  const double stiffness = micromodulus * volume * volume * factor / length;
+                  springs.push_back({step, n, scaled(length, n), stiffness});
+                });
   return springs;
 }
 
 std::vector<LatticeArm> lattice_arms(const Kernel& kernel, const Spacing& spacing, double angle,
                                      double volume) {
   std::vector<LatticeArm> arms;
-  for_each_half(
-      kernel, spacing, angle,
-      [&](const LatticeStep& step, const Coordinates& direction, double length, double factor) {
-        Coordinates xi = direction;
-        for (double& component : xi) component *= length;
-        arms.push_back({step, xi, volume * volume * factor});
-      });
+  for_each_half(kernel, spacing, angle,
+                [&](const LatticeStep& step, const Coordinates& n, double length, double factor) {
+                  arms.push_back({step, scaled(length, n), volume * volume * factor});
+                });
   return arms;
 }
 

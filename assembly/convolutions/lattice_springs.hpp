@@ -12,8 +12,8 @@ namespace peristat {
 struct LatticeSpring {
   LatticeStep step{};       ///< from one point to the other, along the lattice's axes
   Coordinates direction{};  ///< n, unit vector along it in the axes of the body
+  Coordinates arm{};        ///< xi, the vector itself [m]
   double stiffness = 0.0;   ///< k [N/m]
-  double length = 0.0;      ///< r [m]
 };
 
 /// A step to a neighbour, and how much of it counts.

@@ -34,6 +34,17 @@ std::array<ConvolutionAxis, 3> axes_of(const LatticeBox& box,
   return as_last(axes, box.dimension);
 }
 
+/// A point's place in a field.
+std::vector<std::size_t> places_of(const LatticeBox& box, const FourierTransform& transform) {
+  std::vector<std::size_t> where;
+  where.reserve(box.place.size());
+  for (const Index place : box.place) {
+    const std::array<Index, 3> at = as_last(box.numbers(place), box.dimension);
+    where.push_back(transform.at(at[0], at[1], at[2]));
+  }
+  return where;
+}
+
 /// field_j := sum_i C_ij field_i, mode by mode.
 template <int D>
 void multiply_modes(const std::vector<std::vector<double>>& amplitudes,
@@ -68,13 +79,10 @@ LinearBonds::LinearBonds(const LatticeBox& box, const std::array<bool, 3>& is_pe
                          std::span<const LatticeSpring> springs, int threads)
     : dimension_(box.dimension),
       points_(static_cast<std::ptrdiff_t>(box.place.size())),
+      springs_(springs.begin(), springs.end()),
       convolution_(axes_of(box, is_periodic, springs), threads) {
   const FourierTransform& transform = convolution_.transform();
-  where_.reserve(box.place.size());
-  for (const Index place : box.place) {
-    const std::array<Index, 3> at = as_last(box.numbers(place), dimension_);
-    where_.push_back(transform.at(at[0], at[1], at[2]));
-  }
+  where_ = places_of(box, transform);
   std::vector<KernelValue> kernel;
   for (const LatticeSpring& spring : springs)
     kernel.push_back({as_last(spring.step, dimension_), 0.0});
@@ -223,22 +231,135 @@ void LinearBonds::find_forces_and_energies(std::span<const double> displacement,
   }
 }
 
-void LinearBonds::multiply(std::span<const double> v, std::span<double> product) {
+void LinearBonds::multiply(std::span<const double> /*displacement*/, std::span<const double> v,
+                           std::span<double> product) {
   find_forces(v, product);
   for (double& entry : product) entry = -entry;
 }
 
-std::vector<double> LinearBonds::diagonal() const {
-  std::vector<double> blocks;
-  blocks.reserve(std::size_t(points_) * std::size_t(dimension_) * std::size_t(dimension_));
+void LinearBonds::outline_tangent(std::span<double> diagonal, std::span<double> row_sums) {
+  const auto d = std::size_t(dimension_);
   for (std::size_t i = 0; i < std::size_t(points_); ++i) {
+    const double* const sum = &sums_[i * pairs()];
+    double trace = 0.0;
+    for (int a = 0; a < dimension_; ++a) trace += sum[pair(a, a)];
     for (int a = 0; a < dimension_; ++a) {
+      double& row = row_sums[i * d + std::size_t(a)];
+      row += 0.5 * integrity_[i] * (trace + double(d) * sum[pair(a, a)]);
       for (int b = 0; b < dimension_; ++b) {
-        blocks.push_back(integrity_[i] * sums_[i * pairs() + pair(a, b)]);
+        const double entry = integrity_[i] * sum[pair(a, b)];
+        diagonal[(i * d + std::size_t(a)) * d + std::size_t(b)] += entry;
+        row += std::abs(entry);
       }
     }
   }
-  return blocks;
+}
+
+LatticeStencil LinearBonds::stencil() {
+  const FourierTransform& transform = convolution_.transform();
+  fftw::Buffer field = transform.make_field();
+  for (std::size_t i = 0; i < where_.size(); ++i) field.data()[where_[i]] = integrity_[i];
+  transform.to_modes(field);
+  for (std::size_t k = 0; k < transform.modes(); ++k) {
+    double* const mode = field.data() + 2 * k;
+    mode[0] = (mode[0] * mode[0] + mode[1] * mode[1]) / double(transform.places());
+    mode[1] = 0.0;
+  }
+  transform.to_places(field);
+  LatticeStencil found;
+  const std::array<Index, 3>& size = transform.size();
+  for (const LatticeSpring& spring : springs_) {
+    const std::array<int, 3> step = as_last(spring.step, dimension_);
+    std::array<Index, 3> at;
+    for (std::size_t a = 0; a < 3; ++a) at[a] = (step[a] % size[a] + size[a]) % size[a];
+    const double pairs = field.data()[transform.at(at[0], at[1], at[2])];
+    StencilEntry entry{spring.step, {}};
+    for (std::size_t c = 0; c < std::size_t(dimension_); ++c) {
+      entry.sum[c] = pairs * spring.stiffness * spring.direction[c] * spring.direction[c];
+    }
+    found.push_back(entry);
+  }
+  return found;
+}
+
+double convolved_bytes(const LatticeBox& box, std::span<const LatticeSpring> springs) {
+  double places = 1.0;
+  const std::array<ConvolutionAxis, 3> axes = axes_of(box, {}, springs);
+  for (std::size_t a = 0; a < 3; ++a) places *= double(axes[a].size(a == 2));
+  const double d = box.dimension, pairs = d * (d + 1.0) / 2.0;
+  // Of a place fields by component and two for energies, and amplitudes of half of the modes; of a
+  // point where it is, its integrity, sums and displacement.
+  return 8.0 * places * (d + 2.0 + 0.5 * pairs) +
+         8.0 * double(box.place.size()) * (2.0 + pairs + d);
+}
+
+void LinearBonds::add_virials(std::span<const double> displacement, std::span<double> virials) {
+  const FourierTransform& transform = convolution_.transform();
+  const auto d = std::size_t(dimension_);
+  take_up(displacement);
+  std::vector<fftw::Buffer> modes;  // of q, and of q u_b
+  for (std::size_t b = 0; b <= d; ++b) {
+    modes.push_back(transform.make_field());
+    for (std::size_t i = 0; i < where_.size(); ++i) {
+      const double moved = b == d ? 1.0 : displacement_[i * d + b];
+      modes.back().data()[where_[i]] = integrity_[i] * moved;
+    }
+    transform.to_modes(modes.back());
+  }
+  fftw::Buffer field = transform.make_field();
+  // sum_j q_j K (u_j - u_i)_b with the odd kernel K(xi) = k n_a n_b xi_c / 2, of which a
+  // convolution sees the opposite steps.
+  const auto add = [&](std::span<const double> amplitudes, std::size_t b, std::size_t entry) {
+    for (const bool is_own : {false, true}) {
+      const double* const from = modes[is_own ? d : b].data();
+      for (std::size_t k = 0; k < transform.modes(); ++k) {
+        field.data()[2 * k] = -amplitudes[k] * from[2 * k + 1];
+        field.data()[2 * k + 1] = amplitudes[k] * from[2 * k];
+      }
+      transform.to_places(field);
+      for (std::size_t i = 0; i < where_.size(); ++i) {
+        const double own = is_own ? -displacement_[i * d + b] : 1.0;
+        virials[i * d * d + entry] -= integrity_[i] * own * field.data()[where_[i]];
+      }
+    }
+  };
+  std::vector<KernelValue> kernel(springs_.size());
+  for (std::size_t a = 0; a < d; ++a) {
+    for (std::size_t c = 0; c < d; ++c) {
+      for (std::size_t b = 0; b < d; ++b) {
+        for (std::size_t s = 0; s < springs_.size(); ++s) {
+          const LatticeSpring& of = springs_[s];
+          kernel[s] = {as_last(of.step, dimension_),
+                       0.5 * of.stiffness * of.direction[a] * of.direction[b] * of.arm[c]};
+        }
+        add(convolution_.amplitudes(kernel, Convolution::Parity::odd), b, a * d + c);
+      }
+    }
+  }
+}
+
+std::vector<double> lattice_sums(const LatticeBox& box, std::span<const LatticeSpring> springs,
+                                 std::span<const double> kernel, std::span<const double> field,
+                                 int threads) {
+  const Convolution convolution(axes_of(box, {}, springs), threads);
+  const FourierTransform& transform = convolution.transform();
+  std::vector<KernelValue> values;
+  for (std::size_t s = 0; s < springs.size(); ++s) {
+    values.push_back({as_last(springs[s].step, box.dimension), kernel[s]});
+  }
+  const std::vector<double> amplitudes = convolution.amplitudes(values, Convolution::Parity::even);
+  fftw::Buffer modes = transform.make_field();
+  const std::vector<std::size_t> where = places_of(box, transform);
+  for (std::size_t i = 0; i < where.size(); ++i) modes.data()[where[i]] = field[i];
+  transform.to_modes(modes);
+  for (std::size_t k = 0; k < transform.modes(); ++k) {
+    modes.data()[2 * k] *= amplitudes[k];
+    modes.data()[2 * k + 1] *= amplitudes[k];
+  }
+  transform.to_places(modes);
+  std::vector<double> sums;
+  for (const std::size_t place : where) sums.push_back(modes.data()[place]);
+  return sums;
 }
 
 }  // namespace peristat

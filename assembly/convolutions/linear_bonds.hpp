@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "assembly/convolutions/lattice_forces.hpp"
 #include "assembly/convolutions/lattice_springs.hpp"
 #include "src/geometry/lattice_box.hpp"
 #include "src/transforms/convolution.hpp"
@@ -21,7 +22,7 @@ namespace peristat {
 /// the energy whose derivative is -f). Places without a point have q = 0. No bond is stored: four
 /// real transforms in 2D and six in 3D give the forces, four and seven more the energies, whatever
 /// the horizon. The mean of u is taken off first: a free translation would cost digits of w.
-class LinearBonds {
+class LinearBonds : public LatticeForces {
  public:
   /// @param box the points and their places
   /// @param is_periodic axes along which the lattice goes on as it began: points see their images
@@ -30,24 +31,22 @@ class LinearBonds {
   LinearBonds(const LatticeBox& box, const std::array<bool, 3>& is_periodic,
               std::span<const LatticeSpring> springs, int threads);
 
-  /// @param integrity q per point; 1 at first
-  void set_integrity(std::span<const double> integrity);
-
-  /// @param displacement u, points x dimension [m]
-  /// @param force f, as many [N]
-  void find_forces(std::span<const double> displacement, std::span<double> force);
-  /// @param energy w, per point [J]
+  void set_integrity(std::span<const double> integrity) override;
+  void find_forces(std::span<const double> displacement, std::span<double> force) override;
   void find_forces_and_energies(std::span<const double> displacement, std::span<double> force,
-                                std::span<double> energy);
-
-  /// product = K v with the tangent K = -df/du [N/m], which is symmetric and the same in all
-  /// states.
-  void multiply(std::span<const double> v, std::span<double> product);
+                                std::span<double> energy) override;
+  /// K is symmetric and the same in all states.
+  void multiply(std::span<const double> displacement, std::span<const double> v,
+                std::span<double> product) override;
+  /// The row of component a adds up to no more than q (tr P + d P_aa) / 2 beside the diagonal
+  /// block, since |n_a n_b| <= (n_a^2 + n_b^2) / 2.
+  void outline_tangent(std::span<double> diagonal, std::span<double> row_sums) override;
+  /// By the numbers of pairs, a convolution of q with itself.
+  [[nodiscard]] LatticeStencil stencil() override;
+  /// Of kernels k n_a n_b xi_c / 2, which are made and dropped again.
+  void add_virials(std::span<const double> displacement, std::span<double> virials) override;
 
   [[nodiscard]] const FourierTransform& transform() const { return convolution_.transform(); }
-
-  /// Diagonal blocks of K, points x dimension x dimension, row major [N/m].
-  [[nodiscard]] std::vector<double> diagonal() const;
 
  private:
   [[nodiscard]] std::size_t pairs() const {
@@ -62,6 +61,7 @@ class LinearBonds {
 
   int dimension_;
   std::ptrdiff_t points_;
+  std::vector<LatticeSpring> springs_;
   Convolution convolution_;
   std::vector<std::size_t> where_;               // a point's place in a field
   std::vector<std::vector<double>> amplitudes_;  // of C, by pair
@@ -71,5 +71,15 @@ class LinearBonds {
   std::vector<fftw::Buffer> fields_;             // by component
   std::array<fftw::Buffer, 2> squares_;          // for energies, made when they are first asked for
 };
+
+/// Memory that LinearBonds take.
+[[nodiscard]] double convolved_bytes(const LatticeBox& box, std::span<const LatticeSpring> springs);
+
+/// sum_j g(x_j - x_i) b_j per point of a lattice, g an even kernel with a value for the step of
+/// each spring and the opposite one.
+[[nodiscard]] std::vector<double> lattice_sums(const LatticeBox& box,
+                                               std::span<const LatticeSpring> springs,
+                                               std::span<const double> kernel,
+                                               std::span<const double> field, int threads);
 
 }  // namespace peristat

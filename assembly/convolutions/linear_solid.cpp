@@ -212,13 +212,15 @@ void LinearSolid::multiply(std::span<const double> /*displacement*/, std::span<c
 }
 
 void LinearSolid::outline_tangent(std::span<double> diagonal, std::span<double> row_sums) {
+  std::vector<double> bounds(row_sums.size());
   if (fields_.dimension() == 2) {
     outline_blocks<2>(diagonal);
-    bound_rows<2>(row_sums);
+    bound_rows<2>(bounds);
   } else {
     outline_blocks<3>(diagonal);
-    bound_rows<3>(row_sums);
+    bound_rows<3>(bounds);
   }
+  add_rounded_up(bounds, row_sums);
 }
 
 /// With g = dtheta/du of the point itself, -(d / M) sum q' kappa xi, and g' = d q kappa xi / M' of
@@ -246,8 +248,8 @@ void LinearSolid::outline_blocks(std::span<double> diagonal) {
         const double dilating =
             by_moment * by_moment * arms + q * sum * (is_printed() ? by_moment : 1.0);
         const double entry = q * (D * dilatational_ * dilating + deviatoric_ * (squares + others));
-        diagonal[(i * D + std::size_t(a)) * D + std::size_t(b)] = entry;
-        diagonal[(i * D + std::size_t(b)) * D + std::size_t(a)] = entry;
+        diagonal[(i * D + std::size_t(a)) * D + std::size_t(b)] += entry;
+        if (a != b) diagonal[(i * D + std::size_t(b)) * D + std::size_t(a)] += entry;
       });
     }
   }
@@ -288,7 +290,43 @@ void LinearSolid::bound_rows(std::span<double> row_sums) {
       row = fields_.integrity(i) * (row + inverse_moment_[i] * (own + here * sum));
     });
   }
-  round_up(row_sums);
+}
+
+void LinearSolid::add_virials(std::span<const double> displacement, std::span<double> virials) {
+  fields_.take_off_mean(displacement, displacement_);
+  if (fields_.dimension() == 2) add_virials<2>(virials);
+  if (fields_.dimension() == 3) add_virials<3>(virials);
+}
+
+/// q V / M sum q' kappa (d (lambda - mu) theta xi xi + d (d + 2) mu (n . eta) n xi) per point.
+template <int D>
+void LinearSolid::add_virials(std::span<double> virials) {
+  find_dilatations<D>();
+  fields_.fill(D, [](std::size_t) { return 1.0; });
+  for (int a = 0; a < D; ++a) {
+    for (int c = a; c < D; ++c) {
+      const auto add = [&](std::size_t i, double sum) {
+        sum *= fields_.integrity(i) * inverse_moment_[i];
+        virials[(i * D + std::size_t(a)) * D + std::size_t(c)] += sum;
+        if (a != c) virials[(i * D + std::size_t(c)) * D + std::size_t(a)] += sum;
+      };
+      const LatticeSpectrum shape = fields_.spectrum(Parity::even, [&](std::size_t s) {
+        return arms_[s].share * arms_[s].xi[a] * arms_[s].xi[c];
+      });
+      fields_.find_sums(shape, D, [&](std::size_t i, double sum) {
+        add(i, dilatational_ * dilatation_[i] * sum);
+      });
+      for (std::size_t b = 0; b < D; ++b) {
+        const LatticeSpectrum cubic = fields_.spectrum(Parity::odd, [&](std::size_t s) {
+          const Coordinates& xi = arms_[s].xi;
+          return deviatoric_ * arms_[s].share * xi[a] * xi[b] * xi[c] / squared(xi);
+        });
+        fields_.find_sums(cubic, b, add);
+        fields_.find_sums(
+            cubic, D, [&](std::size_t i, double sum) { add(i, -displacement_[i * D + b] * sum); });
+      }
+    }
+  }
 }
 
 double LinearSolid::bytes() const {

@@ -67,7 +67,10 @@ class LinearSolid : public LatticeForces {
   /// Blocks are exact, as long as periods are longer than two arms; sums by the triangle
   /// inequality over what each dilatation and each bond contributes.
   void outline_tangent(std::span<double> diagonal, std::span<double> row_sums) override;
-  [[nodiscard]] double bytes() const override;
+  /// Those of its own dilatation and deviatoric state; kernels are made and dropped again.
+  void add_virials(std::span<const double> displacement, std::span<double> virials) override;
+  /// Memory that it holds.
+  [[nodiscard]] double bytes() const;
 
   [[nodiscard]] const LatticeFields& fields() const { return fields_; }
 
@@ -86,6 +89,8 @@ class LinearSolid : public LatticeForces {
   void outline_blocks(std::span<double> diagonal);
   template <int D>
   void bound_rows(std::span<double> row_sums);
+  template <int D>
+  void add_virials(std::span<double> virials);
   void find_forces(std::span<const double> displacement, std::span<double> force, bool alone);
   [[nodiscard]] bool is_printed() const { return setting_.form == SolidForm::printed; }
   /// What the forces of a point have instead of 1 / M'.

@@ -4,6 +4,7 @@
 #include <span>
 #include <stdexcept>
 
+#include "assembly/convolutions/lattice_stencil.hpp"
 #include "assembly/energy/sparse_rows.hpp"
 #include "assembly/energy/state.hpp"
 #include "src/geometry/points.hpp"
@@ -35,6 +36,10 @@ class Energy {
   /// may be one array.
   [[nodiscard]] virtual bool visits_rows() const = 0;
 
+  /// Whether its tangent has rows at all: forces by convolutions have products only, and what
+  /// `outline_rows` and `stencil` tell.
+  [[nodiscard]] virtual bool has_rows() const { return true; }
+
   /// d2E/dx2 [N/m], every entry overwritten.
   /// @param projection share in [0, 1] by which the relative Hessian of every interaction moves
   ///        towards its positive semidefinite part: 0 is exact, 1 gives a positive semidefinite
@@ -59,6 +64,8 @@ class Energy {
   }
   /// What all of them take [bytes].
   [[nodiscard]] virtual double bytes_of_rows() const { return 0.0; }
+  /// Of forces by convolutions.
+  [[nodiscard]] virtual LatticeStencil stencil(const StateView&) { return {}; }
   /// Diagonal blocks of the rows, points x dimension x dimension, and numbers not less than the
   /// sums of their absolute entries, one per degree of freedom [N/m].
   virtual void outline_rows(const StateView&, std::span<double> /*diagonal*/,

@@ -11,29 +11,24 @@ MatrixFreeTangent::MatrixFreeTangent(Energy& energy)
 }
 
 std::vector<double> MatrixFreeTangent::positions() const {
-  std::vector<double> current = energy_->points().reference;
-  for (std::size_t k = 0; k < displacement_.size(); ++k) current[k] += displacement_[k];
-  return current;
+  return at_.positions(energy_->points().reference);
 }
 
 void MatrixFreeTangent::linearise(Energy& energy, const StateView& at, double projection) {
   energy_ = &energy;
   reference = energy.points().reference;
-  displacement_.assign(at.displacement.begin(), at.displacement.end());
-  history_ = at.history;
-  damage_ = at.damage;
-  environment_ = at.environment;
+  at_.keep(at);
   projection_ = projection;
   energy.visit_tangent(
       at, projection, [](int, Index, std::span<const double>) {}, diagonal);
 }
 
 void MatrixFreeTangent::multiply(std::span<const double> v, std::span<double> result) const {
-  energy_->product(at(), v, result, projection_);
+  energy_->product(at_.view(), v, result, projection_);
 }
 
 void MatrixFreeTangent::for_each_row(const RowVisitor& visit) const {
-  energy_->visit_tangent(at(), projection_, visit, {});
+  energy_->visit_tangent(at_.view(), projection_, visit, {});
 }
 
 }  // namespace peristat

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "assembly/energy/kept_state.hpp"
 #include "assembly/operators/tangent_operator.hpp"
 
 namespace peristat {
@@ -17,13 +18,8 @@ struct MatrixFreeTangent : TangentOperator {
   void for_each_row(const RowVisitor& visit) const override;
 
  private:
-  [[nodiscard]] StateView at() const { return {displacement_, history_, damage_, environment_}; }
-
   Energy* energy_;
-  std::vector<double> displacement_;
-  History history_;
-  Damage damage_ = Damage::grows;
-  SharedEnvironment environment_;
+  KeptState at_;
   double projection_ = 0.0;
 };
 

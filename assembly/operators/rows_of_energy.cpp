@@ -22,23 +22,18 @@ RowsOfEnergy::RowsOfEnergy(Energy& energy)
 }
 
 std::vector<double> RowsOfEnergy::positions() const {
-  std::vector<double> current = energy_->points().reference;
-  for (std::size_t k = 0; k < displacement_.size(); ++k) current[k] += displacement_[k];
-  return current;
+  return at_.positions(energy_->points().reference);
 }
 
 void RowsOfEnergy::linearise(Energy& energy, const StateView& at, double /*projection*/) {
   energy_ = &energy;
   reference = energy.points().reference;
-  displacement_.assign(at.displacement.begin(), at.displacement.end());
-  history_ = at.history;
-  damage_ = at.damage;
-  environment_ = at.environment;
+  at_.keep(at);
   energy.outline_rows(at, diagonal, row_sums_);
 }
 
 void RowsOfEnergy::multiply(std::span<const double> v, std::span<double> result) const {
-  energy_->product(at(), v, result, 0.0);
+  energy_->product(at_.view(), v, result, 0.0);
 }
 
 void RowsOfEnergy::for_each_row(const RowVisitor&) const {
@@ -49,8 +44,8 @@ void RowsOfEnergy::absolute_row_sums(std::span<double> sums) const {
   std::copy(row_sums_.begin(), row_sums_.end(), sums.begin());
 }
 
-SparseRows RowsOfEnergy::rows() const { return energy_->rows(at(), RowReach::whole); }
+SparseRows RowsOfEnergy::rows() const { return energy_->rows(at_.view(), RowReach::whole); }
 
-SparseRows RowsOfEnergy::local_rows() const { return energy_->rows(at(), RowReach::local); }
+SparseRows RowsOfEnergy::local_rows() const { return energy_->rows(at_.view(), RowReach::local); }
 
 }  // namespace peristat

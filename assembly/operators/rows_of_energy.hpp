@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "assembly/energy/kept_state.hpp"
 #include "assembly/operators/unsymmetric_tangent.hpp"
 
 namespace peristat {
@@ -24,13 +25,8 @@ struct RowsOfEnergy final : UnsymmetricTangent {
   [[nodiscard]] SparseRows local_rows() const override;
 
  private:
-  [[nodiscard]] StateView at() const { return {displacement_, history_, damage_, environment_}; }
-
   Energy* energy_;
-  std::vector<double> displacement_;
-  History history_;
-  Damage damage_ = Damage::grows;
-  SharedEnvironment environment_;
+  KeptState at_;
   std::vector<double> row_sums_;
 };
 

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "assembly/energy/energy.hpp"
+#include "assembly/convolutions/lattice_stencil.hpp"
 #include "assembly/operators/block_pattern.hpp"
 
 namespace peristat {
@@ -45,6 +46,9 @@ struct TangentOperator {
   /// Sums of the absolute entries of each row, sum_j |K_ij| [N/m]: Gershgorin's bound of the
   /// largest eigenvalue, per degree of freedom.
   virtual void absolute_row_sums(std::span<double> sums) const;
+
+  /// On a lattice, of a tangent that has no rows to visit; empty for others.
+  [[nodiscard]] virtual LatticeStencil stencil() const { return {}; }
 
   /// Itself with its stored blocks, or nothing if they are computed anew each time.
   [[nodiscard]] virtual const Tangent* as_tangent() const { return nullptr; }

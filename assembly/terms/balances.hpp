@@ -10,6 +10,7 @@ struct Balances {
   bool moment_sum = true;       ///< so do their moments about any point, in the present positions
   bool positive_energy = true;  ///< no stored energy is below that of the reference
   bool potential = true;        ///< forces are minus the derivative of the energy
+  bool linear = false;  ///< forces are linear in the displacements, while nothing is damaged
 
   /// What a sum of terms owes: what each of them does.
   void restrict_to(const Balances& other) {
@@ -17,6 +18,7 @@ struct Balances {
     moment_sum = moment_sum && other.moment_sum;
     positive_energy = positive_energy && other.positive_energy;
     potential = potential && other.potential;
+    linear = linear && other.linear;
   }
 };
 

@@ -1,7 +1,11 @@
 #include "assembly/terms/damage.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <numeric>
 #include <variant>
+
+#include "assembly/terms/linear/linear_term.hpp"
 
 namespace peristat {
 namespace {
@@ -12,11 +16,57 @@ void with_law(const Model& model, const Visit& visit) {
   if (const BondTerm* const bonds = model.failing_bonds()) bonds->with_damage_law(visit);
 }
 
+/// Of points that have lost their integrity: with every point its bonds are broken.
+DamageState assess_points(const LinearTerm& term, std::span<const double> history,
+                          std::span<const double> cut_weight, std::span<double> damage) {
+  DamageState state;
+  std::ranges::fill(damage, 0.0);
+  if (history.empty() && cut_weight.empty()) return state;
+  const std::vector<double> whole(damage.size(), 1.0);
+  const NeighbourSums left =
+      term.neighbours(history.empty() ? whole : history.first(damage.size()));
+  state.dissipated_energy = history.empty() ? 0.0 : history.back();
+  const double count = 0.5 * std::accumulate(left.count.begin(), left.count.end(), 0.0);
+  state.broken_bonds = static_cast<Index>(std::round(term.count_of_bonds() - count));
+  for (std::size_t i = 0; i < damage.size(); ++i) {
+    const double of_point = term.whole_weight()[i] + (cut_weight.empty() ? 0.0 : cut_weight[i]);
+    if (!history.empty() && history[i] == 0.0) {
+      damage[i] = 1.0;
+    } else if (of_point > 0.0) {
+      constexpr double round_off = 1e-12;  // of convolutions
+      const double lost = 1.0 - left.weight[i] / of_point;
+      damage[i] = lost > round_off ? std::min(lost, 1.0) : 0.0;
+    }
+    state.max_damage = std::max(state.max_damage, damage[i]);
+  }
+  return state;
+}
+
+/// Bonds of points that have lost their integrity.
+std::vector<char> without_points(const Bonds& bonds, std::span<const double> integrity) {
+  std::vector<char> broken(integrity.empty() ? 0 : std::size_t(bonds.count()));
+  if (broken.empty()) return broken;
+  for (Index i = 0; i < bonds.points(); ++i) {
+    for (Offset bond = bonds.offset[i]; bond < bonds.offset[i + 1]; ++bond) {
+      const auto j = std::size_t(bonds.partner[bond]);
+      broken[std::size_t(bond)] = integrity[std::size_t(i)] == 0.0 || integrity[j] == 0.0;
+    }
+  }
+  return broken;
+}
+
+const LinearTerm* failing_points(const Model& model) {
+  return dynamic_cast<const LinearTerm*>(model.bond_term().get());
+}
+
 }  // namespace
 
 DamageState assess_damage(const Model& model, const History& history,
                           std::span<const double> cut_weight, std::span<double> damage,
                           std::span<const Index> image_sources) {
+  if (const LinearTerm* const points = failing_points(model)) {
+    return assess_points(*points, history.of(model.slot_of(*points)), cut_weight, damage);
+  }
   const Bonds& bonds = model.bonds();
   DamageState state;
   std::vector<double> whole(cut_weight.begin(), cut_weight.end());
@@ -70,6 +120,9 @@ std::span<const double> bond_stretches(const Model& model, const History& histor
 }
 
 std::vector<char> broken_bonds(const Model& model, const History& history) {
+  if (const LinearTerm* const points = failing_points(model)) {
+    return without_points(points->bonds(), history.of(model.slot_of(*points)));
+  }
   const std::span<const double> stretches = bond_stretches(model, history);
   std::vector<char> broken(stretches.size());
   with_law(model, [&](const auto& law) {
@@ -78,6 +131,16 @@ std::vector<char> broken_bonds(const Model& model, const History& history) {
     }
   });
   return broken;
+}
+
+DamagedNetwork damaged_network(const Model& model, const History& history) {
+  const LinearTerm* const points = failing_points(model);
+  if (points == nullptr || !points->is_convolved()) {
+    return {model.shared_bonds(), broken_bonds(model, history)};
+  }
+  DamagedNetwork network{std::make_shared<const Bonds>(points->lattice()->all_bonds()), {}};
+  network.broken = without_points(*network.bonds, history.of(model.slot_of(*points)));
+  return network;
 }
 
 }  // namespace peristat

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -38,5 +39,14 @@ struct DamageState {
 
 /// Whether each bond is broken, in the order of the bonds; empty for bonds that can't be.
 [[nodiscard]] std::vector<char> broken_bonds(const Model& model, const History& history);
+
+/// Everything that holds a body together, and what of it is broken.
+struct DamagedNetwork {
+  std::shared_ptr<const Bonds> bonds;
+  std::vector<char> broken;  ///< per bond; empty: none
+};
+
+/// The model's bonds, or, of a lattice that is convolved, all of them, found for this once.
+[[nodiscard]] DamagedNetwork damaged_network(const Model& model, const History& history);
 
 }  // namespace peristat

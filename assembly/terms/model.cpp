@@ -20,6 +20,11 @@ const BondTerm* Model::failing_bonds() const {
   return bond_term_ && bond_term_->can_fail() ? bond_term_.get() : nullptr;
 }
 
+bool Model::has_history() const {
+  return std::any_of(terms_.begin(), terms_.end(),
+                     [](const auto& term) { return term->can_be_damaged(); });
+}
+
 std::size_t Model::slot_of(const Term& term) const {
   const auto found = std::find_if(terms_.begin(), terms_.end(),
                                   [&](const auto& own) { return own.get() == &term; });
@@ -40,8 +45,13 @@ bool Model::has_symmetric_blocks() const {
 
 bool Model::visits_rows() const { return terms_.size() == 1 && terms_.front()->visits_rows(); }
 
+bool Model::has_rows() const {
+  return std::all_of(terms_.begin(), terms_.end(),
+                     [](const auto& term) { return term->has_rows(); });
+}
+
 Balances Model::balances() const {
-  Balances balances;
+  Balances balances{.linear = true};
   for (const auto& term : terms_) balances.restrict_to(term->balances());
   return balances;
 }

@@ -27,6 +27,7 @@ class Model {
   void add(std::shared_ptr<Term> term) { terms_.push_back(std::move(term)); }
 
   [[nodiscard]] const Bonds& bonds() const { return *bonds_; }
+  [[nodiscard]] const std::shared_ptr<const Bonds>& shared_bonds() const { return bonds_; }
   [[nodiscard]] const std::vector<std::shared_ptr<Term>>& terms() const { return terms_; }
 
   /// The energy of the bonds, or null.
@@ -34,7 +35,7 @@ class Model {
   /// The same if they can be damaged, otherwise null.
   [[nodiscard]] const BondTerm* failing_bonds() const;
 
-  [[nodiscard]] bool has_history() const { return failing_bonds() != nullptr; }
+  [[nodiscard]] bool has_history() const;
 
   /// Where a History keeps what a term remembers.
   /// @throws std::logic_error if it is none of the terms
@@ -46,6 +47,8 @@ class Model {
   [[nodiscard]] bool has_symmetric_blocks() const;
   /// Whether its tangent can do without being stored.
   [[nodiscard]] bool visits_rows() const;
+  /// Whether its tangent has rows at all.
+  [[nodiscard]] bool has_rows() const;
   [[nodiscard]] Balances balances() const;
 
  private:

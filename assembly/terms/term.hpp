@@ -66,10 +66,11 @@ class TermPasses {
   virtual void visit_tangent(const StateView& at, double projection, const RowVisitor& visit,
                              std::span<double> diagonal);
 
-  /// Of a term without a potential: see Energy::rows and Energy::outline_rows. What others have
-  /// besides its diagonal blocks has no place there.
+  /// Of a term without a potential or without rows: see Energy::rows, Energy::outline_rows and
+  /// Energy::stencil. What others have besides its diagonal blocks has no place there.
   [[nodiscard]] virtual SparseRows rows(const StateView& at, RowReach reach);
   [[nodiscard]] virtual double bytes_of_rows() const { return 0.0; }
+  [[nodiscard]] virtual LatticeStencil stencil(const StateView&) { return {}; }
   virtual void outline_rows(const StateView& at, std::span<double> diagonal,
                             std::span<double> row_sums);
 
@@ -113,7 +114,13 @@ class Term {
   /// tangent need not be stored.
   [[nodiscard]] virtual bool visits_rows() const { return false; }
 
+  /// Whether its tangent has rows at all: see Energy::has_rows.
+  [[nodiscard]] virtual bool has_rows() const { return true; }
+
   [[nodiscard]] virtual Balances balances() const = 0;
+
+  /// Whether states damage it, for good.
+  [[nodiscard]] virtual bool can_be_damaged() const { return false; }
 
   /// Of a body to which nothing has happened; empty if the term remembers nothing.
   [[nodiscard]] virtual std::vector<double> initial_history() const { return {}; }

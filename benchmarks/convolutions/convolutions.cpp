@@ -63,7 +63,7 @@ void measure(const Setting& setting) {
   std::vector<double> in_place = v;
   const std::array<std::function<void()>, 4> all{
       [&] { tangent.multiply(in_place, tangent.multiplies_in_place() ? in_place : product); },
-      [&] { convolutions.multiply(v, product); },
+      [&] { convolutions.multiply(v, v, product); },
       [&] { convolutions.find_forces_and_energies(v, product, energy); },
       [&] {
         for (int c = 0; c < setting.dimension; ++c) {

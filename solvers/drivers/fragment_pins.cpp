@@ -28,8 +28,8 @@ void remove_pieces(Fragments& found, const std::vector<char>& prescribed, int di
 void FragmentPins::find(const Assembler& assembler, const State& state,
                         const Conditions& conditions, FragmentRemedy remedy) {
   const std::vector<char>& prescribed = conditions.prescribed();
-  found = find_fragments(assembler.points(), assembler.model().bonds(),
-                         broken_bonds(assembler.model(), state.history), prescribed,
+  const DamagedNetwork network = damaged_network(assembler.model(), state.history);
+  found = find_fragments(assembler.points(), *network.bonds, network.broken, prescribed,
                          state.displacement, conditions.holding(state.displacement));
   if (remedy == FragmentRemedy::remove) {
     remove_pieces(found, prescribed, assembler.points().dimension);

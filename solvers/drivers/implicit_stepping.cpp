@@ -34,9 +34,14 @@ ImplicitStepping::ImplicitStepping(Path& path)
 
 Advance ImplicitStepping::next() {
   if (!path_.goes_on()) return Advance::ended;
+  FragmentPins pins = path_.state().pins;
   ImplicitStep step = search(path_.setting().newton_options.damage);
   if (step.attempt.has_converged()) establish(step);
   if (may_be_avalanche(step)) run_avalanche(step);
+  if (!step.attempt.has_converged() && path_.state().pins.pinned != pins.pinned &&
+      path_.pin_as_before(std::move(pins)) != Advance::goes_on) {
+    return Advance::ended;
+  }
   return step.attempt.has_converged() ? accept(std::move(step)) : fail(std::move(step));
 }
 
@@ -71,6 +76,9 @@ void ImplicitStepping::establish(ImplicitStep& step) {
   if (step.growth.degrading > 0) {
     commit(path_, attempt, step.found, [&] {
       const State from = state_of(attempt);
+      const Outcome pinned = pin_loose(from, step);
+      if (pinned != Outcome::converged) return attempt.outcome = pinned;
+      step.found.energies.is_avalanche = !path_.damaged().model().failing_bonds();
       NewtonOptions again = path_.setting().newton_options;
       again.scale = attempt.scale;
       const int before = attempt.iterations;
@@ -83,6 +91,19 @@ void ImplicitStepping::establish(ImplicitStep& step) {
   }
   step.found.record.newton_iterations = attempt.iterations;
   step.fault = complete(path_, attempt, step.found);
+}
+
+Outcome ImplicitStepping::pin_loose(const State& at, ImplicitStep& step) {
+  if (path_.damaged().model().failing_bonds()) return Outcome::converged;  // pinned once accepted
+  FragmentPins& pins = path_.state().pins;
+  const FragmentRemedy remedy = path_.options().fragments;
+  pins.find(path_.body().assembler, at, path_.setting().conditions, remedy);
+  if (!pins.are_outdated()) return Outcome::converged;
+  if (remedy == FragmentRemedy::stop && pins.found.count > 0) {
+    step.fault = pins.described();
+    return Outcome::fragmented;
+  }
+  return path_.pin() == Advance::goes_on ? Outcome::converged : Outcome::out_of_memory;
 }
 
 bool ImplicitStepping::may_be_avalanche(const ImplicitStep& step) const {

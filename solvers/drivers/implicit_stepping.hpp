@@ -44,6 +44,8 @@ class ImplicitStepping : public Driver {
 
  private:
   [[nodiscard]] bool is_limit_point(const Attempt& attempt) const;
+  /// Pins what failing points leave loose before its equilibrium is searched for again.
+  [[nodiscard]] Outcome pin_loose(const State& at, ImplicitStep& step);
   [[nodiscard]] bool may_be_avalanche(const ImplicitStep& step) const;
 
   Increment increment_;

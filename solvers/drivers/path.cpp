@@ -153,6 +153,7 @@ Attempt Path::search(const State& from, const BorderedStep& step, const NewtonOp
 }
 
 void Path::number_equations() {
+  own_free_.reset();
   if (state_.pins.pinned.empty()) return;
   own_free_ = std::make_unique<FreeDofs>(
       state_.pins.free_dofs(setting_.conditions.prescribed(), setting_.body.free.dimension));
@@ -160,6 +161,12 @@ void Path::number_equations() {
 
 Advance Path::pin() {
   state_.pins.pin();
+  number_equations();
+  return analyze();
+}
+
+Advance Path::pin_as_before(FragmentPins pins) {
+  state_.pins = std::move(pins);
   number_equations();
   return analyze();
 }

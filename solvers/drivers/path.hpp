@@ -85,6 +85,8 @@ class Path {
   [[nodiscard]] Advance analyze();
   /// Pins what was found last: there are other equations.
   [[nodiscard]] Advance pin();
+  /// Goes back to the equations of earlier pins.
+  [[nodiscard]] Advance pin_as_before(FragmentPins pins);
 
   /// Told of every iteration of the next step; returns true to interrupt.
   [[nodiscard]] bool iterated(IterationRecord row) const;

@@ -155,8 +155,27 @@ struct Sines::Symbols {
     }
   }
 
+  /// The same of a tangent that tells them itself.
+  Stencil sums(const LatticeStencil& of_tangent) {
+    reach = {};
+    const auto apart = [](const StencilEntry& entry) {
+      return Numbers{std::abs(entry.step[0]), std::abs(entry.step[1]), std::abs(entry.step[2])};
+    };
+    for (const StencilEntry& entry : of_tangent) {
+      for (std::size_t a = 0; a < 3; ++a) reach[a] = std::max(reach[a], apart(entry)[a]);
+    }
+    Stencil all;
+    all.clear(reach, dimension);
+    for (const StencilEntry& entry : of_tangent) {
+      const std::size_t place = all.place(apart(entry), {}) * std::size_t(dimension);
+      for (std::size_t c = 0; c < std::size_t(dimension); ++c) all.sum[place + c] += entry.sum[c];
+    }
+    return all;
+  }
+
   /// Minus the sums of the tangent's diagonal components over pairs of points.
-  Stencil sums(const TangentOperator& tangent) const {
+  Stencil sums(const TangentOperator& tangent) {
+    if (const LatticeStencil told = tangent.stencil(); !told.empty()) return sums(told);
     const int d = dimension;
     const BlockPattern& pattern = tangent.pattern;
     std::vector<Stencil> parts(std::size_t(tangent.threads()));

@@ -94,6 +94,19 @@ std::string check_strength(Assembler& damaged, const FoundState& found) {
          number_text(growth.utilisation) + " of it";
 }
 
+/// What forces by convolutions are differences of: each point's stiffness times how far it moves,
+/// their 2-norm [N].
+double differenced_forces(const TangentOperator& tangent, std::span<const double> displacement) {
+  const auto d = std::size_t(tangent.dimension);
+  Coordinates mean{};
+  for (std::size_t k = 0; k < displacement.size(); ++k) {
+    mean[k % d] += displacement[k] * double(d) / double(displacement.size());
+  }
+  return norm_of(displacement.size(), [&](std::size_t k) {
+    return tangent.diagonal[k * d + k % d] * (displacement[k] - mean[k % d]);
+  });
+}
+
 std::string check_resultants(const EquilibriumProblem& problem, const TangentOperator& tangent,
                              const FoundState& found) {
   const Balances owed = problem.assembler.model().balances();
@@ -104,7 +117,10 @@ std::string check_resultants(const EquilibriumProblem& problem, const TangentOpe
   }
   // Where all has come apart forces may vanish, and the energy, their square, before them.
   const double energy = std::max(std::abs(found.after.stored), std::numeric_limits<double>::min());
-  const double forces = std::sqrt(2.0 * energy * trace);
+  double forces = std::sqrt(2.0 * energy * trace);
+  if (!problem.assembler.has_rows()) {
+    forces += differenced_forces(tangent, found.trial.displacement);
+  }
   const double round_off = safety * std::numeric_limits<double>::epsilon() * forces;
   const Resultants sums = resultants_of(problem, found.trial);
   const double force = std::hypot(sums.force[0], sums.force[1], sums.force[2]);

@@ -26,8 +26,9 @@ double follower_work(const Trial& from, const Trial& to) {
   return work;
 }
 
-/// Forces without a potential are linear in the displacements: the whole step leads to where they
-/// balance, and no energy could judge another.
+/// Where forces are linear in the displacements the whole step leads to where they balance. Without
+/// a potential no energy could judge another, and that of convolutions has more round-off than the
+/// last steps lower it by.
 LineSearchResult take_whole_step(const EquilibriumProblem& problem,
                                  std::span<const double> external_force, const Trial& from,
                                  std::span<const double> direction, Trial& trial, Damage damage) {
@@ -48,7 +49,8 @@ LineSearchResult line_search(const EquilibriumProblem& problem,
                              std::span<const double> external_force, const Trial& from,
                              std::span<const double> direction, const LineSearchOptions& options,
                              Trial& trial, Damage damage) {
-  if (!problem.assembler.has_potential()) {
+  const Balances balances = problem.assembler.model().balances();
+  if (!balances.potential || balances.linear) {
     return take_whole_step(problem, external_force, from, direction, trial, damage);
   }
   const double slope = slope_along(direction, from, external_force);

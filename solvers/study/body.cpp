@@ -17,6 +17,7 @@
 #include "solvers/study/collocation_model.hpp"
 #include "solvers/study/cpd_model.hpp"
 #include "solvers/study/fracture_data.hpp"
+#include "solvers/study/linear_model.hpp"
 #include "solvers/study/state_model.hpp"
 #include "solvers/study/surface_sites.hpp"
 #include "src/connectivity/fragments.hpp"
@@ -120,6 +121,7 @@ void make_model(Body& body, int threads) {
   // Effective volumes count every neighbour, and what bonds of lps dissipate goes by their length.
   if (is_cpd || of.is_collocated()) setting.influence = {};
   if (of.has_states()) setting = state_setting(std::move(setting));
+  setting = network_setting(of, body.points, std::move(setting));
   Bonds bonds = make_bonds(body.points, of.surface_correction, setting, threads);
   refuse_coincident_points(body.points, bonds);
   const PointMaterials materials(of, body.points);
@@ -134,6 +136,9 @@ void make_model(Body& body, int threads) {
   } else if (of.is_collocated()) {
     body.model = make_collocation_model(of, materials, body.factors, body.points, setting,
                                         std::move(bonds), cut, body.collocation, threads);
+  } else if (of.is_linear()) {
+    body.model = make_linear_model(of, materials, body.factors, body.points, body.setting,
+                                   std::move(bonds), cut, threads);
   } else if (is_cpd) {
     body.model = make_cpd_model(of, materials, body.factors, body.points, body.setting,
                                 std::move(bonds), cut, threads);
@@ -257,6 +262,10 @@ std::unique_ptr<const Body> make_body(Points points, const BodySpecification& of
   BodySize expected = size_of(body.points);
   expected.horizon_ratio = reach_ratio(of.volume_correction, of.horizon_shape,
                                        body.points.dimension, body.horizon_ratio());
+  if (of.is_convolved()) {
+    expected.horizon_ratio =
+        network_setting(of, body.points, body.setting).horizon / body.points.spacing;
+  }
   expected.bonds = expected_bonds(expected.points, body.points.dimension, expected.horizon_ratio);
   if (of.has_states()) reach_twice(expected);
   // States have no product without a stored tangent.

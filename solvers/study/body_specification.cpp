@@ -44,6 +44,15 @@ void check_data(const DamageSpecification& damage, const std::string& table) {
     require_absent(is_given(damage.critical), table + "critical", "needs a law");
     return;
   }
+  if (damage.law == DamageLaw::energy_density) {
+    require(damage.fracture_energy.has_value(), table + "fracture_energy", "", "is missing");
+    const std::string of_stretches = "is for laws of stretches; energy_density has fracture_energy";
+    require_absent(damage.strength.has_value(), table + "strength", of_stretches);
+    require_absent(is_given(damage.critical), table + "critical", of_stretches);
+    require_absent(is_given(damage.onset), table + "onset", of_stretches);
+    require_absent(is_given(damage.peak), table + "peak", of_stretches);
+    return;
+  }
   const bool is_blended = damage.law == DamageLaw::blended;
   const bool is_sized =
       damage.fracture_energy || (damage.law == DamageLaw::critical_stretch && damage.strength);
@@ -143,6 +152,22 @@ void check_lps_material(const MaterialSpecification& material, const std::string
                  "is not for the model lps");
 }
 
+void check_kinematics(const MaterialSpecification& material, const std::string& key) {
+  const DamageLaw law = material.damage.law;
+  if (material.kinematics == Kinematics::finite) {
+    require(law != DamageLaw::energy_density, key + ".damage.law", "energy_density",
+            "is for kinematics \"linear\"");
+    return;
+  }
+  const std::string of_linear = "of kinematics \"linear\" is ";
+  require(material.model == MaterialModel::bond, key + ".kinematics", "linear",
+          "is for the model bond; \"lps\" is linear by itself");
+  require(material.potential == Harmonic::name, key + ".potential", material.potential,
+          of_linear + "\"harmonic\"");
+  require(law == DamageLaw::none || law == DamageLaw::energy_density, key + ".damage.law", "",
+          of_linear + "\"energy_density\": bonds that break one by one need kinematics \"finite\"");
+}
+
 void check_fibre(const MaterialSpecification& material, const std::string& key, int dimension) {
   if (!material.fibre) return;
   const FibreSpecification& fibre = *material.fibre;
@@ -224,6 +249,7 @@ void check_material(const MaterialSpecification& material, const std::string& ke
   require_positive(material.c1, key + ".c1");
   require_positive(material.density, key + ".density");
   check_damage(material.damage, key + ".damage.");
+  check_kinematics(material, key);
   check_fibre(material, key, dimension);
   check_scatter(material, key);
 }
@@ -238,6 +264,7 @@ void require_of_body(const MaterialSpecification& material, const std::string& k
   require(material.potential == of.material.potential, key + ".potential", "", same);
   require(material.plane == of.material.plane, key + ".plane", "", same);
   require(material.influence == of.material.influence, key + ".influence", "", same);
+  require(material.kinematics == of.material.kinematics, key + ".kinematics", "", same);
 }
 
 bool is_material_of(const std::string& name, const BodySpecification& of) {
@@ -492,7 +519,24 @@ void require_lattice_to_calibrate_on(const BodySpecification& of, const Points& 
 
 }  // namespace
 
+namespace {
+
+void check_linear_body(const BodySpecification& of) {
+  if (!of.is_linear()) {
+    require(!of.is_convolved(), "force_operator", "fft",
+            "is for kinematics \"linear\": the forces of bonds that turn are no convolutions");
+    return;
+  }
+  const std::string linear = "does not go with kinematics \"linear\"";
+  require_absent(of.eigenstrains.are_there(), "eigenstrains", linear);
+  require_absent(!of.constraints.symmetries.empty(), "constraints.symmetries", linear);
+  require_absent(!of.constraints.periods.empty(), "constraints.periods", linear);
+}
+
+}  // namespace
+
 void check_specification(const BodySpecification& of, const Points& points) {
+  check_linear_body(of);
   check_horizon(of, points);
   check_cross_section(of, points);
   check_neighbours(of, points);

@@ -29,9 +29,16 @@ enum class MaterialModel { bond, cpd, lps };
 /// What constants from E and nu are to be right on.
 enum class Calibration { lattice, continuum };
 
-/// How bonds fail.
+/// Whether bonds stretch by their lengths, or by the displacements along them at rest.
+enum class Kinematics { finite, linear };
+
+/// How forces of linear kinematics are summed: bond by bond, or by convolutions on a lattice.
+enum class ForceOperator { bonds, fft };
+
+/// How bonds fail, or points.
 enum class DamageLaw {
   none,
+  energy_density,  ///< of points whose energy density exceeds fracture_energy / (2 horizon)
   critical_stretch,
   tanh,
   tanh_continuous,
@@ -55,11 +62,14 @@ struct DamageSpecification {
   std::optional<double> strength{};
 
   /// Whether some stretches are still to be found.
-  [[nodiscard]] bool is_by_data() const { return fracture_energy || strength; }
+  [[nodiscard]] bool is_by_data() const {
+    return law != DamageLaw::energy_density && (fracture_energy || strength);
+  }
 
   /// Whether stiffness is lost over a range of stretches.
   [[nodiscard]] bool softens() const {
-    return law != DamageLaw::none && law != DamageLaw::critical_stretch;
+    return law != DamageLaw::none && law != DamageLaw::critical_stretch &&
+           law != DamageLaw::energy_density;
   }
   /// Whether a rate is part of the law.
   [[nodiscard]] bool has_rate() const {
@@ -93,6 +103,7 @@ struct MaterialSpecification {
   MaterialModel model = MaterialModel::bond;
   std::string potential = Harmonic::name;  ///< of whole bonds, see WholeBondPotentials
   PlaneState plane = PlaneState::stress;
+  Kinematics kinematics = Kinematics::finite;  ///< of bonds
   /// omega of bonds, see Influences; of lps with the form `energy` its kernel K, which in its other
   /// form is the inverse one whatever stands here
   std::string influence = ConstantInfluence::name;
@@ -171,6 +182,7 @@ struct BodySpecification {
   /// them. A body does not keep them.
   std::shared_ptr<const BodyBoundary> boundary{};
   std::vector<std::string> boundary_names{};
+  ForceOperator force_operator = ForceOperator::bonds;  ///< of linear kinematics
   std::vector<Crack> cracks{};
   /// Of the points in no region. Without constants every point has to be in one.
   MaterialSpecification material{};
@@ -204,6 +216,9 @@ struct BodySpecification {
   [[nodiscard]] bool has_states() const {
     return material.model == MaterialModel::lps && form == SolidForm::energy;
   }
+  [[nodiscard]] bool is_linear() const { return material.kinematics == Kinematics::linear; }
+  [[nodiscard]] bool is_convolved() const { return force_operator == ForceOperator::fft; }
+
   /// Whether all bonds follow from one micromodulus and one law.
   [[nodiscard]] bool is_uniform() const {
     return regions.empty() && !material.fibre && material.scatter.empty();

@@ -56,6 +56,7 @@ bool same_law(const DamageSpecification& one, const DamageSpecification& other) 
     case DamageLaw::critical_stretch:
     case DamageLaw::linear:
     case DamageLaw::none:
+    case DamageLaw::energy_density:
       break;
   }
   return true;

@@ -26,6 +26,8 @@ BondPotential with_damage(const Whole& whole, const DamageSpecification& damage)
 AnyLaw law_of(const DamageSpecification& damage) {
   const double onset = damage.onset, critical = damage.critical, rate = damage.rate;
   switch (damage.law) {
+    case DamageLaw::energy_density:
+      throw std::logic_error("bonds have no law of points");
     case DamageLaw::tanh:
       return {TanhDegradation{onset, critical, rate}};
     case DamageLaw::tanh_continuous:

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "assembly/operators/constrained_tangent.hpp"
+#include "assembly/operators/convolved_tangent.hpp"
 #include "assembly/operators/matrix_free_tangent.hpp"
 #include "assembly/operators/rows_of_energy.hpp"
 #include "assembly/operators/tangent.hpp"
@@ -42,6 +43,34 @@ void require_agreement(const LinearSolverOptions& linear, bool is_symmetric) {
   if (!preconditioner.empty()) throw InputError("linear.preconditioner", "", preconditioner);
 }
 
+/// Forces by convolutions have no rows to factorise or to make pieces of.
+LinearSolverOptions options_of_convolutions(const StudyOptions& options, bool has_box) {
+  LinearSolverOptions linear = options.linear;
+  const auto is_one_of = [](auto value, auto... known) { return ((value == known) || ...); };
+  if (!is_one_of(linear.method, LinearMethod::automatic, LinearMethod::conjugate_gradients,
+                 LinearMethod::minres, LinearMethod::gmres)) {
+    throw InputError("linear.method", "",
+                     "needs the entries of the tangent, which operator \"fft\" does not have; take "
+                     "\"pcg\"");
+  }
+  using Kind = PreconditionerKind;
+  if (!is_one_of(linear.preconditioner, Kind::automatic, Kind::jacobi, Kind::block_jacobi,
+                 Kind::sines)) {
+    throw InputError("linear.preconditioner", "",
+                     "needs the entries of the tangent, which operator \"fft\" does not have; take "
+                     "\"sines\" or \"block_jacobi\"");
+  }
+  if (options.tangent == TangentStorage::stored) {
+    throw InputError("tangent", "stored",
+                     "does not go with operator \"fft\", which has products only");
+  }
+  if (linear.method == LinearMethod::automatic) linear.method = LinearMethod::conjugate_gradients;
+  if (linear.preconditioner == Kind::automatic) {
+    linear.preconditioner = has_box ? Kind::sines : Kind::block_jacobi;
+  }
+  return linear;
+}
+
 /// Vectors of the flow beside those of Newton's search: a state, two directions, works, the way.
 constexpr double vectors_of_flow = 9.0;
 
@@ -59,7 +88,8 @@ LinearSystems systems_of_motion(const Body& body) {
   systems.chosen.solver = std::make_unique<NoSolver>();
   systems.chosen.is_direct = false;
   systems.chosen.reason = "explicit time steps solve no equations";
-  systems.is_stored = !body.model.visits_rows() || !body.conditions->constraints().none();
+  const bool has_products = body.model.visits_rows() || !body.model.has_rows();
+  systems.is_stored = !has_products || !body.conditions->constraints().none();
   systems.bytes = estimate.body_bytes + (systems.is_stored ? estimate.tangent_bytes : 0.0) +
                   8.0 * vectors_of_motion * estimate.size.points * estimate.size.dimension;
   return systems;
@@ -81,6 +111,22 @@ std::shared_ptr<const LatticeBox> box_for_choice(const StudyOptions& options, co
   return std::make_shared<LatticeBox>(std::move(*box));
 }
 
+/// Sines are the first choice where the sides of the box are the body's.
+std::shared_ptr<const LatticeBox> box_of_convolutions(const StudyOptions& options,
+                                                      const Body& body) {
+  const PreconditionerKind asked = options.linear.preconditioner;
+  const bool is_wanted =
+      asked == PreconditionerKind::automatic || asked == PreconditionerKind::sines;
+  if (!is_wanted) return nullptr;
+  if (body.points.angle != 0.0) {
+    if (asked == PreconditionerKind::automatic) return nullptr;
+    throw InputError("linear.preconditioner", "sines",
+                     "is for lattices along the axes; take \"block_jacobi\"");
+  }
+  std::string why_not;
+  return std::make_shared<LatticeBox>(lattice_box(body.points, why_not).value());
+}
+
 bool flows(const StudyOptions& options, const Model& model) {
   const LoadSteppingOptions& loading = options.loading;
   const bool relaxes =
@@ -91,6 +137,7 @@ bool flows(const StudyOptions& options, const Model& model) {
 }  // namespace
 
 std::shared_ptr<const LatticeBox> box_for_sines(const StudyOptions& options, const Body& body) {
+  if (!body.model.has_rows()) return box_of_convolutions(options, body);
   if (options.linear.preconditioner != PreconditionerKind::sines)
     return box_for_choice(options, body);
   const auto refuse = [](const std::string& why) {
@@ -115,14 +162,15 @@ LinearSystems choose_linear_systems(const StudyOptions& options, const Model& mo
                                     const MemoryEstimate& estimate,
                                     std::shared_ptr<const LatticeBox> box,
                                     SolverLadder::Reporter tell) {
-  LinearSolverOptions linear = options.linear;
+  LinearSolverOptions linear =
+      model.has_rows() ? options.linear : options_of_convolutions(options, box != nullptr);
   const bool is_symmetric = estimate.size.is_symmetric();
   require_agreement(linear, is_symmetric);
   // Who names a preconditioner wants it used.
   if (is_symmetric && linear.method == LinearMethod::automatic &&
       linear.preconditioner != PreconditionerKind::automatic)
     linear.method = LinearMethod::conjugate_gradients;
-  if (options.tangent == TangentStorage::matrix_free && !model.visits_rows())
+  if (options.tangent == TangentStorage::matrix_free && !model.visits_rows() && model.has_rows())
     throw InputError("tangent", "matrix_free", "is for bonds alone");
   LinearProblem problem;
   problem.is_symmetric = is_symmetric;
@@ -137,7 +185,7 @@ LinearSystems choose_linear_systems(const StudyOptions& options, const Model& mo
   const bool goes_by_events = options.loading.mode == Mode::path;
   problem.solves_often = flows(options, model) || goes_by_events;
   problem.box = std::move(box);
-  problem.is_stored = options.tangent != TangentStorage::matrix_free;
+  problem.is_stored = model.has_rows() && options.tangent != TangentStorage::matrix_free;
   LinearSystems systems;
   systems.chosen = make_linear_solver(linear, problem, tell);
   // Products computed anew take less memory; in 3D they are faster than stored ones, in 2D a sixth
@@ -166,6 +214,17 @@ LinearSystems choose_linear_systems(const StudyOptions& options, const Body& bod
   const bool is_explicit = options.loading.dynamics.scheme == MotionScheme::verlet;
   if (options.loading.mode == Mode::dynamics && is_explicit) return systems_of_motion(body);
   StudyOptions chosen = options;
+  if (!body.model.has_rows()) {
+    if (!body.conditions->constraints().none()) {
+      throw InputError("constraints", "",
+                       "rigid sets, rollers and linear constraints do not go with operator "
+                       "\"fft\"; take \"bonds\"");
+    }
+    if (finds_loads(options, *body.conditions)) {
+      throw InputError("force_operator", "fft",
+                       "has no pivots, which a control and mode arc_length need; take \"bonds\"");
+    }
+  }
   if (!body.conditions->constraints().none()) {
     if (options.tangent == TangentStorage::matrix_free) {
       throw InputError("tangent", "matrix_free",
@@ -187,6 +246,7 @@ std::unique_ptr<TangentOperator> LinearSystems::make_tangent(Assembler& assemble
                                                              const Constraints& constraints) const {
   if (!assembler.has_potential()) return std::make_unique<RowsOfEnergy>(assembler);
   if (!constraints.none()) return std::make_unique<ConstrainedTangent>(assembler, constraints);
+  if (!assembler.has_rows()) return std::make_unique<ConvolvedTangent>(assembler);
   if (!is_stored) return std::make_unique<MatrixFreeTangent>(assembler);
   return std::make_unique<Tangent>(assembler);
 }

@@ -49,6 +49,18 @@ void refuse_events_of_states(const Body& body, const StudyOptions& options) {
                    "dilatation");
 }
 
+/// Points that fail one by one have no strength that a step could be led to, and what follows one
+/// has no stand-in.
+void refuse_modes_of_failing_points(const Body& body, const StudyOptions& options) {
+  const Mode mode = options.loading.mode;
+  if (!body.specification.is_linear()) return;
+  const bool is_known = mode == Mode::newton || mode == Mode::dynamics || mode == Mode::relaxation;
+  if (is_known || (mode != Mode::path && !body.model.has_history())) return;
+  throw InputError("loading.mode", std::string(mode.name),
+                   "is for bonds that break; with kinematics \"linear\" take newton, relaxation "
+                   "or dynamics");
+}
+
 }  // namespace
 
 SolvedModel::SolvedModel(const Points& points, const Model& model, const Constraints& constraints,
@@ -74,6 +86,7 @@ Study::Study(const Body& body, StudyOptions options, SolverLadder::Reporter tell
   }
   refuse_modes_without_potential(body, options_);
   refuse_events_of_states(body, options_);
+  refuse_modes_of_failing_points(body, options_);
   const bool is_implicit = moves && options_.loading.dynamics.scheme == MotionScheme::newmark;
   if (is_implicit != body.specification.has_inertia) {
     throw InputError("has_inertia", "",

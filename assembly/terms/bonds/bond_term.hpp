@@ -50,6 +50,7 @@ class BondTerm : public Term {
   [[nodiscard]] bool has_symmetric_blocks() const override { return true; }
   [[nodiscard]] bool visits_rows() const override { return true; }
   [[nodiscard]] Balances balances() const override;
+  [[nodiscard]] bool can_be_damaged() const override { return can_fail(); }
   [[nodiscard]] std::vector<double> initial_history() const override;
   [[nodiscard]] std::vector<InteractionCount> counts() const override;
   [[nodiscard]] double stored_bytes() const override;

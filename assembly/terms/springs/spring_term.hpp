@@ -15,7 +15,9 @@ class SpringTerm : public Term {
   [[nodiscard]] Couplings couplings() const override { return {offset_, {}}; }
   [[nodiscard]] bool has_symmetric_blocks() const override { return true; }
   /// Of the points among one another, where it has no force.
-  [[nodiscard]] Balances balances() const override { return {}; }
+  [[nodiscard]] Balances balances() const override {
+    return {.linear = true};
+  }
   [[nodiscard]] double stored_bytes() const override {
     return double(offset_.size() * sizeof(Offset));
   }

@@ -49,6 +49,8 @@ void require_memory_for_lattice(const Case& from, const Lattice& lattice) {
   size.longest = std::pow(points, 1.0 / from.dimension);
   size.horizon_ratio =
       reach_ratio(from.volume_correction, from.horizon_shape, from.dimension, from.horizon_ratio);
+  constexpr double ratio_of_network = 1.5;
+  if (from.solver.force_operator == ForceOperator::fft) size.horizon_ratio = ratio_of_network;
   size.bonds = expected_bonds(points, from.dimension, size.horizon_ratio);
   size.free_dofs = points * from.dimension;
   const Box box = lattice.shapes.empty() ? Box{} : bounds(lattice.shapes.front().shape);
@@ -130,6 +132,7 @@ void find_boundary(const Case& from, const Points& points, BodySpecification& of
 std::unique_ptr<const Body> make_body(const Case& from, int threads) {
   Points points = make_points_of(from);
   BodySpecification of = from;
+  of.force_operator = from.solver.force_operator;
   located_errors(from, [&] { find_boundary(from, points, of); });
   if (from.solver.mode == Mode::path) of.teeth = from.loading.teeth;
   if (tells_stress(from)) of.evaluation_bytes_per_point = stress_bytes_per_point(from.dimension);

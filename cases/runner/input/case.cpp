@@ -57,6 +57,7 @@ const std::map<std::string, std::string>& keys_of_members() {
       {"volume_correction", "quadrature.volume_correction"},
       {"surface_correction", "quadrature.surface_correction"},
       {"horizon_shape", "quadrature.horizon_shape"},
+      {"force_operator", "solver.operator"},
       {"degree", "quadrature.degree"},
       {"shapes", "lattice.shape"},
       {"layers", "lattice.layer"},

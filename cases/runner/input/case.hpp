@@ -56,6 +56,7 @@ struct SolverSpecification {
   LinearMethod linear = LinearMethod::automatic;
   PreconditionerKind preconditioner = PreconditionerKind::automatic;
   TangentStorage tangent = TangentStorage::automatic;
+  ForceOperator force_operator = ForceOperator::bonds;  ///< see BodySpecification
   Projection projection = Projection::automatic;
   Predictor predictor = Predictor::consistent;
   double relative_tolerance = 1e-10;

@@ -377,6 +377,7 @@ void check_regions(const Entry& at, Case& result) {
     result.material.potential = first.potential;
     result.material.plane = first.plane;
     result.material.influence = first.influence;
+    result.material.kinematics = first.kinematics;
   }
   check_quadrature(at, result);
 }
@@ -385,6 +386,10 @@ Table<DamageSpecification> damage_keys(const std::string& material) {
   using Spec = DamageSpecification;
   using K = Key<Spec>;
   const auto is_whole = [](auto& damage, auto&) { return damage.law == DamageLaw::none; };
+  const auto is_of_points = [](auto& damage, auto&) {
+    return damage.law == DamageLaw::energy_density;
+  };
+  const std::string for_stretches = "is for the laws of stretches";
   const auto is_sudden = [](auto& damage, auto&) { return !damage.softens(); };
   const auto has_no_rate = [](auto& damage, auto&) { return !damage.has_rate(); };
   const auto is_not_blended = [](auto& damage, auto&) { return damage.law != DamageLaw::blended; };
@@ -411,12 +416,15 @@ Table<DamageSpecification> damage_keys(const std::string& material) {
                             {"tanh_continuous", DamageLaw::tanh_continuous},
                             {"linear", DamageLaw::linear},
                             {"exponential", DamageLaw::exponential},
-                            {"blended", DamageLaw::blended}}),
+                            {"blended", DamageLaw::blended},
+                            {"energy_density", DamageLaw::energy_density}}),
          "no damage; whole up to `critical` and then broken; softening from `onset` to "
          "`critical` as published in [ADAPT], which jumps by (1 − tanh `rate`)/2 at both ends; "
          "the same law rescaled so that it does not jump; force falling linearly from `onset` "
          "to zero at `critical`; exponentially, without a jump at `critical`; rising on a "
-         "lower slope from `onset` to `peak`, and then falling linearly")
+         "lower slope from `onset` to `peak`, and then falling linearly; of points, with "
+         "`kinematics = \"linear\"`: all at once and for good where the energy density exceeds "
+         "`fracture_energy` / (2 δ)")
            .early(),
        K("fracture_energy", &Spec::fracture_energy, positive("J/m2"),
          "$G_c$ of a plane crack, the mean over its directions on this lattice; `critical` "
@@ -428,9 +436,11 @@ Table<DamageSpecification> damage_keys(const std::string& material) {
          "(more exactly: the largest force over $c$); `onset` follows, `peak` of `blended`, "
          "`critical` of `critical_stretch`")
            .unless(is_whole, "")
+           .unless(is_of_points, for_stretches)
            .early(),
        K("critical", &Spec::critical, stretch(), "stretch $s_c$ from which on a bond is broken")
            .unless(is_whole, "")
+           .unless(is_of_points, for_stretches)
            .unless(is_sized, "follows from fracture_energy or strength; give one of them")
            .then(require_key([](auto& damage) { return damage.critical == 0.0; }))
            .default_words("this or `fracture_energy` is required with a law"),
@@ -593,6 +603,13 @@ Table<MaterialSpecification> material_keys(const std::string& name) {
            .unless(of_cpd, for_bond)
            .unless(in_dimension<1>, "is for dimension 2 only")
            .unless(in_dimension<3>, "is for dimension 2 only"),
+       K("kinematics", &Spec::kinematics,
+         choice<Kinematics>({{"finite", Kinematics::finite}, {"linear", Kinematics::linear}}),
+         "`bond`: bonds stretch by their lengths, at any deformation; or by the displacements "
+         "along them, for small ones, which is linear: without eigenstrains and images, with "
+         "`potential = \"harmonic\"`, and damage by `energy_density` alone")
+           .unless(of_cpd, for_bond)
+           .unless(of_lps, for_bond),
        K("influence", &Spec::influence, one_of(influence_names()),
          "influence function $\\omega(r/\\delta)$, $c\\,\\omega s$ is the force density of a bond: "
          "[GPMB]'s of order 0, 0.5, 1, 3, 5 and 7, $e^{-(r/\\delta)^2}$, or $\\delta/r$; "
@@ -694,6 +711,7 @@ Table<MaterialSpecification> material_of_body_keys(const std::string& name) {
     require(material.potential == body.potential, "potential");
     require(material.plane == body.plane, "plane");
     require(material.influence == body.influence, "influence");
+    require(material.kinematics == body.kinematics, "kinematics");
   };
   return keys;
 }
@@ -1290,6 +1308,12 @@ Table<SolverSpecification> solver_keys() {
          "`\"riluk\"`, `\"chebyshev\"` and `\"multigrid\"`. `\"auto\"` stores for direct solvers")
            .written_if(searches)
            .then(check_tangent),
+       K("operator", &Spec::force_operator,
+         choice<ForceOperator>({{"bonds", ForceOperator::bonds}, {"fft", ForceOperator::fft}}),
+         "forces of `material.kinematics = \"linear\"` are summed bond by bond, or by fast Fourier "
+         "transforms, which store no bonds and take the same time whatever the horizon: for one "
+         "material on points of a lattice with equal volumes, without a `surface_correction`. "
+         "Both give the same results to round-off"),
        K("predictor", &Spec::predictor,
          choice<Predictor>({{"consistent", Predictor::consistent}, {"none", Predictor::none}}),
          "the first iteration of a step linearises about the old state and spreads the jump of the "

@@ -264,6 +264,15 @@ TEST(Correspondence, RemembersNothingElse) {
   tests::expect_to_remember_nothing_else(used, fresh, body);
 }
 
+TEST(Correspondence, HasTheVirialsOfItsEnergies) {
+  for (const std::vector<int>& counts : {std::vector<int>{13, 10}, std::vector<int>{7, 6, 9}}) {
+    const HoledBody body({counts});
+    Correspondence material = material_of(body);
+    material.set_integrity(body.mask());
+    tests::expect_virials_of_energies(material, body, 1e-11);
+  }
+}
+
 TEST(Correspondence, SeesImages) {
   const HoledBody body({{9, 9}, 3.015});
   tests::expect_to_see_images([&](const LatticeBox& box, const std::array<bool, 3>& periods) {

@@ -179,6 +179,15 @@ TEST(GreenBonds, RememberNothingElse) {
   tests::expect_to_remember_nothing_else(used, fresh, body);
 }
 
+TEST(GreenBonds, HaveTheVirialsOfTheirEnergies) {
+  for (const std::vector<int>& counts : {std::vector<int>{13, 10}, std::vector<int>{7, 6, 9}}) {
+    const HoledBody body({counts});
+    GreenBonds bonds = bonds_of(body);
+    bonds.set_integrity(body.mask());
+    tests::expect_virials_of_energies(bonds, body, 1e-11);
+  }
+}
+
 TEST(GreenBonds, SeeImages) {
   const HoledBody body({{9, 9}, 3.015});
   tests::expect_to_see_images([&](const LatticeBox& box, const std::array<bool, 3>& periods) {

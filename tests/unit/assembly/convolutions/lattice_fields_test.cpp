@@ -90,25 +90,27 @@ TEST(LatticeFields, HaveTheArmsOfTheSprings) {
   ASSERT_EQ(arms.size(), springs.size());
   for (std::size_t s = 0; s < arms.size(); ++s) {
     EXPECT_EQ(arms[s].step, springs[s].step);
-    EXPECT_NEAR(springs[s].length, std::hypot(arms[s].xi[0], arms[s].xi[1]), 1e-15);
-    EXPECT_NEAR(springs[s].stiffness, 2.0 * arms[s].share / springs[s].length,
-                1e-15 * springs[s].stiffness);
-    for (std::size_t c = 0; c < 3; ++c) {
-      EXPECT_EQ(arms[s].xi[c], springs[s].direction[c] * springs[s].length);
-    }
+    EXPECT_EQ(arms[s].xi, springs[s].arm);
+    const double length = tests::norm(arms[s].xi);
+    EXPECT_NEAR(springs[s].stiffness, 2.0 * arms[s].share / length, 1e-15 * springs[s].stiffness);
+    EXPECT_NEAR(tests::dot(arms[s].xi, springs[s].direction), length, 1e-15);
   }
 }
 
 TEST(LatticeFields, RoundSumsUp) {
-  std::vector<double> sums{1.0, 0.0, -1e-15, 1e-16}, none;
-  const std::vector<double> before = sums;
-  round_up(sums);
+  const std::vector<double> sums{1.0, 0.0, -1e-15, 1e-16};
+  std::vector<double> total(sums.size(), 0.0), none;
+  add_rounded_up(sums, total);
   for (std::size_t k = 0; k < sums.size(); ++k) {
-    EXPECT_GT(sums[k], before[k]);
-    EXPECT_GT(sums[k], 0.0);
-    EXPECT_NEAR(sums[k], before[k], 1e-9);
+    EXPECT_GT(total[k], sums[k]);
+    EXPECT_GT(total[k], 0.0);
+    EXPECT_NEAR(total[k], sums[k], 1e-9);
   }
-  round_up(none);
+  const std::vector<double> once = total;
+  add_rounded_up(sums, total);
+  EXPECT_GT(total[0], 2.0);
+  EXPECT_NEAR(total[0], 2.0 * once[0], 1e-15);
+  add_rounded_up(none, none);
   EXPECT_TRUE(none.empty());
 }
 

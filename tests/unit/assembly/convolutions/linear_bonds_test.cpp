@@ -161,9 +161,16 @@ TEST(LinearBonds, MultiplyLikeTheTangentAtRest) {
     const std::vector<double> v = system.random(2);
     std::vector<double> expected(v.size()), product(v.size());
     tangent.multiply(v, expected);
-    system.bonds.multiply(v, product);
+    system.bonds.multiply(v, v, product);
     EXPECT_LE(tests::distance(product, expected), 1e-13 * tests::norm(expected));
-    EXPECT_LE(tests::distance(system.bonds.diagonal(), tangent.diagonal),
+    std::vector<double> diagonal(tangent.diagonal.size()), bounds(v.size()), sums(v.size());
+    system.bonds.outline_tangent(diagonal, bounds);
+    tangent.absolute_row_sums(sums);
+    for (std::size_t k = 0; k < sums.size(); ++k) {
+      EXPECT_GE(bounds[k], (1.0 - 1e-12) * sums[k]);
+      EXPECT_LE(bounds[k], 1.5 * sums[k] + 1e-12 * tests::norm(sums));
+    }
+    EXPECT_LE(tests::distance(diagonal, tangent.diagonal),
               1e-13 * tests::norm(tangent.diagonal));
   }
 }

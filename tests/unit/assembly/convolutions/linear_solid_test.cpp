@@ -250,7 +250,7 @@ TEST(LinearSolid, IsOneOfBondsWhereLambdaIsMuAndNeighbourhoodsAreWhole) {
   for (const LatticeArm& arm : arms) {
     const double length = tests::norm(arm.xi);
     const Coordinates n{arm.xi[0] / length, arm.xi[1] / length, arm.xi[2] / length};
-    springs.push_back({arm.step, n, 2.0 * 3 * 5 * mu * V * arm.share / moment, length});
+    springs.push_back({arm.step, n, arm.xi, 2.0 * 3 * 5 * mu * V * arm.share / moment});
   }
   const std::array<bool, 3> everywhere{true, true, true};
   LinearSolid solid(box, everywhere, arms, {{mu, mu}, V}, 1);
@@ -259,6 +259,15 @@ TEST(LinearSolid, IsOneOfBondsWhereLambdaIsMuAndNeighbourhoodsAreWhole) {
   ForcesAndEnergies expected{std::vector<double>(u.size()), std::vector<double>(box.place.size())};
   bonds.find_forces_and_energies(u, expected.force, expected.energy);
   tests::expect_equal(tests::evaluate(solid, u, box.place.size()), expected, 1e-13);
+}
+
+TEST(LinearSolid, HasTheVirialsOfItsEnergies) {
+  for (const std::vector<int>& counts : {std::vector<int>{13, 10}, std::vector<int>{7, 6, 9}}) {
+    const HoledBody body({counts});
+    LinearSolid solid = solid_of(body);
+    solid.set_integrity(body.mask());
+    tests::expect_virials_of_energies(solid, body, 1e-11);
+  }
 }
 
 TEST(LinearSolid, SeesImages) {

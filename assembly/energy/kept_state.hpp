@@ -1,0 +1,32 @@
+#pragma once
+
+#include <vector>
+
+#include "assembly/energy/state.hpp"
+
+namespace peristat {
+
+/// A state that an operator stays linearised at.
+class KeptState {
+ public:
+  void keep(const StateView& at) {
+    displacement_.assign(at.displacement.begin(), at.displacement.end());
+    history_ = at.history;
+    damage_ = at.damage;
+    environment_ = at.environment;
+  }
+  [[nodiscard]] StateView view() const { return {displacement_, history_, damage_, environment_}; }
+  /// Of points of which these are the places in the reference.
+  [[nodiscard]] std::vector<double> positions(std::vector<double> reference) const {
+    for (std::size_t k = 0; k < displacement_.size(); ++k) reference[k] += displacement_[k];
+    return reference;
+  }
+
+ private:
+  std::vector<double> displacement_;
+  History history_;
+  Damage damage_ = Damage::grows;
+  SharedEnvironment environment_;
+};
+
+}  // namespace peristat

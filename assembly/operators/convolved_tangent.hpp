@@ -1,0 +1,32 @@
+#pragma once
+
+#include <vector>
+
+#include "assembly/energy/kept_state.hpp"
+#include "assembly/operators/tangent_operator.hpp"
+
+namespace peristat {
+
+/// Tangent of forces that are found by convolutions: it multiplies, and knows its diagonal blocks,
+/// bounds of its rows' sums, and its mean stencil; there is no row to visit. The energy outlives
+/// it.
+struct ConvolvedTangent : TangentOperator {
+  explicit ConvolvedTangent(Energy& energy);
+
+  [[nodiscard]] std::vector<double> positions() const override;
+  /// Whatever the projection: the forces are linear.
+  void linearise(Energy& energy, const StateView& at, double projection) override;
+  void multiply(std::span<const double> v, std::span<double> result) const override;
+  /// @throws std::logic_error
+  void for_each_row(const RowVisitor& visit) const override;
+  /// Numbers that are not less.
+  void absolute_row_sums(std::span<double> sums) const override;
+  [[nodiscard]] LatticeStencil stencil() const override;
+
+ private:
+  Energy* energy_;
+  KeptState at_;
+  std::vector<double> row_sums_;
+};
+
+}  // namespace peristat

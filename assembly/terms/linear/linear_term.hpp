@@ -1,0 +1,76 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "assembly/convolutions/lattice_springs.hpp"
+#include "assembly/terms/bonds/bond_term.hpp"
+#include "assembly/terms/linear/neighbour_sums.hpp"
+#include "src/geometry/lattice_box.hpp"
+
+namespace peristat {
+
+/// A lattice whose bonds are convolutions, which need no bond.
+struct ConvolvedLattice {
+  LatticeBox box;
+  std::vector<LatticeSpring> springs;  ///< of a point, of two opposite ones one
+  std::shared_ptr<const Bonds> cut{};  ///< those of them that pre-cracks have cut; null: none
+  std::function<Bonds()> all_bonds{};  ///< finds those that are left
+};
+
+/// The energy of harmonic bonds that are linearised at rest,
+///
+///   Pi = sum_b q_i q_j k (n . (u_j - u_i))^2 / 2,   k = c w / L,
+///
+/// n the direction of the bond in the reference, bond by bond (LinearBondSums) or by convolutions
+/// ([FCBM] app. A, LinearBonds): both are the same numbers to round-off. Forces add up to zero, and
+/// their moments in the reference, not in the present places.
+///
+/// Points lose their integrity q, from 1 to 0 and for good, where the energy density of a state
+/// that is committed, an equal share of each bond to its points, exceeds what they bear ([FCBM]
+/// eq. 21). What a commit takes away at fixed displacements counts as dissipated. It remembers q of
+/// each point and, behind them, what it has dissipated so far [J].
+class LinearTerm : public BondTerm {
+ public:
+  /// @param bonds of the body; of a lattice that is convolved some short ones, which tell what
+  /// hangs
+  ///              together
+  /// @param micromodulus c [N/m6]
+  /// @param bearable energy of each point that it bears, infinite if it never fails [J]; empty: no
+  ///                 point fails
+  LinearTerm(std::shared_ptr<const Bonds> bonds, double micromodulus, std::vector<double> bearable,
+             std::optional<ConvolvedLattice> lattice, int threads);
+
+  [[nodiscard]] double micromodulus() const { return micromodulus_; }
+  [[nodiscard]] const std::vector<double>& bearable() const { return bearable_; }
+  [[nodiscard]] bool is_convolved() const { return lattice_.has_value(); }
+  [[nodiscard]] const std::optional<ConvolvedLattice>& lattice() const { return lattice_; }
+
+  /// Bonds that there are, each counted once, and those that a point takes part in.
+  [[nodiscard]] double count_of_bonds() const { return count_; }
+  [[nodiscard]] const std::vector<double>& whole_weight() const { return whole_weight_; }
+  [[nodiscard]] NeighbourSums neighbours(std::span<const double> integrity) const;
+
+  [[nodiscard]] Couplings couplings() const override;
+  [[nodiscard]] bool visits_rows() const override { return !is_convolved(); }
+  [[nodiscard]] bool has_rows() const override { return !is_convolved(); }
+  [[nodiscard]] Balances balances() const override { return {true, false, true, true, true}; }
+  [[nodiscard]] bool can_be_damaged() const override { return !bearable_.empty(); }
+  [[nodiscard]] std::vector<double> initial_history() const override;
+  [[nodiscard]] double stored_bytes() const override;
+  [[nodiscard]] std::unique_ptr<TermPasses> passes(const TermSetting& setting) const override;
+
+ private:
+  double micromodulus_;
+  std::vector<double> bearable_;
+  std::optional<ConvolvedLattice> lattice_;
+  int threads_;
+  std::vector<Offset> no_couplings_;  // of a lattice that is convolved
+  std::vector<double> whole_weight_;  // per point, of a body without damage [m6]
+  double count_ = 0.0;
+};
+
+}  // namespace peristat

@@ -1,0 +1,40 @@
+#include "assembly/terms/linear/neighbour_sums.hpp"
+
+#include <cmath>
+
+#include "assembly/convolutions/linear_bonds.hpp"
+
+namespace peristat {
+
+NeighbourSums neighbour_sums(const Bonds& bonds, std::span<const double> integrity) {
+  NeighbourSums sums{std::vector<double>(integrity.size()), std::vector<double>(integrity.size())};
+  for (Index i = 0; i < bonds.points(); ++i) {
+    for (Offset bond = bonds.offset[i]; bond < bonds.offset[i + 1]; ++bond) {
+      const Index j = bonds.partner[bond];
+      const double left = integrity[std::size_t(i)] * integrity[std::size_t(j)];
+      for (const Index point : {i, j}) {
+        sums.weight[std::size_t(point)] += left * bonds.weight(bond);
+        sums.count[std::size_t(point)] += left;
+      }
+    }
+  }
+  return sums;
+}
+
+NeighbourSums neighbour_sums(const LatticeBox& box, std::span<const LatticeSpring> springs,
+                             double micromodulus, std::span<const double> integrity, int threads) {
+  std::vector<double> weight, one(springs.size(), 1.0);
+  for (const LatticeSpring& spring : springs) {
+    const double length = std::hypot(spring.arm[0], spring.arm[1], spring.arm[2]);
+    weight.push_back(spring.stiffness * length / micromodulus);
+  }
+  NeighbourSums sums{lattice_sums(box, springs, weight, integrity, threads),
+                     lattice_sums(box, springs, one, integrity, threads)};
+  for (std::size_t i = 0; i < integrity.size(); ++i) {
+    sums.weight[i] *= integrity[i];
+    sums.count[i] *= integrity[i];
+  }
+  return sums;
+}
+
+}  // namespace peristat

@@ -1,0 +1,247 @@
+#include "solvers/study/linear_model.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <utility>
+#include <variant>
+
+#include "assembly/convolutions/lattice_springs.hpp"
+#include "assembly/terms/linear/linear_term.hpp"
+#include "src/core/input_error.hpp"
+#include "src/geometry/lattice_box.hpp"
+#include "src/geometry/lattice_frame.hpp"
+
+namespace peristat {
+namespace {
+
+/// Of a spacing: what a point may stand off its place, and of a volume.
+constexpr double lattice_tolerance = 1e-9;
+
+[[noreturn]] void refuse_convolution(const std::string& why) {
+  throw InputError("force_operator", "fft", why + "; take \"bonds\"");
+}
+
+bool stand_in_place(const Points& points) {
+  const LatticeFrame frame(points.dimension, {}, 0.0, points.spacing, points.angle);
+  for (Index i = 0; i < points.count(); ++i) {
+    Coordinates from_origin = points.position(i);
+    for (int c = 0; c < points.dimension; ++c) from_origin[c] -= points.lattice->origin[c];
+    for (const double steps : frame.spacings_to(from_origin)) {
+      if (std::abs(steps - std::round(steps)) > lattice_tolerance) return false;
+    }
+  }
+  return true;
+}
+
+/// Refuses what is no convolution over a lattice.
+LatticeBox box_of(const BodySpecification& from, const Points& points) {
+  if (!from.is_uniform()) {
+    refuse_convolution(
+        "is for bodies of one material: with regions, fibres or random fields the stiffness of a "
+        "bond is not a function of its step alone");
+  }
+  if (from.surface_correction != SurfaceCorrection::none) {
+    refuse_convolution("goes without a surface_correction, whose factors belong to single bonds");
+  }
+  if (points.own() < points.count()) {
+    refuse_convolution("does not go with planes of symmetry and periods");
+  }
+  if (!points.neighbours.empty()) refuse_convolution("finds its neighbours by itself");
+  std::string why_not;
+  std::optional<LatticeBox> box = lattice_box(points, why_not);
+  if (!box) refuse_convolution("needs points on a lattice: " + why_not);
+  if (!stand_in_place(points)) {
+    refuse_convolution("needs points that stand where the lattice has its places");
+  }
+  const auto [least, most] = std::minmax_element(points.volume.begin(), points.volume.end());
+  if (*most - *least > lattice_tolerance * *most) {
+    refuse_convolution("needs points with the same volume, that of a cell");
+  }
+  return std::move(*box);
+}
+
+void add_vertices(const Crack& crack, std::vector<Coordinates>& vertices) {
+  std::visit(
+      [&]<class C>(const C& of) {
+        if constexpr (std::is_same_v<C, CrackSegment>) {
+          vertices.insert(vertices.end(), {of.from, of.to});
+        } else {
+          for (const auto& vertex : of.vertices) {
+            Coordinates at{};
+            std::copy(vertex.begin(), vertex.end(), at.begin());
+            vertices.push_back(at);
+          }
+        }
+      },
+      crack);
+}
+
+/// Ascending: those whose bonds of that reach may meet a crack.
+std::vector<Index> points_near(const Points& points, const std::vector<Crack>& cracks,
+                               double reach) {
+  std::vector<bool> is_near(std::size_t(points.count()), false);
+  for (const Crack& crack : cracks) {
+    std::vector<Coordinates> vertices;
+    add_vertices(crack, vertices);
+    Coordinates low = vertices.front(), high = low;
+    for (const Coordinates& at : vertices) {
+      for (std::size_t c = 0; c < 3; ++c) {
+        low[c] = std::min(low[c], at[c]);
+        high[c] = std::max(high[c], at[c]);
+      }
+    }
+    for (Index i = 0; i < points.count(); ++i) {
+      const Coordinates at = points.position(i);
+      bool is_inside = true;
+      for (std::size_t c = 0; c < std::size_t(points.dimension); ++c) {
+        is_inside = is_inside && at[c] >= low[c] - reach && at[c] <= high[c] + reach;
+      }
+      if (is_inside) is_near[std::size_t(i)] = true;
+    }
+  }
+  std::vector<Index> near;
+  for (Index i = 0; i < points.count(); ++i) {
+    if (is_near[std::size_t(i)]) near.push_back(i);
+  }
+  return near;
+}
+
+/// The bonds that cracks cut, with their weights, found among the points near to them.
+Bonds cut_of_lattice(const Points& points, const BondSetting& setting,
+                     const std::vector<Crack>& cracks, int threads) {
+  const std::vector<Index> near =
+      points_near(points, cracks, setting.horizon + points.spacing.largest());
+  Points part;
+  part.dimension = points.dimension;
+  part.spacing = points.spacing;
+  part.angle = points.angle;
+  part.cell_volume = points.cell_volume;
+  part.lattice = points.lattice;
+  for (const Index i : near) {
+    for (int c = 0; c < points.dimension; ++c) {
+      part.reference.push_back(
+          points.reference[std::size_t(i) * std::size_t(points.dimension) + std::size_t(c)]);
+    }
+    part.volume.push_back(points.volume[std::size_t(i)]);
+  }
+  Bonds bonds = make_bonds(part, SurfaceCorrection::none, setting, threads);
+  bonds.remove_if([&](Index i, Offset bond) {
+    const Coordinates a = part.position(i), b = part.position(bonds.partner[bond]);
+    return std::ranges::none_of(cracks, [&](const Crack& crack) { return cuts(crack, a, b); });
+  });
+  Bonds result;
+  result.offset.assign(std::size_t(points.count()) + 1, 0);
+  for (std::size_t k = 0; k < near.size(); ++k) {
+    result.offset[std::size_t(near[k]) + 1] = bonds.offset[k + 1] - bonds.offset[k];
+  }
+  for (std::size_t i = 0; i + 1 < result.offset.size(); ++i) {
+    result.offset[i + 1] += result.offset[i];
+  }
+  for (const Index partner : bonds.partner) result.partner.push_back(near[std::size_t(partner)]);
+  result.kind = std::move(bonds.kind);
+  return result;
+}
+
+CutBonds told(const Bonds& bonds) {
+  CutBonds cut{std::vector<double>(std::size_t(bonds.points()), 0.0), {}};
+  for (Index i = 0; i < bonds.points(); ++i) {
+    for (Offset bond = bonds.offset[i]; bond < bonds.offset[i + 1]; ++bond) {
+      const Index j = bonds.partner[bond];
+      cut.weight[std::size_t(i)] += bonds.weight(bond);
+      cut.weight[std::size_t(j)] += bonds.weight(bond);
+      cut.ends.push_back({i, j});
+    }
+  }
+  return cut;
+}
+
+/// W_c = G_c / (2 delta) of a point's material, times its volume; infinite for those that never
+/// fail; empty if none does.
+std::vector<double> bearable_energies(const PointMaterials& materials, const Points& points,
+                                      double horizon) {
+  const auto& all = materials.all();
+  if (std::ranges::none_of(all, [](const auto& material) {
+        return material.of->damage.law == DamageLaw::energy_density;
+      })) {
+    return {};
+  }
+  std::vector<double> bearable(std::size_t(points.count()),
+                               std::numeric_limits<double>::infinity());
+  for (Index i = 0; i < points.count(); ++i) {
+    const DamageSpecification& damage = all[materials.of(i)].of->damage;
+    if (damage.law != DamageLaw::energy_density) continue;
+    bearable[std::size_t(i)] =
+        *damage.fracture_energy / (2.0 * horizon) * points.volume[std::size_t(i)];
+  }
+  for (const auto& material : all) {
+    for (const std::string& set : material.of->damage.no_fail) {
+      const auto found = points.sets.find(set);
+      if (found == points.sets.end()) {
+        throw InputError(material.key + ".damage.no_fail", '"' + set + '"', "no set of this name");
+      }
+      for (const Index i : found->second) {
+        bearable[std::size_t(i)] = std::numeric_limits<double>::infinity();
+      }
+    }
+  }
+  return bearable;
+}
+
+}  // namespace
+
+BondSetting network_setting(const BodySpecification& from, const Points& points,
+                            BondSetting setting) {
+  if (from.force_operator != ForceOperator::fft) return setting;
+  std::array<double, 3> edge{};
+  for (int c = 0; c < points.dimension; ++c) edge[std::size_t(c)] = points.spacing.along(c);
+  std::ranges::sort(edge, std::greater<>());
+  constexpr double beyond = 1.01;  // the diagonal itself
+  setting.horizon = std::min(setting.horizon, beyond * std::hypot(edge[0], edge[1]));
+  setting.shape = HorizonShape::ball;
+  setting.volume_correction = VolumeCorrection::none;
+  return setting;
+}
+
+Model make_linear_model(const BodySpecification& from, const PointMaterials& materials,
+                        const PointFactors& factors, const Points& points,
+                        const BondSetting& setting, Bonds bonds, CutBonds& cut, int threads) {
+  std::vector<DirectedConstant> moduli;
+  for (const auto& material : all_materials(from, materials)) {
+    moduli.push_back(micromodulus_of(*material.of, material.key, setting));
+  }
+  const BondMaterials mixed(from, materials, factors, points, std::move(moduli));
+  std::optional<ConvolvedLattice> lattice;
+  if (from.force_operator == ForceOperator::fft) {
+    lattice.emplace();
+    lattice->box = box_of(from, points);
+    lattice->springs = lattice_springs(setting, points.spacing, points.angle, mixed.modulus(),
+                                       points.volume.front());
+    if (!from.cracks.empty()) {
+      lattice->cut =
+          std::make_shared<const Bonds>(cut_of_lattice(points, setting, from.cracks, threads));
+    }
+    lattice->all_bonds = [&points, setting, cracks = from.cracks, threads] {
+      Bonds all = make_bonds(points, SurfaceCorrection::none, setting, threads);
+      static_cast<void>(cut_bonds(all, points, cracks));
+      return all;
+    };
+    static_cast<void>(cut_bonds(bonds, points, from.cracks));
+    if (lattice->cut) cut = told(*lattice->cut);
+  } else {
+    if (!from.is_uniform()) {
+      refuse_idle_interfaces(from, materials, bonds);
+      mixed.weigh(bonds);
+    }
+    cut = cut_bonds(bonds, points, from.cracks);
+  }
+  return Model(std::make_shared<LinearTerm>(
+      std::make_shared<const Bonds>(std::move(bonds)), mixed.modulus(),
+      bearable_energies(materials, points, setting.horizon), std::move(lattice), threads));
+}
+
+}  // namespace peristat
