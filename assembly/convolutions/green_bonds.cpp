@@ -303,9 +303,8 @@ void GreenBonds::find_rates(std::span<double> product) {
 
 void GreenBonds::outline_tangent(std::span<double> diagonal, std::span<double> row_sums) {
   std::vector<double> bounds(row_sums.size());
-  with_dimension(fields_.dimension(), [&](auto dimension) {
-    outline<decltype(dimension)::value>(diagonal, bounds);
-  });
+  with_dimension(fields_.dimension(),
+                 [&](auto dimension) { outline<decltype(dimension)::value>(diagonal, bounds); });
   add_rounded_up(bounds, row_sums);
 }
 
