@@ -16,6 +16,13 @@ struct LatticeSpring {
   double stiffness = 0.0;   ///< k [N/m]
 };
 
+/// A step to a neighbour, and how much of it counts.
+struct LatticeArm {
+  LatticeStep step{};  ///< along the lattice's axes
+  Coordinates xi{};    ///< the same in the axes of the body [m]
+  double share = 0.0;  ///< kappa = V^2 nu omega [m6]
+};
+
 /// The harmonic bonds of a point of a lattice, linearised at rest: energy k (n.(u' - u))^2 / 2 with
 ///
 ///   k = c w / r,   w = V^2 nu omega,
@@ -27,5 +34,10 @@ struct LatticeSpring {
 [[nodiscard]] std::vector<LatticeSpring> lattice_springs(const Kernel& kernel,
                                                          const Spacing& spacing, double angle,
                                                          double micromodulus, double volume);
+
+/// The neighbours of a point of a lattice, with the shares that the kernel's influence omega and
+/// partial volumes nu make; of two opposite ones one.
+[[nodiscard]] std::vector<LatticeArm> lattice_arms(const Kernel& kernel, const Spacing& spacing,
+                                                   double angle, double volume);
 
 }  // namespace peristat

@@ -1,0 +1,115 @@
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "assembly/convolutions/lattice_fields.hpp"
+#include "assembly/convolutions/lattice_forces.hpp"
+#include "assembly/convolutions/lattice_springs.hpp"
+#include "src/materials/lame_constants.hpp"
+
+namespace peristat {
+
+/// Least eigenvalue of a shape tensor, relative to that of a whole neighbourhood, that a
+/// deformation gradient is told with.
+inline constexpr double least_shape = 1e-3;
+
+/// A correspondence material of St. Venant and Kirchhoff at any deformation, in 2D and 3D, on a
+/// lattice, as convolutions ([FCBM] ... ): with q in [0, 1] the integrity of a point,
+/// xi the step to a neighbour, kappa its share, eta the difference of displacements and sums over
+/// neighbours,
+///
+///   K = sum q' kappa xi xi [m8],   F = 1 + H,   H = (sum q' kappa eta xi) K^-1,
+///   E = (F^T F - 1) / 2,   S = lambda tr(E) 1 + 2 mu E,   z = eta - H xi,
+///   w = q (V S : E / 2 + beta / 2 sum q' kappa z^2)                                         [J]
+///   f = q sum q' (kappa (R + R') xi + 2 beta kappa eta),   R = V F S K^-1 - beta H          [N]
+///
+/// The energy of z, of what H does not tell, keeps points of a lattice from moving against each
+/// other at no cost. beta is constant: with one that varies inside the force, as it is printed,
+/// forces have no potential.
+///
+/// K is renewed with q. Where its least eigenvalue is not more than `least_shape` of a whole
+/// neighbourhood's mean one there is no H: the point has the energy of z = eta alone, which resists
+/// turns, too. So a point that loses its neighbours loses its stress in one step.
+///
+/// The product with the tangent is exact: F S is a polynomial of H, and all else is linear.
+class Correspondence : public LatticeForces {
+ public:
+  struct Setting {
+    LamePair constants;          ///< in plane stress those of the plane [Pa]
+    double volume = 0.0;         ///< V of each point [m3]
+    double stabilisation = 0.0;  ///< beta [N/m7] for shares kappa in m6
+  };
+
+  /// @param box the points and their places
+  /// @param is_periodic axes along which the lattice goes on as it began: points see their images
+  /// @param arms of two opposite steps one
+  /// @throws std::logic_error for a period that is not longer than the arms, or another dimension
+  Correspondence(const LatticeBox& box, const std::array<bool, 3>& is_periodic,
+                 std::vector<LatticeArm> arms, const Setting& setting, int threads);
+
+  /// 7 real transforms in 2D and 11 in 3D.
+  void set_integrity(std::span<const double> integrity) override;
+  /// 12 and 24.
+  void find_forces(std::span<const double> displacement, std::span<double> force) override;
+  /// 4 and 5 more.
+  void find_forces_and_energies(std::span<const double> displacement, std::span<double> force,
+                                std::span<double> energy) override;
+  /// As many as for forces, if those at u were the last ones that were found; 6 and 12 more
+  /// otherwise.
+  void multiply(std::span<const double> displacement, std::span<const double> v,
+                std::span<double> product) override;
+  /// Blocks are exact, as long as periods are longer than two arms, at the cost of 20 and 53
+  /// transforms; sums by the triangle inequality over what each gradient contributes,
+  /// which is up to fifteen times too much.
+  void outline_tangent(std::span<double> diagonal, std::span<double> row_sums) override;
+  /// V F S, and where there is no H what the stabilisation has.
+  void add_virials(std::span<const double> displacement, std::span<double> virials) override;
+  /// Memory that it holds.
+  [[nodiscard]] double bytes() const;
+
+  [[nodiscard]] const LatticeFields& fields() const { return fields_; }
+
+ private:
+  void take_up(std::span<const double> displacement);
+  template <int D>
+  void renew_shapes();
+  template <int D>
+  void find_moments(const std::vector<double>& u, std::vector<double>& moments);
+  template <int D>
+  void find_gradients(const std::vector<double>& u, std::vector<double>& gradients);
+  template <int D>
+  void find_stresses();
+  template <int D>
+  void find_stress_rates();
+  template <int D>
+  void find_pulls(const std::vector<double>& u, double sign, std::span<double> force);
+  template <int D>
+  void find_energies(std::span<double> energy);
+  template <int D>
+  void outline_blocks(std::span<double> diagonal);
+  template <int D>
+  void add_neighbours_blocks(std::span<double> diagonal);
+  template <int D>
+  void bound_rows(std::span<double> row_sums);
+  template <int D>
+  void add_virials(const std::vector<double>& u, std::span<double> virials);
+
+  std::vector<LatticeArm> arms_;
+  Setting setting_;
+  LatticeFields fields_;
+  LatticeSpectrum size_;                // kappa
+  std::vector<LatticeSpectrum> arm_;    // kappa xi, by component
+  std::vector<LatticeSpectrum> shape_;  // kappa xi xi, by pair
+  double whole_size_ = 0.0, whole_shape_ = 0.0;
+  // Sums of q' times these, per point, and K^-1, 0 where it has none; matrices row by row.
+  std::vector<double> sizes_, arms_left_, shapes_, inverse_shapes_;
+  std::vector<double> state_;                       // u that gradients_ belong to; empty: none
+  std::vector<double> displacement_;                // the same without its mean
+  std::vector<double> direction_;                   // of the rates, without its mean
+  std::vector<double> gradients_, gradient_rates_;  // H
+  std::vector<double> stresses_;                    // R, or its rate
+};
+
+}  // namespace peristat

@@ -1,0 +1,152 @@
+#pragma once
+
+#include <array>
+#include <functional>
+#include <span>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "src/geometry/lattice_box.hpp"
+#include "src/neighbourhood/lattice_kernel.hpp"
+#include "src/transforms/convolution.hpp"
+
+namespace peristat {
+
+/// Pairs of components, the order of the two left out.
+constexpr std::size_t pairs_of(int dimension) {
+  return std::size_t(dimension) * std::size_t(dimension + 1) / 2;
+}
+
+/// Number of the pair (i, j) of components, whichever comes first: xx xy xz yy yz zz.
+constexpr std::size_t pair_of(int i, int j, int dimension) {
+  if (i > j) std::swap(i, j);
+  return std::size_t(i * dimension - i * (i - 1) / 2 + j - i);
+}
+
+/// body(std::integral_constant<int, D>) for a dimension known at run time.
+template <class Body>
+void with_dimension(int dimension, const Body& body) {
+  if (dimension == 1) body(std::integral_constant<int, 1>{});
+  if (dimension == 2) body(std::integral_constant<int, 2>{});
+  if (dimension == 3) body(std::integral_constant<int, 3>{});
+}
+
+/// Less than this part of what a whole neighbourhood has is round-off of convolutions, which is
+/// some 1e-15 of it: the point has no neighbours left.
+inline constexpr double least_neighbourhood = 1e-10;
+
+/// A kernel as amplitudes, one number each, and whether they are real or imaginary.
+struct LatticeSpectrum {
+  std::vector<double> amplitudes;
+  Convolution::Parity parity = Convolution::Parity::even;
+};
+
+/// What all operators of a lattice's points by convolutions share: the points' places on a padded
+/// box, an integrity q of each point, numbered fields on the box as amplitudes, and sums over
+/// neighbours
+///
+///   sum over xi of g(xi) b(x + xi),
+///
+/// of several fields b = q times a value at once, at the cost of one transform (convolutions
+/// [g * b] of [FCBM] app. A but for the sign of odd kernels). Places without a point have q = 0.
+/// The same bits on any number of threads.
+class LatticeFields {
+ public:
+  using Parity = Convolution::Parity;
+
+  /// @param box the points and their places
+  /// @param is_periodic axes along which the lattice goes on as it began: points see their images
+  /// @param steps to neighbours, of two opposite ones one
+  /// @throws std::logic_error for a period that is not longer than the steps
+  LatticeFields(const LatticeBox& box, const std::array<bool, 3>& is_periodic,
+                std::vector<LatticeStep> steps, int threads);
+
+  [[nodiscard]] int dimension() const { return dimension_; }
+  [[nodiscard]] std::size_t points() const { return where_.size(); }
+  [[nodiscard]] int threads() const { return convolution_.transform().threads(); }
+  [[nodiscard]] const FourierTransform& transform() const { return convolution_.transform(); }
+
+  /// @param value g of the step with this number; of the opposite one g, or -g for odd kernels
+  [[nodiscard]] LatticeSpectrum spectrum(Parity parity,
+                                         const std::function<double(std::size_t)>& value) const;
+
+  void set_integrity(std::span<const double> integrity);
+  [[nodiscard]] double integrity(std::size_t point) const { return integrity_[point]; }
+  /// Sets q = 0 where a sum over the neighbours, none of whose terms are negative, is nothing
+  /// beside that of a whole neighbourhood: such a point has no neighbours, and what convolutions
+  /// find for it is round-off. Nobody sees it, either.
+  template <class Sum>
+  void leave_out_lonely(double whole, const Sum& sum) {
+    for_points([&](std::size_t point) {
+      if (sum(point) <= least_neighbourhood * whole) integrity_[point] = 0.0;
+    });
+  }
+
+  /// u without its mean over the points, weighted with q: a free translation, and whatever points
+  /// that are gone do, would cost digits of sums that should cancel.
+  void take_off_mean(std::span<const double> u, std::vector<double>& result) const;
+
+  /// Makes field number `field` from q value(point), as amplitudes. Fields appear when they are
+  /// first named.
+  template <class Value>
+  void fill(std::size_t field, const Value& value) {
+    double* const to = cleared(field);
+    for_points([&](std::size_t point) { to[where_[point]] = integrity_[point] * value(point); });
+    to_modes(field);
+  }
+
+  /// factor g(xi) b(x + xi)
+  struct Product {
+    const LatticeSpectrum* kernel = nullptr;
+    std::size_t field = 0;
+    double factor = 1.0;
+  };
+
+  /// take(point, sum) with the sum of all these products over the point's neighbours.
+  template <class Take>
+  void find_sums(std::span<const Product> products, const Take& take) {
+    multiply(products);
+    const double* const from = sum_.data();
+    for_points([&](std::size_t point) { take(point, from[where_[point]]); });
+  }
+  template <class Take>
+  void find_sums(const LatticeSpectrum& kernel, std::size_t field, const Take& take) {
+    const Product product{&kernel, field};
+    find_sums(std::span(&product, 1), take);
+  }
+
+  /// body(point) for all points.
+  template <class Body>
+  void for_points(const Body& body) const {
+    const auto count = static_cast<std::ptrdiff_t>(where_.size());
+#pragma omp parallel for num_threads(threads()) schedule(static)
+    for (std::ptrdiff_t i = 0; i < count; ++i) body(std::size_t(i));
+  }
+
+  /// Real transforms so far, those of kernels left out.
+  [[nodiscard]] std::size_t transforms() const { return transforms_; }
+  /// Of fields and places, and of spectra each.
+  [[nodiscard]] double bytes() const;
+  [[nodiscard]] double spectrum_bytes() const { return 8.0 * double(transform().modes()); }
+
+ private:
+  [[nodiscard]] double* cleared(std::size_t field);
+  void to_modes(std::size_t field);
+  void multiply(std::span<const Product> products);
+
+  int dimension_;
+  std::vector<LatticeStep> steps_;
+  Convolution convolution_;
+  std::vector<std::size_t> where_;  // a point's place in a field
+  std::vector<double> integrity_;
+  std::vector<fftw::Buffer> fields_;
+  fftw::Buffer sum_;
+  std::size_t transforms_ = 0;
+};
+
+/// total += numbers not less than sums of absolute values that convolutions have found, which may
+/// be too small by round-off of the largest of them.
+void add_rounded_up(std::span<const double> sums, std::span<double> total);
+
+}  // namespace peristat
