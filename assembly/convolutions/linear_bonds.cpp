@@ -73,6 +73,35 @@ void multiply_modes(const std::vector<std::vector<double>>& amplitudes,
   }
 }
 
+/// By the numbers of pairs, a convolution of q with itself.
+LatticeStencil stencil_of(const FourierTransform& transform, const std::vector<std::size_t>& where,
+                          std::span<const double> integrity, std::span<const LatticeSpring> springs,
+                          int dimension) {
+  fftw::Buffer field = transform.make_field();
+  for (std::size_t i = 0; i < where.size(); ++i) field.data()[where[i]] = integrity[i];
+  transform.to_modes(field);
+  for (std::size_t k = 0; k < transform.modes(); ++k) {
+    double* const mode = field.data() + 2 * k;
+    mode[0] = (mode[0] * mode[0] + mode[1] * mode[1]) / double(transform.places());
+    mode[1] = 0.0;
+  }
+  transform.to_places(field);
+  LatticeStencil found;
+  const std::array<Index, 3>& size = transform.size();
+  for (const LatticeSpring& spring : springs) {
+    const std::array<int, 3> step = as_last(spring.step, dimension);
+    std::array<Index, 3> at;
+    for (std::size_t a = 0; a < 3; ++a) at[a] = (step[a] % size[a] + size[a]) % size[a];
+    const double pairs = field.data()[transform.at(at[0], at[1], at[2])];
+    StencilEntry entry{spring.step, {}};
+    for (std::size_t c = 0; c < std::size_t(dimension); ++c) {
+      entry.sum[c] = pairs * spring.stiffness * spring.direction[c] * spring.direction[c];
+    }
+    found.push_back(entry);
+  }
+  return found;
+}
+
 }  // namespace
 
 LinearBonds::LinearBonds(const LatticeBox& box, const std::array<bool, 3>& is_periodic,
@@ -256,30 +285,14 @@ void LinearBonds::outline_tangent(std::span<double> diagonal, std::span<double> 
 }
 
 LatticeStencil LinearBonds::stencil() {
-  const FourierTransform& transform = convolution_.transform();
-  fftw::Buffer field = transform.make_field();
-  for (std::size_t i = 0; i < where_.size(); ++i) field.data()[where_[i]] = integrity_[i];
-  transform.to_modes(field);
-  for (std::size_t k = 0; k < transform.modes(); ++k) {
-    double* const mode = field.data() + 2 * k;
-    mode[0] = (mode[0] * mode[0] + mode[1] * mode[1]) / double(transform.places());
-    mode[1] = 0.0;
-  }
-  transform.to_places(field);
-  LatticeStencil found;
-  const std::array<Index, 3>& size = transform.size();
-  for (const LatticeSpring& spring : springs_) {
-    const std::array<int, 3> step = as_last(spring.step, dimension_);
-    std::array<Index, 3> at;
-    for (std::size_t a = 0; a < 3; ++a) at[a] = (step[a] % size[a] + size[a]) % size[a];
-    const double pairs = field.data()[transform.at(at[0], at[1], at[2])];
-    StencilEntry entry{spring.step, {}};
-    for (std::size_t c = 0; c < std::size_t(dimension_); ++c) {
-      entry.sum[c] = pairs * spring.stiffness * spring.direction[c] * spring.direction[c];
-    }
-    found.push_back(entry);
-  }
-  return found;
+  return stencil_of(convolution_.transform(), where_, integrity_, springs_, dimension_);
+}
+
+LatticeStencil lattice_stencil(const LatticeBox& box, std::span<const LatticeSpring> springs,
+                               std::span<const double> integrity, int threads) {
+  const Convolution convolution(axes_of(box, {}, springs), threads);
+  const FourierTransform& transform = convolution.transform();
+  return stencil_of(transform, places_of(box, transform), integrity, springs, box.dimension);
 }
 
 double convolved_bytes(const LatticeBox& box, std::span<const LatticeSpring> springs) {

@@ -72,6 +72,11 @@ class LinearBonds : public LatticeForces {
   std::array<fftw::Buffer, 2> squares_;          // for energies, made when they are first asked for
 };
 
+/// Minus the sums of the diagonal components of the springs' blocks over all pairs of points.
+[[nodiscard]] LatticeStencil lattice_stencil(const LatticeBox& box,
+                                             std::span<const LatticeSpring> springs,
+                                             std::span<const double> integrity, int threads);
+
 /// Memory that LinearBonds take.
 [[nodiscard]] double convolved_bytes(const LatticeBox& box, std::span<const LatticeSpring> springs);
 

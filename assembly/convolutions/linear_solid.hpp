@@ -12,7 +12,7 @@
 namespace peristat {
 
 /// Which forces a linear solid has.
-enum class SolidForm {
+enum class SolidForces {
   energy,   ///< minus the derivative of its energy
   printed,  ///< those of [FCBM] (A-8), which have no potential where neighbourhoods differ
 };
@@ -44,7 +44,7 @@ class LinearSolid : public LatticeForces {
   struct Setting {
     LamePair constants;   ///< in plane stress those of the plane [Pa]
     double volume = 0.0;  ///< V of each point [m3]
-    SolidForm form = SolidForm::energy;
+    SolidForces form = SolidForces::energy;
   };
 
   /// @param box the points and their places
@@ -92,7 +92,7 @@ class LinearSolid : public LatticeForces {
   template <int D>
   void add_virials(std::span<double> virials);
   void find_forces(std::span<const double> displacement, std::span<double> force, bool alone);
-  [[nodiscard]] bool is_printed() const { return setting_.form == SolidForm::printed; }
+  [[nodiscard]] bool is_printed() const { return setting_.form == SolidForces::printed; }
   /// What the forces of a point have instead of 1 / M'.
   [[nodiscard]] double inverse_moment_beside(std::size_t point) const {
     return is_printed() ? 1.0 : inverse_moment_[point];

@@ -121,6 +121,7 @@ void make_model(Body& body, int threads) {
   // Effective volumes count every neighbour, and what bonds of lps dissipate goes by their length.
   if (is_cpd || of.is_collocated()) setting.influence = {};
   if (of.has_states()) setting = state_setting(std::move(setting));
+  const bool is_linear = of.is_linear() || of.is_convolved();
   setting = network_setting(of, body.points, std::move(setting));
   Bonds bonds = make_bonds(body.points, of.surface_correction, setting, threads);
   refuse_coincident_points(body.points, bonds);
@@ -130,15 +131,15 @@ void make_model(Body& body, int threads) {
   body.factors = {materials.factors(body.points, Quantity::stiffness, threads),
                   materials.factors(body.points, Quantity::strength, threads)};
   CutBonds cut;
-  if (of.has_states()) {
+  if (is_linear) {
+    body.model = make_linear_model(of, materials, body.factors, body.points, body.setting,
+                                   std::move(bonds), cut, threads);
+  } else if (of.has_states()) {
     body.model = make_state_model(of, materials, body.factors, body.points, setting,
                                   std::move(bonds), cut, threads);
   } else if (of.is_collocated()) {
     body.model = make_collocation_model(of, materials, body.factors, body.points, setting,
                                         std::move(bonds), cut, body.collocation, threads);
-  } else if (of.is_linear()) {
-    body.model = make_linear_model(of, materials, body.factors, body.points, body.setting,
-                                   std::move(bonds), cut, threads);
   } else if (is_cpd) {
     body.model = make_cpd_model(of, materials, body.factors, body.points, body.setting,
                                 std::move(bonds), cut, threads);
@@ -267,9 +268,10 @@ std::unique_ptr<const Body> make_body(Points points, const BodySpecification& of
         network_setting(of, body.points, body.setting).horizon / body.points.spacing;
   }
   expected.bonds = expected_bonds(expected.points, body.points.dimension, expected.horizon_ratio);
-  if (of.has_states()) reach_twice(expected);
+  const bool stores_states = of.has_states() && !of.is_convolved();
+  if (stores_states) reach_twice(expected);
   // States have no product without a stored tangent.
-  require_memory(estimate_memory(expected).bytes(false, of.has_states(), {}),
+  require_memory(estimate_memory(expected).bytes(false, stores_states, {}),
                  fmt::format("the body with {} points", body.points.count()));
   make_model(body, threads);
   LoadSetting loads = load_setting(of, body.points);
@@ -331,7 +333,8 @@ MemoryEstimate estimate_memory(const Body& body) {
   for (const auto& term : body.model.terms()) {
     size.blocks = std::max(size.blocks, double(term->couplings().partner.size()));
   }
-  if (body.specification.has_states()) size.coupling_ratio = 2.0 * size.horizon_ratio;
+  if (body.specification.has_states() && body.model.has_rows())
+    size.coupling_ratio = 2.0 * size.horizon_ratio;
   if (!body.model.balances().potential) {
     // Couplings reach two horizons: 2^d as many points as one.
     const double near = 2.0 * size.bonds / std::max(size.points, 1.0) + 1.0;

@@ -143,9 +143,8 @@ void check_lps_material(const MaterialSpecification& material, const std::string
   require_absent(material.calibration.has_value(), key + ".calibration", has_own);
   require_absent(material.potential != Harmonic::name, key + ".potential",
                  "is not for the model lps, which is linear");
-  require(
-      material.damage.law == DamageLaw::none || material.damage.law == DamageLaw::critical_stretch,
-      key + ".damage.law", "", "of the model lps is \"critical_stretch\"");
+  require(!material.damage.softens(), key + ".damage.law", "",
+          "of the model lps is \"critical_stretch\", or \"energy_density\" with operator \"fft\"");
   require_absent(material.damage.strength.has_value(), key + ".damage.strength",
                  "is not for the model lps; give fracture_energy or critical");
   require_absent(material.thermal_expansion.has_value(), key + ".thermal_expansion",
@@ -154,14 +153,14 @@ void check_lps_material(const MaterialSpecification& material, const std::string
 
 void check_kinematics(const MaterialSpecification& material, const std::string& key) {
   const DamageLaw law = material.damage.law;
-  if (material.kinematics == Kinematics::finite) {
-    require(law != DamageLaw::energy_density, key + ".damage.law", "energy_density",
-            "is for kinematics \"linear\"");
+  if (material.kinematics == Kinematics::finite || material.model == MaterialModel::lps) {
+    require(law != DamageLaw::energy_density || material.model == MaterialModel::lps,
+            key + ".damage.law", "energy_density", "is for kinematics \"linear\"");
     return;
   }
   const std::string of_linear = "of kinematics \"linear\" is ";
   require(material.model == MaterialModel::bond, key + ".kinematics", "linear",
-          "is for the model bond; \"lps\" is linear by itself");
+          "is for the models bond and lps");
   require(material.potential == Harmonic::name, key + ".potential", material.potential,
           of_linear + "\"harmonic\"");
   require(law == DamageLaw::none || law == DamageLaw::energy_density, key + ".damage.law", "",
@@ -523,8 +522,18 @@ namespace {
 
 void check_linear_body(const BodySpecification& of) {
   if (!of.is_linear()) {
-    require(!of.is_convolved(), "force_operator", "fft",
-            "is for kinematics \"linear\": the forces of bonds that turn are no convolutions");
+    require(!of.is_convolved() || of.has_states(), "force_operator", "fft",
+            "is for bonds with kinematics \"linear\", since the forces of bonds that turn are no "
+            "convolutions, and for the form \"energy\" of lps");
+    require(!of.is_convolved() || of.cracks.empty(), "force_operator", "fft",
+            "of lps knows no cut bonds: take a slot out of the body, or \"bonds\"");
+    const DamageLaw law = of.material.damage.law;
+    require(!of.is_convolved() || law == DamageLaw::none || law == DamageLaw::energy_density,
+            "material.damage.law", "",
+            "with operator \"fft\" is \"energy_density\": bonds that break one by one are no "
+            "convolutions");
+    require(of.is_convolved() || law != DamageLaw::energy_density, "material.damage.law",
+            "energy_density", "is for kinematics \"linear\" and operator \"fft\"");
     return;
   }
   const std::string linear = "does not go with kinematics \"linear\"";

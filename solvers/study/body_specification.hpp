@@ -103,7 +103,7 @@ struct MaterialSpecification {
   MaterialModel model = MaterialModel::bond;
   std::string potential = Harmonic::name;  ///< of whole bonds, see WholeBondPotentials
   PlaneState plane = PlaneState::stress;
-  Kinematics kinematics = Kinematics::finite;  ///< of bonds
+  Kinematics kinematics = Kinematics::finite;  ///< of bonds; lps is linear whatever stands here
   /// omega of bonds, see Influences; of lps with the form `energy` its kernel K, which in its other
   /// form is the inverse one whatever stands here
   std::string influence = ConstantInfluence::name;
@@ -216,7 +216,10 @@ struct BodySpecification {
   [[nodiscard]] bool has_states() const {
     return material.model == MaterialModel::lps && form == SolidForm::energy;
   }
-  [[nodiscard]] bool is_linear() const { return material.kinematics == Kinematics::linear; }
+  /// Whether its bonds are linearised at rest.
+  [[nodiscard]] bool is_linear() const {
+    return material.model == MaterialModel::bond && material.kinematics == Kinematics::linear;
+  }
   [[nodiscard]] bool is_convolved() const { return force_operator == ForceOperator::fft; }
 
   /// Whether all bonds follow from one micromodulus and one law.

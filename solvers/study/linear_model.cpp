@@ -12,9 +12,11 @@
 
 #include "assembly/convolutions/lattice_springs.hpp"
 #include "assembly/terms/linear/linear_term.hpp"
+#include "solvers/study/state_model.hpp"
 #include "src/core/input_error.hpp"
 #include "src/geometry/lattice_box.hpp"
 #include "src/geometry/lattice_frame.hpp"
+#include "src/materials/lame_constants.hpp"
 
 namespace peristat {
 namespace {
@@ -207,9 +209,39 @@ BondSetting network_setting(const BodySpecification& from, const Points& points,
   return setting;
 }
 
+namespace {
+
+/// Its springs have the solid's Young's modulus and influence.
+Model make_convolved_solid(const BodySpecification& from, const PointMaterials& materials,
+                           const Points& points, const BondSetting& setting, Bonds bonds,
+                           int threads) {
+  const MaterialSpecification& material = *materials.all().front().of;
+  const BondSetting of_springs = state_setting(setting);
+  const double modulus = micromodulus(*material.youngs_modulus, of_springs);
+  const double volume = points.volume.front();
+  ConvolvedLattice lattice;
+  lattice.box = box_of(from, points);
+  lattice.springs = lattice_springs(of_springs, points.spacing, points.angle, modulus, volume);
+  lattice.solid = ConvolvedSolid{lattice_arms(setting, points.spacing, points.angle, volume),
+                                 {lame_constants(*material.youngs_modulus, *material.poisson_ratio,
+                                                 points.dimension, material.plane),
+                                  volume}};
+  lattice.all_bonds = [&points, setting, threads] {
+    return make_bonds(points, SurfaceCorrection::none, setting, threads);
+  };
+  return Model(std::make_shared<LinearTerm>(
+      std::make_shared<const Bonds>(std::move(bonds)), modulus,
+      bearable_energies(materials, points, setting.horizon), std::move(lattice), threads));
+}
+
+}  // namespace
+
 Model make_linear_model(const BodySpecification& from, const PointMaterials& materials,
                         const PointFactors& factors, const Points& points,
                         const BondSetting& setting, Bonds bonds, CutBonds& cut, int threads) {
+  if (from.has_states()) {
+    return make_convolved_solid(from, materials, points, setting, std::move(bonds), threads);
+  }
   std::vector<DirectedConstant> moduli;
   for (const auto& material : all_materials(from, materials)) {
     moduli.push_back(micromodulus_of(*material.of, material.key, setting));

@@ -11,7 +11,8 @@ namespace peristat {
 [[nodiscard]] BondSetting network_setting(const BodySpecification& from, const Points& points,
                                           BondSetting setting);
 
-/// Model of a body of model "bond" with linear kinematics, and what its pre-cracks have cut.
+/// Model of a body of model "bond" with linear kinematics, and what its pre-cracks have cut; or of
+/// model "lps" with the form "energy" by convolutions.
 /// @param setting of all its bonds
 /// @param bonds those of network_setting
 /// @throws InputError ("solver.operator") for what is no convolution

@@ -43,7 +43,8 @@ void refuse_modes_without_potential(const Body& body, const StudyOptions& option
 
 /// Mode path takes what a bond loses for what the body does.
 void refuse_events_of_states(const Body& body, const StudyOptions& options) {
-  if (!body.specification.has_states() || options.loading.mode != Mode::path) return;
+  const bool has_bonds = !body.specification.has_states() || body.specification.is_convolved();
+  if (has_bonds || options.loading.mode != Mode::path) return;
   throw InputError("loading.mode", std::string(options.loading.mode.name),
                    "is for models \"bond\" and \"cpd\": with a bond of \"lps\" its points lose "
                    "dilatation");
@@ -53,7 +54,7 @@ void refuse_events_of_states(const Body& body, const StudyOptions& options) {
 /// has no stand-in.
 void refuse_modes_of_failing_points(const Body& body, const StudyOptions& options) {
   const Mode mode = options.loading.mode;
-  if (!body.specification.is_linear()) return;
+  if (!body.specification.is_linear() && !body.specification.is_convolved()) return;
   const bool is_known = mode == Mode::newton || mode == Mode::dynamics || mode == Mode::relaxation;
   if (is_known || (mode != Mode::path && !body.model.has_history())) return;
   throw InputError("loading.mode", std::string(mode.name),

@@ -12,6 +12,7 @@
 #include "assembly/terms/linear/cut_forces.hpp"
 #include "assembly/terms/linear/linear_bond_sums.hpp"
 #include "assembly/terms/model.hpp"
+#include "assembly/terms/states/state_term.hpp"
 
 namespace peristat {
 namespace {
@@ -21,13 +22,17 @@ class LinearPasses : public TermPasses {
   LinearPasses(const LinearTerm& term, const TermSetting& setting)
       : term_(term),
         slot_(setting.model.slot_of(term)),
-        pattern_(setting.pattern),
+        workspace_(setting.workspace),
         places_(setting.pattern.places_of(term.couplings())),
         volume_(setting.points.volume),
         dimension_(std::size_t(setting.points.dimension)),
         force_(setting.points.reference.size()) {
-    if (term.is_convolved()) {
-      const auto& [box, springs, cut, all_bonds] = *term.lattice();
+    if (term.is_convolved() && term.lattice()->solid) {
+      const auto& [arms, solid] = *term.lattice()->solid;
+      forces_ = std::make_unique<LinearSolid>(term.lattice()->box, std::array<bool, 3>{}, arms,
+                                              solid, setting.workspace.threads());
+    } else if (term.is_convolved()) {
+      const auto& [box, springs, solid, cut, all_bonds] = *term.lattice();
       forces_ = std::make_unique<LinearBonds>(box, std::array<bool, 3>{}, springs,
                                               setting.workspace.threads());
       if (cut) {
@@ -111,7 +116,12 @@ class LinearPasses : public TermPasses {
 
   LatticeStencil stencil(const StateView& at) override {
     take_integrity(at.history);
-    return forces_->stencil();
+    LatticeStencil own = forces_->stencil();
+    if (!own.empty() || !term_.is_convolved()) return own;
+    const std::vector<double> whole(volume_.size(), 1.0);
+    const auto& integrity = integrity_.empty() ? whole : integrity_;
+    return lattice_stencil(term_.lattice()->box, term_.lattice()->springs, integrity,
+                           workspace_.threads());
   }
 
   void product(const StateView& at, std::span<const double> v, double /*projection*/,
@@ -196,7 +206,7 @@ class LinearPasses : public TermPasses {
 
   const LinearTerm& term_;
   std::size_t slot_;
-  const BlockPattern& pattern_;
+  const Workspace& workspace_;
   std::vector<Offset> places_;
   std::span<const double> volume_;
   std::size_t dimension_;
@@ -242,6 +252,11 @@ NeighbourSums LinearTerm::neighbours(std::span<const double> integrity) const {
 std::vector<InteractionCount> LinearTerm::counts() const {
   if (!lattice_) return BondTerm::counts();
   return {{"bonds", count_, "neighbours", "neighbours within the horizon, #N1", neighbours_}};
+}
+
+double LinearTerm::bound_over_blocks(int dimension) const {
+  if (!lattice_ || !lattice_->solid) return 2.0;
+  return states_bound_over_blocks(std::span(&lattice_->solid->setting.constants, 1), dimension);
 }
 
 Couplings LinearTerm::couplings() const {

@@ -8,16 +8,25 @@
 #include <vector>
 
 #include "assembly/convolutions/lattice_springs.hpp"
+#include "assembly/convolutions/linear_solid.hpp"
 #include "assembly/terms/bonds/bond_term.hpp"
 #include "assembly/terms/linear/neighbour_sums.hpp"
 #include "src/geometry/lattice_box.hpp"
 
 namespace peristat {
 
+/// The linear peridynamic solid in the place of bonds.
+struct ConvolvedSolid {
+  std::vector<LatticeArm> arms;  ///< of a point, of two opposite ones one
+  LinearSolid::Setting setting;
+};
+
 /// A lattice whose bonds are convolutions, which need no bond.
 struct ConvolvedLattice {
   LatticeBox box;
-  std::vector<LatticeSpring> springs;  ///< of a point, of two opposite ones one
+  /// Of a point, of two opposite ones one; of a solid as stiff as it is, to precondition it with.
+  std::vector<LatticeSpring> springs;
+  std::optional<ConvolvedSolid> solid{};
   std::shared_ptr<const Bonds> cut{};  ///< those of them that pre-cracks have cut; null: none
   std::function<Bonds()> all_bonds{};  ///< finds those that are left
 };
@@ -27,8 +36,9 @@ struct ConvolvedLattice {
 ///   Pi = sum_b q_i q_j k (n . (u_j - u_i))^2 / 2,   k = c w / L,
 ///
 /// n the direction of the bond in the reference, bond by bond (LinearBondSums) or by convolutions
-/// ([FCBM] app. A, LinearBonds): both are the same numbers to round-off. Forces add up to zero, and
-/// their moments in the reference, not in the present places.
+/// ([FCBM] app. A, LinearBonds): both are the same numbers to round-off; or of the linear solid by
+/// convolutions (LinearSolid). Forces add up to zero, and their moments in the reference, not in
+/// the present places.
 ///
 /// Points lose their integrity q, from 1 to 0 and for good, where the energy density of a state
 /// that is committed, an equal share of each bond to its points, exceeds what they bear ([FCBM]
@@ -54,6 +64,10 @@ class LinearTerm : public BondTerm {
   [[nodiscard]] std::vector<InteractionCount> counts() const override;
   [[nodiscard]] const std::vector<double>& whole_weight() const { return whole_weight_; }
   [[nodiscard]] NeighbourSums neighbours(std::span<const double> integrity) const;
+
+  /// A number c so that no eigenvalue of M^-1 K exceeds c times the largest of the diagonal blocks:
+  /// 2 of pairs of points; of the solid see StateTerm::bound_over_blocks.
+  [[nodiscard]] double bound_over_blocks(int dimension) const;
 
   [[nodiscard]] Couplings couplings() const override;
   [[nodiscard]] bool visits_rows() const override { return !is_convolved(); }

@@ -159,15 +159,19 @@ StateTerm::StateTerm(std::shared_ptr<const Bonds> bonds, BondPotential potential
   }
 }
 
-double StateTerm::bound_over_blocks(int dimension) const {
+double states_bound_over_blocks(std::span<const LamePair> constants, int dimension) {
   const double d = dimension;
   double most = 1.0, least = 1.0;
-  for (const auto& [lambda, mu] : shares_.constants) {
+  for (const auto& [lambda, mu] : constants) {
     const double ratio = (d * lambda + 2.0 * mu) / ((d + 2.0) * mu);
     most = std::max(most, ratio);
     least = std::min(least, ratio);
   }
   return 2.0 * most / least;
+}
+
+double StateTerm::bound_over_blocks(int dimension) const {
+  return states_bound_over_blocks(shares_.constants, dimension);
 }
 
 double StateTerm::stored_bytes() const {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "assembly/terms/bonds/bond_term.hpp"
@@ -59,5 +60,8 @@ class StateTerm : public BondTerm {
   StateShares shares_;
   StateNetwork network_;
 };
+
+/// See StateTerm::bound_over_blocks, of points with these constants.
+[[nodiscard]] double states_bound_over_blocks(std::span<const LamePair> constants, int dimension);
 
 }  // namespace peristat

@@ -423,7 +423,8 @@ Table<DamageSpecification> damage_keys(const std::string& material) {
          "the same law rescaled so that it does not jump; force falling linearly from `onset` "
          "to zero at `critical`; exponentially, without a jump at `critical`; rising on a "
          "lower slope from `onset` to `peak`, and then falling linearly; of points, with "
-         "`kinematics = \"linear\"`: all at once and for good where the energy density exceeds "
+         "`kinematics = \"linear\"`, and of `lps` by `solver.operator = \"fft\"`: all at once and "
+         "for good where the energy density exceeds "
          "`fracture_energy` / (2 δ)")
            .early(),
        K("fracture_energy", &Spec::fracture_energy, positive("J/m2"),
@@ -607,9 +608,8 @@ Table<MaterialSpecification> material_keys(const std::string& name) {
          choice<Kinematics>({{"finite", Kinematics::finite}, {"linear", Kinematics::linear}}),
          "`bond`: bonds stretch by their lengths, at any deformation; or by the displacements "
          "along them, for small ones, which is linear: without eigenstrains and images, with "
-         "`potential = \"harmonic\"`, and damage by `energy_density` alone")
-           .unless(of_cpd, for_bond)
-           .unless(of_lps, for_bond),
+         "`potential = \"harmonic\"`, and damage by `energy_density` alone. `lps` is always linear")
+           .unless(of_cpd, "is for models \"bond\" and \"lps\""),
        K("influence", &Spec::influence, one_of(influence_names()),
          "influence function $\\omega(r/\\delta)$, $c\\,\\omega s$ is the force density of a bond: "
          "[GPMB]'s of order 0, 0.5, 1, 3, 5 and 7, $e^{-(r/\\delta)^2}$, or $\\delta/r$; "
@@ -1310,7 +1310,9 @@ Table<SolverSpecification> solver_keys() {
            .then(check_tangent),
        K("operator", &Spec::force_operator,
          choice<ForceOperator>({{"bonds", ForceOperator::bonds}, {"fft", ForceOperator::fft}}),
-         "forces of `material.kinematics = \"linear\"` are summed bond by bond, or by fast Fourier "
+         "forces of `material.kinematics = \"linear\"`, and of `lps` as an energy, are summed bond "
+         "by "
+         "bond, or by fast Fourier "
          "transforms, which store no bonds and take the same time whatever the horizon: for one "
          "material on points of a lattice with equal volumes, without a `surface_correction`. "
          "Both give the same results to round-off"),

@@ -16,17 +16,17 @@ using tests::Neighbour;
 
 constexpr std::array<bool, 3> open{};
 
-LinearSolid::Setting setting_of(const HoledBody& body, SolidForm form = SolidForm::energy) {
+LinearSolid::Setting setting_of(const HoledBody& body, SolidForces form = SolidForces::energy) {
   return {{1.7, 0.9}, body.volume(), form};
 }
 
-LinearSolid solid_of(const HoledBody& body, SolidForm form = SolidForm::energy, int threads = 1) {
+LinearSolid solid_of(const HoledBody& body, SolidForces form = SolidForces::energy, int threads = 1) {
   return LinearSolid(body.box, open, body.arms(), setting_of(body, form), threads);
 }
 
 /// Neighbour by neighbour, as the formulas are written.
 ForcesAndEnergies direct(const HoledBody& body, const std::vector<double>& q,
-                         const std::vector<double>& u, SolidForm form) {
+                         const std::vector<double>& u, SolidForces form) {
   const int d = body.dimension();
   const auto& [lambda, mu] = setting_of(body).constants;
   const double V = body.volume();
@@ -50,7 +50,7 @@ ForcesAndEnergies direct(const HoledBody& body, const std::vector<double>& q,
   }
   for (const Neighbour& of : all) {
     if (q[of.i] * q[of.j] == 0.0) continue;
-    const double here = moment[of.i], there = form == SolidForm::energy ? moment[of.j] : here;
+    const double here = moment[of.i], there = form == SolidForces::energy ? moment[of.j] : here;
     const double pressure = d * (lambda - mu) * (theta[of.i] / here + theta[of.j] / there);
     const double along = tests::along_difference(of.xi, of, u, d) / squared(of);
     const double deviatoric = d * (d + 2) * mu * (1.0 / here + 1.0 / there) * along;
@@ -68,7 +68,7 @@ TEST(LinearSolid, IsTheDirectSumsOverNeighbours) {
     SCOPED_TRACE(::testing::PrintToString(setting.counts));
     ASSERT_LT(body.count(), body.box.count());
     const std::vector<double> u = body.random(5);
-    for (const SolidForm form : {SolidForm::energy, SolidForm::printed}) {
+    for (const SolidForces form : {SolidForces::energy, SolidForces::printed}) {
       LinearSolid solid = solid_of(body, form);
       for (const std::vector<double>& q : {std::vector<double>(body.count(), 1.0), body.mask()}) {
         solid.set_integrity(q);
@@ -118,7 +118,7 @@ TEST(LinearSolid, HasTheForcesAndTheTangentOfItsEnergy) {
     tests::expect_forces_of_energy(solid, u, v, body.count());
     tests::expect_tangent_of_forces(solid, u, v, body.count());
     tests::expect_symmetric_tangent(solid, u, v, w);
-    LinearSolid printed = solid_of(body, SolidForm::printed);
+    LinearSolid printed = solid_of(body, SolidForces::printed);
     printed.set_integrity(body.mask());
     tests::expect_tangent_of_forces(printed, u, v, body.count());
   }
@@ -127,7 +127,7 @@ TEST(LinearSolid, HasTheForcesAndTheTangentOfItsEnergy) {
 TEST(LinearSolid, OutlinesItsTangent) {
   for (const std::vector<int>& counts : {std::vector<int>{9, 8}, std::vector<int>{5, 6, 5}}) {
     const HoledBody body({counts});
-    for (const SolidForm form : {SolidForm::energy, SolidForm::printed}) {
+    for (const SolidForces form : {SolidForces::energy, SolidForces::printed}) {
       LinearSolid solid = solid_of(body, form);
       tests::expect_outline(solid, body, 4.0);
       solid.set_integrity(body.mask());
@@ -139,7 +139,7 @@ TEST(LinearSolid, OutlinesItsTangent) {
 TEST(LinearSolid, HasForcesThatAddUpToNothingButThePrintedOnesDoNot) {
   const HoledBody body({{13, 10}, 3.015});
   const std::vector<double> u = body.random(5);
-  for (const SolidForm form : {SolidForm::energy, SolidForm::printed}) {
+  for (const SolidForces form : {SolidForces::energy, SolidForces::printed}) {
     LinearSolid solid = solid_of(body, form);
     const std::vector<double> force = tests::evaluate(solid, u, body.count()).force;
     const double sum = tests::sum_of_forces(force, 2) / tests::norm(force);
@@ -148,7 +148,7 @@ TEST(LinearSolid, HasForcesThatAddUpToNothingButThePrintedOnesDoNot) {
       const Coordinates at = body.points.position(i);
       moment += at[0] * force[2 * std::size_t(i) + 1] - at[1] * force[2 * std::size_t(i)];
     }
-    if (form == SolidForm::energy) {
+    if (form == SolidForces::energy) {
       EXPECT_LE(sum, 1e-13);
       EXPECT_LE(std::abs(moment), 1e-13 * tests::norm(force));
     } else {
@@ -179,8 +179,8 @@ TEST(LinearSolid, FindsTheDilatationOfAUniformOneEverywhere) {
 TEST(LinearSolid, LosesNoDigitsFarAwayAndNothingByThreads) {
   for (const std::vector<int>& counts : {std::vector<int>{13, 10}, std::vector<int>{7, 6, 9}}) {
     const HoledBody body({counts, 3.015});
-    LinearSolid one = solid_of(body, SolidForm::energy, 1),
-                two = solid_of(body, SolidForm::energy, 2);
+    LinearSolid one = solid_of(body, SolidForces::energy, 1),
+                two = solid_of(body, SolidForces::energy, 2);
     std::vector<double> u = body.random(5);
     const ForcesAndEnergies a = tests::evaluate(one, u, body.count());
     const ForcesAndEnergies b = tests::evaluate(two, u, body.count());
@@ -194,7 +194,7 @@ TEST(LinearSolid, LosesNoDigitsFarAwayAndNothingByThreads) {
 TEST(LinearSolid, IsNothingWithoutNeighbours) {
   for (const std::vector<int>& counts : {std::vector<int>{13, 10}, std::vector<int>{7, 6, 9}}) {
     const HoledBody body({counts});
-    for (const SolidForm form : {SolidForm::energy, SolidForm::printed}) {
+    for (const SolidForces form : {SolidForces::energy, SolidForces::printed}) {
       LinearSolid solid = solid_of(body, form);
       tests::expect_nothing_at_lonely_points(solid, body);
     }
@@ -205,13 +205,13 @@ TEST(LinearSolid, TakesSoManyTransforms) {
   const HoledBody plane({{13, 10}}), space({{7, 6, 9}});
   struct Expected {
     const HoledBody& body;
-    SolidForm form;
+    SolidForces form;
     std::size_t integrity, forces, energies;
   };
-  for (const Expected& expected : {Expected{plane, SolidForm::energy, 11, 10, 14},
-                                   Expected{space, SolidForm::energy, 18, 14, 21},
-                                   Expected{plane, SolidForm::printed, 11, 6, 12},
-                                   Expected{space, SolidForm::printed, 18, 8, 18}}) {
+  for (const Expected& expected : {Expected{plane, SolidForces::energy, 11, 10, 14},
+                                   Expected{space, SolidForces::energy, 18, 14, 21},
+                                   Expected{plane, SolidForces::printed, 11, 6, 12},
+                                   Expected{space, SolidForces::printed, 18, 8, 18}}) {
     LinearSolid solid = solid_of(expected.body, expected.form);
     EXPECT_EQ(solid.fields().transforms(), expected.integrity);
     std::vector<double> u = expected.body.random(5), force(u.size());
@@ -272,7 +272,7 @@ TEST(LinearSolid, HasTheVirialsOfItsEnergies) {
 
 TEST(LinearSolid, SeesImages) {
   const HoledBody body({{9, 9}, 3.015});
-  for (const SolidForm form : {SolidForm::energy, SolidForm::printed}) {
+  for (const SolidForces form : {SolidForces::energy, SolidForces::printed}) {
     tests::expect_to_see_images([&](const LatticeBox& box, const std::array<bool, 3>& periods) {
       return std::make_unique<LinearSolid>(box, periods, body.arms(), setting_of(body, form), 1);
     });
