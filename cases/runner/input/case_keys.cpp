@@ -1719,6 +1719,9 @@ Table<ProbeSpecification> probe_keys() {
              const Lattice* const cells = std::get_if<Lattice>(&at.so_far.body);
              if (has_area && (cells == nullptr || cells->arrangement == Arrangement::blue_noise))
                at.refuse("is for points on a lattice, which have faces between them");
+             const bool fails_in_bands = at.so_far.material.damage.law == DamageLaw::energy_density;
+             if (has_area && fails_in_bands && probe.field != "crack_angle")
+               at.refuse("is for bonds that break: points that fail make a band of many faces");
              const ProbeField* const field = probe_field(probe.field);
              if (field != nullptr && field->is_of_motion && !at.so_far.dynamics.is_asked_for)
                at.refuse("is for solver.mode = \"dynamics\"");

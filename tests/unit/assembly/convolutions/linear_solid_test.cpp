@@ -20,7 +20,8 @@ LinearSolid::Setting setting_of(const HoledBody& body, SolidForces form = SolidF
   return {{1.7, 0.9}, body.volume(), form};
 }
 
-LinearSolid solid_of(const HoledBody& body, SolidForces form = SolidForces::energy, int threads = 1) {
+LinearSolid solid_of(const HoledBody& body, SolidForces form = SolidForces::energy,
+                     int threads = 1) {
   return LinearSolid(body.box, open, body.arms(), setting_of(body, form), threads);
 }
 
