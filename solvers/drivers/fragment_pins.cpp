@@ -29,8 +29,12 @@ void FragmentPins::find(const Assembler& assembler, const State& state,
                         const Conditions& conditions, FragmentRemedy remedy) {
   const std::vector<char>& prescribed = conditions.prescribed();
   const DamagedNetwork network = damaged_network(assembler.model(), state.history);
-  found = find_fragments(assembler.points(), *network.bonds, network.broken, prescribed,
-                         state.displacement, conditions.holding(state.displacement));
+  // Linear forces know the directions of the reference alone.
+  const bool is_linear = assembler.model().balances().linear;
+  const std::vector<double> rest(is_linear ? state.displacement.size() : 0, 0.0);
+  const std::vector<double>& moved = is_linear ? rest : state.displacement;
+  found = find_fragments(assembler.points(), *network.bonds, network.broken, prescribed, moved,
+                         conditions.holding(moved));
   if (remedy == FragmentRemedy::remove) {
     remove_pieces(found, prescribed, assembler.points().dimension);
   }

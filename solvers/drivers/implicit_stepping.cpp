@@ -74,6 +74,10 @@ void ImplicitStepping::establish(ImplicitStep& step) {
   }
   step.found.record.mode = Mode::newton.name;
   if (step.growth.degrading > 0) {
+    if (!path_.damaged().model().failing_bonds()) {
+      step.found.energies.intact = {path_.working_force(attempt.state, attempt.external_force),
+                                    attempt.state.displacement};
+    }
     commit(path_, attempt, step.found, [&] {
       const State from = state_of(attempt);
       const Outcome pinned = pin_loose(from, step);

@@ -23,7 +23,12 @@ Ledger PathLedger::with_step(std::span<const double> displacement_before, const 
                              std::span<const double> working, double dissipated,
                              const StepEnergies& step) const {
   const double work =
-      trapezoidal_work(force, working, displacement_before, state.displacement) + step.heating;
+      step.heating +
+      (step.intact ? trapezoidal_work(force, step.intact->force, displacement_before,
+                                      step.intact->displacement) +
+                         trapezoidal_work(step.intact->force, working, step.intact->displacement,
+                                          state.displacement)
+                   : trapezoidal_work(force, working, displacement_before, state.displacement));
   Ledger after = entries;
   after.stored = state.stored_energy;
   after.dissipated = dissipated + released + step.released;

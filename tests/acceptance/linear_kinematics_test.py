@@ -1,0 +1,289 @@
+"""Linear kinematics, bond by bond and by convolutions, and points that fail by their energy density."""
+
+import json
+import math
+import pathlib
+import tempfile
+import unittest
+
+import h5py
+import numpy
+
+from tests.reference.program import peristat
+
+CASES = pathlib.Path(__file__).parents[2] / "cases"
+STRIP = """\
+dimension = 2
+[lattice]
+spacing = 1e-3
+thickness = 2e-3
+shape = [{ add = "box", min = [0.0, 0.0], max = [0.02, 0.012] },
+         { subtract = "disk", centre = [0.01, 0.0], radius = 2.7e-3 }]
+[[lattice.layer]]
+name = "left"
+side = "x-"
+thickness = 3
+[[lattice.layer]]
+name = "right"
+side = "x+"
+thickness = 3
+[quadrature]
+surface_correction = "none"
+[material]
+kinematics = "linear"
+youngs_modulus = 70e9
+[[support]]
+set = "left"
+displacement = [0, 0]
+[[support]]
+set = "right"
+displacement = ["2e-6*load", 0]
+[solver]
+relative_tolerance = 1e-12
+linear_tolerance = 1e-6
+"""
+FAILING = 'material.damage={law="energy_density", fracture_energy=2.0, no_fail=["left", "right"]}'
+GLASS = ["lattice.spacing=4e-4", "lattice.horizon_ratio=3.1"]  # of branching_2d
+
+
+class Run:
+    def __init__(self, folder):
+        self.summary = json.loads((folder / "summary.json").read_text())
+        with h5py.File(folder / "results.h5") as file:
+            self.reference, self.volume = file["points/reference"][:], file["points/volume"][:]
+            step = file["steps"][sorted(file["steps"])[-1]]
+            self.fields = {name: step[name][:] for name in ("displacement", "damage", "force", "energy_density")}
+            self.sets = {name: file["points/sets"][name][:] for name in file["points/sets"]} if "sets" in file["points"] else {}
+            self.history = file["history"][:] if isinstance(file["history"], h5py.Dataset) else None
+
+    def __getattr__(self, name):
+        return self.fields[name]
+
+
+class CommandLine(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory(prefix="peristat_linear_")
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+
+    def path_of(self, case):
+        if "\n" not in str(case):
+            return case
+        path = self.folder / "case.toml"
+        path.write_text(case)
+        return path
+
+    def results(self, case, *settings, threads=1):
+        given = [word for setting in settings for word in ("--set", setting)]
+        ended = peristat("run", self.path_of(case), "--output", self.folder / "out", "--overwrite", "--quiet", "--no-plots",
+                         "--threads", threads, *given)  # fmt: skip
+        self.assertEqual(ended.code, 0, ended.said)
+        return Run(self.folder / "out")
+
+    def same(self, one, other, share=1e-11):
+        # What is torn through is left with the round-off of what it bore.
+        work = one.summary["energy"]["external_work"]
+        least = {"force": work / abs(one.displacement).max(), "energy_density": work / one.volume.sum()}
+        for name, field in one.fields.items():
+            scale = max(abs(field).max(), least.get(name, 0.0))
+            self.assertLess(abs(field - other.fields[name]).max(), share * scale if name != "damage" else 1e-11, name)
+        for key in ("dissipated", "stored", "external_work"):
+            largest = max(abs(one.summary["energy"][key]), one.summary["energy"]["external_work"])
+            self.assertAlmostEqual(one.summary["energy"][key] / largest, other.summary["energy"][key] / largest, delta=1e-10)
+
+    def both(self, case, *settings, share=1e-11):
+        bonds = self.results(case, 'solver.operator="bonds"', *settings)
+        fft = self.results(case, 'solver.operator="fft"', *settings)
+        self.same(bonds, fft, share)
+        self.assertEqual(bonds.summary["broken_bonds"], fft.summary["broken_bonds"])
+        return fft
+
+
+class Solved:
+    """Bonds and stiffness once more, dense."""
+
+    def __init__(self, run, ratio=3.015, spacing=1e-3, thickness=2e-3, modulus=70e9):
+        places = run.reference[:, :2]
+        self.horizon = ratio * spacing
+        i, j = numpy.triu_indices(len(places), 1)
+        arm = places[j] - places[i]
+        length = numpy.hypot(*arm.T)
+        near = length <= self.horizon * (1 + 1e-8)
+        self.i, self.j, length = i[near], j[near], length[near]
+        self.n = arm[near] / length[:, None]
+        c = 9 * modulus / (math.pi * thickness * self.horizon**3)
+        self.k = c * run.volume[self.i] * run.volume[self.j] / length
+        self.volume = run.volume
+
+    def along(self, u):
+        return ((u[self.j] - u[self.i]) * self.n).sum(1)
+
+    def energy_density(self, u, q):
+        w = 0.25 * q[self.i] * q[self.j] * self.k * self.along(u) ** 2
+        return (numpy.bincount(self.i, w, len(q)) + numpy.bincount(self.j, w, len(q))) / self.volume
+
+    def forces(self, u, q):
+        pull = (q[self.i] * q[self.j] * self.k * self.along(u))[:, None] * self.n
+        return numpy.stack([numpy.bincount(self.i, pull[:, c], len(q)) - numpy.bincount(self.j, pull[:, c], len(q)) for c in (0, 1)], 1)
+
+    def solve(self, u, q, held):
+        stiffness = numpy.zeros((2 * len(q), 2 * len(q)))
+        blocks = (q[self.i] * q[self.j] * self.k)[:, None, None] * self.n[:, :, None] * self.n[:, None, :]
+        for a in (0, 1):
+            for b in (0, 1):
+                for row, column, sign in ((self.i, self.i, 1), (self.j, self.j, 1), (self.i, self.j, -1), (self.j, self.i, -1)):
+                    numpy.add.at(stiffness, (2 * row + a, 2 * column + b), sign * blocks[:, a, b])
+        held = numpy.repeat(held, 2) | (numpy.abs(stiffness).sum(1) == 0.0)
+        u = u.copy().ravel()
+        u[~held] = numpy.linalg.solve(stiffness[numpy.ix_(~held, ~held)], -stiffness[numpy.ix_(~held, held)] @ u[held])
+        return u.reshape(-1, 2)
+
+
+class Statics(CommandLine):
+    def test_both_operators_solve_the_same(self):
+        crack = "crack=[{from=[0.0062, 0.008], to=[0.0062, 0.02]}, {from=[0.0149, 0.001], to=[0.0173, 0.0052]}]"
+        for settings in ([], [crack], ['lattice.spacing=[1e-3, 0.8e-3]'], ["lattice.angle=30", "quadrature.volume_correction=linear"],
+                         ["lattice.horizon_ratio=2.015", "solver.preconditioner=block_jacobi"],
+                         [crack, "lattice.horizon_ratio=5.1", "solver.mode=relaxation"]):  # fmt: skip
+            with self.subTest(settings=settings):
+                # Relaxation ends at its own tolerance, on ways that round-off parts.
+                self.both(STRIP, *settings, share=1e-7 if "solver.mode=relaxation" in settings else 1e-9)
+
+    def test_it_is_the_direct_solution(self):
+        run = self.results(STRIP, "solver.operator=fft")
+        solved = Solved(run)
+        x = run.reference[:, 0]
+        held = (x < 0) | (x > 0.02)
+        u = numpy.where((x > 0.02)[:, None], [2e-6, 0.0], [0.0, 0.0])
+        one = numpy.ones(len(x))
+        expected = solved.solve(u, one, held)
+        numpy.testing.assert_allclose(run.displacement[:, :2], expected, atol=1e-10 * 2e-6)
+        numpy.testing.assert_allclose(run.energy_density, solved.energy_density(expected, one), rtol=1e-8, atol=1e-3)
+
+    def test_solids_as_an_energy_are_the_same_without_damage(self):
+        lps = ["material.model=lps", "material.poisson_ratio=0.2", "quadrature.form=energy"]
+        bonds, fft = (self.results(STRIP, *lps, f"solver.operator={name}") for name in ("bonds", "fft"))
+        self.same(bonds, fft, 1e-9)
+
+    def test_cubes(self):
+        cube = """\
+dimension = 3
+lattice = {spacing = 0.1, shape = [{add = "box", min = [0, 0, 0], max = [0.6, 0.5, 0.7]}]}
+material = {youngs_modulus = 1e9, kinematics = "linear"}
+set = [{name = "low", where = "z < 0.1"}, {name = "high", where = "z > 0.6"}]
+support = [{set = "low", displacement = [0, 0, 0]}, {set = "high", displacement = [0, "1e-3*load", "2e-3*load"]}]
+solver = {relative_tolerance = 1e-12, linear_tolerance = 1e-6}
+"""
+        for ratio in (2.015, 3.015, 9.0):  # the last one sees all of the body
+            self.both(cube, f"lattice.horizon_ratio={ratio}", share=1e-9)
+
+    def test_stress_and_neighbourhoods_are_those_of_all_bonds(self):
+        fields = {}
+        for name in ("bonds", "fft"):
+            self.results(STRIP, f"solver.operator={name}", "output.stress=true")
+            with h5py.File(self.folder / "out/results.h5") as file:
+                step = file["steps"][sorted(file["steps"])[-1]]
+                fields[name] = {key: step[key][:] for key in ("strain", "first_piola_stress", "missing_neighbourhood")}
+        for key, field in fields["bonds"].items():
+            numpy.testing.assert_allclose(fields["fft"][key], field, atol=1e-7 * abs(field).max())
+
+
+class FailingPoints(CommandLine):
+    def test_they_are_those_of_the_direct_sums(self):
+        """Solve, fail all beyond the threshold, again: until nothing more fails."""
+        for steps in (1, 4):
+            run = self.both(STRIP, FAILING, f"loading.steps={steps}", share=1e-8)
+            solved = Solved(run)
+            x = run.reference[:, 0]
+            held, q, spared = (x < 0) | (x > 0.02), numpy.ones(len(x)), (x < 0) | (x > 0.02)
+            for load in numpy.arange(1, steps + 1) / steps:
+                u = run.displacement[:, :2] * 0.0
+                u[x > 0.02, 0] = 2e-6 * load
+                while True:
+                    u = solved.solve(u, q, held)
+                    fails = (solved.energy_density(u, q) > 2.0 / (2 * solved.horizon)) & ~spared & (q > 0)
+                    if not fails.any():
+                        break
+                    q[fails] = 0.0
+            self.assertGreater((q == 0).sum(), 3)
+            numpy.testing.assert_array_equal(run.damage == 1.0, q == 0.0)
+
+    def test_work_is_stored_dissipated_or_drained(self):
+        energy = self.results(STRIP, FAILING, "solver.operator=fft", "loading.steps=4").summary["energy"]
+        self.assertGreater(energy["dissipated"], 0.0)
+        self.assertAlmostEqual((energy["stored"] + energy["dissipated"] + energy["drained"]) / energy["external_work"], 1, delta=1e-8)
+
+
+class Motions(CommandLine):
+    CASE = CASES / "fcbm/branching_2d.toml"
+
+    def test_both_operators_break_the_same(self):
+        loads = ["load[0].traction=[0, 4e6]", "load[1].traction=[0, -4e6]", "dynamics.end_time=2e-5"]
+        run = self.both(self.CASE, *GLASS, *loads, share=1e-10)
+        self.assertGreater((run.damage == 1.0).sum(), 100)
+        again = self.results(self.CASE, *GLASS, *loads, threads=2)
+        numpy.testing.assert_allclose(again.damage, run.damage, atol=1e-12)
+
+    def test_a_straight_crack_takes_the_fracture_energy(self):
+        run = self.results(self.CASE, "dynamics.end_time=3.1e-5", threads=2)
+        x, y = (run.reference[:, :2] / 2e-4).round().astype(int).T
+        at = dict(zip(zip(x, y), run.damage))
+        for (x, y), damage in at.items():
+            self.assertAlmostEqual(at[x, -y], damage, delta=1e-12)
+        lines = (self.folder / "out/history.csv").read_text().splitlines()
+        names = lines[0].split(",")
+        rows = [dict(zip(names, map(lambda word: float(word) if word[:1] in "-0123456789" else word, line.split(",")))) for line in lines[1:]]
+        tips = [row for row in rows if row["tip"] > 0.056]
+        grown = tips[-1]["tip"] - tips[0]["tip"]
+        self.assertGreater(grown, 0.01)
+        self.assertAlmostEqual((tips[-1]["dissipated_energy"] - tips[0]["dissipated_energy"]) / grown / 3.8, 1, delta=0.05)
+
+    def test_steps_are_stable_up_to_the_stable_one(self):
+        waves = [*GLASS, "material.damage.fracture_energy=1e9", "dynamics.end_time=2e-4", "dynamics.history_every=100", "output.every=1000"]
+        text = pathlib.Path(self.CASE).read_text().replace("time_step = 5e-8\n", "step_share = 0.99\n")
+        run = self.results(text, *waves)
+        self.assertLess(abs(run.summary["energy"]["balance_error"]), 0.2 * run.summary["energy"]["external_work"])
+        given = [word for setting in [*GLASS, "dynamics.time_step=1e-6"] for word in ("--set", setting)]
+        ended = peristat("check", self.CASE, *given)
+        self.assertEqual(ended.code, 2, ended.said)
+        self.assertIn("longer than the stable step", ended.said)
+
+    def test_implicit_steps(self):
+        newmark = ["dynamics.scheme=newmark", "dynamics.end_time=2e-6", "dynamics.time_step=1e-7"]
+        self.both(self.CASE, *GLASS, *newmark, share=1e-6)
+
+
+class Refusals(CommandLine):
+    def test_what_is_no_convolution(self):
+        fft = "solver.operator=fft"
+        for settings, words in (
+            ([fft, "material.kinematics=finite"], ("solver.operator", "linear")),
+            ([fft, "lattice.perturbation=0.1"], ("solver.operator", "lattice has its places")),
+            ([fft, "quadrature.surface_correction=volume"], ("solver.operator", "surface_correction")),
+            ([fft, "lattice.volumes=fractional"], ("solver.operator", "same volume")),
+            ([fft, "solver.linear=cholesky"], ("solver.linear", "pcg")),
+            ([fft, "solver.preconditioner=rigid_pieces"], ("solver.preconditioner", "sines")),
+            ([fft, "solver.tangent=stored"], ("solver.tangent", "products")),
+            ([fft, "solver.mode=arc_length"], ("solver.operator", "bonds")),
+            (['material.damage={law="critical_stretch", critical=0.01}'], ("material.damage.law", "energy_density")),
+            (['material.damage={law="energy_density"}'], ("fracture_energy", "missing")),
+            (["material.kinematics=finite", 'material.damage={law="energy_density", fracture_energy=1.0}'], ("damage.law", "linear")),
+            ([FAILING, 'set=[{name="all", where="x > 0"}]', 'probe=[{name="area", field="crack_area", set="all"}]'], ("probe[0].field", "band")),
+        ):  # fmt: skip
+            with self.subTest(settings=settings):
+                given = [word for setting in settings for word in ("--set", setting)]
+                ended = peristat("check", self.path_of(STRIP), *given)
+                self.assertEqual(ended.code, 2, ended.said)
+                for word in words:
+                    self.assertIn(word, ended.said)
+
+
+class Modes(CommandLine):
+    def test_modes_of_breaking_bonds(self):
+        ended = peristat("run", self.path_of(STRIP), "--output", self.folder / "out", "--set", FAILING, "--set", "solver.mode=adaptive")
+        self.assertEqual(ended.code, 2, ended.said)
+        self.assertIn("solver.mode", ended.said)
+
+
+if __name__ == "__main__":
+    unittest.main()
