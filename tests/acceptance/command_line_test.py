@@ -258,7 +258,8 @@ class CommandLine(unittest.TestCase):
         self.assertFalse((self.folder / "results").exists())
 
     def test_tangents_of_all_shipped_cases_pass_the_finite_difference_check(self):
-        cases = sorted(path for path in (ROOT / "cases").glob("*/*.toml"))
+        # But for the plate of a million points, of which branching_2d is a cut.
+        cases = sorted(path for path in (ROOT / "cases").glob("*/*.toml") if path.stem != "glass_plate")
         self.assertGreaterEqual(len(cases), 4)
         for case in cases:
             with self.subTest(case=case.name):
@@ -266,7 +267,10 @@ class CommandLine(unittest.TestCase):
                 self.assertEqual(run.returncode, 0, run.stderr)
                 told = json.loads(run.stdout)
                 self.assertGreater(told["residual_norm"], 0.0)
-                self.assertGreater(told["tangent_frobenius_norm"], 0.0)
+                if case.parent.name == "fcbm":  # convolutions have no entries
+                    self.assertIsNone(told["tangent_frobenius_norm"])
+                else:
+                    self.assertGreater(told["tangent_frobenius_norm"], 0.0)
                 if case.parent.name == "lps":  # linear forces without an energy
                     self.assertLess(told["tangent_error"], 1e-12)
                     self.assertGreater(told["asymmetry"], 1e-5)  # of the largest entry: of motions, inertia

@@ -187,6 +187,24 @@ class LinearSolid(PrintedTest):
                     self.assertLessEqual(abs(number.value - value), number.rounding * (1 + 1e-6), f"{name}: {probe}")
 
 
+class Convolutions(PrintedTest):
+    def test_branching(self):
+        self.page = "cases/fcbm/branching_2d.toml"
+        plate = run("fcbm/branching_2d", threads=2)
+        tip = {round(1e6 * row["time"], 3): row["tip"] for row in plate.history}
+        self.prints("its tip is at {} m after 31 us", tip[31.0])
+
+    def test_static_hole(self):
+        self.page = "cases/fcbm/static_hole.toml"
+        self.prints('the reaction on "right" is {} N', run("fcbm/static_hole", threads=2).history[-1]["reaction_x:right"])
+
+    def test_static_damage(self):
+        self.page = "cases/fcbm/static_damage.toml"
+        last = run("fcbm/static_damage", threads=2).history[-1]
+        self.prints("{} J are dissipated", last["dissipated_energy"])
+        self.prints("{} J drained", last["drained_energy"])
+
+
 class LinearSolidInMotion(PrintedTest):
     def test_crack_branching(self):
         self.page = "cases/lps/crack_branching.toml"
