@@ -198,8 +198,8 @@ void check_fibre(const MaterialSpecification& material, const std::string& key, 
   require_absent(material.calibration == Calibration::lattice, key + ".calibration",
                  "\"lattice\" is for materials without fibres");
   if (!fibre.transverse_critical) return;
-  require_absent(material.damage.law == DamageLaw::none, table + ".transverse_critical",
-                 "needs a law of damage");
+  require_absent(!material.damage.breaks_bonds(), table + ".transverse_critical",
+                 "needs a law of damage by stretches");
   require_within(*fibre.transverse_critical, 1e-9, 1e3, table + ".transverse_critical");
 }
 
@@ -211,8 +211,8 @@ void check_scatter(const MaterialSpecification& material, const std::string& key
     const std::string table = key + ".scatter[" + std::to_string(k) + "]";
     require_absent(std::exchange(is_known[int(of)], true), table + ".of",
                    "another table of this material is of the same quantity");
-    require_absent(of == Quantity::strength && material.damage.law == DamageLaw::none,
-                   table + ".of", "strength needs a law of damage");
+    require_absent(of == Quantity::strength && !material.damage.breaks_bonds(), table + ".of",
+                   "strength needs a law of damage by stretches");
     require_within(field.modulus, 1.0, 1e3, table + ".weibull_modulus");
     require(std::isfinite(field.correlation_length) && field.correlation_length >= 0.0,
             table + ".correlation_length", number_text(field.correlation_length),
@@ -296,6 +296,8 @@ void check_interface(const InterfaceSpecification& interface, const std::string&
                  "is of points, and so of their materials");
   require_absent(material.density.has_value(), key + ".material.density",
                  "is of points, and so of their materials");
+  require_absent(material.damage.law == DamageLaw::energy_density, key + ".material.damage",
+                 "is of points that fail, and so of their materials");
 }
 
 void check_regions(const BodySpecification& of, int dimension) {

@@ -66,10 +66,13 @@ struct DamageSpecification {
     return law != DamageLaw::energy_density && (fracture_energy || strength);
   }
 
+  /// Whether bonds break one by one, by their stretches.
+  [[nodiscard]] bool breaks_bonds() const {
+    return law != DamageLaw::none && law != DamageLaw::energy_density;
+  }
   /// Whether stiffness is lost over a range of stretches.
   [[nodiscard]] bool softens() const {
-    return law != DamageLaw::none && law != DamageLaw::critical_stretch &&
-           law != DamageLaw::energy_density;
+    return breaks_bonds() && law != DamageLaw::critical_stretch;
   }
   /// Whether a rate is part of the law.
   [[nodiscard]] bool has_rate() const {

@@ -378,4 +378,8 @@ double largest_spacing(double fracture_energy, double strength, const FractureSc
   return scale.spacing * fracture_energy / scale.energy(brittle);
 }
 
+double bearable_energy_density(const DamageSpecification& damage, double horizon) {
+  return *damage.fracture_energy / (2.0 * horizon);
+}
+
 }  // namespace peristat

@@ -59,4 +59,7 @@ struct FractureScale {
 [[nodiscard]] double largest_spacing(double fracture_energy, double strength,
                                      const FractureScale& scale);
 
+/// W_c = G_c / (2 delta), the energy density at which points fail ([FCBM] eq. 21) [J/m3].
+[[nodiscard]] double bearable_energy_density(const DamageSpecification& damage, double horizon);
+
 }  // namespace peristat

@@ -12,6 +12,7 @@
 
 #include "assembly/convolutions/lattice_springs.hpp"
 #include "assembly/terms/linear/linear_term.hpp"
+#include "solvers/study/fracture_data.hpp"
 #include "solvers/study/state_model.hpp"
 #include "src/core/input_error.hpp"
 #include "src/geometry/lattice_box.hpp"
@@ -162,7 +163,7 @@ CutBonds told(const Bonds& bonds) {
   return cut;
 }
 
-/// W_c = G_c / (2 delta) of a point's material, times its volume; infinite for those that never
+/// W_c of a point's material, times its volume; infinite for those that never
 /// fail; empty if none does.
 std::vector<double> bearable_energies(const PointMaterials& materials, const Points& points,
                                       double horizon) {
@@ -178,7 +179,7 @@ std::vector<double> bearable_energies(const PointMaterials& materials, const Poi
     const DamageSpecification& damage = all[materials.of(i)].of->damage;
     if (damage.law != DamageLaw::energy_density) continue;
     bearable[std::size_t(i)] =
-        *damage.fracture_energy / (2.0 * horizon) * points.volume[std::size_t(i)];
+        bearable_energy_density(damage, horizon) * points.volume[std::size_t(i)];
   }
   for (const auto& material : all) {
     for (const std::string& set : material.of->damage.no_fail) {

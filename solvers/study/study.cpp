@@ -64,6 +64,27 @@ void refuse_modes_of_failing_points(const Body& body, const StudyOptions& option
 
 }  // namespace
 
+void check_study(const Body& body, const StudyOptions& options) {
+  check_options(options);
+  const bool moves = options.loading.mode == Mode::dynamics;
+  if (moves != body.conditions->programme().is_of_time()) {
+    throw InputError(
+        "end_time", "",
+        moves ? "is missing; mode dynamics needs it" : "is of a motion in time, for mode dynamics");
+  }
+  refuse_modes_without_potential(body, options);
+  refuse_events_of_states(body, options);
+  refuse_modes_of_failing_points(body, options);
+  const bool is_implicit = moves && options.loading.dynamics.scheme == MotionScheme::newmark;
+  if (is_implicit != body.specification.has_inertia) {
+    throw InputError("has_inertia", "",
+                     is_implicit ? "must be set: implicit steps need a body with inertia"
+                                 : "is for bodies that implicit steps follow");
+  }
+  if (!moves) refuse_unheld_bodies(body);
+  refuse_unstable_rest(body, options);
+}
+
 SolvedModel::SolvedModel(const Points& points, const Model& model, const Constraints& constraints,
                          const FreeDofs& free, LinearSystems systems, int threads)
     : systems_(std::move(systems)),
@@ -77,29 +98,9 @@ Study::Study(const Body& body, StudyOptions options, SolverLadder::Reporter tell
     : body_(body),
       options_(std::move(options)),
       free_(body.conditions->prescribed(), body.points.dimension) {
-  check_options(options_);
+  check_study(body_, options_);
   options_.threads = usable_threads(options_.threads);
-  const bool moves = options_.loading.mode == Mode::dynamics;
-  if (moves != body.conditions->programme().is_of_time()) {
-    throw InputError(
-        "end_time", "",
-        moves ? "is missing; mode dynamics needs it" : "is of a motion in time, for mode dynamics");
-  }
-  refuse_modes_without_potential(body, options_);
-  refuse_events_of_states(body, options_);
-  refuse_modes_of_failing_points(body, options_);
-  const bool is_implicit = moves && options_.loading.dynamics.scheme == MotionScheme::newmark;
-  if (is_implicit != body.specification.has_inertia) {
-    throw InputError("has_inertia", "",
-                     is_implicit ? "must be set: implicit steps need a body with inertia"
-                                 : "is for bodies that implicit steps follow");
-  }
-  if (moves) {
-    motion_ = make_motion_setting(body);
-  } else {
-    refuse_unheld_bodies(body);
-  }
-  refuse_unstable_rest(body, options_);
+  if (options_.loading.mode == Mode::dynamics) motion_ = make_motion_setting(body);
   LinearSystems systems = choose_linear_systems(options_, body, std::move(tell));
   require_memory(systems.bytes, fmt::format("the body with {} points", body.points.count()));
   equations_ =

@@ -36,13 +36,16 @@ class SolvedModel {
   std::unique_ptr<TangentOperator> tangent_;
 };
 
+/// @throws InputError for options that can't be used, alone or with this body, a body that the
+///         supports do not hold, loose points, and a body that is unstable at rest
+void check_study(const Body& body, const StudyOptions& options);
+
 /// A body that is held, and everything that follows it along its load path.
 class Study {
  public:
   /// The body must outlive the study.
   /// @param tell of linear solvers that give way to others; may be empty
-  /// @throws InputError for options that can't be used, a body that the supports do not hold, loose
-  ///         points, and a body that is unstable at rest
+  /// @throws InputError as `check_study` does
   /// @throws MemoryError if it would not fit
   Study(const Body& body, StudyOptions options, SolverLadder::Reporter tell = {});
 

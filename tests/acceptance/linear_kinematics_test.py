@@ -268,6 +268,8 @@ class Refusals(CommandLine):
             (['material.damage={law="critical_stretch", critical=0.01}'], ("material.damage.law", "energy_density")),
             (['material.damage={law="energy_density"}'], ("fracture_energy", "missing")),
             (["material.kinematics=finite", 'material.damage={law="energy_density", fracture_energy=1.0}'], ("damage.law", "linear")),
+            ([FAILING, 'material.scatter=[{of="strength", weibull_modulus=8}]'], ("material.scatter[0].of", "stretches")),
+            ([FAILING, "solver.mode=adaptive"], ("solver.mode", "dynamics")),
             ([FAILING, 'set=[{name="all", where="x > 0"}]', 'probe=[{name="area", field="crack_area", set="all"}]'], ("probe[0].field", "band")),
         ):  # fmt: skip
             with self.subTest(settings=settings):
@@ -278,11 +280,13 @@ class Refusals(CommandLine):
                     self.assertIn(word, ended.said)
 
 
-class Modes(CommandLine):
-    def test_modes_of_breaking_bonds(self):
-        ended = peristat("run", self.path_of(STRIP), "--output", self.folder / "out", "--set", FAILING, "--set", "solver.mode=adaptive")
-        self.assertEqual(ended.code, 2, ended.said)
-        self.assertIn("solver.mode", ended.said)
+class Calibration(CommandLine):
+    def test_of_points_that_fail(self):
+        ended = peristat("calibrate", self.path_of(STRIP), "--set", FAILING)
+        self.assertEqual(ended.code, 0, ended.said)
+        told = json.loads(ended.said)["damage"]
+        self.assertEqual(told["fracture_energy"], 2.0)
+        self.assertAlmostEqual(told["energy_density"], 2.0 / (2 * 3.015e-3), delta=1e-9)
 
 
 if __name__ == "__main__":

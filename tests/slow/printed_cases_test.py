@@ -194,6 +194,18 @@ class Convolutions(PrintedTest):
         tip = {round(1e6 * row["time"], 3): row["tip"] for row in plate.history}
         self.prints("its tip is at {} m after 31 us", tip[31.0])
 
+    def test_glass_plate_half(self):
+        self.page = "cases/fcbm/glass_plate_half.toml"
+        early = run("fcbm/glass_plate_half", "dynamics.end_time=1.1e-5", "output.every=110", threads=2)
+        self.prints("the first points fail at {} m", early.history[-1]["fork"])
+
+    def test_waves(self):
+        self.page = "cases/fcbm/waves.toml"
+        most = max(run("fcbm/waves", threads=2).history, key=lambda row: row["passing"])
+        self.prints("moves most after {} us", 1e6 * most["time"])
+        self.prints("us, by {} um", 1e6 * most["passing"])
+        self.prints("the pulse takes {} us at c", 30e3 / math.sqrt(72e9 / 2440 / (1 - 1 / 9)))
+
     def test_static_hole(self):
         self.page = "cases/fcbm/static_hole.toml"
         self.prints('the reaction on "right" is {} N', run("fcbm/static_hole", threads=2).history[-1]["reaction_x:right"])

@@ -22,7 +22,6 @@
 #include "solvers/study/found_loads.hpp"
 #include "solvers/study/fracture_data.hpp"
 #include "solvers/study/linear_systems.hpp"
-#include "solvers/study/rest_stability.hpp"
 #include "solvers/study/study.hpp"
 #include "src/neighbourhood/neighbour_counts.hpp"
 #include "src/potentials/make_saw_tooth.hpp"
@@ -116,7 +115,7 @@ void print_fracture(const PointMaterials::Material& of, const std::string& name,
   if (damage.law == DamageLaw::none || of.of->fibre) return;
   if (damage.law == DamageLaw::energy_density) {
     fmt::print("{} points fail at {:.6g} J/m3\n", heading("fracture", name),
-               *damage.fracture_energy / (2.0 * setting.horizon));
+               bearable_energy_density(damage, setting.horizon));
     return;
   }
   if (of.of->model == MaterialModel::lps) {
@@ -382,8 +381,7 @@ Exit check(const Case& from, int threads) {
                seconds_text(chosen.seconds * steps / threads), steps);
   }
   located_errors(from, [&] {
-    if (from.solver.mode != Mode::dynamics) refuse_unheld_bodies(body);
-    refuse_unstable_rest(body, options);
+    check_study(body, options);
     if (finds_loads(options, *body.conditions)) static_cast<void>(Study(body, options).analyze());
     static_cast<void>(make_crack_tips(body, from.crack_tips, options));
   });
