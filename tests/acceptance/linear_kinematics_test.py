@@ -133,6 +133,7 @@ class Solved:
         length = numpy.hypot(*arm.T)
         near = length <= self.horizon * (1 + 1e-8)
         self.i, self.j, length = i[near], j[near], length[near]
+        self.length = length
         self.n = arm[near] / length[:, None]
         c = 9 * modulus / (math.pi * thickness * self.horizon**3)
         self.k = c * run.volume[self.i] * run.volume[self.j] / length
@@ -187,6 +188,22 @@ class Statics(CommandLine):
         lps = ["material.model=lps", "material.poisson_ratio=0.2", "quadrature.form=energy"]
         bonds, fft = (self.results(STRIP, *lps, f"solver.operator={name}") for name in ("bonds", "fft"))
         self.same(bonds, fft, 1e-9)
+
+    def test_solids_with_lame_constants_alike_are_bonds(self):
+        # Nothing is left of the dilatation: bonds of the weights 1/M + 1/M' ([FCBM] 5.6), M of whom there is.
+        run = self.results(STRIP, "material.model=lps", "material.poisson_ratio=0.33333333333333333", "quadrature.form=energy", "solver.operator=fft")
+        solved = Solved(run)
+        length = solved.length
+        moment = numpy.bincount(numpy.r_[solved.i, solved.j], numpy.r_[length, length])
+        shear = 70e9 / 2 / (1 + 1 / 3)
+        solved.k = 8 * shear * run.volume[0] / length * (1 / moment[solved.i] + 1 / moment[solved.j])
+        x = run.reference[:, 0]
+        held = (x < 0) | (x > 0.02)
+        one = numpy.ones(len(x))
+        expected = solved.solve(numpy.where((x > 0.02)[:, None], [2e-6, 0.0], [0.0, 0.0]), one, held)
+        numpy.testing.assert_allclose(run.displacement[:, :2], expected, atol=1e-10 * 2e-6)
+        work = (solved.k * solved.along(expected) ** 2).sum() / 2
+        self.assertAlmostEqual(run.summary["energy"]["stored"] / work, 1.0, delta=1e-10)
 
     def test_cubes(self):
         cube = """\
