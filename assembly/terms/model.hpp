@@ -41,6 +41,9 @@ class Model {
   [[nodiscard]] const BondTerm* failing_bonds() const;
 
   [[nodiscard]] bool has_history() const;
+  /// Whether damage is of points or states, which have no strength of bonds that a load could be
+  /// led to: under the same load all fail that do.
+  [[nodiscard]] bool fails_in_avalanches() const { return has_history() && !failing_bonds(); }
 
   /// Where a History keeps what a term remembers.
   /// @throws std::logic_error if it is none of the terms

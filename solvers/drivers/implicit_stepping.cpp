@@ -74,7 +74,8 @@ void ImplicitStepping::establish(ImplicitStep& step) {
   }
   step.found.record.mode = Mode::newton.name;
   if (step.growth.degrading > 0) {
-    if (!path_.damaged().model().failing_bonds()) {
+    const bool fails_in_avalanches = path_.damaged().model().fails_in_avalanches();
+    if (fails_in_avalanches) {
       step.found.energies.intact = {path_.working_force(attempt.state, attempt.external_force),
                                     attempt.state.displacement};
     }
@@ -82,7 +83,7 @@ void ImplicitStepping::establish(ImplicitStep& step) {
       const State from = state_of(attempt);
       const Outcome pinned = pin_loose(from, step);
       if (pinned != Outcome::converged) return attempt.outcome = pinned;
-      step.found.energies.is_avalanche = !path_.damaged().model().failing_bonds();
+      step.found.energies.is_avalanche = fails_in_avalanches;
       NewtonOptions again = path_.setting().newton_options;
       again.scale = attempt.scale;
       const int before = attempt.iterations;
@@ -98,7 +99,9 @@ void ImplicitStepping::establish(ImplicitStep& step) {
 }
 
 Outcome ImplicitStepping::pin_loose(const State& at, ImplicitStep& step) {
-  if (path_.damaged().model().failing_bonds()) return Outcome::converged;  // pinned once accepted
+  if (!path_.damaged().model().fails_in_avalanches()) {
+    return Outcome::converged;  // pinned once accepted
+  }
   FragmentPins& pins = path_.state().pins;
   const FragmentRemedy remedy = path_.options().fragments;
   pins.find(path_.body().assembler, at, path_.setting().conditions, remedy);
