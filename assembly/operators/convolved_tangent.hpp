@@ -17,6 +17,7 @@ struct ConvolvedTangent : TangentOperator {
   /// Whatever the projection: the forces are linear.
   void linearise(Energy& energy, const StateView& at, double projection) override;
   void multiply(std::span<const double> v, std::span<double> result) const override;
+  [[nodiscard]] bool has_rows() const override { return false; }
   /// @throws std::logic_error
   void for_each_row(const RowVisitor& visit) const override;
   /// Numbers that are not less.

@@ -40,6 +40,8 @@ struct TangentOperator {
   virtual void multiply(std::span<const double> v, std::span<double> result) const = 0;
   [[nodiscard]] virtual bool multiplies_in_place() const { return false; }
 
+  /// Whether there are rows to visit: products by convolutions have none.
+  [[nodiscard]] virtual bool has_rows() const { return true; }
   /// Visits all rows, those of a thread in ascending order and the threads side by side.
   virtual void for_each_row(const RowVisitor& visit) const = 0;
 

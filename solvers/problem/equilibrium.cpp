@@ -203,20 +203,33 @@ double load_norm(const EquilibriumProblem& problem, std::span<const double> exte
                    environment_norm(problem, state.at(damage), state.gradient)});
 }
 
+double differenced_forces(const TangentOperator& tangent, std::span<const double> displacement) {
+  const auto d = std::size_t(tangent.dimension);
+  Coordinates mean{};
+  for (std::size_t k = 0; k < displacement.size(); ++k) {
+    mean[k % d] += displacement[k] * double(d) / double(displacement.size());
+  }
+  return norm_of(displacement.size(), [&](std::size_t k) {
+    return tangent.diagonal[k * d + k % d] * (displacement[k] - mean[k % d]);
+  });
+}
+
 double residual_round_off(const FreeDofs& free, const TangentOperator& tangent,
                           std::span<const double> displacement) {
   std::vector<double> sums(displacement.size());
   tangent.absolute_row_sums(sums);
   const std::size_t d = std::size_t(free.dimension);
   constexpr double unit_round_off = 0.5 * std::numeric_limits<double>::epsilon();
-  return unit_round_off * norm_of(free.dof.size(), [&](std::size_t e) {
-           const std::size_t dof = std::size_t(free.dof[e]), first = dof - dof % d;
-           double largest = 0.0;
-           for (std::size_t c = 0; c < d; ++c) {
-             largest = std::max(largest, std::abs(displacement[first + c]));
-           }
-           return sums[dof] * largest;
-         });
+  const double of_sums = norm_of(free.dof.size(), [&](std::size_t e) {
+    const std::size_t dof = std::size_t(free.dof[e]), first = dof - dof % d;
+    double largest = 0.0;
+    for (std::size_t c = 0; c < d; ++c) {
+      largest = std::max(largest, std::abs(displacement[first + c]));
+    }
+    return sums[dof] * largest;
+  });
+  return unit_round_off *
+         (of_sums + (tangent.has_rows() ? 0.0 : differenced_forces(tangent, displacement)));
 }
 
 }  // namespace peristat

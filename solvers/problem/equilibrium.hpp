@@ -114,13 +114,19 @@ void evaluate(const EquilibriumProblem& problem, std::span<const double> externa
                                std::span<const double> external_force, const Trial& state,
                                Damage damage);
 
+/// What forces by convolutions are differences of: each point's stiffness times how far it moves,
+/// their 2-norm [N]. Round-off of them spreads to all points.
+[[nodiscard]] double differenced_forces(const TangentOperator& tangent,
+                                        std::span<const double> displacement);
+
 /// What round-off leaves of the residual [N]. A displacement is known to a unit round-off of
 /// itself, so that a slender body, which moves far and strains little, has no state with less than
 /// about
 ///
 ///   ||eps sum_j |K_ij| max |u_i| ||
 ///
-/// over its free degrees of freedom, u_i the displacement of the point.
+/// over its free degrees of freedom, u_i the displacement of the point; by convolutions
+/// eps `differenced_forces` in addition.
 /// @param tangent near the state
 [[nodiscard]] double residual_round_off(const FreeDofs& free, const TangentOperator& tangent,
                                         std::span<const double> displacement);

@@ -523,6 +523,12 @@ void require_lattice_to_calibrate_on(const BodySpecification& of, const Points& 
 namespace {
 
 void check_linear_body(const BodySpecification& of) {
+  for (std::size_t k = 0; of.is_convolved() && k < of.loads.size(); ++k) {
+    require_absent(of.loads[k].kind == LoadSpecification::Kind::pressure,
+                   "loads[" + std::to_string(k) + "].pressure",
+                   "turns with its faces, which couples points that operator \"fft\" has no place "
+                   "for; take \"bonds\", or a traction");
+  }
   if (!of.is_linear()) {
     require(!of.is_convolved() || of.has_states(), "force_operator", "fft",
             "is for bonds with kinematics \"linear\", since the forces of bonds that turn are no "

@@ -33,6 +33,11 @@ Crack segment_ahead(const CrackTipSpecification& tip, const Points& points) {
 
 void refuse_what_has_no_rate(const Body& body, const CrackTipSpecification& tip,
                              const std::string& key) {
+  if (body.specification.is_convolved() && body.specification.has_states()) {
+    throw InputError(key, number_text(tip.cut),
+                     "needs bonds to cut, which lps with operator \"fft\" has not; take "
+                     "\"bonds\", or J without a cut");
+  }
   const Conditions& conditions = *body.conditions;
   if (!(tip.cut >= body.setting.reach() * (1.0 - 1e-9))) {
     throw InputError(key, number_text(tip.cut),
@@ -69,7 +74,7 @@ CutRelease::CutRelease(const Body& body, const CrackTipSpecification& tip, doubl
 
 History CutRelease::history_of(const History& before) const {
   const std::span<const double> stretches = bond_stretches(body_.model, before);
-  if (stretches.empty()) return {};
+  if (stretches.empty()) return before;  // of points, which are the same
   const Bonds &whole = body_.model.bonds(), &left = cut_->model.bonds();
   std::vector<double> kept;
   for (Index i = 0; i < left.points(); ++i) {

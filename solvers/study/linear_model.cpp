@@ -118,7 +118,7 @@ std::vector<Index> points_near(const Points& points, const std::vector<Crack>& c
 Bonds cut_of_lattice(const Points& points, const BondSetting& setting,
                      const std::vector<Crack>& cracks, int threads) {
   const std::vector<Index> near =
-      points_near(points, cracks, setting.horizon + points.spacing.largest());
+      points_near(points, cracks, setting.reach() + points.spacing.largest());
   Points part;
   part.dimension = points.dimension;
   part.spacing = points.spacing;
@@ -227,8 +227,8 @@ Model make_convolved_solid(const BodySpecification& from, const PointMaterials& 
                                  {lame_constants(*material.youngs_modulus, *material.poisson_ratio,
                                                  points.dimension, material.plane),
                                   volume}};
-  lattice.all_bonds = [&points, setting, threads] {
-    return make_bonds(points, SurfaceCorrection::none, setting, threads);
+  lattice.all_bonds = [&points, of_springs, threads] {
+    return make_bonds(points, SurfaceCorrection::none, of_springs, threads);
   };
   return Model(std::make_shared<LinearTerm>(
       std::make_shared<const Bonds>(std::move(bonds)), modulus,

@@ -55,6 +55,10 @@ void refuse_events_of_states(const Body& body, const StudyOptions& options) {
 void refuse_modes_of_failing_points(const Body& body, const StudyOptions& options) {
   const Mode mode = options.loading.mode;
   if (!body.specification.is_linear() && !body.specification.is_convolved()) return;
+  if (options.loading.max_broken_bonds > 0 && body.model.fails_in_avalanches()) {
+    throw InputError("loading.max_broken_bonds", std::to_string(options.loading.max_broken_bonds),
+                     "counts bonds that break one by one; of points that fail all go at once");
+  }
   const bool is_known = mode == Mode::newton || mode == Mode::dynamics || mode == Mode::relaxation;
   if (is_known || (mode != Mode::path && !body.model.has_history())) return;
   throw InputError("loading.mode", std::string(mode.name),

@@ -173,6 +173,11 @@ class Statics(CommandLine):
                 # Relaxation ends at its own tolerance, on ways that round-off parts.
                 self.both(STRIP, *settings, share=1e-7 if "solver.mode=relaxation" in settings else 1e-9)
 
+    def test_cracks_beyond_the_ball_of_a_turned_box(self):
+        # The corner of a box, along x here, is farther away than the horizon.
+        crack = "crack=[{from=[0.0102, 0.0051], to=[0.0102, 0.02]}]"
+        self.both(STRIP, crack, "lattice.angle=45", 'quadrature.horizon_shape="box"', share=1e-9)
+
     def test_it_is_the_direct_solution(self):
         run = self.results(STRIP, "solver.operator=fft")
         solved = Solved(run)
@@ -216,6 +221,17 @@ solver = {relative_tolerance = 1e-12, linear_tolerance = 1e-6}
 """
         for ratio in (2.015, 3.015, 9.0):  # the last one sees all of the body
             self.both(cube, f"lattice.horizon_ratio={ratio}", share=1e-9)
+
+    def test_strains_of_solids(self):
+        lps = ["material.model=lps", "material.poisson_ratio=0.2", "quadrature.form=energy", "output.stress=true"]
+        for name in ("bonds", "fft"):
+            self.results(STRIP, *lps, f"solver.operator={name}")
+            (self.folder / "out").rename(self.folder / name)
+        with h5py.File(self.folder / "bonds/results.h5") as bonds, h5py.File(self.folder / "fft/results.h5") as fft:
+            last = sorted(bonds["steps"])[-1]
+            for field in ("strain", "stress"):
+                one, other = (file["steps"][last][field][:] for file in (bonds, fft))
+                numpy.testing.assert_allclose(one, other, atol=1e-9 * abs(one).max())
 
     def test_stress_and_neighbourhoods_are_those_of_all_bonds(self):
         fields = {}
@@ -311,6 +327,30 @@ class Motions(CommandLine):
         self.both(self.CASE, *GLASS, *newmark, share=1e-6)
 
 
+class Torn(CommandLine):
+    def test_what_is_torn_through_is_left_with_round_off(self):
+        run = self.results(STRIP, FAILING, "solver.operator=fft", "loading.steps=10", "solver.relative_tolerance=1e-10",
+                           'support=[{set="left", displacement=[0, 0]}, {set="right", displacement=["5e-5*load", 0]}]')  # fmt: skip
+        self.assertGreater(run.summary["energy"]["dissipated"], 1e-4)
+
+    def test_torn_motions(self):
+        moving = pathlib.Path(self.path_of(STRIP)).read_text().replace("*load", "*t/1e-6") + "[dynamics]\nend_time = 2e-5\ntime_step = 2e-7\n"
+        self.results(moving, FAILING, "solver.operator=fft", "solver.mode=dynamics", "dynamics.scheme=newmark", "material.density=2440.0")
+
+
+class CutsAhead(CommandLine):
+    def test_of_bodies_whose_points_may_fail(self):
+        plate = STRIP.replace("[0.02, 0.012]", "[0.04, 0.03]").replace("[0.01, 0.0], radius = 2.7e-3", "[0.035, 0.0], radius = 1.6e-3")
+        crack = "crack=[{from=[0.0202, 0.0152], to=[0.0202, 0.05]}]"
+        tip = 'crack_tip=[{name="tip", at=[0.0202, 0.0152], direction=[0, -1], cut=3.1e-3}]'
+        law = 'material.damage={law="energy_density", fracture_energy=1e6}'
+        last = []
+        for laws in ([], [law]):
+            self.results(plate, crack, tip, *laws)
+            last.append((self.folder / "out/history.csv").read_text().splitlines()[-1])
+        self.assertEqual(*last)
+
+
 class Refusals(CommandLine):
     def test_what_is_no_convolution(self):
         fft = "solver.operator=fft"
@@ -323,6 +363,8 @@ class Refusals(CommandLine):
             ([fft, "solver.preconditioner=rigid_pieces"], ("solver.preconditioner", "sines")),
             ([fft, "solver.tangent=stored"], ("solver.tangent", "products")),
             ([fft, "solver.mode=arc_length"], ("solver.operator", "bonds")),
+            ([fft, 'load=[{side="y+", pressure=1e6}]'], ("load[0].pressure", "traction")),
+            ([FAILING, "loading.max_broken_bonds=10"], ("max_broken_bonds", "points")),
             (['material.damage={law="critical_stretch", critical=0.01}'], ("material.damage.law", "energy_density")),
             (['material.damage={law="energy_density"}'], ("fracture_energy", "missing")),
             (["material.kinematics=finite", 'material.damage={law="energy_density", fracture_energy=1.0}'], ("damage.law", "linear")),

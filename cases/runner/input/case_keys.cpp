@@ -685,8 +685,8 @@ Table<MaterialSpecification> material_keys(const std::string& name) {
          "tables `[[material.scatter]]`: random fields")}};
 }
 
-/// What regions and interfaces add to the keys of a material: its model, potential, plane and
-/// influence function are those of the body.
+/// What regions and interfaces add to the keys of a material: its model, potential, plane,
+/// influence function and kinematics are those of the body.
 Table<MaterialSpecification> material_of_body_keys(const std::string& name) {
   Table<MaterialSpecification> keys = material_keys(name);
   const auto of_body = [](const Case& so_far) -> const MaterialSpecification& {
@@ -699,6 +699,7 @@ Table<MaterialSpecification> material_of_body_keys(const std::string& name) {
     material.potential = body.potential;
     material.plane = body.plane;
     material.influence = body.influence;
+    material.kinematics = body.kinematics;
   };
   keys.after = [of_body](const Entry& at, MaterialSpecification& material) {
     const bool is_first = !at.so_far.material.has_constants() && at.so_far.regions.empty();
