@@ -201,9 +201,18 @@ LatticeStencil lattice_stencil(const LatticeBox& box, std::span<const LatticeSpr
 double convolved_bytes(const LatticeBox& box, std::span<const LatticeSpring> springs) {
   const std::vector<LatticeStep> steps = steps_of(springs);
   const double d = box.dimension, pairs = d * (d + 1.0) / 2.0;
-  // Of a place fields by component, and amplitudes of half of the modes, or an eighth of them; of a
-  // point its place, integrity and sums.
-  return 8.0 * lattice_places(box, steps) * (std::max(d, 2.0) + 0.5 * pairs) +
+  // On turned lattices kernels of two components are not their own mirror images.
+  const bool is_turned = std::ranges::any_of(springs, [&](const LatticeSpring& spring) {
+    bool is_off = false;
+    for (std::size_t c = 0; c < std::size_t(box.dimension); ++c) {
+      is_off = is_off || (spring.step[c] == 0 && spring.direction[c] != 0.0);
+    }
+    return is_off;
+  });
+  const double kept = is_turned ? 0.5 : std::pow(0.5, d);
+  // Of a place fields by component, and the amplitudes that are kept; of a point its place,
+  // integrity and sums.
+  return 8.0 * lattice_places(box, steps) * (std::max(d, 2.0) + kept * pairs) +
          double(box.place.size()) * (12.0 + 8.0 * pairs);
 }
 
