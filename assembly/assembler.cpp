@@ -127,6 +127,9 @@ bool Assembler::is_outlined(std::size_t term) const {
 }
 
 std::vector<double> Assembler::blocks_of_springs(const StateView& at) {
+  bool has_springs = false;
+  for (std::size_t k = 0; k < terms_.size(); ++k) has_springs = has_springs || !is_outlined(k);
+  if (!has_springs) return {};
   const BlockPattern alone = BlockPattern::of_rows(
       std::vector<Offset>(std::size_t(points_.count()) + 1, 0), std::vector<Index>());
   Tangent springs(alone, points_.dimension);
@@ -135,7 +138,7 @@ std::vector<double> Assembler::blocks_of_springs(const StateView& at) {
     if (is_outlined(k)) continue;
     terms_[k]->tangent(at, 0.0, springs, Write::onto);
   }
-  return springs.diagonal;
+  return std::move(springs.diagonal);
 }
 
 SparseRows Assembler::rows(const StateView& at, RowReach reach) {
@@ -145,6 +148,7 @@ SparseRows Assembler::rows(const StateView& at, RowReach reach) {
     if (is_outlined(k)) found = terms_[k]->rows(at, reach);
   }
   const std::vector<double> springs = blocks_of_springs(at);
+  if (springs.empty()) return found;
   const auto d = std::size_t(points_.dimension);
   for (std::size_t row = 0; row + 1 < found.offset.size(); ++row) {
     const auto first = found.column.begin() + std::ptrdiff_t(found.offset[row]);

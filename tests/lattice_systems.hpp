@@ -39,6 +39,12 @@ inline std::vector<HoledSetting> holed_settings() {
           {{6, 8, 7}, 3.015}};
 }
 
+/// Places along the axes of one body of each dimension.
+inline std::vector<std::vector<int>> both_dimensions() { return {{13, 10}, {7, 6, 9}}; }
+
+/// No axis along which a lattice goes on.
+inline constexpr std::array<bool, 3> open{};
+
 /// A lattice's body with a hole.
 struct HoledBody {
   Points points;
@@ -359,6 +365,13 @@ inline LatticeBox rectangle(Index along, Index across) {
   box.dimension = 2;
   box.extent = {along, across, 1};
   for (Index place = 0; place < along * across; ++place) box.place.push_back(place);
+  return box;
+}
+
+/// A row of points.
+inline LatticeBox bar(Index along) {
+  LatticeBox box = rectangle(along, 1);
+  box.dimension = 1;
   return box;
 }
 

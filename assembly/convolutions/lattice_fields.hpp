@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <functional>
 #include <span>
 #include <type_traits>
@@ -36,10 +37,13 @@ void with_dimension(int dimension, const Body& body) {
 /// some 1e-15 of it: the point has no neighbours left.
 inline constexpr double least_neighbourhood = 1e-10;
 
-/// A kernel as amplitudes, one number each, and whether they are real or imaginary.
+/// A kernel as amplitudes, one number each, and whether they are real or imaginary. Along an axis
+/// whose mirror image it is, but for the sign, half of them are kept.
 struct LatticeSpectrum {
   std::vector<double> amplitudes;
   Convolution::Parity parity = Convolution::Parity::even;
+  /// g of the step with this component turned round is that much of g; 0: neither g nor -g.
+  std::array<int, 3> mirror{};
 };
 
 /// What all operators of a lattice's points by convolutions share: the points' places on a padded
@@ -58,7 +62,8 @@ class LatticeFields {
   /// @param box the points and their places
   /// @param is_periodic axes along which the lattice goes on as it began: points see their images
   /// @param steps to neighbours, of two opposite ones one
-  /// @throws std::logic_error for a period that is not longer than the steps
+  /// @throws std::logic_error for a period that is not longer than the steps, or for fields of more
+  ///                          than 2^32 numbers
   LatticeFields(const LatticeBox& box, const std::array<bool, 3>& is_periodic,
                 std::vector<LatticeStep> steps, int threads);
 
@@ -83,8 +88,10 @@ class LatticeFields {
     });
   }
 
-  /// u without its mean over the points, weighted with q: a free translation, and whatever points
-  /// that are gone do, would cost digits of sums that should cancel.
+  /// Mean of u over the points, weighted with q.
+  [[nodiscard]] std::array<double, 3> mean(std::span<const double> u) const;
+  /// u without it: a free translation, and whatever points that are gone do, would cost digits of
+  /// sums that should cancel.
   void take_off_mean(std::span<const double> u, std::vector<double>& result) const;
 
   /// Makes field number `field` from q value(point), as amplitudes. Fields appear when they are
@@ -106,15 +113,37 @@ class LatticeFields {
   /// take(point, sum) with the sum of all these products over the point's neighbours.
   template <class Take>
   void find_sums(std::span<const Product> products, const Take& take) {
-    multiply(products);
-    const double* const from = sum_.data();
-    for_points([&](std::size_t point) { take(point, from[where_[point]]); });
+    gather(products, true);
+    take_sums(take);
   }
   template <class Take>
   void find_sums(const LatticeSpectrum& kernel, std::size_t field, const Take& take) {
     const Product product{&kernel, field};
     find_sums(std::span(&product, 1), take);
   }
+
+  /// The same in parts between which fields may change: what `gather` adds to what it has gathered
+  /// since it was told to begin.
+  void gather(std::span<const Product> products, bool begins);
+  template <class Take>
+  void take_sums(const Take& take) {
+    const double* const from = sums_to_places();
+    for_points([&](std::size_t point) { take(point, from[where_[point]]); });
+  }
+
+  /// Each field c < dimension becomes the sum over c' of kernel (c, c') times field c', in its
+  /// place: see pair_of. Kernels are even.
+  void mix(std::span<const LatticeSpectrum> kernels);
+  /// Of a field that `mix` has made.
+  [[nodiscard]] double at(std::size_t field, std::size_t point) const {
+    return fields_[field].data()[where_[point]];
+  }
+
+  /// Sums are made in the place of this field from now on, which has no values of its own then.
+  void keep_sums_in(std::size_t field) { sum_ = field; }
+
+  /// Sum over the points of q(x) q(x + xi), for each step.
+  [[nodiscard]] std::vector<double> pairs();
 
   /// body(point) for all points.
   template <class Body>
@@ -131,19 +160,28 @@ class LatticeFields {
   [[nodiscard]] double spectrum_bytes() const { return 8.0 * double(transform().modes()); }
 
  private:
+  static constexpr std::size_t of_its_own = std::size_t(-1);
+
+  fftw::Buffer& buffer(std::size_t field);
   [[nodiscard]] double* cleared(std::size_t field);
   void to_modes(std::size_t field);
-  void multiply(std::span<const Product> products);
+  [[nodiscard]] const double* sums_to_places();
+  template <int D>
+  void mix(std::span<const LatticeSpectrum> kernels);
 
   int dimension_;
   std::vector<LatticeStep> steps_;
   Convolution convolution_;
-  std::vector<std::size_t> where_;  // a point's place in a field
+  std::vector<std::uint32_t> where_;  // a point's place in a field
   std::vector<double> integrity_;
   std::vector<fftw::Buffer> fields_;
-  fftw::Buffer sum_;
+  fftw::Buffer own_sum_;
+  std::size_t sum_ = of_its_own;
   std::size_t transforms_ = 0;
 };
+
+/// Places of the padded box that LatticeFields transform.
+[[nodiscard]] double lattice_places(const LatticeBox& box, std::span<const LatticeStep> steps);
 
 /// total += numbers not less than sums of absolute values that convolutions have found, which may
 /// be too small by round-off of the largest of them.

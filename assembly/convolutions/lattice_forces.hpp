@@ -27,7 +27,7 @@ class LatticeForces {
   virtual void multiply(std::span<const double> displacement, std::span<const double> v,
                         std::span<double> product) = 0;
 
-  /// Of the tangent at rest.
+  /// Adds to what is there, of the tangent at rest:
   /// @param diagonal blocks of K, points x dimension x dimension [N/m]
   /// @param row_sums numbers not less than the sums of the absolute entries of each row [N/m]
   virtual void outline_tangent(std::span<double> diagonal, std::span<double> row_sums) = 0;

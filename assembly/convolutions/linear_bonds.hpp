@@ -4,10 +4,10 @@
 #include <span>
 #include <vector>
 
+#include "assembly/convolutions/lattice_fields.hpp"
 #include "assembly/convolutions/lattice_forces.hpp"
 #include "assembly/convolutions/lattice_springs.hpp"
 #include "src/geometry/lattice_box.hpp"
-#include "src/transforms/convolution.hpp"
 
 namespace peristat {
 
@@ -46,30 +46,20 @@ class LinearBonds : public LatticeForces {
   /// Of kernels k n_a n_b xi_c / 2, which are made and dropped again.
   void add_virials(std::span<const double> displacement, std::span<double> virials) override;
 
-  [[nodiscard]] const FourierTransform& transform() const { return convolution_.transform(); }
+  [[nodiscard]] const FourierTransform& transform() const { return fields_.transform(); }
+  [[nodiscard]] const LatticeFields& fields() const { return fields_; }
 
  private:
-  [[nodiscard]] std::size_t pairs() const {
-    return std::size_t(dimension_) * std::size_t(dimension_ + 1) / 2;
-  }
-  /// Number of the pair (i, j) of components, whichever comes first.
-  [[nodiscard]] std::size_t pair(int i, int j) const;
-  void take_up(std::span<const double> displacement);
-  void convolve_displacements();
-  void convolve_squares();
-  void clear(fftw::Buffer& field) const;
+  template <int D>
+  void find_forces(std::span<const double> displacement, double sign, std::span<double> force);
+  template <int D>
+  void find_energies(std::span<const double> displacement, std::span<const double> force,
+                     std::span<double> energy);
 
-  int dimension_;
-  std::ptrdiff_t points_;
   std::vector<LatticeSpring> springs_;
-  Convolution convolution_;
-  std::vector<std::size_t> where_;               // a point's place in a field
-  std::vector<std::vector<double>> amplitudes_;  // of C, by pair
-  std::vector<double> integrity_;                // q
-  std::vector<double> sums_;                     // P, points x pairs
-  std::vector<double> displacement_;             // without its mean
-  std::vector<fftw::Buffer> fields_;             // by component
-  std::array<fftw::Buffer, 2> squares_;          // for energies, made when they are first asked for
+  LatticeFields fields_;
+  std::vector<LatticeSpectrum> square_;  // C, by pair
+  std::vector<double> sums_;             // P, points x pairs
 };
 
 /// Minus the sums of the diagonal components of the springs' blocks over all pairs of points.
@@ -80,11 +70,10 @@ class LinearBonds : public LatticeForces {
 /// Memory that LinearBonds take.
 [[nodiscard]] double convolved_bytes(const LatticeBox& box, std::span<const LatticeSpring> springs);
 
-/// sum_j g(x_j - x_i) b_j per point of a lattice, g an even kernel with a value for the step of
-/// each spring and the opposite one.
-[[nodiscard]] std::vector<double> lattice_sums(const LatticeBox& box,
-                                               std::span<const LatticeSpring> springs,
-                                               std::span<const double> kernel,
-                                               std::span<const double> field, int threads);
+/// sum_j g(x_j - x_i) b_j per point of a lattice, for each of some even kernels g with a value for
+/// the step of each spring and the opposite one.
+[[nodiscard]] std::vector<std::vector<double>> lattice_sums(
+    const LatticeBox& box, std::span<const LatticeSpring> springs,
+    std::span<const std::vector<double>> kernels, std::span<const double> field, int threads);
 
 }  // namespace peristat

@@ -1,5 +1,6 @@
 #include "assembly/convolutions/linear_solid.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <utility>
@@ -338,6 +339,16 @@ double LinearSolid::bytes() const {
   }
   const auto spectra = double(1 + arm_.size() + square_.size());
   return 8.0 * numbers + fields_.bytes() + spectra * fields_.spectrum_bytes();
+}
+
+double convolved_bytes(const LatticeBox& box, std::span<const LatticeArm> arms) {
+  const double d = box.dimension, pairs = 0.5 * d * (d + 1.0);
+  // Fields of forces or of energies, with that of sums; all kernels at half of the modes, as on
+  // turned lattices. Of points 1 / M, theta, sums of arms, displacements and both pulls, sums of
+  // squares with and without 1 / M, a place and an integrity.
+  const double fields = std::max(2.0 * d + 1.0, d + pairs) + 1.0;
+  return 8.0 * lattice_places(box, steps_of(arms)) * (fields + 0.5 * (1.0 + d + pairs)) +
+         double(box.place.size()) * (8.0 * (2.0 + 4.0 * d + 2.0 * pairs) + 12.0);
 }
 
 }  // namespace peristat

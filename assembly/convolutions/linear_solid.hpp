@@ -115,4 +115,7 @@ class LinearSolid : public LatticeForces {
   std::vector<double> pulls_, weighted_pulls_;
 };
 
+/// Memory that LinearSolid takes.
+[[nodiscard]] double convolved_bytes(const LatticeBox& box, std::span<const LatticeArm> arms);
+
 }  // namespace peristat

@@ -22,6 +22,8 @@ BlockPattern BlockPattern::united(const std::vector<Couplings>& terms, Index poi
     if (!couplings.partner.empty() && !is_known) different.push_back(couplings);
   }
   if (different.size() == 1) return BlockPattern(different.front());
+  // Nothing couples, as on a lattice by convolutions: rows of nothing are there already.
+  if (different.empty() && !terms.empty()) return BlockPattern(terms.front());
   Rows rows;
   rows.offset.push_back(0);
   for (Index i = 0; i < points; ++i) {

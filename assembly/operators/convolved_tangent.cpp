@@ -7,8 +7,7 @@ namespace peristat {
 
 ConvolvedTangent::ConvolvedTangent(Energy& energy)
     : TangentOperator(energy.pattern(), energy.points().dimension, energy.threads()),
-      energy_(&energy),
-      row_sums_(energy.points().reference.size()) {}
+      energy_(&energy) {}
 
 std::vector<double> ConvolvedTangent::positions() const {
   return at_.positions(energy_->points().reference);
@@ -19,8 +18,8 @@ void ConvolvedTangent::linearise(Energy& energy, const StateView& at, double /*p
   reference = energy.points().reference;
   at_.keep(at);
   std::fill(diagonal.begin(), diagonal.end(), 0.0);
-  std::fill(row_sums_.begin(), row_sums_.end(), 0.0);
-  energy.outline_rows(at, diagonal, row_sums_);
+  std::vector<double> unused(energy.points().reference.size());
+  energy.outline_rows(at, diagonal, unused);
 }
 
 void ConvolvedTangent::multiply(std::span<const double> v, std::span<double> result) const {
@@ -32,7 +31,9 @@ void ConvolvedTangent::for_each_row(const RowVisitor&) const {
 }
 
 void ConvolvedTangent::absolute_row_sums(std::span<double> sums) const {
-  std::copy(row_sums_.begin(), row_sums_.end(), sums.begin());
+  std::vector<double> unused(diagonal.size());
+  std::fill(sums.begin(), sums.end(), 0.0);
+  energy_->outline_rows(at_.view(), unused, sums);
 }
 
 LatticeStencil ConvolvedTangent::stencil() const { return energy_->stencil(at_.view()); }

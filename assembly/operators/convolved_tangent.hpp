@@ -20,14 +20,13 @@ struct ConvolvedTangent : TangentOperator {
   [[nodiscard]] bool has_rows() const override { return false; }
   /// @throws std::logic_error
   void for_each_row(const RowVisitor& visit) const override;
-  /// Numbers that are not less.
+  /// Numbers that are not less, found anew: they are asked for now and then, and a vector long.
   void absolute_row_sums(std::span<double> sums) const override;
   [[nodiscard]] LatticeStencil stencil() const override;
 
  private:
   Energy* energy_;
   KeptState at_;
-  std::vector<double> row_sums_;
 };
 
 }  // namespace peristat

@@ -4,8 +4,14 @@ namespace peristat {
 
 Workspace::Workspace(const BlockPattern& pattern, int dimension, int threads)
     : ranges(partition_rows(pattern, threads)), sums(ranges.size()), evaluations(ranges.size()) {
+  // What couples nothing, as a lattice by convolutions, hardly adds up rows.
+  if (!pattern.partner.empty()) make_room(block_width(dimension));
+}
+
+void Workspace::make_room(int width) {
   for (std::size_t t = 0; t < ranges.size(); ++t) {
-    sums[t].resize(std::size_t(ranges[t].touched_end - ranges[t].first) * block_width(dimension));
+    const auto rows = std::size_t(ranges[t].touched_end - ranges[t].first);
+    if (sums[t].size() < rows * std::size_t(width)) sums[t].resize(rows * std::size_t(width));
   }
 }
 

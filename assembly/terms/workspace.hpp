@@ -16,7 +16,7 @@ constexpr int vector_width(int dimension) { return dimension == 3 ? 4 : dimensio
 constexpr int block_width(int dimension) { return dimension == 3 ? 6 : 4; }
 
 /// What the passes of all terms add up in: the threads' ranges of rows and their sums, allocated
-/// once.
+/// once, where nothing couples when they are first asked for.
 struct Workspace {
   Workspace(const BlockPattern& pattern, int dimension, int threads);
 
@@ -31,6 +31,7 @@ struct Workspace {
   /// then finish(thread, range), and write(row, total) with the threads' sums added up in order.
   template <int width, class Body, class Write, class Finish>
   void sum_rows(const Body& body, const Write& write, const Finish& finish) {
+    make_room(width);
     run_on_threads(threads(), [&](int thread) {
       const RowRange range = ranges[thread];
       double* own = sums[thread].data();
@@ -63,6 +64,10 @@ struct Workspace {
     total.degenerate |= !std::isfinite(total.energy);
     return total;
   }
+
+ private:
+  /// For so many doubles per row.
+  void make_room(int width);
 };
 
 }  // namespace peristat

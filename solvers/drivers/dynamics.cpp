@@ -78,8 +78,10 @@ Advance Dynamics::begin() {
   PathState& state = path_.state();
   const Conditions& conditions = path_.setting().conditions;
   State start{setting().displacement, 0.0, state.accepted.history, {}, state.accepted.environment};
+  start.displacement.resize(setting().mass.size());
   conditions.prescribe(0.0, start.displacement);
   std::vector<double> velocity = setting().velocity;
+  velocity.resize(setting().mass.size());
   for (std::size_t dof = 0; dof < velocity.size(); ++dof) {
     if (path_.free().equation[dof] == FreeDofs::none) velocity[dof] = 0.0;
   }
@@ -290,7 +292,7 @@ Advance Dynamics::accept(Motion& motion) {
   }
   state.accepted = state_of(attempt);
   add_velocity_of_supports(time, velocity);
-  state.dynamics.velocity = velocity;
+  state.dynamics.velocity = std::move(velocity);
   state.dynamics.acceleration = std::move(acceleration);
   state.ledger.accept(found.ledger, path_.working_force(attempt.state, attempt.external_force),
                       found.energies);
@@ -301,7 +303,8 @@ Advance Dynamics::accept(Motion& motion) {
                     .next_increment = state.dynamics.step,
                     .reason = "time step " + std::to_string(state.steps)});
   if (const auto& tell = path_.setting().observer.accepted) {
-    tell(found.record, {attempt.state, attempt.external_force, state.pins.found.piece, velocity});
+    tell(found.record,
+         {attempt.state, attempt.external_force, state.pins.found.piece, state.dynamics.velocity});
   }
   path_.last_attempt() = std::move(attempt);
   if (is_implicit()) lengthen_step(time);

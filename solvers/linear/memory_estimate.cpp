@@ -31,11 +31,14 @@ double body_bytes(const BodySize& size) {
   // Reference, last and present displacement, present and last gradient, loads, what does work,
   // right-hand side, solution, and equations as pairs of integers.
   const double vectors = 11.5 * d;
-  // Rows gathered and sums of the workspace: see row_width and block_width.
-  const double workspace = size.dimension == 3 ? 8.0 + 6.0 : 4.0 + 4.0;
+  // Rows gathered and sums of the workspace: see row_width and block_width. Without them a
+  // checkpoint is seen: four vectors as they are and as bytes.
+  const double gathered = size.dimension == 3 ? 8.0 + 6.0 : 4.0 + 4.0;
+  const double workspace = size.is_convolved ? 8.0 * d : gathered;
   const double scalars = 4.0;
   // Largest stretches, a copy of them for the way back, and flags.
-  const double per_bond = size.bytes_per_bond + (size.has_history ? 19.0 : 0.0);
+  const double per_bond =
+      size.bytes_per_bond + (size.has_history && !size.is_convolved ? 19.0 : 0.0);
   const double run = per_bond * size.bonds + 8.0 * size.points * (vectors + workspace + scalars);
   // The neighbour search gathers the bonds of its parts.
   const double search =

@@ -16,6 +16,7 @@ struct BodySize {
   double coupling_ratio = 0.0;  ///< horizon that these reach over the spacing; 0: that of bonds
   double bytes_per_bond = 6.0;  ///< partner and kind, see BondKinds
   bool has_history = false;     ///< bonds may be damaged
+  bool is_convolved = false;    ///< its bonds are convolutions: nothing is added up row by row
   bool has_symmetric_blocks = true;  ///< off-diagonal blocks of the tangent are
   bool is_constrained = false;       ///< degrees of freedom follow others
   double free_dofs = 0.0;

@@ -10,7 +10,7 @@ namespace peristat {
 /// What a body in motion has beside its forces. Arrays have an entry per degree of freedom.
 struct MotionSetting {
   std::vector<double> mass;                    ///< lumped, positive on every free one [kg]
-  std::vector<double> displacement, velocity;  ///< at the start [m], [m/s]
+  std::vector<double> displacement, velocity;  ///< at the start; empty: zeros [m], [m/s]
   /// Rates at which velocities decay by themselves [1/s]; empty: they do not.
   std::vector<double> absorption{};
   int most_points = 2;                  ///< of an interaction, or what bounds eigenvalues likewise

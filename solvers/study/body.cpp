@@ -327,6 +327,7 @@ MemoryEstimate estimate_memory(const Body& body) {
   size.bonds = double(body.model.bonds().count());
   size.bytes_per_bond = double(sizeof(Index) + body.model.bonds().kind.bytes_per_bond());
   size.has_history = body.model.has_history();
+  size.is_convolved = !body.model.has_rows();
   size.has_symmetric_blocks = body.model.has_symmetric_blocks();
   size.is_constrained = !body.conditions->constraints().none();
   size.free_dofs = double(std::count(prescribed.begin(), prescribed.end(), 0));

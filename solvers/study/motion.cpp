@@ -61,6 +61,7 @@ std::vector<double> densities_of(const Body& body) {
     throw InputError(material.key + ".density", "", "is missing; mode dynamics needs it");
   }
   std::vector<double> density;
+  density.reserve(std::size_t(body.points.own()));
   for (Index i = 0; i < body.points.own(); ++i) {
     density.push_back(*materials.all()[materials.of(i)].of->density);
   }
@@ -78,12 +79,12 @@ MotionSetting make_motion_setting(const Body& body) {
     for (std::size_t c = 0; c < d; ++c)
       setting.mass[i * d + c] = density[i] * body.points.volume[i];
   }
-  InitialState initial = make_initial_state(body.points, body.specification.initial);
-  refuse_wild_start(body, initial.displacement);
-  setting.displacement = std::move(initial.displacement);
-  setting.velocity = std::move(initial.velocity);
-  setting.displacement.resize(dofs, 0.0);
-  setting.velocity.resize(dofs, 0.0);
+  if (!body.specification.initial.empty()) {
+    InitialState initial = make_initial_state(body.points, body.specification.initial);
+    refuse_wild_start(body, initial.displacement);
+    setting.displacement = std::move(initial.displacement);
+    setting.velocity = std::move(initial.velocity);
+  }
   const std::vector<double> rates = absorption_rates(body.points, body.specification.absorbing);
   for (std::size_t dof = 0; dof < rates.size() * d; ++dof) {
     setting.absorption.resize(dofs, 0.0);

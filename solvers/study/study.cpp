@@ -127,6 +127,7 @@ const Stiffness& Study::find_initial_stiffness() {
   const auto& [assembler, solver, tangent, free] = equations_->solved();
   const Conditions& conditions = *body_.conditions;
   std::vector<double> displacement = motion_->displacement;
+  displacement.resize(motion_->mass.size());
   conditions.prescribe(0.0, displacement);
   conditions.constraints().move(displacement);
   const History history = assembler.initial_history();

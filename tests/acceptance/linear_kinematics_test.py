@@ -233,6 +233,29 @@ solver = {relative_tolerance = 1e-12, linear_tolerance = 1e-6}
                 one, other = (file["steps"][last][field][:] for file in (bonds, fft))
                 numpy.testing.assert_allclose(one, other, atol=1e-9 * abs(one).max())
 
+    def test_check_estimates_the_memory(self):
+        cube = """\
+dimension = 3
+lattice = {spacing = 0.0125, horizon_ratio = 3.015, shape = [{add = "box", min = [0, 0, 0], max = [0.6, 0.5, 0.7]}]}
+material = {youngs_modulus = 1e9, density = 1e3, kinematics = "linear"}
+set = [{name = "low", where = "z < 0.1"}, {name = "high", where = "z > 0.6"}]
+support = [{set = "low", displacement = [0, 0, 0]}, {set = "high", displacement = [0, "1e-3*load", "2e-3*load"]}]
+solver = {operator = "fft"}
+"""
+        solid = cube.replace('kinematics = "linear"', 'model = "lps", poisson_ratio = 0.3') + 'quadrature = {form = "energy"}\n'
+        moving = cube.replace("*load", "*t*1e3").replace('operator', 'mode = "dynamics", operator')
+        moving += 'dynamics = {end_time = 1e-4}\n'
+        failing = 'material.damage={law="energy_density", fracture_energy=2e3}'
+        for case, settings in ((cube, []), (solid, []), (moving, []), (moving, [failing])):
+            with self.subTest(case=case, settings=settings):
+                given = [word for setting in settings for word in ("--set", setting)]
+                ended = peristat("check", self.path_of(case), *given)
+                self.assertEqual(ended.code, 0, ended.said)
+                number, unit = ended.said.split("memory      about ")[1].split()[:2]
+                peak = self.results(case, *settings).summary["peak_memory_bytes"]
+                self.assertGreater(float(number) * {"MB": 1e6, "GB": 1e9}[unit], peak)
+                self.assertLess(float(number) * {"MB": 1e6, "GB": 1e9}[unit], 1.3 * peak)
+
     def test_stress_and_neighbourhoods_are_those_of_all_bonds(self):
         fields = {}
         for name in ("bonds", "fft"):

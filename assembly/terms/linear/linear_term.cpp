@@ -274,7 +274,9 @@ std::vector<double> LinearTerm::initial_history() const {
 double LinearTerm::stored_bytes() const {
   const double points = double(bonds().points());
   const double own = 8.0 * points * double(4 + (can_be_damaged() ? 3 : 0));
-  return own + (lattice_ ? convolved_bytes(lattice_->box, lattice_->springs) : 0.0);
+  if (!lattice_) return own;
+  const auto& [box, springs, solid, cut, all_bonds] = *lattice_;
+  return own + (solid ? convolved_bytes(box, solid->arms) : convolved_bytes(box, springs));
 }
 
 std::unique_ptr<TermPasses> LinearTerm::passes(const TermSetting& setting) const {

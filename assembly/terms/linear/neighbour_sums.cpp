@@ -1,6 +1,8 @@
 #include "assembly/terms/linear/neighbour_sums.hpp"
 
+#include <array>
 #include <cmath>
+#include <utility>
 
 #include "assembly/convolutions/linear_bonds.hpp"
 
@@ -23,13 +25,15 @@ NeighbourSums neighbour_sums(const Bonds& bonds, std::span<const double> integri
 
 NeighbourSums neighbour_sums(const LatticeBox& box, std::span<const LatticeSpring> springs,
                              double micromodulus, std::span<const double> integrity, int threads) {
-  std::vector<double> weight, one(springs.size(), 1.0);
+  std::array<std::vector<double>, 2> kernels;
+  auto& [weight, one] = kernels;
+  one.assign(springs.size(), 1.0);
   for (const LatticeSpring& spring : springs) {
     const double length = std::hypot(spring.arm[0], spring.arm[1], spring.arm[2]);
     weight.push_back(spring.stiffness * length / micromodulus);
   }
-  NeighbourSums sums{lattice_sums(box, springs, weight, integrity, threads),
-                     lattice_sums(box, springs, one, integrity, threads)};
+  std::vector<std::vector<double>> found = lattice_sums(box, springs, kernels, integrity, threads);
+  NeighbourSums sums{std::move(found[0]), std::move(found[1])};
   for (std::size_t i = 0; i < integrity.size(); ++i) {
     sums.weight[i] *= integrity[i];
     sums.count[i] *= integrity[i];

@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::string_view magic = "peristat checkpoint";
 
-/// All values of a checkpoint in a row.
+/// All values of a checkpoint in a row, to be read.
 struct Packed {
   std::string entries;  ///< their names and sizes, a line each: see Entry
   std::vector<double> numbers;
@@ -64,6 +64,12 @@ Entry entry_for(const std::string& name, const std::vector<double>& values) {
   return {name, values.size(), fewest, true, not_0 <= not_1 ? 0.0 : 1.0};
 }
 
+template <class Value>
+void append(std::string& bytes, const Value* values, std::size_t count) {
+  bytes.append(reinterpret_cast<const char*>(values), count * sizeof(Value));
+}
+
+/// Takes arrays away from what it packs: beside each other they would need their memory twice.
 class Packer : public StateArchive {
  public:
   void transfer(const std::string& name, bool& value) override { integer(name, value ? 1 : 0); }
@@ -71,7 +77,7 @@ class Packer : public StateArchive {
   void transfer(const std::string& name, std::int64_t& value) override { integer(name, value); }
   void transfer(const std::string& name, double& value) override {
     entries_ << Entry{name, 1};
-    packed_.numbers.push_back(value);
+    numbers_.push_back({value});
   }
   void transfer(const std::string& name, std::vector<char>& values) override {
     integers(name, values);
@@ -82,31 +88,50 @@ class Packer : public StateArchive {
   void transfer(const std::string& name, std::vector<double>& values) override {
     const Entry entry = entry_for(name, values);
     entries_ << entry;
-    for (std::size_t k = 0; k < values.size(); ++k) {
-      if (entry.is_sparse && is_same(values[k], entry.usual)) continue;
-      packed_.numbers.push_back(values[k]);
-      if (entry.is_sparse) packed_.integers.push_back(static_cast<std::int64_t>(k));
+    if (!entry.is_sparse) {
+      numbers_.push_back(std::exchange(values, {}));
+      return;
     }
+    std::vector<double>& others = numbers_.emplace_back();
+    for (std::size_t k = 0; k < values.size(); ++k) {
+      if (is_same(values[k], entry.usual)) continue;
+      others.push_back(values[k]);
+      integers_.push_back(static_cast<std::int64_t>(k));
+    }
+    values = std::vector<double>();
   }
 
-  [[nodiscard]] Packed take() {
-    packed_.entries = entries_.str();
-    return std::move(packed_);
+  /// Entries, numbers and integers one after the other, behind how many there are of each; forgets
+  /// them.
+  void append_to(std::string& bytes) {
+    const std::string entries = entries_.str();
+    std::array<std::uint64_t, 3> sizes{entries.size(), 0, integers_.size()};
+    for (const std::vector<double>& part : numbers_) sizes[1] += part.size();
+    // A checksum follows.
+    bytes.reserve(bytes.size() + sizeof sizes + sizes[0] + 8 * (sizes[1] + sizes[2] + 1));
+    append(bytes, sizes.data(), sizes.size());
+    bytes += entries;
+    for (std::vector<double>& part : numbers_) {
+      append(bytes, part.data(), part.size());
+      part = std::vector<double>();
+    }
+    append(bytes, integers_.data(), integers_.size());
   }
 
  private:
   void integer(const std::string& name, std::int64_t value) {
     entries_ << Entry{name, 1};
-    packed_.integers.push_back(value);
+    integers_.push_back(value);
   }
   template <class Value>
   void integers(const std::string& name, const std::vector<Value>& values) {
     entries_ << Entry{name, values.size()};
-    packed_.integers.insert(packed_.integers.end(), values.begin(), values.end());
+    integers_.insert(integers_.end(), values.begin(), values.end());
   }
 
   std::ostringstream entries_;
-  Packed packed_;
+  std::vector<std::vector<double>> numbers_;
+  std::vector<std::int64_t> integers_;
 };
 
 class Unpacker : public StateArchive {
@@ -227,11 +252,6 @@ std::uint64_t checksum(std::string_view bytes) {
   return sum;
 }
 
-template <class Value>
-void append(std::string& bytes, const Value* values, std::size_t count) {
-  bytes.append(reinterpret_cast<const char*>(values), count * sizeof(Value));
-}
-
 /// Bytes, taken from the front.
 class Bytes {
  public:
@@ -281,15 +301,8 @@ void check_head(const std::string& line, const std::string& program) {
 std::string encode(Checkpoint checkpoint, const std::string& program) {
   Packer packer;
   transfer(packer, checkpoint);
-  const Packed packed = packer.take();
-  const std::array<std::uint64_t, 3> sizes{packed.entries.size(), packed.numbers.size(),
-                                           packed.integers.size()};
   std::string bytes = head_line(program);
-  bytes.reserve(bytes.size() + sizeof sizes + sizes[0] + 8 * (sizes[1] + sizes[2] + 1));
-  append(bytes, sizes.data(), sizes.size());
-  bytes += packed.entries;
-  append(bytes, packed.numbers.data(), packed.numbers.size());
-  append(bytes, packed.integers.data(), packed.integers.size());
+  packer.append_to(bytes);
   const std::uint64_t sum = checksum(bytes);
   append(bytes, &sum, 1);
   return bytes;

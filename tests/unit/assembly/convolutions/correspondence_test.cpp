@@ -7,11 +7,11 @@
 namespace peristat {
 namespace {
 
+using tests::both_dimensions;
 using tests::ForcesAndEnergies;
 using tests::HoledBody;
 using tests::Neighbour;
-
-constexpr std::array<bool, 3> open{};
+using tests::open;
 
 /// A stabilisation about as stiff as the material, so that neither hides the other.
 Correspondence::Setting setting_of(const HoledBody& body) {
@@ -21,8 +21,6 @@ Correspondence::Setting setting_of(const HoledBody& body) {
 Correspondence material_of(const HoledBody& body, int threads = 1) {
   return Correspondence(body.box, open, body.arms(), setting_of(body), threads);
 }
-
-std::vector<std::vector<int>> both_dimensions() { return {{13, 10}, {7, 6, 9}}; }
 
 /// Neighbour by neighbour, as the formulas are written.
 template <int D>
@@ -265,7 +263,7 @@ TEST(Correspondence, RemembersNothingElse) {
 }
 
 TEST(Correspondence, HasTheVirialsOfItsEnergies) {
-  for (const std::vector<int>& counts : {std::vector<int>{13, 10}, std::vector<int>{7, 6, 9}}) {
+  for (const std::vector<int>& counts : both_dimensions()) {
     const HoledBody body({counts});
     Correspondence material = material_of(body);
     material.set_integrity(body.mask());
@@ -281,10 +279,7 @@ TEST(Correspondence, SeesImages) {
 }
 
 TEST(Correspondence, IsOfPlanesAndSpaces) {
-  LatticeBox bar;
-  bar.dimension = 1;
-  bar.extent = {4, 1, 1};
-  bar.place = {0, 1, 2, 3};
+  const LatticeBox bar = tests::bar(4);
   const std::vector<LatticeArm> arms{{{1, 0, 0}, {0.1, 0.0, 0.0}, 1.0}};
   EXPECT_THROW(Correspondence(bar, open, arms, {{1.0, 1.0}, 1.0, 1.0}, 1), std::logic_error);
   EXPECT_THROW(Correspondence(tests::rectangle(3, 9), {true, false, false},

@@ -6,11 +6,12 @@
 namespace peristat {
 namespace {
 
+using tests::both_dimensions;
 using tests::ForcesAndEnergies;
 using tests::HoledBody;
 using tests::Neighbour;
+using tests::open;
 
-constexpr std::array<bool, 3> open{};
 constexpr double micromodulus_of_all = 2.3;
 
 std::vector<LatticeSpring> springs_of(const HoledBody& body) {
@@ -44,8 +45,6 @@ ForcesAndEnergies direct(const HoledBody& body, const std::vector<double>& q,
   }
   return sums;
 }
-
-std::vector<std::vector<int>> both_dimensions() { return {{13, 10}, {7, 6, 9}}; }
 
 TEST(GreenBonds, AreTheDirectSumsOverBonds) {
   std::vector<tests::HoledSetting> settings = tests::holed_settings();
@@ -180,7 +179,7 @@ TEST(GreenBonds, RememberNothingElse) {
 }
 
 TEST(GreenBonds, HaveTheVirialsOfTheirEnergies) {
-  for (const std::vector<int>& counts : {std::vector<int>{13, 10}, std::vector<int>{7, 6, 9}}) {
+  for (const std::vector<int>& counts : both_dimensions()) {
     const HoledBody body({counts});
     GreenBonds bonds = bonds_of(body);
     bonds.set_integrity(body.mask());

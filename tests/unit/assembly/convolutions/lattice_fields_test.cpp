@@ -46,6 +46,47 @@ TEST(LatticeFields, FindSumsOverNeighbours) {
   }
 }
 
+TEST(LatticeFields, KeepAnEighthOfTheModesWhereKernelsAreTheirMirrorImages) {
+  const HoledBody upright({{7, 6, 9}, 3.015}),
+      turned({{10, 13}, 2.015, VolumeCorrection::none, 27.0});
+  for (const HoledBody* body : {&upright, &turned}) {
+    const std::vector<LatticeArm> arms = body->arms();
+    LatticeFields fields(body->box, {}, steps_of(*body), 1);
+    const std::array<Index, 3> size = fields.transform().size();
+    const auto quarter =
+        std::size_t(size[0] / 2 + 1) * std::size_t(size[1] / 2 + 1) * std::size_t(size[2] / 2 + 1);
+    const auto of_length =
+        fields.spectrum(LatticeFields::Parity::even, [&](std::size_t s) { return arms[s].share; });
+    EXPECT_EQ(of_length.amplitudes.size(), quarter);
+    for (int c = 0; c < body->dimension(); ++c) {
+      const auto along = fields.spectrum(
+          LatticeFields::Parity::odd, [&](std::size_t s) { return arms[s].share * arms[s].xi[c]; });
+      // Axes of a turned body are none of the lattice's.
+      EXPECT_EQ(along.amplitudes.size(), body == &upright ? quarter : fields.transform().modes());
+    }
+    const auto across = fields.spectrum(LatticeFields::Parity::even, [&](std::size_t s) {
+      return arms[s].share * arms[s].xi[0] * arms[s].xi[1];
+    });
+    EXPECT_EQ(across.amplitudes.size(), body == &upright ? quarter : fields.transform().modes());
+  }
+}
+
+TEST(LatticeFields, CountPairs) {
+  const HoledBody body({{7, 6, 9}, 2.015});
+  LatticeFields fields(body.box, {}, steps_of(body), 1);
+  const std::vector<double> q = body.mask();
+  fields.set_integrity(q);
+  const std::vector<double> pairs = fields.pairs();
+  std::map<std::array<double, 3>, double> expected;
+  for (const tests::Neighbour& of : tests::neighbours(body)) expected[of.xi] += q[of.i] * q[of.j];
+  const std::vector<LatticeArm> arms = body.arms();
+  ASSERT_EQ(pairs.size(), arms.size());
+  for (std::size_t s = 0; s < arms.size(); ++s) {
+    ASSERT_GT(expected[arms[s].xi], 0.0);
+    EXPECT_NEAR(pairs[s], expected[arms[s].xi], 1e-12 * double(q.size()));
+  }
+}
+
 TEST(LatticeFields, TakeOffTheMeanOfThePointsThatAreThere) {
   const HoledBody body({{13, 10}});
   LatticeFields fields(body.box, {}, steps_of(body), 1);

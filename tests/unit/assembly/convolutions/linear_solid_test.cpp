@@ -10,11 +10,11 @@
 namespace peristat {
 namespace {
 
+using tests::both_dimensions;
 using tests::ForcesAndEnergies;
 using tests::HoledBody;
 using tests::Neighbour;
-
-constexpr std::array<bool, 3> open{};
+using tests::open;
 
 LinearSolid::Setting setting_of(const HoledBody& body, SolidForces form = SolidForces::energy) {
   return {{1.7, 0.9}, body.volume(), form};
@@ -82,7 +82,7 @@ TEST(LinearSolid, IsTheDirectSumsOverNeighbours) {
 }
 
 TEST(LinearSolid, IsTheEnergyOfStatesWithMomentsOfTheNeighboursThatAreThere) {
-  for (const std::vector<int>& counts : {std::vector<int>{13, 10}, std::vector<int>{7, 6, 9}}) {
+  for (const std::vector<int>& counts : both_dimensions()) {
     const HoledBody body({counts, 3.015, VolumeCorrection::linear});
     // Weights of bonds have K r beside the volumes.
     BondSetting bonds_setting;
@@ -111,7 +111,7 @@ TEST(LinearSolid, IsTheEnergyOfStatesWithMomentsOfTheNeighboursThatAreThere) {
 }
 
 TEST(LinearSolid, HasTheForcesAndTheTangentOfItsEnergy) {
-  for (const std::vector<int>& counts : {std::vector<int>{13, 10}, std::vector<int>{7, 6, 9}}) {
+  for (const std::vector<int>& counts : both_dimensions()) {
     const HoledBody body({counts});
     const std::vector<double> u = body.random(5), v = body.random(6), w = body.random(7);
     LinearSolid solid = solid_of(body);
@@ -160,7 +160,7 @@ TEST(LinearSolid, HasForcesThatAddUpToNothingButThePrintedOnesDoNot) {
 
 TEST(LinearSolid, FindsTheDilatationOfAUniformOneEverywhere) {
   // w = d^2 (lambda + 2 mu / d) e^2 V / 2 of u = e x, however many neighbours are left.
-  for (const std::vector<int>& counts : {std::vector<int>{13, 10}, std::vector<int>{7, 6, 9}}) {
+  for (const std::vector<int>& counts : both_dimensions()) {
     const HoledBody body({counts});
     LinearSolid solid = solid_of(body);
     const std::vector<double> q = body.mask();
@@ -178,7 +178,7 @@ TEST(LinearSolid, FindsTheDilatationOfAUniformOneEverywhere) {
 }
 
 TEST(LinearSolid, LosesNoDigitsFarAwayAndNothingByThreads) {
-  for (const std::vector<int>& counts : {std::vector<int>{13, 10}, std::vector<int>{7, 6, 9}}) {
+  for (const std::vector<int>& counts : both_dimensions()) {
     const HoledBody body({counts, 3.015});
     LinearSolid one = solid_of(body, SolidForces::energy, 1),
                 two = solid_of(body, SolidForces::energy, 2);
@@ -193,7 +193,7 @@ TEST(LinearSolid, LosesNoDigitsFarAwayAndNothingByThreads) {
 }
 
 TEST(LinearSolid, IsNothingWithoutNeighbours) {
-  for (const std::vector<int>& counts : {std::vector<int>{13, 10}, std::vector<int>{7, 6, 9}}) {
+  for (const std::vector<int>& counts : both_dimensions()) {
     const HoledBody body({counts});
     for (const SolidForces form : {SolidForces::energy, SolidForces::printed}) {
       LinearSolid solid = solid_of(body, form);
@@ -226,10 +226,7 @@ TEST(LinearSolid, TakesSoManyTransforms) {
 }
 
 TEST(LinearSolid, IsOfPlanesAndSpaces) {
-  LatticeBox bar;
-  bar.dimension = 1;
-  bar.extent = {4, 1, 1};
-  bar.place = {0, 1, 2, 3};
+  const LatticeBox bar = tests::bar(4);
   const std::vector<LatticeArm> arms{{{1, 0, 0}, {0.1, 0.0, 0.0}, 1.0}};
   EXPECT_THROW(LinearSolid(bar, open, arms, {{1.0, 1.0}, 1.0}, 1), std::logic_error);
 }
@@ -263,7 +260,7 @@ TEST(LinearSolid, IsOneOfBondsWhereLambdaIsMuAndNeighbourhoodsAreWhole) {
 }
 
 TEST(LinearSolid, HasTheVirialsOfItsEnergies) {
-  for (const std::vector<int>& counts : {std::vector<int>{13, 10}, std::vector<int>{7, 6, 9}}) {
+  for (const std::vector<int>& counts : both_dimensions()) {
     const HoledBody body({counts});
     LinearSolid solid = solid_of(body);
     solid.set_integrity(body.mask());
