@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "assembly/convolutions/linear_bonds.hpp"
 #include "src/core/dual.hpp"
 #include "src/measures/small_algebra.hpp"
 
@@ -102,6 +103,35 @@ double squares_of(const Vector<D, double>& u, const double* sum, const double* c
     }
   }
   return result;
+}
+
+/// Of y = xi + eta: sums of q' s y y, and of q' s g.
+template <int D>
+struct Blocks {
+  Matrix<D, double> squares;
+  double pull = 0.0;
+};
+
+template <int D>
+Blocks<D> blocks_of(const Vector<D, double>& u, const double* sum, const double* constants) {
+  using At = Sums<D>;
+  const double size = constants[Constants<D>::size];
+  const auto arm_with = [&](std::size_t j, std::size_t i) {  // sum q' s xi_j eta_i
+    return sum[At::arms + i * D + j] - u[i] * constants[Constants<D>::arms + j];
+  };
+  const auto square = [&](std::size_t i, std::size_t j) {  // sum q' s eta_i eta_j
+    return sum[At::squares + pair_of(int(i), int(j), D)] - u[i] * sum[At::sizes + j] -
+           u[j] * sum[At::sizes + i] + u[i] * u[j] * size;
+  };
+  Blocks<D> found;
+  for (std::size_t i = 0; i < D; ++i) {
+    found.pull += arm_with(i, i) + 0.5 * square(i, i);
+    for (std::size_t j = 0; j < D; ++j) {
+      found.squares[i][j] =
+          constants[pair_of(int(i), int(j), D)] + arm_with(i, j) + arm_with(j, i) + square(i, j);
+    }
+  }
+  return found;
 }
 
 template <int D>
@@ -301,33 +331,41 @@ void GreenBonds::find_rates(std::span<double> product) {
   });
 }
 
-void GreenBonds::outline_tangent(std::span<double> diagonal, std::span<double> row_sums) {
+void GreenBonds::outline_tangent(std::span<const double> displacement, std::span<double> diagonal,
+                                 std::span<double> row_sums) {
+  take_up(displacement);  // energies need its fields
   std::vector<double> bounds(row_sums.size());
   with_dimension(fields_.dimension(),
                  [&](auto dimension) { outline<decltype(dimension)::value>(diagonal, bounds); });
   add_rounded_up(bounds, row_sums);
 }
 
-/// At rest K has -q q' k n n of bonds and their sums on its diagonal.
+/// With y = xi + eta, K has -q q' s (y y + g) of bonds and their sums on its diagonal. Of a row of
+/// the former Cauchy's inequality knows more than each component's sum of squares:
+/// sum q' s |y_r y_c| is not more than the root of the product of those of y_r and y_c, nor is
+/// sum q' s |g| more than that of sum q' s and sum q' s g^2.
 template <int D>
 void GreenBonds::outline(std::span<double> diagonal, std::span<double> row_sums) {
-  fields_.fill(0, [](std::size_t) { return 1.0; });
-  for (int r = 0; r < D; ++r) {
-    const LatticeSpectrum magnitudes = fields_.spectrum(Parity::even, [&](std::size_t s) {
-      const Coordinates& n = springs_[s].direction;
-      return springs_[s].stiffness * std::abs(n[r]) *
-             (std::abs(n[0]) + std::abs(n[1]) + std::abs(n[2]));
-    });
-    fields_.find_sums(magnitudes, 0, [&](std::size_t i, double sum) {
-      const std::size_t row = i * D + std::size_t(r);
-      for (int c = 0; c < D; ++c) {
-        const double entry = constants_[i * Constants<D>::count + pair_of(r, c, D)];
-        diagonal[row * D + std::size_t(c)] += fields_.integrity(i) * entry;
-        sum += std::abs(entry);
+  std::vector<double> energy(fields_.points());
+  find_energies<D>(energy);
+  fields_.for_points([&](std::size_t i) {
+    const double q = fields_.integrity(i);
+    if (q == 0.0) return;
+    const double* const constants = &constants_[i * Constants<D>::count];
+    const auto [squares, pull] =
+        blocks_of<D>(vector_at<D>(displacement_, i), &sums_[i * Sums<D>::count], constants);
+    const double of_pulls =
+        std::sqrt(std::max(constants[Constants<D>::size] * 4.0 * energy[i] / q, 0.0));
+    for (std::size_t r = 0; r < D; ++r) {
+      double row = of_pulls;
+      for (std::size_t c = 0; c < D; ++c) {
+        const double entry = squares[r][c] + (r == c ? pull : 0.0);
+        diagonal[(i * D + r) * D + c] += q * entry;
+        row += std::abs(entry) + std::sqrt(std::max(squares[r][r] * squares[c][c], 0.0));
       }
-      row_sums[row] = fields_.integrity(i) * sum;
-    });
-  }
+      row_sums[i * D + r] = q * row;
+    }
+  });
 }
 
 void GreenBonds::add_virials(std::span<const double> displacement, std::span<double> virials) {
@@ -356,6 +394,15 @@ void GreenBonds::add_virials(const std::vector<double>& u, std::span<double> vir
       }
     });
   }
+}
+
+double GreenBonds::expected_bytes(const LatticeBox& box, std::span<const LatticeSpring> springs) {
+  const double d = box.dimension, pairs = d * (d + 1.0) / 2.0;
+  // Of a place the fields and their sum, and kernels on half of the modes; of a point where it is
+  // and its integrity, three displacements, and sums and rates beside those of kernels.
+  return 8.0 * padded_places(box, springs) * (2.0 * d + pairs + 2.0 + 0.5 * (pairs + d + 1.0)) +
+         8.0 * double(box.place.size()) *
+             (2.0 + 3.0 * d + 2.0 * (2.0 * d + d * d + pairs) + pairs + d + 1.0);
 }
 
 double GreenBonds::bytes() const {

@@ -45,10 +45,14 @@ class GreenBonds : public LatticeForces {
   /// As many as for forces, if those at u were the last ones that were found; twice otherwise.
   void multiply(std::span<const double> displacement, std::span<const double> v,
                 std::span<double> product) override;
-  /// Blocks are exact, and the sums as exact as |n_i n_j| of the bonds is.
-  void outline_tangent(std::span<double> diagonal, std::span<double> row_sums) override;
+  /// Blocks are exact, at the cost of energies; sums are up to half as much again as they must be.
+  void outline_tangent(std::span<const double> displacement, std::span<double> diagonal,
+                       std::span<double> row_sums) override;
   /// By the kernels times each component of xi, which are made and dropped again.
   void add_virials(std::span<const double> displacement, std::span<double> virials) override;
+  /// Memory that one holds that has multiplied and told energies.
+  [[nodiscard]] static double expected_bytes(const LatticeBox& box,
+                                             std::span<const LatticeSpring> springs);
   /// Memory that it holds.
   [[nodiscard]] double bytes() const;
 

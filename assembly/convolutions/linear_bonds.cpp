@@ -266,7 +266,8 @@ void LinearBonds::multiply(std::span<const double> /*displacement*/, std::span<c
   for (double& entry : product) entry = -entry;
 }
 
-void LinearBonds::outline_tangent(std::span<double> diagonal, std::span<double> row_sums) {
+void LinearBonds::outline_tangent(std::span<const double> /*displacement*/,
+                                  std::span<double> diagonal, std::span<double> row_sums) {
   const auto d = std::size_t(dimension_);
   for (std::size_t i = 0; i < std::size_t(points_); ++i) {
     const double* const sum = &sums_[i * pairs()];
@@ -295,10 +296,15 @@ LatticeStencil lattice_stencil(const LatticeBox& box, std::span<const LatticeSpr
   return stencil_of(transform, places_of(box, transform), integrity, springs, box.dimension);
 }
 
-double convolved_bytes(const LatticeBox& box, std::span<const LatticeSpring> springs) {
+double padded_places(const LatticeBox& box, std::span<const LatticeSpring> springs) {
   double places = 1.0;
   const std::array<ConvolutionAxis, 3> axes = axes_of(box, {}, springs);
   for (std::size_t a = 0; a < 3; ++a) places *= double(axes[a].size(a == 2));
+  return places;
+}
+
+double convolved_bytes(const LatticeBox& box, std::span<const LatticeSpring> springs) {
+  const double places = padded_places(box, springs);
   const double d = box.dimension, pairs = d * (d + 1.0) / 2.0;
   // Of a place fields by component and two for energies, and amplitudes of half of the modes; of a
   // point where it is, its integrity, sums and displacement.

@@ -211,7 +211,8 @@ void LinearSolid::multiply(std::span<const double> /*displacement*/, std::span<c
   for (double& entry : product) entry = -entry;
 }
 
-void LinearSolid::outline_tangent(std::span<double> diagonal, std::span<double> row_sums) {
+void LinearSolid::outline_tangent(std::span<const double> /*displacement*/,
+                                  std::span<double> diagonal, std::span<double> row_sums) {
   std::vector<double> bounds(row_sums.size());
   if (fields_.dimension() == 2) {
     outline_blocks<2>(diagonal);

@@ -14,17 +14,18 @@ std::vector<double> ConvolvedTangent::positions() const {
   return at_.positions(energy_->points().reference);
 }
 
-void ConvolvedTangent::linearise(Energy& energy, const StateView& at, double /*projection*/) {
+void ConvolvedTangent::linearise(Energy& energy, const StateView& at, double projection) {
   energy_ = &energy;
   reference = energy.points().reference;
   at_.keep(at);
+  projection_ = projection;
   std::fill(diagonal.begin(), diagonal.end(), 0.0);
   std::fill(row_sums_.begin(), row_sums_.end(), 0.0);
   energy.outline_rows(at, diagonal, row_sums_);
 }
 
 void ConvolvedTangent::multiply(std::span<const double> v, std::span<double> result) const {
-  energy_->product(at_.view(), v, result, 0.0);
+  energy_->product(at_.view(), v, result, projection_);
 }
 
 void ConvolvedTangent::for_each_row(const RowVisitor&) const {
@@ -34,6 +35,8 @@ void ConvolvedTangent::for_each_row(const RowVisitor&) const {
 void ConvolvedTangent::absolute_row_sums(std::span<double> sums) const {
   std::copy(row_sums_.begin(), row_sums_.end(), sums.begin());
 }
+
+bool ConvolvedTangent::is_symmetric() const { return energy_->has_potential(); }
 
 LatticeStencil ConvolvedTangent::stencil() const { return energy_->stencil(at_.view()); }
 

@@ -14,7 +14,7 @@ struct ConvolvedTangent : TangentOperator {
   explicit ConvolvedTangent(Energy& energy);
 
   [[nodiscard]] std::vector<double> positions() const override;
-  /// Whatever the projection: the forces are linear.
+  /// @param projection see TermPasses::product; diagonal blocks and sums are without
   void linearise(Energy& energy, const StateView& at, double projection) override;
   void multiply(std::span<const double> v, std::span<double> result) const override;
   /// @throws std::logic_error
@@ -22,10 +22,13 @@ struct ConvolvedTangent : TangentOperator {
   /// Numbers that are not less.
   void absolute_row_sums(std::span<double> sums) const override;
   [[nodiscard]] LatticeStencil stencil() const override;
+  /// That of forces without a potential is not.
+  [[nodiscard]] bool is_symmetric() const override;
 
  private:
   Energy* energy_;
   KeptState at_;
+  double projection_ = 0.0;
   std::vector<double> row_sums_;
 };
 

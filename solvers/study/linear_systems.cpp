@@ -244,9 +244,10 @@ LinearSystems choose_linear_systems(const StudyOptions& options, const Body& bod
 
 std::unique_ptr<TangentOperator> LinearSystems::make_tangent(Assembler& assembler,
                                                              const Constraints& constraints) const {
-  if (!assembler.has_potential()) return std::make_unique<RowsOfEnergy>(assembler);
+  const bool is_convolved = !assembler.has_rows();
+  if (!is_convolved && !assembler.has_potential()) return std::make_unique<RowsOfEnergy>(assembler);
   if (!constraints.none()) return std::make_unique<ConstrainedTangent>(assembler, constraints);
-  if (!assembler.has_rows()) return std::make_unique<ConvolvedTangent>(assembler);
+  if (is_convolved) return std::make_unique<ConvolvedTangent>(assembler);
   if (!is_stored) return std::make_unique<MatrixFreeTangent>(assembler);
   return std::make_unique<Tangent>(assembler);
 }

@@ -36,7 +36,7 @@ std::vector<double> out_of_plane(const Body& body) {
   const bool is_plane_strain = model != MaterialModel::cpd && body.points.dimension == 2 &&
                                body.setting.plane == PlaneState::strain;
   if (!is_plane_strain) return {0.0};
-  if (model == MaterialModel::bond) return {poisson_ratio(body.setting)};
+  if (has_bonds(model)) return {poisson_ratio(body.setting)};
   const PointMaterials materials(body.specification, body.points);
   const auto& all = materials.all();
   std::vector<double> ratios;
