@@ -140,7 +140,8 @@ std::string check_energies(const Balances& owed, const FoundState& found) {
   constexpr double round_off = 1e-12;
   const auto& [before, after] = std::pair(found.before, found.after);
   if (!owed.potential) return {};  // work is not stored
-  if (owed.positive_energy && after.stored < -round_off * after.dissipated) {
+  if (owed.positive_energy &&
+      after.stored < -round_off * after.dissipated - found.trial.energy_round_off) {
     return "the stored energy is " + number_text(after.stored) + " J";
   }
   const double dissipated = after.dissipated - before.dissipated;

@@ -60,11 +60,9 @@ LineSearchResult line_search(const EquilibriumProblem& problem,
   if (result.outcome != Outcome::converged) return result;
 
   const double work = dot(external_force, from.displacement);
-  // Energies by convolutions are differences of what goes with squared displacements: of a body of
-  // a hundred horizons they lose four digits more.
-  const double units = problem.assembler.has_rows() ? 64.0 : 64e4;
-  const double round_off = units * std::numeric_limits<double>::epsilon() *
-                           std::max(std::abs(from.stored_energy), std::abs(work));
+  const double round_off = 64.0 * std::numeric_limits<double>::epsilon() *
+                               std::max(std::abs(from.stored_energy), std::abs(work)) +
+                           from.energy_round_off;
   trial.history = from.history;
   trial.environment = from.environment;
   double length = 1.0;

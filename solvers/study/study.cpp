@@ -24,14 +24,7 @@ void refuse_modes_without_potential(const Body& body, const StudyOptions& option
   if (body.model.balances().potential) return;
   const bool is_explicit = options.loading.mode == Mode::dynamics &&
                            options.loading.dynamics.scheme == MotionScheme::verlet;
-  if (body.specification.is_convolved()) {  // no rows to solve with
-    if (is_explicit) return;
-    const std::string why =
-        "is for models with an energy; form \"printed\" takes mode dynamics with scheme "
-        "\"verlet\", and form \"energy\" everything";
-    if (options.loading.mode == Mode::dynamics) throw InputError("dynamics.scheme", "newmark", why);
-    throw InputError("loading.mode", std::string(options.loading.mode.name), why);
-  }
+  if (body.specification.is_convolved()) return;  // choose_linear_systems knows what moves them
   if (is_explicit) {
     throw InputError("dynamics.scheme", "verlet",
                      "is for models with an energy; \"lps\" moves by \"newmark\"");

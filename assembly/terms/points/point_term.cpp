@@ -166,13 +166,31 @@ class PointPasses : public TermPasses {
     forces_->find_forces_and_energies(displacement, force_, energy_);
   }
 
+  [[nodiscard]] Coordinates mean_of(std::span<const double> displacement) const {
+    Coordinates mean{};
+    for (std::size_t k = 0; k < displacement.size(); ++k) mean[k % dimension_] += displacement[k];
+    for (double& of_component : mean) of_component /= double(volume_.size());
+    return mean;
+  }
+
+  /// Sums over neighbours are of squared displacements with the stiffness of all springs.
+  [[nodiscard]] double round_off_at(std::span<const double> displacement) const {
+    const Coordinates mean = mean_of(displacement);
+    double squares = 0.0, stiffness = 0.0;
+    for (std::size_t k = 0; k < displacement.size(); ++k) {
+      squares +=
+          (displacement[k] - mean[k % dimension_]) * (displacement[k] - mean[k % dimension_]);
+    }
+    for (const LatticeSpring& spring : term_.lattice()->springs)
+      stiffness += 2.0 * spring.stiffness;
+    return std::numeric_limits<double>::epsilon() * stiffness * squares;
+  }
+
   /// Of linear forces with a potential -u.f/2, u without its mean: forces add up to zero, but for
   /// round-off.
   [[nodiscard]] double stored(std::span<const double> displacement) const {
     if (!has_half_work_) return std::accumulate(energy_.begin(), energy_.end(), 0.0);
-    std::array<double, 3> mean{};
-    for (std::size_t k = 0; k < displacement.size(); ++k) mean[k % dimension_] += displacement[k];
-    for (double& of_component : mean) of_component /= double(volume_.size());
+    const Coordinates mean = mean_of(displacement);
     double work = 0.0;
     for (std::size_t k = 0; k < displacement.size(); ++k) {
       work += (displacement[k] - mean[k % dimension_]) * force_[k];
@@ -188,6 +206,7 @@ class PointPasses : public TermPasses {
     }
     Evaluation found;
     found.energy = stored(displacement);
+    if (!has_half_work_) found.round_off = round_off_at(displacement);
     found.degenerate = !std::isfinite(found.energy);
     return found;
   }

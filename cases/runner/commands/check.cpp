@@ -207,7 +207,7 @@ void print_constants(const Case& from, const Body& body, int threads) {
       print_cpd_constants(material, name, body);
   }
   if (from.material.model == MaterialModel::bond) print_quadrature(from, body, threads);
-  if (from.material.model == MaterialModel::lps) print_collocation(from, body);
+  if (from.is_collocated()) print_collocation(from, body);
   for (const auto& material : all) {
     print_fracture(material, from.regions.empty() ? "" : material.name, body.setting,
                    body.points.spacing);
