@@ -17,7 +17,7 @@ struct DamageGrowth {
 
 /// What a pass over the interactions finds besides what it adds up.
 struct Evaluation {
-  double energy = 0.0;  ///< [J]
+  double energy = 0.0;      ///< [J]
   bool degenerate = false;  ///< a measure without gradient at zero has reached it, or a value is
                             ///< not finite: reject the state
   DamageGrowth growth{};    ///< only of a pass that commits

@@ -13,6 +13,7 @@ GREEN = ['material={model="green_bond", youngs_modulus=70e9}', "solver.operator=
 CORRESPONDENCE = ['material={model="correspondence", youngs_modulus=70e9, poisson_ratio=0.2}', "solver.operator=fft"]
 MODELS = {"green_bond": GREEN, "correspondence": CORRESPONDENCE}
 STRETCHED = ['support[1].displacement=["1e-3*load", "2e-4*load"]', "loading.steps=2"]  # by 5 %
+FAILING = 'material.damage={law="energy_density", fracture_energy=8e4, no_fail=["left", "right"]}'
 CUBE = """\
 dimension = 3
 lattice = {spacing = 0.1, shape = [{add = "box", min = [0, 0, 0], max = [0.9, 0.4, 0.5]}]}
@@ -233,8 +234,8 @@ class Statics(CommandLine):
             c, s = math.cos(math.pi / 6), math.sin(math.pi / 6)
             expected = x @ numpy.array([[c, s], [-s, c]]) - x
             numpy.testing.assert_allclose(run.displacement[:, :2], expected, atol=1e-9 * abs(expected).max(), err_msg=name)
-            # Strains of 1e-10 in the place of a half.
-            self.assertLess(abs(run.summary["energy"]["stored"]), 1e-15 * 70e9 * run.volume.sum())
+            # Round-off of energies that go with squared displacements, of some horizons here; 0.1 without the turn.
+            self.assertLess(abs(run.summary["energy"]["stored"]), 1e-14 * 70e9 * run.volume.sum())
 
     def test_the_modulus_of_a_correspondence_material(self):
         # A plate that is pulled on all of its boundary as St. Venant and Kirchhoff would have it.
@@ -261,9 +262,8 @@ class Statics(CommandLine):
             self.assertEqual(ended.code, 0, name + ended.said)
 
     def test_threads_change_no_bit(self):
-        failing = 'material.damage={law="energy_density", fracture_energy=2.5e4, no_fail=["left", "right"]}'
         for name, model in MODELS.items():
-            one, two = (self.results(STRIP, *model, failing, *STRETCHED, threads=threads) for threads in (1, 2))
+            one, two = (self.results(STRIP, *model, FAILING, *STRETCHED, "loading.steps=4", threads=threads) for threads in (1, 2))
             self.assertGreater((one.damage == 1.0).sum(), 0, name)
             for field, values in one.fields.items():
                 numpy.testing.assert_array_equal(values, two.fields[field], f"{name} {field}")
@@ -342,9 +342,8 @@ class Motions(CommandLine):
         self.assertAlmostEqual(said["green_bond"] / said["bond"], 1.0, delta=0.02)
 
     def test_a_run_that_goes_on_is_the_whole_one(self):
-        failing = 'material.damage={law="energy_density", fracture_energy=2.5e4, no_fail=["left", "right"]}'
         for name, model in MODELS.items():
-            given = [*model, failing, *STRETCHED, "loading.steps=4"]
+            given = [*model, FAILING, *STRETCHED, "loading.steps=4"]
             whole = self.results(STRIP, *given)
             (self.folder / "out").rename(self.folder / name)
             ended = peristat("run", self.path_of(STRIP), "--output", self.folder / "out", "--quiet", "--no-plots", "--threads", 1,
