@@ -146,7 +146,8 @@ Vector<D, double> vector_at(const std::vector<double>& field, std::size_t point)
 GreenBonds::GreenBonds(const LatticeBox& box, const std::array<bool, 3>& is_periodic,
                        std::span<const LatticeSpring> springs, int threads)
     : springs_(springs.begin(), springs.end()),
-      fields_(box, is_periodic, steps_of(springs), threads) {
+      fields_(box, is_periodic, steps_of(springs), threads),
+      turns_(box, is_periodic, springs) {
   kernels_ = make_kernels(false, [](const LatticeSpring&) { return 1.0; });
   for (const LatticeSpring& spring : springs_) whole_size_ += 2.0 * size_of(spring);
   set_integrity(std::vector<double>(box.place.size(), 1.0));
@@ -243,10 +244,20 @@ void GreenBonds::find_sums(const Kernels& kernels, const Get& get, std::vector<d
   }
 }
 
+void GreenBonds::take_off_motion(std::span<const double> displacement, LatticeTurn& turn,
+                                 std::vector<double>& u) const {
+  fields_.take_off_mean(displacement, u);
+  turn = turns_.find(fields_, u);
+  if (turn.is_one) return;
+  std::vector<double> turned = u;
+  turns_.take_off(turn, turned);
+  fields_.take_off_mean(turned, u);
+}
+
 /// Sums of u, unless they are known.
 void GreenBonds::take_up(std::span<const double> displacement) {
   state_.assign(displacement.begin(), displacement.end());
-  fields_.take_off_mean(displacement, displacement_);
+  take_off_motion(displacement, turn_, displacement_);
   with_dimension(fields_.dimension(), [&](auto dimension) {
     constexpr int D = decltype(dimension)::value;
     find_sums<D>(
@@ -269,6 +280,7 @@ void GreenBonds::find_forces(std::span<const double> displacement, std::span<dou
   take_up(displacement);
   with_dimension(fields_.dimension(),
                  [&](auto dimension) { add_up<decltype(dimension)::value>(force); });
+  turn_.put_on(fields_.dimension(), force);
 }
 
 void GreenBonds::find_forces_and_energies(std::span<const double> displacement,
@@ -305,8 +317,10 @@ void GreenBonds::multiply(std::span<const double> displacement, std::span<const 
                           std::span<double> product) {
   if (!std::ranges::equal(displacement, state_)) take_up(displacement);
   fields_.take_off_mean(v, direction_);
+  turn_.take_off(fields_.dimension(), direction_);
   with_dimension(fields_.dimension(),
                  [&](auto dimension) { find_rates<decltype(dimension)::value>(product); });
+  turn_.put_on(fields_.dimension(), product);
 }
 
 template <int D>
@@ -356,28 +370,37 @@ void GreenBonds::outline(std::span<double> diagonal, std::span<double> row_sums)
         blocks_of<D>(vector_at<D>(displacement_, i), &sums_[i * Sums<D>::count], constants);
     const double of_pulls =
         std::sqrt(std::max(constants[Constants<D>::size] * 4.0 * energy[i] / q, 0.0));
+    Matrix<D, double> block = squares;
+    Vector<D, double> rows;
     for (std::size_t r = 0; r < D; ++r) {
-      double row = of_pulls;
+      block[r][r] += pull;
+      rows[r] = of_pulls;
       for (std::size_t c = 0; c < D; ++c) {
-        const double entry = squares[r][c] + (r == c ? pull : 0.0);
-        diagonal[(i * D + r) * D + c] += q * entry;
-        row += std::abs(entry) + std::sqrt(std::max(squares[r][r] * squares[c][c], 0.0));
+        rows[r] += std::abs(block[r][c]) + std::sqrt(std::max(squares[r][r] * squares[c][c], 0.0));
       }
-      row_sums[i * D + r] = q * row;
+    }
+    turn_.bound<D>(rows);
+    turn_.put_on<D>(block);
+    for (std::size_t r = 0; r < D; ++r) {
+      row_sums[i * D + r] = q * rows[r];
+      for (std::size_t c = 0; c < D; ++c) diagonal[(i * D + r) * D + c] += q * block[r][c];
     }
   });
 }
 
 void GreenBonds::add_virials(std::span<const double> displacement, std::span<double> virials) {
   std::vector<double> u;  // products may be asked for at the state that is known
-  fields_.take_off_mean(displacement, u);
-  with_dimension(fields_.dimension(),
-                 [&](auto dimension) { add_virials<decltype(dimension)::value>(u, virials); });
+  LatticeTurn turn;
+  take_off_motion(displacement, turn, u);
+  with_dimension(fields_.dimension(), [&](auto dimension) {
+    add_virials<decltype(dimension)::value>(u, turn, virials);
+  });
 }
 
 /// q / 2 sum q' s g (xi + eta) xi per point: forces with kernels times a component of xi.
 template <int D>
-void GreenBonds::add_virials(const std::vector<double>& u, std::span<double> virials) {
+void GreenBonds::add_virials(const std::vector<double>& u, const LatticeTurn& turn,
+                             std::span<double> virials) {
   std::vector<double> constants, sums;
   for (std::size_t c = 0; c < D; ++c) {
     const Kernels kernels = make_kernels(true, [c](const LatticeSpring& of) { return of.arm[c]; });
@@ -386,9 +409,10 @@ void GreenBonds::add_virials(const std::vector<double>& u, std::span<double> vir
         kernels, [&](std::size_t x) { return vector_at<D>(u, x); }, sums);
     fields_.for_points([&](std::size_t i) {
       const double* const of_point = &sums[i * Sums<D>::count];
-      const Vector<D, double> found = force_of<D>(
+      Vector<D, double> found = force_of<D>(
           vector_at<D>(u, i), [&](std::size_t k) { return of_point[k]; },
           &constants[i * Constants<D>::count]);
+      turn.put_on(D, found);
       for (std::size_t a = 0; a < D; ++a) {
         virials[(i * D + a) * D + c] += 0.5 * fields_.integrity(i) * found[a];
       }
@@ -399,10 +423,11 @@ void GreenBonds::add_virials(const std::vector<double>& u, std::span<double> vir
 double GreenBonds::expected_bytes(const LatticeBox& box, std::span<const LatticeSpring> springs) {
   const double d = box.dimension, pairs = d * (d + 1.0) / 2.0;
   // Of a place the fields and their sum, and kernels on half of the modes; of a point where it is
-  // and its integrity, three displacements, and sums and rates beside those of kernels.
+  // and its integrity, three displacements and its place, and sums and rates beside those of
+  // kernels.
   return 8.0 * padded_places(box, springs) * (2.0 * d + pairs + 2.0 + 0.5 * (pairs + d + 1.0)) +
          8.0 * double(box.place.size()) *
-             (2.0 + 3.0 * d + 2.0 * (2.0 * d + d * d + pairs) + pairs + d + 1.0);
+             (2.0 + 4.0 * d + 2.0 * (2.0 * d + d * d + pairs) + pairs + d + 1.0);
 }
 
 double GreenBonds::bytes() const {
@@ -412,7 +437,7 @@ double GreenBonds::bytes() const {
     numbers += double(kept->size());
   }
   const auto spectra = double(kernels_.square.size() + kernels_.arm.size() + 1);
-  return 8.0 * numbers + fields_.bytes() + spectra * fields_.spectrum_bytes();
+  return 8.0 * numbers + fields_.bytes() + turns_.bytes() + spectra * fields_.spectrum_bytes();
 }
 
 }  // namespace peristat
