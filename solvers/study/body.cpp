@@ -10,6 +10,7 @@
 #include <omp.h>
 
 #include "assembly/terms/damage.hpp"
+#include "assembly/terms/points/point_term.hpp"
 #include "assembly/terms/pressure/pressure_term.hpp"
 #include "assembly/terms/springs/foundation_term.hpp"
 #include "assembly/terms/springs/inertia_term.hpp"
@@ -362,6 +363,11 @@ std::vector<std::string> describe_interactions(const Body& body) {
       lines.push_back(
           fmt::format("{} {}; per point {} to {}", kind.count, kind.name, *least, *most));
     }
+  }
+  const auto* const points = dynamic_cast<const PointTerm*>(body.model.bond_term().get());
+  if (points != nullptr && points->is_convolved()) {
+    lines.push_back(fmt::format("summed by convolutions over a box of {} places",
+                                points->lattice()->box.count()));
   }
   const InteractionStorage& storage = body.interaction_storage;
   if (storage.needed > 0.0) {

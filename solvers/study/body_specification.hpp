@@ -49,7 +49,7 @@ enum class Calibration { lattice, continuum };
 enum class Kinematics { finite, linear };
 
 /// How forces of linear kinematics are summed: bond by bond, or by convolutions on a lattice.
-enum class ForceOperator { bonds, fft };
+enum class ForceOperator { automatic, bonds, fft };
 
 /// How bonds fail, or points.
 enum class DamageLaw {
@@ -203,7 +203,8 @@ struct BodySpecification {
   /// them. A body does not keep them.
   std::shared_ptr<const BodyBoundary> boundary{};
   std::vector<std::string> boundary_names{};
-  ForceOperator force_operator = ForceOperator::bonds;  ///< of linear kinematics
+  ForceOperator force_operator =
+      ForceOperator::bonds;  ///< of linear kinematics; see faster_operator
   std::vector<Crack> cracks{};
   /// Of the points in no region. Without constants every point has to be in one.
   MaterialSpecification material{};

@@ -21,4 +21,9 @@ namespace peristat {
                                       const Points& points, const BondSetting& setting, Bonds bonds,
                                       CutBonds& cut, int threads);
 
+/// The operator that sums a body's forces sooner, for a motion by explicit steps; of others, which
+/// have more than forces to find, bonds. What convolutions alone sum is theirs.
+[[nodiscard]] ForceOperator faster_operator(const BodySpecification& from, const Points& points,
+                                            bool is_explicit);
+
 }  // namespace peristat

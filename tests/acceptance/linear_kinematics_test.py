@@ -452,6 +452,29 @@ class Refusals(CommandLine):
                     self.assertIn(word, ended.said)
 
 
+class SoonerOperator(CommandLine):
+    def test_auto_takes_convolutions_where_they_are_sooner(self):
+        finer = ["lattice.spacing=1e-3", "lattice.horizon_ratio=5.1"]
+        for case, settings, convolved in (
+            (WAVES, [], True),
+            (WAVES, ["lattice.horizon_ratio=2.1"], False),
+            (WAVES, ["lattice.perturbation=0.1"], False),
+            (WAVES, ["quadrature.surface_correction=volume"], False),
+            (STRIP, finer, False),
+            (STRIP, ["material.model=green_bond", "material.kinematics=finite"], True),
+        ):
+            with self.subTest(settings=settings):
+                given = [word for setting in ["solver.operator=auto", *settings] for word in ("--set", setting)]
+                ended = peristat("check", self.path_of(case), *given)
+                self.assertEqual(ended.code, 0, ended.said)
+                self.assertEqual("summed by convolutions" in ended.said, convolved)
+
+    def test_both_move_alike(self):
+        steps = "dynamics={end_time=2e-5, time_step=1e-7}"  # the stable step is known to some digits only
+        auto = self.results(WAVES, steps, "solver.operator=auto")
+        self.same(self.results(WAVES, steps, "solver.operator=bonds"), auto, share=1e-9)
+
+
 class Calibration(CommandLine):
     def test_of_points_that_fail(self):
         ended = peristat("calibrate", self.path_of(STRIP), "--set", FAILING)

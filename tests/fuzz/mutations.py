@@ -31,12 +31,14 @@ WORDS = """dimension title lattice points spacing horizon_ratio thickness area o
     rule fibre angle direction transverse_modulus shear_modulus transverse_critical scatter of distribution weibull_modulus
     correlation_length rigid roller at normal constraint term symmetry period gradient rotation gravity traction pressure depth eigenstrain
     strain temperature change thermal_expansion volumes neighbours dynamics end_time time_step step_share history_every initial velocity scheme
-    spectral_radius absorbing degree traction_form boundary statistic expected""".split()
+    spectral_radius absorbing degree traction_form boundary statistic expected
+    kinematics operator stabilisation foundation""".split()
 CHOICES = """rms_error max_error divergence blue_noise none linear exact exact_centroids volume energy mean bulk bond cpd lps collocation full paper surface stress strain lattice continuum critical_stretch tanh tanh_continuous linear exponential blended piecewise_constant cubic quintic septic gaussian inverse newton
     relaxation adaptive flow dynamic auto cholesky pcg minres gmres lu bicgstab local_operator jacobi block_jacobi rigid_pieces surrogate riluk chebyshev multigrid stored
     matrix_free consistent never always hold remove stop fixed moving at_equilibrium transient kinetic cell_centres nodes box disk polygon
     cylinder sphere x- x+ y- y+ z- z+ displacement force damage stretch energy_density poisson_ratio opening crack_length crack_angle
-    arc_length dynamics verlet newmark branch straight cells fractional harmonic arithmetic weaker stiffness strength weibull row horizon x y z""".split()
+    arc_length dynamics verlet newmark branch straight cells fractional harmonic arithmetic weaker stiffness strength weibull row horizon x y z
+    fft bonds finite green_bond correspondence printed sines""".split()
 KEYS = """dimension lattice.spacing lattice.horizon_ratio lattice.thickness lattice.area lattice.origin lattice.points lattice.lloyd_steps lattice.perturbation lattice.cell_perturbation lattice.seed
     lattice.shape[0].min lattice.shape[0].max lattice.shape[0].add lattice.shape[1].radius lattice.shape[9].add lattice.layer[0].thickness
     lattice.layer[0].where points.horizon points.file set[0].where crack[0].from crack[0].to crack[0].outline quadrature.volume_correction
@@ -57,7 +59,8 @@ KEYS = """dimension lattice.spacing lattice.horizon_ratio lattice.thickness latt
     period[0].to period[0].gradient period[1].gradient period[1].axis load[0].gravity load[0].traction load[0].depth load[0].side
     load[0].pressure load[1].pressure load[1].total_force eigenstrain[0].strain eigenstrain[0].set temperature.change
     dynamics.end_time dynamics.time_step dynamics.step_share dynamics.history_every initial[0].set initial[0].displacement initial[0].velocity
-    dynamics.scheme dynamics.spectral_radius absorbing[0].rate absorbing[0].set
+    dynamics.scheme dynamics.spectral_radius absorbing[0].rate absorbing[0].set material.kinematics solver.operator material.stabilisation
+    material.damage.fracture_energy
     relaxation.quiet_iterations relaxation.displacement_tolerance relaxation.method relaxation.flow_tolerance relaxation.peak_tolerance output.every output.count_cracks probe[0].field probe[0].set probe[0]
     [[ ]. .. a.b.c lattice lattice. .lattice support[-1].set support[99999999999].set support[0]""".split()
 

@@ -8,6 +8,7 @@
 
 #include "solvers/linear/available_memory.hpp"
 #include "solvers/study/bond_materials.hpp"
+#include "solvers/study/linear_model.hpp"
 #include "src/connectivity/free_motion.hpp"
 #include "src/core/input_error.hpp"
 #include "src/core/number_text.hpp"
@@ -50,7 +51,7 @@ void require_memory_for_lattice(const Case& from, const Lattice& lattice) {
   size.horizon_ratio =
       reach_ratio(from.volume_correction, from.horizon_shape, from.dimension, from.horizon_ratio);
   constexpr double ratio_of_network = 1.5;
-  if (from.solver.force_operator == ForceOperator::fft) size.horizon_ratio = ratio_of_network;
+  if (from.solver.force_operator != ForceOperator::bonds) size.horizon_ratio = ratio_of_network;
   size.bonds = expected_bonds(points, from.dimension, size.horizon_ratio);
   size.free_dofs = points * from.dimension;
   const Box box = lattice.shapes.empty() ? Box{} : bounds(lattice.shapes.front().shape);
@@ -134,6 +135,11 @@ std::unique_ptr<const Body> make_body(const Case& from, int threads) {
   BodySpecification of = from;
   of.force_operator = from.solver.force_operator;
   located_errors(from, [&] { find_boundary(from, points, of); });
+  if (of.force_operator == ForceOperator::automatic) {
+    of.force_operator = faster_operator(
+        of, points,
+        from.solver.mode == Mode::dynamics && from.dynamics.scheme == MotionScheme::verlet);
+  }
   if (from.solver.mode == Mode::path) of.teeth = from.loading.teeth;
   if (tells_stress(from)) {
     of.evaluation_bytes_per_point = stress_bytes_per_point(from.dimension);

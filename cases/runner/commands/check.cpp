@@ -279,11 +279,15 @@ void print_pressures(const Body& body) {
   }
 }
 
+const PointTerm* convolved(const Body& body) {
+  const auto* const term = dynamic_cast<const PointTerm*>(body.model.bond_term().get());
+  return term != nullptr && term->is_convolved() ? term : nullptr;
+}
+
 /// Of an explicit step, as measured; other terms than bonds take longer.
 double seconds_of_forces(const Body& body) {
   constexpr double seconds_per_bond = 6e-9, seconds_per_place = 2e-7;
-  const auto* const term = dynamic_cast<const PointTerm*>(body.model.bond_term().get());
-  if (term != nullptr && term->is_convolved()) {
+  if (const PointTerm* const term = convolved(body)) {
     return double(term->lattice()->box.count()) * seconds_per_place;
   }
   return double(body.model.bonds().count()) * seconds_per_bond;
@@ -302,11 +306,6 @@ void print_motion(const Case& from, const Body& body, const StudyOptions& option
       from.dynamics.is_implicit() ? seconds_of_solving : seconds_of_forces(body);
   fmt::print("time        {}{}, without results\n", seconds_text(steps * seconds_of_step),
              from.dynamics.is_implicit() ? "" : " on one thread");
-}
-
-const PointTerm* convolved(const Body& body) {
-  const auto* const term = dynamic_cast<const PointTerm*>(body.model.bond_term().get());
-  return term != nullptr && term->is_convolved() ? term : nullptr;
 }
 
 Offset count_of_bonds(const Body& body) {

@@ -1346,12 +1346,17 @@ Table<SolverSpecification> solver_keys() {
            .written_if(searches)
            .then(check_tangent),
        K("operator", &Spec::force_operator,
-         choice<ForceOperator>({{"bonds", ForceOperator::bonds}, {"fft", ForceOperator::fft}}),
+         choice<ForceOperator>({{"auto", ForceOperator::automatic},
+                                {"bonds", ForceOperator::bonds},
+                                {"fft", ForceOperator::fft}}),
          "forces of `material.kinematics = \"linear\"`, and of `lps` as an energy, are summed bond "
          "by bond, or by fast Fourier "
          "transforms, which store no bonds and take the same time whatever the horizon: for one "
          "material on points of a lattice with equal volumes, without a `surface_correction`. "
-         "Both give the same results to round-off. Models `green_bond` and `correspondence`, and "
+         "Both give the same results to round-off. `\"auto\"` takes the one that is sooner: `fft` "
+         "for "
+         "motions by explicit steps with a horizon of 2.5 spacings and more where it can. Models "
+         "`green_bond` and `correspondence`, and "
          "`lps` as printed, have `fft` alone"),
        K("predictor", &Spec::predictor,
          choice<Predictor>({{"consistent", Predictor::consistent}, {"none", Predictor::none}}),
