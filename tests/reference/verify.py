@@ -454,7 +454,7 @@ class Verification:
         for end in (0, 1):
             numpy.maximum.at(of_points, mechanics.body.bonds[~broken, end], whole)
         of_points = numpy.where(numpy.isfinite(of_points), of_points, 0.0)[: mechanics.body.own]
-        scale = max(abs(stretch).max(), 1e-5 * self.reach(mechanics, step), 1e-300)
+        scale = max(abs(stretch).max(), 1e-5 * self.reach(mechanics, step), 1e-15)  # round-off of lengths
         self.compare(step, "max_stretch", row["max_stretch"], largest, scale)
         self.compare(step, "stretch", step.stretch, of_points, scale)
 
