@@ -17,10 +17,10 @@ using TensorOf = Eigen::Matrix<double, D, D, Eigen::RowMajor>;
 
 /// sqrt(3/2 s:s) with the deviator s of the stress in space.
 template <int D>
-double von_mises(const TensorOf<D>& in_plane, double out_of_plane) {
+double von_mises(const TensorOf<D>& in_plane, double across) {
   TensorOf<3> stress = TensorOf<3>::Zero();
   stress.template topLeftCorner<D, D>() = in_plane;
-  if (D == 2) stress(2, 2) = out_of_plane * in_plane.trace();
+  if (D == 2) stress(2, 2) = across;
   const TensorOf<3> deviator = stress - stress.trace() / 3.0 * TensorOf<3>::Identity();
   return std::sqrt(1.5) * deviator.norm();
 }
@@ -43,7 +43,7 @@ void find_principal(const TensorOf<D>& stress, double* values, double* direction
 template <int D>
 Stress stress_from(const Points& points, DeformationGradients gradients,
                    std::vector<double> virials, const std::vector<double>& out_of_plane,
-                   bool is_linear) {
+                   AcrossPlane of, bool is_linear) {
   using Tensor = TensorOf<D>;
   const auto own = std::size_t(points.own());
   constexpr std::size_t entries = std::size_t(D) * D;
@@ -75,8 +75,11 @@ Stress stress_from(const Points& points, DeformationGradients gradients,
       F.setIdentity();
     }
     const Tensor symmetric = 0.5 * (sigma + sigma.transpose());
-    const double across = out_of_plane[out_of_plane.size() == 1 ? 0 : i];
-    found.von_mises[i] = von_mises<D>(symmetric, across);
+    const double ratio = out_of_plane[out_of_plane.size() == 1 ? 0 : i];
+    const bool is_second = of == AcrossPlane::second_stress && found.is_determined[i];
+    const double in_plane =
+        is_second ? Tensor(F.inverse() * P).trace() / volume_ratio : symmetric.trace();
+    found.von_mises[i] = von_mises<D>(symmetric, ratio * in_plane);
     find_principal<D>(symmetric, &found.principal[i * D], &found.principal_direction[i * entries]);
   }
   return found;
@@ -103,7 +106,7 @@ void use_nonlocal_gradients(Assembler& assembler, const CollocationTerm& term, c
 }  // namespace
 
 Stress find_stress(Assembler& assembler, const StateView& at,
-                   const std::vector<double>& out_of_plane) {
+                   const std::vector<double>& out_of_plane, AcrossPlane of) {
   const Points& points = assembler.points();
   std::vector<double> virials(std::size_t(points.count()) *
                               std::size_t(points.dimension * points.dimension));
@@ -116,13 +119,13 @@ Stress find_stress(Assembler& assembler, const StateView& at,
   const bool is_linear = solid != nullptr;
   switch (points.dimension) {
     case 1:
-      return stress_from<1>(points, std::move(gradients), std::move(virials), out_of_plane,
+      return stress_from<1>(points, std::move(gradients), std::move(virials), out_of_plane, of,
                             is_linear);
     case 2:
-      return stress_from<2>(points, std::move(gradients), std::move(virials), out_of_plane,
+      return stress_from<2>(points, std::move(gradients), std::move(virials), out_of_plane, of,
                             is_linear);
     default:
-      return stress_from<3>(points, std::move(gradients), std::move(virials), out_of_plane,
+      return stress_from<3>(points, std::move(gradients), std::move(virials), out_of_plane, of,
                             is_linear);
   }
 }

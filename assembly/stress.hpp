@@ -31,9 +31,14 @@ struct Stress {
   std::vector<char> is_determined;          ///< per point, whether F is
 };
 
+/// What a stress across the plane is a share of the sum of: stresses in it of Cauchy, or the second
+/// ones of Piola and Kirchhoff, S = F^-1 P, whose S_zz = J sigma_zz has no strain across the plane.
+enum class AcrossPlane { cauchy_stress, second_stress };
+
 /// @param out_of_plane 2D: stress across the plane over the sum of those in it, nu in plane strain
 ///        and 0 in plane stress; of all points alike, or of each
 [[nodiscard]] Stress find_stress(Assembler& assembler, const StateView& at,
-                                 const std::vector<double>& out_of_plane);
+                                 const std::vector<double>& out_of_plane,
+                                 AcrossPlane of = AcrossPlane::cauchy_stress);
 
 }  // namespace peristat

@@ -7,6 +7,7 @@
 
 #include <Eigen/Dense>
 
+#include "assembly/convolutions/linear_bonds.hpp"
 #include "src/core/dual.hpp"
 #include "src/measures/small_algebra.hpp"
 
@@ -22,12 +23,6 @@ template <int D>
 using ConstTensors = Eigen::Map<const Eigen::Matrix<double, D, D, Eigen::RowMajor>>;
 template <int D>
 using ConstVectors = Eigen::Map<const Eigen::Matrix<double, D, 1>>;
-
-std::vector<LatticeStep> steps_of(std::span<const LatticeArm> arms) {
-  std::vector<LatticeStep> steps;
-  for (const LatticeArm& arm : arms) steps.push_back(arm.step);
-  return steps;
-}
 
 double length_of(const Coordinates& xi) { return std::hypot(xi[0], xi[1], xi[2]); }
 
@@ -302,7 +297,9 @@ void Correspondence::multiply(std::span<const double> displacement, std::span<co
   });
 }
 
-void Correspondence::outline_tangent(std::span<double> diagonal, std::span<double> row_sums) {
+void Correspondence::outline_tangent(std::span<const double> displacement,
+                                     std::span<double> diagonal, std::span<double> row_sums) {
+  if (!std::ranges::equal(displacement, state_)) take_up(displacement);
   with_dimension(fields_.dimension(), [&](auto dimension) {
     constexpr int D = decltype(dimension)::value;
     if constexpr (D > 1) {
@@ -380,13 +377,14 @@ void Correspondence::add_neighbours_blocks(std::span<double> diagonal) {
        [&](Tensors<D> block, double sum) { block.diagonal().array() -= beta * sum; });
 }
 
-/// Every H adds to a row V (lambda sqrt(d) + mu (1 + sqrt(d))) |g| or less times the sum of all its
+/// With P = F S, dP = dH S + F (lambda tr(dE) + 2 mu dE) and dE = (F^T dH + dH^T F) / 2, every H
+/// adds to a row V (|S| + |F|^2 sqrt(d) (|lambda| + 2 mu)) |g| or less times the sum of all its
 /// |g|, whose stabilisation adds beta |K^-1 g|-like terms, and its first part 4 beta q q' kappa.
 template <int D>
 void Correspondence::bound_rows(std::span<double> row_sums) {
   const auto& [lambda, mu] = setting_.constants;
-  const double V = setting_.volume, beta = setting_.stabilisation, root = std::sqrt(double(D));
-  const double stiffness = V * (std::abs(lambda) * root + mu * (1.0 + root));
+  const double V = setting_.volume, beta = setting_.stabilisation;
+  const double modulus = std::sqrt(double(D)) * (std::abs(lambda) + 2.0 * mu);
   const LatticeSpectrum lengths = fields_.spectrum(
       Parity::even, [&](std::size_t s) { return arms_[s].share * length_of(arms_[s].xi); });
   std::vector<double> weight(fields_.points());
@@ -394,6 +392,11 @@ void Correspondence::bound_rows(std::span<double> row_sums) {
   fields_.find_sums(lengths, 0, [&](std::size_t i, double sum) {
     const double norm = eigenvalues<D>(ConstTensors<D>(&inverse_shapes_[i * D * D]))[D - 1];
     const double arms = ConstVectors<D>(&arms_left_[i * D]).norm();
+    const Matrix<D, double> H = matrix_at<D>(gradients_, i);
+    const Matrix<D, double> S =
+        second_stress<D, double>(green_strain<D, double>(H), setting_.constants);
+    const double F = 1.0 + ConstTensors<D>(H[0].data()).norm();
+    const double stiffness = V * (ConstTensors<D>(S[0].data()).norm() + F * F * modulus);
     weight[i] = (stiffness * norm + beta) * norm * (sum + arms);
   });
   fields_.fill(1, [&](std::size_t i) { return weight[i]; });
@@ -428,6 +431,23 @@ void Correspondence::add_virials(const std::vector<double>& u, std::span<double>
     }
     Tensors<D>(&virials[i * D * D]) += fields_.integrity(i) * virial;
   });
+}
+
+std::size_t Correspondence::points_without_gradient() const {
+  const auto d = std::size_t(fields_.dimension());
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < fields_.points(); ++i) count += inverse_shapes_[i * d * d] == 0.0;
+  return count;
+}
+
+double Correspondence::expected_bytes(const LatticeBox& box,
+                                      std::span<const LatticeSpring> springs) {
+  const double d = box.dimension, pairs = d * (d + 1.0) / 2.0;
+  // Of a place the fields of u and of stresses and their sum, and kernels on half of the modes; of
+  // a point where it is and its integrity, its size, its arms, three displacements and five
+  // matrices.
+  return 8.0 * lattice_places(box, steps_of(springs)) * (2.0 * d + 1.0 + 0.5 * (pairs + d + 1.0)) +
+         8.0 * double(box.place.size()) * (3.0 + 4.0 * d + 5.0 * d * d);
 }
 
 double Correspondence::bytes() const {

@@ -60,12 +60,18 @@ class Correspondence : public LatticeForces {
   /// otherwise.
   void multiply(std::span<const double> displacement, std::span<const double> v,
                 std::span<double> product) override;
-  /// Blocks are exact, as long as periods are longer than two arms, at the cost of 20 and 53
-  /// transforms; sums by the triangle inequality over what each gradient contributes,
-  /// which is up to fifteen times too much.
-  void outline_tangent(std::span<double> diagonal, std::span<double> row_sums) override;
+  /// Blocks are those at rest, exact as long as periods are longer than two arms, at the cost of 20
+  /// and 53 transforms; sums by the triangle inequality over what each gradient contributes, which
+  /// is up to twenty times too much.
+  void outline_tangent(std::span<const double> displacement, std::span<double> diagonal,
+                       std::span<double> row_sums) override;
   /// V F S, and where there is no H what the stabilisation has.
   void add_virials(std::span<const double> displacement, std::span<double> virials) override;
+  /// Points with neighbours that tell no gradient.
+  [[nodiscard]] std::size_t points_without_gradient() const;
+  /// Memory that one holds that has multiplied and told energies.
+  [[nodiscard]] static double expected_bytes(const LatticeBox& box,
+                                             std::span<const LatticeSpring> springs);
   /// Memory that it holds.
   [[nodiscard]] double bytes() const;
 

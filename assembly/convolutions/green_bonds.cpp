@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "assembly/convolutions/linear_bonds.hpp"
 #include "src/core/dual.hpp"
 #include "src/measures/small_algebra.hpp"
 
@@ -104,6 +105,35 @@ double squares_of(const Vector<D, double>& u, const double* sum, const double* c
   return result;
 }
 
+/// Of y = xi + eta: sums of q' s y y, and of q' s g.
+template <int D>
+struct Blocks {
+  Matrix<D, double> squares;
+  double pull = 0.0;
+};
+
+template <int D>
+Blocks<D> blocks_of(const Vector<D, double>& u, const double* sum, const double* constants) {
+  using At = Sums<D>;
+  const double size = constants[Constants<D>::size];
+  const auto arm_with = [&](std::size_t j, std::size_t i) {  // sum q' s xi_j eta_i
+    return sum[At::arms + i * D + j] - u[i] * constants[Constants<D>::arms + j];
+  };
+  const auto square = [&](std::size_t i, std::size_t j) {  // sum q' s eta_i eta_j
+    return sum[At::squares + pair_of(int(i), int(j), D)] - u[i] * sum[At::sizes + j] -
+           u[j] * sum[At::sizes + i] + u[i] * u[j] * size;
+  };
+  Blocks<D> found;
+  for (std::size_t i = 0; i < D; ++i) {
+    found.pull += arm_with(i, i) + 0.5 * square(i, i);
+    for (std::size_t j = 0; j < D; ++j) {
+      found.squares[i][j] =
+          constants[pair_of(int(i), int(j), D)] + arm_with(i, j) + arm_with(j, i) + square(i, j);
+    }
+  }
+  return found;
+}
+
 template <int D>
 Vector<D, double> vector_at(const std::vector<double>& field, std::size_t point) {
   Vector<D, double> at;
@@ -116,7 +146,8 @@ Vector<D, double> vector_at(const std::vector<double>& field, std::size_t point)
 GreenBonds::GreenBonds(const LatticeBox& box, const std::array<bool, 3>& is_periodic,
                        std::span<const LatticeSpring> springs, int threads)
     : springs_(springs.begin(), springs.end()),
-      fields_(box, is_periodic, steps_of(springs), threads) {
+      fields_(box, is_periodic, steps_of(springs), threads),
+      turns_(box, is_periodic, springs) {
   kernels_ = make_kernels(false, [](const LatticeSpring&) { return 1.0; });
   for (const LatticeSpring& spring : springs_) whole_size_ += 2.0 * size_of(spring);
   set_integrity(std::vector<double>(box.place.size(), 1.0));
@@ -213,10 +244,20 @@ void GreenBonds::find_sums(const Kernels& kernels, const Get& get, std::vector<d
   }
 }
 
+void GreenBonds::take_off_motion(std::span<const double> displacement, LatticeTurn& turn,
+                                 std::vector<double>& u) const {
+  fields_.take_off_mean(displacement, u);
+  turn = turns_.find(fields_, u);
+  if (turn.is_one) return;
+  std::vector<double> turned = u;
+  turns_.take_off(turn, turned);
+  fields_.take_off_mean(turned, u);
+}
+
 /// Sums of u, unless they are known.
 void GreenBonds::take_up(std::span<const double> displacement) {
   state_.assign(displacement.begin(), displacement.end());
-  fields_.take_off_mean(displacement, displacement_);
+  take_off_motion(displacement, turn_, displacement_);
   with_dimension(fields_.dimension(), [&](auto dimension) {
     constexpr int D = decltype(dimension)::value;
     find_sums<D>(
@@ -239,6 +280,7 @@ void GreenBonds::find_forces(std::span<const double> displacement, std::span<dou
   take_up(displacement);
   with_dimension(fields_.dimension(),
                  [&](auto dimension) { add_up<decltype(dimension)::value>(force); });
+  turn_.put_on(fields_.dimension(), force);
 }
 
 void GreenBonds::find_forces_and_energies(std::span<const double> displacement,
@@ -275,8 +317,10 @@ void GreenBonds::multiply(std::span<const double> displacement, std::span<const 
                           std::span<double> product) {
   if (!std::ranges::equal(displacement, state_)) take_up(displacement);
   fields_.take_off_mean(v, direction_);
+  turn_.take_off(fields_.dimension(), direction_);
   with_dimension(fields_.dimension(),
                  [&](auto dimension) { find_rates<decltype(dimension)::value>(product); });
+  turn_.put_on(fields_.dimension(), product);
 }
 
 template <int D>
@@ -301,45 +345,62 @@ void GreenBonds::find_rates(std::span<double> product) {
   });
 }
 
-void GreenBonds::outline_tangent(std::span<double> diagonal, std::span<double> row_sums) {
+void GreenBonds::outline_tangent(std::span<const double> displacement, std::span<double> diagonal,
+                                 std::span<double> row_sums) {
+  take_up(displacement);  // energies need its fields
   std::vector<double> bounds(row_sums.size());
   with_dimension(fields_.dimension(),
                  [&](auto dimension) { outline<decltype(dimension)::value>(diagonal, bounds); });
   add_rounded_up(bounds, row_sums);
 }
 
-/// At rest K has -q q' k n n of bonds and their sums on its diagonal.
+/// With y = xi + eta, K has -q q' s (y y + g) of bonds and their sums on its diagonal. Of a row of
+/// the former Cauchy's inequality knows more than each component's sum of squares:
+/// sum q' s |y_r y_c| is not more than the root of the product of those of y_r and y_c, nor is
+/// sum q' s |g| more than that of sum q' s and sum q' s g^2.
 template <int D>
 void GreenBonds::outline(std::span<double> diagonal, std::span<double> row_sums) {
-  fields_.fill(0, [](std::size_t) { return 1.0; });
-  for (int r = 0; r < D; ++r) {
-    const LatticeSpectrum magnitudes = fields_.spectrum(Parity::even, [&](std::size_t s) {
-      const Coordinates& n = springs_[s].direction;
-      return springs_[s].stiffness * std::abs(n[r]) *
-             (std::abs(n[0]) + std::abs(n[1]) + std::abs(n[2]));
-    });
-    fields_.find_sums(magnitudes, 0, [&](std::size_t i, double sum) {
-      const std::size_t row = i * D + std::size_t(r);
-      for (int c = 0; c < D; ++c) {
-        const double entry = constants_[i * Constants<D>::count + pair_of(r, c, D)];
-        diagonal[row * D + std::size_t(c)] += fields_.integrity(i) * entry;
-        sum += std::abs(entry);
+  std::vector<double> energy(fields_.points());
+  find_energies<D>(energy);
+  fields_.for_points([&](std::size_t i) {
+    const double q = fields_.integrity(i);
+    if (q == 0.0) return;
+    const double* const constants = &constants_[i * Constants<D>::count];
+    const auto [squares, pull] =
+        blocks_of<D>(vector_at<D>(displacement_, i), &sums_[i * Sums<D>::count], constants);
+    const double of_pulls =
+        std::sqrt(std::max(constants[Constants<D>::size] * 4.0 * energy[i] / q, 0.0));
+    Matrix<D, double> block = squares;
+    Vector<D, double> rows;
+    for (std::size_t r = 0; r < D; ++r) {
+      block[r][r] += pull;
+      rows[r] = of_pulls;
+      for (std::size_t c = 0; c < D; ++c) {
+        rows[r] += std::abs(block[r][c]) + std::sqrt(std::max(squares[r][r] * squares[c][c], 0.0));
       }
-      row_sums[row] = fields_.integrity(i) * sum;
-    });
-  }
+    }
+    turn_.bound<D>(rows);
+    turn_.put_on<D>(block);
+    for (std::size_t r = 0; r < D; ++r) {
+      row_sums[i * D + r] = q * rows[r];
+      for (std::size_t c = 0; c < D; ++c) diagonal[(i * D + r) * D + c] += q * block[r][c];
+    }
+  });
 }
 
 void GreenBonds::add_virials(std::span<const double> displacement, std::span<double> virials) {
   std::vector<double> u;  // products may be asked for at the state that is known
-  fields_.take_off_mean(displacement, u);
-  with_dimension(fields_.dimension(),
-                 [&](auto dimension) { add_virials<decltype(dimension)::value>(u, virials); });
+  LatticeTurn turn;
+  take_off_motion(displacement, turn, u);
+  with_dimension(fields_.dimension(), [&](auto dimension) {
+    add_virials<decltype(dimension)::value>(u, turn, virials);
+  });
 }
 
 /// q / 2 sum q' s g (xi + eta) xi per point: forces with kernels times a component of xi.
 template <int D>
-void GreenBonds::add_virials(const std::vector<double>& u, std::span<double> virials) {
+void GreenBonds::add_virials(const std::vector<double>& u, const LatticeTurn& turn,
+                             std::span<double> virials) {
   std::vector<double> constants, sums;
   for (std::size_t c = 0; c < D; ++c) {
     const Kernels kernels = make_kernels(true, [c](const LatticeSpring& of) { return of.arm[c]; });
@@ -348,14 +409,26 @@ void GreenBonds::add_virials(const std::vector<double>& u, std::span<double> vir
         kernels, [&](std::size_t x) { return vector_at<D>(u, x); }, sums);
     fields_.for_points([&](std::size_t i) {
       const double* const of_point = &sums[i * Sums<D>::count];
-      const Vector<D, double> found = force_of<D>(
+      Vector<D, double> found = force_of<D>(
           vector_at<D>(u, i), [&](std::size_t k) { return of_point[k]; },
           &constants[i * Constants<D>::count]);
+      turn.put_on(D, found);
       for (std::size_t a = 0; a < D; ++a) {
         virials[(i * D + a) * D + c] += 0.5 * fields_.integrity(i) * found[a];
       }
     });
   }
+}
+
+double GreenBonds::expected_bytes(const LatticeBox& box, std::span<const LatticeSpring> springs) {
+  const double d = box.dimension, pairs = d * (d + 1.0) / 2.0;
+  // Of a place the fields and their sum, and kernels on half of the modes; of a point where it is
+  // and its integrity, three displacements and its place, and sums and rates beside those of
+  // kernels.
+  return 8.0 * lattice_places(box, steps_of(springs)) *
+             (2.0 * d + pairs + 2.0 + 0.5 * (pairs + d + 1.0)) +
+         8.0 * double(box.place.size()) *
+             (2.0 + 4.0 * d + 2.0 * (2.0 * d + d * d + pairs) + pairs + d + 1.0);
 }
 
 double GreenBonds::bytes() const {
@@ -365,7 +438,7 @@ double GreenBonds::bytes() const {
     numbers += double(kept->size());
   }
   const auto spectra = double(kernels_.square.size() + kernels_.arm.size() + 1);
-  return 8.0 * numbers + fields_.bytes() + spectra * fields_.spectrum_bytes();
+  return 8.0 * numbers + fields_.bytes() + turns_.bytes() + spectra * fields_.spectrum_bytes();
 }
 
 }  // namespace peristat

@@ -7,6 +7,7 @@
 #include "assembly/convolutions/lattice_fields.hpp"
 #include "assembly/convolutions/lattice_forces.hpp"
 #include "assembly/convolutions/lattice_springs.hpp"
+#include "assembly/convolutions/lattice_turn.hpp"
 
 namespace peristat {
 
@@ -21,9 +22,10 @@ namespace peristat {
 /// A law of l^2 alone is a polynomial of u, cubic in the force: products of u' and kernels, which
 /// are convolutions, times products of u. The harmonic bond's length l is none. Both are the same
 /// at small strains; at a strain e the Green bond's force is 1 + 3 e / 2 times as large. Forces and
-/// energies turn with the body, but are differences of numbers as large as s u^3 and s u^4, u
-/// without its mean: of a body n spacings wide with strains e that has turned round, round-off
-/// leaves them relative errors of 2e-16 n^3 / e and 1e-16 n^4 / e^2, as measured.
+/// energies turn with the body, but are differences of numbers as large as s u^3 and s u^4. So sums
+/// are those of u without its mean and without the mean rotation of the body (LatticeTurns), which
+/// forces get back. Round-off is left of what bends or turns against the rest: of parts n spacings
+/// wide with strains e relative errors of 2e-16 n^3 / e and 1e-16 n^4 / e^2, as measured.
 ///
 /// The product with the tangent is exact: rates of fields make rates of sums.
 class GreenBonds : public LatticeForces {
@@ -45,10 +47,14 @@ class GreenBonds : public LatticeForces {
   /// As many as for forces, if those at u were the last ones that were found; twice otherwise.
   void multiply(std::span<const double> displacement, std::span<const double> v,
                 std::span<double> product) override;
-  /// Blocks are exact, and the sums as exact as |n_i n_j| of the bonds is.
-  void outline_tangent(std::span<double> diagonal, std::span<double> row_sums) override;
+  /// Blocks are exact, at the cost of energies; sums are up to half as much again as they must be.
+  void outline_tangent(std::span<const double> displacement, std::span<double> diagonal,
+                       std::span<double> row_sums) override;
   /// By the kernels times each component of xi, which are made and dropped again.
   void add_virials(std::span<const double> displacement, std::span<double> virials) override;
+  /// Memory that one holds that has multiplied and told energies.
+  [[nodiscard]] static double expected_bytes(const LatticeBox& box,
+                                             std::span<const LatticeSpring> springs);
   /// Memory that it holds.
   [[nodiscard]] double bytes() const;
 
@@ -56,6 +62,9 @@ class GreenBonds : public LatticeForces {
 
  private:
   void take_up(std::span<const double> displacement);
+  /// @param turn that is taken off u, with its mean
+  void take_off_motion(std::span<const double> displacement, LatticeTurn& turn,
+                       std::vector<double>& u) const;
   /// What sums are made with.
   struct Kernels {
     std::vector<LatticeSpectrum> square;  // s xi xi = k n n, by pair
@@ -78,16 +87,19 @@ class GreenBonds : public LatticeForces {
   template <int D>
   void outline(std::span<double> diagonal, std::span<double> row_sums);
   template <int D>
-  void add_virials(const std::vector<double>& u, std::span<double> virials);
+  void add_virials(const std::vector<double>& u, const LatticeTurn& turn,
+                   std::span<double> virials);
 
   std::vector<LatticeSpring> springs_;
   LatticeFields fields_;
+  LatticeTurns turns_;
+  LatticeTurn turn_;  // of displacement_
   Kernels kernels_;
   double whole_size_ = 0.0;
   std::vector<double> constants_;     // sums of q' times these three, per point
   std::vector<double> state_;         // u that sums_ belong to; empty: none
-  std::vector<double> displacement_;  // the same without its mean
-  std::vector<double> direction_;     // of the rates, without its mean
+  std::vector<double> displacement_;  // the same without its mean and turn_
+  std::vector<double> direction_;     // of the rates, likewise
   std::vector<double> sums_, rates_;  // those that depend on u' per point, see Sums
 };
 

@@ -180,6 +180,13 @@ class LatticeFields {
   std::size_t transforms_ = 0;
 };
 
+/// Of springs or arms.
+[[nodiscard]] std::vector<LatticeStep> steps_of(const auto& neighbours) {
+  std::vector<LatticeStep> steps;
+  for (const auto& one : neighbours) steps.push_back(one.step);
+  return steps;
+}
+
 /// Places of the padded box that LatticeFields transform.
 [[nodiscard]] double lattice_places(const LatticeBox& box, std::span<const LatticeStep> steps);
 

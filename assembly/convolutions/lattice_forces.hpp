@@ -27,10 +27,12 @@ class LatticeForces {
   virtual void multiply(std::span<const double> displacement, std::span<const double> v,
                         std::span<double> product) = 0;
 
-  /// Adds to what is there, of the tangent at rest:
-  /// @param diagonal blocks of K, points x dimension x dimension [N/m]
-  /// @param row_sums numbers not less than the sums of the absolute entries of each row [N/m]
-  virtual void outline_tangent(std::span<double> diagonal, std::span<double> row_sums) = 0;
+  /// Adds to both.
+  /// @param diagonal blocks of K at u, or at rest, points x dimension x dimension [N/m]
+  /// @param row_sums numbers not less than the sums of the absolute entries of each row of K at u
+  ///                 [N/m]
+  virtual void outline_tangent(std::span<const double> displacement, std::span<double> diagonal,
+                               std::span<double> row_sums) = 0;
 
   /// The same by steps along the lattice.
   [[nodiscard]] virtual LatticeStencil stencil() { return {}; }

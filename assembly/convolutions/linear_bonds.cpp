@@ -8,12 +8,6 @@ namespace {
 
 using Parity = LatticeFields::Parity;
 
-std::vector<LatticeStep> steps_of(std::span<const LatticeSpring> springs) {
-  std::vector<LatticeStep> steps;
-  for (const LatticeSpring& spring : springs) steps.push_back(spring.step);
-  return steps;
-}
-
 /// Row a of P, times a vector.
 template <int D>
 double row_times(const double* pairs, int a, const std::array<double, D>& u) {
@@ -137,7 +131,8 @@ void LinearBonds::multiply(std::span<const double> /*displacement*/, std::span<c
                  [&](auto dimension) { find_forces<dimension>(v, -1.0, product); });
 }
 
-void LinearBonds::outline_tangent(std::span<double> diagonal, std::span<double> row_sums) {
+void LinearBonds::outline_tangent(std::span<const double> /*displacement*/,
+                                  std::span<double> diagonal, std::span<double> row_sums) {
   const int d = fields_.dimension();
   const auto size = std::size_t(d);
   for (std::size_t i = 0; i < fields_.points(); ++i) {

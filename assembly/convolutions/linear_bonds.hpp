@@ -40,7 +40,8 @@ class LinearBonds : public LatticeForces {
                 std::span<double> product) override;
   /// The row of component a adds up to no more than q (tr P + d P_aa) / 2 beside the diagonal
   /// block, since |n_a n_b| <= (n_a^2 + n_b^2) / 2.
-  void outline_tangent(std::span<double> diagonal, std::span<double> row_sums) override;
+  void outline_tangent(std::span<const double> displacement, std::span<double> diagonal,
+                       std::span<double> row_sums) override;
   /// By the numbers of pairs, a convolution of q with itself.
   [[nodiscard]] LatticeStencil stencil() override;
   /// Of kernels k n_a n_b xi_c / 2, which are made and dropped again.

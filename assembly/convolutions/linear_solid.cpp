@@ -11,12 +11,6 @@ namespace {
 using Parity = LatticeFields::Parity;
 using Product = LatticeFields::Product;
 
-std::vector<LatticeStep> steps_of(std::span<const LatticeArm> arms) {
-  std::vector<LatticeStep> steps;
-  for (const LatticeArm& arm : arms) steps.push_back(arm.step);
-  return steps;
-}
-
 double squared(const Coordinates& xi) { return xi[0] * xi[0] + xi[1] * xi[1] + xi[2] * xi[2]; }
 
 /// |xi_x| + |xi_y| + |xi_z|
@@ -212,7 +206,8 @@ void LinearSolid::multiply(std::span<const double> /*displacement*/, std::span<c
   for (double& entry : product) entry = -entry;
 }
 
-void LinearSolid::outline_tangent(std::span<double> diagonal, std::span<double> row_sums) {
+void LinearSolid::outline_tangent(std::span<const double> /*displacement*/,
+                                  std::span<double> diagonal, std::span<double> row_sums) {
   std::vector<double> bounds(row_sums.size());
   if (fields_.dimension() == 2) {
     outline_blocks<2>(diagonal);

@@ -66,7 +66,8 @@ class LinearSolid : public LatticeForces {
                 std::span<double> product) override;
   /// Blocks are exact, as long as periods are longer than two arms; sums by the triangle
   /// inequality over what each dilatation and each bond contributes.
-  void outline_tangent(std::span<double> diagonal, std::span<double> row_sums) override;
+  void outline_tangent(std::span<const double> displacement, std::span<double> diagonal,
+                       std::span<double> row_sums) override;
   /// Those of its own dilatation and deviatoric state; kernels are made and dropped again.
   void add_virials(std::span<const double> displacement, std::span<double> virials) override;
   /// Memory that it holds.

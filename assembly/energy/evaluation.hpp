@@ -27,10 +27,13 @@ struct Evaluation {
   /// Only of a pass that commits: forces are no longer those of the bonds' loading, since others
   /// have lost their stiffness with them.
   bool moves_equilibrium = false;
+  /// What the energy is a difference of, times the unit round-off [J]; 0: no more than itself.
+  double round_off = 0.0;
 
   /// Adds what another term has found.
   void operator+=(const Evaluation& other) {
     energy += other.energy;
+    round_off += other.round_off;
     degenerate |= other.degenerate;
     growth.degrading += other.growth.degrading;
     growth.breaking += other.growth.breaking;

@@ -13,17 +13,18 @@ std::vector<double> ConvolvedTangent::positions() const {
   return at_.positions(energy_->points().reference);
 }
 
-void ConvolvedTangent::linearise(Energy& energy, const StateView& at, double /*projection*/) {
+void ConvolvedTangent::linearise(Energy& energy, const StateView& at, double projection) {
   energy_ = &energy;
   reference = energy.points().reference;
   at_.keep(at);
+  projection_ = projection;
   std::fill(diagonal.begin(), diagonal.end(), 0.0);
   std::vector<double> unused(energy.points().reference.size());
   energy.outline_rows(at, diagonal, unused);
 }
 
 void ConvolvedTangent::multiply(std::span<const double> v, std::span<double> result) const {
-  energy_->product(at_.view(), v, result, 0.0);
+  energy_->product(at_.view(), v, result, projection_);
 }
 
 void ConvolvedTangent::for_each_row(const RowVisitor&) const {
@@ -35,6 +36,8 @@ void ConvolvedTangent::absolute_row_sums(std::span<double> sums) const {
   std::fill(sums.begin(), sums.end(), 0.0);
   energy_->outline_rows(at_.view(), unused, sums);
 }
+
+bool ConvolvedTangent::is_symmetric() const { return energy_->has_potential(); }
 
 LatticeStencil ConvolvedTangent::stencil() const { return energy_->stencil(at_.view()); }
 

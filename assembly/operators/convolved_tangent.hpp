@@ -14,7 +14,7 @@ struct ConvolvedTangent : TangentOperator {
   explicit ConvolvedTangent(Energy& energy);
 
   [[nodiscard]] std::vector<double> positions() const override;
-  /// Whatever the projection: the forces are linear.
+  /// @param projection see TermPasses::product; diagonal blocks and sums are without
   void linearise(Energy& energy, const StateView& at, double projection) override;
   void multiply(std::span<const double> v, std::span<double> result) const override;
   [[nodiscard]] bool has_rows() const override { return false; }
@@ -23,10 +23,13 @@ struct ConvolvedTangent : TangentOperator {
   /// Numbers that are not less, found anew: they are asked for now and then, and a vector long.
   void absolute_row_sums(std::span<double> sums) const override;
   [[nodiscard]] LatticeStencil stencil() const override;
+  /// That of forces without a potential is not.
+  [[nodiscard]] bool is_symmetric() const override;
 
  private:
   Energy* energy_;
   KeptState at_;
+  double projection_ = 0.0;
 };
 
 }  // namespace peristat

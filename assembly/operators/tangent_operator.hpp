@@ -56,7 +56,10 @@ struct TangentOperator {
   [[nodiscard]] virtual const Tangent* as_tangent() const { return nullptr; }
   [[nodiscard]] virtual Tangent* as_tangent() { return nullptr; }
 
-  /// Itself if it is not symmetric: `pattern` then has no blocks, and there are no rows to visit.
+  [[nodiscard]] virtual bool is_symmetric() const { return true; }
+
+  /// Itself if it is not symmetric and has rows: `pattern` then has no blocks, and there are no
+  /// rows to visit.
   [[nodiscard]] virtual const UnsymmetricTangent* as_unsymmetric() const { return nullptr; }
 };
 

@@ -22,6 +22,8 @@ struct UnsymmetricTangent : TangentOperator {
 
   [[nodiscard]] const UnsymmetricTangent* as_unsymmetric() const override { return this; }
 
+  [[nodiscard]] bool is_symmetric() const override { return false; }
+
   /// There are no blocks (i, j) to visit.
   /// @throws std::logic_error
   void for_each_row(const RowVisitor& visit) const override;

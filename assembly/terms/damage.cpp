@@ -5,7 +5,7 @@
 #include <numeric>
 #include <variant>
 
-#include "assembly/terms/linear/linear_term.hpp"
+#include "assembly/terms/points/point_term.hpp"
 
 namespace peristat {
 namespace {
@@ -17,7 +17,7 @@ void with_law(const Model& model, const Visit& visit) {
 }
 
 /// Of points that have lost their integrity: with every point its bonds are broken.
-DamageState assess_points(const LinearTerm& term, std::span<const double> history,
+DamageState assess_points(const PointTerm& term, std::span<const double> history,
                           std::span<const double> cut_weight, std::span<double> damage) {
   DamageState state;
   std::ranges::fill(damage, 0.0);
@@ -55,8 +55,8 @@ std::vector<char> without_points(const Bonds& bonds, std::span<const double> int
   return broken;
 }
 
-const LinearTerm* failing_points(const Model& model) {
-  return dynamic_cast<const LinearTerm*>(model.bond_term().get());
+const PointTerm* failing_points(const Model& model) {
+  return dynamic_cast<const PointTerm*>(model.bond_term().get());
 }
 
 }  // namespace
@@ -64,7 +64,7 @@ const LinearTerm* failing_points(const Model& model) {
 DamageState assess_damage(const Model& model, const History& history,
                           std::span<const double> cut_weight, std::span<double> damage,
                           std::span<const Index> image_sources) {
-  if (const LinearTerm* const points = failing_points(model)) {
+  if (const PointTerm* const points = failing_points(model)) {
     return assess_points(*points, history.of(model.slot_of(*points)), cut_weight, damage);
   }
   const Bonds& bonds = model.bonds();
@@ -120,7 +120,7 @@ std::span<const double> bond_stretches(const Model& model, const History& histor
 }
 
 std::vector<char> broken_bonds(const Model& model, const History& history) {
-  if (const LinearTerm* const points = failing_points(model)) {
+  if (const PointTerm* const points = failing_points(model)) {
     return without_points(points->bonds(), history.of(model.slot_of(*points)));
   }
   const std::span<const double> stretches = bond_stretches(model, history);
@@ -134,7 +134,7 @@ std::vector<char> broken_bonds(const Model& model, const History& history) {
 }
 
 DamagedNetwork damaged_network(const Model& model, const History& history) {
-  const LinearTerm* const points = failing_points(model);
+  const PointTerm* const points = failing_points(model);
   if (points == nullptr || !points->is_convolved()) {
     return {model.shared_bonds(), broken_bonds(model, history)};
   }

@@ -149,7 +149,7 @@ bool Dynamics::shorten_step(double time, Outcome outcome, const std::string& rea
 
 Stiffness Dynamics::stiffness_at(const Trial& state) {
   const auto& [assembler, solver, tangent, free] = path_.body();
-  tangent.linearise(assembler, state.at(), 1.0);
+  tangent.linearise(assembler, state.at(), projection_for_stiffness(assembler));
   is_linearised_ = true;
   const Stiffness now = bound_stiffness(tangent, free, setting().mass, setting().most_points);
   const Stiffness& known = path_.state().dynamics.stiffness;
@@ -330,7 +330,9 @@ void Dynamics::add_velocity_of_supports(double time, std::vector<double>& veloci
 
 std::string Dynamics::fault_of(const Attempt& attempt, const FoundStep& found) {
   const auto& [assembler, solver, tangent, free] = path_.body();
-  if (!is_linearised_) tangent.linearise(assembler, attempt.state.at(), 1.0);
+  if (!is_linearised_) {
+    tangent.linearise(assembler, attempt.state.at(), projection_for_stiffness(assembler));
+  }
   is_linearised_ = true;
   const PathState& state = path_.state();
   const std::string fault =

@@ -64,6 +64,7 @@ void commit(Path& path, Attempt& attempt, FoundStep& found,
     found.growth.breaking += committed.growth.breaking;
     found.energies.released += committed.released;
     attempt.state.stored_energy = committed.energy;
+    attempt.state.energy_round_off = committed.round_off;
     if (!committed.moves_equilibrium) return;
     if (equilibrate() != Outcome::converged) return;
   }

@@ -116,6 +116,7 @@ void Motion::absorb(double half_step) {
 bool Motion::find_energy() {
   const Evaluation found = problem_.assembler.energy(at_.at());
   at_.stored_energy = found.energy;
+  at_.energy_round_off = found.round_off;
   at_.degenerate |= found.degenerate || !std::isfinite(squared_force());
   return !at_.degenerate;
 }

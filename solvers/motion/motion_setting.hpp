@@ -13,7 +13,8 @@ struct MotionSetting {
   std::vector<double> displacement, velocity;  ///< at the start; empty: zeros [m], [m/s]
   /// Rates at which velocities decay by themselves [1/s]; empty: they do not.
   std::vector<double> absorption{};
-  int most_points = 2;                  ///< of an interaction, or what bounds eigenvalues likewise
+  /// Of an interaction, or what bounds eigenvalues likewise; 0: sums of rows bound them.
+  int most_points = 2;
   std::optional<Stiffness> at_start{};  ///< if it is known already
 };
 

@@ -19,6 +19,10 @@ constexpr double settled_share = 1e-4;
 constexpr std::size_t look_back = 5, least_iterations = 20, most_iterations = 120;
 constexpr double margin = 1.01;
 
+/// Powers come to within some hundredths.
+constexpr int power_iterations = 200;
+constexpr double power_margin = 1.05;
+
 using Vector = std::vector<double>;
 
 /// Largest eigenvalue of the symmetric block of a point, scaled by masses.
@@ -163,26 +167,56 @@ double lanczos(ScaledProduct& product, Vector at) {
   return found.back();
 }
 
+/// By the growth of a vector, from below: the method has no use of symmetry, and is slow.
+double power(ScaledProduct& product, Vector at) {
+  Vector next(at.size());
+  double largest = 0.0;
+  for (int k = 0; k < power_iterations; ++k) {
+    product(at, next);
+    const double length = norm(next);
+    if (!(length > 0.0)) break;
+    if (2 * k >= power_iterations) largest = std::max(largest, length);
+    at.swap(next);
+    for (double& entry : at) entry /= length;
+  }
+  return largest;
+}
+
+double bound_of(const TangentOperator& tangent, const FreeDofs& free, std::span<const double> mass,
+                int most_points, double stiffest) {
+  if (most_points > 0) return most_points * stiffest;
+  Vector sums(mass.size());
+  tangent.absolute_row_sums(sums);
+  double bound = 0.0;
+  for (const Index dof : free.dof) bound = std::max(bound, sums[dof] / mass[dof]);
+  return bound;
+}
+
 }  // namespace
 
 double Stiffness::stable_step() const {
   return eigenvalue > 0.0 ? 2.0 / std::sqrt(eigenvalue) : std::numeric_limits<double>::infinity();
 }
 
+double projection_for_stiffness(const Energy& energy) { return energy.has_rows() ? 1.0 : 0.0; }
+
 Stiffness bound_stiffness(const TangentOperator& tangent, const FreeDofs& free,
                           std::span<const double> mass, int most_points) {
-  const double bound = most_points * stiffest_point(tangent, free, mass).eigenvalue;
+  const double bound =
+      bound_of(tangent, free, mass, most_points, stiffest_point(tangent, free, mass).eigenvalue);
   return {bound, bound};
 }
 
 Stiffness find_stiffness(const TangentOperator& tangent, const FreeDofs& free,
                          std::span<const double> mass, int most_points) {
   const Stiffest stiffest = stiffest_point(tangent, free, mass);
-  const double bound = most_points * stiffest.eigenvalue;
+  const double bound = bound_of(tangent, free, mass, most_points, stiffest.eigenvalue);
   if (!(bound > 0.0) || free.dof.empty()) return {bound, bound};
   ScaledProduct product(tangent, free, mass);
-  const double found = lanczos(product, start_vector(free, stiffest.point, tangent.dimension));
-  return {bound, std::min(bound, margin * found)};
+  Vector start = start_vector(free, stiffest.point, tangent.dimension);
+  const double found = tangent.is_symmetric() ? margin * lanczos(product, std::move(start))
+                                              : power_margin * power(product, std::move(start));
+  return {bound, std::min(bound, found)};
 }
 
 }  // namespace peristat

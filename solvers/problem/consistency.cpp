@@ -129,7 +129,7 @@ std::string check_energies(const EquilibriumProblem& problem, const TangentOpera
   const Balances owed = problem.assembler.model().balances();
   const auto& [before, after] = std::pair(found.before, found.after);
   if (!owed.potential) return {};  // work is not stored
-  double least = round_off * after.dissipated;
+  double least = round_off * after.dissipated + found.trial.energy_round_off;
   if (!tangent.has_rows()) {
     least += safety * std::numeric_limits<double>::epsilon() *
              differenced_forces(tangent, found.trial.displacement) * norm(found.trial.displacement);

@@ -176,6 +176,7 @@ void evaluate(const EquilibriumProblem& problem, std::span<const double> externa
   }
   fold_followers(problem, external_force, trial);
   trial.stored_energy = found.energy;
+  trial.energy_round_off = found.round_off;
   trial.total_energy = found.energy - dot(external_force, trial.displacement);
   trial.residual_norm = norm_of(problem.free.dof.size(), [&](std::size_t e) {
     const Index dof = problem.free.dof[e];

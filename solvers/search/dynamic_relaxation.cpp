@@ -67,6 +67,7 @@ class Relaxation {
     result_.growth.breaking += found.growth.breaking;
     result_.released_energy += found.released;
     at_.stored_energy = found.energy;
+    at_.energy_round_off = found.round_off;
     if (!at_.follower_force.empty()) {
       last_follower_force_.swap(at_.follower_force);
       at_.follower_force.resize(last_follower_force_.size());

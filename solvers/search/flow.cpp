@@ -204,9 +204,10 @@ class Flow {
     const double decay = dot(direction_, force);  // |d|^2 in the norm of K0
     if (!(decay > 0.0)) return Outcome::no_descent;
     const std::vector<double> working = working_force(problem_.conditions, current_, force_);
-    const double round_off =
-        64.0 * std::numeric_limits<double>::epsilon() *
-        std::max(std::abs(current_.stored_energy), std::abs(dot(force_, current_.displacement)));
+    const double round_off = 64.0 * std::numeric_limits<double>::epsilon() *
+                                 std::max(std::abs(current_.stored_energy),
+                                          std::abs(dot(force_, current_.displacement))) +
+                             current_.energy_round_off;
     if (has_stalled(decay <= round_off)) return Outcome::iteration_limit;
     int rejected = 0;
     for (;;) {
@@ -280,6 +281,7 @@ class Flow {
     result_.growth.breaking += found.growth.breaking;
     result_.released_energy += found.released;
     current_.stored_energy = found.energy;
+    current_.energy_round_off = found.round_off;
     if (!found.moves_equilibrium) return Outcome::converged;
     evaluate(problem_, force_, current_);
     return find_direction(current_, direction_);

@@ -61,7 +61,8 @@ LineSearchResult line_search(const EquilibriumProblem& problem,
 
   const double work = dot(external_force, from.displacement);
   const double round_off = 64.0 * std::numeric_limits<double>::epsilon() *
-                           std::max(std::abs(from.stored_energy), std::abs(work));
+                               std::max(std::abs(from.stored_energy), std::abs(work)) +
+                           from.energy_round_off;
   trial.history = from.history;
   trial.environment = from.environment;
   double length = 1.0;

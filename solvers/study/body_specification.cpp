@@ -128,33 +128,59 @@ void check_cpd_material(const MaterialSpecification& material, const std::string
                  has_moduli ? "follows from youngs_modulus and poisson_ratio" : "must be 0 in 2D");
 }
 
-void check_lps_material(const MaterialSpecification& material, const std::string& key,
-                        int dimension) {
-  require(dimension > 1, key + ".model", "lps", "needs dimension 2 or 3");
+/// Of model lps or correspondence.
+void check_solid_material(const MaterialSpecification& material, const std::string& key,
+                          int dimension) {
+  const std::string name = material.model == MaterialModel::lps ? "lps" : "correspondence";
+  require(dimension > 1, key + ".model", name, "needs dimension 2 or 3");
   require(material.youngs_modulus.has_value(), key + ".youngs_modulus", "", "is missing");
   require(material.poisson_ratio.has_value(), key + ".poisson_ratio", "", "is missing");
   require(*material.poisson_ratio > -1.0 && *material.poisson_ratio < 0.5, key + ".poisson_ratio",
           number_text(*material.poisson_ratio), "must be above -1 and below 0.5");
-  const std::string has_own = "is not for the model lps, whose constants are E and nu";
+  const std::string has_own = "is not for the model " + name + ", whose constants are E and nu";
   require_absent(material.micromodulus.has_value(), key + ".micromodulus", has_own);
   require_absent(material.c1.has_value(), key + ".c1", has_own);
   require_absent(material.c2 != 0.0, key + ".c2", has_own);
   require_absent(material.c3 != 0.0, key + ".c3", has_own);
   require_absent(material.calibration.has_value(), key + ".calibration", has_own);
   require_absent(material.potential != Harmonic::name, key + ".potential",
-                 "is not for the model lps, which is linear");
+                 "is not for the model " + name + ", whose energy is quadratic in strains");
   require(!material.damage.softens(), key + ".damage.law", "",
-          "of the model lps is \"critical_stretch\", or \"energy_density\" with operator \"fft\"");
+          material.model == MaterialModel::lps
+              ? "of the model lps is \"critical_stretch\", or \"energy_density\" with operator "
+                "\"fft\""
+              : "of the model correspondence is \"energy_density\"");
   require_absent(material.damage.strength.has_value(), key + ".damage.strength",
-                 "is not for the model lps; give fracture_energy or critical");
+                 "is not for the model " + name + "; give fracture_energy" +
+                     (material.model == MaterialModel::lps ? " or critical" : ""));
   require_absent(material.thermal_expansion.has_value(), key + ".thermal_expansion",
-                 "is not for the model lps");
+                 "is not for the model " + name);
+}
+
+/// What convolutions sum alone has one potential and one way to fail.
+void check_polynomial_material(const MaterialSpecification& material, const std::string& key) {
+  const MaterialSpecification defaults;
+  const bool is_stabilised = material.model == MaterialModel::correspondence;
+  require_absent(!is_stabilised && material.stabilisation != defaults.stabilisation,
+                 key + ".stabilisation", "is for the model correspondence");
+  require(std::isfinite(material.stabilisation) && material.stabilisation > 0.0,
+          key + ".stabilisation", number_text(material.stabilisation),
+          "must be positive and finite");
+  if (!is_polynomial(material.model)) return;
+  require(material.kinematics == Kinematics::finite, key + ".kinematics", "linear",
+          "is for the models bond and lps");
+  require(material.potential == Harmonic::name, key + ".potential", material.potential,
+          "is for the model bond");
+  const DamageLaw law = material.damage.law;
+  require(law == DamageLaw::none || law == DamageLaw::energy_density, key + ".damage.law", "",
+          "of this model is \"energy_density\": bonds that break one by one are no convolutions");
 }
 
 void check_kinematics(const MaterialSpecification& material, const std::string& key) {
   const DamageLaw law = material.damage.law;
   if (material.kinematics == Kinematics::finite || material.model == MaterialModel::lps) {
-    require(law != DamageLaw::energy_density || material.model == MaterialModel::lps,
+    require(law != DamageLaw::energy_density || material.model == MaterialModel::lps ||
+                is_polynomial(material.model),
             key + ".damage.law", "energy_density", "is for kinematics \"linear\"");
     return;
   }
@@ -237,10 +263,10 @@ void check_influence(const MaterialSpecification& material, const std::string& k
 
 void check_material(const MaterialSpecification& material, const std::string& key, int dimension) {
   check_influence(material, key);
-  if (material.model == MaterialModel::bond)
+  if (has_bonds(material.model))
     check_bond_material(material, key);
-  else if (material.model == MaterialModel::lps)
-    check_lps_material(material, key, dimension);
+  else if (has_lame_constants(material.model))
+    check_solid_material(material, key, dimension);
   else
     check_cpd_material(material, key, dimension);
   require_positive(material.youngs_modulus, key + ".youngs_modulus");
@@ -248,6 +274,7 @@ void check_material(const MaterialSpecification& material, const std::string& ke
   require_positive(material.c1, key + ".c1");
   require_positive(material.density, key + ".density");
   check_damage(material.damage, key + ".damage.");
+  check_polynomial_material(material, key);
   check_kinematics(material, key);
   check_fibre(material, key, dimension);
   check_scatter(material, key);
@@ -326,7 +353,7 @@ void check_solid(const BodySpecification& of) {
   require_absent(of.surface_correction != SurfaceCorrection::none, "surface_correction",
                  "is for the model bond; the states of lps are those of the neighbours there are");
   const CollocationSpecification defaults;
-  if (of.form == SolidForm::energy) {
+  if (of.form != SolidForm::collocation) {
     require_absent(of.collocation.degree != defaults.degree, "collocation.degree",
                    "is for the form collocation");
     require_absent(of.collocation.traction_form != defaults.traction_form,
@@ -522,6 +549,23 @@ void require_lattice_to_calibrate_on(const BodySpecification& of, const Points& 
 
 namespace {
 
+/// What nothing but convolutions sums.
+void check_convolved_body(const BodySpecification& of) {
+  if (of.needs_convolutions()) {
+    require(of.is_convolved(), "force_operator", "bonds",
+            of.has_states() ? "does not go with the form \"printed\" of lps; take \"fft\""
+                            : "does not go with this model, which is summed by convolutions alone; "
+                              "take \"fft\"");
+  }
+  if (!is_polynomial(of.material.model)) return;
+  require_absent(of.eigenstrains.are_there(), "eigenstrains",
+                 "do not go with the models green_bond and correspondence");
+  require_absent(
+      !of.cracks.empty(), "cracks",
+      "do not go with the models green_bond and correspondence, which know no cut bonds: "
+      "take a slot out of the body");
+}
+
 void check_linear_body(const BodySpecification& of) {
   for (std::size_t k = 0; of.is_convolved() && k < of.loads.size(); ++k) {
     require_absent(of.loads[k].kind == LoadSpecification::Kind::pressure,
@@ -529,10 +573,13 @@ void check_linear_body(const BodySpecification& of) {
                    "turns with its faces, which couples points that operator \"fft\" has no place "
                    "for; take \"bonds\", or a traction");
   }
+  if (is_polynomial(of.material.model)) return;
   if (!of.is_linear()) {
-    require(!of.is_convolved() || of.has_states(), "force_operator", "fft",
-            "is for bonds with kinematics \"linear\", since the forces of bonds that turn are no "
-            "convolutions, and for the form \"energy\" of lps");
+    require(
+        !of.is_convolved() || of.has_states(), "force_operator", "fft",
+        "is for bonds with kinematics \"linear\", since the forces of bonds that turn are no "
+        "convolutions unless of model \"green_bond\", for model \"correspondence\", and for the "
+        "forms \"energy\" and \"printed\" of lps");
     require(!of.is_convolved() || of.cracks.empty(), "force_operator", "fft",
             "of lps knows no cut bonds: take a slot out of the body, or \"bonds\"");
     const DamageLaw law = of.material.damage.law;
@@ -553,6 +600,7 @@ void check_linear_body(const BodySpecification& of) {
 }  // namespace
 
 void check_specification(const BodySpecification& of, const Points& points) {
+  check_convolved_body(of);
   check_linear_body(of);
   check_horizon(of, points);
   check_cross_section(of, points);

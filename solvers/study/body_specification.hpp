@@ -23,8 +23,24 @@
 
 namespace peristat {
 
-/// Bonds alone, continuum-kinematics-inspired peridynamics, or the linear peridynamic solid.
-enum class MaterialModel { bond, cpd, lps };
+/// Bonds alone, continuum-kinematics-inspired peridynamics, or the linear peridynamic solid; and by
+/// convolutions alone bonds by the difference of squared lengths, and a correspondence material.
+enum class MaterialModel { bond, cpd, lps, green_bond, correspondence };
+
+/// Whether a model's constants are those of bonds.
+constexpr bool has_bonds(MaterialModel model) {
+  return model == MaterialModel::bond || model == MaterialModel::green_bond;
+}
+
+/// Whether they are those of an isotropic continuum.
+constexpr bool has_lame_constants(MaterialModel model) {
+  return model == MaterialModel::lps || model == MaterialModel::correspondence;
+}
+
+/// Whether forces are polynomials of displacements, which convolutions sum and nothing else does.
+constexpr bool is_polynomial(MaterialModel model) {
+  return model == MaterialModel::green_bond || model == MaterialModel::correspondence;
+}
 
 /// What constants from E and nu are to be right on.
 enum class Calibration { lattice, continuum };
@@ -113,7 +129,8 @@ struct MaterialSpecification {
   std::optional<double>
       youngs_modulus{};                   ///< [Pa]; exactly one of this, micromodulus and c1 is set
   std::optional<double> micromodulus{};   ///< c [N/m6]
-  std::optional<double> poisson_ratio{};  ///< cpd, lps, with youngs_modulus
+  std::optional<double> poisson_ratio{};  ///< cpd, lps, correspondence, with youngs_modulus
+  double stabilisation = 0.5;             ///< G_s of correspondence, see Correspondence
   std::optional<double> c1{};             ///< C1 [N/m6]
   double c2 = 0.0;                        ///< C2 [N/m10]; in 2D not with youngs_modulus
   double c3 = 0.0;                        ///< C3 [N/m14]; with c1 only
@@ -157,7 +174,8 @@ inline constexpr const char* rest_name = "material";
 
 /// Whether forces of model lps are those of [LPS] at points, exact for linear displacements, or the
 /// derivative of an energy.
-enum class SolidForm { collocation, energy };
+/// `printed`: as [FCBM] has them, without a potential where neighbourhoods differ.
+enum class SolidForm { collocation, energy, printed };
 
 /// Normals of model lps where balls are cut: those of the neighbourhoods, or, at points below one
 /// face, that have lost no bond, the face's.
@@ -217,11 +235,15 @@ struct BodySpecification {
     return material.model == MaterialModel::lps && form == SolidForm::collocation;
   }
   [[nodiscard]] bool has_states() const {
-    return material.model == MaterialModel::lps && form == SolidForm::energy;
+    return material.model == MaterialModel::lps && form != SolidForm::collocation;
   }
   /// Whether its bonds are linearised at rest.
   [[nodiscard]] bool is_linear() const {
     return material.model == MaterialModel::bond && material.kinematics == Kinematics::linear;
+  }
+  /// Whether nothing but convolutions sums its forces.
+  [[nodiscard]] bool needs_convolutions() const {
+    return is_polynomial(material.model) || (has_states() && form == SolidForm::printed);
   }
   [[nodiscard]] bool is_convolved() const { return force_operator == ForceOperator::fft; }
 

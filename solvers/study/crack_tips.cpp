@@ -16,7 +16,7 @@ namespace {
 
 TipElasticity elasticity_of(const PointMaterials::Material& material, const Body& body) {
   const int dimension = body.points.dimension;
-  const bool is_bond = material.of->model == MaterialModel::bond;
+  const bool is_bond = has_bonds(material.of->model);
   if (is_bond) {
     // As given, be it on the lattice's sums or in the continuum; a micromodulus has the latter's.
     const double of_continuum = youngs_modulus_of(
@@ -27,7 +27,7 @@ TipElasticity elasticity_of(const PointMaterials::Material& material, const Body
     return is_thin ? TipElasticity::plane_stress(modulus, nu)
                    : TipElasticity::plane_strain(modulus, nu);
   }
-  if (material.of->model == MaterialModel::lps) {
+  if (has_lame_constants(material.of->model)) {
     const double modulus = *material.of->youngs_modulus, nu = *material.of->poisson_ratio;
     const bool is_thin = dimension == 2 && body.setting.plane == PlaneState::stress;
     return is_thin ? TipElasticity::plane_stress(modulus, nu)

@@ -12,6 +12,7 @@
 
 #include "assembly/convolutions/lattice_springs.hpp"
 #include "assembly/terms/linear/linear_term.hpp"
+#include "assembly/terms/points/convolved_term.hpp"
 #include "solvers/study/fracture_data.hpp"
 #include "solvers/study/state_model.hpp"
 #include "src/core/input_error.hpp"
@@ -25,8 +26,10 @@ namespace {
 /// Of a spacing: what a point may stand off its place, and of a volume.
 constexpr double lattice_tolerance = 1e-9;
 
-[[noreturn]] void refuse_convolution(const std::string& why) {
-  throw InputError("force_operator", "fft", why + "; take \"bonds\"");
+[[noreturn]] void refuse_convolution(const BodySpecification& from, const std::string& why) {
+  throw InputError(
+      "force_operator", "fft",
+      from.needs_convolutions() ? why + "; no other sums this model" : why + "; take \"bonds\"");
 }
 
 bool stand_in_place(const Points& points) {
@@ -45,25 +48,27 @@ bool stand_in_place(const Points& points) {
 LatticeBox box_of(const BodySpecification& from, const Points& points) {
   if (!from.is_uniform()) {
     refuse_convolution(
+        from,
         "is for bodies of one material: with regions, fibres or random fields the stiffness of a "
         "bond is not a function of its step alone");
   }
   if (from.surface_correction != SurfaceCorrection::none) {
-    refuse_convolution("goes without a surface_correction, whose factors belong to single bonds");
+    refuse_convolution(from,
+                       "goes without a surface_correction, whose factors belong to single bonds");
   }
   if (points.own() < points.count()) {
-    refuse_convolution("does not go with planes of symmetry and periods");
+    refuse_convolution(from, "does not go with planes of symmetry and periods");
   }
-  if (!points.neighbours.empty()) refuse_convolution("finds its neighbours by itself");
+  if (!points.neighbours.empty()) refuse_convolution(from, "finds its neighbours by itself");
   std::string why_not;
   std::optional<LatticeBox> box = lattice_box(points, why_not);
-  if (!box) refuse_convolution("needs points on a lattice: " + why_not);
+  if (!box) refuse_convolution(from, "needs points on a lattice: " + why_not);
   if (!stand_in_place(points)) {
-    refuse_convolution("needs points that stand where the lattice has its places");
+    refuse_convolution(from, "needs points that stand where the lattice has its places");
   }
   const auto [least, most] = std::minmax_element(points.volume.begin(), points.volume.end());
   if (*most - *least > lattice_tolerance * *most) {
-    refuse_convolution("needs points with the same volume, that of a cell");
+    refuse_convolution(from, "needs points with the same volume, that of a cell");
   }
   return std::move(*box);
 }
@@ -212,6 +217,24 @@ BondSetting network_setting(const BodySpecification& from, const Points& points,
 
 namespace {
 
+/// What convolutions have in common, without pre-cracks.
+ConvolvedLattice lattice_of(const BodySpecification& from, const Points& points,
+                            const BondSetting& of_springs, double modulus, int threads) {
+  ConvolvedLattice lattice;
+  lattice.box = box_of(from, points);
+  lattice.springs =
+      lattice_springs(of_springs, points.spacing, points.angle, modulus, points.volume.front());
+  lattice.all_bonds = [&points, of_springs, threads] {
+    return make_bonds(points, SurfaceCorrection::none, of_springs, threads);
+  };
+  return lattice;
+}
+
+LamePair constants_of(const MaterialSpecification& material, int dimension) {
+  return lame_constants(*material.youngs_modulus, *material.poisson_ratio, dimension,
+                        material.plane);
+}
+
 /// Its springs have the solid's Young's modulus and influence.
 Model make_convolved_solid(const BodySpecification& from, const PointMaterials& materials,
                            const Points& points, const BondSetting& setting, Bonds bonds,
@@ -220,19 +243,64 @@ Model make_convolved_solid(const BodySpecification& from, const PointMaterials& 
   const BondSetting of_springs = state_setting(setting);
   const double modulus = micromodulus(*material.youngs_modulus, of_springs);
   const double volume = points.volume.front();
-  ConvolvedLattice lattice;
-  lattice.box = box_of(from, points);
-  lattice.springs = lattice_springs(of_springs, points.spacing, points.angle, modulus, volume);
-  lattice.solid = ConvolvedSolid{lattice_arms(setting, points.spacing, points.angle, volume),
-                                 {lame_constants(*material.youngs_modulus, *material.poisson_ratio,
-                                                 points.dimension, material.plane),
-                                  volume}};
-  lattice.all_bonds = [&points, of_springs, threads] {
-    return make_bonds(points, SurfaceCorrection::none, of_springs, threads);
-  };
+  const SolidForces form =
+      from.form == SolidForm::printed ? SolidForces::printed : SolidForces::energy;
   return Model(std::make_shared<LinearTerm>(
       std::make_shared<const Bonds>(std::move(bonds)), modulus,
-      bearable_energies(materials, points, setting.horizon), std::move(lattice), threads));
+      bearable_energies(materials, points, setting.horizon),
+      lattice_of(from, points, of_springs, modulus, threads), threads,
+      ConvolvedSolid{lattice_arms(setting, points.spacing, points.angle, volume),
+                     {constants_of(material, points.dimension), volume, form}}));
+}
+
+Model make_green_bonds(const BodySpecification& from, const PointMaterials& materials,
+                       const Points& points, const BondSetting& setting, Bonds bonds, int threads) {
+  const PointMaterials::Material& material = materials.all().front();
+  const double modulus = micromodulus_of(*material.of, material.key, setting).at(1.0);
+  return Model(std::make_shared<ConvolvedTerm>(
+      std::make_shared<const Bonds>(std::move(bonds)), modulus,
+      bearable_energies(materials, points, setting.horizon),
+      lattice_of(from, points, setting, modulus, threads), ConvolvedGreenBonds{}, threads));
+}
+
+/// Micromodulus of bonds that have the same bulk modulus.
+double modulus_of_bulk(const LamePair& constants, const BondSetting& setting) {
+  const int d = setting.dimension;
+  const LamePair of_bonds = lame_constants(1.0, poisson_ratio(setting), d, setting.plane);
+  const auto bulk = [d](const LamePair& of) { return of.lambda + 2.0 * of.mu / d; };
+  return micromodulus(bulk(constants) / bulk(of_bonds), setting);
+}
+
+/// A gradient is told by neighbours that do not all lie along a line or in a plane.
+void require_gradients(const Correspondence& material) {
+  const std::size_t without = material.points_without_gradient();
+  if (without == 0) return;
+  throw InputError(
+      "points", std::to_string(without),
+      "of them have neighbours along a line or in a plane alone, which tell no "
+      "deformation gradient; resolve thin parts by more points, or take another model");
+}
+
+/// Its springs have the material's Young's modulus; beta is stabilisation times the micromodulus of
+/// bonds of its bulk modulus, over the horizon ([FCBM] A-12, as a material of its own unit).
+Model make_correspondence(const BodySpecification& from, const PointMaterials& materials,
+                          const Points& points, const BondSetting& setting, Bonds bonds,
+                          int threads) {
+  const MaterialSpecification& material = *materials.all().front().of;
+  const double modulus = micromodulus(*material.youngs_modulus, setting);
+  const double volume = points.volume.front();
+  ConvolvedCorrespondence law;
+  law.arms = lattice_arms(setting, points.spacing, points.angle, volume);
+  law.setting.constants = constants_of(material, points.dimension);
+  law.setting.volume = volume;
+  law.setting.stabilisation =
+      material.stabilisation * modulus_of_bulk(law.setting.constants, setting) / setting.horizon;
+  ConvolvedLattice lattice = lattice_of(from, points, setting, modulus, threads);
+  require_gradients(Correspondence(lattice.box, {}, law.arms, law.setting, threads));
+  return Model(
+      std::make_shared<ConvolvedTerm>(std::make_shared<const Bonds>(std::move(bonds)), modulus,
+                                      bearable_energies(materials, points, setting.horizon),
+                                      std::move(lattice), std::move(law), threads));
 }
 
 }  // namespace
@@ -242,6 +310,12 @@ Model make_linear_model(const BodySpecification& from, const PointMaterials& mat
                         const BondSetting& setting, Bonds bonds, CutBonds& cut, int threads) {
   if (from.has_states()) {
     return make_convolved_solid(from, materials, points, setting, std::move(bonds), threads);
+  }
+  if (from.material.model == MaterialModel::green_bond) {
+    return make_green_bonds(from, materials, points, setting, std::move(bonds), threads);
+  }
+  if (from.material.model == MaterialModel::correspondence) {
+    return make_correspondence(from, materials, points, setting, std::move(bonds), threads);
   }
   std::vector<DirectedConstant> moduli;
   for (const auto& material : all_materials(from, materials)) {

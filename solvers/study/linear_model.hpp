@@ -12,7 +12,7 @@ namespace peristat {
                                           BondSetting setting);
 
 /// Model of a body of model "bond" with linear kinematics, and what its pre-cracks have cut; or of
-/// model "lps" with the form "energy" by convolutions.
+/// model "lps" as an energy or as it was printed, "green_bond" or "correspondence" by convolutions.
 /// @param setting of all its bonds
 /// @param bonds those of network_setting
 /// @throws InputError ("solver.operator") for what is no convolution

@@ -95,6 +95,16 @@ LinearSystems systems_of_motion(const Body& body) {
   return systems;
 }
 
+/// Convolutions without a potential have neither rows to solve with nor an energy to search by.
+void refuse_to_solve_for(const Body& body, const LoadSteppingOptions& loading) {
+  if (body.model.has_rows() || body.model.balances().potential) return;
+  const std::string why =
+      "is for models with an energy; form \"printed\" takes mode dynamics with scheme \"verlet\", "
+      "and form \"energy\" everything";
+  if (loading.mode == Mode::dynamics) throw InputError("dynamics.scheme", "newmark", why);
+  throw InputError("loading.mode", std::string(loading.mode.name), why);
+}
+
 /// The box of a body that sines are estimated to be the best choice for, if `automatic` is asked.
 std::shared_ptr<const LatticeBox> box_for_choice(const StudyOptions& options, const Body& body) {
   const BodySpecification& of = body.specification;
@@ -213,6 +223,7 @@ LinearSystems choose_linear_systems(const StudyOptions& options, const Body& bod
                                     SolverLadder::Reporter tell) {
   const bool is_explicit = options.loading.dynamics.scheme == MotionScheme::verlet;
   if (options.loading.mode == Mode::dynamics && is_explicit) return systems_of_motion(body);
+  refuse_to_solve_for(body, options.loading);
   StudyOptions chosen = options;
   if (!body.model.has_rows()) {
     if (!body.conditions->constraints().none()) {
@@ -244,9 +255,10 @@ LinearSystems choose_linear_systems(const StudyOptions& options, const Body& bod
 
 std::unique_ptr<TangentOperator> LinearSystems::make_tangent(Assembler& assembler,
                                                              const Constraints& constraints) const {
-  if (!assembler.has_potential()) return std::make_unique<RowsOfEnergy>(assembler);
+  const bool is_convolved = !assembler.has_rows();
+  if (!is_convolved && !assembler.has_potential()) return std::make_unique<RowsOfEnergy>(assembler);
   if (!constraints.none()) return std::make_unique<ConstrainedTangent>(assembler, constraints);
-  if (!assembler.has_rows()) return std::make_unique<ConvolvedTangent>(assembler);
+  if (is_convolved) return std::make_unique<ConvolvedTangent>(assembler);
   if (!is_stored) return std::make_unique<MatrixFreeTangent>(assembler);
   return std::make_unique<Tangent>(assembler);
 }

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "assembly/terms/linear/linear_term.hpp"
+#include "assembly/terms/points/point_term.hpp"
 #include "assembly/terms/states/state_term.hpp"
 #include "solvers/linear/vector_verbs.hpp"
 #include "solvers/study/point_materials.hpp"
@@ -94,8 +94,8 @@ MotionSetting make_motion_setting(const Body& body) {
       body.specification.material.model == MaterialModel::bond ? 2 : body.points.dimension + 1;
   if (const auto* states = dynamic_cast<const StateTerm*>(body.model.bond_term().get())) {
     setting.most_points = int(std::ceil(states->bound_over_blocks(body.points.dimension)));
-  } else if (const auto* linear = dynamic_cast<const LinearTerm*>(body.model.bond_term().get())) {
-    setting.most_points = int(std::ceil(linear->bound_over_blocks(body.points.dimension)));
+  } else if (const auto* of_points = dynamic_cast<const PointTerm*>(body.model.bond_term().get())) {
+    setting.most_points = int(std::ceil(of_points->bound_over_blocks(body.points.dimension)));
   }
   return setting;
 }

@@ -24,6 +24,7 @@ void refuse_modes_without_potential(const Body& body, const StudyOptions& option
   if (body.model.balances().potential) return;
   const bool is_explicit = options.loading.mode == Mode::dynamics &&
                            options.loading.dynamics.scheme == MotionScheme::verlet;
+  if (body.specification.is_convolved()) return;  // choose_linear_systems knows what moves them
   if (is_explicit) {
     throw InputError("dynamics.scheme", "verlet",
                      "is for models with an energy; \"lps\" moves by \"newmark\"");
@@ -62,8 +63,8 @@ void refuse_modes_of_failing_points(const Body& body, const StudyOptions& option
   const bool is_known = mode == Mode::newton || mode == Mode::dynamics || mode == Mode::relaxation;
   if (is_known || (mode != Mode::path && !body.model.has_history())) return;
   throw InputError("loading.mode", std::string(mode.name),
-                   "is for bonds that break; with kinematics \"linear\" take newton, relaxation "
-                   "or dynamics");
+                   "is for bonds that break one by one; with kinematics \"linear\" or operator "
+                   "\"fft\" take newton, relaxation or dynamics");
 }
 
 }  // namespace
@@ -132,7 +133,7 @@ const Stiffness& Study::find_initial_stiffness() {
   conditions.constraints().move(displacement);
   const History history = assembler.initial_history();
   tangent.linearise(assembler, {displacement, history, Damage::grows, conditions.environment(0.0)},
-                    1.0);
+                    projection_for_stiffness(assembler));
   motion_->at_start = find_stiffness(tangent, free, motion_->mass, motion_->most_points);
   const double step = options_.loading.dynamics.time_step;
   const double stable = motion_->at_start->stable_step();

@@ -178,6 +178,18 @@ class Statics(CommandLine):
         crack = "crack=[{from=[0.0102, 0.0051], to=[0.0102, 0.02]}]"
         self.both(STRIP, crack, "lattice.angle=45", 'quadrature.horizon_shape="box"', share=1e-9)
 
+    def test_what_rollers_and_rigid_sets_carry_is_no_points(self):
+        # Displacements of a billionth of the spacing: what finite kinematics adds is of that share.
+        on_left = STRIP[: STRIP.index('[[support]]\nset = "right"')] + STRIP[STRIP.index("[solver]") :]
+        for held in ('[[roller]]\nset = "right"\nnormal = [1, 0.3]\ndisplacement = "1e-12*load"\n',
+                     '[[rigid]]\nset = "right"\ndisplacement = ["1e-12*load", "free"]\n'):  # fmt: skip
+            with self.subTest(held):
+                linear = self.results(on_left + "[loading]\nsteps = 3\n" + held)
+                finite = self.results(on_left + "[loading]\nsteps = 3\n" + held, "material.kinematics=finite")
+                self.same(linear, finite, share=1e-6)
+                energy = linear.summary["energy"]
+                self.assertAlmostEqual(energy["stored"], energy["external_work"], delta=1e-9 * energy["stored"])
+
     def test_it_is_the_direct_solution(self):
         run = self.results(STRIP, "solver.operator=fft")
         solved = Solved(run)

@@ -40,11 +40,12 @@ void CutForces::multiply(std::span<const double> displacement, std::span<const d
   take_off(product, [&](std::span<double> of_cut) { cut_.multiply(displacement, v, of_cut); });
 }
 
-void CutForces::outline_tangent(std::span<double> diagonal, std::span<double> row_sums) {
-  whole_->outline_tangent(diagonal, row_sums);
+void CutForces::outline_tangent(std::span<const double> displacement, std::span<double> diagonal,
+                                std::span<double> row_sums) {
+  whole_->outline_tangent(displacement, diagonal, row_sums);
   take_off(diagonal, [&](std::span<double> of_cut) {
     std::vector<double> unused(row_sums.size());
-    cut_.outline_tangent(of_cut, unused);
+    cut_.outline_tangent(displacement, of_cut, unused);
   });
 }
 

@@ -27,7 +27,8 @@ class CutForces : public LatticeForces {
   void multiply(std::span<const double> displacement, std::span<const double> v,
                 std::span<double> product) override;
   /// Row sums are those of the whole lattice.
-  void outline_tangent(std::span<double> diagonal, std::span<double> row_sums) override;
+  void outline_tangent(std::span<const double> displacement, std::span<double> diagonal,
+                       std::span<double> row_sums) override;
   /// That of the whole lattice.
   [[nodiscard]] LatticeStencil stencil() override { return whole_->stencil(); }
   void add_virials(std::span<const double> displacement, std::span<double> virials) override;

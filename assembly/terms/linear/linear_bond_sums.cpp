@@ -176,7 +176,8 @@ void LinearBondSums::multiply(std::span<const double> /*displacement*/, std::spa
   in_dimension([&](auto kernels) { kernels.forces(v, product, -1.0); });
 }
 
-void LinearBondSums::outline_tangent(std::span<double> diagonal, std::span<double> row_sums) {
+void LinearBondSums::outline_tangent(std::span<const double> /*displacement*/,
+                                     std::span<double> diagonal, std::span<double> row_sums) {
   const auto d = std::size_t(workspace_.points.dimension);
   std::vector<double> blocks(diagonal.size());
   visit_tangent([](int, Index, std::span<const double>) {}, blocks);

@@ -30,7 +30,8 @@ class LinearBondSums : public LatticeForces {
   /// v and product may be one array.
   void multiply(std::span<const double> displacement, std::span<const double> v,
                 std::span<double> product) override;
-  void outline_tangent(std::span<double> diagonal, std::span<double> row_sums) override;
+  void outline_tangent(std::span<const double> displacement, std::span<double> diagonal,
+                       std::span<double> row_sums) override;
   void add_virials(std::span<const double> displacement, std::span<double> virials) override;
 
   /// Visits the rows of the tangent, see Energy::visit_tangent.

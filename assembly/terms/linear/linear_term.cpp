@@ -1,286 +1,51 @@
 #include "assembly/terms/linear/linear_term.hpp"
 
-#include <algorithm>
 #include <array>
-#include <cmath>
-#include <limits>
-#include <numeric>
-#include <stdexcept>
 #include <utility>
 
 #include "assembly/convolutions/linear_bonds.hpp"
 #include "assembly/terms/linear/cut_forces.hpp"
 #include "assembly/terms/linear/linear_bond_sums.hpp"
-#include "assembly/terms/model.hpp"
 #include "assembly/terms/states/state_term.hpp"
 
 namespace peristat {
-namespace {
-
-class LinearPasses : public TermPasses {
- public:
-  LinearPasses(const LinearTerm& term, const TermSetting& setting)
-      : term_(term),
-        slot_(setting.model.slot_of(term)),
-        workspace_(setting.workspace),
-        places_(setting.pattern.places_of(term.couplings())),
-        volume_(setting.points.volume),
-        dimension_(std::size_t(setting.points.dimension)),
-        force_(setting.points.reference.size()) {
-    if (term.is_convolved() && term.lattice()->solid) {
-      const auto& [arms, solid] = *term.lattice()->solid;
-      forces_ = std::make_unique<LinearSolid>(term.lattice()->box, std::array<bool, 3>{}, arms,
-                                              solid, setting.workspace.threads());
-    } else if (term.is_convolved()) {
-      const auto& [box, springs, solid, cut, all_bonds] = *term.lattice();
-      forces_ = std::make_unique<LinearBonds>(box, std::array<bool, 3>{}, springs,
-                                              setting.workspace.threads());
-      if (cut) {
-        forces_ = std::make_unique<CutForces>(std::move(forces_), setting.points, *cut,
-                                              term.micromodulus(), setting.workspace.threads());
-      }
-    } else {
-      auto sums = std::make_unique<LinearBondSums>(setting.points, term.bonds(),
-                                                   term.micromodulus(), setting.workspace);
-      bonds_ = sums.get();
-      forces_ = std::move(sums);
-    }
-  }
-
-  Evaluation gradient(const StateView& at, std::span<double> gradient, Write how) override {
-    take_integrity(at.history);
-    forces_->find_forces(at.displacement, force_);
-    return evaluation(at.displacement, gradient, how);
-  }
-
-  Evaluation commit(std::span<const double> displacement, const SharedEnvironment& environment,
-                    History& history, std::span<double> gradient, Write how) override {
-    if (!term_.can_be_damaged()) {
-      return this->gradient({displacement, history, Damage::grows, environment}, gradient, how);
-    }
-    take_integrity(history);
-    find_energies(displacement);
-    const DamageGrowth grown = judge();
-    if (grown.degrading == 0) return evaluation(displacement, gradient, how);
-    const double before = stored(displacement);
-    const std::span<double> remembered = history.change(slot_);
-    for (std::size_t i = 0; i < energy_.size(); ++i) {
-      if (fails(i)) remembered[i] = 0.0;
-    }
-    take_integrity(history);
-    forces_->find_forces(displacement, force_);
-    Evaluation found = evaluation(displacement, gradient, how);
-    remembered.back() += before - found.energy;
-    found.growth = grown;
-    found.moves_equilibrium = true;
-    return found;
-  }
-
-  DamageGrowth growth(const StateView& at) override {
-    if (!term_.can_be_damaged()) return {};
-    take_integrity(at.history);
-    find_energies(at.displacement);
-    return judge();
-  }
-
-  /// @param projection changes nothing: Pi is convex
-  void tangent(const StateView& at, double /*projection*/, Tangent& tangent, Write how) override {
-    if (how == Write::over) tangent.clear();
-    const std::size_t entries = dimension_ * dimension_;
-    std::vector<double> diagonal(tangent.diagonal.size());
-    visit_tangent(
-        at, 0.0,
-        [&](int, Index i, std::span<const double> blocks) {
-          Offset bond = term_.bonds().offset[i];
-          for (std::size_t k = 0; k < blocks.size(); k += entries, ++bond) {
-            tangent.add_to_block(places_.empty() ? bond : places_[std::size_t(bond)],
-                                 blocks.subspan(k, entries));
-          }
-        },
-        diagonal);
-    for (std::size_t k = 0; k < diagonal.size(); ++k) tangent.diagonal[k] += diagonal[k];
-  }
-
-  void visit_tangent(const StateView& at, double /*projection*/, const RowVisitor& visit,
-                     std::span<double> diagonal) override {
-    if (bonds_ == nullptr) throw std::logic_error("a lattice by convolutions has no rows");
-    take_integrity(at.history);
-    bonds_->visit_tangent(visit, diagonal);
-  }
-
-  void outline_rows(const StateView& at, std::span<double> diagonal,
-                    std::span<double> row_sums) override {
-    take_integrity(at.history);
-    forces_->outline_tangent(diagonal, row_sums);
-  }
-
-  LatticeStencil stencil(const StateView& at) override {
-    take_integrity(at.history);
-    LatticeStencil own = forces_->stencil();
-    if (!own.empty() || !term_.is_convolved()) return own;
-    const std::vector<double> whole(volume_.size(), 1.0);
-    const auto& integrity = integrity_.empty() ? whole : integrity_;
-    return lattice_stencil(term_.lattice()->box, term_.lattice()->springs, integrity,
-                           workspace_.threads());
-  }
-
-  void product(const StateView& at, std::span<const double> v, double /*projection*/,
-               std::span<double> product, Write how) override {
-    take_integrity(at.history);
-    if (how == Write::over) return forces_->multiply(at.displacement, v, product);
-    forces_->multiply(at.displacement, v, force_);
-    for (std::size_t k = 0; k < product.size(); ++k) product[k] += force_[k];
-  }
-
-  void point_energies(const StateView& at, std::span<double> energies, Write how) override {
-    take_integrity(at.history);
-    find_energies(at.displacement);
-    for (std::size_t i = 0; i < energies.size(); ++i) {
-      energies[i] = (how == Write::onto ? energies[i] : 0.0) + energy_[i];
-    }
-  }
-
-  void add_virials(const StateView& at, std::span<double> virials) override {
-    take_integrity(at.history);
-    forces_->add_virials(at.displacement, virials);
-  }
-
- private:
-  void take_integrity(const History& history) {
-    if (!term_.can_be_damaged()) return;
-    const std::span<const double> remembered = history.of(slot_);
-    if (remembered.size() != volume_.size() + 1) {
-      throw std::logic_error("points that can be damaged are evaluated after their history");
-    }
-    const std::span<const double> now = remembered.first(volume_.size());
-    if (std::ranges::equal(now, integrity_)) return;
-    integrity_.assign(now.begin(), now.end());
-    forces_->set_integrity(integrity_);
-  }
-
-  void find_energies(std::span<const double> displacement) {
-    energy_.resize(volume_.size());
-    forces_->find_forces_and_energies(displacement, force_, energy_);
-  }
-
-  /// -u.f/2, u without its mean: forces add up to zero, but for round-off.
-  [[nodiscard]] double stored(std::span<const double> displacement) const {
-    std::array<double, 3> mean{};
-    for (std::size_t k = 0; k < displacement.size(); ++k) mean[k % dimension_] += displacement[k];
-    for (double& of_component : mean) of_component /= double(volume_.size());
-    double work = 0.0;
-    for (std::size_t k = 0; k < displacement.size(); ++k) {
-      work += (displacement[k] - mean[k % dimension_]) * force_[k];
-    }
-    return -0.5 * work;
-  }
-
-  /// From the forces that were found.
-  [[nodiscard]] Evaluation evaluation(std::span<const double> displacement,
-                                      std::span<double> gradient, Write how) const {
-    for (std::size_t k = 0; k < gradient.size(); ++k) {
-      gradient[k] = (how == Write::onto ? gradient[k] : 0.0) - force_[k];
-    }
-    Evaluation found;
-    found.energy = stored(displacement);
-    found.degenerate = !std::isfinite(found.energy);
-    return found;
-  }
-
-  [[nodiscard]] bool fails(std::size_t point) const {
-    return energy_[point] > term_.bearable()[point] && integrity_[point] > 0.0;
-  }
-
-  /// Energies go with the square of a load.
-  [[nodiscard]] DamageGrowth judge() const {
-    DamageGrowth found;
-    for (std::size_t i = 0; i < energy_.size(); ++i) {
-      if (integrity_[i] == 0.0) continue;
-      found.utilisation = std::max(found.utilisation, energy_[i] / term_.bearable()[i]);
-      if (fails(i)) ++found.degrading;
-    }
-    found.breaking = found.degrading;
-    found.utilisation = std::sqrt(std::max(found.utilisation, 0.0));
-    return found;
-  }
-
-  const LinearTerm& term_;
-  std::size_t slot_;
-  const Workspace& workspace_;
-  std::vector<Offset> places_;
-  std::span<const double> volume_;
-  std::size_t dimension_;
-  std::unique_ptr<LatticeForces> forces_;
-  LinearBondSums* bonds_ = nullptr;  // the same, if it has rows
-  std::vector<double> integrity_, force_, energy_;
-};
-
-}  // namespace
 
 LinearTerm::LinearTerm(std::shared_ptr<const Bonds> bonds, double micromodulus,
                        std::vector<double> bearable, std::optional<ConvolvedLattice> lattice,
-                       int threads)
-    : BondTerm(std::move(bonds), Harmonic{micromodulus}),
-      micromodulus_(micromodulus),
-      bearable_(std::move(bearable)),
-      lattice_(std::move(lattice)),
-      threads_(threads) {
-  const auto points = std::size_t(this->bonds().points());
-  if (!bearable_.empty() && bearable_.size() != points) {
-    throw std::logic_error("every point bears an energy of its own");
-  }
-  if (lattice_) no_couplings_.assign(points + 1, 0);
-  NeighbourSums whole = neighbours(std::vector<double>(points, 1.0));
-  whole_weight_ = std::move(whole.weight);
-  for (const double count : whole.count) neighbours_.push_back(std::int32_t(std::lround(count)));
-  count_ = std::accumulate(neighbours_.begin(), neighbours_.end(), Offset(0)) / 2;
-}
+                       int threads, std::optional<ConvolvedSolid> solid)
+    : PointTerm(std::move(bonds), micromodulus, std::move(bearable), std::move(lattice), threads),
+      solid_(std::move(solid)) {}
 
-NeighbourSums LinearTerm::neighbours(std::span<const double> integrity) const {
-  if (!lattice_) return neighbour_sums(bonds(), integrity);
-  NeighbourSums sums =
-      neighbour_sums(lattice_->box, lattice_->springs, micromodulus_, integrity, threads_);
-  if (!lattice_->cut) return sums;
-  const NeighbourSums cut = neighbour_sums(*lattice_->cut, integrity);
-  for (std::size_t i = 0; i < integrity.size(); ++i) {
-    sums.weight[i] -= cut.weight[i];
-    sums.count[i] -= cut.count[i];
+std::unique_ptr<LatticeForces> LinearTerm::forces(const Points& points, Workspace& shared) const {
+  constexpr std::array<bool, 3> open{};
+  if (!is_convolved()) {
+    return std::make_unique<LinearBondSums>(points, bonds(), micromodulus(), shared);
   }
-  return sums;
-}
-
-std::vector<InteractionCount> LinearTerm::counts() const {
-  if (!lattice_) return BondTerm::counts();
-  return {{"bonds", count_, "neighbours", "neighbours within the horizon, #N1", neighbours_}};
+  const ConvolvedLattice& of = *lattice();
+  if (solid_) {
+    return std::make_unique<LinearSolid>(of.box, open, solid_->arms, solid_->setting,
+                                         shared.threads());
+  }
+  auto whole = std::make_unique<LinearBonds>(of.box, open, of.springs, shared.threads());
+  if (!of.cut) return whole;
+  return std::make_unique<CutForces>(std::move(whole), points, *of.cut, micromodulus(),
+                                     shared.threads());
 }
 
 double LinearTerm::bound_over_blocks(int dimension) const {
-  if (!lattice_ || !lattice_->solid) return 2.0;
-  return states_bound_over_blocks(std::span(&lattice_->solid->setting.constants, 1), dimension);
+  if (!solid_) return 2.0;
+  if (is_printed()) return 0.0;
+  return states_bound_over_blocks(std::span(&solid_->setting.constants, 1), dimension);
 }
 
-Couplings LinearTerm::couplings() const {
-  if (!lattice_) return bonds();
-  return {no_couplings_, std::span<const Index>()};
+Balances LinearTerm::balances() const {
+  if (is_printed()) return {false, false, true, false, true};
+  return {true, false, true, true, true};
 }
 
-std::vector<double> LinearTerm::initial_history() const {
-  if (!can_be_damaged()) return {};
-  std::vector<double> history(bearable_.size() + 1, 1.0);
-  history.back() = 0.0;
-  return history;
-}
-
-double LinearTerm::stored_bytes() const {
-  const double points = double(bonds().points());
-  const double own = 8.0 * points * double(4 + (can_be_damaged() ? 3 : 0));
-  if (!lattice_) return own;
-  const auto& [box, springs, solid, cut, all_bonds] = *lattice_;
-  return own + (solid ? convolved_bytes(box, solid->arms) : convolved_bytes(box, springs));
-}
-
-std::unique_ptr<TermPasses> LinearTerm::passes(const TermSetting& setting) const {
-  return std::make_unique<LinearPasses>(*this, setting);
+double LinearTerm::bytes_of_forces() const {
+  const ConvolvedLattice& of = *lattice();
+  return solid_ ? convolved_bytes(of.box, solid_->arms) : convolved_bytes(of.box, of.springs);
 }
 
 }  // namespace peristat

@@ -1,17 +1,11 @@
 #pragma once
 
-#include <cstdint>
-#include <functional>
 #include <memory>
 #include <optional>
-#include <span>
 #include <vector>
 
-#include "assembly/convolutions/lattice_springs.hpp"
 #include "assembly/convolutions/linear_solid.hpp"
-#include "assembly/terms/bonds/bond_term.hpp"
-#include "assembly/terms/linear/neighbour_sums.hpp"
-#include "src/geometry/lattice_box.hpp"
+#include "assembly/terms/points/point_term.hpp"
 
 namespace peristat {
 
@@ -21,16 +15,6 @@ struct ConvolvedSolid {
   LinearSolid::Setting setting;
 };
 
-/// A lattice whose bonds are convolutions, which need no bond.
-struct ConvolvedLattice {
-  LatticeBox box;
-  /// Of a point, of two opposite ones one; of a solid as stiff as it is, to precondition it with.
-  std::vector<LatticeSpring> springs;
-  std::optional<ConvolvedSolid> solid{};
-  std::shared_ptr<const Bonds> cut{};  ///< those of them that pre-cracks have cut; null: none
-  std::function<Bonds()> all_bonds{};  ///< finds those that are left
-};
-
 /// The energy of harmonic bonds that are linearised at rest,
 ///
 ///   Pi = sum_b q_i q_j k (n . (u_j - u_i))^2 / 2,   k = c w / L,
@@ -38,55 +22,32 @@ struct ConvolvedLattice {
 /// n the direction of the bond in the reference, bond by bond (LinearBondSums) or by convolutions
 /// ([FCBM] app. A, LinearBonds): both are the same numbers to round-off; or of the linear solid by
 /// convolutions (LinearSolid). Forces add up to zero, and their moments in the reference, not in
-/// the present places.
-///
-/// Points lose their integrity q, from 1 to 0 and for good, where the energy density of a state
-/// that is committed, an equal share of each bond to its points, exceeds what they bear ([FCBM]
-/// eq. 21). What a commit takes away at fixed displacements counts as dissipated. It remembers q of
-/// each point and, behind them, what it has dissipated so far [J].
-class LinearTerm : public BondTerm {
+/// the present places. Those of the solid's form `printed` do neither and have no potential: its
+/// energy is what it tells, and no work that forces do is stored.
+class LinearTerm : public PointTerm {
  public:
-  /// @param bonds of the body; of a lattice that is convolved some short ones, which tell what
-  /// hangs
-  ///              together
-  /// @param micromodulus c [N/m6]
-  /// @param bearable energy of each point that it bears, infinite if it never fails [J]; empty: no
-  ///                 point fails
+  /// See PointTerm.
+  /// @param solid by convolutions, whose springs are those of the lattice
   LinearTerm(std::shared_ptr<const Bonds> bonds, double micromodulus, std::vector<double> bearable,
-             std::optional<ConvolvedLattice> lattice, int threads);
+             std::optional<ConvolvedLattice> lattice, int threads,
+             std::optional<ConvolvedSolid> solid = {});
 
-  [[nodiscard]] double micromodulus() const { return micromodulus_; }
-  [[nodiscard]] const std::vector<double>& bearable() const { return bearable_; }
-  [[nodiscard]] bool is_convolved() const { return lattice_.has_value(); }
-  [[nodiscard]] const std::optional<ConvolvedLattice>& lattice() const { return lattice_; }
+  [[nodiscard]] std::unique_ptr<LatticeForces> forces(const Points& points,
+                                                      Workspace& shared) const override;
+  /// 2 of pairs of points; of the solid see StateTerm::bound_over_blocks, of its form `printed`
+  /// none.
+  [[nodiscard]] double bound_over_blocks(int dimension) const override;
+  [[nodiscard]] Balances balances() const override;
 
-  [[nodiscard]] Offset count() const override { return count_; }
-  [[nodiscard]] std::vector<InteractionCount> counts() const override;
-  [[nodiscard]] const std::vector<double>& whole_weight() const { return whole_weight_; }
-  [[nodiscard]] NeighbourSums neighbours(std::span<const double> integrity) const;
-
-  /// A number c so that no eigenvalue of M^-1 K exceeds c times the largest of the diagonal blocks:
-  /// 2 of pairs of points; of the solid see StateTerm::bound_over_blocks.
-  [[nodiscard]] double bound_over_blocks(int dimension) const;
-
-  [[nodiscard]] Couplings couplings() const override;
-  [[nodiscard]] bool visits_rows() const override { return !is_convolved(); }
-  [[nodiscard]] bool has_rows() const override { return !is_convolved(); }
-  [[nodiscard]] Balances balances() const override { return {true, false, true, true, true}; }
-  [[nodiscard]] bool can_be_damaged() const override { return !bearable_.empty(); }
-  [[nodiscard]] std::vector<double> initial_history() const override;
-  [[nodiscard]] double stored_bytes() const override;
-  [[nodiscard]] std::unique_ptr<TermPasses> passes(const TermSetting& setting) const override;
+ protected:
+  [[nodiscard]] double bytes_of_forces() const override;
 
  private:
-  double micromodulus_;
-  std::vector<double> bearable_;
-  std::optional<ConvolvedLattice> lattice_;
-  int threads_;
-  std::vector<Offset> no_couplings_;      // of a lattice that is convolved
-  std::vector<double> whole_weight_;      // per point, of a body without damage [m6]
-  std::vector<std::int32_t> neighbours_;  // that each has
-  Offset count_ = 0;
+  [[nodiscard]] bool is_printed() const {
+    return solid_ && solid_->setting.form == SolidForces::printed;
+  }
+
+  std::optional<ConvolvedSolid> solid_;
 };
 
 }  // namespace peristat

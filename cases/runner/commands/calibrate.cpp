@@ -306,7 +306,11 @@ Exit calibrate(const CalibrationQuestion& question, const DamageSpecification& d
 }
 
 Exit calibrate(const Case& from) {
-  if (from.material.model == MaterialModel::bond) return calibrate_bonds(from);
+  if (has_bonds(from.material.model)) return calibrate_bonds(from);
+  if (from.material.model == MaterialModel::correspondence) {
+    throw InputError("material.model", "correspondence",
+                     "has its constants as they are given; calibrate is for the other models");
+  }
   const Points points = make_points_of(from);
   located_errors(from, [&] { require_whole_square_cells(points); });
   CalibrationQuestion question;

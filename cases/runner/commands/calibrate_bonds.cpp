@@ -130,8 +130,9 @@ std::string bond_calibration(const MaterialSpecification& material, const std::s
 std::string damage_calibration(const MaterialSpecification& material, const std::string& key,
                                const BondSetting& setting, double spacing) {
   if (material.damage.law == DamageLaw::energy_density) {
-    return object({pair("energy_density", bearable_energy_density(material.damage, setting.horizon)),
-                   pair("fracture_energy", *material.damage.fracture_energy)});
+    return object(
+        {pair("energy_density", bearable_energy_density(material.damage, setting.horizon)),
+         pair("fracture_energy", *material.damage.fracture_energy)});
   }
   const FractureScale scale = FractureScale::of(material, key, setting, spacing);
   std::optional<BulkBonds> bonds;

@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 
 #include "assembly/operators/constrained_tangent.hpp"
-#include "assembly/terms/linear/linear_term.hpp"
+#include "assembly/terms/points/point_term.hpp"
 #include "assembly/terms/pressure/pressure_term.hpp"
 #include "cases/runner/build/body.hpp"
 #include "cases/runner/build/solver_options.hpp"
@@ -172,7 +172,7 @@ void print_quadrature(const Case& from, const Body& body, int threads) {
       confined_energy_error(body.points, bonds, body.setting));
 }
 
-/// Lame's constants of model lps.
+/// Lame's constants of models lps and correspondence.
 void print_lame_constants(const PointMaterials::Material& of, const std::string& name,
                           int dimension) {
   const LamePair constants = lame_constants(*of.of, dimension);
@@ -195,19 +195,19 @@ void print_constants(const Case& from, const Body& body, int threads) {
   const BodySpecification& of = body.specification;  // its stretches are found
   const PointMaterials materials(of, body.points);
   const auto all = all_materials(of, materials);
-  const bool is_bond = from.material.model == MaterialModel::bond;
-  const bool is_lps = from.material.model == MaterialModel::lps;
+  const bool is_bond = has_bonds(from.material.model);
+  const bool is_solid = has_lame_constants(from.material.model);
   for (const auto& material : all) {
     const std::string name = from.regions.empty() ? "" : material.name;
     if (is_bond)
       print_bond_constants(material, name, body.setting);
-    else if (is_lps)
+    else if (is_solid)
       print_lame_constants(material, name, from.dimension);
     else
       print_cpd_constants(material, name, body);
   }
-  if (is_bond) print_quadrature(from, body, threads);
-  if (is_lps) print_collocation(from, body);
+  if (from.material.model == MaterialModel::bond) print_quadrature(from, body, threads);
+  if (from.is_collocated()) print_collocation(from, body);
   for (const auto& material : all) {
     print_fracture(material, from.regions.empty() ? "" : material.name, body.setting,
                    body.points.spacing);
@@ -282,7 +282,7 @@ void print_pressures(const Body& body) {
 /// Of an explicit step, as measured; other terms than bonds take longer.
 double seconds_of_forces(const Body& body) {
   constexpr double seconds_per_bond = 6e-9, seconds_per_place = 2e-7;
-  const auto* const term = dynamic_cast<const LinearTerm*>(body.model.bond_term().get());
+  const auto* const term = dynamic_cast<const PointTerm*>(body.model.bond_term().get());
   if (term != nullptr && term->is_convolved()) {
     return double(term->lattice()->box.count()) * seconds_per_place;
   }
@@ -304,18 +304,18 @@ void print_motion(const Case& from, const Body& body, const StudyOptions& option
              from.dynamics.is_implicit() ? "" : " on one thread");
 }
 
-const LinearTerm* convolved(const Body& body) {
-  const auto* const term = dynamic_cast<const LinearTerm*>(body.model.bond_term().get());
+const PointTerm* convolved(const Body& body) {
+  const auto* const term = dynamic_cast<const PointTerm*>(body.model.bond_term().get());
   return term != nullptr && term->is_convolved() ? term : nullptr;
 }
 
 Offset count_of_bonds(const Body& body) {
-  const LinearTerm* const term = convolved(body);
+  const PointTerm* const term = convolved(body);
   return term ? term->count() : weighted_bonds(body.model.bonds());
 }
 
 NeighbourCounts neighbours_of(const Body& body) {
-  const LinearTerm* const term = convolved(body);
+  const PointTerm* const term = convolved(body);
   if (!term) return count_neighbours(body.model.bonds(), body.points.own());
   const std::vector<std::int32_t> of_point = term->counts().front().per_point;
   const auto [least, most] = std::ranges::minmax(of_point);

@@ -276,19 +276,24 @@ Table<Case> quadrature_keys() {
   const auto of_kernel = [](auto&, const Case& from) {
     return !is_cpd(from) && !from.is_collocated();
   };
-  const auto of_bond = [](auto&, const Case& from) { return !is_cpd(from) && !is_lps(from); };
+  const auto of_bond = [](auto&, const Case& from) {
+    return from.material.model == MaterialModel::bond;
+  };
   const auto of_lps = [](auto&, const Case& from) { return is_lps(from); };
   const auto of_collocation = [](auto&, const Case& from) { return from.is_collocated(); };
   constexpr auto collocation = [](auto& from) -> auto& { return from.collocation; };
   return {
       "quadrature",
       {K("form", &Case::form,
-         choice<SolidForm>(
-             {{"collocation", SolidForm::collocation}, {"energy", SolidForm::energy}}),
+         choice<SolidForm>({{"collocation", SolidForm::collocation},
+                            {"energy", SolidForm::energy},
+                            {"printed", SolidForm::printed}}),
          "model `lps`: forces at points by a quadrature that is exact for linear displacements "
          "up to the surface, which have no potential; or those of an "
          "[energy](theory.md#the-solid-as-an-energy), symmetric, as the other models' are, with "
-         "all modes and loads that these have but mode `path`")
+         "all modes and loads that these have but mode `path`; or those of [FCBM] (A-8), for "
+         "comparisons alone: without a potential where neighbourhoods differ, by "
+         "`solver.operator = \"fft\"` in mode `dynamics` with `scheme = \"verlet\"`")
            .written_if(of_lps),
        K("volume_correction", &Case::volume_correction,
          choice<VolumeCorrection>({{"none", VolumeCorrection::none},
@@ -363,6 +368,8 @@ void check_quadrature(const Entry& at, const Case& result) {
     refuse({"surface_correction", "horizon_shape"},
            "is for model \"bond\"; the states of lps are those of the "
            "neighbours there are");
+  if (is_polynomial(result.material.model))
+    refuse({"surface_correction", "horizon_shape"}, "is for model \"bond\"");
   if (!is_cpd(result)) refuse(of_cpd, "is for model \"cpd\"");
   if (!is_lps(result)) refuse(of_lps, "is for model \"lps\"");
   if (!result.is_collocated()) refuse(of_collocation, "is for model \"lps\" by collocation");
@@ -423,7 +430,8 @@ Table<DamageSpecification> damage_keys(const std::string& material) {
          "the same law rescaled so that it does not jump; force falling linearly from `onset` "
          "to zero at `critical`; exponentially, without a jump at `critical`; rising on a "
          "lower slope from `onset` to `peak`, and then falling linearly; of points, with "
-         "`kinematics = \"linear\"`, and of `lps` by `solver.operator = \"fft\"`: all at once and "
+         "`kinematics = \"linear\"`, and of all models by `solver.operator = \"fft\"`: all at once "
+         "and "
          "for good where the energy density exceeds "
          "`fracture_energy` / (2 δ)")
            .early(),
@@ -555,8 +563,11 @@ Table<MaterialSpecification> material_keys(const std::string& name) {
   using Spec = MaterialSpecification;
   using K = Key<Spec>;
   const auto of_cpd = [](auto& material, auto&) { return material.model == MaterialModel::cpd; };
-  const auto of_bond = [](auto& material, auto&) { return material.model == MaterialModel::bond; };
-  const auto of_lps = [](auto& material, auto&) { return material.model == MaterialModel::lps; };
+  const auto of_bond = [](auto& material, auto&) { return has_bonds(material.model); };
+  const auto of_lps = [](auto& material, auto&) { return has_lame_constants(material.model); };
+  const auto of_correspondence = [](auto& material, auto&) {
+    return material.model == MaterialModel::correspondence;
+  };
   const auto has_moduli = [](auto& material, auto&) { return material.youngs_modulus.has_value(); };
   const auto has_constants = [](auto& material, auto&) { return material.c1.has_value(); };
   const auto has_micromodulus = [](auto& material, auto&) {
@@ -578,12 +589,18 @@ Table<MaterialSpecification> material_keys(const std::string& name) {
       {K("model", &Spec::model,
          choice<MaterialModel>({{"bond", MaterialModel::bond},
                                 {"cpd", MaterialModel::cpd},
-                                {"lps", MaterialModel::lps}}),
+                                {"lps", MaterialModel::lps},
+                                {"green_bond", MaterialModel::green_bond},
+                                {"correspondence", MaterialModel::correspondence}}),
          "bond-based peridynamics, whose Poisson ratio is 1/4 (3D and plane strain) or 1/3 (plane "
          "stress); continuum-kinematics-inspired peridynamics with one-, two- and "
          "three-neighbour interactions, dimension 2 and 3; or the "
          "[linear peridynamic solid](theory.md#linear-peridynamic-solid) of any Poisson ratio, by "
-         "collocation or as an energy, for small displacements, dimension 2 and 3")
+         "collocation or as an energy, for small displacements, dimension 2 and 3; or, at any "
+         "deformation and by `solver.operator = \"fft\"` alone, "
+         "[bonds that stretch by their squared lengths](theory.md#materials-of-convolutions-at-"
+         "finite-deformation), as `bond` at small strains, or a correspondence material of "
+         "St. Venant and Kirchhoff of any Poisson ratio, dimension 2 and 3")
            .then([name](auto& at, auto& material) {
              const bool tells_body = name == "material" || (!at.so_far.material.has_constants() &&
                                                             at.so_far.regions.empty());
@@ -593,14 +610,15 @@ Table<MaterialSpecification> material_keys(const std::string& name) {
              if (material.model == MaterialModel::cpd)
                at.refuse("cpd needs dimension 2 or 3; in 1D it is the bond model");
              if (material.model == MaterialModel::lps) at.refuse("lps needs dimension 2 or 3");
+             if (material.model == MaterialModel::correspondence)
+               at.refuse("correspondence needs dimension 2 or 3");
            })
            .early(),
        K("potential", &Spec::potential, choice(bond_potentials()),
          "of whole bonds, a function of their stretch, and below its onset of a damage law"),
        K("plane", &Spec::plane,
          choice<PlaneState>({{"stress", PlaneState::stress}, {"strain", PlaneState::strain}}),
-         "`bond`, `lps`: state of a plane body, dimension 2 only (`cpd` in 2D is purely "
-         "two-dimensional, neither)")
+         "state of a plane body, dimension 2 only (`cpd` in 2D is purely two-dimensional, neither)")
            .unless(of_cpd, for_bond)
            .unless(in_dimension<1>, "is for dimension 2 only")
            .unless(in_dimension<3>, "is for dimension 2 only"),
@@ -626,12 +644,21 @@ Table<MaterialSpecification> material_keys(const std::string& name) {
            .unless(of_lps, for_bond)
            .one_of(),
        K("poisson_ratio", &Spec::poisson_ratio, between(-1.0, 1.0),
-         "`cpd`, `lps`, with `youngs_modulus`")
-           .unless(of_bond, "is for models \"cpd\" and \"lps\"")
+         "`cpd`, `lps`, `correspondence`, with `youngs_modulus`")
+           .unless(of_bond, "is for models \"cpd\", \"lps\" and \"correspondence\"")
            .unless(has_constants, with_moduli)
-           .moreover("`lps`: to 0.5; `cpd`: in 3D to 0.5, all excluded; with damage from 1/3 (2D) "
+           .moreover("`lps`, `correspondence`: to 0.5; `cpd`: in 3D to 0.5, all excluded; with "
+                     "damage from 1/3 (2D) "
                      "or 1/4 (3D) on")
            .required("required with `youngs_modulus`"),
+       K("stabilisation", &Spec::stabilisation, positive("-"),
+         "`correspondence`: stiffness of the "
+         "[springs](theory.md#materials-of-convolutions-at-finite-deformation) that resist what "
+         "deformation gradients do not see, relative to bonds of the same bulk modulus")
+           .written_if(of_correspondence)
+           .unless([of_correspondence](auto& material,
+                                       auto& from) { return !of_correspondence(material, from); },
+                   "is for model \"correspondence\""),
        K("c1", &Spec::c1, positive("N/m6", 1e200), "`cpd`: one-neighbour constant")
            .unless(of_bond, for_cpd)
            .unless(of_lps, for_cpd)
@@ -665,7 +692,7 @@ Table<MaterialSpecification> material_keys(const std::string& name) {
          "with their corrections (`bond`: in the mean over all directions) or integrals")
            .unless(has_constants, with_moduli)
            .unless(has_micromodulus, "goes with youngs_modulus, not with micromodulus")
-           .unless(of_lps, "is not for model \"lps\"")
+           .unless(of_lps, "is for models \"bond\", \"green_bond\" and \"cpd\"")
            .default_words("`\"lattice\"` with `cpd`, `\"continuum\"` with `bond`"),
        K("thermal_expansion", &Spec::thermal_expansion, between(-1.0, 1.0, "per K"),
          "of lengths, α: for `[temperature]`"),
@@ -1312,11 +1339,11 @@ Table<SolverSpecification> solver_keys() {
        K("operator", &Spec::force_operator,
          choice<ForceOperator>({{"bonds", ForceOperator::bonds}, {"fft", ForceOperator::fft}}),
          "forces of `material.kinematics = \"linear\"`, and of `lps` as an energy, are summed bond "
-         "by "
-         "bond, or by fast Fourier "
+         "by bond, or by fast Fourier "
          "transforms, which store no bonds and take the same time whatever the horizon: for one "
          "material on points of a lattice with equal volumes, without a `surface_correction`. "
-         "Both give the same results to round-off"),
+         "Both give the same results to round-off. Models `green_bond` and `correspondence`, and "
+         "`lps` as printed, have `fft` alone"),
        K("predictor", &Spec::predictor,
          choice<Predictor>({{"consistent", Predictor::consistent}, {"none", Predictor::none}}),
          "the first iteration of a step linearises about the old state and spreads the jump of the "

@@ -36,7 +36,7 @@ std::vector<double> out_of_plane(const Body& body) {
   const bool is_plane_strain = model != MaterialModel::cpd && body.points.dimension == 2 &&
                                body.setting.plane == PlaneState::strain;
   if (!is_plane_strain) return {0.0};
-  if (model == MaterialModel::bond) return {poisson_ratio(body.setting)};
+  if (has_bonds(model)) return {poisson_ratio(body.setting)};
   const PointMaterials materials(body.specification, body.points);
   const auto& all = materials.all();
   std::vector<double> ratios;
@@ -75,7 +75,11 @@ void StressFields::show_in(StepFields& fields) const {
 }
 
 StressFields make_stress_fields(const Body& body, Assembler& assembler, const StateView& at) {
-  StressFields made{find_stress(assembler, at, out_of_plane(body)), {}, {}, {}};
+  // St. Venant and Kirchhoff's S_zz = lambda tr E is nu tr S at any strain.
+  const auto of = body.specification.material.model == MaterialModel::correspondence
+                      ? AcrossPlane::second_stress
+                      : AcrossPlane::cauchy_stress;
+  StressFields made{find_stress(assembler, at, out_of_plane(body), of), {}, {}, {}};
   const auto d = std::size_t(body.points.dimension);
   made.strain = symmetric(made.found.strain, d);
   made.stress = symmetric(made.found.cauchy, d);

@@ -171,9 +171,26 @@ TEST(Correspondence, OutlinesItsTangent) {
   for (const std::vector<int>& counts : {std::vector<int>{9, 8}, std::vector<int>{5, 6, 5}}) {
     const HoledBody body({counts});
     Correspondence material = material_of(body);
-    tests::expect_outline(material, body, 16.0);
+    tests::expect_outline(material, body, 20.0);
+    tests::expect_outline(material, body, 60.0, body.random(5), false);
     material.set_integrity(body.mask());
-    tests::expect_outline(material, body, 16.0);
+    tests::expect_outline(material, body, 20.0);
+    tests::expect_outline(material, body, 60.0, body.random(5), false);
+  }
+}
+
+TEST(Correspondence, TellsItsMemoryBeforehand) {
+  for (const std::vector<int>& counts : both_dimensions()) {
+    const HoledBody body({counts});
+    Correspondence material = material_of(body);
+    const std::vector<double> u = body.random(5);
+    std::vector<double> product(u.size());
+    tests::evaluate(material, u, body.count());
+    material.multiply(u, u, product);
+    const double expected = Correspondence::expected_bytes(
+        body.box,
+        lattice_springs(body.kernel, body.points.spacing, body.points.angle, 1.0, body.volume()));
+    EXPECT_NEAR(material.bytes() / expected, 1.0, 0.1);
   }
 }
 
@@ -250,7 +267,7 @@ TEST(Correspondence, TakesSoManyTransforms) {
     EXPECT_EQ(material.fields().transforms(), all += forces + elsewhere);
     tests::evaluate(material, u, body.count());
     EXPECT_EQ(material.fields().transforms(), all += forces + energies);
-    material.outline_tangent(blocks, found);
+    material.outline_tangent(u, blocks, found);
     EXPECT_EQ(material.fields().transforms(), all += outline);
     EXPECT_GT(material.bytes(), 8.0 * double(u.size()));
   }

@@ -93,9 +93,24 @@ TEST(GreenBonds, OutlineTheirTangent) {
   for (const std::vector<int>& counts : {std::vector<int>{9, 8}, std::vector<int>{5, 6, 5}}) {
     const HoledBody body({counts});
     GreenBonds bonds = bonds_of(body);
-    tests::expect_outline(bonds, body, 1.0 + 1e-9);
+    tests::expect_outline(bonds, body, 1.5);
+    tests::expect_outline(bonds, body, 2.5, body.random(5));
     bonds.set_integrity(body.mask());
-    tests::expect_outline(bonds, body, 1.0 + 1e-9);
+    tests::expect_outline(bonds, body, 1.5);
+    tests::expect_outline(bonds, body, 2.5, body.random(5));
+  }
+}
+
+TEST(GreenBonds, TellTheirMemoryBeforehand) {
+  for (const std::vector<int>& counts : both_dimensions()) {
+    const HoledBody body({counts});
+    GreenBonds bonds = bonds_of(body);
+    const std::vector<double> u = body.random(5);
+    std::vector<double> product(u.size());
+    tests::evaluate(bonds, u, body.count());
+    bonds.multiply(u, u, product);
+    const double expected = GreenBonds::expected_bytes(body.box, springs_of(body));
+    EXPECT_NEAR(bonds.bytes() / expected, 1.0, 0.1);
   }
 }
 

@@ -164,7 +164,7 @@ TEST(LinearBonds, MultiplyLikeTheTangentAtRest) {
     system.bonds.multiply(v, v, product);
     EXPECT_LE(tests::distance(product, expected), 1e-13 * tests::norm(expected));
     std::vector<double> diagonal(tangent.diagonal.size()), bounds(v.size()), sums(v.size());
-    system.bonds.outline_tangent(diagonal, bounds);
+    system.bonds.outline_tangent(v, diagonal, bounds);
     tangent.absolute_row_sums(sums);
     for (std::size_t k = 0; k < sums.size(); ++k) {
       EXPECT_GE(bounds[k], (1.0 - 1e-12) * sums[k]);

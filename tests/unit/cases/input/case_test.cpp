@@ -436,7 +436,8 @@ const std::vector<BadInput> bad_inputs{
      "[material]",
      "[material]\nmodel = \"bnd\"",
      18,
-     {"material.model = \"bnd\": not known; did you mean bond?  (allowed: bond, cpd, lps)"}},
+     {"material.model = \"bnd\": not known; did you mean bond?  (allowed: bond, cpd, lps, "
+      "green_bond, correspondence)"}},
     {"CpdConstantOfABondModel",
      "[material]",
      "[material]\nc2 = 1.0",

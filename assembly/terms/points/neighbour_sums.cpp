@@ -1,4 +1,4 @@
-#include "assembly/terms/linear/neighbour_sums.hpp"
+#include "assembly/terms/points/neighbour_sums.hpp"
 
 #include <array>
 #include <cmath>

@@ -1,0 +1,342 @@
+#include "assembly/terms/points/point_term.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <stdexcept>
+#include <utility>
+
+#include "assembly/convolutions/linear_bonds.hpp"
+#include "assembly/terms/linear/linear_bond_sums.hpp"
+#include "assembly/terms/model.hpp"
+
+namespace peristat {
+namespace {
+
+class PointPasses : public TermPasses {
+ public:
+  PointPasses(const PointTerm& term, const TermSetting& setting)
+      : term_(term),
+        slot_(setting.model.slot_of(term)),
+        workspace_(setting.workspace),
+        places_(setting.pattern.places_of(term.couplings())),
+        volume_(setting.points.volume),
+        dimension_(std::size_t(setting.points.dimension)),
+        force_(setting.points.reference.size()),
+        has_half_work_(term.balances().linear && term.balances().potential) {
+    forces_ = term.forces(setting.points, setting.workspace);
+    bonds_ = dynamic_cast<LinearBondSums*>(forces_.get());
+  }
+
+  Evaluation gradient(const StateView& at, std::span<double> gradient, Write how) override {
+    return gradient_at(at, gradient, how);
+  }
+
+  /// All that exceed what they bear fail together; an equilibrium is found before others do.
+  Evaluation commit(std::span<const double> displacement, const SharedEnvironment& environment,
+                    History& history, std::span<double> gradient, Write how) override {
+    return commit(displacement, environment, history, gradient, how, 1);
+  }
+
+  /// In motion nothing is found anew: where points beside failed ones are stiffer than before, as
+  /// those of a solid are, these fail at once, too.
+  Evaluation commit_forces(std::span<const double> displacement,
+                           const SharedEnvironment& environment, History& history,
+                           std::span<double> gradient, Write how) override {
+    return commit(displacement, environment, history, gradient, how, volume_.size());
+  }
+
+  DamageGrowth growth(const StateView& at) override {
+    if (!term_.can_be_damaged()) return {};
+    take_integrity(at.history);
+    find_energies(at.displacement);
+    return judge();
+  }
+
+  /// @param projection changes nothing: what has rows is convex
+  void tangent(const StateView& at, double /*projection*/, Tangent& tangent, Write how) override {
+    if (how == Write::over) tangent.clear();
+    const std::size_t entries = dimension_ * dimension_;
+    std::vector<double> diagonal(tangent.diagonal.size());
+    visit_tangent(
+        at, 0.0,
+        [&](int, Index i, std::span<const double> blocks) {
+          Offset bond = term_.bonds().offset[i];
+          for (std::size_t k = 0; k < blocks.size(); k += entries, ++bond) {
+            tangent.add_to_block(places_.empty() ? bond : places_[std::size_t(bond)],
+                                 blocks.subspan(k, entries));
+          }
+        },
+        diagonal);
+    for (std::size_t k = 0; k < diagonal.size(); ++k) tangent.diagonal[k] += diagonal[k];
+  }
+
+  void visit_tangent(const StateView& at, double /*projection*/, const RowVisitor& visit,
+                     std::span<double> diagonal) override {
+    if (bonds_ == nullptr) throw std::logic_error("a lattice by convolutions has no rows");
+    take_integrity(at.history);
+    bonds_->visit_tangent(visit, diagonal);
+  }
+
+  void outline_rows(const StateView& at, std::span<double> diagonal,
+                    std::span<double> row_sums) override {
+    take_integrity(at.history);
+    forces_->outline_tangent(own(at.displacement), diagonal, row_sums);
+  }
+
+  LatticeStencil stencil(const StateView& at) override {
+    take_integrity(at.history);
+    LatticeStencil own = forces_->stencil();
+    if (!own.empty() || !term_.is_convolved()) return own;
+    const std::vector<double> whole(volume_.size(), 1.0);
+    const auto& integrity = integrity_.empty() ? whole : integrity_;
+    return lattice_stencil(term_.lattice()->box, term_.lattice()->springs, integrity,
+                           workspace_.threads());
+  }
+
+  /// @param projection how much of the tangent is that at rest, which has no negative eigenvalue
+  void product(const StateView& at, std::span<const double> v, double projection,
+               std::span<double> product, Write how) override {
+    take_integrity(at.history);
+    const bool is_mixed = projection > 0.0 && !term_.balances().linear;
+    if (how == Write::over && !is_mixed) {
+      forces_->multiply(own(at.displacement), own(v), product.first(force_.size()));
+      std::ranges::fill(product.subspan(force_.size()), 0.0);
+      return;
+    }
+    forces_->multiply(own(at.displacement), own(v), force_);
+    if (is_mixed) mix_in_rest(own(v), projection);
+    write(force_, 1.0, product, how);
+  }
+
+  void point_energies(const StateView& at, std::span<double> energies, Write how) override {
+    take_integrity(at.history);
+    find_energies(at.displacement);
+    write(energy_, 1.0, energies, how);
+  }
+
+  void add_virials(const StateView& at, std::span<double> virials) override {
+    take_integrity(at.history);
+    forces_->add_virials(own(at.displacement), virials);
+  }
+
+ private:
+  Evaluation commit(std::span<const double> displacement, const SharedEnvironment& environment,
+                    History& history, std::span<double> gradient, Write how,
+                    std::size_t most_passes) {
+    if (!term_.can_be_damaged()) {
+      return gradient_at({displacement, history, Damage::grows, environment}, gradient, how);
+    }
+    take_integrity(history);
+    find_energies(displacement);
+    const double before = stored(displacement);
+    DamageGrowth grown;
+    for (std::size_t pass = 0; pass < most_passes; ++pass) {
+      const DamageGrowth more = judge();
+      if (more.degrading == 0) break;
+      grown.degrading += more.degrading;
+      grown.breaking += more.breaking;
+      fail(history);
+      find_energies(displacement);
+    }
+    Evaluation found = evaluation(displacement, gradient, how);
+    if (grown.degrading == 0) return found;
+    history.change(slot_).back() += before - found.energy;
+    found.growth = grown;
+    found.moves_equilibrium = true;
+    return found;
+  }
+
+  Evaluation gradient_at(const StateView& at, std::span<double> gradient, Write how) {
+    take_integrity(at.history);
+    find_forces(at.displacement);
+    return evaluation(at.displacement, gradient, how);
+  }
+
+  void fail(History& history) {
+    const std::span<double> remembered = history.change(slot_);
+    for (std::size_t i = 0; i < energy_.size(); ++i) {
+      if (fails(i)) remembered[i] = 0.0;
+    }
+    take_integrity(history);
+  }
+
+  void take_integrity(const History& history) {
+    if (!term_.can_be_damaged()) return;
+    const std::span<const double> remembered = history.of(slot_);
+    if (remembered.size() != volume_.size() + 1) {
+      throw std::logic_error("points that can be damaged are evaluated after their history");
+    }
+    const std::span<const double> now = remembered.first(volume_.size());
+    if (std::ranges::equal(now, integrity_)) return;
+    integrity_.assign(now.begin(), now.end());
+    forces_->set_integrity(integrity_);
+  }
+
+  void mix_in_rest(std::span<const double> v, double share) {
+    const std::vector<double> rest(v.size(), 0.0);
+    std::vector<double> at_rest(v.size());
+    forces_->multiply(rest, v, at_rest);
+    for (std::size_t k = 0; k < v.size(); ++k) {
+      force_[k] = (1.0 - share) * force_[k] + share * at_rest[k];
+    }
+  }
+
+  /// Without what rollers and rigid sets carry beside the points.
+  [[nodiscard]] std::span<const double> own(std::span<const double> displacement) const {
+    return displacement.first(force_.size());
+  }
+
+  static void write(std::span<const double> values, double factor, std::span<double> to,
+                    Write how) {
+    if (how == Write::over) std::ranges::fill(to, 0.0);
+    for (std::size_t k = 0; k < values.size(); ++k) to[k] += factor * values[k];
+  }
+
+  /// And what `stored` needs beside them.
+  void find_forces(std::span<const double> displacement) {
+    if (!has_half_work_) return find_energies(displacement);
+    forces_->find_forces(own(displacement), force_);
+  }
+
+  void find_energies(std::span<const double> displacement) {
+    energy_.resize(volume_.size());
+    forces_->find_forces_and_energies(own(displacement), force_, energy_);
+  }
+
+  [[nodiscard]] Coordinates mean_of(std::span<const double> displacement) const {
+    Coordinates mean{};
+    for (std::size_t k = 0; k < force_.size(); ++k) mean[k % dimension_] += displacement[k];
+    for (double& of_component : mean) of_component /= double(volume_.size());
+    return mean;
+  }
+
+  /// Sums over neighbours are of squared displacements with the stiffness of all springs.
+  [[nodiscard]] double round_off_at(std::span<const double> displacement) const {
+    const Coordinates mean = mean_of(displacement);
+    double squares = 0.0, stiffness = 0.0;
+    for (std::size_t k = 0; k < force_.size(); ++k) {
+      squares +=
+          (displacement[k] - mean[k % dimension_]) * (displacement[k] - mean[k % dimension_]);
+    }
+    for (const LatticeSpring& spring : term_.lattice()->springs)
+      stiffness += 2.0 * spring.stiffness;
+    return std::numeric_limits<double>::epsilon() * stiffness * squares;
+  }
+
+  /// Of linear forces with a potential -u.f/2, u without its mean: forces add up to zero, but for
+  /// round-off.
+  [[nodiscard]] double stored(std::span<const double> displacement) const {
+    if (!has_half_work_) return std::accumulate(energy_.begin(), energy_.end(), 0.0);
+    const Coordinates mean = mean_of(displacement);
+    double work = 0.0;
+    for (std::size_t k = 0; k < force_.size(); ++k) {
+      work += (displacement[k] - mean[k % dimension_]) * force_[k];
+    }
+    return -0.5 * work;
+  }
+
+  /// From the forces that were found.
+  [[nodiscard]] Evaluation evaluation(std::span<const double> displacement,
+                                      std::span<double> gradient, Write how) const {
+    if (!gradient.empty()) write(force_, -1.0, gradient, how);
+    Evaluation found;
+    found.energy = stored(displacement);
+    if (!has_half_work_) found.round_off = round_off_at(displacement);
+    found.degenerate = !std::isfinite(found.energy);
+    return found;
+  }
+
+  [[nodiscard]] bool fails(std::size_t point) const {
+    return energy_[point] > term_.bearable()[point] && integrity_[point] > 0.0;
+  }
+
+  /// Energies go with the square of a load, as long as strains are small.
+  [[nodiscard]] DamageGrowth judge() const {
+    DamageGrowth found;
+    for (std::size_t i = 0; i < energy_.size(); ++i) {
+      if (integrity_[i] == 0.0) continue;
+      found.utilisation = std::max(found.utilisation, energy_[i] / term_.bearable()[i]);
+      if (fails(i)) ++found.degrading;
+    }
+    found.breaking = found.degrading;
+    found.utilisation = std::sqrt(std::max(found.utilisation, 0.0));
+    return found;
+  }
+
+  const PointTerm& term_;
+  std::size_t slot_;
+  const Workspace& workspace_;
+  std::vector<Offset> places_;
+  std::span<const double> volume_;
+  std::size_t dimension_;
+  std::unique_ptr<LatticeForces> forces_;
+  LinearBondSums* bonds_ = nullptr;  // the same, if it has rows
+  std::vector<double> integrity_, force_, energy_;
+  bool has_half_work_;
+};
+
+}  // namespace
+
+PointTerm::PointTerm(std::shared_ptr<const Bonds> bonds, double micromodulus,
+                     std::vector<double> bearable, std::optional<ConvolvedLattice> lattice,
+                     int threads)
+    : BondTerm(std::move(bonds), Harmonic{micromodulus}),
+      micromodulus_(micromodulus),
+      bearable_(std::move(bearable)),
+      lattice_(std::move(lattice)),
+      threads_(threads) {
+  const auto points = std::size_t(this->bonds().points());
+  if (!bearable_.empty() && bearable_.size() != points) {
+    throw std::logic_error("every point bears an energy of its own");
+  }
+  if (lattice_) no_couplings_.assign(points + 1, 0);
+  NeighbourSums whole = neighbours(std::vector<double>(points, 1.0));
+  whole_weight_ = std::move(whole.weight);
+  for (const double count : whole.count) neighbours_.push_back(std::int32_t(std::lround(count)));
+  count_ = std::accumulate(neighbours_.begin(), neighbours_.end(), Offset(0)) / 2;
+}
+
+NeighbourSums PointTerm::neighbours(std::span<const double> integrity) const {
+  if (!lattice_) return neighbour_sums(bonds(), integrity);
+  NeighbourSums sums =
+      neighbour_sums(lattice_->box, lattice_->springs, micromodulus_, integrity, threads_);
+  if (!lattice_->cut) return sums;
+  const NeighbourSums cut = neighbour_sums(*lattice_->cut, integrity);
+  for (std::size_t i = 0; i < integrity.size(); ++i) {
+    sums.weight[i] -= cut.weight[i];
+    sums.count[i] -= cut.count[i];
+  }
+  return sums;
+}
+
+std::vector<InteractionCount> PointTerm::counts() const {
+  if (!lattice_) return BondTerm::counts();
+  return {{"bonds", count_, "neighbours", "neighbours within the horizon, #N1", neighbours_}};
+}
+
+Couplings PointTerm::couplings() const {
+  if (!lattice_) return bonds();
+  return {no_couplings_, std::span<const Index>()};
+}
+
+std::vector<double> PointTerm::initial_history() const {
+  if (!can_be_damaged()) return {};
+  std::vector<double> history(bearable_.size() + 1, 1.0);
+  history.back() = 0.0;
+  return history;
+}
+
+double PointTerm::stored_bytes() const {
+  const double points = double(bonds().points());
+  const double own = 8.0 * points * double(4 + (can_be_damaged() ? 3 : 0));
+  return own + (lattice_ ? bytes_of_forces() : 0.0);
+}
+
+std::unique_ptr<TermPasses> PointTerm::passes(const TermSetting& setting) const {
+  return std::make_unique<PointPasses>(*this, setting);
+}
+
+}  // namespace peristat
