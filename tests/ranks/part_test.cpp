@@ -148,7 +148,9 @@ TEST(Part, may_have_no_point) {
   const Part part = distribute(make_slab(body.lattice, ranks), horizon, horizon, ranks, 1);
   const bool empty = part.owned == 0;
   EXPECT_GE(ranks.sum(double(empty)), ranks.count() - 3);
-  if (empty) EXPECT_EQ(part.ghosts(), 0);
+  if (empty) {
+    EXPECT_EQ(part.ghosts(), 0);
+  }
 }
 
 TEST(Part, refuses_points_that_others_do_not_know) {
