@@ -71,14 +71,17 @@ std::vector<double> Path::working_force(const Trial& state,
 std::optional<std::string> Path::refusal_of_conditions(double stage) const {
   if (setting_.conditions.control()) return std::nullopt;  // the load is not known yet
   std::vector<double> values(setting_.conditions.prescribed().size());
+  std::optional<std::string> refusal;
   try {
     setting_.conditions.prescribe(stage, values);
     setting_.conditions.external_force(stage, values);
     static_cast<void>(setting_.conditions.environment(stage));
   } catch (const InputError& error) {
-    return description(error);
+    refusal = description(error);
   }
-  return std::nullopt;
+  const bool is_refused = problem().sums().largest_of_all(refusal ? 1.0 : 0.0) > 0.0;
+  if (is_refused && !refusal) refusal = "supports or loads have no value at points of another rank";
+  return refusal;
 }
 
 std::string Path::description(const InputError& error) const {

@@ -1,4 +1,4 @@
-#include "solvers/ranks/part_energy.hpp"
+#include "solvers/ranks/part_tangent.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -13,6 +13,7 @@
 #include "solvers/linear/iterative_solver.hpp"
 #include "solvers/ranks/distribute.hpp"
 #include "solvers/ranks/part_bonds.hpp"
+#include "solvers/ranks/part_of_body.hpp"
 #include "src/geometry/slab.hpp"
 #include "tests/bodies.hpp"
 #include "tests/ranks/bodies_on_ranks.hpp"
@@ -44,7 +45,8 @@ struct OnRanks {
   OnRanks(const RanksBody& body, SurfaceCorrection surface)
       : part(make_part(body, surface)),
         model(make_bonds(part, surface, body.setting(), 1), law_of(body.setting())),
-        energy(part, model, all_ranks(), 1) {}
+        sharing(part, all_ranks()),
+        energy(part.points, model, 1, &sharing) {}
 
   static Part make_part(const RanksBody& body, SurfaceCorrection surface) {
     Part slab = make_slab(body.lattice, all_ranks());
@@ -69,7 +71,8 @@ struct OnRanks {
 
   Part part;
   Model model;
-  PartEnergy energy;
+  PartOfBody sharing;
+  Assembler energy;
 };
 
 /// Expects what this rank has of its own points to be what the whole body has.
@@ -84,7 +87,7 @@ void expect_near(const OnRanks& ranks, const std::vector<double>& mine,
   }
 }
 
-TEST(PartEnergy, is_that_of_the_whole_body) {
+TEST(AssemblerOfPart, is_that_of_the_whole_body) {
   constexpr double round_off = 1e-12;
   for (const RanksBody& body : all_bodies()) {
     for (const auto surface :
@@ -106,7 +109,7 @@ TEST(PartEnergy, is_that_of_the_whole_body) {
       here.resize(ranks.part.points.reference.size());
       const auto owned = std::ptrdiff_t(ranks.without_ghosts(here).size());
       std::fill(here.begin() + owned, here.end(), 1e3);  // to be overwritten
-      ranks.energy.update_ghosts(here);
+      ranks.sharing.update_ghosts(here);
       EXPECT_EQ(here, ranks.of_part(u));
       std::vector<double> mine(here.size());
       const Evaluation found = ranks.energy.gradient(here, mine);
@@ -117,7 +120,7 @@ TEST(PartEnergy, is_that_of_the_whole_body) {
       EXPECT_TRUE(std::all_of(mine.begin() + owned, mine.end(), [](double f) { return f == 0.0; }));
 
       PartTangent tangent(ranks.energy);
-      tangent.linearise(ranks.energy.assembler(), here, 0.0);
+      tangent.linearise(ranks.energy, here, 0.0);
       std::vector<double> factor = ranks.of_part(v);
       std::fill(factor.begin() + owned, factor.end(), 1e3);
       tangent.multiply(factor, factor);
@@ -126,7 +129,7 @@ TEST(PartEnergy, is_that_of_the_whole_body) {
   }
 }
 
-TEST(PartEnergy, tells_all_ranks_of_a_point_without_a_place) {
+TEST(AssemblerOfPart, tells_all_ranks_of_a_point_without_a_place) {
   OnRanks ranks(plate_with_hole(), SurfaceCorrection::none);
   std::vector<double> u(ranks.part.points.reference.size(), 0.0);
   const auto first = std::find(ranks.part.number.begin(), ranks.part.number.end(), 0);
@@ -136,7 +139,7 @@ TEST(PartEnergy, tells_all_ranks_of_a_point_without_a_place) {
   EXPECT_TRUE(ranks.energy.energy(u).degenerate);
 }
 
-TEST(PartEnergy, asks_for_ghosts_as_far_as_bonds_reach) {
+TEST(AssemblerOfPart, asks_for_ghosts_as_far_as_bonds_reach) {
   const RanksBody body = plate_with_hole();
   const Communicator& ranks = all_ranks();
   const Part part = distribute(make_slab(body.lattice, ranks), body.setting().horizon,
@@ -145,13 +148,18 @@ TEST(PartEnergy, asks_for_ghosts_as_far_as_bonds_reach) {
                std::logic_error);
 }
 
-TEST(PartEnergy, refuses_what_needs_bonds_between_ghosts) {
+TEST(AssemblerOfPart, refuses_what_needs_bonds_between_ghosts) {
   BoxSetting box = small_box(2);
   box.triangles = 1.0;
   const BoxBody body(box);
   Part part;
   part.points = body.points;
-  EXPECT_THROW(PartEnergy(part, body.model, all_ranks(), 1), std::logic_error);
+  part.owned = part.points.count();
+  for (Index i = 0; i < part.owned; ++i) {
+    part.number.push_back(GlobalIndex(part.owned) * all_ranks().rank() + i);
+  }
+  const PartOfBody sharing(part, all_ranks());
+  EXPECT_THROW(Assembler(part.points, body.model, 1, &sharing), std::logic_error);
 }
 
 /// Both ends along the last axis, one of them drawn away: flags and displacements.
@@ -221,10 +229,10 @@ TEST(PartTangent, solves_for_the_displacements_of_the_whole_body) {
     OnRanks ranks(body, SurfaceCorrection::none);
     const Pulled mine(ranks.part.points, low, high);
     PartTangent tangent(ranks.energy);
-    tangent.linearise(ranks.energy.assembler(),
-                      std::vector<double>(ranks.part.points.reference.size()), 0.0);
+    tangent.linearise(ranks.energy, std::vector<double>(ranks.part.points.reference.size()), 0.0);
     const Solved found =
-        solve(tangent, without_ghosts(ranks.part, mine.flags), mine.displacement, &communicator);
+        solve(tangent, without_ghosts(ranks.sharing, mine.flags, ranks.part.points.dimension),
+              mine.displacement, &communicator);
     EXPECT_EQ(found.outcome, LinearOutcome::solved);
     EXPECT_NEAR(found.iterations, expected.iterations, 1);
     EXPECT_EQ(communicator.min(double(found.iterations)),
@@ -232,15 +240,16 @@ TEST(PartTangent, solves_for_the_displacements_of_the_whole_body) {
     expect_near(ranks, found.displacement, expected.displacement, 1e-9);
 
     // Traffic is of one solve: the others come after it.
-    const Traffic traffic = ranks.energy.ghosts().traffic();
+    const Traffic traffic = ranks.sharing.traffic();
     const double messages = communicator.sum(double(traffic.messages));
     const double bytes = communicator.sum(double(traffic.bytes));
     const double most = communicator.max(double(ranks.part.owned));
     const double ghosts = communicator.sum(double(ranks.part.ghosts()));
     for (const auto method : {KrylovMethod::conjugate_gradients, KrylovMethod::minres,
                               KrylovMethod::gmres, KrylovMethod::bicgstab}) {
-      const Solved again = solve(tangent, without_ghosts(ranks.part, mine.flags), mine.displacement,
-                                 &communicator, method);
+      const Solved again =
+          solve(tangent, without_ghosts(ranks.sharing, mine.flags, ranks.part.points.dimension),
+                mine.displacement, &communicator, method);
       EXPECT_EQ(again.outcome, LinearOutcome::solved);
       expect_near(ranks, again.displacement, expected.displacement, 1e-9);
       if (method == KrylovMethod::conjugate_gradients) {
