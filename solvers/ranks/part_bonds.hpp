@@ -18,8 +18,8 @@ namespace peristat {
 [[nodiscard]] Bonds make_bonds(const Part& part, SurfaceCorrection surface,
                                const BondSetting& setting, int threads);
 
-/// Bonds of the whole body, each counted once.
-[[nodiscard]] GlobalIndex count_bonds(const Part& part, const Bonds& bonds,
-                                      const Communicator& ranks);
+/// Bonds of the whole body that have a weight, each counted once.
+/// @param owned points of the rank, the first ones
+[[nodiscard]] GlobalIndex count_bonds(Index owned, const Bonds& bonds, const Communicator& ranks);
 
 }  // namespace peristat

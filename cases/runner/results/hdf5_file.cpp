@@ -252,8 +252,9 @@ void Hdf5File::write_rows(const std::string& path, const Shape& shape, const Dat
     start[0] = first;
     count[0] = rows.size() / values_per_row;
     const Handle space(H5Dget_space(dataset), H5Sclose, "size " + path);
-    checked(H5Sselect_hyperslab(space, H5S_SELECT_SET, start.data(), nullptr, count.data(), nullptr),
-            "select rows of " + path);
+    checked(
+        H5Sselect_hyperslab(space, H5S_SELECT_SET, start.data(), nullptr, count.data(), nullptr),
+        "select rows of " + path);
     checked(H5Dwrite(dataset, type, dataspace({rows.size()}), space, H5P_DEFAULT, rows.data()),
             "write " + path);
   });

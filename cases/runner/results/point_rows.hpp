@@ -36,9 +36,8 @@ class RowGathering {
       const std::int64_t count = std::min(most_rows_, std::int64_t(part_.whole()) - first);
       const auto end = std::lower_bound(next, number.end(), first + count);
       const Packed<Value> packed{first, values_per_row};
-      const std::string bytes =
-          packed.pack(number.data(), std::size_t(next - number.begin()),
-                      std::size_t(end - number.begin()), mine.data());
+      const std::string bytes = packed.pack(number.data(), std::size_t(next - number.begin()),
+                                            std::size_t(end - number.begin()), mine.data());
       next = end;
       std::vector<Value> rows(part_.ranks().rank() == 0 ? std::size_t(count) * values_per_row : 0);
       part_.ranks().gather(
@@ -54,7 +53,9 @@ class RowGathering {
     std::int64_t first;
     std::size_t values;
 
-    [[nodiscard]] std::size_t bytes() const { return sizeof(std::int64_t) + values * sizeof(Value); }
+    [[nodiscard]] std::size_t bytes() const {
+      return sizeof(std::int64_t) + values * sizeof(Value);
+    }
     [[nodiscard]] std::string pack(const GlobalIndex* number, std::size_t from, std::size_t to,
                                    const Value* mine) const {
       std::string packed((to - from) * bytes(), '\0');

@@ -120,7 +120,7 @@ struct Results::Files {
   Files(Beginning beginning, const Points& points, const CaseText& text,
         const std::vector<std::string>& sets, const std::vector<ProbeColumns>& probe_columns,
         const std::vector<PointCounts>& counts, const FurtherOutput& further,
-        const RowGathering* gathering = nullptr);
+        const RowGathering* of_ranks = nullptr);
 
   void describe(const CaseText& text);
   void go_on(const EarlierResults& earlier, const Checkpoint& checkpoint);
@@ -173,9 +173,9 @@ Results::Files::Files(Beginning beginning, const Points& points, const CaseText&
                       const std::vector<std::string>& sets,
                       const std::vector<ProbeColumns>& probe_columns,
                       const std::vector<PointCounts>& counts, const FurtherOutput& further,
-                      const RowGathering* gathering)
-    : gathering(gathering),
-      shape{gathering ? Index(gathering->rows()) : points.count(), points.dimension,
+                      const RowGathering* of_ranks)
+    : gathering(of_ranks),
+      shape{of_ranks ? Index(of_ranks->rows()) : points.count(), points.dimension,
             further.has_stress},
       support_sets(sets),
       probes(probe_columns),

@@ -50,7 +50,8 @@ class Results {
  public:
   /// Creates the folder and its files; an earlier run of the same case file is replaced, other
   /// files are left alone.
-  /// @param gathering null: points and fields are those of all; otherwise of those that rank 0 owns,
+  /// @param gathering null: points and fields are those of all; otherwise of those that rank 0
+  /// owns,
   ///        which alone has results: others send theirs meanwhile (send_points, StepPart::send)
   /// @param overwrite also an earlier run of another case is replaced
   /// @throws InputError ("directory") if the folder can't be written or must be left

@@ -38,7 +38,8 @@ struct WrittenStep {
 class StepPart {
  public:
   /// @param fields outlive it
-  /// @param gathering null: the fields are of all points; otherwise of those that this rank owns, and
+  /// @param gathering null: the fields are of all points; otherwise of those that this rank owns,
+  /// and
   ///        while rank 0 writes all others send
   /// @throws std::logic_error that names a field of the wrong size, or with values that are not
   ///         finite
