@@ -7,6 +7,21 @@
 
 namespace peristat {
 
+namespace {
+
+/// What the first of the ranks says that has something to say.
+std::optional<std::string> first_of_all(const Communicator& ranks,
+                                        const std::optional<std::string>& mine) {
+  std::string first;
+  ranks.gather(mine.value_or(""), [&](int, const std::string& theirs) {
+    if (first.empty()) first = theirs;
+  });
+  ranks.broadcast(first);
+  return first.empty() ? std::nullopt : std::optional(first);
+}
+
+}  // namespace
+
 Path::Path(const PathSetting& setting) : setting_(setting) {
   state_.stands_in = setting.stand_in != nullptr;
   const Conditions& conditions = setting.conditions;
@@ -79,9 +94,8 @@ std::optional<std::string> Path::refusal_of_conditions(double stage) const {
   } catch (const InputError& error) {
     refusal = description(error);
   }
-  const bool is_refused = problem().sums().largest_of_all(refusal ? 1.0 : 0.0) > 0.0;
-  if (is_refused && !refusal) refusal = "supports or loads have no value at points of another rank";
-  return refusal;
+  return body().assembler.sharing() ? first_of_all(body().assembler.sharing()->ranks(), refusal)
+                                    : refusal;
 }
 
 std::string Path::description(const InputError& error) const {
