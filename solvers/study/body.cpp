@@ -300,7 +300,7 @@ void refuse_without_ranks(const BodySpecification& of) {
   const auto refuse = [](const std::string& key) {
     throw InputError(key, "",
                      "is not for more than one rank yet: there are elastic bonds of one material, "
-                     "with supports, body forces and gravity");
+                     "with supports, body forces, total forces and gravity");
   };
   const MaterialSpecification& material = of.material;
   if (material.model != MaterialModel::bond) refuse("material.model");
@@ -322,7 +322,7 @@ void refuse_without_ranks(const BodySpecification& of) {
   using Kind = LoadSpecification::Kind;
   for (std::size_t k = 0; k < of.loads.size(); ++k) {
     const Kind kind = of.loads[k].kind;
-    if (kind != Kind::body_force && kind != Kind::gravity) {
+    if (kind != Kind::body_force && kind != Kind::total_force && kind != Kind::gravity) {
       refuse("loads[" + std::to_string(k) + "]." + load_key(kind));
     }
   }
@@ -363,9 +363,10 @@ std::unique_ptr<const Body> make_body(Part part, const BodySpecification& of,
     CutBonds none;
     body.model = make_bond_model(body, materials, std::move(bonds), none);
   }
-  body.conditions =
-      std::make_unique<Conditions>(body.points, of.supports, of.loads, programme_of(of),
-                                   of.controls, load_setting(of, body.points));
+  LoadSetting loads = load_setting(of, body.points);
+  loads.ranks = &ranks;
+  body.conditions = std::make_unique<Conditions>(body.points, of.supports, of.loads,
+                                                 programme_of(of), of.controls, loads);
   return made;
 }
 

@@ -222,6 +222,7 @@ Conditions::Loaded Conditions::loaded(const LoadSpecification& load, const LoadS
   for (const Index point : on.points) on.amount.push_back(points_.volume[point]);
   if (load.kind == Kind::total_force) {
     on.spread_over = std::accumulate(on.amount.begin(), on.amount.end(), 0.0);
+    if (setting.ranks) on.spread_over = setting.ranks->sum(on.spread_over);
   }
   if (load.kind == Kind::gravity) {
     if (setting.density.empty()) {

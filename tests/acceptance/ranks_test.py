@@ -2,6 +2,7 @@
 
 import csv
 import os
+import re
 import signal
 import subprocess
 import tempfile
@@ -12,6 +13,7 @@ from pathlib import Path
 import h5py
 import numpy
 
+ROOT = Path(__file__).parents[2]
 PROGRAM = os.environ["PERISTAT_PROGRAM"]
 # Root may run them, as in a container.
 ENVIRONMENT = os.environ | {
@@ -193,6 +195,64 @@ class SameResults(OnRanks):
     def test_a_body_thinner_than_the_horizon_and_ranks_without_a_point(self):
         self.compare(SHORT_BAR, (2, 3, 8))
 
+    def test_keys_of_the_list(self):
+        """Each on a body of its own, with other values than those of the other tests."""
+        for text, settings in (
+            (PLATE, ('lattice.origin="nodes"', "lattice.spacing=[0.05, 0.06]", 'material.plane="strain"')),
+            (PLATE, ('solver.predictor="none"', "loading.adaptive=false", 'solver.preconditioner="jacobi"')),
+            (PLATE, ("loading.largest_step=0.5", "loading.smallest_step=1e-3", "loading.table=[0, 0.5]",
+                     "loading.table2=[0, 1]", 'load[0].body_force=["1e6*load2", "0"]')),
+            (PLATE, ('load=[{set="corner", total_force=["1e4*load", "2e3"]}]', 'quadrature.surface_correction="energy"')),
+            (PLATE, ('lattice.layer[1].where="x < 0.5"', 'lattice.shape[1].name="hole"', "dimension=2")),
+        ):  # fmt: skip
+            with self.subTest(settings=settings):
+                self.compare(text, (3,), *(word for setting in settings for word in ("--set", setting)))
+
+    def test_probes_of_sets(self):
+        probes = """
+            [[probe]]
+            name = "moved"
+            set = "corner"
+            [[probe]]
+            name = "pulled"
+            set = "top"
+            field = "force"
+            component = "y"
+            [[probe]]
+            name = "least"
+            set = "corner"
+            field = "stretch"
+            statistic = "min"
+            [[probe]]
+            name = "most"
+            set = "corner"
+            field = "energy_density"
+            statistic = "max"
+            [[probe]]
+            name = "opened"
+            set = "top"
+            field = "opening"
+            other = "corner"
+            [[probe]]
+            name = "off"
+            set = "corner"
+            statistic = "rms_error"
+            expected = ["1e-3*load", "0.03*load*y"]
+            [[probe]]
+            name = "farthest"
+            set = "corner"
+            statistic = "max_error"
+            expected = ["1e-3*load", "0.03*load*y"]
+        """
+        one = self.compare(PLATE + probes, (2, 4))
+        last = rows(one, "history.csv")[-1]
+        names = [name for name in last if "moved" in name or "opened" in name]
+        self.assertEqual(len(names), 4)
+        for name in (*names, "pulled", "least", "most", "off", "farthest"):
+            found = [key for key in last if key.startswith(name) or key.endswith(":" + name)]
+            self.assertTrue(found, (name, list(last)))
+            self.assertNotEqual(float(last[found[0]]), 0.0)
+
     def test_steps_that_are_cut(self):
         few = ("--set", "solver.max_iterations=3", "--set", "loading.steps=1")
         one = self.compare(PLATE.replace("0.05*load", "0.3*load"), (2, 3), *few)
@@ -296,6 +356,32 @@ class Ends(OnRanks):
         self.fail("no ranks")
 
 
+class Page(OnRanks):
+    """docs/cluster.md"""
+
+    def test_counts_of_messages(self):
+        lines = (ROOT / "docs/cluster.md").read_text().splitlines()
+        first = next(k for k, line in enumerate(lines) if "cases/plate_with_hole/elastic.toml` |" in line)
+        table = [[cell.strip() for cell in lines[k].strip("|").split("|")] for k in range(first, first + 6)]
+        case = (ROOT / "cases/plate_with_hole/elastic.toml").read_text()
+        for column, ranks in enumerate(table[0][1:], 1):
+            run, _ = self.start(int(ranks), case, "--set", "loading.steps=1")
+            points, ghosts, messages, size = (row[column] for row in table[2:])
+            self.assertIn(f"at most {points} points on a rank, {ghosts} ghosts", run.stdout)
+            self.assertIn(f"{messages} messages, {size} bytes each", run.stdout.replace("\n    ", " "))
+
+    def test_the_list_of_keys_is_that_of_the_program(self):
+        page = (ROOT / "docs/cluster.md").read_text().split("## What runs")[1].split("\nThe list is")[0]
+        source = (ROOT / "cases/runner/build/part_body.cpp").read_text()
+        listed = source.split("keys_of_ranks{")[1].split("};")[0]
+        keys = re.findall(r'"([^"]+)"', listed)
+        self.assertGreater(len(keys), 30)
+        for key in keys:
+            with self.subTest(key=key):
+                table, _, name = key.rpartition(".")
+                self.assertIn(f"`{name}" if name else f"[[{table}]]", page)
+
+
 class Refusals(OnRanks):
     def test_keys_that_are_not_on_the_list(self):
         for key in (
@@ -327,10 +413,12 @@ class Refusals(OnRanks):
             'foundation=[{name="f", set="corner", stiffness=[1, 1]}]',
             'eigenstrain=[{set="corner", strain="0.01"}]',
             'control=[{set="corner", weights=[1, 0]}]',
-            'load=[{set="corner", total_force=["1", "0"]}]',
             'load=[{side="x+", traction=["1", "0"]}]',
             'load=[{side="x+", pressure="1"}]',
-            'probe=[{name="p", set="corner"}]',
+            'probe=[{name="p", at=[0.5, 1]}]',
+            'probe=[{name="p", from=[0.5, 1], to=[0.5, 1.4]}]',
+            'probe=[{name="p", set="corner", field="crack_length"}]',
+            'probe=[{name="p", set="corner", field="damage"}]',
             "relaxation.steps=2",
         ):
             with self.subTest(key=key):

@@ -28,14 +28,15 @@ constexpr std::array keys_of_ranks{
     "quadrature.volume_correction", "quadrature.surface_correction", "material.model",
     "material.plane", "material.youngs_modulus", "material.micromodulus", "material.density",
     // conditions
-    "support.", "load.set", "load.body_force", "load.gravity",
+    "support.", "load.set", "load.body_force", "load.total_force", "load.gravity",
     // search
     "loading.steps", "loading.table", "loading.table2", "loading.adaptive", "loading.smallest_step",
     "loading.largest_step", "solver.mode", "solver.linear", "solver.preconditioner",
     "solver.tangent", "solver.predictor", "solver.relative_tolerance", "solver.linear_tolerance",
     "solver.max_iterations",
     // results
-    "output.directory", "output.every"};
+    "output.directory", "output.every", "probe.name", "probe.set", "probe.field", "probe.component",
+    "probe.statistic", "probe.expected", "probe.other"};
 
 /// "load[2].body_force[0]" as "load.body_force".
 std::string without_numbers(const std::string& key) {
@@ -78,6 +79,30 @@ void refuse_values_without_ranks(const Case& from) {
   }
 }
 
+void refuse_probes_without_ranks(const Case& from) {
+  constexpr std::array<std::string_view, 5> fields{"displacement", "force", "stretch",
+                                                   "energy_density", "opening"};
+  for (std::size_t k = 0; k < from.probes.size(); ++k) {
+    const std::string& field = from.probes[k].field;
+    if (std::find(fields.begin(), fields.end(), field) != fields.end()) continue;
+    refuse("probe[" + std::to_string(k) + "].field", '"' + field + '"',
+           "take displacement, force, stretch, energy_density or opening");
+  }
+}
+
+/// Refuses probes of sets that are not there.
+void require_sets_of_probes(const Case& from, const Points& points) {
+  for (std::size_t k = 0; k < from.probes.size(); ++k) {
+    const std::string table = "probe[" + std::to_string(k) + "]";
+    const auto require = [&](const std::string& key, const std::string& set) {
+      if (set.empty() || points.sets.contains(set)) return;
+      throw InputError(table + key, '"' + set + '"', "no set of this name");
+    };
+    require(".set", from.probes[k].set);
+    require(".other", from.probes[k].other);
+  }
+}
+
 /// Sets of the whole body: the rules look at places alone, so that each rank finds its own.
 void add_sets(const Case& from, const Communicator& ranks, Part& part) {
   for (std::size_t k = 0; k < from.sets.size(); ++k) {
@@ -110,6 +135,7 @@ void refuse_keys_without_ranks(const Case& from) {
       refuse(key, "", "docs/cluster.md lists the keys that are");
     }
     refuse_values_without_ranks(from);
+    refuse_probes_without_ranks(from);
   });
 }
 
@@ -124,6 +150,7 @@ std::unique_ptr<const Body> make_part_body(const Case& from, const Communicator&
     const double reach = reach_of_bonds(slab.points, from.surface_correction, setting, ranks);
     Part part = distribute(std::move(slab), setting.horizon, reach, ranks, threads);
     add_sets(from, ranks, part);
+    require_sets_of_probes(from, part.points);
     return make_body(std::move(part), from, ranks, threads);
   });
 }

@@ -1,5 +1,6 @@
 #include "cases/runner/commands/run_on_ranks.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <memory>
 #include <optional>
@@ -13,6 +14,7 @@
 #include "cases/runner/process/failure.hpp"
 #include "cases/runner/process/interruption.hpp"
 #include "cases/runner/results/part_recorder.hpp"
+#include "cases/runner/results/probe.hpp"
 #include "cases/runner/results/results.hpp"
 #include "solvers/ranks/part_bonds.hpp"
 
@@ -90,9 +92,8 @@ class RanksRun {
       const CaseText text{from_.as_read, from_.as_resolved,    from_.title,
                           versions(),    identity(from_.file), from_.settings};
       located_errors(from_, [&] {
-        results_.emplace(from_.output.directory, points, text, support_sets(from_),
-                         std::vector<ProbeColumns>(), counts, options_.overwrite, FurtherOutput(),
-                         &*gathering_);
+        results_.emplace(from_.output.directory, points, text, support_sets(from_), probe_columns(),
+                         counts, options_.overwrite, FurtherOutput(), &*gathering_);
       });
       leave_note(from_.output.directory);
     } else {
@@ -100,6 +101,14 @@ class RanksRun {
     }
     recorder_.emplace(from_, *body_, study_->equations().assembler(), *gathering_,
                       results_ ? &*results_ : nullptr, progress_);
+  }
+
+  [[nodiscard]] std::vector<ProbeColumns> probe_columns() const {
+    std::vector<ProbeColumns> columns;
+    for (const ProbeSpecification& probe : from_.probes) {
+      columns.push_back(columns_of(probe, from_.dimension));
+    }
+    return columns;
   }
 
   LoadSteppingObserver observer() {
@@ -136,13 +145,14 @@ class RanksRun {
     tell_traffic();
   }
 
+  /// What ranks send to one another, as counts that do not depend on the machine.
   void tell_traffic() {
     const Traffic mine = body_->part->traffic();
-    const double messages = ranks_.sum(double(mine.messages));
-    const double bytes = ranks_.sum(double(mine.bytes));
-    progress_.say(fmt::format(
-        "values of ghosts were exchanged {} times: {:.0f} messages, {:.0f} bytes of all ranks",
-        mine.exchanges, messages, bytes));
+    const double exchanges = std::max(1.0, double(mine.exchanges));
+    const double messages = ranks_.sum(double(mine.messages)) / exchanges;
+    const double bytes = ranks_.sum(double(mine.bytes)) / exchanges;
+    progress_.say(fmt::format("ghosts exchanged {} times: {:.0f} messages, {:.0f} bytes each",
+                              mine.exchanges, messages, bytes));
   }
 
   Exit tell(const LoadSteppingResult& result) {

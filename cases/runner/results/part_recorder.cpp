@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "assembly/terms/bonds/point_stretches.hpp"
+#include "cases/runner/results/part_probe.hpp"
 
 namespace peristat {
 
@@ -53,6 +54,12 @@ void PartRecorder::accepted(StepRecord record, const AcceptedState& state) {
   made.stretch.resize(body_.points.volume.size());
   record.max_stretch = find_stretches(at, made.stretch);
   made.stretch.resize(std::size_t(gathering_.part().owned()));
+  const LoadingProgramme& programme = body_.conditions->programme();
+  const LoadValues loads{programme.names(), programme.at(record.stage)};
+  for (const ProbeSpecification& probe : case_.probes) {
+    record.probes[probe.name] =
+        part_probe_values(probe, body_.points, made.view(), loads, gathering_.part().ranks());
+  }
   const bool write_fields = record.step % case_.output.every == 0;
   if (results_) {
     results_->add(record, write_fields ? std::optional(made.view()) : std::nullopt);
