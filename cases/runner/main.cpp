@@ -248,9 +248,14 @@ std::unique_ptr<Communicator>& all_ranks() {
 }
 
 /// @return null for a run of one rank
-const Communicator* start_ranks_of(const CLI::App& program) {
+const Communicator* start_ranks_of(const CLI::App& program, int asked_for) {
   if (!is_started_as_rank()) return nullptr;
   all_ranks() = start_ranks();
+  if (asked_for > 0 && asked_for != all_ranks()->count()) {
+    throw InputError("--ranks", std::to_string(asked_for),
+                     fmt::format("does not agree with the {} that have been started",
+                                 all_ranks()->count()));
+  }
   if (all_ranks()->count() == 1) return nullptr;
   if (!program.got_subcommand("run")) {
     throw InputError("", "", "no command but run is for more than one rank");
@@ -349,7 +354,7 @@ int main(int count, char** arguments) try {
   restart_with_environment(threads, arguments);
   require_threads(threads);
   claim_blas_memory(threads);
-  const Exit exit = execute(program, line, threads, start_ranks_of(program));
+  const Exit exit = execute(program, line, threads, start_ranks_of(program, line.ranks));
   if (exit == Exit::done && !program.got_subcommand("run") && !program.got_subcommand("resume"))
     require_told();
   all_ranks().reset();

@@ -449,6 +449,12 @@ class Refusals(OnRanks):
         for text in said:
             self.assertIn("too few bonds", text)
 
+    def test_another_number_of_ranks_than_was_started(self):
+        words = ["mpirun", "--oversubscribe", "-np", "2", PROGRAM, "run", "--ranks", "3", str(self.case(PLATE))]
+        run = subprocess.run(words, env=ENVIRONMENT, capture_output=True, text=True, timeout=60)
+        self.assertEqual(run.returncode, 2)
+        self.assertIn("does not agree with the 2", run.stderr)
+
     def test_other_commands(self):
         file = self.case(PLATE)
         words = ["mpirun", "--oversubscribe", "-np", "2", PROGRAM, "check", str(file)]
