@@ -133,12 +133,16 @@ std::vector<char> broken_bonds(const Model& model, const History& history) {
   return broken;
 }
 
-DamagedNetwork damaged_network(const Model& model, const History& history) {
+std::shared_ptr<const Bonds> whole_network(const Model& model) {
   const PointTerm* const points = failing_points(model);
-  if (points == nullptr || !points->is_convolved()) {
-    return {model.shared_bonds(), broken_bonds(model, history)};
-  }
-  DamagedNetwork network{std::make_shared<const Bonds>(points->lattice()->all_bonds()), {}};
+  if (points == nullptr || !points->is_convolved()) return model.shared_bonds();
+  return std::make_shared<const Bonds>(points->lattice()->all_bonds());
+}
+
+DamagedNetwork damaged_network(const Model& model, const History& history) {
+  DamagedNetwork network{whole_network(model), {}};
+  const PointTerm* const points = failing_points(model);
+  if (points == nullptr) return {network.bonds, broken_bonds(model, history)};
   network.broken = without_points(*network.bonds, history.of(model.slot_of(*points)));
   return network;
 }

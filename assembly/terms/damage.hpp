@@ -47,6 +47,9 @@ struct DamagedNetwork {
 };
 
 /// The model's bonds, or, of a lattice that is convolved, all of them, found for this once.
+[[nodiscard]] std::shared_ptr<const Bonds> whole_network(const Model& model);
+
+/// With all bonds of the body (whole_network).
 [[nodiscard]] DamagedNetwork damaged_network(const Model& model, const History& history);
 
 }  // namespace peristat

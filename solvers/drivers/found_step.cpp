@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "assembly/terms/damage.hpp"
+#include "solvers/linear/vector_verbs.hpp"
 #include "src/core/number_text.hpp"
 
 namespace peristat {
@@ -13,6 +14,20 @@ namespace {
 
 /// Commits of one step of a body with triangles or tetrahedra, each of which may damage more bonds.
 constexpr int most_commits = 1000;
+
+/// Share of the loads that may pull on pieces that an avalanche has torn off, which are pinned: the
+/// body no longer bears what is more.
+constexpr double share_of_lost_load = 0.1;
+
+/// @return a sentence for a person; empty if the body bears its loads
+std::string lost_load(const Path& path, const Attempt& attempt) {
+  const std::vector<double>& load = attempt.external_force;
+  const double whole = norm(load);
+  const double pinned = path.state().pins.force(attempt.state, load);
+  if (whole == 0.0 || pinned <= share_of_lost_load * whole) return {};
+  return number_text(pinned) + " N of loads of " + number_text(whole) +
+         " N pull on what has come off: the body does not bear them";
+}
 
 /// Whether it is where the path is to end is told.
 void note_force(Path& path, const StepRecord& record) {
@@ -83,7 +98,9 @@ std::string complete(Path& path, Attempt& attempt, FoundStep& found) {
   std::vector<double> damage(std::size_t(assembler.points().count()));
   const DamageState damaged = assess_damage(assembler.model(), attempt.state.history, {}, damage);
   found.record.broken_bonds = damaged.broken_bonds;
-  found.energies.heating = heating_work(assembler, path.state().accepted, attempt.state.at());
+  if (!found.energies.intact) {
+    found.energies.heating = heating_work(assembler, path.state().accepted, attempt.state.at());
+  }
   found.ledger =
       ledger.with_step(path.problem().sums(), path.state().accepted.displacement, attempt.state,
                        path.working_force(attempt.state, attempt.external_force),
@@ -98,12 +115,24 @@ std::string complete(Path& path, Attempt& attempt, FoundStep& found) {
                           found.energies.relaxed.has_value(), ledger.entries, found.ledger});
   if (!fault.empty()) {
     attempt.outcome = Outcome::inconsistent;
-  } else if (!found.energies.relaxed && !found.energies.is_avalanche &&
-             found.growth.degrading > 0 && assembler.has_potential()) {
+  } else if (found.energies.is_avalanche) {
+    fault = lost_load(path, attempt);
+    if (!fault.empty()) attempt.outcome = Outcome::limit_point;
+  } else if (!found.energies.relaxed && found.growth.degrading > 0 && assembler.has_potential()) {
     fault = ledger.jump_to(found.ledger);
     if (!fault.empty()) attempt.outcome = Outcome::limit_point;
   }
   return fault;
+}
+
+void tell_of_fragments(const Path& path, double next) {
+  path.tell(
+      load_point(path.state().accepted),
+      {.outcome = name(Outcome::converged),
+       .action = path.options().fragments == FragmentRemedy::remove ? Decision::remove_fragments
+                                                                    : Decision::hold_fragments,
+       .next_increment = next,
+       .reason = path.state().pins.described()});
 }
 
 Advance resolve_fragments(Path& path, double next) {
@@ -115,12 +144,7 @@ Advance resolve_fragments(Path& path, double next) {
     attempt.outcome = Outcome::fragmented;
     return path.stop(std::move(attempt), 0.0, state.pins.described());
   }
-  path.tell(load_point(state.accepted),
-            {.outcome = name(Outcome::converged),
-             .action = remedy == FragmentRemedy::remove ? Decision::remove_fragments
-                                                        : Decision::hold_fragments,
-             .next_increment = next,
-             .reason = state.pins.described()});
+  tell_of_fragments(path, next);
   state.relaxed.motion = {};
   return path.pin();
 }

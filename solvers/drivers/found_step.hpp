@@ -31,6 +31,10 @@ void commit(Path& path, Attempt& attempt, FoundStep& found,
 /// state.
 void complete_record(const Path& path, const Attempt& attempt, FoundStep& found);
 
+/// Tells what has come off and is pinned.
+/// @param next increment of the stage
+void tell_of_fragments(const Path& path, double next);
+
 /// Pins what was found to have come off, and tells it; ends the path if that is to end it.
 [[nodiscard]] Advance resolve_fragments(Path& path, double next);
 

@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "src/core/number_text.hpp"
+
 namespace peristat {
 namespace {
 
@@ -10,6 +12,9 @@ constexpr double share_of_avalanche = 0.25;
 
 /// Of equilibria in an avalanche.
 constexpr int most_passes = 10'000;
+
+/// Share by which a step may exceed the load at which the first point fails.
+constexpr double most_overload = 0.02;
 
 }  // namespace
 
@@ -36,6 +41,7 @@ Advance ImplicitStepping::next() {
   if (!path_.goes_on()) return Advance::ended;
   FragmentPins pins = path_.state().pins;
   ImplicitStep step = search(path_.setting().newton_options.damage);
+  if (step.attempt.has_converged() && approach_failure(step)) return Advance::goes_on;
   if (step.attempt.has_converged()) establish(step);
   if (may_be_avalanche(step)) run_avalanche(step);
   if (!step.attempt.has_converged() && path_.state().pins.pinned != pins.pinned &&
@@ -78,6 +84,8 @@ void ImplicitStepping::establish(ImplicitStep& step) {
     if (fails_in_avalanches) {
       step.found.energies.intact = {path_.working_force(attempt.state, attempt.external_force),
                                     attempt.state.displacement};
+      step.found.energies.heating =
+          heating_work(path_.body().assembler, path_.state().accepted, attempt.state.at());
     }
     commit(path_, attempt, step.found, [&] {
       const State from = state_of(attempt);
@@ -98,6 +106,23 @@ void ImplicitStepping::establish(ImplicitStep& step) {
   step.fault = complete(path_, attempt, step.found);
 }
 
+bool ImplicitStepping::approach_failure(const ImplicitStep& step) {
+  if (!path_.damaged().model().fails_in_avalanches()) return false;
+  const double after = step.growth.utilisation;
+  if (after <= 1.0 + most_overload) return false;
+  const double before = path_.damaged().growth(path_.state().accepted).utilisation;
+  const double rest = (1.0 + 0.5 * most_overload - before) / (after - before) * step.attempted;
+  if (before >= 1.0 || !increment_.can_cut_to(rest)) return false;
+  increment_.cut_to(rest);
+  path_.tell(step.attempt.at,
+             {.increment = step.attempted,
+              .outcome = name(Outcome::converged),
+              .action = Decision::cut,
+              .next_increment = rest,
+              .reason = "points would fail at " + number_text(after) + " of the load they bear"});
+  return true;
+}
+
 Outcome ImplicitStepping::pin_loose(const State& at, ImplicitStep& step) {
   if (!path_.damaged().model().fails_in_avalanches()) {
     return Outcome::converged;  // pinned once accepted
@@ -110,6 +135,7 @@ Outcome ImplicitStepping::pin_loose(const State& at, ImplicitStep& step) {
     step.fault = pins.described();
     return Outcome::fragmented;
   }
+  step.has_pinned = true;
   return path_.pin() == Advance::goes_on ? Outcome::converged : Outcome::out_of_memory;
 }
 
@@ -179,8 +205,10 @@ Advance ImplicitStepping::accept(ImplicitStep step) {
                           .reason = is_exact                 ? how
                                     : step.avalanche.empty() ? attempt.note
                                                              : how + "; " + attempt.note});
-  return peristat::accept(path_, std::move(step.attempt), std::move(step.found),
-                          increment_.value());
+  const Advance advance =
+      peristat::accept(path_, std::move(step.attempt), std::move(step.found), increment_.value());
+  if (step.has_pinned && advance == Advance::goes_on) tell_of_fragments(path_, increment_.value());
+  return advance;
 }
 
 Advance ImplicitStepping::fail(ImplicitStep step) {

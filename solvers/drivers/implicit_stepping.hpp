@@ -15,8 +15,9 @@ struct ImplicitStep {
   Attempt attempt;
   DamageGrowth growth;  ///< that committing what the first search has found would bring
   FoundStep found;
-  std::string fault;      ///< what is known of a failure beside its outcome
-  std::string avalanche;  ///< what is told of one; empty if there was none
+  std::string fault;        ///< what is known of a failure beside its outcome
+  std::string avalanche;    ///< what is told of one; empty if there was none
+  bool has_pinned = false;  ///< more than was pinned before
 };
 
 /// Implicit steps. One that fails is cut and tried again; an easy one lets the next grow.
@@ -43,6 +44,9 @@ class ImplicitStepping : public Driver {
   [[nodiscard]] Advance next() override;
 
  private:
+  /// Cuts a step beyond the load that points bear: all that are overloaded fail together, so that
+  /// coarse steps would take down what fine ones never load.
+  [[nodiscard]] bool approach_failure(const ImplicitStep& step);
   [[nodiscard]] bool is_limit_point(const Attempt& attempt) const;
   /// Pins what failing points leave loose before its equilibrium is searched for again.
   [[nodiscard]] Outcome pin_loose(const State& at, ImplicitStep& step);

@@ -22,7 +22,8 @@ struct StepEnergies {
   /// Bonds broke one after the other under a control that stood still: what the work is more than
   /// what is stored and dissipated counts as drained.
   bool is_avalanche = false;
-  /// Where the step had come to before its points failed: it has worked up to there.
+  /// Where the step had come to before its points failed: it has worked, and been heated, up to
+  /// there.
   struct Intact {
     std::vector<double> force, displacement;
   };

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 #include <omp.h>
 
+#include "assembly/terms/damage.hpp"
 #include "assembly/terms/pressure/pressure_term.hpp"
 #include "assembly/terms/springs/foundation_term.hpp"
 #include "assembly/terms/springs/inertia_term.hpp"
@@ -493,9 +494,12 @@ std::vector<std::string> describe_constraints(const Body& body) {
   return lines;
 }
 
-std::string describe_free_motions(const Body& body) {
+namespace {
+
+/// Sentence that tells which parts of the body may move freely; empty if none.
+std::string describe_free_motions(const Body& body, const Bonds& bonds) {
   const std::vector<FreeMotion> parts =
-      free_motions(body.points, body.model.bonds(), body.conditions->holding(at_rest(body)));
+      free_motions(body.points, bonds, body.conditions->holding(at_rest(body)));
   std::string text;
   constexpr std::size_t most_listed = 5;
   for (std::size_t k = 0; k < std::min(parts.size(), most_listed); ++k) {
@@ -521,11 +525,11 @@ std::string describe_free_motions(const Body& body) {
   return text;
 }
 
-std::string describe_loose_points(const Body& body) {
+/// Sentence that tells points that swing on too few bonds from the start; empty if none.
+std::string describe_loose_points(const Body& body, const Bonds& bonds) {
   const std::vector<double> rest = at_rest(body);
-  const Fragments fragments =
-      find_fragments(body.points, body.model.bonds(), {}, body.conditions->prescribed(), rest,
-                     body.conditions->holding(rest));
+  const Fragments fragments = find_fragments(body.points, bonds, {}, body.conditions->prescribed(),
+                                             rest, body.conditions->holding(rest));
   if (fragments.loose.empty()) return {};
   const std::size_t count = fragments.loose.size();
   return fmt::format(
@@ -534,14 +538,21 @@ std::string describe_loose_points(const Body& body) {
       place_text(body.points.position(fragments.loose.front()), body.points.dimension));
 }
 
+}  // namespace
+
 void refuse_unheld_bodies(const Body& body) {
-  const std::string motions = describe_free_motions(body);
+  const auto is_held_by = [&](const Bonds& bonds) {
+    return describe_free_motions(body, bonds).empty() && describe_loose_points(body, bonds).empty();
+  };
+  if (is_held_by(body.model.bonds())) return;
+  const std::shared_ptr<const Bonds> bonds = whole_network(body.model);
+  const std::string motions = describe_free_motions(body, *bonds);
   if (!motions.empty()) {
     throw InputError("supports", "",
                      "the supports do not hold the body: " + motions +
                          ". Prescribe displacements that prevent this");
   }
-  const std::string loose = describe_loose_points(body);
+  const std::string loose = describe_loose_points(body, *bonds);
   if (!loose.empty()) {
     throw InputError(body.specification.cracks.empty() ? "points" : "cracks", "",
                      loose +

@@ -104,12 +104,6 @@ void add_terms_of_conditions(Model& model, const Body& body);
 /// Lines that tell rigid sets, rollers, linear constraints, planes of symmetry and periods.
 [[nodiscard]] std::vector<std::string> describe_constraints(const Body& body);
 
-/// Sentence that tells which parts of the body may move freely; empty if none.
-[[nodiscard]] std::string describe_free_motions(const Body& body);
-
-/// Sentence that tells points that swing on too few bonds from the start; empty if none.
-[[nodiscard]] std::string describe_loose_points(const Body& body);
-
 /// @throws InputError ("supports", "cracks" or "points") if a part of the body may move freely, or
 ///         points swing
 void refuse_unheld_bodies(const Body& body);

@@ -62,6 +62,12 @@ void refuse_modes_of_failing_points(const Body& body, const StudyOptions& option
     throw InputError("loading.max_broken_bonds", std::to_string(options.loading.max_broken_bonds),
                      "counts bonds that break one by one; of points that fail all go at once");
   }
+  if (mode == Mode::relaxation && body.model.fails_in_avalanches() &&
+      options.loading.relaxation.method == RelaxationMethod::flow) {
+    throw InputError("loading.relaxation.method", "flow",
+                     "follows bonds that break one by one; of points that fail all go at once, "
+                     "which \"dynamic\" follows");
+  }
   const bool is_known = mode == Mode::newton || mode == Mode::dynamics || mode == Mode::relaxation;
   if (is_known || (mode != Mode::path && !body.model.has_history())) return;
   throw InputError("loading.mode", std::string(mode.name),

@@ -558,6 +558,14 @@ Table<ScatterSpecification> scatter_keys(const std::string& material) {
              "has")}};
 }
 
+void make_linear_if_lps(const Entry& at, MaterialSpecification& material) {
+  if (material.model != MaterialModel::lps) return;
+  if (at.from.has("kinematics") && material.kinematics == Kinematics::finite) {
+    at.refuse("of \"lps\" is \"linear\", whatever the deformation");
+  }
+  material.kinematics = Kinematics::linear;
+}
+
 /// @param name of the table: of the body, a region or an interface
 Table<MaterialSpecification> material_keys(const std::string& name) {
   using Spec = MaterialSpecification;
@@ -627,6 +635,7 @@ Table<MaterialSpecification> material_keys(const std::string& name) {
          "`bond`: bonds stretch by their lengths, at any deformation; or by the displacements "
          "along them, for small ones, which is linear: without eigenstrains and images, with "
          "`potential = \"harmonic\"`, and damage by `energy_density` alone. `lps` is always linear")
+           .then(make_linear_if_lps)
            .unless(of_cpd, "is for models \"bond\" and \"lps\""),
        K("influence", &Spec::influence, one_of(influence_names()),
          "influence function $\\omega(r/\\delta)$, $c\\,\\omega s$ is the force density of a bond: "
