@@ -252,9 +252,9 @@ const Communicator* start_ranks_of(const CLI::App& program, int asked_for) {
   if (!is_started_as_rank()) return nullptr;
   all_ranks() = start_ranks();
   if (asked_for > 0 && asked_for != all_ranks()->count()) {
-    throw InputError("--ranks", std::to_string(asked_for),
-                     fmt::format("does not agree with the {} that have been started",
-                                 all_ranks()->count()));
+    throw InputError(
+        "--ranks", std::to_string(asked_for),
+        fmt::format("does not agree with the {} that have been started", all_ranks()->count()));
   }
   if (all_ranks()->count() == 1) return nullptr;
   if (!program.got_subcommand("run")) {
@@ -347,7 +347,7 @@ int main(int count, char** arguments) try {
   }
 
   if (line.ranks > 1 && !is_started_as_rank()) {
-    start_as_ranks(line.ranks, arguments_of_ranks(count, arguments));
+    return run_as_ranks(line.ranks, arguments_of_ranks(count, arguments));
   }
   int threads = choose_threads(line.threads);
   if (line.threads == 0) threads = std::max(1, threads / ranks_on_machine());

@@ -128,6 +128,10 @@ class OnRanks(unittest.TestCase):
         return run.stderr
 
 
+def children_of(process):
+    return [int(child) for child in Path(f"/proc/{process}/task/{process}/children").read_text().split()]
+
+
 def objects(file):
     names = []
     file.visit(names.append)
@@ -343,6 +347,21 @@ class Ends(OnRanks):
             run.kill()
             run.wait()
 
+    def test_an_interruption_ends_a_run_in_order(self):
+        file = self.case(PLATE.replace("spacing = 0.05", "spacing = 0.01").replace("steps = 2", "steps = 500") + SOLVER)
+        words = [PROGRAM, "run", "--ranks", "2", str(file), "--threads", "1", "--output", str(self.folder / "out")]
+        run = subprocess.Popen(words, env=ENVIRONMENT, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+        try:
+            self.wait_for_ranks(run.pid)
+            run.send_signal(signal.SIGINT)
+            said = run.communicate(timeout=60)[1]
+            self.assertEqual(run.returncode, 130, said)
+            self.assertIn("interrupted", said)
+            self.assertIn('"interrupted"', (self.folder / "out/summary.json").read_text())
+        finally:
+            run.kill()
+            run.wait()
+
     def wait_for_ranks(self, launcher):
         """Process numbers, once results are there."""
         end = time.monotonic() + 60
@@ -350,9 +369,10 @@ class Ends(OnRanks):
             time.sleep(0.05)
             if not (self.folder / "out/results.h5").exists():
                 continue
-            children = Path(f"/proc/{launcher}/task/{launcher}/children").read_text().split()
-            if len(children) == 2:
-                return [int(child) for child in children]
+            mpirun = children_of(launcher)
+            ranks = children_of(mpirun[0]) if mpirun else []
+            if len(ranks) == 2:
+                return ranks
         self.fail("no ranks")
 
 

@@ -12,10 +12,12 @@ namespace peristat {
 /// Ranks on this machine, as far as mpirun has told; at least 1.
 [[nodiscard]] int ranks_on_machine();
 
-/// Takes this process' place by mpirun, which starts the program as so many ranks; more than there
-/// are cores if so many are asked for. The note that PERISTAT_NOTE asks for is still this process'.
+/// Has mpirun start the program as so many ranks, more than there are cores if so many are asked
+/// for, and waits for their end. Interruptions are passed on to them; the note that PERISTAT_NOTE
+/// asks for is still this process'.
 /// @param arguments of the program, without its name
-/// @throws MachineError if there is no mpirun
-[[noreturn]] void start_as_ranks(int ranks, const std::vector<std::string>& arguments);
+/// @return exit code
+/// @throws MachineError
+[[nodiscard]] int run_as_ranks(int ranks, const std::vector<std::string>& arguments);
 
 }  // namespace peristat
