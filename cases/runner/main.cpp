@@ -2,6 +2,7 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <exception>
 #include <memory>
 #include <optional>
 #include <string>
@@ -11,6 +12,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include "cases/runner/build/part_body.hpp"
 #include "cases/runner/commands/calibrate.hpp"
 #include "cases/runner/commands/check.hpp"
 #include "cases/runner/commands/check_tangent.hpp"
@@ -201,6 +203,29 @@ RunOptions run_options(const CommandLine& line, int threads) {
   return {threads, line.quiet, line.log_file, line.overwrite, line.steps};
 }
 
+/// Whether all ranks have met the exception that is on its way: each ends by itself then, and rank
+/// 0 tells why.
+bool& all_have_failed() {
+  static bool have_failed = false;
+  return have_failed;
+}
+
+/// Does what needs no other rank, and finds out whether it fails on all alike.
+/// @param ranks null: there is one
+template <class Act>
+auto on_each_rank(const Communicator* ranks, const Act& act) {
+  std::exception_ptr failure;
+  std::optional<decltype(act())> result;
+  try {
+    result.emplace(act());
+  } catch (...) {
+    failure = std::current_exception();
+  }
+  if (ranks) all_have_failed() = ranks->min(failure ? 1.0 : 0.0) > 0.0;
+  if (failure) std::rethrow_exception(failure);
+  return *std::move(result);
+}
+
 Exit execute(const CLI::App& program, const CommandLine& line, int threads,
              const Communicator* ranks) {
   if (program.got_subcommand("keys")) return print_keys(line.table);
@@ -209,7 +234,11 @@ Exit execute(const CLI::App& program, const CommandLine& line, int threads,
   }
   const bool is_calibration = program.got_subcommand("calibrate");
   if (is_calibration && line.case_file.empty()) return calibrate(line);
-  const Case from = read_case(line.case_file, overrides(line));
+  const Case from = on_each_rank(ranks, [&] {
+    Case read = read_case(line.case_file, overrides(line));
+    if (ranks) refuse_keys_without_ranks(read);
+    return read;
+  });
   if (is_calibration) return calibrate(from);
   if (program.got_subcommand("check")) return check(from, threads);
   if (program.got_subcommand("check-tangent")) {
@@ -251,15 +280,20 @@ std::unique_ptr<Communicator>& all_ranks() {
 const Communicator* start_ranks_of(const CLI::App& program, int asked_for) {
   if (!is_started_as_rank()) return nullptr;
   all_ranks() = start_ranks();
+  all_have_failed() = true;  // of what is refused here
   if (asked_for > 0 && asked_for != all_ranks()->count()) {
     throw InputError(
         "--ranks", std::to_string(asked_for),
         fmt::format("does not agree with the {} that have been started", all_ranks()->count()));
   }
-  if (all_ranks()->count() == 1) return nullptr;
+  if (all_ranks()->count() == 1) {
+    all_have_failed() = false;
+    return nullptr;
+  }
   if (!program.got_subcommand("run")) {
     throw InputError("", "", "no command but run is for more than one rank");
   }
+  all_have_failed() = false;
   return all_ranks().get();
 }
 
@@ -280,7 +314,7 @@ std::vector<std::string> arguments_of_ranks(int count, char** arguments) {
 /// Ends all ranks, who may wait for this one.
 int end_all_ranks(const Failure& failure) {
   // What all have met one should tell: it ends the others while they wait here.
-  constexpr unsigned seconds_for_the_first = 1;
+  constexpr unsigned seconds_for_the_first = 2;
   if (all_ranks()->rank() > 0) sleep(seconds_for_the_first);
   all_ranks()->abort("peristat: " + failure.message, static_cast<int>(failure.code));
   return static_cast<int>(failure.code);
@@ -289,7 +323,12 @@ int end_all_ranks(const Failure& failure) {
 /// Tells the exception that is being handled.
 int report_failure() {
   const Failure failure = current_failure();
-  if (all_ranks() && all_ranks()->count() > 1) return end_all_ranks(failure);
+  if (all_ranks() && all_ranks()->count() > 1) {
+    if (!all_have_failed()) return end_all_ranks(failure);
+    const bool tells = all_ranks()->rank() == 0;
+    all_ranks().reset();
+    if (!tells) return static_cast<int>(failure.code);
+  }
   std::fflush(stdout);
   std::fputs(fmt::format("peristat: {}\n", failure.message).c_str(), stderr);
   return static_cast<int>(failure.code);

@@ -381,7 +381,7 @@ class Page(OnRanks):
 
     def test_counts_of_messages(self):
         lines = (ROOT / "docs/cluster.md").read_text().splitlines()
-        first = next(k for k, line in enumerate(lines) if "cases/plate_with_hole/elastic.toml` |" in line)
+        first = next(k for k, line in enumerate(lines) if "cases/plate_with_hole/elastic.toml --ranks N` |" in line)
         table = [[cell.strip() for cell in lines[k].strip("|").split("|")] for k in range(first, first + 6)]
         case = (ROOT / "cases/plate_with_hole/elastic.toml").read_text()
         for column, ranks in enumerate(table[0][1:], 1):

@@ -65,7 +65,6 @@ class RanksRun {
 
  private:
   void make() {
-    refuse_keys_without_ranks(from_);
     body_ = make_part_body(from_, ranks_, options_.threads);
     located_errors(from_, [&] { study_.emplace(*body_, study_options(from_, options_.threads)); });
     gathering_.emplace(*body_->part);
