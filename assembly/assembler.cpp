@@ -3,20 +3,29 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <string>
 
 #include "src/core/stopwatch.hpp"
 
 namespace peristat {
 
-Assembler::Assembler(const Points& points, const Model& model, int threads)
+Assembler::Assembler(const Points& points, const Model& model, int threads, const Sharing* sharing)
     : points_(points),
       model_(model),
       pattern_(model.pattern()),
-      workspace_(pattern_, points.dimension, threads) {
+      workspace_(pattern_, points.dimension, threads),
+      sharing_(sharing) {
   if (model.terms().empty()) throw std::logic_error("a model without terms has no energy");
   for (const auto& term : model.terms()) {
     terms_.push_back(term->passes({points_, model_, pattern_, workspace_}));
   }
+  if (!sharing_) return;
+  // Triangles stand on bonds between ghosts, which parts leave out; histories have no ranks yet.
+  const bool is_of_bonds = model.terms().size() == 1 && model.bond_term() == model.terms()[0];
+  if (!is_of_bonds || model.has_history()) {
+    throw std::logic_error("Assembler: only bonds without damage have ranks yet");
+  }
+  of_points_.resize(points.volume.size());
 }
 Assembler::~Assembler() = default;
 
@@ -54,11 +63,30 @@ Evaluation Assembler::energy(const StateView& at) { return gradient(at, {}); }
 Evaluation Assembler::gradient(const StateView& at, std::span<double> gradient) {
   Evaluation found;
   for_each_term([&](TermPasses& term, Write how) { found += term.gradient(at, gradient, how); });
-  return found;
+  return sharing_ ? of_all(at, found, gradient) : found;
+}
+
+Evaluation Assembler::of_all(const StateView& at, const Evaluation& mine,
+                             std::span<double> gradient) {
+  // Of a bond between two ranks each has the share of its own point.
+  point_energies(at, of_points_);
+  const auto owned = std::size_t(sharing_->owned());
+  double energy = 0.0;
+  for (std::size_t i = 0; i < owned; ++i) energy += of_points_[i];
+  Evaluation all;
+  all.energy = sharing_->ranks().sum(energy);
+  all.round_off = sharing_->ranks().sum(mine.round_off);
+  all.degenerate =
+      sharing_->ranks().max(double(mine.degenerate)) > 0.0 || !std::isfinite(all.energy);
+  if (gradient.empty()) return all;
+  const std::size_t dofs = owned * std::size_t(points_.dimension);
+  std::fill(gradient.begin() + std::ptrdiff_t(dofs), gradient.end(), 0.0);
+  return all;
 }
 
 Evaluation Assembler::commit(std::span<const double> displacement, History& history,
                              std::span<double> gradient, const SharedEnvironment& environment) {
+  refuse_on_ranks("commit");
   Evaluation found;
   for_each_term([&](TermPasses& term, Write how) {
     found += term.commit(displacement, environment, history, gradient, how);
@@ -69,11 +97,16 @@ Evaluation Assembler::commit(std::span<const double> displacement, History& hist
 Evaluation Assembler::commit_forces(std::span<const double> displacement, History& history,
                                     std::span<double> gradient,
                                     const SharedEnvironment& environment) {
+  refuse_on_ranks("commit_forces");
   Evaluation found;
   for_each_term([&](TermPasses& term, Write how) {
     found += term.commit_forces(displacement, environment, history, gradient, how);
   });
   return found;
+}
+
+void Assembler::refuse_on_ranks(const char* what) const {
+  if (sharing_) throw std::logic_error(std::string("Assembler has no ranks yet in ") + what);
 }
 
 void Assembler::follower_force(const StateView& at, std::span<double> force) {

@@ -6,6 +6,7 @@
 
 #include "assembly/energy/energy.hpp"
 #include "assembly/energy/evaluation.hpp"
+#include "assembly/energy/sharing.hpp"
 #include "assembly/operators/tangent.hpp"
 #include "assembly/terms/model.hpp"
 #include "assembly/terms/workspace.hpp"
@@ -22,8 +23,14 @@ namespace peristat {
 class Assembler : public Energy {
  public:
   /// Points and model must outlive the assembler.
-  /// @throws std::logic_error for a model without terms
-  Assembler(const Points& points, const Model& model, int threads);
+  /// @param sharing null: the body is whole. Otherwise these are a part of it: energies are those
+  /// of
+  ///        all of it, and of dE/dx and products the rows of owned points are right, once ghosts
+  ///        have what their owners have. dE/dx of ghosts is zero. All ranks make the same calls.
+  /// @throws std::logic_error for a model without terms, and for a part with others than bonds
+  ///         without damage
+  Assembler(const Points& points, const Model& model, int threads,
+            const Sharing* sharing = nullptr);
   ~Assembler() override;
 
   /// History of a body to which nothing has happened.
@@ -80,6 +87,7 @@ class Assembler : public Energy {
   void virials(const StateView& at, std::span<double> virials);
 
   [[nodiscard]] const Model& model() const { return model_; }
+  [[nodiscard]] const Sharing* sharing() const { return sharing_; }
   [[nodiscard]] const Points& points() const override { return points_; }
   [[nodiscard]] const BlockPattern& pattern() const override { return pattern_; }
   [[nodiscard]] int threads() const override { return workspace_.threads(); }
@@ -88,6 +96,11 @@ class Assembler : public Energy {
   [[nodiscard]] double seconds_spent() const { return seconds_; }  ///< wall time of all calls [s]
 
  private:
+  void refuse_on_ranks(const char* what) const;
+  /// Of the whole body, and of owned points, from what a pass over the part has found.
+  [[nodiscard]] Evaluation of_all(const StateView& at, const Evaluation& mine,
+                                  std::span<double> gradient);
+
   /// Whether a term tells no more of its tangent than an outline.
   [[nodiscard]] bool is_outlined(std::size_t term) const;
   /// Diagonal blocks of all other terms, points x dimension x dimension: beside one that is
@@ -103,6 +116,8 @@ class Assembler : public Energy {
   BlockPattern pattern_;
   Workspace workspace_;
   std::vector<std::unique_ptr<TermPasses>> terms_;
+  const Sharing* sharing_;
+  std::vector<double> of_points_;  // energies, of a part
   double seconds_ = 0.0;
 };
 

@@ -9,7 +9,7 @@ add_library(peristat_library SHARED
   $<TARGET_OBJECTS:peristat_assembly>
   $<TARGET_OBJECTS:peristat_solvers>)
 add_library(peristat::peristat ALIAS peristat_library)
-add_dependencies(peristat_library peristat_trilinos peristat_mumps)
+add_dependencies(peristat_library peristat_trilinos peristat_ranks peristat_mumps)
 set_target_properties(peristat_library PROPERTIES
   OUTPUT_NAME peristat EXPORT_NAME peristat LINKER_LANGUAGE CXX
   VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
@@ -30,7 +30,7 @@ set_target_properties(peristat PROPERTIES
   INSTALL_RPATH "$ORIGIN/${module_from_program}" INSTALL_RPATH_USE_LINK_PATH ON)
 
 install(TARGETS peristat RUNTIME)
-install(TARGETS peristat_trilinos peristat_mumps LIBRARY DESTINATION ${module_folder})
+install(TARGETS peristat_trilinos peristat_ranks peristat_mumps LIBRARY DESTINATION ${module_folder})
 install(TARGETS peristat_library EXPORT peristatTargets LIBRARY)
 set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/peristat)
 install(EXPORT peristatTargets NAMESPACE peristat:: DESTINATION ${package_folder})

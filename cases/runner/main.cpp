@@ -1,25 +1,33 @@
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <exception>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <unistd.h>
 
+#include "cases/runner/build/part_body.hpp"
 #include "cases/runner/commands/calibrate.hpp"
 #include "cases/runner/commands/check.hpp"
 #include "cases/runner/commands/check_tangent.hpp"
 #include "cases/runner/commands/key_reference.hpp"
 #include "cases/runner/commands/resume.hpp"
 #include "cases/runner/commands/run.hpp"
+#include "cases/runner/commands/run_on_ranks.hpp"
 #include "cases/runner/commands/unknown_option.hpp"
 #include "cases/runner/input/case.hpp"
 #include "cases/runner/input/toml_text.hpp"
 #include "cases/runner/process/blas_memory.hpp"
 #include "cases/runner/process/failure.hpp"
+#include "cases/runner/process/ranks_environment.hpp"
 #include "cases/runner/process/runtime_environment.hpp"
+#include "solvers/ranks/ranks.hpp"
 #include "src/core/input_error.hpp"
 #include "src/core/machine_error.hpp"
 #include "src/core/threads.hpp"
@@ -31,7 +39,7 @@ using namespace peristat;
 struct CommandLine {
   std::string case_file, results, output, log_file, deformation, table;
   std::vector<std::string> settings;
-  int threads = 0, steps = 0;
+  int threads = 0, steps = 0, ranks = 0;
   bool quiet = false, overwrite = false;
   bool no_plots = false;  // taken by the launcher, which draws
   CalibrationQuestion calibration;
@@ -195,19 +203,48 @@ RunOptions run_options(const CommandLine& line, int threads) {
   return {threads, line.quiet, line.log_file, line.overwrite, line.steps};
 }
 
-Exit execute(const CLI::App& program, const CommandLine& line, int threads) {
+/// Whether all ranks have met the exception that is on its way: each ends by itself then, and rank
+/// 0 tells why.
+bool& all_have_failed() {
+  static bool have_failed = false;
+  return have_failed;
+}
+
+/// Does what needs no other rank, and finds out whether it fails on all alike.
+/// @param ranks null: there is one
+template <class Act>
+auto on_each_rank(const Communicator* ranks, const Act& act) {
+  std::exception_ptr failure;
+  std::optional<decltype(act())> result;
+  try {
+    result.emplace(act());
+  } catch (...) {
+    failure = std::current_exception();
+  }
+  if (ranks) all_have_failed() = ranks->min(failure ? 1.0 : 0.0) > 0.0;
+  if (failure) std::rethrow_exception(failure);
+  return *std::move(result);
+}
+
+Exit execute(const CLI::App& program, const CommandLine& line, int threads,
+             const Communicator* ranks) {
   if (program.got_subcommand("keys")) return print_keys(line.table);
   if (program.got_subcommand("resume")) {
     return resume(line.results, overrides(line), run_options(line, threads));
   }
   const bool is_calibration = program.got_subcommand("calibrate");
   if (is_calibration && line.case_file.empty()) return calibrate(line);
-  const Case from = read_case(line.case_file, overrides(line));
+  const Case from = on_each_rank(ranks, [&] {
+    Case read = read_case(line.case_file, overrides(line));
+    if (ranks) refuse_keys_without_ranks(read);
+    return read;
+  });
   if (is_calibration) return calibrate(from);
   if (program.got_subcommand("check")) return check(from, threads);
   if (program.got_subcommand("check-tangent")) {
     return check_tangent(from, line.deformation, threads);
   }
+  if (ranks) return run_on_ranks(from, run_options(line, threads), *ranks);
   return run(from, run_options(line, threads));
 }
 
@@ -233,9 +270,65 @@ void require_told() {
       fmt::format("standard output can't be written: {}", std::strerror(errno != 0 ? errno : EIO)));
 }
 
+/// The ranks of this run, if there are more than one; they outlive all that uses them.
+std::unique_ptr<Communicator>& all_ranks() {
+  static std::unique_ptr<Communicator> ranks;
+  return ranks;
+}
+
+/// @return null for a run of one rank
+const Communicator* start_ranks_of(const CLI::App& program, int asked_for) {
+  if (!is_started_as_rank()) return nullptr;
+  all_ranks() = start_ranks();
+  all_have_failed() = true;  // of what is refused here
+  if (asked_for > 0 && asked_for != all_ranks()->count()) {
+    throw InputError(
+        "--ranks", std::to_string(asked_for),
+        fmt::format("does not agree with the {} that have been started", all_ranks()->count()));
+  }
+  if (all_ranks()->count() == 1) {
+    all_have_failed() = false;
+    return nullptr;
+  }
+  if (!program.got_subcommand("run")) {
+    throw InputError("", "", "no command but run is for more than one rank");
+  }
+  all_have_failed() = false;
+  return all_ranks().get();
+}
+
+/// The arguments of a run without --ranks.
+std::vector<std::string> arguments_of_ranks(int count, char** arguments) {
+  std::vector<std::string> kept;
+  for (int k = 1; k < count; ++k) {
+    const std::string argument = arguments[k];
+    if (argument == "--ranks") {
+      ++k;
+    } else if (argument.rfind("--ranks=", 0) != 0) {
+      kept.push_back(argument);
+    }
+  }
+  return kept;
+}
+
+/// Ends all ranks, who may wait for this one.
+int end_all_ranks(const Failure& failure) {
+  // What all have met one should tell: it ends the others while they wait here.
+  constexpr unsigned seconds_for_the_first = 2;
+  if (all_ranks()->rank() > 0) sleep(seconds_for_the_first);
+  all_ranks()->abort("peristat: " + failure.message, static_cast<int>(failure.code));
+  return static_cast<int>(failure.code);
+}
+
 /// Tells the exception that is being handled.
 int report_failure() {
   const Failure failure = current_failure();
+  if (all_ranks() && all_ranks()->count() > 1) {
+    if (!all_have_failed()) return end_all_ranks(failure);
+    const bool tells = all_ranks()->rank() == 0;
+    all_ranks().reset();
+    if (!tells) return static_cast<int>(failure.code);
+  }
   std::fflush(stdout);
   std::fputs(fmt::format("peristat: {}\n", failure.message).c_str(), stderr);
   return static_cast<int>(failure.code);
@@ -254,6 +347,10 @@ int main(int count, char** arguments) try {
   run_command->add_option("--output", line.output, "results folder (default: the case's)");
   run_command->add_flag("--overwrite", line.overwrite,
                         "replace the results of another case, or of version 1, in the folder");
+  run_command
+      ->add_option("--ranks", line.ranks,
+                   "run on so many ranks, which mpirun starts (docs/cluster.md)")
+      ->check(CLI::PositiveNumber);
   add_run_options(*run_command, line);
   CLI::App* resume_command =
       program.add_subcommand("resume", "go on with a run that has not come to its end");
@@ -288,13 +385,18 @@ int main(int count, char** arguments) try {
     return static_cast<int>(Exit::done);
   }
 
-  const int threads = choose_threads(line.threads);
+  if (line.ranks > 1 && !is_started_as_rank()) {
+    return run_as_ranks(line.ranks, arguments_of_ranks(count, arguments));
+  }
+  int threads = choose_threads(line.threads);
+  if (line.threads == 0) threads = std::max(1, threads / ranks_on_machine());
   restart_with_environment(threads, arguments);
   require_threads(threads);
   claim_blas_memory(threads);
-  const Exit exit = execute(program, line, threads);
+  const Exit exit = execute(program, line, threads, start_ranks_of(program, line.ranks));
   if (exit == Exit::done && !program.got_subcommand("run") && !program.got_subcommand("resume"))
     require_told();
+  all_ranks().reset();
   return static_cast<int>(exit);
 } catch (...) {
   return report_failure();

@@ -251,8 +251,8 @@ bool EventStepping::book_event(const State& at, const PathLedger& ledger, const 
   const std::vector<double> working =
       path_.working_force(settled.attempt.state, settled.attempt.external_force);
   const double dissipated = ledger.entries.dissipated - ledger.released + dropped.dissipated;
-  Ledger after =
-      ledger.with_step(at.displacement, settled.attempt.state, working, dissipated, energies);
+  Ledger after = ledger.with_step(path_.problem().sums(), at.displacement, settled.attempt.state,
+                                  working, dissipated, energies);
   settled.batch_work = dropped.dissipated - dropped.energy_lost;
   after.numerical_work += settled.batch_work;
   const double drained = after.balance_error() - ledger.entries.balance_error();
@@ -366,8 +366,9 @@ void EventStepping::pass_over(Step& step) {
   energies.heating = heating_work(path_.body().assembler, state.accepted, trial.at());
   const std::vector<double> working = path_.working_force(trial, step.attempt.external_force);
   Ledger& after = step.found.ledger;
-  after = state.ledger.with_step(state.accepted.displacement, trial, working,
-                                 state.ledger.entries.dissipated - state.ledger.released, energies);
+  after =
+      state.ledger.with_step(path_.problem().sums(), state.accepted.displacement, trial, working,
+                             state.ledger.entries.dissipated - state.ledger.released, energies);
   settle_work(step);
   if (!step.attempt.has_converged()) return;
   state.ledger.accept(after, working, energies);

@@ -67,6 +67,12 @@ void complete_record(const Path& path, const Attempt& attempt, FoundStep& found)
   record.reactions =
       path.setting().conditions.reactions(attempt.state.gradient, attempt.external_force,
                                           attempt.state.displacement, attempt.state.environment);
+  const Sums sums = path.problem().sums();
+  for (auto& [set, reaction] : record.reactions) {
+    const std::vector<double> all =
+        sums.of_all(std::vector<double>(reaction.begin(), reaction.end()));
+    std::copy(all.begin(), all.end(), reaction.begin());
+  }
 }
 
 void commit(Path& path, Attempt& attempt, FoundStep& found,
@@ -95,9 +101,10 @@ std::string complete(Path& path, Attempt& attempt, FoundStep& found) {
   if (!found.energies.intact) {
     found.energies.heating = heating_work(assembler, path.state().accepted, attempt.state.at());
   }
-  found.ledger = ledger.with_step(path.state().accepted.displacement, attempt.state,
-                                  path.working_force(attempt.state, attempt.external_force),
-                                  damaged.dissipated_energy, found.energies);
+  found.ledger =
+      ledger.with_step(path.problem().sums(), path.state().accepted.displacement, attempt.state,
+                       path.working_force(attempt.state, attempt.external_force),
+                       damaged.dissipated_energy, found.energies);
   if (!attempt.has_converged()) return {};
   if (attempt.iterations == 0) {  // no tangent was needed so far
     tangent.linearise(assembler, attempt.state.at(), 0.0);

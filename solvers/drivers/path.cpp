@@ -7,6 +7,21 @@
 
 namespace peristat {
 
+namespace {
+
+/// What the first of the ranks says that has something to say.
+std::optional<std::string> first_of_all(const Communicator& ranks,
+                                        const std::optional<std::string>& mine) {
+  std::string first;
+  ranks.gather(mine.value_or(""), [&](int, const std::string& theirs) {
+    if (first.empty()) first = theirs;
+  });
+  ranks.broadcast(first);
+  return first.empty() ? std::nullopt : std::optional(first);
+}
+
+}  // namespace
+
 Path::Path(const PathSetting& setting) : setting_(setting) {
   state_.stands_in = setting.stand_in != nullptr;
   const Conditions& conditions = setting.conditions;
@@ -71,14 +86,16 @@ std::vector<double> Path::working_force(const Trial& state,
 std::optional<std::string> Path::refusal_of_conditions(double stage) const {
   if (setting_.conditions.control()) return std::nullopt;  // the load is not known yet
   std::vector<double> values(setting_.conditions.prescribed().size());
+  std::optional<std::string> refusal;
   try {
     setting_.conditions.prescribe(stage, values);
     setting_.conditions.external_force(stage, values);
     static_cast<void>(setting_.conditions.environment(stage));
   } catch (const InputError& error) {
-    return description(error);
+    refusal = description(error);
   }
-  return std::nullopt;
+  return body().assembler.sharing() ? first_of_all(body().assembler.sharing()->ranks(), refusal)
+                                    : refusal;
 }
 
 std::string Path::description(const InputError& error) const {

@@ -19,16 +19,21 @@ void PathLedger::begin(const Trial& state, std::vector<double> working) {
   entries.external_work = entries.stored = state.stored_energy;
 }
 
-Ledger PathLedger::with_step(std::span<const double> displacement_before, const Trial& state,
-                             std::span<const double> working, double dissipated,
+Ledger PathLedger::with_step(const Sums& sums, std::span<const double> displacement_before,
+                             const Trial& state, std::span<const double> working, double dissipated,
                              const StepEnergies& step) const {
+  const auto work_of = [&](std::span<const double> force0, std::span<const double> force1,
+                           std::span<const double> u0, std::span<const double> u1) {
+    const std::size_t own = sums.own(u0.size());
+    return sums.of_all(
+        trapezoidal_work(force0.first(own), force1.first(own), u0.first(own), u1.first(own)));
+  };
   const double work =
       step.heating +
-      (step.intact ? trapezoidal_work(force, step.intact->force, displacement_before,
-                                      step.intact->displacement) +
-                         trapezoidal_work(step.intact->force, working, step.intact->displacement,
-                                          state.displacement)
-                   : trapezoidal_work(force, working, displacement_before, state.displacement));
+      (step.intact
+           ? work_of(force, step.intact->force, displacement_before, step.intact->displacement) +
+                 work_of(step.intact->force, working, step.intact->displacement, state.displacement)
+           : work_of(force, working, displacement_before, state.displacement));
   Ledger after = entries;
   after.stored = state.stored_energy;
   after.dissipated = dissipated + released + step.released;

@@ -46,9 +46,9 @@ struct PathLedger {
 
   /// The entries with a step to a state whose damage is committed.
   /// @param dissipated by the bonds on the whole path, see DamageState [J]
-  [[nodiscard]] Ledger with_step(std::span<const double> displacement_before, const Trial& state,
-                                 std::span<const double> working, double dissipated,
-                                 const StepEnergies& step) const;
+  [[nodiscard]] Ledger with_step(const Sums& sums, std::span<const double> displacement_before,
+                                 const Trial& state, std::span<const double> working,
+                                 double dissipated, const StepEnergies& step) const;
 
   /// Takes up a step that was accepted, with its entries.
   void accept(const Ledger& with_step, std::vector<double> working, const StepEnergies& step);

@@ -36,11 +36,25 @@ const char* words_for(KrylovMethod method) {
 
 IterativeSolver::IterativeSolver(KrylovMethod method,
                                  std::unique_ptr<Preconditioner> preconditioner, int max_iterations,
-                                 int restart)
+                                 int restart, const Communicator* ranks)
     : method_(method),
       preconditioner_(std::move(preconditioner)),
       max_iterations_(max_iterations),
-      restart_(restart) {}
+      restart_(restart),
+      ranks_(ranks) {}
+
+LinearOutcome IterativeSolver::of_all(LinearOutcome outcome) const {
+  // They stand in the order of what may follow: solved comes first.
+  return ranks_ ? LinearOutcome(int(ranks_->max(double(outcome)))) : outcome;
+}
+
+double IterativeSolver::norm_of_all(std::span<const double> v) const {
+  return ranks_ ? std::sqrt(ranks_->sum(dot(v, v))) : norm(v);
+}
+
+bool IterativeSolver::is_empty(std::size_t equations) const {
+  return (ranks_ ? ranks_->max(double(equations)) : double(equations)) == 0.0;
+}
 
 LinearOutcome IterativeSolver::analyze(const BlockPattern& pattern, const FreeDofs& free) {
   const Stopwatch watch(statistics_.seconds);
@@ -56,17 +70,12 @@ LinearOutcome IterativeSolver::build() {
   worn_ = false;
   iterations_per_digit_ = 0.0;
   ++statistics_.factorisations;
-  const LinearOutcome outcome = preconditioner_->build(*tangent_);
+  const LinearOutcome outcome = of_all(preconditioner_->build(*tangent_));
   built_ = built_now_ = outcome == LinearOutcome::solved;
   return outcome;
 }
 
-LinearOutcome IterativeSolver::factorize(const TangentOperator& tangent, FactorUse use) {
-  const Stopwatch watch(statistics_.seconds);
-  tangent_ = &tangent;
-  built_now_ = false;
-  if (free_->count() == 0) return LinearOutcome::solved;
-  largest_diagonal_ = 0.0;
+LinearOutcome IterativeSolver::look_at(const TangentOperator& tangent) {
   for (const double entry : tangent.diagonal) {
     if (!std::isfinite(entry)) return LinearOutcome::singular;
     largest_diagonal_ = std::max(largest_diagonal_, std::abs(entry));
@@ -79,6 +88,18 @@ LinearOutcome IterativeSolver::factorize(const TangentOperator& tangent, FactorU
       return LinearOutcome::singular;
     }
   }
+  return LinearOutcome::solved;
+}
+
+LinearOutcome IterativeSolver::factorize(const TangentOperator& tangent, FactorUse use) {
+  const Stopwatch watch(statistics_.seconds);
+  tangent_ = &tangent;
+  built_now_ = false;
+  if (is_empty(std::size_t(free_->count()))) return LinearOutcome::solved;
+  largest_diagonal_ = 0.0;
+  const LinearOutcome outcome = of_all(look_at(tangent));
+  if (outcome != LinearOutcome::solved) return outcome;
+  if (ranks_) largest_diagonal_ = ranks_->max(largest_diagonal_);
   if (use == FactorUse::may_reuse && built_ && !worn_) return LinearOutcome::solved;
   return build();
 }
@@ -99,6 +120,7 @@ LinearOutcome IterativeSolver::iterate(std::span<const double> b, std::span<doub
   options.tolerance = tolerance;
   options.max_iterations = max_iterations_;
   options.restart = restart_;
+  options.ranks = ranks_;
   const KrylovResult result = solve_krylov(
       int(size),
       [&](const double* v, double* product) {
@@ -114,16 +136,16 @@ LinearOutcome IterativeSolver::iterate(std::span<const double> b, std::span<doub
   if (result.outcome == KrylovOutcome::negative_curvature) {
     return LinearOutcome::not_positive_definite;
   }
-  const double attainable = round_off * largest_diagonal_ * norm(x);
-  return result.relative_residual * norm(b) <= attainable ? LinearOutcome::solved
-                                                          : LinearOutcome::inaccurate;
+  const double attainable = round_off * largest_diagonal_ * norm_of_all(x);
+  return result.relative_residual * norm_of_all(b) <= attainable ? LinearOutcome::solved
+                                                                 : LinearOutcome::inaccurate;
 }
 
 LinearOutcome IterativeSolver::solve(std::span<const double> b, std::span<double> x,
                                      double tolerance) {
   const Stopwatch watch(statistics_.seconds);
   last_iterations_ = 0;
-  if (b.empty()) return LinearOutcome::solved;
+  if (is_empty(b.size())) return LinearOutcome::solved;
   if (!built_) return LinearOutcome::singular;
   LinearOutcome outcome = iterate(b, x, tolerance);
   if (outcome == LinearOutcome::inaccurate && !built_now_) {

@@ -16,8 +16,12 @@ namespace peristat {
 class IterativeSolver : public LinearSolver {
  public:
   /// @param restart vectors that GMRES keeps before it begins anew
+  /// @param ranks   that have a part of the equations each, which outlive the solver: the tangent's
+  ///                product is that with the whole, all ranks make the same calls and get the same
+  ///                outcomes; null: this one has all of them
   IterativeSolver(KrylovMethod method, std::unique_ptr<Preconditioner> preconditioner,
-                  int max_iterations, int restart = KrylovOptions{}.restart);
+                  int max_iterations, int restart = KrylovOptions{}.restart,
+                  const Communicator* ranks = nullptr);
 
   LinearOutcome analyze(const BlockPattern& pattern, const FreeDofs& free) override;
   void count_pivots(bool) override {}  // they are never known
@@ -31,6 +35,13 @@ class IterativeSolver : public LinearSolver {
   [[nodiscard]] std::string describe() const override;
 
  private:
+  /// Whether there are values that can be solved with.
+  [[nodiscard]] LinearOutcome look_at(const TangentOperator& tangent);
+  /// The worst of all ranks' outcomes.
+  [[nodiscard]] LinearOutcome of_all(LinearOutcome outcome) const;
+  [[nodiscard]] double norm_of_all(std::span<const double> v) const;
+  /// Whether no rank has any of them.
+  [[nodiscard]] bool is_empty(std::size_t equations) const;
   LinearOutcome build();
   LinearOutcome iterate(std::span<const double> b, std::span<double> x, double tolerance);
   void multiply(std::span<const double> v, std::span<double> product);
@@ -38,6 +49,7 @@ class IterativeSolver : public LinearSolver {
   KrylovMethod method_;
   std::unique_ptr<Preconditioner> preconditioner_;
   int max_iterations_, restart_;
+  const Communicator* ranks_;
   const FreeDofs* free_ = nullptr;
   const TangentOperator* tangent_ = nullptr;
   LinearStatistics statistics_;

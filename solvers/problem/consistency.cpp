@@ -21,12 +21,14 @@ constexpr double safety = 1e3;
 /// Energies near the smallest number have lost their digits [J].
 constexpr double smallest_energy = 1e-250;
 
-Coordinates centre_of(const Points& points) {
+Coordinates centre_of(const Points& points, const Sums& sums) {
+  const std::size_t d = std::size_t(points.dimension), own = sums.own(points.reference.size());
+  std::vector<double> all(d + 1, 0.0);  // and how many points there are
+  for (std::size_t k = 0; k < own; ++k) all[k % d] += points.reference[k];
+  all[d] = double(own / d);
+  all = sums.of_all(std::move(all));
   Coordinates centre{};
-  for (std::size_t k = 0; k < points.reference.size(); ++k) {
-    centre[k % std::size_t(points.dimension)] += points.reference[k];
-  }
-  for (double& component : centre) component /= std::max(1.0, double(points.count()));
+  for (std::size_t c = 0; c < d; ++c) centre[c] = all[c] / std::max(1.0, all[d]);
   return centre;
 }
 
@@ -45,14 +47,21 @@ std::vector<double> internal_forces(const EquilibriumProblem& problem, const Tri
   return gradient;
 }
 
+Coordinates sum_of(const Sums& sums, const Coordinates& mine) {
+  const std::vector<double> all = sums.of_all(std::vector<double>(mine.begin(), mine.end()));
+  return {all[0], all[1], all[2]};
+}
+
 /// Sums of the internal forces and of their moments about the body's centre.
 Resultants resultants_of(const EquilibriumProblem& problem, const Trial& trial) {
   const Points& points = problem.assembler.points();
   const std::vector<double> gradient = internal_forces(problem, trial);
-  const Coordinates centre = centre_of(points);
+  const Sums of_body = problem.sums();
+  const Coordinates centre = centre_of(points, of_body);
   const std::size_t d = std::size_t(points.dimension);
   Resultants sums;
-  for (Index i = 0; i < points.count(); ++i) {
+  const auto own = Index(of_body.own(points.reference.size()) / d);
+  for (Index i = 0; i < own; ++i) {
     Coordinates arm{}, force{};
     for (std::size_t c = 0; c < d; ++c) {
       const std::size_t dof = std::size_t(i) * d + c;
@@ -69,6 +78,9 @@ Resultants resultants_of(const EquilibriumProblem& problem, const Trial& trial) 
     }
     sums.reach = std::max(sums.reach, std::hypot(arm[0], arm[1], arm[2]));
   }
+  sums.force = sum_of(of_body, sums.force);
+  sums.moment = sum_of(of_body, sums.moment);
+  sums.reach = of_body.largest_of_all(sums.reach);
   return sums;
 }
 
@@ -99,9 +111,11 @@ std::string check_resultants(const EquilibriumProblem& problem, const TangentOpe
   const Balances owed = problem.assembler.model().balances();
   const std::size_t d = std::size_t(tangent.dimension);
   double trace = 0.0;
-  for (std::size_t i = 0; i < tangent.diagonal.size(); i += d * d) {
+  const std::size_t own = problem.sums().own(tangent.diagonal.size() / d);
+  for (std::size_t i = 0; i < own * d; i += d * d) {
     for (std::size_t c = 0; c < d; ++c) trace += std::abs(tangent.diagonal[i + c * (d + 1)]);
   }
+  trace = problem.sums().of_all(trace);
   // Where all has come apart forces may vanish, and the energy, their square, before them.
   const double energy = std::max(std::abs(found.after.stored), std::numeric_limits<double>::min());
   double forces = std::sqrt(2.0 * energy * trace);
@@ -157,8 +171,9 @@ std::string check_energies(const EquilibriumProblem& problem, const TangentOpera
          number_text(stored) + " J stored and " + number_text(dissipated) + " J dissipated";
 }
 
-std::string check_magnitude(const FoundState& found) {
-  const double forces = norm(found.trial.gradient), moved = norm(found.trial.displacement);
+std::string check_magnitude(const Sums& sums, const FoundState& found) {
+  const double forces = sums.norm(found.trial.gradient),
+               moved = sums.norm(found.trial.displacement);
   // What has come apart may be left without forces.
   const bool has_worked = std::abs(found.after.external_work) >= smallest_energy;
   if (has_worked || forces == 0.0 || moved == 0.0 || forces * moved >= smallest_energy) return {};
@@ -175,7 +190,7 @@ double sum_of_internal_forces(const EquilibriumProblem& problem, const Trial& tr
 
 std::string find_inconsistency(const EquilibriumProblem& problem, Assembler& damaged,
                                const TangentOperator& tangent, const FoundState& found) {
-  std::string fault = check_magnitude(found);
+  std::string fault = check_magnitude(problem.sums(), found);
   if (fault.empty()) fault = check_equilibrium(problem, found);
   if (fault.empty()) fault = check_strength(damaged, found);
   if (fault.empty()) fault = check_resultants(problem, tangent, found);

@@ -131,6 +131,7 @@ void share_out_jump(const EquilibriumProblem& problem, std::span<const double> f
 void move_followers(const EquilibriumProblem& problem, Trial& trial) {
   const Constraints& constraints = problem.conditions.constraints();
   if (!constraints.none()) constraints.move(trial.displacement);
+  if (problem.assembler.sharing()) problem.assembler.sharing()->update_ghosts(trial.displacement);
 }
 
 void fold_followers(const EquilibriumProblem& problem, std::span<const double> external_force,
@@ -177,8 +178,8 @@ void evaluate(const EquilibriumProblem& problem, std::span<const double> externa
   fold_followers(problem, external_force, trial);
   trial.stored_energy = found.energy;
   trial.energy_round_off = found.round_off;
-  trial.total_energy = found.energy - dot(external_force, trial.displacement);
-  trial.residual_norm = norm_of(problem.free.dof.size(), [&](std::size_t e) {
+  trial.total_energy = found.energy - problem.sums().dot(external_force, trial.displacement);
+  trial.residual_norm = problem.sums().norm_of(problem.free.dof.size(), [&](std::size_t e) {
     const Index dof = problem.free.dof[e];
     return external_force[dof] - trial.gradient[dof];
   });
@@ -187,11 +188,12 @@ void evaluate(const EquilibriumProblem& problem, std::span<const double> externa
 
 double residual_scale(const EquilibriumProblem& problem, std::span<const double> external_force,
                       std::span<const double> old_gradient, const Trial& after_jump) {
-  const double reactions = norm_of(external_force.size(), [&](std::size_t dof) {
+  const Sums sums = problem.sums();
+  const double reactions = sums.norm_of(sums.own(external_force.size()), [&](std::size_t dof) {
     const bool is_free = problem.free.equation[dof] != FreeDofs::none;
     return is_free ? 0.0 : old_gradient[dof] - external_force[dof];
   });
-  return std::max({norm(external_force), reactions, after_jump.residual_norm});
+  return std::max({sums.norm(external_force), reactions, after_jump.residual_norm});
 }
 
 double load_norm(const EquilibriumProblem& problem, std::span<const double> external_force,
@@ -215,19 +217,19 @@ double differenced_forces(const TangentOperator& tangent, std::span<const double
   });
 }
 
-double residual_round_off(const FreeDofs& free, const TangentOperator& tangent,
+double residual_round_off(const Sums& sums, const FreeDofs& free, const TangentOperator& tangent,
                           std::span<const double> displacement) {
-  std::vector<double> sums(displacement.size());
-  tangent.absolute_row_sums(sums);
+  std::vector<double> row_sums(displacement.size());
+  tangent.absolute_row_sums(row_sums);
   const std::size_t d = std::size_t(free.dimension);
   constexpr double unit_round_off = 0.5 * std::numeric_limits<double>::epsilon();
-  const double of_sums = norm_of(free.dof.size(), [&](std::size_t e) {
+  const double of_sums = sums.norm_of(free.dof.size(), [&](std::size_t e) {
     const std::size_t dof = std::size_t(free.dof[e]), first = dof - dof % d;
     double largest = 0.0;
     for (std::size_t c = 0; c < d; ++c) {
       largest = std::max(largest, std::abs(displacement[first + c]));
     }
-    return sums[dof] * largest;
+    return row_sums[dof] * largest;
   });
   return unit_round_off *
          (of_sums + (tangent.has_rows() ? 0.0 : differenced_forces(tangent, displacement)));

@@ -8,6 +8,7 @@
 #include "assembly/assembler.hpp"
 #include "assembly/operators/tangent_operator.hpp"
 #include "solvers/linear/free_dofs.hpp"
+#include "solvers/linear/sums.hpp"
 #include "src/conditions/conditions.hpp"
 
 namespace peristat {
@@ -47,6 +48,9 @@ struct EquilibriumProblem {
   const FreeDofs& free;
   const InertialSprings* inertia = nullptr;  ///< in a step of an implicit motion
 
+  /// Over the whole body.
+  [[nodiscard]] Sums sums() const { return {assembler.sharing(), assembler.points().dimension}; }
+
   /// What the energy depends on at a load point.
   [[nodiscard]] SharedEnvironment environment(const LoadPoint& at) const;
 };
@@ -81,7 +85,8 @@ struct Trial {
 /// @param from before the jump
 void share_out_jump(const EquilibriumProblem& problem, std::span<const double> from,
                     std::span<double> displacement);
-/// Moves what follows other degrees of freedom to where these have taken it.
+/// Moves what follows other degrees of freedom to where these have taken it, and ghosts to where
+/// their owners are.
 void move_followers(const EquilibriumProblem& problem, Trial& trial);
 /// Folds the gradient that the assembler has found onto what is followed.
 void fold_followers(const EquilibriumProblem& problem, std::span<const double> external_force,
@@ -129,7 +134,8 @@ void evaluate(const EquilibriumProblem& problem, std::span<const double> externa
 /// over its free degrees of freedom, u_i the displacement of the point; by convolutions
 /// eps `differenced_forces` in addition.
 /// @param tangent near the state
-[[nodiscard]] double residual_round_off(const FreeDofs& free, const TangentOperator& tangent,
+[[nodiscard]] double residual_round_off(const Sums& sums, const FreeDofs& free,
+                                        const TangentOperator& tangent,
                                         std::span<const double> displacement);
 
 }  // namespace peristat

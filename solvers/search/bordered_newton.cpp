@@ -177,7 +177,7 @@ class BorderedSearch {
   }
 
   [[nodiscard]] bool has_converged() {
-    return fulfils_border() && note_convergence(problem_.free, tangent_, current_, last_residual_,
+    return fulfils_border() && note_convergence(problem_, tangent_, current_, last_residual_,
                                                 options_.relative_tolerance, result_);
   }
 

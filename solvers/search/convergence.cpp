@@ -16,13 +16,15 @@ constexpr double round_off_of_loads = 10.0;
 
 }  // namespace
 
-bool note_convergence(const FreeDofs& free, const TangentOperator& tangent, const Trial& current,
-                      double last_residual, double relative_tolerance, NewtonResult& result) {
+bool note_convergence(const EquilibriumProblem& problem, const TangentOperator& tangent,
+                      const Trial& current, double last_residual, double relative_tolerance,
+                      NewtonResult& result) {
   if (current.degenerate) return false;
   result.largest_residual = relative_tolerance * result.scale;
   if (current.residual_norm <= result.largest_residual) return true;
   if (result.iterations < 2 || current.residual_norm < stagnation * last_residual) return false;
-  const double round_off = residual_round_off(free, tangent, current.displacement);
+  const double round_off =
+      residual_round_off(problem.sums(), problem.free, tangent, current.displacement);
   if (current.residual_norm > coarsest_round_off * result.scale &&
       result.scale > round_off_of_loads * round_off) {
     return false;

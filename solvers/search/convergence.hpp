@@ -9,8 +9,9 @@ namespace peristat {
 /// and what counted.
 /// @param tangent       near the state
 /// @param last_residual norm before the last iteration [N]
-[[nodiscard]] bool note_convergence(const FreeDofs& free, const TangentOperator& tangent,
-                                    const Trial& current, double last_residual,
-                                    double relative_tolerance, NewtonResult& result);
+[[nodiscard]] bool note_convergence(const EquilibriumProblem& problem,
+                                    const TangentOperator& tangent, const Trial& current,
+                                    double last_residual, double relative_tolerance,
+                                    NewtonResult& result);
 
 }  // namespace peristat

@@ -10,9 +10,9 @@ namespace peristat {
 namespace {
 
 /// Derivative of the total energy along the direction [J].
-double slope_along(std::span<const double> direction, const Trial& trial,
+double slope_along(const Sums& sums, std::span<const double> direction, const Trial& trial,
                    std::span<const double> external_force) {
-  return dot(direction, trial.gradient) - dot(direction, external_force);
+  return sums.dot(direction, trial.gradient) - sums.dot(direction, external_force);
 }
 
 /// Of forces that follow the deformation, which need not have a potential: by the trapezoidal rule,
@@ -53,13 +53,14 @@ LineSearchResult line_search(const EquilibriumProblem& problem,
   if (!balances.potential || balances.linear) {
     return take_whole_step(problem, external_force, from, direction, trial, damage);
   }
-  const double slope = slope_along(direction, from, external_force);
+  const Sums sums = problem.sums();
+  const double slope = slope_along(sums, direction, from, external_force);
   LineSearchResult result;
   if (!std::isfinite(slope)) result.outcome = Outcome::degenerate;
   if (slope > 0.0) result.outcome = Outcome::no_descent;
   if (result.outcome != Outcome::converged) return result;
 
-  const double work = dot(external_force, from.displacement);
+  const double work = sums.dot(external_force, from.displacement);
   const double round_off = 64.0 * std::numeric_limits<double>::epsilon() *
                                std::max(std::abs(from.stored_energy), std::abs(work)) +
                            from.energy_round_off;
@@ -77,7 +78,8 @@ LineSearchResult line_search(const EquilibriumProblem& problem,
     result.step_length = length;
     const double change = trial.total_energy - from.total_energy - follower_work(from, trial);
     if (change <= options.sufficient_decrease * length * slope) return result;
-    const bool flatter = std::abs(slope_along(direction, trial, external_force)) <= std::abs(slope);
+    const bool flatter =
+        std::abs(slope_along(sums, direction, trial, external_force)) <= std::abs(slope);
     if (std::abs(change) <= round_off && flatter) return result;
     ++result.rejected;
   }

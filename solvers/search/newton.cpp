@@ -190,7 +190,7 @@ class NewtonSearch {
   }
 
   [[nodiscard]] bool has_converged() {
-    return note_convergence(problem_.free, tangent_, current_, last_residual_,
+    return note_convergence(problem_, tangent_, current_, last_residual_,
                             options_.relative_tolerance, result_);
   }
 

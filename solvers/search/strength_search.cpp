@@ -226,7 +226,7 @@ class StrengthSearch {
   }
 
   [[nodiscard]] bool is_balanced() {
-    return note_convergence(problem_.free, tangent_.tangent(), current_, last_residual_,
+    return note_convergence(problem_, tangent_.tangent(), current_, last_residual_,
                             options_.relative_tolerance, result_.newton);
   }
 

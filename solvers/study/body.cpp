@@ -15,6 +15,7 @@
 #include "assembly/terms/springs/foundation_term.hpp"
 #include "assembly/terms/springs/inertia_term.hpp"
 #include "solvers/linear/available_memory.hpp"
+#include "solvers/ranks/part_bonds.hpp"
 #include "solvers/study/bond_potential.hpp"
 #include "solvers/study/collocation_model.hpp"
 #include "solvers/study/cpd_model.hpp"
@@ -39,21 +40,6 @@ constexpr double states_with_environment = 4.0;
 
 /// Share of the bonds above which those on the horizon are a shell of a lattice.
 constexpr double least_shell = 0.01;
-
-BondSetting setting_of(const BodySpecification& of, const Points& points) {
-  BondSetting setting;
-  setting.dimension = points.dimension;
-  setting.plane = of.material.plane;
-  setting.volume_correction = of.volume_correction;
-  setting.shape = of.horizon_shape;
-  setting.influence = influence_named(of.material.influence);
-  setting.horizon = of.horizon;
-  setting.cross_section = points.dimension == 3     ? 1.0
-                          : of.cross_section == 0.0 ? points.cross_section()
-                                                    : of.cross_section;
-  if (points.lattice) setting.lattice = {points.spacing, points.angle, of.surface_correction};
-  return setting;
-}
 
 /// Refuses places whose digits don't tell neighbours from points beyond the horizon.
 void require_resolved(const Points& points, double horizon) {
@@ -207,6 +193,21 @@ LoadSetting load_setting(const BodySpecification& of, const Points& points) {
 
 }  // namespace
 
+BondSetting bond_setting(const BodySpecification& of, const Points& points) {
+  BondSetting setting;
+  setting.dimension = points.dimension;
+  setting.plane = of.material.plane;
+  setting.volume_correction = of.volume_correction;
+  setting.shape = of.horizon_shape;
+  setting.influence = influence_named(of.material.influence);
+  setting.horizon = of.horizon;
+  setting.cross_section = points.dimension == 3     ? 1.0
+                          : of.cross_section == 0.0 ? points.cross_section()
+                                                    : of.cross_section;
+  if (points.lattice) setting.lattice = {points.spacing, points.angle, of.surface_correction};
+  return setting;
+}
+
 Model make_elastic_bonds(const Body& body, Bonds bonds, const BondSetting& setting) {
   BodySpecification elastic = body.specification;
   const auto spare = [](MaterialSpecification& material) { material.damage = {}; };
@@ -259,7 +260,7 @@ std::unique_ptr<const Body> make_body(Points points, const BodySpecification& of
   const double reach = of.horizon * farthest_of(of.horizon_shape, body.points.dimension) +
                        (is_whole ? 0.0 : body.points.spacing.largest());
   add_images(body.points, of.constraints.symmetries, periods, reach);
-  body.setting = setting_of(of, body.points);
+  body.setting = bond_setting(of, body.points);
   body.specification = with_stretches(of, body.setting, body.points.spacing);
   require_resolved(body.points, body.setting.horizon);
   BodySize expected = size_of(body.points);
@@ -292,6 +293,83 @@ std::unique_ptr<const Body> make_body(Points points, const BodySpecification& of
   const Stopwatch watch(body.seconds_neighbourhood);
   store_interactions(body, threads);
   return owned;
+}
+
+namespace {
+
+/// What the assembler of a part is made for; tables of cases are refused before.
+void refuse_without_ranks(const BodySpecification& of) {
+  const auto refuse = [](const std::string& key) {
+    throw InputError(key, "",
+                     "is not for more than one rank yet: there are elastic bonds of one material, "
+                     "with supports, body forces, total forces and gravity");
+  };
+  const MaterialSpecification& material = of.material;
+  if (material.model != MaterialModel::bond) refuse("material.model");
+  if (material.kinematics != Kinematics::finite) refuse("material.kinematics");
+  if (material.damage.law != DamageLaw::none) refuse("material.damage");
+  if (!of.is_uniform()) refuse(of.regions.empty() ? "material" : "regions");
+  if (of.force_operator != ForceOperator::bonds) refuse("force_operator");
+  if (of.horizon_shape != HorizonShape::ball) refuse("horizon_shape");
+  if (!of.cracks.empty()) refuse("cracks");
+  if (!of.foundations.empty()) refuse("foundations");
+  if (!of.controls.empty()) refuse("controls");
+  if (of.end_time || of.has_inertia) refuse("end_time");
+  if (of.eigenstrains.are_there()) refuse("eigenstrains");
+  const ConstraintSpecification& constraints = of.constraints;
+  const bool is_constrained = !constraints.rigid_sets.empty() || !constraints.rollers.empty() ||
+                              !constraints.linear.empty() || !constraints.symmetries.empty() ||
+                              !constraints.periods.empty();
+  if (is_constrained) refuse("constraints");
+  using Kind = LoadSpecification::Kind;
+  for (std::size_t k = 0; k < of.loads.size(); ++k) {
+    const Kind kind = of.loads[k].kind;
+    if (kind != Kind::body_force && kind != Kind::total_force && kind != Kind::gravity) {
+      refuse("loads[" + std::to_string(k) + "]." + load_key(kind));
+    }
+  }
+}
+
+/// @throws MemoryError for a part that can't fit
+void require_memory_for(const Points& points, const BodySpecification& of) {
+  if (points.count() == 0) return;  // which no estimate is made for
+  BodySize expected = size_of(points);
+  expected.horizon_ratio = reach_ratio(of.volume_correction, of.horizon_shape, points.dimension,
+                                       of.horizon / points.spacing);
+  expected.bonds = expected_bonds(expected.points, points.dimension, expected.horizon_ratio);
+  require_memory(estimate_memory(expected).least_bytes(),
+                 fmt::format("a part with {} points", points.count()));
+}
+
+}  // namespace
+
+std::unique_ptr<const Body> make_body(Part part, const BodySpecification& of,
+                                      const Communicator& ranks, int threads) {
+  threads = usable_threads(threads);
+  refuse_without_ranks(of);
+  check_specification(of, part.points);
+  auto made = std::make_unique<Body>();
+  Body& body = *made;
+  body.specification = of;
+  body.setting = bond_setting(of, part.points);
+  require_resolved(part.points, body.setting.horizon);
+  require_memory_for(part.points, of);
+  body.part = std::make_unique<const PartOfBody>(part, ranks);
+  {
+    const Stopwatch watch(body.seconds_neighbourhood);
+    Bonds bonds = make_bonds(part, of.surface_correction, body.setting, threads);
+    body.points = std::move(part.points);
+    body.points.owned = part.owned;
+    refuse_coincident_points(body.points, bonds);
+    const PointMaterials materials(of, body.points);
+    CutBonds none;
+    body.model = make_bond_model(body, materials, std::move(bonds), none);
+  }
+  LoadSetting loads = load_setting(of, body.points);
+  loads.ranks = &ranks;
+  body.conditions = std::make_unique<Conditions>(body.points, of.supports, of.loads,
+                                                 programme_of(of), of.controls, loads);
+  return made;
 }
 
 void add_terms_of_conditions(Model& model, const Body& body) {

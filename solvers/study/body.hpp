@@ -7,6 +7,7 @@
 
 #include "assembly/terms/model.hpp"
 #include "solvers/linear/memory_estimate.hpp"
+#include "solvers/ranks/part_of_body.hpp"
 #include "solvers/study/body_specification.hpp"
 #include "solvers/study/bond_materials.hpp"
 #include "solvers/study/collocation_model.hpp"
@@ -40,6 +41,7 @@ struct Body {
   std::vector<BondEnds> cut_bonds;   ///< by pre-cracks
   CollocationSummary collocation;    ///< of model lps
   double seconds_neighbourhood = 0.0;
+  std::unique_ptr<const PartOfBody> part;  ///< null: the body is whole
 
   [[nodiscard]] double horizon_ratio() const { return setting.horizon / points.spacing; }
 };
@@ -52,6 +54,18 @@ struct Body {
 /// @throws MemoryError if the estimate exceeds the memory available
 [[nodiscard]] std::unique_ptr<const Body> make_body(Points points, const BodySpecification& of,
                                                     int threads = 0);
+
+/// The setting of a body's bonds, as far as it does not depend on which points are here.
+[[nodiscard]] BondSetting bond_setting(const BodySpecification& of, const Points& points);
+
+/// This rank's part of a body: elastic bonds of one material, under supports and loads of points. A
+/// call that all ranks make.
+/// @param part with ghosts as far as reach_of_bonds, and with all sets that are named
+/// @throws InputError, MemoryError as the other does, perhaps on one rank alone; and for what has
+/// no
+///         ranks yet
+[[nodiscard]] std::unique_ptr<const Body> make_body(Part part, const BodySpecification& of,
+                                                    const Communicator& ranks, int threads);
 
 /// Elastic bonds between the points of a body of model "bond" with another horizon.
 /// @throws InputError as make_body does

@@ -10,8 +10,11 @@
 #include "assembly/operators/rows_of_energy.hpp"
 #include "assembly/operators/tangent.hpp"
 #include "solvers/linear/available_memory.hpp"
+#include "solvers/linear/block_jacobi.hpp"
+#include "solvers/linear/iterative_solver.hpp"
 #include "solvers/linear/no_solver.hpp"
 #include "solvers/linear/sines_estimate.hpp"
+#include "solvers/ranks/part_tangent.hpp"
 #include "solvers/search/updated_tangent.hpp"
 #include "solvers/study/found_loads.hpp"
 #include "src/core/input_error.hpp"
@@ -92,6 +95,38 @@ LinearSystems systems_of_motion(const Body& body) {
   systems.is_stored = !has_products || !body.conditions->constraints().none();
   systems.bytes = estimate.body_bytes + (systems.is_stored ? estimate.tangent_bytes : 0.0) +
                   8.0 * vectors_of_motion * estimate.size.points * estimate.size.dimension;
+  return systems;
+}
+
+/// Conjugate gradients with blocks of the points, without a stored tangent.
+LinearSystems systems_of_part(const StudyOptions& options, const Body& body) {
+  constexpr int most_iterations = 20'000;
+  const auto refuse = [](const std::string& key, const std::string& what) {
+    throw InputError(key, "", "is not for more than one rank yet; take " + what);
+  };
+  const LinearMethod method = options.linear.method;
+  if (method != LinearMethod::automatic && method != LinearMethod::conjugate_gradients) {
+    refuse("linear.method", "\"pcg\"");
+  }
+  using Kind = PreconditionerKind;
+  const Kind kind = options.linear.preconditioner;
+  if (kind != Kind::automatic && kind != Kind::jacobi && kind != Kind::block_jacobi) {
+    refuse("linear.preconditioner", "\"block_jacobi\" or \"jacobi\"");
+  }
+  if (options.tangent == TangentStorage::stored) refuse("tangent", "\"matrix_free\"");
+  const auto blocks =
+      kind == Kind::jacobi ? BlockJacobi::Blocks::entries : BlockJacobi::Blocks::points;
+  LinearSystems systems;
+  systems.chosen.solver = std::make_unique<IterativeSolver>(
+      KrylovMethod::conjugate_gradients, std::make_unique<BlockJacobi>(blocks), most_iterations,
+      KrylovOptions{}.restart, &body.part->ranks());
+  systems.chosen.is_direct = false;
+  systems.chosen.reason = "what ranks solve with";
+  systems.is_stored = false;
+  const LinearSolverOptions linear{LinearMethod::conjugate_gradients, Kind::block_jacobi};
+  // A rank may have no point, which no estimate is made for.
+  const bool is_empty = body.points.count() == 0;
+  systems.bytes = is_empty ? 0.0 : estimate_memory(body).bytes(false, false, linear);
   return systems;
 }
 
@@ -223,6 +258,7 @@ LinearSystems choose_linear_systems(const StudyOptions& options, const Body& bod
                                     SolverLadder::Reporter tell) {
   const bool is_explicit = options.loading.dynamics.scheme == MotionScheme::verlet;
   if (options.loading.mode == Mode::dynamics && is_explicit) return systems_of_motion(body);
+  if (body.part) return systems_of_part(options, body);
   refuse_to_solve_for(body, options.loading);
   StudyOptions chosen = options;
   if (!body.model.has_rows()) {
@@ -255,6 +291,7 @@ LinearSystems choose_linear_systems(const StudyOptions& options, const Body& bod
 
 std::unique_ptr<TangentOperator> LinearSystems::make_tangent(Assembler& assembler,
                                                              const Constraints& constraints) const {
+  if (assembler.sharing()) return std::make_unique<PartTangent>(assembler);
   const bool is_convolved = !assembler.has_rows();
   if (!is_convolved && !assembler.has_potential()) return std::make_unique<RowsOfEnergy>(assembler);
   if (!constraints.none()) return std::make_unique<ConstrainedTangent>(assembler, constraints);

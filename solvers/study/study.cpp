@@ -6,8 +6,10 @@
 #include <fmt/format.h>
 
 #include "solvers/linear/available_memory.hpp"
+#include "solvers/ranks/part_tangent.hpp"
 #include "solvers/study/found_loads.hpp"
 #include "solvers/study/motion.hpp"
+#include "solvers/study/part_support.hpp"
 #include "solvers/study/rest_stability.hpp"
 #include "src/core/number_text.hpp"
 
@@ -73,10 +75,25 @@ void refuse_modes_of_failing_points(const Body& body, const StudyOptions& option
                    "\"fft\" take newton, relaxation or dynamics");
 }
 
+/// Degrees of freedom that have none here.
+std::vector<char> without_equation(const Body& body) {
+  const std::vector<char>& prescribed = body.conditions->prescribed();
+  if (!body.part) return prescribed;
+  return without_ghosts(*body.part, prescribed, body.points.dimension);
+}
+
+/// Of the modes there is one that sums over ranks.
+void refuse_modes_without_ranks(const StudyOptions& options) {
+  if (options.loading.mode == Mode::newton) return;
+  throw InputError("loading.mode", std::string(options.loading.mode.name),
+                   "is not for more than one rank yet; take newton");
+}
+
 }  // namespace
 
 void check_study(const Body& body, const StudyOptions& options) {
   check_options(options);
+  if (body.part) refuse_modes_without_ranks(options);
   const bool moves = options.loading.mode == Mode::dynamics;
   if (moves != body.conditions->programme().is_of_time()) {
     throw InputError(
@@ -92,15 +109,17 @@ void check_study(const Body& body, const StudyOptions& options) {
                      is_implicit ? "must be set: implicit steps need a body with inertia"
                                  : "is for bodies that implicit steps follow");
   }
+  if (body.part) return refuse_unheld_part(body);
   if (!moves) refuse_unheld_bodies(body);
   refuse_unstable_rest(body, options);
 }
 
 SolvedModel::SolvedModel(const Points& points, const Model& model, const Constraints& constraints,
-                         const FreeDofs& free, LinearSystems systems, int threads)
+                         const FreeDofs& free, LinearSystems systems, int threads,
+                         const Sharing* sharing)
     : systems_(std::move(systems)),
       free_(free),
-      assembler_(points, model, threads),
+      assembler_(points, model, threads, sharing),
       tangent_(systems_.make_tangent(assembler_, constraints)) {}
 
 LinearOutcome SolvedModel::analyze() { return solver().analyze(tangent_->pattern, free_); }
@@ -108,7 +127,7 @@ LinearOutcome SolvedModel::analyze() { return solver().analyze(tangent_->pattern
 Study::Study(const Body& body, StudyOptions options, SolverLadder::Reporter tell)
     : body_(body),
       options_(std::move(options)),
-      free_(body.conditions->prescribed(), body.points.dimension) {
+      free_(without_equation(body), body.points.dimension) {
   check_study(body_, options_);
   options_.threads = usable_threads(options_.threads);
   if (options_.loading.mode == Mode::dynamics) motion_ = make_motion_setting(body);
@@ -116,7 +135,7 @@ Study::Study(const Body& body, StudyOptions options, SolverLadder::Reporter tell
   require_memory(systems.bytes, fmt::format("the body with {} points", body.points.count()));
   equations_ =
       std::make_unique<SolvedModel>(body.points, body.model, body.conditions->constraints(), free_,
-                                    std::move(systems), options_.threads);
+                                    std::move(systems), options_.threads, body.part.get());
 }
 
 LinearOutcome Study::analyze() {

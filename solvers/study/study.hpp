@@ -16,8 +16,10 @@ namespace peristat {
 class SolvedModel {
  public:
   /// All references must outlive it.
+  /// @param sharing null: the body is whole
   SolvedModel(const Points& points, const Model& model, const Constraints& constraints,
-              const FreeDofs& free, LinearSystems systems, int threads);
+              const FreeDofs& free, LinearSystems systems, int threads,
+              const Sharing* sharing = nullptr);
 
   /// Prepares the solver.
   [[nodiscard]] LinearOutcome analyze();

@@ -216,9 +216,13 @@ Conditions::Loaded Conditions::loaded(const LoadSpecification& load, const LoadS
   const bool is_everywhere = load.kind == Kind::gravity && load.set.empty();
   on.points =
       is_everywhere ? points_of_body(points_) : points_of_set(points_, load.set, table + ".set");
+  if (points_.owned) {  // a ghost's force is its owner's
+    std::erase_if(on.points, [&](Index point) { return point >= *points_.owned; });
+  }
   for (const Index point : on.points) on.amount.push_back(points_.volume[point]);
   if (load.kind == Kind::total_force) {
     on.spread_over = std::accumulate(on.amount.begin(), on.amount.end(), 0.0);
+    if (setting.ranks) on.spread_over = setting.ranks->sum(on.spread_over);
   }
   if (load.kind == Kind::gravity) {
     if (setting.density.empty()) {

@@ -17,6 +17,7 @@
 #include "src/conditions/specification.hpp"
 #include "src/conditions/surface_tractions.hpp"
 #include "src/connectivity/holding.hpp"
+#include "src/core/communicator.hpp"
 #include "src/core/expression.hpp"
 #include "src/geometry/points.hpp"
 
@@ -29,6 +30,7 @@ struct LoadSetting {
   std::vector<double> thermal_expansion = {};  ///< [1/K], for the temperature
   /// Where tractions act on the surface; nothing: they are forces on points.
   std::optional<std::vector<SurfaceSite>> surface = std::nullopt;
+  const Communicator* ranks = nullptr;  ///< that have parts of the body; null: it is whole
 };
 
 /// What strains the points without forces.

@@ -16,7 +16,9 @@ const std::vector<Index>& points_of_set(const Points& points, const std::string&
     for (const auto& [name, members] : points.sets) known += (known.empty() ? "" : ", ") + name;
     throw InputError(key, "\"" + set + "\"", "no set of this name; the sets are " + known);
   }
-  if (found->second.empty()) throw InputError(key, "\"" + set + "\"", "the set selects no point");
+  if (found->second.empty() && !points.owned) {
+    throw InputError(key, "\"" + set + "\"", "the set selects no point");
+  }
   return found->second;
 }
 

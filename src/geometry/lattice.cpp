@@ -5,7 +5,6 @@
 #include <cstddef>
 #include <functional>
 #include <limits>
-#include <random>
 
 #include "src/core/input_error.hpp"
 #include "src/core/number_text.hpp"
@@ -13,6 +12,7 @@
 #include "src/geometry/lattice_sites.hpp"
 #include "src/geometry/numbering.hpp"
 #include "src/geometry/perturbed_cells.hpp"
+#include "src/geometry/perturbed_points.hpp"
 
 namespace peristat {
 namespace {
@@ -66,25 +66,6 @@ void require_numbers(const Lattice& lattice) {
   throw InputError("spacing", number_text(lattice.spacing),
                    "up to " + number_text(points) + " points, but there must be fewer than " +
                        number_text(most_points));
-}
-
-/// Shifts the points marked as the body's, in their order. The generator's integers are mapped
-/// here, because the standard leaves the mapping of its distributions to each library.
-void perturb(const Lattice& lattice, const std::vector<bool>& is_body, Points& points) {
-  if (lattice.perturbation == 0.0) return;
-  std::mt19937_64 generator(lattice.seed);
-  const LatticeFrame frame = frame_of(lattice);
-  for (Index point = 0; point < points.count(); ++point) {
-    if (!is_body[point]) continue;
-    Coordinates shift{};
-    for (int c = 0; c < lattice.dimension; ++c) {
-      const double from_zero_to_one = double(generator() >> 11) * 0x1p-53;
-      shift[c] = lattice.perturbation * lattice.spacing.along(c) * (2.0 * from_zero_to_one - 1.0);
-    }
-    shift = frame.turned(shift);
-    for (int c = 0; c < lattice.dimension; ++c)
-      points.reference[std::size_t(point) * lattice.dimension + c] += shift[c];
-  }
 }
 
 /// What has a meaning on a lattice alone.
@@ -217,7 +198,7 @@ Points make_points(const Lattice& lattice) {
   }
   std::vector<bool> is_body(order.size());
   for (std::size_t k = 0; k < order.size(); ++k) is_body[k] = std::size_t(order[k]) < body.size();
-  perturb(lattice, is_body, points);
+  perturb(lattice, is_body, 0, points);
   return points;
 }
 

@@ -50,6 +50,13 @@ class LatticeFrame {
     return range_of(box, beside).count;
   }
 
+  /// First place along each axis, and their number; double, so that nothing overflows.
+  struct Range {
+    std::array<double, 3> first{}, count{1.0, 1.0, 1.0};
+  };
+  /// Of such boxes of cells; infinite numbers if the box is not bounded.
+  [[nodiscard]] Range range_of(const Box& box, double beside) const;
+
   /// Upper bound of the cells that for_each_cell visits; infinite if the box is not bounded.
   [[nodiscard]] double most_places(const Box& box, double beside) const;
 
@@ -57,11 +64,6 @@ class LatticeFrame {
   [[nodiscard]] double half_diagonal() const;
 
  private:
-  /// First place along each axis, and their number; double, so that nothing overflows.
-  struct Range {
-    std::array<double, 3> first{}, count{1.0, 1.0, 1.0};
-  };
-  [[nodiscard]] Range range_of(const Box& box, double beside) const;
   /// The part of a row of places along the second axis that may lie in the box.
   [[nodiscard]] std::array<double, 2> part_in(const Box& box, double beside, double row,
                                               const Range& range) const;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <map>
 #include <memory>
@@ -210,9 +211,31 @@ void keep_where(const Lattice& lattice, std::size_t number, std::vector<Site>& s
   } catch (const InputError& error) {
     throw InputError(key, error.value(), error.allowed());
   }
-  if (sites.empty())
-    throw InputError(key, '"' + layer.where + '"', "selects no point of the layer");
 }
+
+/// Numbers the sites of layers, those that several share once.
+class SharedSites {
+ public:
+  explicit SharedSites(bool is_cut) : is_cut_(is_cut) {}
+
+  void add(const Layer& layer, const std::vector<Site>& sites) {
+    std::vector<Index>& members = found.of_layer.emplace_back();
+    const int side = is_cut_ ? 2 * layer.side.axis + (layer.side.sign > 0 ? 1 : 0) : 0;
+    for (const Site& site : sites) {
+      const auto [entry, is_new] = known_.try_emplace({side, site.cell}, Index(found.sites.size()));
+      if (is_new) found.sites.push_back(site);
+      members.push_back(entry->second);
+    }
+    std::sort(members.begin(), members.end());
+  }
+
+  LayerSites found;
+
+ private:
+  bool is_cut_;
+  // With whole cells, layers of different sides may share a site; cut cells are of one side.
+  std::map<std::pair<int, Cell>, Index> known_;
+};
 
 }  // namespace
 
@@ -270,9 +293,7 @@ LayerSites layer_sites(const Lattice& lattice, std::vector<Site>& body) {
   std::optional<Faces> faces;
   if (has_faces(lattice, frame)) faces.emplace(lattice, frame, body);
   if (faces) faces->part_from(body);
-  LayerSites result;
-  // With whole cells, layers of different sides may share a site; cut cells are of one side.
-  std::map<std::pair<int, Cell>, Index> known;
+  SharedSites shared(is_cut(lattice));
   for (std::size_t k = 0; k < lattice.layers.size(); ++k) {
     const Layer& layer = lattice.layers[k];
     std::vector<Site> sites =
@@ -282,16 +303,71 @@ LayerSites layer_sites(const Lattice& lattice, std::vector<Site>& body) {
                        "no lattice point stands in the layer");
     }
     keep_where(lattice, k, sites);
-    std::vector<Index>& members = result.of_layer.emplace_back();
-    const int side = is_cut(lattice) ? 2 * layer.side.axis + (layer.side.sign > 0 ? 1 : 0) : 0;
-    for (const Site& site : sites) {
-      const auto [entry, is_new] = known.try_emplace({side, site.cell}, Index(result.sites.size()));
-      if (is_new) result.sites.push_back(site);
-      members.push_back(entry->second);
-    }
-    std::sort(members.begin(), members.end());
+    if (sites.empty()) refuse_empty_layer(lattice, k);
+    shared.add(layer, sites);
   }
-  return result;
+  return std::move(shared.found);
+}
+
+LatticeRows rows_of_body(const Lattice& lattice, int axis) {
+  const LatticeFrame::Range range =
+      frame_of(lattice).range_of(Solid(lattice.dimension, lattice.shapes).bounds(), grid_tolerance);
+  const auto first = std::int64_t(range.first[axis]);
+  return {axis, first, first + std::int64_t(range.count[axis])};
+}
+
+std::vector<Site> body_sites(const Lattice& lattice, const LatticeRows& rows) {
+  const LatticeFrame frame = frame_of(lattice);
+  const Solid solid(lattice.dimension, lattice.shapes);
+  Cell first{}, last{};
+  for (int axis = 0; axis < 3; ++axis) {
+    const LatticeRows all = rows_of_body(lattice, axis);
+    first[axis] = axis == rows.axis ? std::max(all.first, rows.first) : all.first;
+    last[axis] = axis == rows.axis ? std::min(all.last, rows.last) : all.last;
+  }
+  std::vector<Site> sites;
+  Cell cell{};
+  for (cell[0] = first[0]; cell[0] < last[0]; ++cell[0]) {
+    for (cell[1] = first[1]; cell[1] < last[1]; ++cell[1]) {
+      for (cell[2] = first[2]; cell[2] < last[2]; ++cell[2]) {
+        const Coordinates place = frame.position(cell);
+        if (solid.contains(place)) sites.push_back({cell, place, 1.0, place});
+      }
+    }
+  }
+  return sites;
+}
+
+LayerSites layer_sites(const Lattice& lattice, const LatticeRows& rows,
+                       const std::vector<Site>& body, const Cell& low, const Cell& high) {
+  const LatticeFrame frame = frame_of(lattice);
+  SharedSites shared(false);
+  for (std::size_t k = 0; k < lattice.layers.size(); ++k) {
+    const Layer& layer = lattice.layers[k];
+    const auto [axis, sign] = layer.side;
+    const std::int64_t outermost = sign > 0 ? high[axis] : low[axis];
+    // A plane across the rows' axis is another rank's, perhaps; it is found again.
+    std::vector<Site> plane;
+    if (axis == rows.axis) {
+      plane = body_sites(lattice, {axis, outermost, outermost + 1});
+    } else {
+      std::copy_if(body.begin(), body.end(), std::back_inserter(plane),
+                   [&, on = axis](const Site& site) { return site.cell[on] == outermost; });
+    }
+    std::vector<Site> sites;
+    if (!plane.empty()) sites = copies_of_outermost_plane(frame, plane, layer);
+    std::erase_if(sites, [&](const Site& site) {
+      return site.cell[rows.axis] < rows.first || site.cell[rows.axis] >= rows.last;
+    });
+    keep_where(lattice, k, sites);
+    shared.add(layer, sites);
+  }
+  return std::move(shared.found);
+}
+
+void refuse_empty_layer(const Lattice& lattice, std::size_t number) {
+  throw InputError(key_of(number, "where"), '"' + lattice.layers[number].where + '"',
+                   "selects no point of the layer");
 }
 
 }  // namespace peristat

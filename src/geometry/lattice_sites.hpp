@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include "src/geometry/lattice.hpp"
@@ -33,5 +35,27 @@ struct LayerSites {
 /// centroid.
 /// @throws InputError ("layers[0].where", "layers[0].side", ...)
 [[nodiscard]] LayerSites layer_sites(const Lattice& lattice, std::vector<Site>& body);
+
+/// Rows of places across an axis of a lattice that is not turned.
+struct LatticeRows {
+  int axis = 0;
+  std::int64_t first = 0, last = 0;  ///< of cells along the axis, last not included
+};
+
+/// Rows in which a body of whole cells may have places.
+[[nodiscard]] LatticeRows rows_of_body(const Lattice& lattice, int axis);
+
+/// The sites of whole cells that body_sites has in these rows, in the same order.
+[[nodiscard]] std::vector<Site> body_sites(const Lattice& lattice, const LatticeRows& rows);
+
+/// The sites that layer_sites has in these rows, of whole cells; layers may have none there.
+/// @param body       the body's sites in these rows
+/// @param low, high  least and largest cells along each axis of all of the body's sites
+[[nodiscard]] LayerSites layer_sites(const Lattice& lattice, const LatticeRows& rows,
+                                     const std::vector<Site>& body, const Cell& low,
+                                     const Cell& high);
+
+/// @throws InputError for a layer without a point
+[[noreturn]] void refuse_empty_layer(const Lattice& lattice, std::size_t number);
 
 }  // namespace peristat

@@ -9,6 +9,28 @@
 
 namespace peristat {
 
+LocalityCells::LocalityCells(int dimension, const Spacing& spacing, const Coordinates& low,
+                             const Coordinates& high)
+    : dimension_(dimension), spacing_(spacing), low_(low) {
+  std::stable_sort(directions_.begin(), directions_.begin() + dimension,
+                   [&](int a, int b) { return along(high[a], a) > along(high[b], b); });
+}
+
+/// Whole numbers, so that round-off does not decide between equal lengths.
+double LocalityCells::along(double coordinate, int direction) const {
+  // Cells are centred on the lattice's points, which would otherwise lie on cell boundaries.
+  return std::floor((coordinate - low_[direction]) / spacing_.along(direction) + 0.5);
+}
+
+LocalityCells::Key LocalityCells::of(const double* position) const {
+  Key key{};
+  for (int c = 0; c < dimension_; ++c) {
+    const int direction = directions_[c];
+    key[c] = along(position[direction], direction);
+  }
+  return key;
+}
+
 std::vector<Index> locality_order(int dimension, const Spacing& spacing,
                                   const std::vector<double>& reference) {
   const std::size_t count = reference.size() / dimension;
@@ -18,35 +40,23 @@ std::vector<Index> locality_order(int dimension, const Spacing& spacing,
     low[k % dimension] = std::min(low[k % dimension], reference[k]);
     high[k % dimension] = std::max(high[k % dimension], reference[k]);
   }
-
-  // Numbers of cells per direction; whole, so that round-off does not decide between equal lengths.
-  const auto cell = [&](double coordinate, int direction) {
-    // Cells are centred on the lattice's points, which would otherwise lie on cell boundaries.
-    return std::floor((coordinate - low[direction]) / spacing.along(direction) + 0.5);
-  };
-  std::array<int, 3> directions{0, 1, 2};
-  std::stable_sort(directions.begin(), directions.begin() + dimension,
-                   [&](int a, int b) { return cell(high[a], a) > cell(high[b], b); });
-
-  struct Key {
-    std::array<double, 3> cell{};  // slowest direction first; double, so that nothing overflows
+  const LocalityCells cells(dimension, spacing, low, high);
+  struct Place {
+    LocalityCells::Key cell{};
     Index point = 0;
-    bool operator<(const Key& other) const {
+    bool operator<(const Place& other) const {
       return cell != other.cell ? cell < other.cell : point < other.point;
     }
   };
-  std::vector<Key> keys(count);
+  std::vector<Place> places(count);
   for (std::size_t point = 0; point < count; ++point) {
-    keys[point].point = static_cast<Index>(point);
-    for (int c = 0; c < dimension; ++c) {
-      const int direction = directions[c];
-      keys[point].cell[c] = cell(reference[point * dimension + direction], direction);
-    }
+    places[point] = {cells.of(&reference[point * dimension]), static_cast<Index>(point)};
   }
-  std::sort(keys.begin(), keys.end());
+  std::sort(places.begin(), places.end());
 
   std::vector<Index> order(count);
-  std::transform(keys.begin(), keys.end(), order.begin(), [](const Key& key) { return key.point; });
+  std::transform(places.begin(), places.end(), order.begin(),
+                 [](const Place& place) { return place.point; });
   return order;
 }
 

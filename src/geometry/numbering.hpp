@@ -1,10 +1,34 @@
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "src/geometry/points.hpp"
 
 namespace peristat {
+
+/// Cells of one spacing, told by their places along the body's directions: the longest one slowest,
+/// the shortest fastest.
+class LocalityCells {
+ public:
+  using Key = std::array<double, 3>;  // double, so that nothing overflows
+
+  /// @param low, high the least and the largest of all points' coordinates [m]
+  LocalityCells(int dimension, const Spacing& spacing, const Coordinates& low,
+                const Coordinates& high);
+
+  /// Slowest direction first.
+  [[nodiscard]] Key of(const double* position) const;
+  [[nodiscard]] int slowest() const { return directions_[0]; }
+
+ private:
+  [[nodiscard]] double along(double coordinate, int direction) const;
+
+  int dimension_;
+  Spacing spacing_;
+  Coordinates low_;
+  std::array<int, 3> directions_{0, 1, 2};
+};
 
 /// Order of the points in which neighbours have close numbers: cells of one spacing, sorted with
 /// the longest direction of the body slowest and the shortest fastest. This keeps the band of the

@@ -48,6 +48,10 @@ struct Points {
 
   Images images{};  ///< of the last points; sets name none of them
 
+  /// Of a part of a body that ranks share: how many of its points, the first ones, this rank owns.
+  /// The others are ghosts, and sets may have no point here. Nothing: the body is whole.
+  std::optional<Index> owned{};
+
   [[nodiscard]] Index count() const { return static_cast<Index>(volume.size()); }
   /// Points that stand for themselves: the first ones.
   [[nodiscard]] Index own() const { return count() - static_cast<Index>(images.source.size()); }

@@ -165,19 +165,6 @@ void weigh_volumes(Bonds& bonds, const Points& points, const Kernel& kernel) {
   });
 }
 
-/// Radius that the neighbour search needs [m].
-double search_radius(const Points& points, const Kernel& kernel) {
-  if (kernel.has_exact_shares()) {
-    return points.polygons.empty() ? kernel.search_radius(points.spacing)
-                                   : PolygonKernel(points, kernel).search_radius();
-  }
-  double largest = 0.0;
-  for (Index i = 0; i < points.count(); ++i) {
-    largest = std::max(largest, cell_size(points, i, kernel.cross_section));
-  }
-  return kernel.search_radius(largest);
-}
-
 /// A sum over the bonds of every point, as far as it was made: what an image has is its source's,
 /// and the source's sum is the image's, too.
 template <class Sum, class Add>
@@ -258,6 +245,18 @@ void apply_energy_method(Bonds& bonds, const Points& points, const BondSetting& 
 }
 
 }  // namespace
+
+double search_radius(const Points& points, const Kernel& kernel) {
+  if (kernel.has_exact_shares()) {
+    return points.polygons.empty() ? kernel.search_radius(points.spacing)
+                                   : PolygonKernel(points, kernel).search_radius();
+  }
+  double largest = 0.0;
+  for (Index i = 0; i < points.count(); ++i) {
+    largest = std::max(largest, cell_size(points, i, kernel.cross_section));
+  }
+  return kernel.search_radius(largest);
+}
 
 double norm_between(const Points& points, Index i, Index j, HorizonShape shape) {
   return norm_of(shape, arm_along_lattice(points, i, j));

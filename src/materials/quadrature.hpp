@@ -12,6 +12,9 @@ namespace peristat {
 /// Norm of the vector between two points along the axes of their lattice; of a cloud x, y, z [m].
 [[nodiscard]] double norm_between(const Points& points, Index i, Index j, HorizonShape shape);
 
+/// Longest distance at which points may have a bond [m].
+[[nodiscard]] double search_radius(const Points& points, const Kernel& kernel);
+
 /// Takes out bonds that store no energy.
 void drop_weightless(Bonds& bonds);
 

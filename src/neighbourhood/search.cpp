@@ -186,6 +186,30 @@ Bonds search(const Points& points, double radius, int threads) {
   return bonds;
 }
 
+template <int D>
+std::vector<std::int32_t> count(const Points& points, Index first, double radius, int threads) {
+  const CellList<D> cells(points, radius);
+  const double longest = inclusive_radius(radius);
+  const double squared_longest = longest * longest;
+  std::vector<std::int32_t> neighbours(static_cast<std::size_t>(first), 0);
+#pragma omp parallel for num_threads(threads) schedule(dynamic, 1024)
+  for (Index i = 0; i < first; ++i) {
+    std::array<double, D> at;
+    for (int c = 0; c < D; ++c) at[c] = points.reference[std::size_t(i) * D + c];
+    cells.for_each_run(at, longest, [&](Index begin, Index end) {
+      for (Index place = begin; place < end; ++place) {
+        double squared = 0.0;
+        for (int c = 0; c < D; ++c) {
+          const double step = cells.position[place][c] - at[c];
+          squared += step * step;
+        }
+        neighbours[std::size_t(i)] += int((squared <= squared_longest) & (cells.point[place] != i));
+      }
+    });
+  }
+  return neighbours;
+}
+
 }  // namespace
 
 Bonds search_bonds(const Points& points, double radius, int threads) {
@@ -196,6 +220,18 @@ Bonds search_bonds(const Points& points, double radius, int threads) {
       return search<2>(points, radius, threads);
     default:
       return search<3>(points, radius, threads);
+  }
+}
+
+std::vector<std::int32_t> count_neighbours(const Points& points, Index first, double radius,
+                                           int threads) {
+  switch (points.dimension) {
+    case 1:
+      return count<1>(points, first, radius, threads);
+    case 2:
+      return count<2>(points, first, radius, threads);
+    default:
+      return count<3>(points, first, radius, threads);
   }
 }
 

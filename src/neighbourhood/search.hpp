@@ -1,5 +1,8 @@
 #pragma once
 
+#include <cstdint>
+#include <vector>
+
 #include "src/geometry/points.hpp"
 #include "src/neighbourhood/bonds.hpp"
 
@@ -9,5 +12,9 @@ namespace peristat {
 /// in time proportional to their number. Lengths are filled in; weights are left at zero, for
 /// `make_bonds` to set. The result does not depend on the number of threads.
 [[nodiscard]] Bonds search_bonds(const Points& points, double radius, int threads);
+
+/// Neighbours within `radius` of the first points, without finding bonds.
+[[nodiscard]] std::vector<std::int32_t> count_neighbours(const Points& points, Index first,
+                                                         double radius, int threads);
 
 }  // namespace peristat

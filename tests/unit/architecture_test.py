@@ -29,6 +29,7 @@ ROOMS = [
     "assembly/terms",
     "assembly",
     "solvers/linear",
+    "solvers/ranks",
     "solvers/problem",
     "solvers/fracture",
     "solvers/search",

@@ -12,6 +12,7 @@
 
 #include "cases/runner/build/body.hpp"
 #include "cases/runner/build/solver_options.hpp"
+#include "cases/runner/commands/run_facts.hpp"
 #include "cases/runner/process/failure.hpp"
 #include "cases/runner/process/interruption.hpp"
 #include "cases/runner/results/constraint_columns.hpp"
@@ -33,82 +34,6 @@
 namespace peristat {
 namespace {
 
-void leave_note(const std::filesystem::path& directory) {
-  const char* file = std::getenv("PERISTAT_NOTE");
-  if (!file || !*file) return;
-  std::ofstream(file) << std::filesystem::absolute(directory).string() << '\n';
-}
-
-/// The file as every way to it names it, so that a later run knows it again.
-std::filesystem::path identity(const std::filesystem::path& case_file) {
-  std::error_code error;
-  const std::filesystem::path file = std::filesystem::canonical(case_file, error);
-  return error ? std::filesystem::absolute(case_file) : file;
-}
-
-/// Whose reactions are told.
-std::vector<std::string> support_sets(const Case& from) {
-  std::vector<std::string> sets;
-  for (const SupportSpecification& support : from.supports) {
-    const bool holds = std::any_of(support.displacement.begin(), support.displacement.end(),
-                                   [](const auto& component) { return component.has_value(); });
-    const bool known = std::find(sets.begin(), sets.end(), support.set) != sets.end();
-    if (holds && !known) sets.push_back(support.set);
-  }
-  for (const auto& foundation : from.foundations) sets.push_back(foundation.name);
-  const ConstraintSpecification& constraints = from.constraints;
-  for (const auto& set : constraints.rigid_sets) sets.push_back(set.set);
-  for (const auto& roller : constraints.rollers) sets.push_back(roller.name());
-  for (const auto& linear : constraints.linear) sets.push_back(linear.name);
-  for (std::size_t k = 0; k < constraints.symmetries.size(); ++k) {
-    sets.push_back(name_of_plane(constraints.symmetries, k));
-  }
-  for (const auto& period : constraints.periods) {
-    sets.push_back(name_of_period(period));
-  }
-  return sets;
-}
-
-double largest_displacement(const std::vector<double>& displacement, const Points& points) {
-  double largest = 0.0;
-  const std::size_t dimension = std::size_t(points.dimension);
-  for (std::size_t k = 0; k < std::size_t(points.own()) * dimension; k += dimension) {
-    double squared = 0.0;
-    for (std::size_t c = 0; c < dimension; ++c)
-      squared += displacement[k + c] * displacement[k + c];
-    largest = std::max(largest, squared);
-  }
-  return std::sqrt(largest);
-}
-
-/// What the results folder tells of every point: the counts of [CPD] sec. 3.1, its region and
-/// random factors.
-std::vector<PointCounts> constant_fields_of(const Body& body) {
-  std::vector<PointCounts> counts;
-  const auto own = [&](auto values) {
-    values.resize(std::size_t(body.points.own()));
-    return values;
-  };
-  for (const auto& term : body.model.terms()) {
-    for (InteractionCount& kind : term->counts()) {
-      for (std::int32_t& count : kind.per_point) count *= kind.orders;
-      counts.push_back({kind.per_point_name, kind.per_point_meaning, own(kind.per_point)});
-    }
-  }
-  if (!body.region.empty()) {
-    counts.push_back(
-        {"region", "number of the point's [[region]], from 0; -1: in none", own(body.region)});
-  }
-  const auto add_factors = [&](const std::string& of, const std::vector<double>& factors) {
-    if (factors.empty()) return;
-    counts.push_back(
-        {of + "_factor", "random factor of the " + of + " of the point's bonds", own(factors)});
-  };
-  add_factors("stiffness", body.factors.stiffness);
-  add_factors("strength", body.factors.strength);
-  return counts;
-}
-
 std::vector<LineTable> lines_of(const Case& from, const Points& points) {
   std::vector<LineTable> lines;
   for (const ProbeSpecification& probe : from.probes) {
@@ -128,15 +53,6 @@ void count(const Body& body, const FreeDofs& free, const RunOptions& options, Su
   summary.threads = options.threads;
 }
 
-/// Adds what assembly and linear solver have cost.
-void add_costs(SolvedModel& solved, RunCosts& costs) {
-  const LinearStatistics statistics = solved.solver().statistics();
-  costs.factorisations += statistics.factorisations;
-  costs.linear_iterations += statistics.iterations;
-  costs.seconds.linear += statistics.seconds;
-  costs.seconds.assembly += solved.assembler().seconds_spent();
-}
-
 std::unique_ptr<SolvedModel> solved_stand_in(const Case& from, const Study& study,
                                              const Model& stand_in) {
   const Points& points = study.body().points;
@@ -152,54 +68,10 @@ std::unique_ptr<SolvedModel> solved_stand_in(const Case& from, const Study& stud
       study.options().threads);
 }
 
-/// @param load_factor that was reached
-std::string failure_reason(const LoadSteppingResult& result, double load_factor) {
-  if (result.outcome == Outcome::interrupted)
-    return fmt::format("interrupted after load factor {:.6g}", load_factor);
-  std::string reason = explanation(result.outcome);
-  const auto& inertia = result.last_attempt.inertia;
-  if (inertia && (inertia->negative > 0 || inertia->zero > 0)) {
-    reason += fmt::format(" ({} negative and {} zero pivots)", inertia->negative, inertia->zero);
-  }
-  return fmt::format("{} after load factor {:.6g}: {}", name(result.outcome), load_factor, reason);
-}
-
 LoadSteppingResult out_of_memory() {
   LoadSteppingResult result;
   result.outcome = Outcome::out_of_memory;
   return result;
-}
-
-std::string status_of(Outcome outcome) {
-  if (outcome == Outcome::converged) return "completed";
-  if (outcome == Outcome::interrupted) return "interrupted";
-  return outcome == Outcome::inconsistent ? "inconsistent" : "not_converged";
-}
-
-/// Where forces have no potential their sum is an error that can be seen.
-void report_unbalanced_force(const StepRecord& last, Progress& progress) {
-  constexpr double worth_telling = 0.02;  // of the largest reaction
-  double largest = 0.0;
-  for (const auto& [set, force] : last.reactions) {
-    largest = std::max(largest, std::hypot(force[0], force[1], force[2]));
-  }
-  if (last.unbalanced_force <= worth_telling * largest) return;
-  progress.say(fmt::format(
-      "loads and reactions differ by {:.3g} N: horizon and spacing are coarse for this body",
-      last.unbalanced_force));
-}
-
-void report_result(const Recorder& recorder, Progress& progress) {
-  if (!recorder.last()) return;
-  const StepRecord& last = *recorder.last();
-  for (const auto& [set, force] : last.reactions) {
-    progress.say(fmt::format("reaction on {}: ({:.6g}, {:.6g}, {:.6g}) N", set, force[0], force[1],
-                             force[2]));
-  }
-  report_unbalanced_force(last, progress);
-  for (const auto& [probe, values] : last.probes) {
-    progress.say(fmt::format("{}: {:.6g}", probe, fmt::join(values, ", ")));
-  }
 }
 
 }  // namespace
@@ -405,7 +277,7 @@ class CaseRun {
   Exit tell(const LoadSteppingResult& result) {
     const std::string folder = from_.output.directory.string();
     if (result.outcome == Outcome::converged) {
-      report_result(*recorder_, progress_);
+      report_result(recorder_->last(), progress_);
       progress_.say(fmt::format("completed in {:.2f} s: {} steps, {} factorisations; results in {}",
                                 summary_.costs.seconds.total, result.steps,
                                 summary_.costs.factorisations, folder));

@@ -20,9 +20,9 @@ struct RunOptions {
 /// Versions of the program and of its libraries, for the results file and the version command.
 [[nodiscard]] std::map<std::string, std::string> versions();
 
-/// Runs a case and writes its results folder; follows SIGINT, SIGTERM and SIGHUP by closing the
-/// results and returning `interrupted`. The folder's absolute path is written to the file that the
-/// environment variable PERISTAT_NOTE names, for the launcher.
+/// Runs a case and writes its results folder; follows SIGINT, SIGTERM, SIGUSR1 and SIGHUP by
+/// closing the results and returning `interrupted`. The folder's absolute path is written to the
+/// file that the environment variable PERISTAT_NOTE names, for the launcher.
 /// @param earlier run that is gone on from: of the same case, or of one that this one extends
 /// @throws InputError, MemoryError before anything is written
 /// @throws MachineError if the machine fails, std::bad_alloc if the memory does: every accepted

@@ -24,6 +24,7 @@ void heed_interruptions() {
   requested = false;
   std::signal(SIGINT, request);
   std::signal(SIGTERM, request);
+  std::signal(SIGUSR1, request);  // what mpirun and Slurm can send
   if (std::signal(SIGHUP, request) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);
 }
 

@@ -6,8 +6,8 @@ namespace peristat {
 /// is an error instead of a signal that ends the program.
 void make_write_faults_errors();
 
-/// From here on SIGINT, SIGTERM and SIGHUP (unless it was ignored, as under nohup) ask the run to
-/// stop; a second one ends the program at once.
+/// From here on SIGINT, SIGTERM, SIGUSR1 and SIGHUP (unless it was ignored, as under nohup) ask the
+/// run to stop; a second one ends the program at once.
 void heed_interruptions();
 
 /// Whether the run has been asked to stop.

@@ -101,6 +101,10 @@ void write_dataset(hid_t file, const std::string& path, hid_t type, const void* 
   write_label(dataset, label);
 }
 
+hid_t type_of(double) { return H5T_NATIVE_DOUBLE; }
+hid_t type_of(std::int32_t) { return H5T_NATIVE_INT32; }
+hid_t type_of(std::uint8_t) { return H5T_NATIVE_UINT8; }
+
 std::string column_path(const std::string& group, const Column& column) {
   std::string name = column.name;
   std::replace(name.begin(), name.end(), '/', '|');
@@ -233,6 +237,38 @@ void Hdf5File::write(const std::string& path, const std::vector<std::uint8_t>& v
                      const Shape& shape, const DatasetLabel& label) {
   write_dataset(id_, path, H5T_NATIVE_UINT8, values.data(), shape, label);
 }
+
+template <class Value>
+void Hdf5File::write_rows(const std::string& path, const Shape& shape, const DatasetLabel& label,
+                          const std::function<void(const PutRows<Value>&)>& fill) {
+  const hid_t type = type_of(Value{});
+  const Handle dataset(
+      H5Dcreate2(id_, path.c_str(), type, dataspace(shape), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
+      H5Dclose, "create " + path);
+  std::uint64_t values_per_row = 1;
+  for (std::size_t k = 1; k < shape.size(); ++k) values_per_row *= shape[k];
+  fill([&](std::uint64_t first, const std::vector<Value>& rows) {
+    std::vector<hsize_t> start(shape.size(), 0), count(shape.begin(), shape.end());
+    start[0] = first;
+    count[0] = rows.size() / values_per_row;
+    const Handle space(H5Dget_space(dataset), H5Sclose, "size " + path);
+    checked(
+        H5Sselect_hyperslab(space, H5S_SELECT_SET, start.data(), nullptr, count.data(), nullptr),
+        "select rows of " + path);
+    checked(H5Dwrite(dataset, type, dataspace({rows.size()}), space, H5P_DEFAULT, rows.data()),
+            "write " + path);
+  });
+  write_label(dataset, label);
+}
+
+template void Hdf5File::write_rows<double>(const std::string&, const Shape&, const DatasetLabel&,
+                                           const std::function<void(const PutRows<double>&)>&);
+template void Hdf5File::write_rows<std::int32_t>(
+    const std::string&, const Shape&, const DatasetLabel&,
+    const std::function<void(const PutRows<std::int32_t>&)>&);
+template void Hdf5File::write_rows<std::uint8_t>(
+    const std::string&, const Shape&, const DatasetLabel&,
+    const std::function<void(const PutRows<std::uint8_t>&)>&);
 
 void Hdf5File::write(const std::string& path, const std::string& text, const DatasetLabel& label) {
   const char* pointer = text.c_str();

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
@@ -56,6 +57,13 @@ class Hdf5File {
              const DatasetLabel& label);
   void write(const std::string& path, const std::vector<std::uint8_t>& values, const Shape& shape,
              const DatasetLabel& label);
+  /// Puts rows from one on into a dataset.
+  template <class Value>
+  using PutRows = std::function<void(std::uint64_t first, const std::vector<Value>& rows)>;
+  /// The same in parts, which `fill` puts: values are double, int32 or uint8.
+  template <class Value>
+  void write_rows(const std::string& path, const Shape& shape, const DatasetLabel& label,
+                  const std::function<void(const PutRows<Value>&)>& fill);
   /// A single text.
   void write(const std::string& path, const std::string& text, const DatasetLabel& label);
   /// A virtual dataset that shows vectors (count x dimension) of this file as count x 3, or tensors

@@ -83,9 +83,45 @@ void write_image_kinds(Hdf5File& file, const Points& points) {
 
 std::string flags_of(const std::string& set) { return "/points/sets/" + name_of_flags(set); }
 
-void write_points(Hdf5File& file, const Points& points, const std::vector<PointCounts>& counts) {
-  const auto count = static_cast<std::uint64_t>(points.count());
+namespace {
+
+/// All arrays with a row per point.
+void write_rows_of(const Points& points, const std::vector<PointCounts>& counts,
+                   const std::vector<GlobalIndex>& number, const RowSink& sink) {
   const auto dimension = static_cast<std::uint64_t>(points.dimension);
+  sink.write("/points/reference", points.reference, {dimension},
+             {"m", "reference position of each point"});
+  sink.write("/points/volume", points.volume, {}, {"m3", "volume of each point"});
+  sink.write(
+      "/points/set_ids", membership(points), {points.sets.size()},
+      {"1", "1 where the point (row) is in the set (column); attribute sets names the columns"});
+  for (const auto& [name, members] : points.sets) {
+    sink.write(flags_of(name), flags(points, members), {},
+               {"1", "1 where the point is in set " + name});
+  }
+  for (const PointCounts& of_points : counts) {
+    std::visit(
+        [&](const auto& values) {
+          sink.write("/points/" + of_points.name, values, {}, {"1", of_points.description});
+        },
+        of_points.values);
+  }
+  std::vector<double> geometry;
+  std::vector<std::int32_t> numbers;
+  for (Index point = 0; point < points.count(); ++point) {
+    const Coordinates at = points.position(point);
+    geometry.insert(geometry.end(), at.begin(), at.end());
+    numbers.push_back(number.empty() ? point : std::int32_t(number[std::size_t(point)]));
+  }
+  sink.write("/points/geometry", geometry, {3},
+             {"m", "reference position with zeros beyond the dimension, for results.xdmf"});
+  sink.write("/points/number", numbers, {}, {"1", "number of each point, for results.xdmf"});
+}
+
+}  // namespace
+
+void write_points(Hdf5File& file, const Points& points, const std::vector<PointCounts>& counts,
+                  const RowGathering* gathering) {
   file.make_group("/points");
   file.set_attribute("/points", "dimension", std::int64_t{points.dimension});
   file.set_attribute("/points", "spacing", double(points.spacing));
@@ -93,22 +129,15 @@ void write_points(Hdf5File& file, const Points& points, const std::vector<PointC
     file.set_attribute("/points", std::string("spacing_") + "xyz"[c], points.spacing.along(c));
   }
   if (points.angle != 0.0) file.set_attribute("/points", "angle", points.angle);
-  file.write("/points/reference", points.reference, {count, dimension},
-             {"m", "reference position of each point"});
-  file.write("/points/volume", points.volume, {count}, {"m3", "volume of each point"});
-
-  file.write(
-      "/points/set_ids", membership(points), {count, points.sets.size()},
-      {"1", "1 where the point (row) is in the set (column); attribute sets names the columns"});
+  file.make_group("/points/sets");
+  if (gathering) {
+    write_rows_of(points, counts, gathering->part().number(), RowSink(&file, *gathering));
+  } else {
+    write_rows_of(points, counts, {}, RowSink(file, points.volume.size()));
+  }
   std::vector<std::string> names;
   for (const auto& [name, members] : points.sets) names.push_back(name);
   if (!names.empty()) file.set_attribute("/points/set_ids", "sets", names);
-
-  file.make_group("/points/sets");
-  for (const auto& [name, members] : points.sets) {
-    file.write(flags_of(name), flags(points, members), {count},
-               {"1", "1 where the point is in set " + name});
-  }
 
   if (!points.neighbours.empty()) {
     const auto pairs = std::uint64_t(points.neighbours.size());
@@ -118,35 +147,21 @@ void write_points(Hdf5File& file, const Points& points, const std::vector<PointC
     file.write("/points/given_neighbours/shares", neighbour_shares(points), {pairs, 2},
                {"1", "share of the volume of j that i counts, and of i that j counts"});
   }
-
   write_image_kinds(file, points);
-
-  for (const PointCounts& of_points : counts) {
-    std::visit(
-        [&](const auto& values) {
-          file.write("/points/" + of_points.name, values, {count}, {"1", of_points.description});
-        },
-        of_points.values);
-  }
-
-  std::vector<double> geometry;
-  std::vector<std::int32_t> numbers;
-  for (Index point = 0; point < points.count(); ++point) {
-    const Coordinates at = points.position(point);
-    geometry.insert(geometry.end(), at.begin(), at.end());
-    numbers.push_back(point);
-  }
-  file.write("/points/geometry", geometry, {count, 3},
-             {"m", "reference position with zeros beyond the dimension, for results.xdmf"});
-  file.write("/points/number", numbers, {count}, {"1", "number of each point, for results.xdmf"});
 }
 
-std::uint64_t bytes_of(const Points& points, const std::vector<PointCounts>& counts) {
+void send_points(const Points& points, const std::vector<PointCounts>& counts,
+                 const RowGathering& gathering) {
+  write_rows_of(points, counts, gathering.part().number(), RowSink(nullptr, gathering));
+}
+
+std::uint64_t bytes_of(const Points& points, const std::vector<PointCounts>& counts,
+                       std::uint64_t rows) {
   const std::uint64_t bytes_per_point = counts.size() * sizeof(double) +
                                         (std::uint64_t(points.dimension) + 4) * sizeof(double) +
                                         sizeof(std::int32_t) + 2 * points.sets.size();
   const std::uint64_t bytes_per_pair = 2 * (sizeof(std::int32_t) + sizeof(double));
-  return points.volume.size() * bytes_per_point + points.neighbours.size() * bytes_per_pair +
+  return rows * bytes_per_point + points.neighbours.size() * bytes_per_pair +
          points.images.kinds.size() * 6 * sizeof(double);
 }
 

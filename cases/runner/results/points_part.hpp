@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "cases/runner/results/hdf5_file.hpp"
+#include "cases/runner/results/point_rows.hpp"
 #include "src/geometry/points.hpp"
 
 namespace peristat {
@@ -21,10 +22,17 @@ struct PointCounts {
 [[nodiscard]] std::string flags_of(const std::string& set);
 
 /// Writes the group /points.
-void write_points(Hdf5File& file, const Points& points, const std::vector<PointCounts>& counts);
+/// @param gathering null: the points are all; otherwise they, and the counts, are those that this
+///        rank owns, and while rank 0 writes all others send_points
+void write_points(Hdf5File& file, const Points& points, const std::vector<PointCounts>& counts,
+                  const RowGathering* gathering = nullptr);
+void send_points(const Points& points, const std::vector<PointCounts>& counts,
+                 const RowGathering& gathering);
 
 /// Bytes of what it writes.
-[[nodiscard]] std::uint64_t bytes_of(const Points& points, const std::vector<PointCounts>& counts);
+/// @param rows points of the body
+[[nodiscard]] std::uint64_t bytes_of(const Points& points, const std::vector<PointCounts>& counts,
+                                     std::uint64_t rows);
 
 /// Whether a group that write_points has written is of these points and sets, to the last bit.
 [[nodiscard]] bool holds_points(const Hdf5File& file, const std::string& group,

@@ -119,7 +119,8 @@ struct Beginning {
 struct Results::Files {
   Files(Beginning beginning, const Points& points, const CaseText& text,
         const std::vector<std::string>& sets, const std::vector<ProbeColumns>& probe_columns,
-        const std::vector<PointCounts>& counts, const FurtherOutput& further);
+        const std::vector<PointCounts>& counts, const FurtherOutput& further,
+        const RowGathering* of_ranks = nullptr);
 
   void describe(const CaseText& text);
   void go_on(const EarlierResults& earlier, const Checkpoint& checkpoint);
@@ -135,6 +136,7 @@ struct Results::Files {
   void publish_summary(const Summary& summary) const;
   void gather_parts();
 
+  const RowGathering* gathering;
   StepShape shape;
   std::vector<std::string> support_sets;
   std::vector<ProbeColumns> probes;
@@ -170,8 +172,11 @@ struct Results::Files {
 Results::Files::Files(Beginning beginning, const Points& points, const CaseText& text,
                       const std::vector<std::string>& sets,
                       const std::vector<ProbeColumns>& probe_columns,
-                      const std::vector<PointCounts>& counts, const FurtherOutput& further)
-    : shape{points.count(), points.dimension, further.has_stress},
+                      const std::vector<PointCounts>& counts, const FurtherOutput& further,
+                      const RowGathering* of_ranks)
+    : gathering(of_ranks),
+      shape{of_ranks ? Index(of_ranks->rows()) : points.count(), points.dimension,
+            further.has_stress},
       support_sets(sets),
       probes(probe_columns),
       history_header(history_columns(sets, probe_columns)),
@@ -184,7 +189,7 @@ Results::Files::Files(Beginning beginning, const Points& points, const CaseText&
       broken_bonds(folder.broken_bonds(), broken_bond_columns(),
                    beginning.rows(&EarlierResults::broken_bonds)),
       master(Hdf5File::in_memory(folder.results().string() + " (in memory)", master_growth)),
-      xdmf(points.count(), constant_fields(points)),
+      xdmf(shape.points, constant_fields(points)),
       program(version_of(text)),
       checkpoints(folder.parts()),
       safe_copy(folder),
@@ -202,8 +207,8 @@ Results::Files::Files(Beginning beginning, const Points& points, const CaseText&
   if (beginning.earlier) {
     go_on(*beginning.earlier, *beginning.checkpoint);
   } else {
-    publish_part(folder.points(), bytes_of(points, counts),
-                 [&](Hdf5File& file) { write_points(file, points, counts); });
+    publish_part(folder.points(), bytes_of(points, counts, std::uint64_t(shape.points)),
+                 [&](Hdf5File& file) { write_points(file, points, counts, gathering); });
   }
   master.link("/points", points_part.file, points_part.object);
   publish();
@@ -303,7 +308,7 @@ void Results::Files::write_step(const StepRecord& record, const StepPart& part) 
 void Results::Files::add(const StepRecord& record, const std::optional<StepFields>& step_fields) {
   const Row row = make_row(record, support_sets, probes);
   const StepFields fields = step_fields.value_or(StepFields{});
-  const StepPart part(shape, fields);
+  const StepPart part(shape, fields, gathering);
   if (record.step < 0 || record.step <= last_step) {
     throw std::logic_error("results: step " + std::to_string(record.step) + " after step " +
                            std::to_string(last_step));
@@ -328,7 +333,7 @@ void Results::Files::add_fields(const StepRecord& record, const StepFields& step
                            " after step " + std::to_string(last_step));
   }
   if (!written_steps.empty() && written_steps.back().step == record.step) return;
-  write_step(record, StepPart(shape, step_fields));
+  write_step(record, StepPart(shape, step_fields, gathering));
   publish();
 }
 
@@ -388,7 +393,7 @@ void Results::Files::gather_parts() {
 Results::Results(const std::filesystem::path& directory, const Points& points, const CaseText& text,
                  const std::vector<std::string>& support_sets,
                  const std::vector<ProbeColumns>& probes, const std::vector<PointCounts>& counts,
-                 bool overwrite, const FurtherOutput& further) {
+                 bool overwrite, const FurtherOutput& further, const RowGathering* gathering) {
   double seconds = 0.0;
   {
     const Stopwatch stopwatch(seconds);
@@ -396,7 +401,7 @@ Results::Results(const std::filesystem::path& directory, const Points& points, c
     static_cast<void>(history_columns(support_sets, probes));
     files_ = std::make_unique<Files>(
         Beginning{claim_results_folder(directory, identity(text, further), overwrite)}, points,
-        text, support_sets, probes, counts, further);
+        text, support_sets, probes, counts, further, gathering);
   }
   files_->seconds = seconds;
 }

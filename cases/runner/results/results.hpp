@@ -50,6 +50,9 @@ class Results {
  public:
   /// Creates the folder and its files; an earlier run of the same case file is replaced, other
   /// files are left alone.
+  /// @param gathering null: points and fields are those of all; otherwise of those that rank 0
+  /// owns,
+  ///        which alone has results: others send theirs meanwhile (send_points, StepPart::send)
   /// @param overwrite also an earlier run of another case is replaced
   /// @throws InputError ("directory") if the folder can't be written or must be left
   ///         alone, see claim_results_folder; (key "probe") if a probe's name is the name of
@@ -58,7 +61,7 @@ class Results {
   Results(const std::filesystem::path& directory, const Points& points, const CaseText& text,
           const std::vector<std::string>& support_sets, const std::vector<ProbeColumns>& probes,
           const std::vector<PointCounts>& counts = {}, bool overwrite = false,
-          const FurtherOutput& further = {});
+          const FurtherOutput& further = {}, const RowGathering* gathering = nullptr);
   /// Goes on with the results of an earlier run from its checkpoint. What it holds beyond that, and
   /// what tells how it ended, is dropped.
   /// @param earlier what it holds up to there; its files are named anew where they move

@@ -145,10 +145,13 @@ std::string WrittenStep::name() const {
   return text;
 }
 
-StepPart::StepPart(StepShape shape, const StepFields& fields) : shape_(shape), fields_(fields) {
+StepPart::StepPart(StepShape shape, const StepFields& fields, const RowGathering* gathering)
+    : shape_(shape), fields_(fields), gathering_(gathering) {
+  StepShape here = shape;
+  if (gathering) here.points = gathering->part().owned();
   for (const FieldKind& kind : field_kinds()) {
     if (fields.*kind.values == nullptr) continue;
-    check(kind, *(fields.*kind.values), shape);
+    check(kind, *(fields.*kind.values), here);
     names_.push_back(kind.name);
   }
 }
@@ -156,7 +159,9 @@ StepPart::StepPart(StepShape shape, const StepFields& fields) : shape_(shape), f
 std::uint64_t StepPart::bytes() const {
   std::uint64_t bytes = 0;
   for (const std::string& name : names_) {
-    bytes += (fields_.*kind_of(name).values)->size() * sizeof(double);
+    std::uint64_t values = 1;
+    for (const std::uint64_t extent : kind_of(name).shape(shape_)) values *= extent;
+    bytes += values * sizeof(double);
   }
   if (fields_.histories) {
     bytes += fields_.histories->largest_stretch.size() * (sizeof(double) + 3 * sizeof(Index));
@@ -170,12 +175,22 @@ void StepPart::write(Hdf5File& file, const WrittenStep& step) const {
   file.set_attribute(step.group, "load_factor", step.load_factor);
   file.set_attribute(step.group, "mode", step.mode);
   if (fields_.velocity != nullptr) file.set_attribute(step.group, "time", step.load_factor);
-  for (const std::string& name : names_) {
-    const FieldKind& kind = kind_of(name);
-    file.write(step.group + "/" + name, *(fields_.*kind.values), kind.shape(shape_), kind.label);
-  }
+  const RowSink sink =
+      gathering_ ? RowSink(&file, *gathering_) : RowSink(file, std::uint64_t(shape_.points));
+  write_rows(sink, step.group);
   if (fields_.histories) write_histories(file, step.group + "/history", *fields_.histories);
   if (shape_.has_views()) write_views(file, step.views, step.group, names_, shape_);
+}
+
+void StepPart::send() const { write_rows(RowSink(nullptr, *gathering_), ""); }
+
+void StepPart::write_rows(const RowSink& sink, const std::string& group) const {
+  for (const std::string& name : names_) {
+    const FieldKind& kind = kind_of(name);
+    Hdf5File::Shape row = kind.shape(shape_);
+    row.erase(row.begin());
+    sink.write(group + "/" + name, *(fields_.*kind.values), row, kind.label);
+  }
 }
 
 std::vector<std::string> field_names(const Hdf5File& file, const std::string& group) {

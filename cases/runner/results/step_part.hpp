@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "cases/runner/results/hdf5_file.hpp"
+#include "cases/runner/results/point_rows.hpp"
 #include "cases/runner/results/xdmf_series.hpp"
 #include "solvers/problem/records.hpp"
 
@@ -37,9 +38,12 @@ struct WrittenStep {
 class StepPart {
  public:
   /// @param fields outlive it
+  /// @param gathering null: the fields are of all points; otherwise of those that this rank owns,
+  /// and
+  ///        while rank 0 writes all others send
   /// @throws std::logic_error that names a field of the wrong size, or with values that are not
   ///         finite
-  StepPart(StepShape shape, const StepFields& fields);
+  StepPart(StepShape shape, const StepFields& fields, const RowGathering* gathering = nullptr);
 
   [[nodiscard]] bool is_empty() const { return names_.empty(); }
   [[nodiscard]] const std::vector<std::string>& names() const { return names_; }
@@ -47,10 +51,14 @@ class StepPart {
   [[nodiscard]] std::uint64_t bytes() const;
   /// Writes the groups `step.group` and, where there are views, `step.views`.
   void write(Hdf5File& file, const WrittenStep& step) const;
+  void send() const;
 
  private:
+  void write_rows(const RowSink& sink, const std::string& group) const;
+
   StepShape shape_;
   const StepFields& fields_;
+  const RowGathering* gathering_;
   std::vector<std::string> names_;
 };
 

@@ -17,13 +17,14 @@
 #include <BelosOutputManager.hpp>
 #include <BelosPseudoBlockCGIter.hpp>
 #include <BelosStatusTest.hpp>
-#include <Teuchos_DefaultSerialComm.hpp>
+#include <Teuchos_Comm.hpp>
 #include <Teuchos_oblackholestream.hpp>
 #include <Tpetra_Map.hpp>
 #include <Tpetra_MultiVector.hpp>
 #include <Tpetra_Operator.hpp>
 
 #include "solvers/linear/trilinos/module.hpp"
+#include "solvers/linear/trilinos/teuchos_communicator.hpp"
 
 namespace peristat::trilinos {
 namespace {
@@ -38,10 +39,11 @@ using Operator = Tpetra::Operator<double, int, long long>;
 using Problem = Belos::LinearProblem<double, Vector, Operator>;
 using Iteration = Belos::Iteration<double, Vector, Operator>;
 
-double norm(const std::vector<double>& v) {
+/// 2-norm of a vector over all ranks.
+double norm(const std::vector<double>& v, const Communicator* ranks) {
   double squared = 0.0;
   for (double entry : v) squared += entry * entry;
-  return std::sqrt(squared);
+  return std::sqrt(ranks ? ranks->sum(squared) : squared);
 }
 
 /// One of our maps as Tpetra sees it.
@@ -71,24 +73,26 @@ class MapOperator : public Operator {
 /// b - A x, without Trilinos.
 class TrueResidual {
  public:
-  TrueResidual(const VectorMap& matrix, const double* b, int size)
+  TrueResidual(const VectorMap& matrix, const double* b, int size, const Communicator* ranks)
       : matrix_(matrix),
         b_(b),
         size_(std::size_t(size)),
+        ranks_(ranks),
         values(b, b + size),
-        norm(trilinos::norm(values)) {}
+        norm(trilinos::norm(values, ranks)) {}
 
   void update(const double* x) {
     values.resize(size_);
     matrix_(x, values.data());
     for (std::size_t k = 0; k < values.size(); ++k) values[k] = b_[k] - values[k];
-    norm = trilinos::norm(values);
+    norm = trilinos::norm(values, ranks_);
   }
 
  private:
   const VectorMap& matrix_;
   const double* b_;
   std::size_t size_;
+  const Communicator* ranks_;
 
  public:
   std::vector<double> values;  ///< may be taken away until the next update
@@ -167,6 +171,11 @@ class MinresStoppingRule : public StoppingRule {
   double last_norm_;         ///< the true one, where it was looked at last
 };
 
+/// In a handler: an exception that one rank may have met alone leaves, since the others wait.
+void leave_if_several(const Problem& problem) {
+  if (problem.getRHS()->getMap()->getComm()->getSize() > 1) throw;
+}
+
 /// One run of Belos on A d = r from d = 0.
 struct Run {
   KrylovOutcome outcome = KrylovOutcome::breakdown;
@@ -205,6 +214,7 @@ Run run_conjugate_gradients(const RCP<Problem>& problem, double target, int max_
     if (curvature[0] <= 0.0 && length[0] > 0.0) run.outcome = KrylovOutcome::negative_curvature;
     return run;
   } catch (const std::exception&) {
+    leave_if_several(*problem);
     return {KrylovOutcome::breakdown, iteration.getNumIters()};
   }
   return outcome_of(*rule, iteration.getNumIters());
@@ -221,6 +231,7 @@ Run run_minres(const RCP<Problem>& problem, double start_norm, double target, in
     iteration.initializeMinres(start);
     iteration.iterate();
   } catch (const std::exception&) {  // r.M r < 0
+    leave_if_several(*problem);
     return {KrylovOutcome::breakdown, iteration.getNumIters()};
   }
   return outcome_of(*rule, iteration.getNumIters());
@@ -237,6 +248,7 @@ Run run_bicgstab(const RCP<Problem>& problem, double target, int max_iterations)
     iteration.initializeBiCGStab(start);
     iteration.iterate();
   } catch (const std::exception&) {
+    leave_if_several(*problem);
     return {KrylovOutcome::breakdown, iteration.getNumIters()};
   }
   return outcome_of(*rule, iteration.getNumIters());
@@ -263,6 +275,7 @@ Run run_gmres(const RCP<Problem>& problem, double relative_target, int max_itera
     return {at_limit ? KrylovOutcome::iteration_limit : KrylovOutcome::breakdown,
             solver.getNumIters()};
   } catch (const std::exception&) {
+    leave_if_several(*problem);
     return {KrylovOutcome::breakdown, solver.getNumIters()};
   }
 }
@@ -307,7 +320,7 @@ Run run_belos(const RCP<const Map>& rows, const VectorMap& matrix, const VectorM
 /// Runs until the true residual is small enough, or until another run doesn't help.
 KrylovResult refine(int size, const VectorMap& matrix, const VectorMap& preconditioner,
                     const double* b, double* x, const KrylovOptions& options) {
-  TrueResidual residual(matrix, b, size);
+  TrueResidual residual(matrix, b, size, options.ranks);
   const double scale = residual.norm, target = options.tolerance * scale;
   if (scale == 0.0) return {};
   KrylovResult result{KrylovOutcome::breakdown, 0, 1.0};
@@ -320,7 +333,10 @@ KrylovResult refine(int size, const VectorMap& matrix, const VectorMap& precondi
     return result;
   }
 
-  const RCP<const Map> rows = rcp(new Map(size, 0, rcp(new Teuchos::SerialComm<int>)));
+  const SoleRank sole;
+  const auto any = Teuchos::OrdinalTraits<Tpetra::global_size_t>::invalid();
+  const RCP<const Map> rows = rcp(new Map(
+      any, std::size_t(size), 0, teuchos_communicator(options.ranks ? *options.ranks : sole)));
   while (true) {
     const double before = residual.norm;
     RCP<Vector> correction;
@@ -365,6 +381,10 @@ KrylovResult solve_krylov(int size, const VectorMap& matrix, const VectorMap& pr
                           const double* right_hand_side, double* solution,
                           const KrylovOptions& options) {
   std::fill(solution, solution + size, 0.0);
+  if (options.ranks && options.ranks->count() > 1) {
+    if (options.ranks->sum(double(size)) == 0.0) return {};
+    return refine(size, matrix, preconditioner, right_hand_side, solution, options);
+  }
   if (size == 0) return {};
   try {
     return refine(size, matrix, preconditioner, right_hand_side, solution, options);

@@ -2,6 +2,8 @@
 
 #include <functional>
 
+#include "src/core/communicator.hpp"
+
 // Stands between C++20 and Trilinos, which is compiled as C++17: this header is read by both.
 
 namespace peristat {
@@ -27,6 +29,8 @@ struct KrylovOptions {
   double tolerance = 1e-10;   ///< of ||b - A x|| / ||b||
   int max_iterations = 1000;  ///< all restarts together
   int restart = 50;           ///< vectors that GMRES keeps; the other methods keep a fixed number
+  /// Ranks that have a part of the equations each, perhaps none; null: this one has all of them.
+  const Communicator* ranks = nullptr;
 };
 
 struct KrylovResult {
@@ -44,9 +48,14 @@ using VectorMap = std::function<void(const double* v, double* result)>;
 /// Recursive residuals drift away from the true one. Where Belos has converged and b - A x has not,
 /// the correction is solved for from there (iterative refinement), as long as that helps.
 ///
-/// Prints nothing. What the maps throw is a breakdown; the one exception that leaves is
-/// std::runtime_error where Trilinos can't be loaded.
+/// Of several ranks each gives its part of the vectors, and the maps get and give it; all norms are
+/// those of the whole, so that all ranks end alike.
 ///
+/// Prints nothing. What the maps throw is a breakdown; the one exception that leaves is
+/// std::runtime_error where Trilinos can't be loaded. With several ranks all exceptions leave,
+/// since others then wait in vain: Communicator::abort is for them.
+///
+/// @param size of this rank's part
 /// @param preconditioner an approximate inverse of A, or empty
 /// @param solution the best that was reached, whatever the outcome
 [[nodiscard]] KrylovResult solve_krylov(int size, const VectorMap& matrix,

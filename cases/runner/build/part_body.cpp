@@ -1,0 +1,158 @@
+#include "cases/runner/build/part_body.hpp"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <variant>
+
+#include "solvers/ranks/distribute.hpp"
+#include "solvers/ranks/part_bonds.hpp"
+#include "src/core/input_error.hpp"
+#include "src/geometry/point_set.hpp"
+#include "src/geometry/slab.hpp"
+
+namespace peristat {
+namespace {
+
+/// Keys that tests run on several ranks, and all below them where they end in a dot.
+constexpr std::array keys_of_ranks{
+    "title", "dimension",
+    // points
+    "lattice.spacing", "lattice.horizon_ratio", "lattice.thickness", "lattice.area",
+    "lattice.origin", "lattice.perturbation", "lattice.seed", "lattice.shape.", "lattice.layer.",
+    "set.",
+    // bonds
+    "quadrature.volume_correction", "quadrature.surface_correction", "material.model",
+    "material.plane", "material.youngs_modulus", "material.micromodulus", "material.density",
+    // conditions
+    "support.", "load.set", "load.body_force", "load.total_force", "load.gravity",
+    // search
+    "loading.steps", "loading.table", "loading.table2", "loading.adaptive", "loading.smallest_step",
+    "loading.largest_step", "solver.mode", "solver.linear", "solver.preconditioner",
+    "solver.tangent", "solver.predictor", "solver.relative_tolerance", "solver.linear_tolerance",
+    "solver.max_iterations",
+    // results
+    "output.directory", "output.every", "probe.name", "probe.set", "probe.field", "probe.component",
+    "probe.statistic", "probe.expected", "probe.other"};
+
+/// "load[2].body_force[0]" as "load.body_force".
+std::string without_numbers(const std::string& key) {
+  std::string plain;
+  bool is_number = false;
+  for (const char letter : key) {
+    if (letter == '[') is_number = true;
+    if (!is_number) plain += letter;
+    if (letter == ']') is_number = false;
+  }
+  return plain;
+}
+
+/// Whether a key is on the list, below one that is, or a table with one that is.
+bool has_ranks(const std::string& key) {
+  return std::any_of(keys_of_ranks.begin(), keys_of_ranks.end(), [&](std::string_view known) {
+    const bool is_below = known.back() == '.' && key.starts_with(known);
+    const bool is_table = known.starts_with(key + ".");
+    return key == known || is_below || is_table;
+  });
+}
+
+[[noreturn]] void refuse(const std::string& key, const std::string& value,
+                         const std::string& instead) {
+  throw InputError(key, value, "is not for more than one rank yet; " + instead);
+}
+
+/// Of keys whose values have ranks in part, those that have.
+void refuse_values_without_ranks(const Case& from) {
+  if (!std::holds_alternative<Lattice>(from.body)) refuse("points", "", "take a lattice");
+  if (from.volume_correction != VolumeCorrection::none &&
+      from.volume_correction != VolumeCorrection::linear) {
+    refuse("quadrature.volume_correction", "", "take \"none\" or \"linear\"");
+  }
+  if (from.material.model != MaterialModel::bond) {
+    refuse("material.model", "", "take \"bond\"");
+  }
+  if (from.solver.mode != Mode::newton) {
+    refuse("solver.mode", std::string(from.solver.mode.name), "take \"newton\"");
+  }
+}
+
+void refuse_probes_without_ranks(const Case& from) {
+  constexpr std::array<std::string_view, 5> fields{"displacement", "force", "stretch",
+                                                   "energy_density", "opening"};
+  for (std::size_t k = 0; k < from.probes.size(); ++k) {
+    const std::string& field = from.probes[k].field;
+    if (std::find(fields.begin(), fields.end(), field) != fields.end()) continue;
+    refuse("probe[" + std::to_string(k) + "].field", '"' + field + '"',
+           "take displacement, force, stretch, energy_density or opening");
+  }
+}
+
+/// Refuses probes of sets that are not there.
+void require_sets_of_probes(const Case& from, const Points& points) {
+  for (std::size_t k = 0; k < from.probes.size(); ++k) {
+    const std::string table = "probe[" + std::to_string(k) + "]";
+    const auto require = [&](const std::string& key, const std::string& set) {
+      if (set.empty() || points.sets.contains(set)) return;
+      throw InputError(table + key, '"' + set + '"', "no set of this name");
+    };
+    require(".set", from.probes[k].set);
+    require(".other", from.probes[k].other);
+  }
+}
+
+/// Sets of the whole body: the rules look at places alone, so that each rank finds its own.
+void add_sets(const Case& from, const Communicator& ranks, Part& part) {
+  for (std::size_t k = 0; k < from.sets.size(); ++k) {
+    const SetRule& rule = from.sets[k];
+    const std::string table = "set[" + std::to_string(k) + "]";
+    if (part.points.sets.contains(rule.name)) {
+      throw InputError(table + ".name", '"' + rule.name + '"',
+                       "there is a set of this name already (sets and layers share their names)");
+    }
+    std::vector<Index> members;
+    try {
+      members = select(part.points, rule);
+    } catch (const InputError& error) {
+      throw InputError(table + "." + error.key(), error.value(), error.allowed());
+    }
+    const auto ghosts = std::lower_bound(members.begin(), members.end(), part.owned);
+    if (ranks.count_all(ghosts - members.begin()).all == 0) {
+      throw InputError(table, '"' + rule.name + '"', "the set selects no point");
+    }
+    part.points.sets[rule.name] = std::move(members);
+  }
+}
+
+}  // namespace
+
+void refuse_keys_without_ranks(const Case& from) {
+  located_errors(from, [&] {
+    for (const auto& [key, location] : from.locations) {
+      if (has_ranks(without_numbers(key))) continue;
+      refuse(key, "", "docs/cluster.md lists the keys that are");
+    }
+    refuse_values_without_ranks(from);
+    refuse_probes_without_ranks(from);
+  });
+}
+
+std::unique_ptr<const Body> make_part_body(const Case& from, const Communicator& ranks,
+                                           int threads) {
+  return located_errors(from, [&] {
+    Part slab = make_slab(std::get<Lattice>(from.body), ranks);
+    if (slab.whole > std::numeric_limits<Index>::max()) {
+      refuse("lattice.spacing", "", "results have numbers for fewer than 2^31 points");
+    }
+    const BondSetting setting = bond_setting(from, slab.points);
+    const double reach = reach_of_bonds(slab.points, from.surface_correction, setting, ranks);
+    Part part = distribute(std::move(slab), setting.horizon, reach, ranks, threads);
+    add_sets(from, ranks, part);
+    require_sets_of_probes(from, part.points);
+    return make_body(std::move(part), from, ranks, threads);
+  });
+}
+
+}  // namespace peristat

@@ -1,0 +1,90 @@
+#include "cases/runner/process/ranks_environment.hpp"
+
+#include <algorithm>
+#include <cerrno>
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+
+#include <fcntl.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "cases/runner/process/exit.hpp"
+#include "src/core/machine_error.hpp"
+
+namespace peristat {
+namespace {
+
+/// mpirun gives its ranks no other streams than the standard ones: they reach a descriptor of this
+/// process through /proc.
+void keep_note_reachable() {
+  const std::string descriptors = "/dev/fd/";
+  const char* const note = std::getenv("PERISTAT_NOTE");
+  if (!note || std::string(note).rfind(descriptors, 0) != 0) return;
+  const std::string here = "/proc/" + std::to_string(getpid()) + "/fd/";
+  setenv("PERISTAT_NOTE", (here + (note + descriptors.size())).c_str(), 1);
+}
+
+volatile pid_t mpirun = 0;
+
+/// mpirun ends ranks at once when it is interrupted, but passes on this signal, at which they come
+/// to their end as a run of one rank does. A second one ends them at once.
+void pass_on(int signal) {
+  kill(mpirun, SIGUSR1);
+  std::signal(signal, [](int) { kill(mpirun, SIGTERM); });
+}
+
+void pass_on_interruptions() {
+  std::signal(SIGINT, pass_on);
+  std::signal(SIGTERM, pass_on);
+  if (std::signal(SIGHUP, pass_on) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);
+}
+
+[[noreturn]] void become_mpirun(const std::vector<char*>& words) {
+  prctl(PR_SET_PDEATHSIG, SIGTERM);  // a run has no life without who has started it
+  setpgid(0, 0);                     // what a terminal interrupts is this process' parent
+  const int nothing = open("/dev/null", O_RDONLY);
+  dup2(nothing, STDIN_FILENO);  // reading the terminal would stop it now
+  execvp(words.front(), words.data());
+  std::fprintf(stderr, "peristat: mpirun can't be started: %s; it is in Debian's openmpi-bin\n",
+               std::strerror(errno));
+  _exit(static_cast<int>(Exit::machine_failed));
+}
+
+}  // namespace
+
+bool is_started_as_rank() {
+  return std::getenv("OMPI_COMM_WORLD_SIZE") != nullptr || std::getenv("PMIX_RANK") != nullptr;
+}
+
+int ranks_on_machine() {
+  const char* const count = std::getenv("OMPI_COMM_WORLD_LOCAL_SIZE");
+  return count ? std::max(1, std::atoi(count)) : 1;
+}
+
+int run_as_ranks(int ranks, const std::vector<std::string>& arguments) {
+  const std::string program = std::filesystem::read_symlink("/proc/self/exe").string();
+  // Ranks may have threads, so that they are bound to no core.
+  std::vector<std::string> words{"mpirun", "--quiet", "--oversubscribe",     "--bind-to",
+                                 "none",   "-np",     std::to_string(ranks), program};
+  words.insert(words.end(), arguments.begin(), arguments.end());
+  std::vector<char*> pointers;
+  for (std::string& word : words) pointers.push_back(word.data());
+  pointers.push_back(nullptr);
+  keep_note_reachable();
+  mpirun = fork();
+  if (mpirun < 0) throw MachineError(std::string("mpirun can't be started: ") + strerror(errno));
+  if (mpirun == 0) become_mpirun(pointers);
+  pass_on_interruptions();
+  int status = 0;
+  while (waitpid(mpirun, &status, 0) < 0 && errno == EINTR) {
+  }
+  constexpr int of_signals = 128;  // as shells have it
+  return WIFEXITED(status) ? WEXITSTATUS(status) : of_signals + WTERMSIG(status);
+}
+
+}  // namespace peristat

@@ -1,0 +1,74 @@
+#include "solvers/ranks/point_records.hpp"
+
+#include <algorithm>
+#include <cstddef>
+#include <numeric>
+#include <stdexcept>
+#include <string>
+
+namespace peristat {
+
+PointRecords::PointRecords(const Part& like) : dimension_(like.points.dimension) {
+  const Points& points = like.points;
+  if (!points.images.source.empty() || !points.neighbours.empty() || !points.polygons.empty() ||
+      !points.ghosts.empty()) {
+    throw std::logic_error("images, given neighbours, polygons and sites of quadratures stay here");
+  }
+  const std::size_t numbers = (points.sets.size() + sets_per_number - 1) / sets_per_number;
+  records_.doubles = dimension_ + 1;
+  records_.integers = 2 + int(numbers);
+  of_sets_.assign(numbers, std::vector<long long>(points.volume.size(), 0));
+  for (const auto& [name, members] : points.sets) {
+    const std::size_t set = names_.size();
+    for (const Index point : members) {
+      of_sets_[set / sets_per_number][std::size_t(point)] |= 1LL << set % sets_per_number;
+    }
+    names_.push_back(name);
+  }
+}
+
+void PointRecords::add(const Part& part, Index point, int owner) {
+  const auto first = part.points.reference.begin() + std::ptrdiff_t(point) * dimension_;
+  records_.values.insert(records_.values.end(), first, first + dimension_);
+  records_.values.push_back(part.points.volume[std::size_t(point)]);
+  records_.numbers.push_back(part.number[std::size_t(point)]);
+  records_.numbers.push_back(owner);
+  for (const auto& sets : of_sets_) records_.numbers.push_back(sets[std::size_t(point)]);
+}
+
+void PointRecords::append_to(Part& part, const Records& received, bool as_ghosts) const {
+  const auto doubles = std::size_t(records_.doubles), integers = std::size_t(records_.integers);
+  std::vector<std::size_t> order(received.numbers.size() / integers);
+  std::iota(order.begin(), order.end(), std::size_t(0));
+  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return received.numbers[a * integers] < received.numbers[b * integers];
+  });
+  Points& points = part.points;
+  for (const std::size_t record : order) {
+    const double* const value = &received.values[record * doubles];
+    const long long* const number = &received.numbers[record * integers];
+    for (std::size_t set = 0; set < names_.size(); ++set) {
+      const long long sets = number[2 + set / sets_per_number];
+      if (sets >> set % sets_per_number & 1) points.sets[names_[set]].push_back(points.count());
+    }
+    points.reference.insert(points.reference.end(), value, value + dimension_);
+    points.volume.push_back(value[dimension_]);
+    part.number.push_back(number[0]);
+    if (as_ghosts) part.owner.push_back(int(number[1]));
+  }
+  if (!as_ghosts) part.owned = points.count();
+}
+
+Part empty_part(const Part& like) {
+  Part part;
+  part.points.dimension = like.points.dimension;
+  part.points.spacing = like.points.spacing;
+  part.points.angle = like.points.angle;
+  part.points.cell_volume = like.points.cell_volume;
+  part.points.lattice = like.points.lattice;
+  for (const auto& [name, members] : like.points.sets) part.points.sets[name];
+  part.whole = like.whole;
+  return part;
+}
+
+}  // namespace peristat

@@ -1,0 +1,34 @@
+#pragma once
+
+#include "solvers/ranks/records.hpp"
+#include "src/geometry/part.hpp"
+
+namespace peristat {
+
+/// Points as records: position, volume, number in the whole body, owner and sets.
+class PointRecords {
+ public:
+  /// @param like a part whose dimension, spacing and names of sets the points share
+  /// @throws std::logic_error for points with more than places, volumes and sets
+  explicit PointRecords(const Part& like);
+
+  /// @param owner rank that owns the point from now on
+  void add(const Part& part, Index point, int owner);
+  [[nodiscard]] const Records& records() const { return records_; }
+
+  /// Points that have come, as this rank's own or as ghosts after its own, ascending.
+  void append_to(Part& part, const Records& received, bool as_ghosts) const;
+
+ private:
+  static constexpr int sets_per_number = 63;  // what the bits of a number without its sign hold
+
+  Records records_;
+  std::vector<std::vector<long long>> of_sets_;  // by point of `like`, the numbers with its sets
+  int dimension_;
+  std::vector<std::string> names_;
+};
+
+/// A part like another one, without points: with the same lattice and names of sets.
+[[nodiscard]] Part empty_part(const Part& like);
+
+}  // namespace peristat

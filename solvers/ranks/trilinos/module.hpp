@@ -1,0 +1,47 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "solvers/ranks/ghost_exchange.hpp"
+#include "solvers/ranks/records.hpp"
+#include "src/core/communicator.hpp"
+
+// What needs MPI is a module of its own (load_ranks.cpp), so that runs of a sole rank never start
+// it; this is all that the two know of each other.
+
+namespace peristat::ranks {
+
+using StartRanks = std::unique_ptr<Communicator>();
+StartRanks start_ranks;
+
+using Exchange = Records(const Communicator& ranks, const std::vector<int>& to,
+                         const Records& records);
+Exchange exchange;
+
+using Partition = std::vector<int>(const Communicator& ranks, int dimension,
+                                   const std::vector<double>& positions,
+                                   const std::vector<std::int64_t>& numbers,
+                                   const std::vector<double>& weights);
+Partition partition;
+
+using MakeGhostExchange = std::unique_ptr<GhostExchange>(const Communicator& ranks,
+                                                         const std::vector<std::int64_t>& owned,
+                                                         const std::vector<std::int64_t>& ghosts,
+                                                         int width);
+MakeGhostExchange make_ghost_exchange;
+
+struct Module {
+  StartRanks* start_ranks;
+  Exchange* exchange;
+  Partition* partition;
+  MakeGhostExchange* make_ghost_exchange;
+};
+
+/// The module's one symbol, of type `const Module*()`.
+inline constexpr const char* module_symbol = "peristat_ranks_module";
+/// Its file, beside the program.
+inline constexpr const char* module_file = "peristat_ranks.so";
+
+}  // namespace peristat::ranks

@@ -1,0 +1,73 @@
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "cases/runner/results/point_rows.hpp"
+#include "solvers/ranks/distribute.hpp"
+#include "src/geometry/slab.hpp"
+#include "tests/ranks/bodies_on_ranks.hpp"
+#include "tests/ranks/on_ranks.hpp"
+
+namespace peristat::tests {
+namespace {
+
+TEST(RowGathering, brings_the_values_of_all_points_in_their_order_and_in_parts) {
+  const Communicator& ranks = all_ranks();
+  for (const RanksBody& body : all_bodies()) {
+    SCOPED_TRACE(body.name);
+    const double horizon = body.setting().horizon;
+    const PartOfBody part(distribute(make_slab(body.lattice, ranks), horizon, horizon, ranks, 1),
+                          ranks);
+    for (const std::int64_t most_rows : {std::int64_t(1), std::int64_t(5), std::int64_t(1) << 20}) {
+      const RowGathering gathering(part, most_rows);
+      std::vector<std::int32_t> mine;
+      for (const GlobalIndex number : part.number()) {
+        mine.insert(mine.end(), {std::int32_t(2 * number), std::int32_t(2 * number + 1)});
+      }
+      std::vector<std::int32_t> all;
+      gathering.gather<std::int32_t>(
+          mine, 2, [&](std::uint64_t first, const std::vector<std::int32_t>& rows) {
+            EXPECT_EQ(2 * first, all.size());
+            EXPECT_LE(rows.size(), 2 * std::size_t(most_rows));
+            all.insert(all.end(), rows.begin(), rows.end());
+          });
+      EXPECT_EQ(all.size(), ranks.rank() == 0 ? 2 * gathering.rows() : 0);
+      for (std::size_t k = 0; k < all.size(); ++k) EXPECT_EQ(all[k], std::int32_t(k));
+    }
+  }
+}
+
+TEST(RowSink, writes_parts_of_rows_one_after_the_other) {
+  const Communicator& ranks = all_ranks();
+  const RanksBody body = plate_with_hole();
+  const double horizon = body.setting().horizon;
+  const PartOfBody part(distribute(make_slab(body.lattice, ranks), horizon, horizon, ranks, 1),
+                        ranks);
+  const RowGathering gathering(part, 100);
+  std::optional<Hdf5File> file;
+  if (ranks.rank() == 0) file.emplace(Hdf5File::in_memory("rows (in memory)", 1 << 16));
+  const RowSink sink(file ? &*file : nullptr, gathering);
+  std::vector<double> vectors;
+  std::vector<std::uint8_t> flags;
+  for (const GlobalIndex number : part.number()) {
+    vectors.insert(vectors.end(), {0.5 * double(number), -double(number)});
+    flags.push_back(number % 3 == 0);
+  }
+  sink.write("/vectors", vectors, {2}, {"m", "two of each point"});
+  sink.write("/flags", flags, {}, {"1", "one of each point"});
+  if (!file) return;
+  const std::vector<double> all_vectors = file->numbers("/vectors");
+  const std::vector<std::uint8_t> all_flags = file->bytes("/flags");
+  EXPECT_EQ(all_flags.size(), gathering.rows());
+  EXPECT_EQ(all_vectors.size(), 2 * gathering.rows());
+  for (std::size_t i = 0; 2 * i + 1 < all_vectors.size() && i < all_flags.size(); ++i) {
+    EXPECT_EQ(all_vectors[2 * i], 0.5 * double(i));
+    EXPECT_EQ(all_vectors[2 * i + 1], -double(i));
+    EXPECT_EQ(all_flags[i], i % 3 == 0);
+  }
+}
+
+}  // namespace
+}  // namespace peristat::tests
