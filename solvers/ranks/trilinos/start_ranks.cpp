@@ -1,7 +1,9 @@
 #include <algorithm>
+#include <chrono>
 #include <cstdlib>
 #include <iostream>
 #include <stdexcept>
+#include <thread>
 
 #include <mpi.h>
 
@@ -84,6 +86,9 @@ class MpiRanks : public Communicator {
 
   [[noreturn]] void abort(const std::string& message, int exit_code) const override {
     std::cerr << message << std::endl;
+    // mpirun drops what it has not read when the end of all ranks comes.
+    constexpr std::chrono::milliseconds until_read{300};
+    std::this_thread::sleep_for(until_read);
     MPI_Abort(world_, exit_code);
     std::_Exit(exit_code);
   }
