@@ -20,11 +20,9 @@ Assembler::Assembler(const Points& points, const Model& model, int threads, cons
     terms_.push_back(term->passes({points_, model_, pattern_, workspace_}));
   }
   if (!sharing_) return;
-  // Triangles stand on bonds between ghosts, which parts leave out; histories have no ranks yet.
+  // Triangles stand on bonds between ghosts, which parts leave out.
   const bool is_of_bonds = model.terms().size() == 1 && model.bond_term() == model.terms()[0];
-  if (!is_of_bonds || model.has_history()) {
-    throw std::logic_error("Assembler: only bonds without damage have ranks yet");
-  }
+  if (!is_of_bonds) throw std::logic_error("Assembler: only bonds have ranks yet");
   of_points_.resize(points.volume.size());
 }
 Assembler::~Assembler() = default;
@@ -73,11 +71,17 @@ Evaluation Assembler::of_all(const StateView& at, const Evaluation& mine,
   const auto owned = std::size_t(sharing_->owned());
   double energy = 0.0;
   for (std::size_t i = 0; i < owned; ++i) energy += of_points_[i];
+  const std::vector<double> sums =
+      sharing_->ranks().sum({energy, mine.round_off, mine.released, double(mine.degenerate),
+                             double(mine.moves_equilibrium), double(mine.growth.degrading),
+                             double(mine.growth.breaking)});
   Evaluation all;
-  all.energy = sharing_->ranks().sum(energy);
-  all.round_off = sharing_->ranks().sum(mine.round_off);
-  all.degenerate =
-      sharing_->ranks().max(double(mine.degenerate)) > 0.0 || !std::isfinite(all.energy);
+  all.energy = sums[0];
+  all.round_off = sums[1];
+  all.released = sums[2];
+  all.degenerate = sums[3] > 0.0 || !std::isfinite(all.energy);
+  all.moves_equilibrium = sums[4] > 0.0;
+  all.growth = {Index(sums[5]), Index(sums[6])};  // without a utilisation: see Evaluation
   if (gradient.empty()) return all;
   const std::size_t dofs = owned * std::size_t(points_.dimension);
   std::fill(gradient.begin() + std::ptrdiff_t(dofs), gradient.end(), 0.0);
@@ -86,12 +90,12 @@ Evaluation Assembler::of_all(const StateView& at, const Evaluation& mine,
 
 Evaluation Assembler::commit(std::span<const double> displacement, History& history,
                              std::span<double> gradient, const SharedEnvironment& environment) {
-  refuse_on_ranks("commit");
   Evaluation found;
   for_each_term([&](TermPasses& term, Write how) {
     found += term.commit(displacement, environment, history, gradient, how);
   });
-  return found;
+  if (!sharing_) return found;
+  return of_all({displacement, history, Damage::grows, environment}, found, gradient);
 }
 
 Evaluation Assembler::commit_forces(std::span<const double> displacement, History& history,
@@ -121,7 +125,22 @@ DamageGrowth Assembler::growth(const StateView& at) {
     of_term.growth = term.growth(at);
     found += of_term;
   });
-  return found.growth;
+  return sharing_ ? of_all(found.growth) : found.growth;
+}
+
+DamageGrowth Assembler::of_all(const DamageGrowth& mine) const {
+  const Communicator& ranks = sharing_->ranks();
+  const std::vector<double> counts = ranks.sum({double(mine.degrading), double(mine.breaking)});
+  return {Index(counts[0]), Index(counts[1]), ranks.max(mine.utilisation)};
+}
+
+DamageState Assembler::assess(const History& history, std::span<const double> cut_weight,
+                              std::span<double> damage) const {
+  DamageState state = assess_damage(model_, history, cut_weight, damage, &points_);
+  if (!sharing_) return state;
+  const Communicator& ranks = sharing_->ranks();
+  const std::vector<double> sums = ranks.sum({state.dissipated_energy, double(state.broken_bonds)});
+  return {sums[0], Index(sums[1]), ranks.max(state.max_damage)};
 }
 
 void Assembler::tangent(const StateView& at, Tangent& tangent, double projection) {

@@ -6,10 +6,11 @@
 
 #include "assembly/energy/energy.hpp"
 #include "assembly/energy/evaluation.hpp"
-#include "assembly/energy/sharing.hpp"
 #include "assembly/operators/tangent.hpp"
+#include "assembly/terms/damage.hpp"
 #include "assembly/terms/model.hpp"
 #include "assembly/terms/workspace.hpp"
+#include "src/core/sharing.hpp"
 #include "src/geometry/points.hpp"
 
 namespace peristat {
@@ -28,7 +29,6 @@ class Assembler : public Energy {
   ///        all of it, and of dE/dx and products the rows of owned points are right, once ghosts
   ///        have what their owners have. dE/dx of ghosts is zero. All ranks make the same calls.
   /// @throws std::logic_error for a model without terms, and for a part with others than bonds
-  ///         without damage
   Assembler(const Points& points, const Model& model, int threads,
             const Sharing* sharing = nullptr);
   ~Assembler() override;
@@ -63,6 +63,10 @@ class Assembler : public Energy {
 
   /// What committing a state would damage.
   [[nodiscard]] DamageGrowth growth(const StateView& at);
+
+  /// What a history means, see assess_damage; damage of ghosts means nothing.
+  [[nodiscard]] DamageState assess(const History& history, std::span<const double> cut_weight,
+                                   std::span<double> damage) const;
 
   void tangent(const StateView& at, Tangent& tangent, double projection = 0.0) override;
   void product(const StateView& at, std::span<const double> v, std::span<double> product,
@@ -100,6 +104,7 @@ class Assembler : public Energy {
   /// Of the whole body, and of owned points, from what a pass over the part has found.
   [[nodiscard]] Evaluation of_all(const StateView& at, const Evaluation& mine,
                                   std::span<double> gradient);
+  [[nodiscard]] DamageGrowth of_all(const DamageGrowth& mine) const;
 
   /// Whether a term tells no more of its tangent than an outline.
   [[nodiscard]] bool is_outlined(std::size_t term) const;

@@ -6,6 +6,7 @@
 #include <variant>
 
 #include "assembly/terms/points/point_term.hpp"
+#include "src/geometry/counts_bond.hpp"
 
 namespace peristat {
 namespace {
@@ -63,9 +64,9 @@ const PointTerm* failing_points(const Model& model) {
 
 DamageState assess_damage(const Model& model, const History& history,
                           std::span<const double> cut_weight, std::span<double> damage,
-                          std::span<const Index> image_sources) {
-  if (const PointTerm* const points = failing_points(model)) {
-    return assess_points(*points, history.of(model.slot_of(*points)), cut_weight, damage);
+                          const Points* points) {
+  if (const PointTerm* const of_points = failing_points(model)) {
+    return assess_points(*of_points, history.of(model.slot_of(*of_points)), cut_weight, damage);
   }
   const Bonds& bonds = model.bonds();
   DamageState state;
@@ -82,21 +83,26 @@ DamageState assess_damage(const Model& model, const History& history,
   const auto for_each_bond = [&](const auto& integrity) {
     for (Index i = 0; i < bonds.points(); ++i) {
       for (Offset bond = bonds.offset[i]; bond < bonds.offset[i + 1]; ++bond) {
-        add(i, bond, integrity(bond));
+        add(i, bond, integrity(i, bond));
       }
     }
   };
-  if (!model.failing_bonds()) for_each_bond([](Offset) { return 1.0; });
+  if (!model.failing_bonds()) for_each_bond([](Index, Offset) { return 1.0; });
   const std::span<const double> stretches = bond_stretches(model, history);
   with_law(model, [&](const auto& laws) {
-    for_each_bond([&](Offset bond) {
+    for_each_bond([&](Index i, Offset bond) {
       const auto& law = laws.of_bond(bond);
       const double largest = stretches[bond];
+      if (points != nullptr && !counts_bond(*points, i, bonds.partner[bond])) {
+        return law.integrity_after(largest);
+      }
       state.dissipated_energy += bonds.weight(bond) * bonds.length(bond) * law.dissipated(largest);
       state.broken_bonds += law.is_broken(largest) && bonds.weight(bond) != 0.0;
       return law.integrity_after(largest);
     });
   });
+  const std::vector<Index> none;
+  const std::vector<Index>& image_sources = points != nullptr ? points->images.source : none;
   const std::size_t own = damage.size() - image_sources.size();
   for (std::vector<double>* sums : {&whole, &left}) {
     for (std::size_t k = 0; k < image_sources.size(); ++k) {
@@ -106,9 +112,11 @@ DamageState assess_damage(const Model& model, const History& history,
       (*sums)[own + k] = (*sums)[std::size_t(image_sources[k])];
     }
   }
+  const bool is_part = points != nullptr && points->owned;
+  const std::size_t told = is_part ? std::size_t(*points->owned) : damage.size();
   for (std::size_t i = 0; i < damage.size(); ++i) {
     damage[i] = whole[i] > 0.0 ? std::clamp(1.0 - left[i] / whole[i], 0.0, 1.0) : 0.0;
-    state.max_damage = std::max(state.max_damage, damage[i]);
+    if (i < told) state.max_damage = std::max(state.max_damage, damage[i]);
   }
   return state;
 }

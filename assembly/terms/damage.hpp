@@ -26,12 +26,12 @@ struct DamageState {
 /// either 0 or 1 this is one minus the share of unbroken bonds ([GPMB] eq. 13). A point without
 /// bonds has the damage 0, or 1 if a crack has cut them.
 /// @param cut_weight per point [m6], or empty
-/// @param image_sources of the last points (see Images): a bond across a plane of symmetry counts
-///        half, and its twin for the other half
+/// @param points those of the body: a bond across a plane of symmetry counts half, and its twin for
+///        the other half; of a part of a body sums are over the bonds that it counts, and damage is
+///        that of the points that its rank owns. Null: the body is whole and has no images
 [[nodiscard]] DamageState assess_damage(const Model& model, const History& history,
                                         std::span<const double> cut_weight,
-                                        std::span<double> damage,
-                                        std::span<const Index> image_sources = {});
+                                        std::span<double> damage, const Points* points = nullptr);
 
 /// Largest stretch of each bond over the committed states, as far as it has damaged the bond (0
 /// before, Degraded::never_fails where the model says so); empty for bonds that can't be damaged.

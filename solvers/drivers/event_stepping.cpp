@@ -133,18 +133,18 @@ bool EventStepping::pin(Settled& settled) {
   PathState& state = path_.state();
   const FragmentRemedy remedy = path_.options().fragments;
   state.pins.find(path_.body().assembler, settled.state, path_.setting().conditions, remedy);
-  if (!state.pins.are_outdated()) return true;
+  if (!state.pins.are_outdated(path_.problem().sums())) return true;
   if (remedy == FragmentRemedy::stop && state.pins.found.count > 0) {
     settled.outcome = Outcome::fragmented;
-    settled.fault = state.pins.described();
+    settled.fault = state.pins.described(path_.problem().sums());
     return false;
   }
   const Decision action =
       remedy == FragmentRemedy::remove ? Decision::remove_fragments : Decision::hold_fragments;
   if (tells_) {
-    path_.tell(
-        load_point(settled.state),
-        {.outcome = name(Outcome::converged), .action = action, .reason = state.pins.described()});
+    path_.tell(load_point(settled.state), {.outcome = name(Outcome::converged),
+                                           .action = action,
+                                           .reason = state.pins.described(path_.problem().sums())});
   }
   tangent_.reset();  // there are other equations
   path_.state().events.tangent = {};

@@ -5,7 +5,6 @@
 #include <utility>
 #include <vector>
 
-#include "assembly/terms/damage.hpp"
 #include "solvers/linear/vector_verbs.hpp"
 #include "src/core/number_text.hpp"
 
@@ -22,8 +21,9 @@ constexpr double share_of_lost_load = 0.1;
 /// @return a sentence for a person; empty if the body bears its loads
 std::string lost_load(const Path& path, const Attempt& attempt) {
   const std::vector<double>& load = attempt.external_force;
-  const double whole = norm(load);
-  const double pinned = path.state().pins.force(attempt.state, load);
+  const Sums sums = path.problem().sums();
+  const double whole = sums.norm(load);
+  const double pinned = path.state().pins.force(sums, attempt.state, load);
   if (whole == 0.0 || pinned <= share_of_lost_load * whole) return {};
   return number_text(pinned) + " N of loads of " + number_text(whole) +
          " N pull on what has come off: the body does not bear them";
@@ -63,16 +63,22 @@ void complete_record(const Path& path, const Attempt& attempt, FoundStep& found)
   record.external_work = found.ledger.external_work;
   record.numerical_work = found.ledger.numerical_work;
   record.balance_error = found.ledger.balance_error();
-  record.pin_force = path.state().pins.force(attempt.state, attempt.external_force);
-  record.reactions =
-      path.setting().conditions.reactions(attempt.state.gradient, attempt.external_force,
-                                          attempt.state.displacement, attempt.state.environment);
+  record.pin_force =
+      path.state().pins.force(path.problem().sums(), attempt.state, attempt.external_force);
+  record.reactions = reactions(path, attempt.state, attempt.external_force);
+}
+
+std::map<std::string, Coordinates> reactions(const Path& path, const Trial& state,
+                                             const std::vector<double>& external_force) {
+  std::map<std::string, Coordinates> found = path.setting().conditions.reactions(
+      state.gradient, external_force, state.displacement, state.environment);
   const Sums sums = path.problem().sums();
-  for (auto& [set, reaction] : record.reactions) {
+  for (auto& [set, reaction] : found) {
     const std::vector<double> all =
         sums.of_all(std::vector<double>(reaction.begin(), reaction.end()));
     std::copy(all.begin(), all.end(), reaction.begin());
   }
+  return found;
 }
 
 void commit(Path& path, Attempt& attempt, FoundStep& found,
@@ -96,7 +102,7 @@ std::string complete(Path& path, Attempt& attempt, FoundStep& found) {
   const auto& [assembler, solver, tangent, free] = path.body();
   const PathLedger& ledger = path.state().ledger;
   std::vector<double> damage(std::size_t(assembler.points().count()));
-  const DamageState damaged = assess_damage(assembler.model(), attempt.state.history, {}, damage);
+  const DamageState damaged = assembler.assess(attempt.state.history, {}, damage);
   found.record.broken_bonds = damaged.broken_bonds;
   if (!found.energies.intact) {
     found.energies.heating = heating_work(assembler, path.state().accepted, attempt.state.at());
@@ -132,17 +138,17 @@ void tell_of_fragments(const Path& path, double next) {
        .action = path.options().fragments == FragmentRemedy::remove ? Decision::remove_fragments
                                                                     : Decision::hold_fragments,
        .next_increment = next,
-       .reason = path.state().pins.described()});
+       .reason = path.state().pins.described(path.problem().sums())});
 }
 
 Advance resolve_fragments(Path& path, double next) {
   PathState& state = path.state();
-  if (!state.pins.are_outdated()) return Advance::goes_on;
+  if (!state.pins.are_outdated(path.problem().sums())) return Advance::goes_on;
   const FragmentRemedy remedy = path.options().fragments;
   if (remedy == FragmentRemedy::stop && state.pins.found.count > 0) {
     Attempt attempt = std::move(path.last_attempt());
     attempt.outcome = Outcome::fragmented;
-    return path.stop(std::move(attempt), 0.0, state.pins.described());
+    return path.stop(std::move(attempt), 0.0, state.pins.described(path.problem().sums()));
   }
   tell_of_fragments(path, next);
   state.relaxed.motion = {};

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <functional>
+#include <map>
 #include <string>
+#include <vector>
 
 #include "solvers/drivers/increment.hpp"
 #include "solvers/drivers/path.hpp"
@@ -15,6 +17,10 @@ struct FoundStep {
   StepEnergies energies;
   Ledger ledger;  ///< with the step
 };
+
+/// Reactions of the support sets in a state, of all ranks [N].
+[[nodiscard]] std::map<std::string, Coordinates> reactions(
+    const Path& path, const Trial& state, const std::vector<double>& external_force);
 
 /// Commits an equilibrium. Triangles and tetrahedra then lose what their bonds have lost, so that
 /// the body is out of equilibrium again: it is equilibrated at the fixed load and committed until

@@ -1,6 +1,7 @@
 #include "solvers/drivers/fragment_pins.hpp"
 
 #include <algorithm>
+#include <cstdint>
 
 #include "assembly/terms/damage.hpp"
 #include "solvers/linear/vector_verbs.hpp"
@@ -10,16 +11,18 @@ namespace {
 
 /// Takes floating pieces out of the equations. One that a support still moves goes with it: only
 /// what is missing is pinned there.
-void remove_pieces(Fragments& found, const std::vector<char>& prescribed, int dimension) {
+void remove_pieces(Fragments& found, const std::vector<char>& prescribed, int dimension,
+                   const Sharing* sharing) {
   const auto d = std::size_t(dimension);
-  std::vector<char> removed(std::size_t(found.count) + 1, 1);
-  removed[0] = 0;  // the pieces that are held
+  std::vector<double> removed(std::size_t(found.count) + 1, 1.0);
+  removed[0] = 0.0;  // the pieces that are held
   const std::size_t dofs = found.piece.size() * d;
   for (std::size_t dof = 0; dof < dofs; ++dof) {
-    if (prescribed[dof]) removed[std::size_t(found.piece[dof / d])] = 0;
+    if (prescribed[dof]) removed[std::size_t(found.piece[dof / d])] = 0.0;
   }
+  if (sharing != nullptr) removed = sharing->ranks().min(removed);
   for (std::size_t dof = 0; dof < dofs; ++dof) {
-    found.pinned[dof] |= removed[std::size_t(found.piece[dof / d])];
+    if (removed[std::size_t(found.piece[dof / d])] != 0.0) found.pinned[dof] = 1;
   }
 }
 
@@ -34,15 +37,17 @@ void FragmentPins::find(const Assembler& assembler, const State& state,
   const std::vector<double> rest(is_linear ? state.displacement.size() : 0, 0.0);
   const std::vector<double>& moved = is_linear ? rest : state.displacement;
   found = find_fragments(assembler.points(), *network.bonds, network.broken, prescribed, moved,
-                         conditions.holding(moved));
+                         conditions.holding(moved), assembler.sharing());
   if (remedy == FragmentRemedy::remove) {
-    remove_pieces(found, prescribed, assembler.points().dimension);
+    remove_pieces(found, prescribed, assembler.points().dimension, assembler.sharing());
   }
 }
 
-bool FragmentPins::are_outdated() const {
-  if (!pinned.empty()) return !found.pinned.empty() && found.pinned != pinned;
-  return std::any_of(found.pinned.begin(), found.pinned.end(), [](char pin) { return pin != 0; });
+bool FragmentPins::are_outdated(const Sums& sums) const {
+  const bool mine = pinned.empty() ? std::any_of(found.pinned.begin(), found.pinned.end(),
+                                                 [](char pin) { return pin != 0; })
+                                   : !found.pinned.empty() && found.pinned != pinned;
+  return sums.largest_of_all(double(mine)) > 0.0;
 }
 
 FreeDofs FragmentPins::free_dofs(const std::vector<char>& prescribed, int dimension) const {
@@ -51,14 +56,16 @@ FreeDofs FragmentPins::free_dofs(const std::vector<char>& prescribed, int dimens
   return {without_equation, dimension};
 }
 
-double FragmentPins::force(const Trial& state, std::span<const double> external_force) const {
-  return norm_of(pinned.size(), [&](std::size_t dof) {
+double FragmentPins::force(const Sums& sums, const Trial& state,
+                           std::span<const double> external_force) const {
+  return sums.norm_of(sums.own(pinned.size()), [&](std::size_t dof) {
     return pinned[dof] ? state.gradient[dof] - external_force[dof] : 0.0;
   });
 }
 
-std::string FragmentPins::described() const {
-  return std::to_string(found.count) + " floating pieces, " + std::to_string(found.loose.size()) +
+std::string FragmentPins::described(const Sums& sums) const {
+  const double loose = sums.of_all(double(found.loose.size()));
+  return std::to_string(found.count) + " floating pieces, " + std::to_string(std::int64_t(loose)) +
          " loose points";
 }
 

@@ -23,12 +23,13 @@ struct FragmentPins {
   Fragments found;           ///< looked for last; empty before anything was
   std::vector<char> pinned;  ///< per degree of freedom; empty before anything was
 
-  /// Looks for what has come off in a state; nothing is pinned yet.
+  /// Looks for what has come off in a state; nothing is pinned yet. Of a shared body this and the
+  /// sums are calls that all ranks make.
   void find(const Assembler& assembler, const State& state, const Conditions& conditions,
             FragmentRemedy remedy);
 
   /// Whether what was found last asks for other pins than there are.
-  [[nodiscard]] bool are_outdated() const;
+  [[nodiscard]] bool are_outdated(const Sums& sums) const;
 
   /// Pins what was found last.
   void pin() { pinned = found.pinned; }
@@ -37,10 +38,11 @@ struct FragmentPins {
   [[nodiscard]] FreeDofs free_dofs(const std::vector<char>& prescribed, int dimension) const;
 
   /// Forces of the pins, their 2-norm [N].
-  [[nodiscard]] double force(const Trial& state, std::span<const double> external_force) const;
+  [[nodiscard]] double force(const Sums& sums, const Trial& state,
+                             std::span<const double> external_force) const;
 
   /// What was found last, for a person.
-  [[nodiscard]] std::string described() const;
+  [[nodiscard]] std::string described(const Sums& sums) const;
 };
 
 }  // namespace peristat

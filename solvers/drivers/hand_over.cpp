@@ -23,12 +23,15 @@ double fall_of_force(const Path& path, const Attempt& attempt) {
   const std::vector<double>& before = path.state().ledger.force;
   const std::vector<double> after = path.working_force(attempt.state, attempt.external_force);
   const std::vector<double>& from = path.state().accepted.displacement;
+  const Sums sums = path.problem().sums();
   double work_before = 0.0, work_after = 0.0;
-  for (std::size_t dof = 0; dof < from.size(); ++dof) {
+  for (std::size_t dof = 0; dof < sums.own(from.size()); ++dof) {
     const double moved = attempt.state.displacement[dof] - from[dof];
     work_before += before[dof] * moved;
     work_after += after[dof] * moved;
   }
+  work_before = sums.of_all(work_before);
+  work_after = sums.of_all(work_after);
   return work_before > 0.0 ? 1.0 - work_after / work_before : 0.0;
 }
 
@@ -125,8 +128,7 @@ Advance HandOver::take_up_body(double& jump) {
   stand_in.history = state.accepted.history;
   stand_in.environment = state.accepted.environment;
   evaluate(path_.problem(), force, stand_in, Damage::held);
-  const auto before =
-      conditions.reactions(stand_in.gradient, force, stand_in.displacement, stand_in.environment);
+  const auto before = reactions(path_, stand_in, force);
   state.stands_in = false;
   if (!state.pins.pinned.empty() && path_.analyze() == Advance::ended) {
     return Advance::ended;
@@ -137,9 +139,7 @@ Advance HandOver::take_up_body(double& jump) {
     const std::string reason = explanation(attempt.outcome);
     return path_.stop(std::move(attempt), 0.0, reason);
   }
-  jump = largest_jump(before,
-                      conditions.reactions(attempt.state.gradient, attempt.external_force,
-                                           attempt.state.displacement, attempt.state.environment));
+  jump = largest_jump(before, reactions(path_, attempt.state, attempt.external_force));
   state.accepted.displacement = attempt.state.displacement;
   state.ledger.begin(attempt.state, path_.working_force(attempt.state, attempt.external_force));
   return Advance::goes_on;

@@ -130,9 +130,9 @@ Outcome ImplicitStepping::pin_loose(const State& at, ImplicitStep& step) {
   FragmentPins& pins = path_.state().pins;
   const FragmentRemedy remedy = path_.options().fragments;
   pins.find(path_.body().assembler, at, path_.setting().conditions, remedy);
-  if (!pins.are_outdated()) return Outcome::converged;
+  if (!pins.are_outdated(path_.problem().sums())) return Outcome::converged;
   if (remedy == FragmentRemedy::stop && pins.found.count > 0) {
-    step.fault = pins.described();
+    step.fault = pins.described(path_.problem().sums());
     return Outcome::fragmented;
   }
   step.has_pinned = true;

@@ -172,8 +172,13 @@ Attempt Path::search(const State& from, const BorderedStep& step, const NewtonOp
 void Path::number_equations() {
   own_free_.reset();
   if (state_.pins.pinned.empty()) return;
+  const FreeDofs& held_by_supports = setting_.body.free;
+  std::vector<char> without_equation;
+  for (const Index equation : held_by_supports.equation) {
+    without_equation.push_back(equation == FreeDofs::none);
+  }
   own_free_ = std::make_unique<FreeDofs>(
-      state_.pins.free_dofs(setting_.conditions.prescribed(), setting_.body.free.dimension));
+      state_.pins.free_dofs(without_equation, held_by_supports.dimension));
 }
 
 Advance Path::pin() {

@@ -24,9 +24,7 @@ Ledger PathLedger::with_step(const Sums& sums, std::span<const double> displacem
                              const StepEnergies& step) const {
   const auto work_of = [&](std::span<const double> force0, std::span<const double> force1,
                            std::span<const double> u0, std::span<const double> u1) {
-    const std::size_t own = sums.own(u0.size());
-    return sums.of_all(
-        trapezoidal_work(force0.first(own), force1.first(own), u0.first(own), u1.first(own)));
+    return trapezoidal_work(sums, force0, force1, u0, u1);
   };
   const double work =
       step.heating +

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "solvers/linear/vector_verbs.hpp"
 #include "solvers/search/flow.hpp"
 #include "src/core/stopwatch.hpp"
 
@@ -35,8 +34,10 @@ bool finish(Path& path, RelaxedStep& step, NewtonOptions options) {
     step.found.record.settled = false;
     step.found.energies.relaxed->drained +=
         step.attempt.state.total_energy - finished.state.total_energy;
-    step.found.energies.relaxed->work += dot(finished.external_force, finished.state.displacement) -
-                                         dot(finished.external_force, near.displacement);
+    const Sums sums = path.problem().sums();
+    step.found.energies.relaxed->work +=
+        sums.dot(finished.external_force, finished.state.displacement) -
+        sums.dot(finished.external_force, near.displacement);
   }
   step.attempt = std::move(finished);
   return true;

@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
-#include "assembly/energy/sharing.hpp"
 #include "solvers/linear/vector_verbs.hpp"
+#include "src/core/sharing.hpp"
 
 namespace peristat {
 

@@ -22,4 +22,12 @@ double trapezoidal_work(std::span<const double> force0, std::span<const double> 
   return work;
 }
 
+double trapezoidal_work(const Sums& sums, std::span<const double> force0,
+                        std::span<const double> force1, std::span<const double> u0,
+                        std::span<const double> u1) {
+  const std::size_t own = sums.own(u0.size());
+  return sums.of_all(
+      trapezoidal_work(force0.first(own), force1.first(own), u0.first(own), u1.first(own)));
+}
+
 }  // namespace peristat

@@ -18,4 +18,9 @@ namespace peristat {
                                       std::span<const double> force1, std::span<const double> u0,
                                       std::span<const double> u1);
 
+/// Of all ranks, without their ghosts.
+[[nodiscard]] double trapezoidal_work(const Sums& sums, std::span<const double> force0,
+                                      std::span<const double> force1, std::span<const double> u0,
+                                      std::span<const double> u1);
+
 }  // namespace peristat

@@ -23,7 +23,7 @@ constexpr int iterations_per_record = 100;
 constexpr int iterations_per_look = 10;
 
 /// Sums over the equations, threads added up in order.
-using Sums = std::array<double, 4>;
+using FourSums = std::array<double, 4>;
 
 class Relaxation {
  public:
@@ -31,6 +31,8 @@ class Relaxation {
              const RelaxationOptions& options, std::vector<double>& velocity,
              RelaxationResult& result)
       : problem_(problem),
+        of_body_(problem.sums()),
+        equations_(of_body_.of_all(double(problem.free.dof.size()))),
         way_(way),
         options_(options),
         dofs_(problem.free.dof),
@@ -77,7 +79,7 @@ class Relaxation {
     const std::vector<double>& force = result_.external_force;
     fold_followers(problem_, force, at_);
     // [0] F.F, [1] U.K1 U, [2] U.U
-    const Sums sums = sum([&](std::size_t e, Sums& s) {
+    const FourSums sums = sum([&](std::size_t e, FourSums& s) {
       const double residual = force[dofs_[e]] - at_.gradient[dofs_[e]];
       residual_[e] = residual;
       s[0] += residual * residual;
@@ -93,7 +95,7 @@ class Relaxation {
 
   /// V^(1/2), from rest.
   void set_off() {
-    const Sums sums = sum([&](std::size_t e, Sums& s) {
+    const FourSums sums = sum([&](std::size_t e, FourSums& s) {
       velocity_[e] = 0.5 * residual_[e] * inverse_density_[e];
       s[0] += 0.25 * residual_[e] * velocity_[e];
     });
@@ -106,7 +108,7 @@ class Relaxation {
     const double c = damping_coefficient();
     const double keep = (2.0 - c) / (2.0 + c), gain = 2.0 / (2.0 + c);
     // [0] damping, [1] kinetic energy
-    const Sums sums = sum([&](std::size_t e, Sums& s) {
+    const FourSums sums = sum([&](std::size_t e, FourSums& s) {
       if (inverse_density_[e] == 0.0) return;
       const double before = velocity_[e];
       const double after = keep * before + gain * residual_[e] * inverse_density_[e];
@@ -130,7 +132,7 @@ class Relaxation {
 
   /// What the motion that has led here holds: 1/2 V.lambda V + 1/2 F.V at V^(n-1/2).
   double energy_of_motion() {
-    return sum([&](std::size_t e, Sums& s) {
+    return sum([&](std::size_t e, FourSums& s) {
       if (inverse_density_[e] == 0.0) return;
       s[0] += 0.5 * velocity_[e] * (velocity_[e] / inverse_density_[e] + residual_[e]);
     })[0];
@@ -141,13 +143,13 @@ class Relaxation {
   void move(double share) {
     heat_up(share);
     if (!at_.follower_force.empty()) last_displacement_ = at_.displacement;
-    const Sums sums = sum([&](std::size_t e, Sums& s) {
+    const FourSums sums = sum([&](std::size_t e, FourSums& s) {
       double& displacement = at_.displacement[dofs_[e]];
       displacement += velocity_[e];
       s[0] += velocity_[e] * velocity_[e];
       s[1] += displacement * displacement;
     });
-    mean_speed_ = std::sqrt(sums[0] / std::max(1.0, double(dofs_.size())));
+    mean_speed_ = std::sqrt(sums[0] / std::max(1.0, equations_));
     relative_change_ = sums[1] > 0.0 ? std::sqrt(sums[0] / sums[1]) : 1.0;
     add_half_work_of_loads();
     if (share != share_) {
@@ -169,7 +171,7 @@ class Relaxation {
                                (at_.displacement[k] - last_displacement_[k]);
     }
     if (last_environment_ != at_.environment) {
-      result_.external_work += 0.5 * (at_.stored_energy - energy_under(last_environment_));
+      add_work_of_body(0.5 * (at_.stored_energy - energy_under(last_environment_)));
       last_environment_ = at_.environment;
     }
     for (std::size_t k = 0; k < last_reaction_.size(); ++k) {
@@ -196,7 +198,7 @@ class Relaxation {
     row.iteration = result_.iterations;
     row.residual = at_.residual_norm;
     row.relative_residual = result_.scale > 0.0 ? at_.residual_norm / result_.scale : 0.0;
-    row.energy = at_.stored_energy - dot(result_.external_force, at_.displacement);
+    row.energy = at_.stored_energy - of_body_.dot(result_.external_force, at_.displacement);
     row.step_length = 1.0;
     row.changed_bonds = result_.growth.degrading;
     return row;
@@ -209,7 +211,13 @@ class Relaxation {
     last_environment_ = at_.environment;
     if (share == share_ || !way_.end_environment()) return;
     at_.environment = way_.environment(share);
-    result_.external_work += 0.5 * (energy_under(at_.environment) - at_.stored_energy);
+    add_work_of_body(0.5 * (energy_under(at_.environment) - at_.stored_energy));
+  }
+
+  /// Work that all ranks know; until its end the relaxation's is what each of them adds to it.
+  void add_work_of_body(double work) {
+    const Sharing* const sharing = problem_.assembler.sharing();
+    if (sharing == nullptr || sharing->ranks().rank() == 0) result_.external_work += work;
   }
 
   [[nodiscard]] double energy_under(const SharedEnvironment& environment) {
@@ -217,17 +225,28 @@ class Relaxation {
         .energy;
   }
 
+  /// Over those of all ranks.
   template <class Body>
-  Sums sum(const Body& body) {
+  FourSums sum(const Body& body) {
+    FourSums total = sum_here(body);
+    if (problem_.assembler.sharing() == nullptr) return total;
+    const std::vector<double> all =
+        of_body_.of_all(std::vector<double>(total.begin(), total.end()));
+    std::copy(all.begin(), all.end(), total.begin());
+    return total;
+  }
+
+  template <class Body>
+  FourSums sum_here(const Body& body) {
     const auto count = static_cast<Index>(dofs_.size());
     run_on_threads(problem_.assembler.threads(), [&](int thread) {
-      Sums own{};
+      FourSums own{};
 #pragma omp for schedule(static) nowait
       for (Index e = 0; e < count; ++e) body(std::size_t(e), own);
       partial_[std::size_t(thread)] = own;
     });
-    Sums total{};
-    for (const Sums& part : partial_) {
+    FourSums total{};
+    for (const FourSums& part : partial_) {
       for (std::size_t k = 0; k < total.size(); ++k) total[k] += part[k];
     }
     return total;
@@ -257,18 +276,21 @@ class Relaxation {
   void add_half_work_of_loads() {
     if (!way_.has_loads()) return;
     const std::vector<double>& force = result_.external_force;
-    result_.external_work +=
-        0.5 * sum([&](std::size_t e, Sums& s) { s[0] += force[dofs_[e]] * velocity_[e]; })[0];
+    result_.external_work += 0.5 * sum_here([&](std::size_t e, FourSums& s) {
+                               s[0] += force[dofs_[e]] * velocity_[e];
+                             })[0];
   }
 
   const EquilibriumProblem& problem_;
+  const Sums of_body_;
+  const double equations_;  // of all ranks
   const WayOfLoad& way_;
   const RelaxationOptions& options_;
   const std::vector<Index>& dofs_;
   std::vector<double>& velocity_;  // V^(n-1/2), and after `accelerate` V^(n+1/2)
   RelaxationResult& result_;
   Trial& at_;
-  std::vector<Sums> partial_;                     // per thread
+  std::vector<FourSums> partial_;                 // per thread
   std::vector<double> inverse_density_;           // 1/lambda; 0 where nothing resists
   std::vector<double> residual_, last_residual_;  // F^n, F^(n-1)
   std::vector<double> last_reaction_;             // dE/dx on prescribed degrees of freedom
@@ -300,7 +322,9 @@ RelaxationResult relax(const EquilibriumProblem& problem, TangentOperator& tange
 
   const double taken_up_at_start = taken_up(problem, options.breaking, result.state);
 
-  const bool goes_on = motion.velocity.size() == std::size_t(problem.free.count());
+  const Sums sums = problem.sums();
+  const bool is_of_equations = motion.velocity.size() == std::size_t(problem.free.count());
+  const bool goes_on = sums.largest_of_all(double(!is_of_equations)) == 0.0;
   if (!goes_on) motion.velocity.assign(std::size_t(problem.free.count()), 0.0);
   Relaxation relaxation(problem, way, options, motion.velocity, result);
   relaxation.find_density(tangent);
@@ -343,8 +367,9 @@ RelaxationResult relax(const EquilibriumProblem& problem, TangentOperator& tange
     }
     if (n < last) relaxation.accelerate();
   }
+  result.external_work = sums.of_all(result.external_work);
   Trial& state = result.state;
-  state.total_energy = state.stored_energy - dot(result.external_force, state.displacement);
+  state.total_energy = state.stored_energy - sums.dot(result.external_force, state.displacement);
   const double moving = relaxation.energy_of_motion();
   if (options.holds) {
     result.damped_energy += moving;

@@ -35,8 +35,8 @@ constexpr double smallest_share = 1.0 / 64.0;
 /// in the same way. This is far above what it can be and far below the path's tolerance.
 constexpr double imperfection = 1e-6;
 
-/// A number from -1 to 1 for every degree of freedom, the same in every run.
-double imperfection_of(Index dof) {
+/// A number from -1 to 1 for every degree of freedom of the whole body, the same in every run.
+double imperfection_of(GlobalIndex dof) {
   auto bits = std::uint64_t(dof) * 0x9e3779b97f4a7c15u;
   bits = (bits ^ (bits >> 30)) * 0xbf58476d1ce4e5b9u;
   bits = (bits ^ (bits >> 27)) * 0x94d049bb133111ebu;
@@ -68,6 +68,7 @@ class Flow {
         solver_(solver),
         options_(options),
         observer_(observer),
+        sums_(problem.sums()),
         way_(problem, from, stage),
         force_(from.displacement.size()),
         linearisation_(problem, solver, tangent, force_) {
@@ -88,7 +89,7 @@ class Flow {
     result_.outcome = search();
     result_.drained_energy = result_.external_work - result_.released_energy -
                              (taken_up(problem_, options_.breaking, current_) - before);
-    current_.total_energy = current_.stored_energy - dot(force_, current_.displacement);
+    current_.total_energy = current_.stored_energy - sums_.dot(force_, current_.displacement);
     result_.state = std::move(current_);
     result_.external_force = std::move(force_);
     return std::move(result_);
@@ -130,9 +131,17 @@ class Flow {
     const LinearOutcome linear =
         linearisation_.solve_again(residual_of(at), {}, linear_tolerance, direction);
     for (const Index dof : problem_.free.dof) {
-      direction[dof] *= 1.0 + imperfection * imperfection_of(dof);
+      direction[dof] *= 1.0 + imperfection * imperfection_of(dof_of_body(dof));
     }
     return outcome_of(linear);
+  }
+
+  /// Number of one of the degrees of freedom here in the whole body.
+  [[nodiscard]] GlobalIndex dof_of_body(Index dof) const {
+    const Sharing* const sharing = problem_.assembler.sharing();
+    if (sharing == nullptr) return dof;
+    const int d = problem_.assembler.points().dimension;
+    return sharing->number()[std::size_t(dof / d)] * d + dof % d;
   }
 
   /// Zero on degrees of freedom that are not free.
@@ -158,7 +167,8 @@ class Flow {
       add_scaled(move, -1.0, current_.displacement);
       const Outcome found = find_direction(next_, next_direction_);
       if (found != Outcome::converged) return found;
-      if (can_shorten && norm(next_direction_) > largest_correction * norm(move)) continue;
+      if (can_shorten && sums_.norm(next_direction_) > largest_correction * sums_.norm(move))
+        continue;
       share_ = share;
       result_.external_work +=
           heating_work(problem_.assembler, current_.at(Damage::held), next_.at(Damage::held));
@@ -201,22 +211,22 @@ class Flow {
   /// A step of the flow under loads that stand still.
   Outcome advance() {
     const std::vector<double> force = residual_of(current_);
-    const double decay = dot(direction_, force);  // |d|^2 in the norm of K0
+    const double decay = sums_.dot(direction_, force);  // |d|^2 in the norm of K0
     if (!(decay > 0.0)) return Outcome::no_descent;
     const std::vector<double> working = working_force(problem_.conditions, current_, force_);
     const double round_off = 64.0 * std::numeric_limits<double>::epsilon() *
                                  std::max(std::abs(current_.stored_energy),
-                                          std::abs(dot(force_, current_.displacement))) +
+                                          std::abs(sums_.dot(force_, current_.displacement))) +
                              current_.energy_round_off;
     if (has_stalled(decay <= round_off)) return Outcome::iteration_limit;
     int rejected = 0;
     for (;;) {
       if (result_.iterations >= options_.max_iterations) return Outcome::iteration_limit;
       attempt(theta_);
-      const double along = dot(direction_, residual_of(next_));
+      const double along = sums_.dot(direction_, residual_of(next_));
       const double gain =
           next_.stored_energy - current_.stored_energy -
-          trapezoidal_work(working, working_force(problem_.conditions, next_, force_),
+          trapezoidal_work(sums_, working, working_force(problem_.conditions, next_, force_),
                            current_.displacement, next_.displacement);
       const bool falls = gain <= -sufficient_decrease * theta_ * decay ||
                          (std::abs(gain) <= round_off && std::abs(along) <= decay);
@@ -228,7 +238,7 @@ class Flow {
       }
       const Outcome found = find_direction(next_, next_direction_);
       if (found != Outcome::converged) return found;
-      const double across2 = dot(next_direction_, residual_of(next_)) - along * along / decay;
+      const double across2 = sums_.dot(next_direction_, residual_of(next_)) - along * along / decay;
       const double error =
           neglected_share(theta_) * std::sqrt(std::max(across2, 0.0) / decay) / theta_;
       const double taken = theta_;
@@ -270,7 +280,7 @@ class Flow {
   /// @param working force in the state before
   Outcome accept(std::span<const double> working) {
     result_.external_work +=
-        trapezoidal_work(working, working_force(problem_.conditions, next_, force_),
+        trapezoidal_work(sums_, working, working_force(problem_.conditions, next_, force_),
                          current_.displacement, next_.displacement);
     std::swap(current_, next_);
     std::swap(direction_, next_direction_);
@@ -292,7 +302,7 @@ class Flow {
     row.iteration = result_.iterations;
     row.residual = current_.residual_norm;
     row.relative_residual = result_.scale > 0.0 ? row.residual / result_.scale : 0.0;
-    row.energy = current_.stored_energy - dot(force_, current_.displacement);
+    row.energy = current_.stored_energy - sums_.dot(force_, current_.displacement);
     row.step_length = step_length;
     row.linear_iterations = solver_.last_iterations();
     row.linear_tolerance = row.linear_iterations > 0 ? linear_tolerance : 0.0;
@@ -308,6 +318,7 @@ class Flow {
   LinearSolver& solver_;
   const RelaxationOptions& options_;
   const RelaxationObserver& observer_;
+  const Sums sums_;
   WayOfLoad way_;
   double share_ = 0.0;  // of the way of supports and loads
   std::vector<double> force_;

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "assembly/terms/damage.hpp"
-
 namespace peristat {
 
 double relaxation_scale(const EquilibriumProblem& problem, const Trial& start, double stage,
@@ -31,8 +29,7 @@ double relaxation_scale(const EquilibriumProblem& problem, const Trial& start, d
 double taken_up(const EquilibriumProblem& problem, Breaking breaking, const Trial& at) {
   if (breaking == Breaking::at_equilibrium) return at.stored_energy;
   std::vector<double> damage(std::size_t(problem.assembler.points().count()));
-  return at.stored_energy +
-         assess_damage(problem.assembler.model(), at.history, {}, damage).dissipated_energy;
+  return at.stored_energy + problem.assembler.assess(at.history, {}, damage).dissipated_energy;
 }
 
 }  // namespace peristat

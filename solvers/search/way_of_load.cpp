@@ -20,6 +20,7 @@ WayOfLoad::WayOfLoad(const EquilibriumProblem& problem, const State& from, doubl
     has_loads_ |= is_loaded;
     if (is_loaded && dependent[dof]) loaded_followers_.push_back(Index(dof));
   }
+  has_loads_ = problem.sums().largest_of_all(double(has_loads_)) > 0.0;
 }
 
 }  // namespace peristat

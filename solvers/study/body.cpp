@@ -301,17 +301,15 @@ namespace {
 void refuse_without_ranks(const BodySpecification& of) {
   const auto refuse = [](const std::string& key) {
     throw InputError(key, "",
-                     "is not for more than one rank yet: there are elastic bonds of one material, "
-                     "with supports, body forces, total forces and gravity");
+                     "is not for more than one rank yet: there are bonds of one material, with "
+                     "supports, body forces, total forces and gravity");
   };
   const MaterialSpecification& material = of.material;
   if (material.model != MaterialModel::bond) refuse("material.model");
   if (material.kinematics != Kinematics::finite) refuse("material.kinematics");
-  if (material.damage.law != DamageLaw::none) refuse("material.damage");
   if (!of.is_uniform()) refuse(of.regions.empty() ? "material" : "regions");
   if (of.force_operator != ForceOperator::bonds) refuse("force_operator");
   if (of.horizon_shape != HorizonShape::ball) refuse("horizon_shape");
-  if (!of.cracks.empty()) refuse("cracks");
   if (!of.foundations.empty()) refuse("foundations");
   if (!of.controls.empty()) refuse("controls");
   if (of.end_time || of.has_inertia) refuse("end_time");
@@ -350,20 +348,22 @@ std::unique_ptr<const Body> make_body(Part part, const BodySpecification& of,
   check_specification(of, part.points);
   auto made = std::make_unique<Body>();
   Body& body = *made;
-  body.specification = of;
   body.setting = bond_setting(of, part.points);
+  body.specification = with_stretches(of, body.setting, part.points.spacing);
   require_resolved(part.points, body.setting.horizon);
   require_memory_for(part.points, of);
   body.part = std::make_unique<const PartOfBody>(part, ranks);
   {
     const Stopwatch watch(body.seconds_neighbourhood);
-    Bonds bonds = make_bonds(part, of.surface_correction, body.setting, threads);
+    Bonds bonds = make_bonds(part, of.surface_correction, body.setting, ranks, threads);
     body.points = std::move(part.points);
     body.points.owned = part.owned;
     refuse_coincident_points(body.points, bonds);
     const PointMaterials materials(of, body.points);
-    CutBonds none;
-    body.model = make_bond_model(body, materials, std::move(bonds), none);
+    CutBonds cut;
+    body.model = make_bond_model(body, materials, std::move(bonds), cut);
+    body.cut_weight = std::move(cut.weight);
+    body.cut_bonds = std::move(cut.ends);
   }
   LoadSetting loads = load_setting(of, body.points);
   loads.ranks = &ranks;
@@ -505,13 +505,14 @@ namespace {
 /// Sentence that tells which parts of the body may move freely; empty if none.
 std::string describe_free_motions(const Body& body, const Bonds& bonds) {
   const std::vector<FreeMotion> parts =
-      free_motions(body.points, bonds, body.conditions->holding(at_rest(body)));
+      free_motions(body.points, bonds, body.conditions->holding(at_rest(body)), body.part.get());
+  const GlobalIndex whole = body.part ? body.part->whole() : body.points.own();
   std::string text;
   constexpr std::size_t most_listed = 5;
   for (std::size_t k = 0; k < std::min(parts.size(), most_listed); ++k) {
     const FreeMotion& part = parts[k];
-    const std::string place = place_text(body.points.position(part.example), body.points.dimension);
-    if (part.points == body.points.own()) {
+    const std::string place = place_text(part.place, body.points.dimension);
+    if (part.points == whole) {
       text += "the whole body may ";
     } else if (part.points == 1) {
       text += "the isolated point at " + place + " m may ";
@@ -531,17 +532,35 @@ std::string describe_free_motions(const Body& body, const Bonds& bonds) {
   return text;
 }
 
+/// Places of loose points of all ranks, with their numbers in front; the lowest first.
+std::vector<std::pair<double, Coordinates>> places_of_loose(const Body& body,
+                                                            const std::vector<Index>& loose) {
+  std::vector<double> flat;
+  for (const Index point : loose) {
+    const Coordinates at = body.points.position(point);
+    flat.push_back(body.part ? double(body.part->number()[std::size_t(point)]) : double(point));
+    flat.insert(flat.end(), at.begin(), at.end());
+  }
+  if (body.part) flat = all_together(body.part->ranks(), flat);
+  std::vector<std::pair<double, Coordinates>> places;
+  for (std::size_t k = 0; k < flat.size(); k += 4) {
+    places.emplace_back(flat[k], Coordinates{flat[k + 1], flat[k + 2], flat[k + 3]});
+  }
+  std::sort(places.begin(), places.end());
+  return places;
+}
+
 /// Sentence that tells points that swing on too few bonds from the start; empty if none.
 std::string describe_loose_points(const Body& body, const Bonds& bonds) {
   const std::vector<double> rest = at_rest(body);
   const Fragments fragments = find_fragments(body.points, bonds, {}, body.conditions->prescribed(),
-                                             rest, body.conditions->holding(rest));
-  if (fragments.loose.empty()) return {};
-  const std::size_t count = fragments.loose.size();
-  return fmt::format(
-      "{} {} on too few bonds to be held by them, {}at {} m", count,
-      count == 1 ? "point hangs" : "points hang", count == 1 ? "" : "one of them ",
-      place_text(body.points.position(fragments.loose.front()), body.points.dimension));
+                                             rest, body.conditions->holding(rest), body.part.get());
+  const auto places = places_of_loose(body, fragments.loose);
+  if (places.empty()) return {};
+  return fmt::format("{} {} on too few bonds to be held by them, {}at {} m", places.size(),
+                     places.size() == 1 ? "point hangs" : "points hang",
+                     places.size() == 1 ? "" : "one of them ",
+                     place_text(places.front().second, body.points.dimension));
 }
 
 }  // namespace

@@ -9,7 +9,6 @@
 #include "solvers/ranks/part_tangent.hpp"
 #include "solvers/study/found_loads.hpp"
 #include "solvers/study/motion.hpp"
-#include "solvers/study/part_support.hpp"
 #include "solvers/study/rest_stability.hpp"
 #include "src/core/number_text.hpp"
 
@@ -82,11 +81,12 @@ std::vector<char> without_equation(const Body& body) {
   return without_ghosts(*body.part, prescribed, body.points.dimension);
 }
 
-/// Of the modes there is one that sums over ranks.
+/// Of the modes some sum over ranks.
 void refuse_modes_without_ranks(const StudyOptions& options) {
-  if (options.loading.mode == Mode::newton) return;
-  throw InputError("loading.mode", std::string(options.loading.mode.name),
-                   "is not for more than one rank yet; take newton");
+  const Mode mode = options.loading.mode;
+  if (mode == Mode::newton || mode == Mode::adaptive || mode == Mode::relaxation) return;
+  throw InputError("loading.mode", std::string(mode.name),
+                   "is not for more than one rank; take newton, adaptive or relaxation");
 }
 
 }  // namespace
@@ -109,9 +109,8 @@ void check_study(const Body& body, const StudyOptions& options) {
                      is_implicit ? "must be set: implicit steps need a body with inertia"
                                  : "is for bodies that implicit steps follow");
   }
-  if (body.part) return refuse_unheld_part(body);
   if (!moves) refuse_unheld_bodies(body);
-  refuse_unstable_rest(body, options);
+  if (!body.part) refuse_unstable_rest(body, options);
 }
 
 SolvedModel::SolvedModel(const Points& points, const Model& model, const Constraints& constraints,

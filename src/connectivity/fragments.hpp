@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "src/connectivity/holding.hpp"
+#include "src/core/sharing.hpp"
 #include "src/geometry/points.hpp"
 #include "src/neighbourhood/bonds.hpp"
 
@@ -61,10 +62,12 @@ inline constexpr double independence_tolerance = 2.5e-7;
 /// @param prescribed per degree of freedom: it has no equation
 /// @param displacement per degree of freedom [m]
 /// @param holding what holds pieces, in this state
+/// @param sharing null: the body is whole. Otherwise a call that all ranks make, which find the
+///        same as one: `loose`, `piece` and `pinned` are those of the points that are this rank's
 [[nodiscard]] Fragments find_fragments(const Points& points, const Bonds& bonds,
                                        std::span<const char> broken,
                                        const std::vector<char>& prescribed,
-                                       std::span<const double> displacement,
-                                       const Holding& holding);
+                                       std::span<const double> displacement, const Holding& holding,
+                                       const Sharing* sharing = nullptr);
 
 }  // namespace peristat

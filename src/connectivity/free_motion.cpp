@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <numeric>
+#include <utility>
 
+#include "src/connectivity/pieces.hpp"
 #include "src/connectivity/rigid_motions.hpp"
 #include "src/measures/small_algebra.hpp"
 
@@ -95,23 +97,64 @@ Holding with_images(Holding holding, const Points& points, const Bonds& bonds,
   return holding;
 }
 
-std::vector<FreeMotion> free_motions(const Points& points, const Bonds& bonds,
-                                     const Holding& of_body) {
-  const Holding holding = with_images(of_body, points, bonds, {}, points.reference);
-  std::vector<FreeMotion> result;
-  for (const std::vector<Index>& component :
-       connected_components(bonds, {}, holding.links).members()) {
-    if (points.is_image(component.front())) continue;  // beyond reach of the body
-    const RigidMotions free =
-        free_rigid_motions(points.dimension, points.reference, component, holding.prescribed,
-                           points.spacing, holding.motions);
-    if (free.count == 0) continue;
-    const auto own = std::lower_bound(component.begin(), component.end(), points.own());
-    result.push_back(
-        {static_cast<Index>(own - component.begin()), component.front(), motion_names(free)});
+namespace {
+
+/// Free motions that ranks have found, at all of them.
+std::vector<std::pair<FreeMotion, RigidMotions>> of_all_ranks(
+    const std::vector<std::pair<FreeMotion, RigidMotions>>& mine, int dimension,
+    const Communicator& ranks) {
+  const std::size_t modes = std::size_t(dimension) * std::size_t(dimension + 1) / 2;
+  std::vector<double> flat;
+  for (const auto& [piece, motions] : mine) {
+    flat.insert(flat.end(), {double(piece.points), double(piece.example)});
+    flat.insert(flat.end(), piece.place.begin(), piece.place.end());
+    flat.push_back(double(motions.count));
+    flat.insert(flat.end(), motions.basis.begin(), motions.basis.end());
   }
-  std::stable_sort(result.begin(), result.end(),
-                   [](const FreeMotion& a, const FreeMotion& b) { return a.points > b.points; });
+  flat = all_together(ranks, flat);
+  std::vector<std::pair<FreeMotion, RigidMotions>> all;
+  for (auto next = flat.begin(); next != flat.end();) {
+    auto& [piece, motions] = all.emplace_back();
+    piece.points = GlobalIndex(next[0]);
+    piece.example = GlobalIndex(next[1]);
+    std::copy_n(next + 2, 3, piece.place.begin());
+    motions.dimension = dimension;
+    motions.count = int(next[5]);
+    const auto basis = next + 6;
+    next = basis + std::ptrdiff_t(std::size_t(motions.count) * modes);
+    motions.basis.assign(basis, next);
+  }
+  return all;
+}
+
+}  // namespace
+
+std::vector<FreeMotion> free_motions(const Points& points, const Bonds& bonds,
+                                     const Holding& of_body, const Sharing* sharing) {
+  const Holding holding = with_images(of_body, points, bonds, {}, points.reference);
+  const std::vector<Piece> pieces = pieces_of(points, bonds, {}, holding.links, sharing);
+  const std::vector<RigidMotions> motions =
+      FreePieces(points, points.reference, holding, sharing).motions(pieces);
+  std::vector<std::pair<FreeMotion, RigidMotions>> found;
+  for (std::size_t k = 0; k < pieces.size(); ++k) {
+    const Piece& piece = pieces[k];
+    if (motions[k].count == 0 || piece.members.empty()) continue;
+    const Index first = piece.members.front();
+    if (sharing != nullptr && sharing->number()[std::size_t(first)] != piece.lowest) continue;
+    const auto images = std::lower_bound(piece.members.begin(), piece.members.end(), points.own());
+    const GlobalIndex own = piece.points - (piece.members.end() - images);
+    found.push_back({{own, piece.lowest, points.position(first), {}}, motions[k]});
+  }
+  if (sharing != nullptr) found = of_all_ranks(found, points.dimension, sharing->ranks());
+  std::sort(found.begin(), found.end(), [](const auto& a, const auto& b) {
+    return std::pair(-a.first.points, a.first.example) <
+           std::pair(-b.first.points, b.first.example);
+  });
+  std::vector<FreeMotion> result;
+  for (auto& [piece, free] : found) {
+    piece.motions = motion_names(free);
+    result.push_back(std::move(piece));
+  }
   return result;
 }
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "src/connectivity/holding.hpp"
+#include "src/core/sharing.hpp"
 #include "src/geometry/points.hpp"
 #include "src/neighbourhood/bonds.hpp"
 
@@ -33,14 +34,18 @@ struct Components {
 
 /// Rigid motions that the supports leave to one connected component of the bond graph.
 struct FreeMotion {
-  Index points = 0;                  ///< of the component
-  Index example = 0;                 ///< its lowest point
+  GlobalIndex points = 0;            ///< of the component
+  GlobalIndex example = 0;           ///< its lowest point, by its number in the whole body
+  Coordinates place{};               ///< of that [m]
   std::vector<std::string> motions;  ///< "move along x", "rotate about z", …
 };
 
 /// All components that may move as rigid bodies, largest first; empty if everything is held.
 /// Decided by the rank of the prescribed components on the rigid motions of each component.
+/// @param sharing null: the body is whole. Otherwise a call that all ranks make, which all get the
+///        same from
 [[nodiscard]] std::vector<FreeMotion> free_motions(const Points& points, const Bonds& bonds,
-                                                   const Holding& holding);
+                                                   const Holding& holding,
+                                                   const Sharing* sharing = nullptr);
 
 }  // namespace peristat

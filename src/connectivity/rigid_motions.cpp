@@ -107,29 +107,63 @@ RigidMotions free_rigid_motions(int dimension, std::span<const double> positions
   centre /= double(members.size());
   double size = smallest_size;
   for (Index i : members) size = std::max(size, (vector_of(positions, i, d) - centre).norm());
-  const Eigen::Index modes = d * (d + 1) / 2;
-  Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(modes, modes);
-  Eigen::MatrixXd held = Eigen::MatrixXd::Zero(modes, modes);
+  const RigidMotions about{d, {centre.x(), centre.y(), centre.z()}, size, 0, {}};
+  MotionSums sums(d);
   for (Index i : members) {
-    const PointMotions motion = rigid_motions(vector_of(positions, i, d) - centre, d, size);
-    gram.noalias() += motion.transpose() * motion;
-    for (int c = 0; c < d; ++c) {
-      if (prescribed[std::size_t(i) * d + c]) held += motion.row(c).transpose() * motion.row(c);
-    }
+    Coordinates place{};
+    for (int c = 0; c < d; ++c) place[std::size_t(c)] = positions[std::size_t(i) * d + c];
+    add_point(about, place, std::span(prescribed).subspan(std::size_t(i) * d, std::size_t(d)),
+              sums);
   }
   for (const HeldMotion& motion : held_motions) {
-    if (!std::binary_search(members.begin(), members.end(), motion.member)) continue;
-    const Eigen::RowVectorXd row = row_of(motion, centre, d, size);
-    held += row.transpose() * row;
+    if (std::binary_search(members.begin(), members.end(), motion.member)) {
+      add_held(about, motion, sums);
+    }
   }
+  return free_rigid_motions(about, sums);
+}
+
+void add_held(const RigidMotions& about, const HeldMotion& motion, MotionSums& sums) {
+  const Eigen::Index modes = about.dimension * (about.dimension + 1) / 2;
+  Eigen::Map<Eigen::MatrixXd> held(sums.held.data(), modes, modes);
+  const Eigen::Vector3d centre(about.centre[0], about.centre[1], about.centre[2]);
+  const Eigen::RowVectorXd row = row_of(motion, centre, about.dimension, about.size);
+  held += row.transpose() * row;
+}
+
+void add_point(const RigidMotions& about, const Coordinates& place,
+               std::span<const char> prescribed, MotionSums& sums) {
+  const int d = about.dimension;
+  const Eigen::Index modes = d * (d + 1) / 2;
+  Eigen::Map<Eigen::MatrixXd> moving(sums.moving.data(), modes, modes),
+      held(sums.held.data(), modes, modes);
+  const Eigen::Vector3d arm(place[0] - about.centre[0], place[1] - about.centre[1],
+                            place[2] - about.centre[2]);
+  const PointMotions motion = rigid_motions(arm, d, about.size);
+  moving.noalias() += motion.transpose() * motion;
+  for (int c = 0; c < d; ++c) {
+    if (prescribed[std::size_t(c)]) held += motion.row(c).transpose() * motion.row(c);
+  }
+  sums.points += 1.0;
+}
+
+RigidMotions free_rigid_motions(const RigidMotions& about, const MotionSums& sums) {
+  const Eigen::Index modes = about.dimension * (about.dimension + 1) / 2;
+  const Eigen::Map<const Eigen::MatrixXd> gram(sums.moving.data(), modes, modes),
+      held(sums.held.data(), modes, modes);
   // A straight row of points does not move when it turns about itself: such motions do not count.
-  const Eigen::MatrixXd moving = null_space(gram, double(members.size()), true);
+  const Eigen::MatrixXd moving = null_space(gram, sums.points, true);
   const Eigen::MatrixXd free = moving * null_space(moving.transpose() * held * moving, 1.0);
-  return {d,
-          {centre.x(), centre.y(), centre.z()},
-          size,
-          static_cast<int>(free.cols()),
+  return {about.dimension, about.centre, about.size, static_cast<int>(free.cols()),
           std::vector<double>(free.data(), free.data() + free.size())};
+}
+
+std::vector<double> moved_by(const RigidMotions& motions, const Coordinates& place, int axis) {
+  const Eigen::Vector3d arm(place[0] - motions.centre[0], place[1] - motions.centre[1],
+                            place[2] - motions.centre[2]);
+  const Eigen::RowVectorXd row =
+      rigid_motions(arm, motions.dimension, motions.size).row(axis) * basis_of(motions);
+  return {row.begin(), row.end()};
 }
 
 std::vector<std::string> motion_names(const RigidMotions& motions) {
@@ -164,9 +198,6 @@ std::vector<std::size_t> determinate_pins(const RigidMotions& motions,
                                           std::span<const Index> members,
                                           const std::vector<char>& prescribed,
                                           std::span<const FreeHandle> handles) {
-  // Displacements that differ by less than this fraction are alike: round-off must not choose.
-  constexpr double alike = 1e-9;
-  constexpr double at_rest = 1e-6;
   if (motions.count == 0) return {};
   const int d = motions.dimension;
   const Eigen::Vector3d centre(motions.centre[0], motions.centre[1], motions.centre[2]);
@@ -201,9 +232,9 @@ std::vector<std::size_t> determinate_pins(const RigidMotions& motions,
   for (int pin = 0; pin < motions.count; ++pin) {
     Eigen::Index most = 0;
     for (Eigen::Index k = 1; k < rows.rows(); ++k) {
-      if (rows.row(k).norm() > (1.0 + alike) * rows.row(most).norm()) most = k;
+      if (rows.row(k).norm() > (1.0 + alike_displacements) * rows.row(most).norm()) most = k;
     }
-    if (rows.rows() == 0 || !(rows.row(most).norm() > at_rest)) break;
+    if (rows.rows() == 0 || !(rows.row(most).norm() > displacement_at_rest)) break;
     pins.push_back(dofs[std::size_t(most)]);
     const Eigen::RowVectorXd direction = rows.row(most).normalized();
     rows -= ((rows * direction.transpose()) * direction).eval();

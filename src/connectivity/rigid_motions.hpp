@@ -36,6 +36,41 @@ struct RigidMotions {
                                               double smallest_size,
                                               std::span<const HeldMotion> held = {});
 
+/// What of a set of points its free rigid motions are found from: sums, so that parts of a set may
+/// be added up. Row major, one row per rigid motion about a centre that is known.
+struct MotionSums {
+  explicit MotionSums(int dimension)
+      : moving(std::size_t(dimension * dimension * (dimension + 1) * (dimension + 1) / 4), 0.0),
+        held(moving) {}
+
+  double points = 0.0;
+  std::vector<double> moving;  ///< over all degrees of freedom of m m^T, m how motions move one
+  std::vector<double> held;    ///< over those that are held
+};
+
+/// Adds a point of the set.
+/// @param about whose centre and size are those of the set
+/// @param prescribed of the point, one flag per component
+void add_point(const RigidMotions& about, const Coordinates& place,
+               std::span<const char> prescribed, MotionSums& sums);
+
+/// Adds what else holds the set.
+void add_held(const RigidMotions& about, const HeldMotion& motion, MotionSums& sums);
+
+/// The motions about a centre that nothing hinders.
+/// @param about with the dimension, centre and size; its motions don't count
+[[nodiscard]] RigidMotions free_rigid_motions(const RigidMotions& about, const MotionSums& sums);
+
+/// How the free motions move a point along an axis, each of them.
+[[nodiscard]] std::vector<double> moved_by(const RigidMotions& motions, const Coordinates& place,
+                                           int axis);
+
+/// Displacements that differ by less than this fraction are alike: round-off must not choose pins.
+inline constexpr double alike_displacements = 1e-9;
+/// Of motions, whose displacements are of order one: a degree of freedom that moves less can't
+/// hold them.
+inline constexpr double displacement_at_rest = 1e-6;
+
 /// "move along x", "rotate about z", …
 [[nodiscard]] std::vector<std::string> motion_names(const RigidMotions& motions);
 

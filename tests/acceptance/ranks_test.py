@@ -98,6 +98,38 @@ table = [0, 1, 0.5]
 # Parts of it are thinner than the horizon.
 SHORT_BAR = BAR.replace("max = [4]", "max = [0.3]").replace(', thickness = 2', ", thickness = 1")
 
+# Torn through, from a pre-crack and a hole, without any symmetry.
+TORN = """
+dimension = 2
+[lattice]
+spacing = 0.1
+thickness = 0.01
+shape = [{ add = "box", min = [0, 0], max = [1.2, 1.6] }, { subtract = "disk", centre = [0.72, 0.83], radius = 0.2 }]
+layer = [{ name = "bottom", side = "y-" }, { name = "top", side = "y+" }]
+[[crack]]
+from = [0, 0.9]
+to = [0.22, 0.93]
+[material]
+model = "bond"
+youngs_modulus = 1e9
+[material.damage]
+law = "tanh"
+onset = 0.02
+critical = 0.03
+rate = 3
+no_fail = ["bottom", "top"]
+[[support]]
+set = "bottom"
+displacement = [0, 0]
+[[support]]
+set = "top"
+displacement = ["0.01*load", "0.08*load"]
+[loading]
+steps = 4
+[relaxation]
+steps = 12
+"""
+
 
 class OnRanks(unittest.TestCase):
     def setUp(self):
@@ -188,6 +220,10 @@ class SameResults(OnRanks):
 
     def test_a_bar(self):
         self.compare(BAR)
+
+    def test_a_body_of_two_pieces_that_are_held(self):
+        self.compare(PLATE.replace('{ subtract = "disk", centre = [0.5, 0.7], radius = 0.2 }',
+                                   '{ subtract = "box", min = [-1, 0.5], max = [2, 0.8] }'))  # fmt: skip
 
     def test_a_plate_with_a_hole(self):
         one = self.compare(PLATE, (2, 3, 4))
@@ -291,6 +327,66 @@ class SameResults(OnRanks):
         self.assertEqual(run.returncode, 0, run.stderr)
         self.expect_same(one, output)
         self.assertEqual(run.stdout.count("completed in"), 1)
+
+
+class Fracture(SameResults):
+    """Which bonds break, in which step, and all fields are those of one rank."""
+
+    def broken(self, output):
+        return [(row["step"], row["first_point"], row["second_point"]) for row in rows(output, "broken_bonds.csv")]
+
+    def compare_torn(self, ranks, *settings):
+        text = TORN + SOLVER
+        options = [word for setting in settings for word in ("--set", setting)]
+        runs = {count: self.start(count, text, *options) for count in (1, *ranks)}
+        one, expected = runs[1]
+        for count in ranks:
+            several, found = runs[count]
+            with self.subTest(ranks=count, settings=settings):
+                self.assertEqual(several.returncode, one.returncode, several.stderr)
+                self.assertEqual(self.broken(expected), self.broken(found))
+                self.expect_same(expected, found)
+                decisions = [[(row["step"], row["action"], row["outcome"]) for row in rows(at, "decisions.csv")]
+                             for at in (expected, found)]  # fmt: skip
+                self.assertEqual(*decisions)
+        return expected
+
+    def test_pre_cracks(self):
+        one = self.compare_torn((2, 3, 4), 'material.damage={law="none"}')
+        with h5py.File(one / "results.h5") as file:
+            self.assertGreater(file["steps/000004/damage"][()].max(), 0.2)
+
+    def test_bonds_that_soften_in_implicit_steps(self):
+        for law in ('"tanh", onset=0.03, critical=0.5, rate=3', '"linear", onset=0.03, critical=0.6',
+                    '"exponential", onset=0.05, critical=0.9', '"critical_stretch", critical=0.11'):  # fmt: skip
+            one = self.compare_torn((2, 3), f"material.damage={{law={law}}}", 'solver.mode="newton"')
+            with h5py.File(one / "results.h5") as file:
+                self.assertGreater(file["history/dissipated_energy"][-1], 0.0)
+
+    def test_a_plate_that_is_torn(self):
+        one = self.compare_torn((2, 3, 4), 'solver.mode="adaptive"')
+        actions = [row["action"] for row in rows(one, "decisions.csv")]
+        self.assertIn("hand_over", actions)
+        self.compare_torn((3,), 'solver.mode="adaptive"', "solver.elastic_horizon_ratio=2.015")
+        self.assertGreater(len(rows(one, "broken_bonds.csv")), 50)
+
+    def test_ends_of_fracture(self):
+        for settings in (
+            ('solver.mode="newton"', "loading.max_broken_bonds=3", 'material.damage={law="critical_stretch", critical=0.06}',
+             "output.count_cracks=true", "loading.smallest_step=0.01"),
+            ('solver.mode="adaptive"', "loading.stop_below=0.5", 'solver.projection="always"'),
+            ('solver.mode="relaxation"', 'solver.fragments="stop"'),
+        ):  # fmt: skip
+            self.compare_torn((3,), *settings)
+
+    def test_ways_of_relaxation(self):
+        for settings in (
+            ('solver.mode="relaxation"', 'relaxation.breaking="transient"'),
+            ('solver.mode="relaxation"', 'relaxation.load="moving"', "relaxation.iterations=1200", 'relaxation.damping="kinetic"'),
+            ('solver.mode="adaptive"', 'relaxation.method="flow"'),
+            ('solver.mode="adaptive"', "relaxation.peak_tolerance=0.01", 'solver.fragments="remove"'),
+        ):
+            self.compare_torn((3,), *settings)
 
 
 class Ends(OnRanks):
@@ -399,13 +495,12 @@ class Page(OnRanks):
         for key in keys:
             with self.subTest(key=key):
                 table, _, name = key.rpartition(".")
-                self.assertIn(f"`{name}" if name else f"[[{table}]]", page)
+                self.assertIn(f"`{name}" if name else f"[{table}]", page)
 
 
 class Refusals(OnRanks):
     def test_keys_that_are_not_on_the_list(self):
         for key in (
-            'solver.mode="adaptive"',
             'solver.mode="arc_length"',
             'solver.mode="path"',
             'solver.mode="dynamics"',
@@ -413,11 +508,9 @@ class Refusals(OnRanks):
             'solver.preconditioner="rigid_pieces"',
             'solver.tangent="stored"',
             'solver.operator="fft"',
-            'solver.fragments="stop"',
             "output.stress=true",
             'material.model="cpd"',
             'material.kinematics="linear"',
-            'material.damage={law="critical_stretch", critical=0.1}',
             'material.influence="gaussian"',
             'quadrature.volume_correction="exact"',
             'quadrature.horizon_shape="box"',
@@ -425,7 +518,6 @@ class Refusals(OnRanks):
             'lattice.points="blue_noise"',
             'lattice.volumes="fractional"',
             "lattice.cell_perturbation=0.1",
-            "crack=[{from=[0, 1], to=[0.3, 1]}]",
             'region=[{set="corner", material={youngs_modulus=1e8}}]',
             'rigid=[{set="corner"}]',
             'roller=[{set="corner", normal=[1, 0]}]',
@@ -439,7 +531,6 @@ class Refusals(OnRanks):
             'probe=[{name="p", from=[0.5, 1], to=[0.5, 1.4]}]',
             'probe=[{name="p", set="corner", field="crack_length"}]',
             'probe=[{name="p", set="corner", field="damage"}]',
-            "relaxation.steps=2",
         ):
             with self.subTest(key=key):
                 said = self.refusal(PLATE, "--set", key)
@@ -458,16 +549,25 @@ class Refusals(OnRanks):
                 with self.subTest(ranks=ranks, what=what):
                     self.assertIn(what, self.refusal(text, ranks=ranks))
 
-    def test_bodies_of_two_pieces(self):
+    def test_modes_that_stay_on_one_rank(self):
+        self.assertIn("adaptive", self.refusal(TORN, "--set", 'solver.mode="path"'))
+
+    def test_pieces_that_nothing_holds(self):
         apart = PLATE.replace('{ subtract = "disk", centre = [0.5, 0.7], radius = 0.2 }',
                               '{ subtract = "box", min = [-1, 0.5], max = [2, 0.8] }')  # fmt: skip
-        self.assertIn("2 of this one", self.refusal(apart))
+        said = [self.refusal(apart + '[[crack]]\nfrom = [0.5, 0.2]\nto = [0.5, 0.3]\n[[crack]]\n'
+                             'from = [-1, 1]\nto = [2, 1]\n[[crack]]\nfrom = [-1, 1.3]\nto = [2, 1.3]\n', ranks=ranks)
+                for ranks in (1, 2, 3)]  # fmt: skip
+        self.assertIn("a part of", said[0])
+        self.assertEqual(said[0], said[1])
+        self.assertEqual(said[0], said[2])
 
     def test_points_on_too_few_bonds(self):
         chain = PLATE.replace("shape = [{", 'shape = [{ add = "box", min = [1, 1], max = [1.2, 1.04] }, {')
-        said = [self.refusal(chain, ranks=ranks) for ranks in (1, 2)]
-        for text in said:
-            self.assertIn("too few bonds", text)
+        said = [self.refusal(chain, ranks=ranks) for ranks in (1, 2, 3)]
+        self.assertIn("too few bonds", said[0])
+        self.assertEqual(said[0], said[1])
+        self.assertEqual(said[0], said[2])
 
     def test_another_number_of_ranks_than_was_started(self):
         words = ["mpirun", "--oversubscribe", "-np", "2", PROGRAM, "run", "--ranks", "3", str(self.case(PLATE))]

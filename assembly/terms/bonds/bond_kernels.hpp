@@ -12,6 +12,7 @@
 #include "assembly/terms/interaction.hpp"
 #include "assembly/terms/term.hpp"
 #include "src/core/lanes.hpp"
+#include "src/geometry/counts_bond.hpp"
 #include "src/measures/length.hpp"
 #include "src/potentials/potential.hpp"
 
@@ -235,10 +236,10 @@ template <class P>
   }
 }
 
-/// Moves the histories of a batch to its stretches where these damage the bonds.
+/// Moves the histories of a batch of row i to its stretches where these damage the bonds.
 template <int D, class P>
-inline void commit(const P& potential, const Batch<D>& batch, const Lanes& stretch,
-                   double* largest_stretch, DamageGrowth& growth) {
+inline void commit(const Points& points, const P& potential, Index i, const Batch<D>& batch,
+                   const Lanes& stretch, double* largest_stretch, DamageGrowth& growth) {
   const Lanes before(largest_stretch + batch.first, std::experimental::element_aligned);
   const auto range = potential.ranges(batch.first);
   const auto may_grow = stretch > range.onset && before < range.critical;
@@ -249,22 +250,23 @@ inline void commit(const P& potential, const Batch<D>& batch, const Lanes& stret
     const auto& of_bond = potential.of_bond(batch.first + l);
     if (!of_bond.is_loading(s, largest)) continue;
     largest = s;
+    if (!counts_bond(points, i, batch.partner[l])) continue;
     ++growth.degrading;
     growth.breaking += of_bond.is_broken(s);
   }
 }
 
-/// What committing a batch would damage.
+/// What committing a batch of row i would damage.
 template <int D, class P>
-inline void look_at(const P& potential, const Batch<D>& batch, const Lanes& stretch,
-                    const double* largest_stretch, DamageGrowth& growth) {
+inline void look_at(const Points& points, const P& potential, Index i, const Batch<D>& batch,
+                    const Lanes& stretch, const double* largest_stretch, DamageGrowth& growth) {
   const auto range = potential.ranges(batch.first);
   if (std::experimental::none_of(stretch > std::min(growth.utilisation, 1.0) * range.onset)) return;
   for (int l = 0; l < batch.count; ++l) {
     const double before = largest_stretch[batch.first + l], s = stretch[l];
     const auto& of_bond = potential.of_bond(batch.first + l);
     growth.utilisation = std::max(growth.utilisation, of_bond.utilisation(s, before));
-    if (!of_bond.is_loading(s, before)) continue;
+    if (!of_bond.is_loading(s, before) || !counts_bond(points, i, batch.partner[l])) continue;
     ++growth.degrading;
     growth.breaking += of_bond.is_broken(s);
   }
@@ -317,7 +319,8 @@ struct BondKernels {
                   Length::at<D, Lanes>(batch.inverse_length, {batch.vector0}, {batch.vector1});
               relieve(measure, eigenstretch, i, batch);
               if constexpr (commits) {
-                commit<D>(potential, batch, measure.relative_change, largest_stretch, growth);
+                commit<D>(a.points, potential, i, batch, measure.relative_change, largest_stretch,
+                          growth);
               }
               shortest = std::experimental::min(shortest, measure.current);
               Vector<D, Lanes> force;
@@ -357,7 +360,8 @@ struct BondKernels {
           auto measure =
               Length::at<D, Lanes>(batch.inverse_length, {batch.vector0}, {batch.vector1});
           relieve(measure, eigenstretch, i, batch);
-          look_at<D>(potential, batch, measure.relative_change, largest_stretch, found);
+          look_at<D>(a.points, potential, i, batch, measure.relative_change, largest_stretch,
+                     found);
         });
       }
       a.threads.evaluations[thread] = {0.0, false, found};

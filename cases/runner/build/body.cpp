@@ -181,13 +181,21 @@ std::optional<Model> make_elastic_stand_in(const Case& from, const Body& body, i
                        "must not exceed horizon_ratio where there are planes of symmetry or "
                        "periods: the body's images reach no farther");
     }
+    if (body.part && from.solver.elastic_horizon_ratio > from.horizon_ratio) {
+      throw InputError(key, number_text(from.solver.elastic_horizon_ratio),
+                       "must not exceed horizon_ratio on more than one rank: ghosts reach no "
+                       "farther");
+    }
     BondSetting setting = body.setting;
     setting.horizon = from.solver.elastic_horizon_ratio * body.points.spacing;
     Bonds bonds = make_bonds(body.points, from.surface_correction, setting, threads);
+    if (const auto& owned = body.points.owned) {
+      bonds.remove_if([&](Index i, Offset) { return i >= *owned; });  // between ghosts
+    }
     static_cast<void>(cut_bonds(bonds, body.points, from.cracks));
     const Holding holding =
         body.conditions->holding(std::vector<double>(body.conditions->constraints().dofs(), 0.0));
-    if (!free_motions(body.points, bonds, holding).empty())
+    if (!free_motions(body.points, bonds, holding, body.part.get()).empty())
       throw InputError(key, number_text(from.solver.elastic_horizon_ratio),
                        "leaves points that may move freely");
     Model stand_in = make_elastic_bonds(body, std::move(bonds), setting);

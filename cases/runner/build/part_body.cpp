@@ -27,6 +27,10 @@ constexpr std::array keys_of_ranks{
     // bonds
     "quadrature.volume_correction", "quadrature.surface_correction", "material.model",
     "material.plane", "material.youngs_modulus", "material.micromodulus", "material.density",
+    // damage
+    "crack.", "material.damage.", "loading.max_broken_bonds", "loading.stop_below",
+    "solver.fragments", "solver.projection", "solver.elastic_horizon_ratio", "relaxation.",
+    "output.count_cracks",
     // conditions
     "support.", "load.set", "load.body_force", "load.total_force", "load.gravity",
     // search
@@ -74,8 +78,10 @@ void refuse_values_without_ranks(const Case& from) {
   if (from.material.model != MaterialModel::bond) {
     refuse("material.model", "", "take \"bond\"");
   }
-  if (from.solver.mode != Mode::newton) {
-    refuse("solver.mode", std::string(from.solver.mode.name), "take \"newton\"");
+  const Mode mode = from.solver.mode;
+  if (mode != Mode::newton && mode != Mode::adaptive && mode != Mode::relaxation) {
+    refuse("solver.mode", std::string(mode.name),
+           "take \"newton\", \"adaptive\" or \"relaxation\"");
   }
 }
 

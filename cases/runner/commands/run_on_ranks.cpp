@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "cases/runner/build/body.hpp"
 #include "cases/runner/build/part_body.hpp"
 #include "cases/runner/build/solver_options.hpp"
 #include "cases/runner/commands/run_facts.hpp"
@@ -52,7 +53,7 @@ class RanksRun {
     progress_.say(fmt::format("linear solver: {}, tangent matrix-free ({})",
                               study_->equations().solver().describe(),
                               study_->equations().systems().chosen.reason));
-    const LoadSteppingResult result = study_->follow(observer());
+    const LoadSteppingResult result = follow();
     conclude(result);
     if (results_) results_->close(summary_);
     return tell(result);
@@ -70,7 +71,7 @@ class RanksRun {
     gathering_.emplace(*body_->part);
     summary_.points = Index(body_->part->whole());
     summary_.free_dofs = ranks_.count_all(study_->free().count()).all;
-    const GlobalIndex bonds = count_bonds(body_->part->owned(), body_->model.bonds(), ranks_);
+    const GlobalIndex bonds = count_bonds(body_->points, body_->model.bonds(), ranks_);
     summary_.count("bonds", bonds);
     summary_.costs.seconds.neighbourhood += body_->seconds_neighbourhood;
     summary_.threads = options_.threads;
@@ -82,6 +83,18 @@ class RanksRun {
     const double ghosts = ranks_.sum(double(body_->points.count() - body_->part->owned()));
     progress_.say(fmt::format("at most {:.0f} points on a rank, {:.0f} ghosts", most, ghosts));
     progress_.follow_to(body_->conditions->programme().end());
+  }
+
+  LoadSteppingResult follow() {
+    stand_in_ = make_elastic_stand_in(from_, *body_, options_.threads);
+    if (!stand_in_) return study_->follow(observer());
+    standing_in_ = std::make_unique<SolvedModel>(
+        body_->points, *stand_in_, body_->conditions->constraints(), study_->free(),
+        choose_linear_systems(study_->options(), *body_, {}), study_->options().threads,
+        body_->part.get());
+    static_cast<void>(standing_in_->analyze());  // which iterations never fail in
+    const SolvedBody solved = standing_in_->solved();
+    return study_->follow(observer(), &solved);
   }
 
   void open_results() {
@@ -182,6 +195,8 @@ class RanksRun {
   int steps_ = 0;  // accepted
   std::unique_ptr<const Body> body_;
   std::optional<Study> study_;
+  std::optional<Model> stand_in_;
+  std::unique_ptr<SolvedModel> standing_in_;
   std::optional<RowGathering> gathering_;
   std::optional<Results> results_;  // of rank 0
   std::optional<PartRecorder> recorder_;

@@ -56,9 +56,7 @@ Recorder::Fields Recorder::fields(const StateView& at, std::vector<double> force
   made.max_stretch = point_stretches(points_, body_.model, at, made.stretch);
   const auto cut_weight =
       case_.output.count_cracks ? std::span(body_.cut_weight) : std::span<const double>();
-  made.max_damage =
-      assess_damage(body_.model, at.history, cut_weight, made.damage, points_.images.source)
-          .max_damage;
+  made.max_damage = assembler_.assess(at.history, cut_weight, made.damage).max_damage;
   for (auto* field : {&made.damage, &made.energy_density, &made.stretch}) field->resize(own_);
   std::copy_n(piece.begin(), std::min(piece.size(), own_), made.fragment.begin());
   if (tells_stress(case_)) made.stress = make_stress_fields(body_, assembler_, at);

@@ -1,0 +1,265 @@
+#include "src/connectivity/loose_points.hpp"
+
+#include <algorithm>
+#include <cstddef>
+#include <numeric>
+#include <set>
+
+#include <Eigen/Dense>
+
+#include "src/connectivity/fragments.hpp"
+
+namespace peristat {
+
+Coordinates Web::position(Index i) const {
+  Coordinates at{};
+  const auto d = std::size_t(dimension_);
+  for (std::size_t c = 0; c < d; ++c) at[c] = positions_[std::size_t(i) * d + c];
+  return at;
+}
+
+void Web::find_lower_partners() {
+  lower_offset_.assign(std::size_t(bonds_.points()) + 1, 0);
+  for_each_bond([&](Index, Index j, Offset) { ++lower_offset_[std::size_t(j) + 1]; });
+  for (Index i = 0; i < bonds_.points(); ++i) lower_offset_[i + 1] += lower_offset_[i];
+  lower_partner_.resize(std::size_t(lower_offset_.back()));
+  std::vector<Offset> end(lower_offset_.begin(), lower_offset_.end() - 1);
+  for_each_bond([&](Index i, Index j, Offset) { lower_partner_[end[j]++] = i; });
+}
+
+namespace {
+
+Eigen::Map<Eigen::Matrix3d> matrix(Support& support) {
+  return Eigen::Map<Eigen::Matrix3d>(support[0].data());
+}
+
+/// n n^T, n the direction from i to j; zero where they lie in one place.
+Eigen::Matrix3d direction(const Web& web, Index i, Index j) {
+  const Coordinates from = web.position(i), to = web.position(j);
+  const Eigen::Vector3d arm(to[0] - from[0], to[1] - from[1], to[2] - from[2]);
+  const double squared = arm.squaredNorm();
+  if (!(squared > 0.0)) return Eigen::Matrix3d::Zero();
+  return arm * (arm.transpose() / squared);
+}
+
+/// Below this, an eigenvalue of the support counts as zero. As soon as there is one direction, the
+/// largest eigenvalue is at least one; less is the round-off of directions that were taken away.
+double zero_of(const Eigen::Vector3d& eigenvalues) {
+  return independence_tolerance * std::max(1.0, eigenvalues.maxCoeff());
+}
+
+bool holds(const Eigen::Matrix3d& support) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(support, Eigen::EigenvaluesOnly);
+  return solver.eigenvalues()(0) > zero_of(solver.eigenvalues());
+}
+
+/// Axes that complete what supports a point, the least covered first; among equals, the lowest.
+std::vector<int> missing_axes(const Eigen::Matrix3d& support) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(support);
+  Eigen::Matrix3d rest = Eigen::Matrix3d::Zero();  // projects on what is not supported
+  int missing = 0;
+  for (int k = 0; k < 3; ++k) {
+    if (solver.eigenvalues()(k) > zero_of(solver.eigenvalues())) continue;
+    rest += solver.eigenvectors().col(k) * solver.eigenvectors().col(k).transpose();
+    ++missing;
+  }
+  std::vector<int> axes;
+  while (static_cast<int>(axes.size()) < missing) {
+    // The diagonal of a projector on k of three directions has an entry of at least k / 3.
+    int least = 0;
+    for (int c = 1; c < 3; ++c) {
+      if (rest(c, c) > rest(least, least) + 1e-9) least = c;
+    }
+    axes.push_back(least);
+    rest -= (rest.col(least) * rest.row(least) / rest(least, least)).eval();
+  }
+  return axes;
+}
+
+/// Degrees of freedom of a point that slides, the least supported first.
+std::vector<std::size_t> slides_of(Index point, const std::vector<FreeHandle>& handles,
+                                   const Eigen::Matrix3d& support) {
+  std::vector<std::pair<double, std::size_t>> found;
+  for (const FreeHandle& handle : handles) {
+    if (!handle.is_slide || handle.moved_by.member != point) continue;
+    const Coordinates& along = handle.moved_by.along;
+    const Eigen::Vector3d direction(along[0], along[1], along[2]);
+    found.emplace_back(direction.dot(support * direction), handle.dof);
+  }
+  std::sort(found.begin(), found.end());
+  std::vector<std::size_t> dofs;
+  for (const auto& [held_by, dof] : found) dofs.push_back(dof);
+  return dofs;
+}
+
+/// See pin_loose_points, of all loose points that there are.
+void pin_all(const Web& web, const std::vector<Index>& loose,
+             const std::vector<FreeHandle>& handles, std::vector<Support> support,
+             std::vector<char>& pinned) {
+  constexpr std::size_t settled = 0;
+  std::vector<std::size_t> rank(support.size(), settled);  // 1 + number of missing axes
+  std::set<std::pair<std::size_t, Index>> waiting;
+  const auto wait = [&](Index i) {
+    rank[i] = 1 + missing_axes(matrix(support[i])).size();
+    waiting.emplace(rank[i], i);
+  };
+  for (Index i : loose) wait(i);
+  while (!waiting.empty()) {
+    const Index i = waiting.begin()->second;
+    waiting.erase(waiting.begin());
+    rank[i] = settled;
+    const std::vector<int> axes = missing_axes(matrix(support[i]));
+    const std::vector<std::size_t> slides = slides_of(i, handles, matrix(support[i]));
+    for (std::size_t k = 0; k < axes.size(); ++k) {
+      const std::size_t own = std::size_t(i) * std::size_t(web.dimension()) + std::size_t(axes[k]);
+      pinned[k < slides.size() ? slides[k] : own] = 1;
+    }
+    web.for_each_partner(i, [&](Index j) {
+      if (rank[j] == settled) return;
+      waiting.erase({rank[j], j});
+      matrix(support[j]) += direction(web, i, j);
+      wait(j);
+    });
+  }
+}
+
+/// The loose points of a body that ranks share, in the order of their numbers, with the bonds among
+/// them: the same on all ranks.
+struct LooseWeb {
+  std::vector<double> number;  // in the whole body
+  std::vector<double> positions;
+  std::vector<Support> support;
+  Bonds bonds;
+
+  [[nodiscard]] Index row_of(double of_body) const {
+    return Index(std::lower_bound(number.begin(), number.end(), of_body) - number.begin());
+  }
+};
+
+LooseWeb gather_loose_points(const Web& web, const std::vector<Index>& loose,
+                             const std::vector<Support>& support, const Sharing& sharing) {
+  constexpr std::size_t width = 13;  // number, place, support
+  const std::vector<double> number = whole_numbers(sharing, support.size(), web.dimension());
+  std::vector<double> points, ends;
+  for (const Index i : loose) {
+    const Coordinates at = web.position(i);
+    points.push_back(number[std::size_t(i)]);
+    points.insert(points.end(), at.begin(), at.end());
+    for (const auto& row : support[std::size_t(i)])
+      points.insert(points.end(), row.begin(), row.end());
+    web.for_each_partner(i, [&](Index j) {
+      ends.push_back(number[std::size_t(i)]);
+      ends.push_back(number[std::size_t(j)]);
+    });
+  }
+  points = all_together(sharing.ranks(), points);
+  ends = all_together(sharing.ranks(), ends);
+  std::vector<const double*> rows;
+  for (std::size_t k = 0; k < points.size(); k += width) rows.push_back(&points[k]);
+  std::sort(rows.begin(), rows.end(), [](const double* a, const double* b) { return *a < *b; });
+  LooseWeb found;
+  for (const double* row : rows) {
+    found.number.push_back(row[0]);
+    found.positions.insert(found.positions.end(), row + 1, row + 1 + web.dimension());
+    Support of_point;
+    std::copy_n(row + 4, 9, of_point[0].data());
+    found.support.push_back(of_point);
+  }
+  std::set<BondEnds> bonds;
+  for (std::size_t k = 0; k < ends.size(); k += 2) {
+    const Index a = found.row_of(ends[k]), b = found.row_of(ends[k + 1]);
+    const bool is_loose = b < Index(rows.size()) && found.number[std::size_t(b)] == ends[k + 1];
+    if (is_loose) bonds.insert({std::min(a, b), std::max(a, b)});
+  }
+  found.bonds.offset.assign(rows.size() + 1, 0);
+  for (const auto& [a, b] : bonds) {
+    ++found.bonds.offset[std::size_t(a) + 1];
+    found.bonds.partner.push_back(b);
+  }
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    found.bonds.offset[i + 1] += found.bonds.offset[i];
+  }
+  return found;
+}
+
+}  // namespace
+
+std::vector<Support> supports_of(const Web& web, Index count, const std::vector<char>& prescribed,
+                                 const std::vector<FreeHandle>& handles) {
+  const int d = web.dimension();
+  std::vector<Support> support(std::size_t(count), Support{});
+  web.for_each_bond([&](Index i, Index j, Offset) {
+    const Eigen::Matrix3d along = direction(web, i, j);
+    matrix(support[i]) += along;
+    matrix(support[j]) += along;
+  });
+  for (Index i = 0; i < count; ++i) {
+    for (int c = 0; c < 3; ++c) {
+      if (c >= d || prescribed[std::size_t(i) * d + c]) support[i][c][c] += 1.0;
+    }
+  }
+  for (const FreeHandle& handle : handles) {
+    if (!handle.is_slide) continue;
+    const Coordinates& along = handle.moved_by.along;
+    const Eigen::Vector3d slide(along[0], along[1], along[2]);
+    matrix(support[handle.moved_by.member]) -= slide * slide.transpose();
+  }
+  return support;
+}
+
+std::vector<char> strip_loose_points(Web& web, std::vector<Support>& support,
+                                     const Sharing* sharing) {
+  const Index own = sharing != nullptr ? sharing->owned() : Index(support.size());
+  std::vector<char> is_loose(support.size(), 0);
+  std::vector<Index> loose;
+  const auto check = [&](Index i) {
+    if (i >= own || is_loose[i] || holds(matrix(support[i]))) return;
+    is_loose[i] = 1;
+    loose.push_back(i);
+  };
+  for (Index i = 0; i < own; ++i) check(i);
+  if (!loose.empty() || sharing != nullptr) web.find_lower_partners();
+  std::size_t done = 0;
+  for (bool goes_on = true; goes_on;) {
+    for (; done < loose.size(); ++done) {  // grows under way
+      const Index i = loose[done];
+      web.for_each_partner(i, [&](Index j) {
+        matrix(support[j]) -= direction(web, i, j);
+        check(j);
+      });
+    }
+    goes_on = false;
+    if (sharing == nullptr) continue;
+    const std::vector<double> told =
+        as_owners_have(*sharing, {is_loose.begin(), is_loose.end()}, web.dimension());
+    for (std::size_t ghost = std::size_t(own); ghost < told.size(); ++ghost) {
+      if (told[ghost] == 0.0 || is_loose[ghost]) continue;
+      is_loose[ghost] = 1;
+      loose.push_back(Index(ghost));
+    }
+    goes_on = sharing->ranks().max(double(done < loose.size())) > 0.0;
+  }
+  return is_loose;
+}
+
+void pin_loose_points(const Web& web, const std::vector<Index>& loose,
+                      const std::vector<FreeHandle>& handles, std::vector<Support> support,
+                      const Sharing* sharing, std::vector<char>& pinned) {
+  if (sharing == nullptr) return pin_all(web, loose, handles, std::move(support), pinned);
+  const LooseWeb all = gather_loose_points(web, loose, support, *sharing);
+  if (all.number.empty()) return;
+  const auto d = std::size_t(web.dimension());
+  Web among(all.bonds, {}, web.dimension(), all.positions);
+  among.find_lower_partners();
+  std::vector<Index> rows(all.number.size());
+  std::iota(rows.begin(), rows.end(), Index(0));
+  std::vector<char> pins(all.positions.size(), 0);
+  pin_all(among, rows, {}, all.support, pins);
+  for (const Index i : loose) {
+    const auto row = std::size_t(all.row_of(double(sharing->number()[std::size_t(i)])));
+    std::copy_n(pins.begin() + std::ptrdiff_t(row * d), d,
+                pinned.begin() + std::ptrdiff_t(std::size_t(i) * d));
+  }
+}
+
+}  // namespace peristat

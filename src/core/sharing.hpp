@@ -1,0 +1,79 @@
+#pragma once
+
+#include <cstddef>
+#include <cstring>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "src/core/communicator.hpp"
+#include "src/core/types.hpp"
+
+namespace peristat {
+
+/// What a part of a body shares with the parts that other ranks have. Its points are those that the
+/// rank owns, and then ghosts, which follow their owners.
+class Sharing {
+ public:
+  Sharing() = default;
+  Sharing(const Sharing&) = delete;
+  Sharing& operator=(const Sharing&) = delete;
+  virtual ~Sharing() = default;
+
+  [[nodiscard]] virtual const Communicator& ranks() const = 0;
+  [[nodiscard]] virtual Index owned() const = 0;
+  /// Of each owned point in the whole body, ascending.
+  [[nodiscard]] virtual const std::vector<GlobalIndex>& number() const = 0;
+
+  /// Gives ghosts what their owners have; a call that all ranks make.
+  /// @param values points x dimension
+  virtual void update_ghosts(std::span<double> values) const = 0;
+};
+
+/// A number per point, those of ghosts as their owners have them. A call that all ranks make.
+[[nodiscard]] inline std::vector<double> as_owners_have(const Sharing& sharing,
+                                                        std::vector<double> of_points,
+                                                        int dimension) {
+  const auto d = std::size_t(dimension);
+  std::vector<double> values(of_points.size() * d, 0.0);
+  for (std::size_t i = 0; i < of_points.size(); ++i) values[i * d] = of_points[i];
+  sharing.update_ghosts(values);
+  for (std::size_t i = 0; i < of_points.size(); ++i) of_points[i] = values[i * d];
+  return of_points;
+}
+
+/// Numbers of points in the whole body, those of ghosts too. A call that all ranks make.
+[[nodiscard]] inline std::vector<double> whole_numbers(const Sharing& sharing, std::size_t points,
+                                                       int dimension) {
+  std::vector<double> numbers(sharing.number().begin(), sharing.number().end());
+  numbers.resize(points, 0.0);
+  return as_owners_have(sharing, std::move(numbers), dimension);
+}
+
+/// What the ranks give one after the other; each gives as many numbers as it wants. A call that all
+/// make.
+/// @return at rank 0 what all give, elsewhere nothing
+[[nodiscard]] inline std::string gathered(const Communicator& ranks,
+                                          const std::vector<double>& mine) {
+  std::string all, bytes(mine.size() * sizeof(double), '\0');
+  if (!mine.empty()) std::memcpy(bytes.data(), mine.data(), bytes.size());
+  ranks.gather(bytes, [&](int, const std::string& theirs) { all += theirs; });
+  return all;
+}
+
+[[nodiscard]] inline std::vector<double> numbers_of(const std::string& bytes) {
+  std::vector<double> numbers(bytes.size() / sizeof(double));
+  if (!numbers.empty()) std::memcpy(numbers.data(), bytes.data(), bytes.size());
+  return numbers;
+}
+
+/// The same at all ranks.
+[[nodiscard]] inline std::vector<double> all_together(const Communicator& ranks,
+                                                      const std::vector<double>& mine) {
+  std::string all = gathered(ranks, mine);
+  ranks.broadcast(all);
+  return numbers_of(all);
+}
+
+}  // namespace peristat
