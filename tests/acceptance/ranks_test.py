@@ -175,7 +175,7 @@ def rows(output, table):
         return list(csv.DictReader(file))
 
 
-class SameResults(OnRanks):
+class Comparison(OnRanks):
     def expect_same(self, one, several):
         with h5py.File(one / "results.h5") as expected, h5py.File(several / "results.h5") as found:
             names = [name for name in objects(expected) if name != "checkpoint"]
@@ -218,6 +218,8 @@ class SameResults(OnRanks):
                 self.expect_same_iterations(one, several)
         return one
 
+
+class SameResults(Comparison):
     def test_a_bar(self):
         self.compare(BAR)
 
@@ -339,7 +341,7 @@ class SameResults(OnRanks):
         self.assertEqual(run.stdout.count("completed in"), 1)
 
 
-class Fracture(SameResults):
+class Fracture(Comparison):
     """Which bonds break, in which step, and all fields are those of one rank."""
 
     def broken(self, output):

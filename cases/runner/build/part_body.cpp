@@ -39,8 +39,8 @@ constexpr std::array keys_of_ranks{
     "solver.tangent", "solver.predictor", "solver.relative_tolerance", "solver.linear_tolerance",
     "solver.max_iterations",
     // results
-    "output.directory", "output.every", "output.count_cracks", "probe.name", "probe.set",
-    "probe.field", "probe.component", "probe.statistic", "probe.expected", "probe.other"};
+    "output.directory", "output.every", "probe.name", "probe.set", "probe.field", "probe.component",
+    "probe.statistic", "probe.expected", "probe.other"};
 
 /// "load[2].body_force[0]" as "load.body_force".
 std::string without_numbers(const std::string& key) {

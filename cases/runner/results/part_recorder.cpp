@@ -133,9 +133,6 @@ void PartRecorder::accepted(StepRecord record, const AcceptedState& state) {
   Fields made = fields(at, std::move(force), state.piece);
   made.stretch.resize(body_.points.volume.size());
   record.max_stretch = find_stretches(at, made.stretch);
-  double most = 0.0;
-  for (const double of_point : made.damage) most = std::max(most, of_point);
-  record.max_damage = gathering_.part().ranks().max(most);
   made.stretch.resize(std::size_t(gathering_.part().owned()));
   record.max_damage = made.max_damage;
   record_broken_bonds(record, at.history);
