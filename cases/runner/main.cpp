@@ -19,7 +19,6 @@
 #include "cases/runner/commands/key_reference.hpp"
 #include "cases/runner/commands/resume.hpp"
 #include "cases/runner/commands/run.hpp"
-#include "cases/runner/commands/run_on_ranks.hpp"
 #include "cases/runner/commands/unknown_option.hpp"
 #include "cases/runner/input/case.hpp"
 #include "cases/runner/input/toml_text.hpp"
@@ -244,8 +243,8 @@ Exit execute(const CLI::App& program, const CommandLine& line, int threads,
   if (program.got_subcommand("check-tangent")) {
     return check_tangent(from, line.deformation, threads);
   }
-  if (ranks) return run_on_ranks(from, run_options(line, threads), *ranks);
-  return run(from, run_options(line, threads));
+  const SoleRank sole;
+  return run(from, run_options(line, threads), ranks ? *ranks : sole);
 }
 
 /// Sentence about what stands on the command line without being expected.
@@ -313,9 +312,7 @@ std::vector<std::string> arguments_of_ranks(int count, char** arguments) {
 
 /// Ends all ranks, who may wait for this one.
 int end_all_ranks(const Failure& failure) {
-  // What all have met one should tell: it ends the others while they wait here.
-  constexpr unsigned seconds_for_the_first = 2;
-  if (all_ranks()->rank() > 0) sleep(seconds_for_the_first);
+  give_way_to_first(*all_ranks());
   all_ranks()->abort("peristat: " + failure.message, static_cast<int>(failure.code));
   return static_cast<int>(failure.code);
 }

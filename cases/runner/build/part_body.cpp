@@ -8,10 +8,13 @@
 #include <utility>
 #include <variant>
 
+#include "cases/runner/build/body.hpp"
+#include "cases/runner/build/recorded_points.hpp"
 #include "solvers/ranks/distribute.hpp"
 #include "solvers/ranks/part_bonds.hpp"
 #include "src/core/input_error.hpp"
 #include "src/geometry/point_set.hpp"
+#include "src/geometry/points_on_line.hpp"
 #include "src/geometry/slab.hpp"
 
 namespace peristat {
@@ -90,16 +93,27 @@ void refuse_probes_without_ranks(const Case& from) {
   }
 }
 
-/// Refuses probes of sets that are not there.
-void require_sets_of_probes(const Case& from, const Points& points) {
+/// Refuses probes of sets that are not there, and of places off the body.
+void require_places_of_probes(const Case& from, const RecordedPoints& recorded) {
+  const Points& points = recorded.points();
   for (std::size_t k = 0; k < from.probes.size(); ++k) {
+    const ProbeSpecification& probe = from.probes[k];
     const std::string table = "probe[" + std::to_string(k) + "]";
     const auto require = [&](const std::string& key, const std::string& set) {
       if (set.empty() || points.sets.contains(set)) return;
       throw InputError(table + key, '"' + set + '"', "no set of this name");
     };
-    require(".set", from.probes[k].set);
-    require(".other", from.probes[k].other);
+    require(".set", probe.set);
+    require(".other", probe.other);
+    if (probe.at &&
+        nearest_recorded(recorded, *probe.at).distance > 2.0 * points.spacing.largest()) {
+      throw InputError(table + ".at", "", "no point lies within two spacings of this place");
+    }
+    if (!probe.from) continue;
+    const auto here = points_on_line(points, *probe.from, *probe.to, recorded.count()).size();
+    if (recorded.ranks().count_all(std::int64_t(here)).all == 0) {
+      throw InputError(table + ".from", "", "no point lies within half a spacing of this line");
+    }
   }
 }
 
@@ -150,8 +164,11 @@ std::unique_ptr<const Body> make_part_body(const Case& from, const Communicator&
     const double reach = reach_of_bonds(slab.points, from.surface_correction, setting, ranks);
     Part part = distribute(std::move(slab), setting.horizon, reach, ranks, threads);
     add_sets(from, ranks, part);
-    require_sets_of_probes(from, part.points);
-    return make_body(std::move(part), from, ranks, threads);
+    BodySpecification of = from;
+    if (tells_stress(from)) of.evaluation_bytes_per_point = stress_bytes_per_point(from.dimension);
+    std::unique_ptr<const Body> body = make_body(std::move(part), of, ranks, threads);
+    require_places_of_probes(from, {body->points, body->part.get()});
+    return body;
   });
 }
 

@@ -124,7 +124,7 @@ Exit resume(const std::filesystem::path& directory, const Settings& settings,
                          programme_of(from).at(earlier.checkpoint().path.accepted.stage)[0]));
     return Exit::done;
   }
-  return run(from, options, &earlier);
+  return run(from, options, SoleRank(), &earlier);
 }
 
 }  // namespace peristat

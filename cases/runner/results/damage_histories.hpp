@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "cases/runner/build/recorded_points.hpp"
 #include "solvers/problem/records.hpp"
 #include "src/geometry/points.hpp"
 #include "src/neighbourhood/bonds.hpp"
@@ -19,8 +20,9 @@ namespace peristat {
 class DamageHistories {
  public:
   /// The bonds whose history is another one than the reader knows; none without histories. Bonds
-  /// between two images, which repeat others, are left out.
-  [[nodiscard]] std::optional<BondHistories> changes(const Points& points, const Bonds& bonds,
+  /// between two images, which repeat others, are left out, and those that another rank tells.
+  [[nodiscard]] std::optional<BondHistories> changes(const RecordedPoints& points,
+                                                     const Bonds& bonds,
                                                      std::span<const double> history) const;
 
   /// What the reader knows, of all bonds.

@@ -6,6 +6,7 @@
 #include <cstring>
 #include <functional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "cases/runner/results/hdf5_file.hpp"
@@ -46,7 +47,95 @@ class RowGathering {
     }
   }
 
+  /// Brings items to rank 0 in their order and in parts. A call that all ranks make.
+  /// @tparam Item of plain bytes
+  /// @param order_of an item: two whole numbers, from 0 to `most_order` the first one
+  /// @param put called with items that follow one another, at rank 0 only
+  template <class Item, class OrderOf, class Put>
+  void gather_in_order(std::vector<Item> mine, std::int64_t most_order, const OrderOf& order_of,
+                       const Put& put) const {
+    const Communicator& ranks = part_.ranks();
+    const std::int64_t all = ranks.count_all(std::int64_t(mine.size())).all;
+    if (all == 0) return;
+    std::ranges::sort(mine, {}, order_of);
+    auto next = mine.begin();
+    std::int64_t part = all <= most_rows_ ? most_order + 1 : most_order / (all / most_rows_) + 1;
+    for (std::int64_t first = 0; first <= most_order; first += part, part *= 2) {
+      const auto end_of = [&] {
+        return std::partition_point(next, mine.end(), [&](const Item& item) {
+          return std::int64_t(order_of(item).first) < first + part;
+        });
+      };
+      while (part > 1 && ranks.count_all(end_of() - next).all > most_rows_) part /= 2;
+      std::vector<Item> items = gathered(std::vector<Item>(next, end_of()));
+      next = end_of();
+      std::ranges::sort(items, {}, order_of);
+      if (ranks.rank() == 0) put(items);
+    }
+  }
+
+  /// What is told of bonds, ascending by their numbers `first_point` and `second_point`.
+  template <class Item, class Put>
+  void gather_of_bonds(std::vector<Item> mine, const Put& put) const {
+    gather_in_order(
+        std::move(mine), std::int64_t(part_.whole()),
+        [](const Item& item) { return std::pair(item.first_point, item.second_point); }, put);
+  }
+
+  /// Adds up a count per owned point over the points of the whole body in their order.
+  /// @return the sum before each owned point, and that of all. A call that all ranks make.
+  [[nodiscard]] std::pair<std::vector<std::int64_t>, std::int64_t> counted_before(
+      const std::vector<std::int64_t>& counts) const {
+    const std::vector<GlobalIndex>& number = part_.number();
+    std::vector<std::int64_t> before(counts.size());
+    std::int64_t sum = 0;
+    auto next = number.begin();
+    for (std::int64_t first = 0; first < part_.whole(); first += most_rows_) {
+      const auto end = std::lower_bound(next, number.end(), first + most_rows_);
+      std::vector<std::int64_t> sums = sums_before(counts, first, next, end, sum);
+      for (; next != end; ++next) {
+        before[std::size_t(next - number.begin())] = sums[std::size_t(*next - first)];
+      }
+      sum = sums.back();
+    }
+    return {std::move(before), sum};
+  }
+
  private:
+  using Number = std::vector<GlobalIndex>::const_iterator;
+
+  /// Of the points of a part: the sum before each of them, and behind the last one; on all ranks.
+  [[nodiscard]] std::vector<std::int64_t> sums_before(const std::vector<std::int64_t>& counts,
+                                                      std::int64_t first, Number next, Number end,
+                                                      std::int64_t sum) const {
+    const auto rows = std::size_t(std::min(most_rows_, std::int64_t(part_.whole()) - first));
+    const Number begin = part_.number().begin();
+    const Packed<std::int64_t> packed{first, 1};
+    const std::string mine = packed.pack(part_.number().data(), std::size_t(next - begin),
+                                         std::size_t(end - begin), counts.data());
+    std::vector<std::int64_t> sums(rows + 1, 0);
+    part_.ranks().gather(mine,
+                         [&](int, const std::string& received) { packed.unpack(received, sums); });
+    for (std::int64_t& entry : sums) entry = std::exchange(sum, sum + entry);
+    std::string bytes(reinterpret_cast<const char*>(sums.data()), sums.size() * sizeof sum);
+    part_.ranks().broadcast(bytes);
+    std::memcpy(sums.data(), bytes.data(), bytes.size());
+    return sums;
+  }
+
+  /// Items of all ranks, at rank 0.
+  template <class Item>
+  [[nodiscard]] std::vector<Item> gathered(const std::vector<Item>& mine) const {
+    std::vector<Item> items;
+    const std::string bytes(reinterpret_cast<const char*>(mine.data()), mine.size() * sizeof(Item));
+    part_.ranks().gather(bytes, [&](int, const std::string& received) {
+      const std::size_t known = items.size();
+      items.resize(known + received.size() / sizeof(Item));
+      if (!received.empty()) std::memcpy(&items[known], received.data(), received.size());
+    });
+    return items;
+  }
+
   /// Rows with their places behind `first`.
   template <class Value>
   struct Packed {
@@ -107,6 +196,37 @@ class RowSink {
         gathering_->gather<Value>(values, values_per_row, put);
       });
     }
+  }
+
+  /// Values of bonds, ascending by their points.
+  /// @param first_point, second_point, values of the bonds that are told here
+  /// @param count of all
+  template <class Value>
+  void write_of_bonds(const std::string& path, const std::vector<Index>& first_point,
+                      const std::vector<Index>& second_point, const std::vector<Value>& values,
+                      std::uint64_t count, const DatasetLabel& label) const {
+    if (!gathering_ || count == 0) {
+      if (file_) file_->write(path, values, {count}, label);
+      return;
+    }
+    struct Item {
+      Index first_point, second_point;
+      Value value;
+    };
+    std::vector<Item> mine;
+    for (std::size_t k = 0; k < values.size(); ++k) {
+      mine.push_back({first_point[k], second_point[k], values[k]});
+    }
+    if (!file_) return gathering_->gather_of_bonds(std::move(mine), [](const auto&) {});
+    file_->write_rows<Value>(path, {count}, label, [&](const Hdf5File::PutRows<Value>& put) {
+      std::uint64_t first = 0;
+      gathering_->gather_of_bonds(std::move(mine), [&](const std::vector<Item>& items) {
+        std::vector<Value> rows;
+        for (const Item& item : items) rows.push_back(item.value);
+        put(first, rows);
+        first += rows.size();
+      });
+    });
   }
 
  private:

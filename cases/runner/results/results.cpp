@@ -84,6 +84,17 @@ std::int64_t peak_memory_bytes() {
   return 0;
 }
 
+void write_dossier(const RowSink& sink, const std::vector<double>& residual,
+                   const std::vector<double>& displacement, StepShape shape) {
+  const auto dimension = static_cast<std::uint64_t>(shape.dimension);
+  sink.write("/dossier/residual", residual, {dimension},
+             {"N",
+              "residual of the state in which the last search ended, 0 where displacements are "
+              "prescribed"});
+  sink.write("/dossier/displacement", displacement, {dimension},
+             {"m", "displacement of the state in which the last search ended"});
+}
+
 /// The parts of a results folder; the one that was opened last stays open, as one may hold many.
 class PartReader {
  public:
@@ -132,9 +143,13 @@ struct Results::Files {
   void publish();
   /// @return its bytes
   std::string write_checkpoint(Checkpoint checkpoint);
+  void add_dossier(const std::vector<double>& residual, const std::vector<double>& displacement);
   void publish_xdmf();
   void publish_summary(const Summary& summary) const;
   void gather_parts();
+
+  /// On ranks the largest of what the others have had when the run ended.
+  std::int64_t peak_memory_of_others = 0;
 
   const RowGathering* gathering;
   StepShape shape;
@@ -163,6 +178,7 @@ struct Results::Files {
   Clock::time_point xdmf_time{};  ///< when it was last published
   std::vector<Row> pending_iterations, pending_decisions, pending_broken_bonds;
   ObjectInFile points_part;
+  std::optional<ObjectInFile> dossier_part;
   std::vector<WrittenStep> written_steps;
   int last_step = std::numeric_limits<int>::min();
   bool closed = false;
@@ -337,6 +353,20 @@ void Results::Files::add_fields(const StepRecord& record, const StepFields& step
   publish();
 }
 
+void Results::Files::add_dossier(const std::vector<double>& residual,
+                                 const std::vector<double>& displacement) {
+  const std::uint64_t bytes = 2 * sizeof(double) * std::uint64_t(shape.points * shape.dimension);
+  const std::filesystem::path file = folder.parts() / "dossier.h5";
+  publish_part(file, bytes, [&](Hdf5File& made) {
+    made.make_group("/dossier");
+    const RowSink sink =
+        gathering ? RowSink(&made, *gathering) : RowSink(made, std::uint64_t(shape.points));
+    write_dossier(sink, residual, displacement, shape);
+  });
+  dossier_part = ObjectInFile{name_in(folder, file), "/dossier"};
+  master.link("/dossier", dossier_part->file, dossier_part->object);
+}
+
 void Results::Files::publish_xdmf() {
   if (!xdmf_is_behind) return;
   publish_file(folder.xdmf(), xdmf.text());
@@ -345,7 +375,8 @@ void Results::Files::publish_xdmf() {
 }
 
 void Results::Files::publish_summary(const Summary& summary) const {
-  publish_reserved_file(folder.summary(), summary_json(summary, totals, peak_memory_bytes()));
+  const std::int64_t most = std::max(peak_memory_bytes(), peak_memory_of_others);
+  publish_reserved_file(folder.summary(), summary_json(summary, totals, most));
 }
 
 /// Replaces the links of results.h5 by what they link to and removes the parts.
@@ -354,6 +385,7 @@ void Results::Files::gather_parts() {
   const std::vector<std::uint8_t> checkpoint = checkpoints.last_bytes();
   try {
     std::set<std::string> parts{points_part.file};
+    if (dossier_part) parts.insert(dossier_part->file);
     for (const WrittenStep& step : written_steps) parts.insert(step.file);
     const std::string_view image = master.image();
     std::uint64_t room = image.size() + checkpoint.size() + room_for_structure +
@@ -365,6 +397,10 @@ void Results::Files::gather_parts() {
     PartReader reader(folder);
     file.unlink("/points");
     file.copy(reader.open(points_part.file), points_part.object, "/points");
+    if (dossier_part) {
+      file.unlink("/dossier");
+      file.copy(reader.open(dossier_part->file), dossier_part->object, "/dossier");
+    }
     for (const WrittenStep& step : written_steps) {
       file.unlink("/steps/" + step.name());
       file.copy(reader.open(step.file), step.group, "/steps/" + step.name());
@@ -390,10 +426,35 @@ void Results::Files::gather_parts() {
   remove_parts(folder);
 }
 
+/// What a rank has that writes nothing.
+struct Results::Sender {
+  const RowGathering& gathering;
+  StepShape shape;
+  std::filesystem::path directory;
+  int last_with_fields = 0;
+  StepTotals totals{};
+
+  void send(const StepRecord& record, const StepFields& fields) {
+    StepPart(shape, fields, &gathering).send();
+    last_with_fields = record.step;
+  }
+  /// In the place of rank 0, which waits for this one.
+  void publish_summary(const Summary& summary) const {
+    publish_reserved_file(ResultsFolder{directory}.summary(),
+                          summary_json(summary, totals, peak_memory_bytes()));
+  }
+};
+
 Results::Results(const std::filesystem::path& directory, const Points& points, const CaseText& text,
                  const std::vector<std::string>& support_sets,
                  const std::vector<ProbeColumns>& probes, const std::vector<PointCounts>& counts,
                  bool overwrite, const FurtherOutput& further, const RowGathering* gathering) {
+  if (gathering && gathering->part().ranks().rank() > 0) {
+    const StepShape shape{Index(gathering->rows()), points.dimension, further.has_stress};
+    sender_ = std::make_unique<Sender>(Sender{*gathering, shape, directory});
+    send_points(points, counts, *gathering);
+    return;
+  }
   double seconds = 0.0;
   {
     const Stopwatch stopwatch(seconds);
@@ -421,6 +482,7 @@ Results::Results(EarlierRun& run, EarlierResults& earlier, const Points& points,
 }
 
 Results::~Results() {
+  if (sender_) return;
   try {
     files_->publish_xdmf();
   } catch (const OutputError&) {
@@ -429,6 +491,7 @@ Results::~Results() {
 }
 
 void Results::add(const IterationRecord& record) {
+  if (sender_) return;
   const Stopwatch stopwatch(files_->seconds);
   if (files_->closed) throw std::logic_error("results: closed");
   Row row = make_row(record);
@@ -439,6 +502,7 @@ void Results::add(const IterationRecord& record) {
 }
 
 void Results::add(const DecisionRecord& record) {
+  if (sender_) return;
   const Stopwatch stopwatch(files_->seconds);
   if (files_->closed) throw std::logic_error("results: closed");
   Row row = make_row(record);
@@ -448,17 +512,23 @@ void Results::add(const DecisionRecord& record) {
 }
 
 void Results::add(const std::vector<BrokenBondRecord>& records) {
+  if (sender_) return sender_->gathering.gather_of_bonds(records, [](const auto&) {});
   const Stopwatch stopwatch(files_->seconds);
   if (files_->closed) throw std::logic_error("results: closed");
-  for (const BrokenBondRecord& record : records) {
-    Row row = make_row(record);
-    files_->broken_bonds.append(row);
-    files_->pending_broken_bonds.push_back(std::move(row));
-    ++files_->rows.broken_bonds;
-  }
+  const auto append = [&](const std::vector<BrokenBondRecord>& some) {
+    for (const BrokenBondRecord& record : some) {
+      Row row = make_row(record);
+      files_->broken_bonds.append(row);
+      files_->pending_broken_bonds.push_back(std::move(row));
+      ++files_->rows.broken_bonds;
+    }
+  };
+  if (!files_->gathering) return append(records);
+  files_->gathering->gather_of_bonds(records, append);
 }
 
 void Results::add_line(const std::string& name, const std::vector<Row>& rows) {
+  if (sender_) return;
   const Stopwatch stopwatch(files_->seconds);
   if (files_->closed) throw std::logic_error("results: closed");
   const auto line = std::ranges::find_if(
@@ -471,6 +541,10 @@ void Results::add_line(const std::string& name, const std::vector<Row>& rows) {
 }
 
 void Results::add(const StepRecord& record, const std::optional<StepFields>& fields) {
+  if (sender_) {
+    if (fields) sender_->send(record, *fields);
+    return sender_->totals.add(record);
+  }
   const Stopwatch stopwatch(files_->seconds);
   if (files_->closed) throw std::logic_error("results: closed");
   files_->add(record, fields);
@@ -490,6 +564,10 @@ void Results::add_checkpoint(Checkpoint checkpoint) {
 }
 
 void Results::add_fields(const StepRecord& record, const StepFields& fields) {
+  if (sender_) {
+    if (sender_->last_with_fields != record.step) sender_->send(record, fields);
+    return;
+  }
   const Stopwatch stopwatch(files_->seconds);
   if (files_->closed) throw std::logic_error("results: closed");
   files_->add_fields(record, fields);
@@ -497,23 +575,25 @@ void Results::add_fields(const StepRecord& record, const StepFields& fields) {
 
 void Results::add_dossier(const std::string& text, const std::vector<double>& residual,
                           const std::vector<double>& displacement) {
+  if (sender_)
+    return write_dossier({nullptr, sender_->gathering}, residual, displacement, sender_->shape);
   const Stopwatch stopwatch(files_->seconds);
   if (files_->closed) throw std::logic_error("results: closed");
-  const Hdf5File::Shape shape{static_cast<std::uint64_t>(files_->shape.points),
-                              static_cast<std::uint64_t>(files_->shape.dimension)};
-  files_->master.make_group("/dossier");
-  files_->master.write("/dossier/residual", residual, shape,
-                       {"N",
-                        "residual of the state in which the last search ended, 0 where "
-                        "displacements are prescribed"});
-  files_->master.write("/dossier/displacement", displacement, shape,
-                       {"m", "displacement of the state in which the last search ended"});
+  files_->add_dossier(residual, displacement);
   publish_file(files_->folder.dossier(), text);
 }
 
 void Results::close(Summary summary) {
+  if (sender_) {
+    static_cast<void>(sender_->gathering.part().ranks().max(double(peak_memory_bytes())));
+    return;
+  }
   const Stopwatch stopwatch(files_->seconds);
   if (files_->closed) throw std::logic_error("results: closed");
+  if (files_->gathering) {
+    const Communicator& ranks = files_->gathering->part().ranks();
+    files_->peak_memory_of_others = std::int64_t(ranks.max(double(peak_memory_bytes())));
+  }
   files_->closed = true;
   files_->append_pending();
   std::exception_ptr failure;
@@ -533,9 +613,10 @@ void Results::close(Summary summary) {
 
 void Results::fail(Summary summary, const std::string& reason) noexcept {
   try {
-    files_->closed = true;
     summary.status = "failed";
     summary.reason = reason;
+    if (sender_) return sender_->publish_summary(summary);
+    files_->closed = true;
     files_->publish_summary(summary);
   } catch (const std::exception&) {
     // The folder is gone or can't be written, which is what the reason says.
@@ -543,17 +624,17 @@ void Results::fail(Summary summary, const std::string& reason) noexcept {
 }
 
 std::string Results::what_is_left() const {
-  const ResultsFolder& folder = files_->folder;
+  const ResultsFolder folder = sender_ ? ResultsFolder{sender_->directory} : files_->folder;
   std::error_code error;
   if (!std::filesystem::exists(folder.results(), error)) {
     return folder.directory.string() + " is gone: nothing of this run is left there";
   }
-  const int steps = files_->totals.steps;
+  const int steps = sender_ ? sender_->totals.steps : files_->totals.steps;
   return (steps == 1 ? "1 accepted step is in "
                      : std::to_string(steps) + " accepted steps are in ") +
          folder.directory.string();
 }
 
-double Results::seconds_spent() const { return files_->seconds; }
+double Results::seconds_spent() const { return sender_ ? 0.0 : files_->seconds; }
 
 }  // namespace peristat
