@@ -257,6 +257,62 @@ class SameResults(OnRanks):
             self.assertTrue(found, (name, list(last)))
             self.assertNotEqual(float(last[found[0]]), 0.0)
 
+    def test_probes_at_places_and_along_lines_and_of_stress(self):
+        probes = """
+            [[probe]]
+            name = "place"
+            at = [0.77, 0.3]
+            [[probe]]
+            name = "pulled"
+            at = [0.02, 1.4]
+            field = "stress"
+            [[probe]]
+            name = "row"
+            from = [0.1, 1.2]
+            to = [0.9, 1.0]
+            field = "strain"
+            component = "yy"
+            [[probe]]
+            name = "upright"
+            from = [0.5, 1.0]
+            to = [0.5, 1.4]
+            [[probe]]
+            name = "hardest"
+            set = "corner"
+            field = "von_mises"
+            statistic = "max"
+            [[probe]]
+            name = "ratio"
+            set = "corner"
+            field = "poisson_ratio"
+            axis = "y"
+            [[probe]]
+            name = "divergence"
+            set = "top"
+            field = "divergence"
+            [[probe]]
+            name = "crack"
+            set = "corner"
+            field = "crack_length"
+            axis = "x"
+            [[output]]
+        """
+        text = PLATE + probes.replace("[[output]]", "[output]\nstress = true")
+        one = self.compare(text, (2, 3, 4))
+        with h5py.File(one / "results.h5") as file:
+            self.assertGreater(numpy.abs(file["steps/000002/cauchy_stress"]).max(), 1e6)
+            self.assertEqual(len(file["lines/row/point"]), 2 * len(set(file["lines/row/point"])))
+            self.assertGreater(len(file["lines/row/point"]), 20)
+        last = rows(one, "history.csv")[-1]
+        for name in ("place_y", "pulled_yy", "hardest", "ratio", "divergence"):
+            self.assertNotEqual(float(last[name]), 0.0, name)
+
+    def test_stress_in_three_dimensions_and_of_a_bar_shorter_than_the_horizon(self):
+        stress = "[output]\nstress = true\n"
+        probe = '[[probe]]\nname = "ratio"\nset = "foot"\nfield = "poisson_ratio"\naxis = "z"\n'
+        self.compare(BLOCK + stress + probe, (3,))
+        self.compare(SHORT_BAR + stress, (8,))
+
     def test_steps_that_are_cut(self):
         few = ("--set", "solver.max_iterations=3", "--set", "loading.steps=1")
         one = self.compare(PLATE.replace("0.05*load", "0.3*load"), (2, 3), *few)
@@ -296,14 +352,23 @@ class SameResults(OnRanks):
 class Ends(OnRanks):
     def test_a_search_that_does_not_converge(self):
         options = ("--set", "solver.max_iterations=1", "--set", "loading.adaptive=false")
-        codes, statuses = [], []
+        codes, statuses, dossiers, residuals = [], [], [], []
         for ranks in (1, 3):
             run, output = self.start(ranks, PLATE + SOLVER, *options)
             codes.append(run.returncode)
             self.assertIn('"not_converged"', (output / "summary.json").read_text())
+            dossiers.append((output / "dossier.txt").read_text())
+            self.assertFalse((output / "parts").exists())
+            with h5py.File(output / "results.h5") as file:
+                residuals.append(file["dossier/residual"][()])
+                self.assertEqual(file["dossier/displacement"].shape, residuals[-1].shape)
             statuses.append([row["outcome"] for row in rows(output, "decisions.csv")])
         self.assertEqual(codes, [3, 3])
         self.assertEqual(statuses[0], statuses[1])
+        self.assertLess(numpy.abs(residuals[0] - residuals[1]).max(), 1e-9 * numpy.abs(residuals[0]).max())
+        worst = [re.findall(r"^  (\d+)  ", text, re.MULTILINE) for text in dossiers]
+        self.assertEqual(worst[0], worst[1])
+        self.assertEqual(len(worst[0]), 10)
 
     def test_a_run_that_is_stopped(self):
         run, output = self.start(2, PLATE + SOLVER, "--stop-after", "1")
@@ -311,6 +376,12 @@ class Ends(OnRanks):
         self.assertEqual(len(rows(output, "history.csv")), 1)
         again = subprocess.run([PROGRAM, "resume", str(output)], capture_output=True, text=True, timeout=60)
         self.assertEqual(again.returncode, 2, again.stderr)
+
+    def test_places_off_the_body(self):
+        for probe, what in (("at=[5, 5]", "within two spacings"), ("from=[5, 0], to=[5, 1]", "within half a spacing")):
+            said = [self.refusal(PLATE, "--set", f'probe=[{{name="p", {probe}}}]', ranks=ranks) for ranks in (1, 2)]
+            for text in said:
+                self.assertIn(what, text)
 
     def test_what_one_rank_alone_meets_ends_all(self):
         broken = PLATE.replace('"0.05*load"', '"0.05*load*(x > 0.96 ? 1/(1-load) : 1)"')
@@ -414,7 +485,6 @@ class Refusals(OnRanks):
             'solver.tangent="stored"',
             'solver.operator="fft"',
             'solver.fragments="stop"',
-            "output.stress=true",
             'material.model="cpd"',
             'material.kinematics="linear"',
             'material.damage={law="critical_stretch", critical=0.1}',
@@ -435,10 +505,6 @@ class Refusals(OnRanks):
             'control=[{set="corner", weights=[1, 0]}]',
             'load=[{side="x+", traction=["1", "0"]}]',
             'load=[{side="x+", pressure="1"}]',
-            'probe=[{name="p", at=[0.5, 1]}]',
-            'probe=[{name="p", from=[0.5, 1], to=[0.5, 1.4]}]',
-            'probe=[{name="p", set="corner", field="crack_length"}]',
-            'probe=[{name="p", set="corner", field="damage"}]',
             "relaxation.steps=2",
         ):
             with self.subTest(key=key):

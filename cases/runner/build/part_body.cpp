@@ -38,8 +38,7 @@ constexpr std::array keys_of_ranks{
     "solver.tangent", "solver.predictor", "solver.relative_tolerance", "solver.linear_tolerance",
     "solver.max_iterations",
     // results
-    "output.directory", "output.every", "probe.name", "probe.set", "probe.field", "probe.component",
-    "probe.statistic", "probe.expected", "probe.other"};
+    "output.directory", "output.every", "output.stress", "probe."};
 
 /// "load[2].body_force[0]" as "load.body_force".
 std::string without_numbers(const std::string& key) {
@@ -79,17 +78,6 @@ void refuse_values_without_ranks(const Case& from) {
   }
   if (from.solver.mode != Mode::newton) {
     refuse("solver.mode", std::string(from.solver.mode.name), "take \"newton\"");
-  }
-}
-
-void refuse_probes_without_ranks(const Case& from) {
-  constexpr std::array<std::string_view, 5> fields{"displacement", "force", "stretch",
-                                                   "energy_density", "opening"};
-  for (std::size_t k = 0; k < from.probes.size(); ++k) {
-    const std::string& field = from.probes[k].field;
-    if (std::find(fields.begin(), fields.end(), field) != fields.end()) continue;
-    refuse("probe[" + std::to_string(k) + "].field", '"' + field + '"',
-           "take displacement, force, stretch, energy_density or opening");
   }
 }
 
@@ -149,7 +137,6 @@ void refuse_keys_without_ranks(const Case& from) {
       refuse(key, "", "docs/cluster.md lists the keys that are");
     }
     refuse_values_without_ranks(from);
-    refuse_probes_without_ranks(from);
   });
 }
 

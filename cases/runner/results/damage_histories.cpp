@@ -7,10 +7,8 @@ Index image_number(const Points& points, Index point) {
   return static_cast<Index>(points.images.kind[std::size_t(point - points.own())]) + 1;
 }
 
-std::optional<BondHistories> DamageHistories::changes(const RecordedPoints& recorded,
-                                                      const Bonds& bonds,
-                                                      std::span<const double> history) const {
-  if (history.empty()) return std::nullopt;
+BondHistories DamageHistories::changes(const RecordedPoints& recorded, const Bonds& bonds,
+                                       std::span<const double> history) const {
   const Points& points = recorded.points();
   const bool has_images = points.own() < points.count();
   BondHistories changed;

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -19,11 +18,10 @@ namespace peristat {
 /// those that differ from 0 are kept: nearly all bonds of a body are never damaged.
 class DamageHistories {
  public:
-  /// The bonds whose history is another one than the reader knows; none without histories. Bonds
-  /// between two images, which repeat others, are left out, and those that another rank tells.
-  [[nodiscard]] std::optional<BondHistories> changes(const RecordedPoints& points,
-                                                     const Bonds& bonds,
-                                                     std::span<const double> history) const;
+  /// The bonds whose history is another one than the reader knows. Bonds between two images, which
+  /// repeat others, are left out, and those that another rank tells.
+  [[nodiscard]] BondHistories changes(const RecordedPoints& points, const Bonds& bonds,
+                                      std::span<const double> history) const;
 
   /// What the reader knows, of all bonds.
   [[nodiscard]] std::vector<double> told(Offset bonds) const;

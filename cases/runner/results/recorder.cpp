@@ -23,8 +23,8 @@ StepFields Recorder::Fields::view(bool with_stress) const {
                     &fragment,
                     histories ? &*histories : nullptr};
   if (stress && with_stress) stress->show_in(fields);
-  if (!velocity.empty()) {
-    fields.velocity = &velocity;
+  if (velocity) {
+    fields.velocity = &*velocity;
     fields.kinetic_energy_density = &kinetic_energy_density;
   }
   return fields;
@@ -47,8 +47,10 @@ Recorder::Fields Recorder::fields(const StateView& at, std::vector<double> force
   made.force = std::move(force);
   for (auto* field : {&made.damage, &made.energy_density, &made.stretch}) field->resize(points);
   made.fragment.assign(own_, 0.0);
-  made.histories = written_histories_.changes(recorded_, body_.model.bonds(),
-                                              bond_stretches(body_.model, at.history));
+  if (body_.model.failing_bonds()) {
+    made.histories = written_histories_.changes(recorded_, body_.model.bonds(),
+                                                bond_stretches(body_.model, at.history));
+  }
   assembler_.point_energies(at, made.energy_density);
   for (auto i = std::size_t(points_.own()); i < points; ++i) {
     made.energy_density[std::size_t(points_.source(Index(i)))] += made.energy_density[i];
@@ -66,15 +68,15 @@ Recorder::Fields Recorder::fields(const StateView& at, std::vector<double> force
   made.max_damage = recorded_.ranks().max(made.max_damage);
   std::copy_n(piece.begin(), std::min(piece.size(), own_), made.fragment.begin());
   if (tells_stress(case_)) made.stress = make_stress_fields(body_, assembler_, at);
-  if (!velocity.empty()) add_motion(velocity, made);
+  if (case_.dynamics.is_asked_for) add_motion(velocity, made);
   return made;
 }
 
 void Recorder::add_motion(std::span<const double> velocity, Fields& made) const {
   const auto d = std::size_t(points_.dimension);
-  made.velocity.assign(velocity.begin(), velocity.begin() + std::ptrdiff_t(own_ * d));
+  made.velocity.emplace(velocity.begin(), velocity.begin() + std::ptrdiff_t(own_ * d));
   made.kinetic_energy_density.assign(own_, 0.0);
-  for (std::size_t k = 0; k < made.velocity.size(); ++k) {
+  for (std::size_t k = 0; k < made.velocity->size(); ++k) {
     made.kinetic_energy_density[k / d] += 0.5 * density_[k / d] * velocity[k] * velocity[k];
   }
 }

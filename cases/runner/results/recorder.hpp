@@ -68,7 +68,8 @@ class Recorder {
  private:
   struct Fields {
     std::vector<double> displacement, force, damage, energy_density, stretch, fragment;
-    std::vector<double> velocity, kinetic_energy_density;  ///< empty: of a body at rest
+    std::optional<std::vector<double>> velocity;  ///< of a body in motion
+    std::vector<double> kinetic_energy_density;
     double max_damage = 0.0, max_stretch = 0.0;
     std::optional<BondHistories> histories;
     std::optional<StressFields> stress;  ///< where a probe or the results need it
