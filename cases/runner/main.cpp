@@ -89,6 +89,10 @@ void add_run_options(CLI::App& command, CommandLine& line) {
                   "stop after so many accepted steps as if interrupted; resume goes on")
       ->type_name("STEPS")
       ->check(CLI::PositiveNumber);
+  command
+      .add_option("--ranks", line.ranks,
+                  "run on so many ranks, which mpirun starts (docs/cluster.md)")
+      ->check(CLI::PositiveNumber);
   command.add_flag("--no-plots", line.no_plots,
                    "draw no pictures at the end (./peristat draws them)");
   command.add_flag("--quiet", line.quiet, "print nothing but problems");
@@ -227,9 +231,10 @@ auto on_each_rank(const Communicator* ranks, const Act& act) {
 
 Exit execute(const CLI::App& program, const CommandLine& line, int threads,
              const Communicator* ranks) {
+  const SoleRank sole;
   if (program.got_subcommand("keys")) return print_keys(line.table);
   if (program.got_subcommand("resume")) {
-    return resume(line.results, overrides(line), run_options(line, threads));
+    return resume(line.results, overrides(line), run_options(line, threads), ranks ? *ranks : sole);
   }
   const bool is_calibration = program.got_subcommand("calibrate");
   if (is_calibration && line.case_file.empty()) return calibrate(line);
@@ -243,7 +248,6 @@ Exit execute(const CLI::App& program, const CommandLine& line, int threads,
   if (program.got_subcommand("check-tangent")) {
     return check_tangent(from, line.deformation, threads);
   }
-  const SoleRank sole;
   return run(from, run_options(line, threads), ranks ? *ranks : sole);
 }
 
@@ -289,8 +293,8 @@ const Communicator* start_ranks_of(const CLI::App& program, int asked_for) {
     all_have_failed() = false;
     return nullptr;
   }
-  if (!program.got_subcommand("run")) {
-    throw InputError("", "", "no command but run is for more than one rank");
+  if (!program.got_subcommand("run") && !program.got_subcommand("resume")) {
+    throw InputError("", "", "no command but run and resume is for more than one rank");
   }
   all_have_failed() = false;
   return all_ranks().get();
@@ -344,10 +348,6 @@ int main(int count, char** arguments) try {
   run_command->add_option("--output", line.output, "results folder (default: the case's)");
   run_command->add_flag("--overwrite", line.overwrite,
                         "replace the results of another case, or of version 1, in the folder");
-  run_command
-      ->add_option("--ranks", line.ranks,
-                   "run on so many ranks, which mpirun starts (docs/cluster.md)")
-      ->check(CLI::PositiveNumber);
   add_run_options(*run_command, line);
   CLI::App* resume_command =
       program.add_subcommand("resume", "go on with a run that has not come to its end");

@@ -143,8 +143,14 @@ class CaseRun {
     further_ = {from_.output.stress, lines_of(from_, body_->points)};
     study_.emplace(*body_, study_options(from_, options_.threads),
                    [this](const std::string& reason) { recorder_->changed_solver(reason); });
+    if (gathering_) {
+      recorded_.emplace(body_->points, body_->part.get());
+      numbering_.emplace(*recorded_, *gathering_, body_->model.bonds(),
+                         body_->conditions->prescribed());
+    }
     if (earlier_) {
       earlier_results_ = earlier_->results(support_sets_, probes_, further_.lines);
+      earlier_->load(numbering());
       require_body_of(*earlier_);
     }
     count(*body_, study_->free(), options_, ranks_, summary_);
@@ -188,11 +194,13 @@ class CaseRun {
     const auto refuse = [&](const std::string& why) {
       throw InputError("", "", why, earlier.directory().string());
     };
-    if (!earlier.has_points(without_images(body_->points))) {
+    const auto all_say = [&](bool holds) { return ranks_.min(double(holds)) > 0.0; };
+    if (!all_say(
+            earlier.has_points(only_recorded({body_->points, body_->part.get()}), gathering()))) {
       refuse("its points are not those of the run that the case makes now");
     }
-    if (!is_of_body(earlier.checkpoint().path, study_->equations().assembler(),
-                    body_->conditions->prescribed())) {
+    if (!all_say(is_of_body(earlier.checkpoint().path, study_->equations().assembler(),
+                            body_->conditions->prescribed()))) {
       refuse("its checkpoint is of another body");
     }
   }
@@ -201,18 +209,17 @@ class CaseRun {
     Assembler& assembler = study_->equations().assembler();
     const CaseText text{from_.as_read, from_.as_resolved,    from_.title,
                         versions(),    identity(from_.file), from_.settings};
+    const Points points = only_recorded({body_->points, body_->part.get()});
     if (earlier_) {
-      results_.emplace(*earlier_, earlier_results_, without_images(body_->points), text,
-                       support_sets_, probes_, further_);
+      results_.emplace(*earlier_, earlier_results_, points, text, support_sets_, probes_, further_,
+                       numbering());
       recorder_.emplace(from_, *body_, assembler, *results_, progress_, crack_tips_);
       recorder_->go_on(earlier_->checkpoint(), earlier_results_, support_sets_, probes_);
       earlier_results_ = {};
       tell_beginning();
     } else {
-      const Points points = only_recorded({body_->points, body_->part.get()});
       results_.emplace(from_.output.directory, points, text, support_sets_, probes_,
-                       constant_fields_of(*body_), options_.overwrite, further_,
-                       gathering_ ? &*gathering_ : nullptr);
+                       constant_fields_of(*body_), options_.overwrite, further_, gathering());
       recorder_.emplace(from_, *body_, assembler, *results_, progress_, crack_tips_);
     }
     if (ranks_.rank() == 0) leave_note(from_.output.directory);
@@ -259,14 +266,12 @@ class CaseRun {
       summary_.max_displacement = largest_of_all(state.trial.displacement);
       ++steps_here_;
     };
-    // Of ranks there are no checkpoints.
-    if (!body_->part)
-      told.reached = [this](const PathState& state) {
-        const Stopwatch watch(seconds_of_checkpoints_);
-        Checkpoint checkpoint = recorder_->checkpoint(state);
-        checkpoint.costs = costs(state.relaxation_seconds);
-        results_->add_checkpoint(std::move(checkpoint));
-      };
+    told.reached = [this](const PathState& state) {
+      const Stopwatch watch(seconds_of_checkpoints_);
+      Checkpoint checkpoint = recorder_->checkpoint(state);
+      checkpoint.costs = costs(state.relaxation_seconds);
+      results_->add_checkpoint(std::move(checkpoint), numbering());
+    };
     told.describe = [this](const InputError& error) {
       return std::string(located(from_, error).what());
     };
@@ -277,6 +282,12 @@ class CaseRun {
     };
     return told;
   }
+
+  /// Null: the body is whole.
+  [[nodiscard]] const RowGathering* gathering() const {
+    return gathering_ ? &*gathering_ : nullptr;
+  }
+  [[nodiscard]] StateNumbering* numbering() { return numbering_ ? &*numbering_ : nullptr; }
 
   [[nodiscard]] double largest_of_all(const std::vector<double>& displacement) const {
     return ranks_.max(largest_displacement(displacement, body_->points));
@@ -333,8 +344,7 @@ class CaseRun {
     progress_.problem(summary_.reason);
     progress_.problem(fmt::format("{} accepted steps are in {}", result.steps, folder));
     if (result.outcome == Outcome::interrupted) {
-      if (result.steps > 0 && !body_->part)
-        progress_.problem("to go on: peristat resume " + folder);
+      if (result.steps > 0) progress_.problem("to go on: peristat resume " + folder);
       return Exit::interrupted;
     }
     progress_.problem("dossier.txt there tells where it failed and what to do");
@@ -358,7 +368,10 @@ class CaseRun {
   double seconds_of_checkpoints_ = 0.0;
   int steps_here_ = 0;  // accepted in this session
   std::unique_ptr<const Body> body_;
-  std::optional<RowGathering> gathering_;  // of ranks
+  // Of ranks.
+  std::optional<RowGathering> gathering_;
+  std::optional<RecordedPoints> recorded_;
+  std::optional<StateNumbering> numbering_;
   std::optional<Study> study_;
   std::optional<Model> stand_in_;
   std::unique_ptr<SolvedModel> standing_in_;

@@ -47,6 +47,28 @@ class RowGathering {
     }
   }
 
+  /// Gives each rank the values of the points that it owns. A call that all ranks make.
+  /// @param take called for rows that follow one another, at rank 0 only
+  template <class Value, class Take>
+  [[nodiscard]] std::vector<Value> scatter(std::size_t values_per_row, const Take& take) const {
+    std::vector<Value> mine;
+    auto next = part_.number().begin();
+    for (std::int64_t first = 0; first < part_.whole(); first += most_rows_) {
+      const std::int64_t count = std::min(most_rows_, std::int64_t(part_.whole()) - first);
+      std::vector<Value> rows;
+      if (part_.ranks().rank() == 0) rows = take(std::uint64_t(first), std::uint64_t(count));
+      std::string bytes(reinterpret_cast<const char*>(rows.data()), rows.size() * sizeof(Value));
+      part_.ranks().broadcast(bytes);
+      rows.resize(bytes.size() / sizeof(Value));
+      std::memcpy(rows.data(), bytes.data(), bytes.size());
+      for (; next != part_.number().end() && *next < first + count; ++next) {
+        const auto row = rows.begin() + std::ptrdiff_t(std::size_t(*next - first) * values_per_row);
+        mine.insert(mine.end(), row, row + std::ptrdiff_t(values_per_row));
+      }
+    }
+    return mine;
+  }
+
   /// Brings items to rank 0 in their order and in parts. A call that all ranks make.
   /// @tparam Item of plain bytes
   /// @param order_of an item: two whole numbers, from 0 to `most_order` the first one
@@ -168,6 +190,38 @@ class RowGathering {
 
   const PartOfBody& part_;
   std::int64_t most_rows_;
+};
+
+/// Where values per point come from: a file, of a body that is whole here, or given out by rank 0
+/// in parts. Calls that all ranks make.
+class RowSource {
+ public:
+  /// @param file null on ranks that rank 0 reads for
+  /// @param gathering null: the body is whole
+  RowSource(const Hdf5File* file, const RowGathering* gathering)
+      : file_(file), gathering_(gathering) {}
+
+  /// What rank 0 finds.
+  template <class Find>
+  [[nodiscard]] bool all_agree(const Find& find) const {
+    const bool is_found = file_ && find();
+    if (!gathering_) return is_found;
+    return gathering_->part().ranks().max(is_found ? 1.0 : 0.0) > 0.0;
+  }
+
+  /// Of the points that are owned here.
+  template <class Value>
+  [[nodiscard]] std::vector<Value> read(const std::string& path, std::size_t values_per_row) const {
+    if (!gathering_) return file_->some_rows<Value>(path, 0, file_->count_of_rows(path));
+    return gathering_->scatter<Value>(values_per_row,
+                                      [&](std::uint64_t first, std::uint64_t count) {
+                                        return file_->some_rows<Value>(path, first, count);
+                                      });
+  }
+
+ private:
+  const Hdf5File* file_;
+  const RowGathering* gathering_;
 };
 
 /// Where values per point go: into a file, of a body that is whole here, or gathered from ranks.

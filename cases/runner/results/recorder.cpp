@@ -165,7 +165,8 @@ void Recorder::go_on(const Checkpoint& checkpoint, const EarlierResults& earlier
   if (!earlier.history.empty()) last_ = read_step(earlier.history.back(), support_sets, probes);
   for (const BondEnds& ends : newly_broken(path.accepted.history)) separated_.push_back(ends);
   find_growth(earlier, support_sets, probes);
-  const bool is_unwritten = !checkpoint.unwritten.force.empty();
+  const bool is_unwritten =  // a rank may own no point
+      recorded_.ranks().max(double(!checkpoint.unwritten.force.empty())) > 0.0;
   written_histories_.tell(is_unwritten ? std::span(checkpoint.unwritten.told_stretches)
                                        : bond_stretches(body_.model, path.accepted.history));
   if (is_unwritten) {

@@ -114,11 +114,26 @@ class PartReader {
   std::optional<Hdf5File> file_;
 };
 
+/// Copies the bytes of a checkpoint, in parts.
+void copy_checkpoint(const std::filesystem::path& from, Hdf5File& file) {
+  const CheckpointBytes bytes = bytes_of_file(from);
+  constexpr std::uint64_t most = 1 << 20;
+  file.write_rows<std::uint8_t>(
+      "/checkpoint", {bytes.size}, {"none", "what the run can go on from, for peristat"},
+      [&](const Hdf5File::PutRows<std::uint8_t>& put) {
+        for (std::uint64_t at = 0; at < bytes.size; at += most) {
+          const std::string part = bytes.read(at, std::min(most, bytes.size - at));
+          put(at, {part.begin(), part.end()});
+        }
+      });
+}
+
 /// What results begin with: nothing but a folder, or those of an earlier run.
 struct Beginning {
   ClaimedFolder folder;
   const EarlierResults* earlier = nullptr;
   const Checkpoint* checkpoint = nullptr;
+  StateNumbering* numbering = nullptr;
 
   [[nodiscard]] std::vector<Row> rows(std::vector<Row> EarlierResults::*table) const {
     return earlier ? earlier->*table : std::vector<Row>();
@@ -134,15 +149,15 @@ struct Results::Files {
         const RowGathering* of_ranks = nullptr);
 
   void describe(const CaseText& text);
-  void go_on(const EarlierResults& earlier, const Checkpoint& checkpoint);
+  void go_on(const EarlierResults& earlier, const Checkpoint& checkpoint,
+             StateNumbering* numbering);
   void add(const StepRecord& record, const std::optional<StepFields>& step_fields);
   void add_fields(const StepRecord& record, const StepFields& step_fields);
   void write_step(const StepRecord& record, const StepPart& part);
   void link(WrittenStep step);
   void append_pending();
   void publish();
-  /// @return its bytes
-  std::string write_checkpoint(Checkpoint checkpoint);
+  void write_checkpoint(Checkpoint checkpoint, StateNumbering* numbering);
   void add_dossier(const std::vector<double>& residual, const std::vector<double>& displacement);
   void publish_xdmf();
   void publish_summary(const Summary& summary) const;
@@ -221,7 +236,7 @@ Results::Files::Files(Beginning beginning, const Points& points, const CaseText&
   }
   describe(text);
   if (beginning.earlier) {
-    go_on(*beginning.earlier, *beginning.checkpoint);
+    go_on(*beginning.earlier, *beginning.checkpoint, beginning.numbering);
   } else {
     publish_part(folder.points(), bytes_of(points, counts, std::uint64_t(shape.points)),
                  [&](Hdf5File& file) { write_points(file, points, counts, gathering); });
@@ -257,7 +272,8 @@ void Results::Files::describe(const CaseText& text) {
 
 /// Takes up what an earlier run has left. Its checkpoint is written before the results that link to
 /// it, so that a kill between leaves the earlier run as it was.
-void Results::Files::go_on(const EarlierResults& earlier, const Checkpoint& checkpoint) {
+void Results::Files::go_on(const EarlierResults& earlier, const Checkpoint& checkpoint,
+                           StateNumbering* numbering) {
   master.append("/history", history_header, earlier.history);
   master.append("/iterations", iteration_columns(), earlier.iterations);
   master.append("/decisions", decision_columns(), earlier.decisions);
@@ -278,7 +294,7 @@ void Results::Files::go_on(const EarlierResults& earlier, const Checkpoint& chec
   }
   for (const WrittenStep& step : earlier.steps) link(step);
   points_part = earlier.points;
-  static_cast<void>(write_checkpoint(checkpoint));
+  write_checkpoint(checkpoint, numbering);
 }
 
 void Results::Files::append_pending() {
@@ -296,12 +312,12 @@ void Results::Files::append_pending() {
 
 void Results::Files::publish() { publish_file(folder.results(), master.image()); }
 
-std::string Results::Files::write_checkpoint(Checkpoint checkpoint) {
+void Results::Files::write_checkpoint(Checkpoint checkpoint, StateNumbering* numbering) {
   checkpoint.rows = rows;
   checkpoint.last_with_fields = written_steps.empty() ? 0 : written_steps.back().step;
-  std::string bytes = encode(std::move(checkpoint), program);
-  checkpoints.write(bytes);
-  return bytes;
+  checkpoints.write([&](const PutBytes& put) {
+    peristat::write_checkpoint(std::move(checkpoint), program, numbering, put);
+  });
 }
 
 void Results::Files::link(WrittenStep step) {
@@ -382,14 +398,14 @@ void Results::Files::publish_summary(const Summary& summary) const {
 /// Replaces the links of results.h5 by what they link to and removes the parts.
 void Results::Files::gather_parts() {
   const std::filesystem::path gathered = temporary(folder.results());
-  const std::vector<std::uint8_t> checkpoint = checkpoints.last_bytes();
+  const std::filesystem::path checkpoint = checkpoints.last();
   try {
     std::set<std::string> parts{points_part.file};
     if (dossier_part) parts.insert(dossier_part->file);
     for (const WrittenStep& step : written_steps) parts.insert(step.file);
     const std::string_view image = master.image();
-    std::uint64_t room = image.size() + checkpoint.size() + room_for_structure +
-                         written_steps.size() * room_for_step;
+    std::uint64_t room = image.size() + room_for_structure + written_steps.size() * room_for_step;
+    if (!checkpoint.empty()) room += std::filesystem::file_size(checkpoint);
     for (const std::string& part : parts) {
       room += std::filesystem::file_size(folder.directory / part);
     }
@@ -409,10 +425,7 @@ void Results::Files::gather_parts() {
       file.unlink("/xdmf/" + step.name());
       write_views(file, "/xdmf/" + step.name(), "/steps/" + step.name(), step.fields, shape);
     }
-    if (!checkpoint.empty()) {
-      file.write("/checkpoint", checkpoint, {checkpoint.size()},
-                 {"none", "what the run can go on from, for peristat"});
-    }
+    if (!checkpoint.empty()) copy_checkpoint(checkpoint, file);
     file.close();
     if (safe_copy.is_due()) sync_file(gathered);  // the parts go
     rename_file(gathered, folder.results());
@@ -469,14 +482,25 @@ Results::Results(const std::filesystem::path& directory, const Points& points, c
 
 Results::Results(EarlierRun& run, EarlierResults& earlier, const Points& points,
                  const CaseText& text, const std::vector<std::string>& support_sets,
-                 const std::vector<ProbeColumns>& probes, const FurtherOutput& further) {
+                 const std::vector<ProbeColumns>& probes, const FurtherOutput& further,
+                 StateNumbering* numbering) {
+  const RowGathering* const gathering = numbering ? &numbering->gathering() : nullptr;
+  if (gathering && gathering->part().ranks().rank() > 0) {
+    const StepShape shape{Index(gathering->rows()), points.dimension, further.has_stress};
+    sender_ = std::make_unique<Sender>(Sender{*gathering, shape, run.directory()});
+    for (const Row& row : earlier.history) {
+      sender_->totals.add(read_step(row, support_sets, probes));
+    }
+    if (!earlier.steps.empty()) sender_->last_with_fields = earlier.steps.back().step;
+    return write_checkpoint(run.checkpoint(), "", numbering, {});
+  }
   double seconds = run.checkpoint().costs.seconds.output;
   {
     const Stopwatch stopwatch(seconds);
     ClaimedFolder folder = run.take_over(identity(text, further), earlier);
-    files_ =
-        std::make_unique<Files>(Beginning{std::move(folder), &earlier, &run.checkpoint()}, points,
-                                text, support_sets, probes, std::vector<PointCounts>(), further);
+    files_ = std::make_unique<Files>(
+        Beginning{std::move(folder), &earlier, &run.checkpoint(), numbering}, points, text,
+        support_sets, probes, std::vector<PointCounts>(), further, gathering);
   }
   files_->seconds = seconds;
 }
@@ -550,16 +574,18 @@ void Results::add(const StepRecord& record, const std::optional<StepFields>& fie
   files_->add(record, fields);
 }
 
-void Results::add_checkpoint(Checkpoint checkpoint) {
+void Results::add_checkpoint(Checkpoint checkpoint, StateNumbering* numbering) {
+  if (sender_) return write_checkpoint(std::move(checkpoint), "", numbering, {});
   const Stopwatch stopwatch(files_->seconds);
   if (files_->closed) throw std::logic_error("results: closed");
   if (!files_->pending_decisions.empty()) {  // about the step to come
     files_->append_pending();
     files_->publish();
   }
-  const std::string bytes = files_->write_checkpoint(std::move(checkpoint));
+  files_->write_checkpoint(std::move(checkpoint), numbering);
   if (files_->safe_copy.is_due()) {
-    files_->safe_copy.make(files_->points_part.file, files_->written_steps, bytes);
+    files_->safe_copy.make(files_->points_part.file, files_->written_steps,
+                           files_->checkpoints.last());
   }
 }
 

@@ -67,10 +67,11 @@ class Results {
   /// Goes on with the results of an earlier run from its checkpoint. What it holds beyond that, and
   /// what tells how it ended, is dropped.
   /// @param earlier what it holds up to there; its files are named anew where they move
+  /// @param numbering null: the body is whole
   /// @throws OutputError
   Results(EarlierRun& run, EarlierResults& earlier, const Points& points, const CaseText& text,
           const std::vector<std::string>& support_sets, const std::vector<ProbeColumns>& probes,
-          const FurtherOutput& further = {});
+          const FurtherOutput& further = {}, StateNumbering* numbering = nullptr);
   ~Results();
   Results(const Results&) = delete;
   Results& operator=(const Results&) = delete;
@@ -89,7 +90,8 @@ class Results {
   /// Publishes what a run can go on from, once it has added the path's last step; its rows are
   /// counted here. Now and then it sees to it that all this has reached the disk, as seldom as that
   /// takes a hundredth of the time.
-  void add_checkpoint(Checkpoint checkpoint);
+  /// @param numbering null: the body is whole
+  void add_checkpoint(Checkpoint checkpoint, StateNumbering* numbering = nullptr);
 
   /// Publishes the fields of the step added last, unless they were added with it: for the end of a
   /// run whose last step was one that only enters the history.

@@ -21,6 +21,16 @@ void link_as(const fs::path& file, const fs::path& name) {
   rename_file(temporary(name), name);
 }
 
+/// In place of what carries the name, which may be a link.
+void copy_file(const fs::path& from, const fs::path& to) {
+  std::error_code error;
+  fs::remove(to, error);
+  fs::copy_file(from, to, error);
+  if (error) {
+    throw OutputError(to.string() + ": can't be written: " + error.message(), error.value());
+  }
+}
+
 }  // namespace
 
 bool SafeCopy::is_due() const {
