@@ -1,8 +1,11 @@
 """Runs on several ranks: what they give is what one rank gives, and what they can't do they refuse."""
 
 import csv
+import json
 import os
 import re
+import resource
+import shutil
 import signal
 import subprocess
 import tempfile
@@ -143,7 +146,7 @@ def rows(output, table):
         return list(csv.DictReader(file))
 
 
-class SameResults(OnRanks):
+class Comparison(OnRanks):
     def expect_same(self, one, several):
         with h5py.File(one / "results.h5") as expected, h5py.File(several / "results.h5") as found:
             names = [name for name in objects(expected) if name != "checkpoint"]
@@ -186,6 +189,8 @@ class SameResults(OnRanks):
                 self.expect_same_iterations(one, several)
         return one
 
+
+class SameResults(Comparison):
     def test_a_bar(self):
         self.compare(BAR)
 
@@ -349,6 +354,108 @@ class SameResults(OnRanks):
         self.assertEqual(run.stdout.count("completed in"), 1)
 
 
+def resume(ranks, output, *options):
+    words = [PROGRAM, "resume", str(output), *(("--ranks", str(ranks)) if ranks > 1 else ()), "--threads", "1", *options]
+    return subprocess.run(words, env=ENVIRONMENT, capture_output=True, text=True, timeout=100)
+
+
+def entries_of_checkpoint(file):
+    """Names and sizes of what it holds, as they stand at its begin."""
+    head, rest = file["checkpoint"][()].tobytes().split(b"\n", 1)
+    return head, rest[24 : 24 + int.from_bytes(rest[:8], "little")].decode()
+
+
+class GoesOn(Comparison):
+    """On another number of ranks than before."""
+
+    TEXT = PLATE.replace("steps = 2", "steps = 4") + SOLVER
+
+    def stopped(self, ranks, text, *options):
+        run, output = self.start(ranks, text, "--stop-after", "2", *options)
+        self.assertEqual(run.returncode, 130, run.stderr)
+        self.assertEqual(len(rows(output, "history.csv")), 2)
+        self.assertIn("peristat resume", run.stderr)
+        return output
+
+    def goes_on(self, ranks, output, whole, *options):
+        folder = self.folder / f"{output.name}_resumed_on_{ranks}"
+        shutil.copytree(output, folder)
+        run = resume(ranks, folder, *options)
+        self.assertEqual(run.returncode, 0, run.stderr)
+        self.assertIn("going on after step 2", run.stdout)
+        self.expect_same(whole, folder)
+        self.expect_same_iterations(whole, folder)
+        with h5py.File(whole / "results.h5") as expected, h5py.File(folder / "results.h5") as found:
+            self.assertEqual(entries_of_checkpoint(expected), entries_of_checkpoint(found))
+        self.assertFalse((folder / "parts").exists())
+
+    def whole(self, text):
+        output = self.results(1, text)
+        return output.rename(self.folder / "whole")
+
+    def test_on_more_and_on_fewer_ranks(self):
+        whole = self.whole(self.TEXT)
+        of_two = self.stopped(2, self.TEXT)
+        for ranks in (3, 1, 2):
+            with self.subTest(from_2_to=ranks):
+                self.goes_on(ranks, of_two, whole)
+        of_one = self.stopped(1, self.TEXT)
+        for ranks in (2, 4):
+            with self.subTest(from_1_to=ranks):
+                self.goes_on(ranks, of_one, whole)
+
+    def test_with_fields_that_are_not_written_yet(self):
+        text = self.TEXT + "[output]\nevery = 3\nstress = true\n[[probe]]\nname = 'p'\nat = [0.5, 1.2]\n"
+        text += "[[probe]]\nname = 'row'\nfrom = [0.1, 1.2]\nto = [0.9, 1.2]\nfield = 'stress'\n"
+        self.goes_on(3, self.stopped(2, text), self.whole(text))
+
+    def test_on_ranks_without_a_point(self):
+        text = SHORT_BAR + SOLVER + "[loading]\nsteps = 3\n[output]\nevery = 3\n"
+        whole = self.whole(text)
+        self.goes_on(1, self.stopped(8, text), whole)
+        self.goes_on(8, self.stopped(1, text), whole)
+
+    def test_in_three_dimensions(self):
+        block = BLOCK.replace("table = [0, 1, 0.5]", "steps = 4") + SOLVER
+        self.goes_on(3, self.stopped(2, block), self.whole(block))
+
+    def test_with_the_same_bits_on_as_many_ranks(self):
+        whole = self.results(2, self.TEXT).rename(self.folder / "whole")
+        output = self.stopped(2, self.TEXT)
+        self.assertEqual(resume(2, output).returncode, 0)
+        with h5py.File(whole / "results.h5") as expected, h5py.File(output / "results.h5") as found:
+            for name in ("steps/000004/displacement", "history/external_work", "history/reaction_y:top"):
+                self.assertTrue(numpy.array_equal(expected[name], found[name]), name)
+
+    def test_further_than_before(self):
+        output = self.results(2, self.TEXT)
+        again = resume(3, output)
+        self.assertEqual(again.returncode, 0, again.stderr)
+        self.assertIn("has come to its end", again.stdout)
+        self.assertEqual(again.stdout.count("has come to its end"), 1)
+        further = resume(3, output, "--set", "loading.table=[0, 1, 0.5]")
+        self.assertEqual(further.returncode, 0, further.stderr)
+        self.assertEqual(float(rows(output, "history.csv")[-1]["load_factor"]), 0.5)
+
+    def test_of_another_body(self):
+        output = self.stopped(2, self.TEXT)
+        results = output / "results.h5"
+        with h5py.File(results, "r+") as file:
+            file["points/reference"][7, 1] += 1e-12
+        said = resume(3, output)
+        self.assertEqual(said.returncode, 2, said.stderr)
+        self.assertIn("its points are not those", said.stderr)
+        self.assertEqual(said.stderr.count("peristat:"), 1)
+
+    def test_from_a_damaged_checkpoint(self):
+        output = self.stopped(2, self.TEXT)
+        with h5py.File(output / "results.h5", "r+") as file:
+            file["checkpoint"][700] ^= 1
+        said = resume(2, output)
+        self.assertEqual(said.returncode, 2, said.stderr)
+        self.assertIn("its checksum is wrong", said.stderr)
+
+
 class Ends(OnRanks):
     def test_a_search_that_does_not_converge(self):
         options = ("--set", "solver.max_iterations=1", "--set", "loading.adaptive=false")
@@ -369,13 +476,6 @@ class Ends(OnRanks):
         worst = [re.findall(r"^  (\d+)  ", text, re.MULTILINE) for text in dossiers]
         self.assertEqual(worst[0], worst[1])
         self.assertEqual(len(worst[0]), 10)
-
-    def test_a_run_that_is_stopped(self):
-        run, output = self.start(2, PLATE + SOLVER, "--stop-after", "1")
-        self.assertEqual(run.returncode, 130, run.stderr)
-        self.assertEqual(len(rows(output, "history.csv")), 1)
-        again = subprocess.run([PROGRAM, "resume", str(output)], capture_output=True, text=True, timeout=60)
-        self.assertEqual(again.returncode, 2, again.stderr)
 
     def test_places_off_the_body(self):
         for probe, what in (("at=[5, 5]", "within two spacings"), ("from=[5, 0], to=[5, 1]", "within half a spacing")):
@@ -409,7 +509,7 @@ class Ends(OnRanks):
         words = [PROGRAM, "run", "--ranks", "2", str(file), "--threads", "1", "--output", str(self.folder / "out")]
         run = subprocess.Popen(words, env=ENVIRONMENT, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         try:
-            ranks = self.wait_for_ranks(run.pid)
+            ranks = self.wait_for_ranks(run.pid, steps=2)
             os.kill(ranks[-1], signal.SIGKILL)
             self.assertNotEqual(run.wait(timeout=20), 0)
             for rank in ranks:
@@ -417,6 +517,51 @@ class Ends(OnRanks):
         finally:
             run.kill()
             run.wait()
+        self.assertFalse((self.folder / "out/summary.json").exists())
+        self.expect_going_on(self.folder / "out", 1, 3)
+
+    def expect_going_on(self, output, *numbers_of_ranks):
+        """What a run has left is readable, and is gone on from."""
+        with h5py.File(output / "results.h5") as file:
+            steps = file["history/step"][()]
+            self.assertGreaterEqual(len(steps), 1)
+            self.assertEqual(list(file["steps"]), [f"{step:06}" for step in steps])
+        for ranks in numbers_of_ranks:
+            run = resume(ranks, output, "--stop-after", "2")
+            self.assertEqual(run.returncode, 130, run.stderr)
+            self.assertIn("going on after step", run.stdout)
+        with h5py.File(output / "results.h5") as file:
+            self.assertGreaterEqual(len(file["history/step"]), len(steps) + 2 * len(numbers_of_ranks) - 1)
+
+    def test_a_rank_without_memory_ends_all(self):
+        file = self.case(PLATE.replace("spacing = 0.05", "spacing = 0.01").replace("steps = 2", "steps = 500") + SOLVER)
+        words = [PROGRAM, "run", "--ranks", "2", str(file), "--threads", "1", "--output", str(self.folder / "out")]
+        run = subprocess.Popen(words, env=ENVIRONMENT, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+        try:
+            rank = self.wait_for_ranks(run.pid, steps=2)[-1]
+            resource.prlimit(rank, resource.RLIMIT_AS, (1 << 20, 1 << 20))
+            said = run.communicate(timeout=60)[1]
+            self.assertEqual(run.returncode, 4, said)
+            self.assertIn("out of memory", said)
+            self.assertRegex(said, "accepted steps? (is|are) in")
+            self.assertEqual(json.loads((self.folder / "out/summary.json").read_text())["status"], "failed")
+        finally:
+            run.kill()
+            run.wait()
+        self.expect_going_on(self.folder / "out", 2)
+
+    def test_a_full_disk_ends_all(self):
+        """As far as files may not grow; what a full one does on one rank is in faults_test.py."""
+        file = self.case(PLATE.replace("spacing = 0.05", "spacing = 0.02").replace("steps = 2", "steps = 60") + SOLVER)
+        words = [PROGRAM, "run", "--ranks", "2", str(file), "--threads", "1", "--output", str(self.folder / "out")]
+        room = 1 << 20
+        run = subprocess.run(words, env=ENVIRONMENT, capture_output=True, text=True, timeout=100,
+                             preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (room, room)))  # fmt: skip
+        self.assertEqual(run.returncode, 5, run.stderr)
+        summary = json.loads((self.folder / "out/summary.json").read_text())
+        self.assertEqual(summary["status"], "failed")
+        self.assertGreater(summary["steps"], 1)
+        self.expect_going_on(self.folder / "out", 3)
 
     def test_an_interruption_ends_a_run_in_order(self):
         file = self.case(PLATE.replace("spacing = 0.05", "spacing = 0.01").replace("steps = 2", "steps = 500") + SOLVER)
@@ -433,12 +578,13 @@ class Ends(OnRanks):
             run.kill()
             run.wait()
 
-    def wait_for_ranks(self, launcher):
-        """Process numbers, once results are there."""
+    def wait_for_ranks(self, launcher, steps=0):
+        """Process numbers, once results are there, or so many accepted steps."""
         end = time.monotonic() + 60
         while time.monotonic() < end:
             time.sleep(0.05)
-            if not (self.folder / "out/results.h5").exists():
+            history = self.folder / "out/history.csv"
+            if not (self.folder / "out/results.h5").exists() or history.read_text().count("\n") <= steps:
                 continue
             mpirun = children_of(launcher)
             ranks = children_of(mpirun[0]) if mpirun else []
@@ -546,7 +692,7 @@ class Refusals(OnRanks):
         words = ["mpirun", "--oversubscribe", "-np", "2", PROGRAM, "check", str(file)]
         run = subprocess.run(words, env=ENVIRONMENT, capture_output=True, text=True, timeout=60)
         self.assertEqual(run.returncode, 2)
-        self.assertIn("no command but run", run.stderr)
+        self.assertIn("no command but run and resume", run.stderr)
 
 
 if __name__ == "__main__":
