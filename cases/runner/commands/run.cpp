@@ -278,7 +278,7 @@ class CaseRun {
     told.interrupted = [this] {
       const bool here =
           interruption_requested() || (options_.steps > 0 && steps_here_ >= options_.steps);
-      return ranks_.max(double(here)) > 0.0;
+      return ranks_.count() == 1 ? here : ranks_.max(double(here)) > 0.0;
     };
     return told;
   }

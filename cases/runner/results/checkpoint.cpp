@@ -201,11 +201,11 @@ class Packer : public StateArchive {
 
   [[nodiscard]] PlacedPart part_of(Rows rows, const std::vector<double>& values) const {
     PlacedPart part;
+    part.size = numbering_->whole_size(rows, values.size());
+    part.written = std::uint64_t(part.size);
     for (const auto& [whole, here] : numbering_->places(rows, values.size())) {
       part.values.push_back({whole, values[here]});
     }
-    part.size = numbering_->whole_size(rows, values.size());
-    part.written = std::uint64_t(part.size);
     return part;
   }
 

@@ -492,7 +492,8 @@ Results::Results(EarlierRun& run, EarlierResults& earlier, const Points& points,
       sender_->totals.add(read_step(row, support_sets, probes));
     }
     if (!earlier.steps.empty()) sender_->last_with_fields = earlier.steps.back().step;
-    return write_checkpoint(run.checkpoint(), "", numbering, {});
+    write_checkpoint(run.checkpoint(), "", numbering, {});
+    return;
   }
   double seconds = run.checkpoint().costs.seconds.output;
   {

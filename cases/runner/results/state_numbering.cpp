@@ -22,19 +22,24 @@ StateNumbering::StateNumbering(const RecordedPoints& points, const RowGathering&
     counts.push_back(std::int64_t(told_bonds(point).size()));
   }
   std::tie(first_bond_, whole_bonds_) = gathering_.counted_before(counts);
-  pin({});
 }
 
 void StateNumbering::pin(const FragmentPins& pins) {
+  pinned_ = pins.pinned;
+  first_free_.reset();
+}
+
+void StateNumbering::number_free_dofs() {
+  if (first_free_) return;
   const auto d = std::size_t(points_.dimension());
   is_free_.assign(std::size_t(part_.owned()) * d, 0);
   std::vector<std::int64_t> counts(std::size_t(part_.owned()), 0);
   for (std::size_t dof = 0; dof < is_free_.size(); ++dof) {
-    is_free_[dof] = !prescribed_[dof] && (pins.pinned.empty() || !pins.pinned[dof]);
+    is_free_[dof] = !prescribed_[dof] && (pinned_.empty() || !pinned_[dof]);
     counts[dof / d] += is_free_[dof];
   }
   free_here_ = std::count(is_free_.begin(), is_free_.end(), 1);
-  std::tie(first_free_, whole_free_) = gathering_.counted_before(counts);
+  std::tie(first_free_.emplace(), whole_free_) = gathering_.counted_before(counts);
 }
 
 StateNumbering::Extent StateNumbering::extent(Rows rows) const {
@@ -57,16 +62,18 @@ StateNumbering::Extent StateNumbering::extent(Rows rows) const {
   throw std::logic_error("an array of a path's state that no rank has a part of");
 }
 
-std::int64_t StateNumbering::whole_size(Rows rows, std::size_t here) const {
+std::int64_t StateNumbering::whole_size(Rows rows, std::size_t here) {
   if (part_.ranks().max(double(here)) == 0.0) return 0;
+  if (rows == Rows::free_dofs) number_free_dofs();
   const Extent of = extent(rows);
   const std::int64_t beyond = std::int64_t(here) - of.here * of.width;
   if (beyond < 0) throw std::logic_error("an array of a path's state is too short");
   return of.whole * of.width + beyond;
 }
 
-std::optional<std::size_t> StateNumbering::size_here(Rows rows, std::int64_t whole) const {
+std::optional<std::size_t> StateNumbering::size_here(Rows rows, std::int64_t whole) {
   if (whole == 0) return 0;
+  if (rows == Rows::free_dofs) number_free_dofs();
   const Extent of = extent(rows);
   const std::int64_t beyond = whole - of.whole * of.width;
   constexpr std::int64_t most_beyond = 1 << 16;
@@ -92,8 +99,8 @@ void StateNumbering::visit_rows(Rows rows,
   if (rows == Rows::free_dofs) {
     const auto d = std::size_t(points_.dimension());
     std::size_t here = 0;
-    for (std::size_t point = 0; point < first_free_.size(); ++point) {
-      std::int64_t whole = first_free_[point];
+    for (std::size_t point = 0; point < first_free_->size(); ++point) {
+      std::int64_t whole = (*first_free_)[point];
       for (std::size_t dof = point * d; dof < (point + 1) * d; ++dof) {
         if (is_free_[dof]) visit(whole++, here++);
       }

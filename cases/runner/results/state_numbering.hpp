@@ -25,16 +25,16 @@ class StateNumbering {
   [[nodiscard]] const RowGathering& gathering() const { return gathering_; }
 
   /// Of an array of the whole body, or of its part here.
-  [[nodiscard]] std::int64_t whole_size(Rows rows, std::size_t here) const;
+  [[nodiscard]] std::int64_t whole_size(Rows rows, std::size_t here);
   /// Nothing if no array of the body has the size.
-  [[nodiscard]] std::optional<std::size_t> size_here(Rows rows, std::int64_t whole) const;
+  [[nodiscard]] std::optional<std::size_t> size_here(Rows rows, std::int64_t whole);
 
   /// A value that is told here.
   struct Place {
     std::int64_t whole;
     std::size_t here;
   };
-  /// Ascending.
+  /// Ascending; of arrays of a size that one of the above has told.
   [[nodiscard]] std::vector<Place> places(Rows rows, std::size_t size_here) const;
 
   /// Gives what others tell to those that have it, too: ghosts, and bonds between parts.
@@ -54,6 +54,8 @@ class StateNumbering {
     std::int64_t whole = 0, here = 0, width = 1;
   };
   [[nodiscard]] Extent extent(Rows rows) const;
+  /// Finds the numbers of free degrees of freedom, once for these pins.
+  void number_free_dofs();
   void visit_rows(Rows rows, const std::function<void(std::int64_t, std::size_t)>& visit) const;
   void visit_bonds(const std::function<void(std::int64_t, std::size_t)>& visit) const;
   /// The bonds of an owned point that are told here, ascending by their other points.
@@ -68,8 +70,9 @@ class StateNumbering {
   const std::vector<char>& prescribed_;
   std::vector<std::int64_t> first_bond_;  // of each owned point, in the whole body
   std::int64_t whole_bonds_ = 0;
-  std::vector<std::int64_t> first_free_;  // likewise of free degrees of freedom
-  std::vector<char> is_free_;             // per degree of freedom of owned points
+  std::vector<char> pinned_;
+  std::optional<std::vector<std::int64_t>> first_free_;  // likewise of free degrees of freedom
+  std::vector<char> is_free_;                            // per degree of freedom of owned points
   std::int64_t whole_free_ = 0, free_here_ = 0;
 };
 
