@@ -102,7 +102,9 @@ TEST(RowGathering, brings_what_is_told_of_bonds_in_their_order_and_in_parts) {
     for (std::size_t k = 0; k < items.size(); ++k) {
       EXPECT_EQ(items[k].value,
                 items[k].first_point + 0.25 * (items[k].second_point - items[k].first_point));
-      if (k > 0) EXPECT_LT(items[k - 1].value, items[k].value);
+      if (k > 0) {
+        EXPECT_LT(items[k - 1].value, items[k].value);
+      }
     }
   }
 }
