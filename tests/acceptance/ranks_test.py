@@ -533,34 +533,35 @@ class Ends(OnRanks):
         with h5py.File(output / "results.h5") as file:
             self.assertGreaterEqual(len(file["history/step"]), len(steps) + 2 * len(numbers_of_ranks) - 1)
 
-    def test_a_rank_without_memory_ends_all(self):
+    def limited(self, limit, of_all, room):
+        """A run whose last rank, or all of them, come to a limit of the system when they have accepted two steps."""
         file = self.case(PLATE.replace("spacing = 0.05", "spacing = 0.01").replace("steps = 2", "steps = 500") + SOLVER)
         words = [PROGRAM, "run", "--ranks", "2", str(file), "--threads", "1", "--output", str(self.folder / "out")]
         run = subprocess.Popen(words, env=ENVIRONMENT, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
         try:
-            rank = self.wait_for_ranks(run.pid, steps=2)[-1]
-            resource.prlimit(rank, resource.RLIMIT_AS, (1 << 20, 1 << 20))
+            ranks = self.wait_for_ranks(run.pid, steps=2)
+            for rank in ranks if of_all else ranks[-1:]:
+                resource.prlimit(rank, limit, (room, room))
             said = run.communicate(timeout=60)[1]
-            self.assertEqual(run.returncode, 4, said)
-            self.assertIn("out of memory", said)
-            self.assertRegex(said, "accepted steps? (is|are) in")
-            self.assertEqual(json.loads((self.folder / "out/summary.json").read_text())["status"], "failed")
         finally:
             run.kill()
             run.wait()
+        self.assertRegex(said, "accepted steps? (is|are) in")
+        summary = json.loads((self.folder / "out/summary.json").read_text())
+        self.assertEqual(summary["status"], "failed", said)
+        self.assertGreater(summary["steps"], 1)
+        return run.returncode, said
+
+    def test_a_rank_without_memory_ends_all(self):
+        code, said = self.limited(resource.RLIMIT_AS, False, 1 << 20)
+        self.assertEqual(code, 4, said)
+        self.assertIn("out of memory", said)
         self.expect_going_on(self.folder / "out", 2)
 
-    def test_a_full_disk_ends_all(self):
-        """As far as files may not grow; what a full one does on one rank is in faults_test.py."""
-        file = self.case(PLATE.replace("spacing = 0.05", "spacing = 0.02").replace("steps = 2", "steps = 60") + SOLVER)
-        words = [PROGRAM, "run", "--ranks", "2", str(file), "--threads", "1", "--output", str(self.folder / "out")]
-        room = 1 << 20
-        run = subprocess.run(words, env=ENVIRONMENT, capture_output=True, text=True, timeout=100,
-                             preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (room, room)))  # fmt: skip
-        self.assertEqual(run.returncode, 5, run.stderr)
-        summary = json.loads((self.folder / "out/summary.json").read_text())
-        self.assertEqual(summary["status"], "failed")
-        self.assertGreater(summary["steps"], 1)
+    def test_files_that_can_not_grow_end_all(self):
+        """Like a full disk, which faults_test.py has for one rank."""
+        code, said = self.limited(resource.RLIMIT_FSIZE, True, 1 << 14)
+        self.assertEqual(code, 5, said)
         self.expect_going_on(self.folder / "out", 3)
 
     def test_an_interruption_ends_a_run_in_order(self):
