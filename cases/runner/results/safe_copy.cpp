@@ -22,7 +22,7 @@ void link_as(const fs::path& file, const fs::path& name) {
 }
 
 /// In place of what carries the name, which may be a link.
-void copy_file(const fs::path& from, const fs::path& to) {
+void put_copy(const fs::path& from, const fs::path& to) {
   std::error_code error;
   fs::remove(to, error);
   fs::copy_file(from, to, error);
@@ -46,7 +46,7 @@ void SafeCopy::make(const std::string& points, const std::vector<WrittenStep>& s
     sync_file(folder_.directory / steps[safe_steps_].file);
   }
   sync_file(folder_.results());
-  copy_file(checkpoint, temporary(folder_.safe_checkpoint()));
+  put_copy(checkpoint, temporary(folder_.safe_checkpoint()));
   sync_file(temporary(folder_.safe_checkpoint()));
   link_as(folder_.results(), folder_.safe_results());
   rename_file(temporary(folder_.safe_checkpoint()), folder_.safe_checkpoint());
