@@ -29,6 +29,7 @@
 #include "src/core/number_text.hpp"
 #include "src/core/stopwatch.hpp"
 #include "src/core/threads.hpp"
+#include "src/geometry/image_kinds.hpp"
 #include "src/neighbourhood/horizon.hpp"
 #include "src/neighbourhood/share_on_horizon.hpp"
 
@@ -85,7 +86,7 @@ Model make_bond_model(const Body& body, const PointMaterials& materials, Bonds b
   const BondMaterials mixed(of, materials, body.factors, body.points,
                             micromoduli(of, materials, body.setting));
   if (!of.is_uniform()) {
-    refuse_idle_interfaces(of, materials, bonds);
+    refuse_idle_interfaces(of, materials, bonds, body.part ? &body.part->ranks() : nullptr);
     mixed.weigh(bonds);
   }
   cut = cut_bonds(bonds, body.points, of.cracks);
@@ -98,6 +99,14 @@ void reach_twice(BodySize& size) {
   size.has_symmetric_blocks = false;
   size.coupling_ratio = 2.0 * size.horizon_ratio;
   size.blocks = expected_bonds(size.points, size.dimension, size.coupling_ratio);
+}
+
+/// Regions and random factors of the points.
+void note_materials(Body& body, const PointMaterials& materials, int threads) {
+  using Quantity = ScatterSpecification::Quantity;
+  body.region = materials.regions();
+  body.factors = {materials.factors(body.points, Quantity::stiffness, threads),
+                  materials.factors(body.points, Quantity::strength, threads)};
 }
 
 /// Model of a body, and what its pre-cracks have cut.
@@ -114,10 +123,7 @@ void make_model(Body& body, int threads) {
   Bonds bonds = make_bonds(body.points, of.surface_correction, setting, threads);
   refuse_coincident_points(body.points, bonds);
   const PointMaterials materials(of, body.points);
-  body.region = materials.regions();
-  using Quantity = ScatterSpecification::Quantity;
-  body.factors = {materials.factors(body.points, Quantity::stiffness, threads),
-                  materials.factors(body.points, Quantity::strength, threads)};
+  note_materials(body, materials, threads);
   CutBonds cut;
   if (is_linear) {
     body.model = make_linear_model(of, materials, body.factors, body.points, body.setting,
@@ -301,30 +307,34 @@ namespace {
 void refuse_without_ranks(const BodySpecification& of) {
   const auto refuse = [](const std::string& key) {
     throw InputError(key, "",
-                     "is not for more than one rank yet: there are elastic bonds of one material, "
-                     "with supports, body forces, total forces and gravity");
+                     "is not for more than one rank yet: there are elastic bonds with supports, "
+                     "body forces, total forces and gravity");
   };
   const MaterialSpecification& material = of.material;
   if (material.model != MaterialModel::bond) refuse("material.model");
   if (material.kinematics != Kinematics::finite) refuse("material.kinematics");
   if (material.damage.law != DamageLaw::none) refuse("material.damage");
-  if (!of.is_uniform()) refuse(of.regions.empty() ? "material" : "regions");
+  for (std::size_t k = 0; k < of.regions.size(); ++k) {
+    const bool fails = of.regions[k].material.damage.law != DamageLaw::none;
+    if (fails) refuse("regions[" + std::to_string(k) + "].material.damage");
+  }
+  for (std::size_t k = 0; k < of.interfaces.size(); ++k) {
+    const auto& own = of.interfaces[k].material;
+    const bool fails = own && own->damage.law != DamageLaw::none;
+    if (fails) refuse("interfaces[" + std::to_string(k) + "].material.damage");
+  }
   if (of.force_operator != ForceOperator::bonds) refuse("force_operator");
-  if (of.horizon_shape != HorizonShape::ball) refuse("horizon_shape");
   if (!of.cracks.empty()) refuse("cracks");
-  if (!of.foundations.empty()) refuse("foundations");
   if (!of.controls.empty()) refuse("controls");
   if (of.end_time || of.has_inertia) refuse("end_time");
-  if (of.eigenstrains.are_there()) refuse("eigenstrains");
   const ConstraintSpecification& constraints = of.constraints;
   const bool is_constrained = !constraints.rigid_sets.empty() || !constraints.rollers.empty() ||
-                              !constraints.linear.empty() || !constraints.symmetries.empty() ||
-                              !constraints.periods.empty();
+                              !constraints.linear.empty();
   if (is_constrained) refuse("constraints");
   using Kind = LoadSpecification::Kind;
   for (std::size_t k = 0; k < of.loads.size(); ++k) {
     const Kind kind = of.loads[k].kind;
-    if (kind != Kind::body_force && kind != Kind::total_force && kind != Kind::gravity) {
+    if (kind == Kind::stress) {
       refuse("loads[" + std::to_string(k) + "]." + load_key(kind));
     }
   }
@@ -355,26 +365,36 @@ std::unique_ptr<const Body> make_body(Part part, const BodySpecification& of,
   require_resolved(part.points, body.setting.horizon);
   require_memory_for(part.points, of);
   body.part = std::make_unique<const PartOfBody>(part, ranks);
+  const ConstraintSpecification& constraints = of.constraints;
+  const bool has_images = !constraints.symmetries.empty() || !constraints.periods.empty();
+  if (has_images == part.image_kinds.empty()) {
+    throw std::logic_error("make_body: of a part without the sources of its images");
+  }
+  add_images(part.points, part.image_kinds, part.reach);
   {
     const Stopwatch watch(body.seconds_neighbourhood);
     Bonds bonds = make_bonds(part, of.surface_correction, body.setting, threads);
     body.points = std::move(part.points);
-    body.points.owned = part.owned;
     refuse_coincident_points(body.points, bonds);
     const PointMaterials materials(of, body.points);
+    note_materials(body, materials, threads);
     CutBonds none;
     body.model = make_bond_model(body, materials, std::move(bonds), none);
   }
   LoadSetting loads = load_setting(of, body.points);
   loads.ranks = &ranks;
+  loads.number = part.number;
   body.conditions = std::make_unique<Conditions>(body.points, of.supports, of.loads,
-                                                 programme_of(of), of.controls, loads);
+                                                 programme_of(of), of.controls, loads,
+                                                 of.eigenstrains, of.constraints, of.foundations);
+  add_terms_of_conditions(body.model, body);
   return made;
 }
 
 void add_terms_of_conditions(Model& model, const Body& body) {
-  const PressedBoundary& boundary = body.conditions->pressed_boundary();
-  if (!boundary.face.empty()) model.add(std::make_shared<PressureTerm>(body.points, boundary));
+  if (body.conditions->has_pressures()) {
+    model.add(std::make_shared<PressureTerm>(body.points, body.conditions->pressed_boundary()));
+  }
   const Foundations& foundations = body.conditions->foundations();
   if (!foundations.none()) model.add(std::make_shared<FoundationTerm>(body.points, foundations));
   if (body.specification.has_inertia) model.add(std::make_shared<InertiaTerm>(body.points));

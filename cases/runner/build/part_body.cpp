@@ -10,7 +10,10 @@
 
 #include "solvers/ranks/distribute.hpp"
 #include "solvers/ranks/part_bonds.hpp"
+#include "src/conditions/pressed_boundary.hpp"
 #include "src/core/input_error.hpp"
+#include "src/geometry/image_kinds.hpp"
+#include "src/geometry/point_file.hpp"
 #include "src/geometry/point_set.hpp"
 #include "src/geometry/slab.hpp"
 
@@ -23,12 +26,15 @@ constexpr std::array keys_of_ranks{
     // points
     "lattice.spacing", "lattice.horizon_ratio", "lattice.thickness", "lattice.area",
     "lattice.origin", "lattice.perturbation", "lattice.seed", "lattice.shape.", "lattice.layer.",
-    "set.",
+    "lattice.angle", "lattice.volumes", "lattice.cell_perturbation", "lattice.points",
+    "points.file", "points.thickness", "points.area", "points.horizon", "set.",
     // bonds
-    "quadrature.volume_correction", "quadrature.surface_correction", "material.model",
-    "material.plane", "material.youngs_modulus", "material.micromodulus", "material.density",
+    "quadrature.", "material.model", "material.plane", "material.youngs_modulus",
+    "material.micromodulus", "material.density", "material.influence", "material.potential",
+    "material.calibration", "material.fibre.", "material.scatter.", "region.", "interface.",
     // conditions
-    "support.", "load.set", "load.body_force", "load.total_force", "load.gravity",
+    "support.", "symmetry.", "period.", "load.", "foundation.", "eigenstrain.", "temperature.",
+    "material.thermal_expansion",
     // search
     "loading.steps", "loading.table", "loading.table2", "loading.adaptive", "loading.smallest_step",
     "loading.largest_step", "solver.mode", "solver.linear", "solver.preconditioner",
@@ -66,11 +72,6 @@ bool has_ranks(const std::string& key) {
 
 /// Of keys whose values have ranks in part, those that have.
 void refuse_values_without_ranks(const Case& from) {
-  if (!std::holds_alternative<Lattice>(from.body)) refuse("points", "", "take a lattice");
-  if (from.volume_correction != VolumeCorrection::none &&
-      from.volume_correction != VolumeCorrection::linear) {
-    refuse("quadrature.volume_correction", "", "take \"none\" or \"linear\"");
-  }
   if (from.material.model != MaterialModel::bond) {
     refuse("material.model", "", "take \"bond\"");
   }
@@ -126,6 +127,35 @@ void add_sets(const Case& from, const Communicator& ranks, Part& part) {
   }
 }
 
+/// Points that stand on a lattice or in a file.
+Part make_slab_of(const Case& from, const Communicator& ranks) {
+  const auto* const lattice = std::get_if<Lattice>(&from.body);
+  if (lattice == nullptr) {
+    const auto& source = std::get<PointSource>(from.body);
+    return read_slab(source.file, from.dimension, source.cross_section, ranks);
+  }
+  Part slab = make_slab(*lattice, ranks);
+  if (lattice->perturbation == 0.0 && lattice->cell_perturbation == 0.0) {
+    const auto& periods = from.constraints.periods;
+    require_lattice_goes_on(slab.points, from.constraints.symmetries,
+                            {periods.begin(), periods.end()}, ranks);
+  }
+  return slab;
+}
+
+std::vector<ImageKind> kinds_of_images(const Case& from, const Points& points, double reach,
+                                       const Communicator& ranks) {
+  const auto& periods = from.constraints.periods;
+  return image_kinds(points, extent_of(points, ranks), from.constraints.symmetries,
+                     {periods.begin(), periods.end()}, reach);
+}
+
+bool has_pressures(const Case& from) {
+  return std::ranges::any_of(from.loads, [](const LoadSpecification& load) {
+    return load.kind == LoadSpecification::Kind::pressure;
+  });
+}
+
 }  // namespace
 
 void refuse_keys_without_ranks(const Case& from) {
@@ -142,13 +172,15 @@ void refuse_keys_without_ranks(const Case& from) {
 std::unique_ptr<const Body> make_part_body(const Case& from, const Communicator& ranks,
                                            int threads) {
   return located_errors(from, [&] {
-    Part slab = make_slab(std::get<Lattice>(from.body), ranks);
+    Part slab = make_slab_of(from, ranks);
     if (slab.whole > std::numeric_limits<Index>::max()) {
       refuse("lattice.spacing", "", "results have numbers for fewer than 2^31 points");
     }
     const BondSetting setting = bond_setting(from, slab.points);
-    const double reach = reach_of_bonds(slab.points, from.surface_correction, setting, ranks);
-    Part part = distribute(std::move(slab), setting.horizon, reach, ranks, threads);
+    double reach = reach_of_bonds(slab.points, from.surface_correction, setting, ranks);
+    if (has_pressures(from)) reach = std::max(reach, reach_of_pressures(slab.points));
+    const std::vector<ImageKind> images = kinds_of_images(from, slab.points, reach, ranks);
+    Part part = distribute(std::move(slab), setting.horizon, reach, ranks, threads, images);
     add_sets(from, ranks, part);
     require_sets_of_probes(from, part.points);
     return make_body(std::move(part), from, ranks, threads);
