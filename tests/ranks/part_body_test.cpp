@@ -7,9 +7,11 @@
 
 #include <gtest/gtest.h>
 
+#include "assembly/assembler.hpp"
 #include "solvers/ranks/distribute.hpp"
 #include "solvers/ranks/part_bonds.hpp"
 #include "solvers/study/body.hpp"
+#include "src/core/input_error.hpp"
 #include "src/geometry/image_kinds.hpp"
 #include "src/geometry/slab.hpp"
 #include "tests/bodies.hpp"
