@@ -181,7 +181,8 @@ WholeLattice look_at_whole(const Lattice& lattice, const Communicator& ranks) {
 }
 
 /// Points of a slab, each where its site is, in the order of these.
-Points points_of(const Lattice& lattice, const SlabSites& sites) {
+/// @param cells of the body's sites, where they are perturbed
+Points points_of(const Lattice& lattice, const SlabSites& sites, CellPolygons cells) {
   Points points;
   points.dimension = lattice.dimension;
   points.spacing = lattice.spacing;
@@ -206,19 +207,45 @@ Points points_of(const Lattice& lattice, const SlabSites& sites) {
     std::sort(set.begin(), set.end());
     set.erase(std::unique(set.begin(), set.end()), set.end());
   }
+  if (lattice.cell_perturbation == 0.0) return points;
+  points.polygons = std::move(cells);
+  if (points.polygons.empty()) points.polygons.offset.push_back(0);  // there are none here
+  for (std::size_t k = 0; k < sites.layers.sites.size(); ++k) {
+    points.polygons.append(whole_cell(lattice));
+  }
   return points;
 }
 
 /// As locality_order, by the extent of the whole body.
-std::vector<Index> order_of(const LocalityCells& cells, const Points& points) {
+std::vector<Index> order_of(const LocalityCells& cells, const SlabSites& sites) {
   std::vector<std::pair<LocalityCells::Key, Index>> places;
-  for (Index i = 0; i < points.count(); ++i) {
-    places.emplace_back(cells.of(&points.reference[std::size_t(i) * points.dimension]), i);
+  for (const std::vector<Site>* all : {&sites.body, &sites.layers.sites}) {
+    for (const Site& site : *all) {
+      places.emplace_back(cells.of(site.place.data()), Index(places.size()));
+    }
   }
   std::sort(places.begin(), places.end());
   std::vector<Index> order;
   for (const auto& [cell, point] : places) order.push_back(point);
   return order;
+}
+
+/// Moves the sites of a slab to where their perturbed cells have their centroids.
+/// @param near sites of the body in a window around the slab
+template <class Slab>
+CellPolygons perturb_cells_of(const Lattice& lattice, const Slab& slab, std::vector<Site> near,
+                              std::vector<Site>& body) {
+  std::vector<bool> is_here;
+  for (const Site& site : near) is_here.push_back(slab.has(site.place));
+  const CellPolygons all = perturb_cells(lattice, near);
+  CellPolygons cells;
+  body.clear();
+  for (std::size_t k = 0; k < near.size(); ++k) {
+    if (!is_here[k]) continue;
+    body.push_back(near[k]);
+    cells.append(all.of(k));
+  }
+  return cells;
 }
 
 }  // namespace
@@ -232,34 +259,17 @@ Part make_slab(const Lattice& lattice, const Communicator& ranks) {
   const LocalityCells locality(lattice.dimension, lattice.spacing, whole.extent.low,
                                whole.extent.high);
   const ShareOfRows slab(lattice, locality, whole.extent.low, whole.extent.high, ranks);
-  SlabSites sites = sites_near(lattice, whole.outermost, slab.window(depth_of_window(lattice)));
-  // Points are numbered by where they stand before their cells are perturbed, which those beside
-  // them tell.
-  std::vector<Site> perturbed = sites.body;
-  const CellPolygons cells = perturb_cells(lattice, perturbed);
-  CellPolygons cells_here;
-  std::vector<Site> perturbed_here;
-  for (std::size_t k = 0; k < sites.body.size(); ++k) {
-    if (!slab.has(sites.body[k].place)) continue;
-    perturbed_here.push_back(perturbed[k]);
-    if (!cells.empty()) cells_here.append(cells.of(k));
+  const SlabSites near =
+      sites_near(lattice, whole.outermost, slab.window(depth_of_window(lattice)));
+  SlabSites sites{restricted(near.body, slab), restricted(near.layers, slab)};
+  const std::vector<Index> order = order_of(locality, sites);  // before anything is perturbed
+  CellPolygons cells;
+  if (lattice.cell_perturbation > 0.0) {
+    cells = perturb_cells_of(lattice, slab, near.body, sites.body);
   }
-  sites.body = restricted(sites.body, slab);
-  sites.layers = restricted(sites.layers, slab);
 
   Part part;
-  Points unsorted = points_of(lattice, sites);
-  const std::vector<Index> order = order_of(locality, unsorted);
-  if (lattice.cell_perturbation > 0.0) {
-    sites.body = std::move(perturbed_here);
-    unsorted = points_of(lattice, sites);
-    unsorted.polygons = std::move(cells_here);
-    unsorted.polygons.offset.resize(std::max<std::size_t>(1, unsorted.polygons.offset.size()));
-    for (std::size_t k = 0; k < sites.layers.sites.size(); ++k) {
-      unsorted.polygons.append(whole_cell(lattice));
-    }
-  }
-  part.points = renumbered(unsorted, order);
+  part.points = renumbered(points_of(lattice, sites, std::move(cells)), order);
   std::vector<bool> is_body(order.size());
   for (std::size_t k = 0; k < order.size(); ++k) {
     is_body[k] = std::size_t(order[k]) < sites.body.size();
