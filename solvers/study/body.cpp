@@ -325,16 +325,18 @@ void refuse_without_ranks(const BodySpecification& of) {
   }
   if (of.force_operator != ForceOperator::bonds) refuse("force_operator");
   if (!of.cracks.empty()) refuse("cracks");
+  if (!of.foundations.empty()) refuse("foundations");
   if (!of.controls.empty()) refuse("controls");
   if (of.end_time || of.has_inertia) refuse("end_time");
   const ConstraintSpecification& constraints = of.constraints;
   const bool is_constrained = !constraints.rigid_sets.empty() || !constraints.rollers.empty() ||
-                              !constraints.linear.empty();
+                              !constraints.linear.empty() || !constraints.symmetries.empty() ||
+                              !constraints.periods.empty();
   if (is_constrained) refuse("constraints");
   using Kind = LoadSpecification::Kind;
   for (std::size_t k = 0; k < of.loads.size(); ++k) {
     const Kind kind = of.loads[k].kind;
-    if (kind == Kind::stress) {
+    if (kind == Kind::pressure || kind == Kind::stress) {
       refuse("loads[" + std::to_string(k) + "]." + load_key(kind));
     }
   }

@@ -362,36 +362,6 @@ class Bodies(SameResults):
         self.assertGreater(float(rows(one, "history.csv")[0]["max_stretch"]), 1e-4)
         self.compare_settings(PLATE, 'eigenstrain=[{set="corner", strain="0.01*load*x"}]')
 
-    def test_pressures(self):
-        self.compare_shipped("pressure/ring", "lattice.spacing=0.1")
-
-    def test_foundations(self):
-        soil = 'foundation=[{name="soil", set="corner", stiffness=[2e5, 1e5], displacement=["0.01*load", "0"]}, ' \
-            '{name="side", side="x+", modulus=[1e7, 0]}]'
-        text = PLATE.replace("[solver]", "")
-        self.compare_stored(text, soil)
-
-    def compare_stored(self, text, *settings, ranks=(2, 3)):
-        """Of tangents that are not known without being stored."""
-        solver = SOLVER.replace('tangent = "matrix_free"', "")
-        options = [word for setting in settings for word in ("--set", setting)]
-        one = self.results(1, text + solver, *options)
-        for count in ranks:
-            several = self.results(count, text + solver, *options)
-            with self.subTest(settings=settings, ranks=count):
-                self.expect_same(one, several)
-                self.expect_same_iterations(one, several)
-        return one
-
-    def test_planes_of_symmetry(self):
-        self.compare_shipped("plate_with_hole/quarter", "lattice.spacing=2.5e-3", ranks=(2, 3, 4))
-        thin = ("lattice.shape[0].max=[0.1, 1.5]", 'symmetry=[{axis="x", at=0}, {axis="x", at=0.1}]',
-                "load=[]", 'set=[]', "lattice.shape[1].radius=0.01")  # fmt: skip
-        self.compare_stored(PLATE.replace("centre = [0.5, 0.7]", "centre = [0.9, 0.7]"), *thin)
-
-    def test_periods(self):
-        self.compare_shipped("periodic/holes", "lattice.spacing=1e-2", 'period[1].gradient=[0, "0"]')
-
 
 class Ends(OnRanks):
     def test_a_search_that_does_not_converge(self):
@@ -521,6 +491,9 @@ class Refusals(OnRanks):
             'lattice.points="blue_noise"',
             "crack=[{from=[0, 1], to=[0.3, 1]}]",
             'rigid=[{set="corner"}]',
+            'symmetry=[{axis="x", at=0}]',
+            'foundation=[{name="f", set="corner", stiffness=[1, 1]}]',
+            'load=[{side="x+", pressure="1"}]',
             'roller=[{set="corner", normal=[1, 0]}]',
             'control=[{set="corner", weights=[1, 0]}]',
             'probe=[{name="p", at=[0.5, 1]}]',

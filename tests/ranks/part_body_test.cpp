@@ -103,44 +103,9 @@ std::vector<BodyOfTest> bodies_of_test() {
   traction.side = Side{0, 1};
   traction.depth = Depth::horizon;
   loads.of.loads.push_back(traction);
-  loads.of.foundations = {{"soil", "upper", {}, {}, {5.0, 7.0, 0.0}, {"0.01*load", "x", "0"}}};
-  FoundationSpecification side{"side", "", Side{0, 1}, {3.0, 0.0, 0.0}, {}};
-  loads.of.foundations.push_back(side);
   loads.of.eigenstrains.given = {{"inner", "0.01*load"}, {"", "0.002*y"}};
   all.push_back(loads);
 
-  BodyOfTest pressed = plate("pressures");
-  LoadSpecification pressure{Kind::pressure, "inner", {"load*(1+x)", "0", "0"}};
-  pressed.of.loads = {pressure};
-  pressure.set.clear();
-  pressure.side = Side{1, 1};
-  pressed.of.loads.push_back(pressure);
-  all.push_back(pressed);
-
-  BodyOfTest half = plate("planes of symmetry");
-  half.of.surface_correction = SurfaceCorrection::energy;
-  half.lattice.layers = {{"below", {1, -1}, 3}};
-  half.of.constraints.symmetries = {{0, 2.0}};
-  half.of.eigenstrains.given = {{"", "0.002*y"}};
-  all.push_back(half);
-
-  BodyOfTest between = half;
-  between.name = "a body between two planes, thinner than its horizon";
-  between.lattice = lattice_box(2, {2, 26, 0}, {0.1, 0.1, 0.1});
-  between.lattice.layers = {{"below", {1, -1}, 3}};
-  between.sets = {};
-  between.of.constraints.symmetries = {{0, 0.3}, {0, 0.5}};
-  all.push_back(between);
-
-  BodyOfTest cell = plate("a periodic cell");
-  cell.of.surface_correction = SurfaceCorrection::volume;
-  cell.lattice.layers = {};
-  cell.lattice.volumes = CellVolumes::fractional;
-  cell.of.volume_correction = VolumeCorrection::linear;
-  cell.of.supports = {};
-  cell.of.constraints.periods = {{{0, 0.3, 2.0}, {"1e-3*load", "0", "0"}},
-                                 {{1, 0.3, 2.9}, {"0", "2e-3*load", "0"}}};
-  all.push_back(cell);
   return all;
 }
 

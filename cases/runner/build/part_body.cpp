@@ -33,8 +33,8 @@ constexpr std::array keys_of_ranks{
     "material.micromodulus", "material.density", "material.influence", "material.potential",
     "material.calibration", "material.fibre.", "material.scatter.", "region.", "interface.",
     // conditions
-    "support.", "symmetry.", "period.", "load.", "foundation.", "eigenstrain.", "temperature.",
-    "material.thermal_expansion",
+    "support.", "load.set", "load.side", "load.body_force", "load.total_force", "load.gravity",
+    "load.traction", "load.depth", "eigenstrain.", "temperature.", "material.thermal_expansion",
     // search
     "loading.steps", "loading.table", "loading.table2", "loading.adaptive", "loading.smallest_step",
     "loading.largest_step", "solver.mode", "solver.linear", "solver.preconditioner",
