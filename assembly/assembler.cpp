@@ -6,7 +6,6 @@
 #include <string>
 
 #include "src/core/stopwatch.hpp"
-#include "src/geometry/part.hpp"
 
 namespace peristat {
 
@@ -71,20 +70,17 @@ Evaluation Assembler::of_all(const StateView& at, const Evaluation& mine,
                              std::span<double> gradient) {
   // Of a bond between two ranks each has the share of its own point.
   point_energies(at, of_points_);
+  const auto owned = std::size_t(sharing_->owned());
   double energy = 0.0;
-  for (Index i = 0; i < points_.count(); ++i) {
-    if (is_owned(points_, i)) energy += of_points_[std::size_t(i)];
-  }
+  for (std::size_t i = 0; i < owned; ++i) energy += of_points_[i];
   Evaluation all;
   all.energy = sharing_->ranks().sum(energy);
   all.round_off = sharing_->ranks().sum(mine.round_off);
   all.degenerate =
       sharing_->ranks().max(double(mine.degenerate)) > 0.0 || !std::isfinite(all.energy);
   if (gradient.empty()) return all;
-  const auto d = std::ptrdiff_t(points_.dimension);
-  for (Index i = sharing_->owned(); i < points_.count(); ++i) {
-    if (!is_owned(points_, i)) std::fill_n(gradient.begin() + i * d, d, 0.0);
-  }
+  const std::size_t dofs = owned * std::size_t(points_.dimension);
+  std::fill(gradient.begin() + std::ptrdiff_t(dofs), gradient.end(), 0.0);
   return all;
 }
 

@@ -131,9 +131,7 @@ void share_out_jump(const EquilibriumProblem& problem, std::span<const double> f
 void move_followers(const EquilibriumProblem& problem, Trial& trial) {
   const Constraints& constraints = problem.conditions.constraints();
   if (!constraints.none()) constraints.move(trial.displacement);
-  if (!problem.assembler.sharing()) return;
-  problem.assembler.sharing()->update_ghosts(trial.displacement);
-  if (!constraints.none()) constraints.move_images(trial.displacement);  // of ghosts
+  if (problem.assembler.sharing()) problem.assembler.sharing()->update_ghosts(trial.displacement);
 }
 
 void fold_followers(const EquilibriumProblem& problem, std::span<const double> external_force,

@@ -113,18 +113,9 @@ class NearPoints {
   std::vector<std::pair<Cell, Index>> cells_;  // ascending
 };
 
-/// Whether is_near(place) holds for a point or one of its images.
-template <class IsNear>
-bool is_any_near(const Coordinates& at, const std::vector<ImageKind>& images,
-                 const IsNear& is_near) {
-  return is_near(at.data()) || std::any_of(images.begin(), images.end(), [&](const auto& kind) {
-           return is_near(kind.place(at).data());
-         });
-}
-
 /// Points that may be ghosts of others go to them.
 Records offered_points(const Part& part, const PointRecords& format, double reach,
-                       const Communicator& ranks, const std::vector<ImageKind>& images) {
+                       const Communicator& ranks) {
   const Points& points = part.points;
   PointBox mine(points.dimension);
   for (Index i = 0; i < part.owned; ++i) mine.add(place_of(points, i));
@@ -135,11 +126,9 @@ Records offered_points(const Part& part, const PointRecords& format, double reac
   for (int other = 0; other < ranks.count(); ++other) {
     const std::span<const double> of_other{&boxes[std::size_t(other) * width], width};
     const PointBox theirs(of_other);
-    const bool may_be_near = !images.empty() || mine.is_near(theirs, reach);
-    if (other == ranks.rank() || theirs.is_empty() || !may_be_near) continue;
+    if (other == ranks.rank() || !mine.is_near(theirs, reach)) continue;
     for (Index i = 0; i < part.owned; ++i) {
-      const auto is_near = [&](const double* at) { return theirs.is_near(at, reach); };
-      if (!is_any_near(points.position(i), images, is_near)) continue;
+      if (!theirs.is_near(place_of(points, i), reach)) continue;
       offered.add(part, i, ranks.rank());
       to.push_back(other);
     }
@@ -148,17 +137,13 @@ Records offered_points(const Part& part, const PointRecords& format, double reac
 }
 
 /// Records of points that are within reach of this rank's own.
-Records wanted_of(const Part& part, const Records& offered, double reach,
-                  const std::vector<ImageKind>& images) {
+Records wanted_of(const Part& part, const Records& offered, double reach) {
   const NearPoints near(part.points, part.owned, reach);
   const auto doubles = std::size_t(offered.doubles), integers = std::size_t(offered.integers);
   Records wanted{offered.doubles, offered.integers, {}, {}};
   for (std::size_t record = 0; record * integers < offered.numbers.size(); ++record) {
     const double* const value = &offered.values[record * doubles];
-    Coordinates at{};
-    std::copy_n(value, part.points.dimension, at.begin());
-    const auto is_near = [&](const double* place) { return near.has_near(place); };
-    if (!is_any_near(at, images, is_near)) continue;
+    if (!near.has_near(value)) continue;
     const long long* const number = &offered.numbers[record * integers];
     wanted.values.insert(wanted.values.end(), value, value + doubles);
     wanted.numbers.insert(wanted.numbers.end(), number, number + integers);
@@ -168,23 +153,19 @@ Records wanted_of(const Part& part, const Records& offered, double reach,
 
 }  // namespace
 
-Part with_ghosts(Part part, double reach, const Communicator& ranks,
-                 const std::vector<ImageKind>& images) {
+Part with_ghosts(Part part, double reach, const Communicator& ranks) {
   if (part.ghosts() > 0) throw std::logic_error("with_ghosts: the part has some already");
   part.reach = reach;
-  part.image_kinds = images;
-  part.points.owned = part.owned;
   if (ranks.count() == 1) return part;
   const double distance = inclusive_radius(reach);
   const PointRecords format(part);
-  const Records offered = offered_points(part, format, distance, ranks, images);
-  format.append_to(part, wanted_of(part, offered, distance, images), true);
+  const Records offered = offered_points(part, format, distance, ranks);
+  format.append_to(part, wanted_of(part, offered, distance), true);
   return part;
 }
 
-Part distribute(Part slab, double horizon, double reach, const Communicator& ranks, int threads,
-                const std::vector<ImageKind>& images) {
-  if (ranks.count() == 1) return with_ghosts(std::move(slab), reach, ranks, images);
+Part distribute(Part slab, double horizon, double reach, const Communicator& ranks, int threads) {
+  if (ranks.count() == 1) return with_ghosts(std::move(slab), reach, ranks);
   const Part seeing = with_ghosts(std::move(slab), horizon, ranks);
   const std::vector<std::int32_t> neighbours =
       count_neighbours(seeing.points, seeing.owned, horizon, threads);
@@ -204,7 +185,7 @@ Part distribute(Part slab, double horizon, double reach, const Communicator& ran
   for (Index i = 0; i < seeing.owned; ++i) leaving.add(seeing, i, to[std::size_t(i)]);
   Part part = empty_part(seeing);
   leaving.append_to(part, exchange(ranks, to, leaving.records()), false);
-  return with_ghosts(std::move(part), reach, ranks, images);
+  return with_ghosts(std::move(part), reach, ranks);
 }
 
 }  // namespace peristat

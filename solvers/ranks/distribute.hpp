@@ -1,7 +1,5 @@
 #pragma once
 
-#include <vector>
-
 #include "src/core/communicator.hpp"
 #include "src/geometry/part.hpp"
 
@@ -11,15 +9,11 @@ namespace peristat {
 /// neighbours together, by `partition`, each with its ghosts. A rank may get no point.
 /// @param horizon of the neighbours that are counted [m]
 /// @param reach   within which ghosts are wanted [m]
-/// @param images  kinds that are wanted of points, see with_ghosts
 [[nodiscard]] Part distribute(Part slab, double horizon, double reach, const Communicator& ranks,
-                              int threads, const std::vector<ImageKind>& images = {});
+                              int threads);
 
 /// The points of a part that its rank owns, and all others that stand within a distance of one of
-/// them, or have an image that does. A rank asks those for ghosts whose points' boxes are within
-/// that distance of its own.
-/// @param images kinds of images that points have; with each its inverse
-[[nodiscard]] Part with_ghosts(Part part, double reach, const Communicator& ranks,
-                               const std::vector<ImageKind>& images = {});
+/// them. A rank asks those for ghosts whose points' boxes are within that distance of its own.
+[[nodiscard]] Part with_ghosts(Part part, double reach, const Communicator& ranks);
 
 }  // namespace peristat

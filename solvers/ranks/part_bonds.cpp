@@ -23,19 +23,16 @@ Bonds make_bonds(const Part& part, SurfaceCorrection surface, const BondSetting&
     throw std::logic_error("the ghosts of a part don't reach as far as its bonds");
   }
   Bonds bonds = make_bonds(part.points, surface, setting, threads);
-  bonds.remove_if([&](Index i, Offset bond) {
-    return !is_owned(part.points, i) && !is_owned(part.points, bonds.partner[std::size_t(bond)]);
-  });
+  // Ghosts come last, so that a lower point that is one has no other partners.
+  bonds.remove_if([&](Index i, Offset) { return part.is_ghost(i); });
   return bonds;
 }
 
-GlobalIndex count_bonds(const Points& points, const Bonds& bonds, const Communicator& ranks) {
+GlobalIndex count_bonds(Index owned, const Bonds& bonds, const Communicator& ranks) {
   GlobalIndex ends = 0;  // that are this rank's
-  for (Index i = 0; i < bonds.points(); ++i) {
-    for (Offset bond = bonds.offset[i]; bond < bonds.offset[i + 1]; ++bond) {
-      if (bonds.weight(bond) == 0.0) continue;
-      ends += int(is_owned(points, i)) + int(is_owned(points, bonds.partner[std::size_t(bond)]));
-    }
+  for (Offset bond = 0; bond < bonds.count(); ++bond) {
+    if (bonds.weight(bond) == 0.0) continue;
+    ends += bonds.partner[std::size_t(bond)] >= owned ? 1 : 2;
   }
   return ranks.count_all(ends).all / 2;
 }

@@ -19,8 +19,7 @@ namespace peristat {
                                const BondSetting& setting, int threads);
 
 /// Bonds of the whole body that have a weight, each counted once.
-/// @param points of a part
-[[nodiscard]] GlobalIndex count_bonds(const Points& points, const Bonds& bonds,
-                                      const Communicator& ranks);
+/// @param owned points of the rank, the first ones
+[[nodiscard]] GlobalIndex count_bonds(Index owned, const Bonds& bonds, const Communicator& ranks);
 
 }  // namespace peristat

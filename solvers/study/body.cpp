@@ -20,6 +20,7 @@
 #include "solvers/study/collocation_model.hpp"
 #include "solvers/study/cpd_model.hpp"
 #include "solvers/study/fracture_data.hpp"
+#include "solvers/study/idle_interfaces.hpp"
 #include "solvers/study/linear_model.hpp"
 #include "solvers/study/state_model.hpp"
 #include "solvers/study/surface_sites.hpp"
@@ -29,7 +30,6 @@
 #include "src/core/number_text.hpp"
 #include "src/core/stopwatch.hpp"
 #include "src/core/threads.hpp"
-#include "src/geometry/image_kinds.hpp"
 #include "src/neighbourhood/horizon.hpp"
 #include "src/neighbourhood/share_on_horizon.hpp"
 
@@ -367,16 +367,11 @@ std::unique_ptr<const Body> make_body(Part part, const BodySpecification& of,
   require_resolved(part.points, body.setting.horizon);
   require_memory_for(part.points, of);
   body.part = std::make_unique<const PartOfBody>(part, ranks);
-  const ConstraintSpecification& constraints = of.constraints;
-  const bool has_images = !constraints.symmetries.empty() || !constraints.periods.empty();
-  if (has_images == part.image_kinds.empty()) {
-    throw std::logic_error("make_body: of a part without the sources of its images");
-  }
-  add_images(part.points, part.image_kinds, part.reach);
   {
     const Stopwatch watch(body.seconds_neighbourhood);
     Bonds bonds = make_bonds(part, of.surface_correction, body.setting, threads);
     body.points = std::move(part.points);
+    body.points.owned = part.owned;
     refuse_coincident_points(body.points, bonds);
     const PointMaterials materials(of, body.points);
     note_materials(body, materials, threads);
@@ -385,18 +380,14 @@ std::unique_ptr<const Body> make_body(Part part, const BodySpecification& of,
   }
   LoadSetting loads = load_setting(of, body.points);
   loads.ranks = &ranks;
-  loads.number = part.number;
-  body.conditions = std::make_unique<Conditions>(body.points, of.supports, of.loads,
-                                                 programme_of(of), of.controls, loads,
-                                                 of.eigenstrains, of.constraints, of.foundations);
-  add_terms_of_conditions(body.model, body);
+  body.conditions = std::make_unique<Conditions>(
+      body.points, of.supports, of.loads, programme_of(of), of.controls, loads, of.eigenstrains);
   return made;
 }
 
 void add_terms_of_conditions(Model& model, const Body& body) {
-  if (body.conditions->has_pressures()) {
-    model.add(std::make_shared<PressureTerm>(body.points, body.conditions->pressed_boundary()));
-  }
+  const PressedBoundary& boundary = body.conditions->pressed_boundary();
+  if (!boundary.face.empty()) model.add(std::make_shared<PressureTerm>(body.points, boundary));
   const Foundations& foundations = body.conditions->foundations();
   if (!foundations.none()) model.add(std::make_shared<FoundationTerm>(body.points, foundations));
   if (body.specification.has_inertia) model.add(std::make_shared<InertiaTerm>(body.points));

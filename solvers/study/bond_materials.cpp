@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "solvers/study/bond_potential.hpp"
+#include "solvers/study/idle_interfaces.hpp"
 #include "src/core/input_error.hpp"
 #include "src/core/number_text.hpp"
 #include "src/materials/bulk_bonds.hpp"
@@ -226,6 +227,11 @@ BondMaterials::Failing BondMaterials::smooth_potential(const Bonds& bonds) const
   }
   if (!has_one) result.potential = with_laws(result.potential, std::move(by_bond));
   return result;
+}
+
+void refuse_idle_interfaces(const BodySpecification& from, const PointMaterials& materials,
+                            const Bonds& bonds) {
+  refuse_idle_interfaces(from, materials, bonds, nullptr);
 }
 
 void refuse_idle_interfaces(const BodySpecification& from, const PointMaterials& materials,

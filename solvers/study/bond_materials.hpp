@@ -5,7 +5,6 @@
 
 #include "solvers/study/body_specification.hpp"
 #include "solvers/study/point_materials.hpp"
-#include "src/core/communicator.hpp"
 #include "src/geometry/points.hpp"
 #include "src/materials/directed_constant.hpp"
 #include "src/neighbourhood/bonds.hpp"
@@ -97,9 +96,8 @@ class BondMaterials {
                                                                   const PointMaterials& materials);
 
 /// Refuses an interface that no bond crosses: a name or a set is not what it was taken for.
-/// @param ranks that have parts of the body, a call that all make; null: it is whole
 /// @throws InputError ("interfaces[0].between")
 void refuse_idle_interfaces(const BodySpecification& from, const PointMaterials& materials,
-                            const Bonds& bonds, const Communicator* ranks = nullptr);
+                            const Bonds& bonds);
 
 }  // namespace peristat

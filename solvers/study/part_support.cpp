@@ -15,15 +15,9 @@
 #include "src/connectivity/free_motion.hpp"
 #include "src/connectivity/rigid_motions.hpp"
 #include "src/core/input_error.hpp"
-#include "src/geometry/part.hpp"
 
 namespace peristat {
 namespace {
-
-/// What holds a body beside its bonds, before anything moves.
-Holding holding_at_rest(const Body& body) {
-  return body.conditions->holding(std::vector<double>(body.conditions->constraints().dofs(), 0.0));
-}
 
 /// Per point, the lowest number of those that bonds join it to: each rank knows its own points'
 /// pieces, and ghosts tell which of them are one.
@@ -32,7 +26,6 @@ std::vector<double> lowest_joined(const Body& body) {
   const Components here = connected_components(body.model.bonds());
   const auto d = std::size_t(body.points.dimension);
   const auto count = body.points.volume.size();
-  const auto own = std::size_t(body.points.own());  // whose images are of their pieces
   std::vector<double> lowest(count * d, double(body.part->whole()));  // of a point, the first entry
   for (std::size_t i = 0; i < body.part->number().size(); ++i) {
     lowest[i * d] = double(body.part->number()[i]);
@@ -40,9 +33,6 @@ std::vector<double> lowest_joined(const Body& body) {
   for (double changes = 1.0; changes > 0.0;) {
     body.part->update_ghosts(lowest);
     std::vector<double> of_piece(here.size.size(), double(body.part->whole()));
-    for (std::size_t i = own; i < count; ++i) {
-      lowest[i * d] = lowest[std::size_t(body.points.source(Index(i))) * d];
-    }
     for (std::size_t i = 0; i < count; ++i) {
       double& least = of_piece[std::size_t(here.of_point[i])];
       least = std::min(least, lowest[i * d]);
@@ -50,9 +40,8 @@ std::vector<double> lowest_joined(const Body& body) {
     bool has_changed = false;
     for (std::size_t i = 0; i < count; ++i) {
       const double least = of_piece[std::size_t(here.of_point[i])];
-      double& of_source = lowest[std::size_t(body.points.source(Index(i))) * d];
-      has_changed = has_changed || least < of_source;
-      of_source = std::min(of_source, least);
+      has_changed = has_changed || least < lowest[i * d];
+      lowest[i * d] = least;
     }
     changes = ranks.max(double(has_changed));
   }
@@ -84,10 +73,9 @@ std::vector<Eigen::Matrix3d> supports_of(const Body& body) {
     }
   }
   const auto d = std::size_t(points.dimension);
-  const Holding holding = holding_at_rest(body);
   for (std::size_t i = 0; i < support.size(); ++i) {
     for (std::size_t c = 0; c < 3; ++c) {
-      const bool holds = c >= d || holding.prescribed[i * d + c];
+      const bool holds = c >= d || body.conditions->prescribed()[i * d + c];
       if (holds) support[i](Eigen::Index(c), Eigen::Index(c)) += 1.0;
     }
   }
@@ -145,56 +133,19 @@ std::vector<double> moved_by(const RigidMotions& motions, const Coordinates& pla
   return row;
 }
 
-/// Adds row^T row.
-void add_square(const std::vector<double>& row, std::vector<double>& sum) {
-  for (std::size_t k = 0; k < sum.size(); ++k) sum[k] += row[k / row.size()] * row[k % row.size()];
-}
-
-/// What keeps images of a rigidly moved body where its own motion would take them: as many rows as
-/// an image that has a bond has components, but for jumps over periods that are free.
-void add_images_to(const Body& body, const Holding& holding, const RigidMotions& motions,
-                   std::vector<double>& sum) {
-  const Points& points = body.points;
-  const Bonds& bonds = body.model.bonds();
-  std::vector<char> is_bonded(points.volume.size(), 0);
-  for (Index i = 0; i < bonds.points(); ++i) {
-    for (Offset bond = bonds.offset[i]; bond < bonds.offset[i + 1]; ++bond) {
-      if (bonds.weight(bond) == 0.0) continue;
-      is_bonded[std::size_t(i)] = is_bonded[std::size_t(bonds.partner[bond])] = 1;
-    }
-  }
-  for (Index image = points.own(); image < points.count(); ++image) {
-    if (!is_bonded[std::size_t(image)] || !is_owned(points, image)) continue;
-    const ImageKind& kind = points.image_kind(image);
-    for (std::size_t c = 0; c < std::size_t(points.dimension); ++c) {
-      bool is_free = false;
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        is_free = is_free || (kind.periods[axis] != 0 && holding.free_jump[axis][c]);
-      }
-      if (is_free) continue;
-      std::vector<double> row = moved_by(motions, points.position(image), c);
-      const std::vector<double> of_source =
-          moved_by(motions, points.position(points.source(image)), c);
-      for (std::size_t k = 0; k < row.size(); ++k) row[k] -= kind.mirror[c] * of_source[k];
-      add_square(row, sum);
-    }
-  }
-}
-
 /// The motions that no prescribed component hinders.
 RigidMotions free_motions_of(const Body& body) {
   constexpr double rank_tolerance = 1e-10;  // as free_rigid_motions
   RigidMotions motions = rigid_motions_of(body);
   const auto d = std::size_t(body.points.dimension), n = std::size_t(motions.count);
   std::vector<double> sum(n * n, 0.0);
-  const Holding holding = holding_at_rest(body);
   for (Index i = 0; i < body.part->owned(); ++i) {
     for (std::size_t axis = 0; axis < d; ++axis) {
-      if (!holding.prescribed[std::size_t(i) * d + axis]) continue;
-      add_square(moved_by(motions, body.points.position(i), axis), sum);
+      if (!body.conditions->prescribed()[std::size_t(i) * d + axis]) continue;
+      const std::vector<double> row = moved_by(motions, body.points.position(i), axis);
+      for (std::size_t k = 0; k < n * n; ++k) sum[k] += row[k / n] * row[k % n];
     }
   }
-  add_images_to(body, holding, motions, sum);
   sum = body.part->ranks().sum(sum);
   const Eigen::Map<const Eigen::MatrixXd> held(sum.data(), Eigen::Index(n), Eigen::Index(n));
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(held);

@@ -64,7 +64,6 @@ Conditions::Conditions(const Points& points, const std::vector<SupportSpecificat
                        const Eigenstrains& eigenstrains, const ConstraintSpecification& constraints,
                        const std::vector<FoundationSpecification>& foundations)
     : points_(points),
-      ranks_(setting.ranks),
       programme_(std::move(programme)),
       prescribed_(points.reference.size(), 0),
       made_{Constraints(points)} {
@@ -92,7 +91,7 @@ Conditions::Conditions(const Points& points, const std::vector<SupportSpecificat
     }
     refuse_depth_of_surface(loads[k], table);
     if (loads[k].kind == LoadSpecification::Kind::pressure) {
-      add_pressure(loads[k], table, setting);
+      add_pressure(loads[k], table);
       continue;
     }
     const auto on = std::make_shared<const Loaded>(loaded(loads[k], setting, table));
@@ -106,10 +105,10 @@ Conditions::Conditions(const Points& points, const std::vector<SupportSpecificat
     }
   }
   add_eigenstrains(eigenstrains, setting);
-  foundations_ = Foundations(points, foundations, parameters, setting.ranks);
+  foundations_ = Foundations(points, foundations, parameters);
   made_ = make_constraints(points, constraints, prescribed_, parameters);
   refuse_shared_names();
-  hold_periodic_cell(constraints, setting);
+  hold_periodic_cell(constraints);
   prescribe_handles();
   if (!control.empty()) {
     // What follows others answers where they do.
@@ -160,60 +159,28 @@ void Conditions::prescribe_handles() {
   }
 }
 
-namespace {
-
-/// The point next to the middle of a body: of several as near, the one with the lowest number.
-/// @return nothing where it is another rank's
-std::optional<Index> next_to_middle(const Points& points, const LoadSetting& setting) {
-  constexpr double as_near = 1e-9;  // of a spacing
-  static const SoleRank alone;
-  const Communicator& ranks = setting.ranks ? *setting.ranks : alone;
-  const Index own = points.owned.value_or(points.own());
-  std::vector<double> sum(4, 0.0);  // of places, and of points
-  for (Index i = 0; i < own; ++i) {
-    const Coordinates at = points.position(i);
-    for (std::size_t c = 0; c < 3; ++c) sum[c] += at[c];
-    sum[3] += 1.0;
-  }
-  sum = ranks.sum(sum);
-  const Coordinates middle{sum[0] / sum[3], sum[1] / sum[3], sum[2] / sum[3]};
-  const auto distance = [&](Index i) {
-    const Coordinates arm = minus<3>(points.position(i), middle);
-    return std::sqrt(dot<3>(arm, arm));
-  };
-  double least = std::numeric_limits<double>::infinity();
-  for (Index i = 0; i < own; ++i) least = std::min(least, distance(i));
-  least = ranks.min(least);
-  const double most = least + as_near * points.spacing;
-  Index nearest = 0;
-  while (nearest < own && distance(nearest) > most) ++nearest;
-  const auto number = [&](Index i) {
-    return setting.number.empty() ? GlobalIndex(i) : setting.number[std::size_t(i)];
-  };
-  const double mine =
-      nearest < own ? double(number(nearest)) : std::numeric_limits<double>::infinity();
-  return ranks.min(mine) == mine && nearest < own ? std::optional(nearest) : std::nullopt;
-}
-
-}  // namespace
-
 /// A cell without supports may move as a whole, which changes nothing: it is held at the point next
 /// to its middle.
-void Conditions::hold_periodic_cell(const ConstraintSpecification& constraints,
-                                    const LoadSetting& setting) {
+void Conditions::hold_periodic_cell(const ConstraintSpecification& constraints) {
   const bool is_held = !prescriptions_.empty() || !constraints.rigid_sets.empty() ||
                        !constraints.rollers.empty() || !constraints.linear.empty();
   if (constraints.periods.empty() || is_held) return;
-  for (int c = 0; c < points_.dimension; ++c) {
-    const bool holds = foundations_.hold(c);
-    floats_[std::size_t(c)] = !(ranks_ ? ranks_->max(double(holds)) > 0.0 : holds);
-  }
+  for (int c = 0; c < points_.dimension; ++c) floats_[std::size_t(c)] = !foundations_.hold(c);
   for (const SymmetryPlane& plane : constraints.symmetries) {
     floats_[std::size_t(plane.axis)] = false;
   }
-  const std::optional<Index> nearest = next_to_middle(points_, setting);
-  for (std::size_t c = 0; nearest && c < std::size_t(points_.dimension); ++c) {
-    const std::size_t dof = std::size_t(*nearest) * std::size_t(points_.dimension) + c;
+  Coordinates middle{};
+  for (Index i = 0; i < points_.own(); ++i) {
+    middle = plus<3>(middle, scaled<3>(1.0 / points_.own(), points_.position(i)));
+  }
+  Index nearest = 0;
+  double least = std::numeric_limits<double>::infinity();
+  for (Index i = 0; i < points_.own(); ++i) {
+    const Coordinates arm = minus<3>(points_.position(i), middle);
+    if (dot<3>(arm, arm) < least) least = dot<3>(arm, arm), nearest = i;
+  }
+  for (std::size_t c = 0; c < std::size_t(points_.dimension); ++c) {
+    const std::size_t dof = std::size_t(nearest) * std::size_t(points_.dimension) + c;
     if (floats_[c]) made_.unused.push_back(dof);
   }
 }
@@ -226,10 +193,6 @@ void Conditions::require_balance(std::span<const double> force, const std::strin
     for (std::size_t dof = c; floats_[c] && dof < force.size(); dof += d) {
       sum += force[dof];
       sum_of_magnitudes += std::abs(force[dof]);
-    }
-    if (ranks_ && floats_[c]) {
-      const std::vector<double> all = ranks_->sum(std::vector<double>{sum, sum_of_magnitudes});
-      sum = all[0], sum_of_magnitudes = all[1];
     }
     if (std::abs(sum) <= round_off * sum_of_magnitudes) continue;
     throw InputError(
@@ -273,10 +236,9 @@ Conditions::Loaded Conditions::loaded(const LoadSpecification& load, const LoadS
   return on;
 }
 
-void Conditions::add_pressure(const LoadSpecification& load, const std::string& table,
-                              const LoadSetting& setting) {
+void Conditions::add_pressure(const LoadSpecification& load, const std::string& table) {
   const std::size_t first = pressed_.face.size();
-  with_table(table, [&] { add_pressed_faces(points_, load, table, pressed_, setting.ranks); });
+  with_table(table, [&] { add_pressed_faces(points_, load, table, pressed_); });
   const std::string key = table + ".value";
   pressures_.push_back({key, first, pressed_.face.size(), with_key(key, [&] {
                           return Expression(load.value[0], points_.dimension, points_.spacing,
@@ -370,17 +332,13 @@ void Conditions::try_stages() {
   const auto try_at = [&](const LoadPoint& at) {
     prescribe(at, values);
     const bool floats = floats_ != std::array<bool, 3>{};
-    if (floats) {
-      external_force(at, force);
-      if (!loads_.empty() && ranks_) require_balance(force, loads_.front().key);
-    }
+    if (floats) external_force(at, force);
     const SharedEnvironment there = environment(at);
     if (floats && !pressures_.empty()) {
       require_balance(face_forces(pressed_, there->pressure, points_.dimension),
                       pressures_.front().key);
     }
     for (const double value : values) largest_ = std::max(largest_, std::abs(value));
-    if (ranks_) largest_ = ranks_->max(largest_);
   };
   if (control_) return try_at({0.0, 0.0});  // nobody knows where its loads will go
   const auto try_share = [&](double share) { try_at(share * programme_.end()); };
@@ -446,8 +404,7 @@ void Conditions::external_force(const LoadPoint& at, std::span<double> force) co
       }
     });
   }
-  // On ranks one of them may have thrown: they are asked at the stages that are tried.
-  if (!loads_.empty() && !ranks_) require_balance(force, loads_.front().key);
+  if (!loads_.empty()) require_balance(force, loads_.front().key);
 }
 
 std::map<std::string, Coordinates> Conditions::reactions(

@@ -31,8 +31,6 @@ struct LoadSetting {
   /// Where tractions act on the surface; nothing: they are forces on points.
   std::optional<std::vector<SurfaceSite>> surface = std::nullopt;
   const Communicator* ranks = nullptr;  ///< that have parts of the body; null: it is whole
-  /// Of a part: the numbers of its points in the whole body.
-  std::span<const GlobalIndex> number = {};
 };
 
 /// What strains the points without forces.
@@ -98,7 +96,6 @@ class Conditions {
 
   [[nodiscard]] const Foundations& foundations() const { return foundations_; }
 
-  [[nodiscard]] bool has_pressures() const { return !pressures_.empty(); }
   /// Faces that pressures act on, in the order of Environment::pressure.
   [[nodiscard]] const PressedBoundary& pressed_boundary() const { return pressed_; }
 
@@ -159,8 +156,7 @@ class Conditions {
     Expression value;         // [Pa]
   };
 
-  void add_pressure(const LoadSpecification& load, const std::string& table,
-                    const LoadSetting& setting);
+  void add_pressure(const LoadSpecification& load, const std::string& table);
   void add_eigenstrains(const Eigenstrains& eigenstrains, const LoadSetting& setting);
   [[nodiscard]] Loaded loaded(const LoadSpecification& load, const LoadSetting& setting,
                               const std::string& table) const;
@@ -168,7 +164,7 @@ class Conditions {
   [[nodiscard]] std::vector<double> parameters(const LoadPoint& at) const;
   void refuse_shared_names() const;
   void prescribe_handles();
-  void hold_periodic_cell(const ConstraintSpecification& constraints, const LoadSetting& setting);
+  void hold_periodic_cell(const ConstraintSpecification& constraints);
   /// Refuses forces that would have to be borne where a cell is held that nothing holds.
   void require_balance(std::span<const double> force, const std::string& key) const;
   void prescribe_handles_at(std::span<const double> loads, std::span<double> displacement) const;
@@ -185,7 +181,6 @@ class Conditions {
                                          double load_factor) const;
 
   const Points& points_;
-  const Communicator* ranks_;  // null: the body is whole
   LoadingProgramme programme_;
   std::vector<Prescription> prescriptions_;
   std::vector<Load> loads_;

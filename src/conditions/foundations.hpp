@@ -7,7 +7,6 @@
 
 #include "src/conditions/environment.hpp"
 #include "src/conditions/specification.hpp"
-#include "src/core/communicator.hpp"
 #include "src/core/expression.hpp"
 #include "src/geometry/points.hpp"
 
@@ -25,15 +24,13 @@ class Foundations {
  public:
   Foundations() = default;
 
-  /// @param ranks that have parts of the body, a call that all make, with the springs of the points
-  ///        that each owns; null: it is whole
   /// @throws InputError ("foundations[k].…", k from 0) for a place that traction_areas or
   ///         points_of_set refuses, a stiffness that is negative, not finite or zero in all
   ///         components, and a bad expression
   Foundations(const Points& points, const std::vector<FoundationSpecification>& specifications,
-              const std::vector<std::string>& parameters, const Communicator* ranks = nullptr);
+              const std::vector<std::string>& parameters);
 
-  [[nodiscard]] bool none() const { return foundations_.empty(); }
+  [[nodiscard]] bool none() const { return springs_.empty(); }
   [[nodiscard]] const std::vector<Spring>& springs() const { return springs_; }
   /// Whether any spring acts along an axis.
   [[nodiscard]] bool hold(int axis) const;

@@ -7,7 +7,6 @@
 #include "src/conditions/points_of_set.hpp"
 #include "src/core/input_error.hpp"
 #include "src/geometry/body_cells.hpp"
-#include "src/geometry/part.hpp"
 #include "src/measures/small_algebra.hpp"
 
 namespace peristat {
@@ -57,11 +56,6 @@ class Faces {
     std::array<Index, 4> face{};
     Coordinates centre{};
     const auto offsets = corners_of(side, points_.dimension);
-    const auto is_of_others = [&](const std::array<int, 3>& offset) {
-      return std::ranges::none_of(points_around(corner_of(cell, offset, points_.dimension)),
-                                  [&](Index around) { return is_owned(points_, around); });
-    };
-    if (points_.owned && std::ranges::all_of(offsets, is_of_others)) return;
     for (std::size_t k = 0; k < offsets.size(); ++k) {
       face[k] = number_of(corner_of(cell, offsets[k], points_.dimension));
       for (int c = 0; c < points_.dimension; ++c) {
@@ -131,21 +125,15 @@ std::vector<double> face_forces(const PressedBoundary& boundary, std::span<const
   return forces;
 }
 
-double reach_of_pressures(const Points& points) {
-  constexpr double spacings = 4.0;  // along each axis
-  return spacings * std::sqrt(double(points.dimension)) * points.spacing.largest();
-}
-
 void add_pressed_faces(const Points& points, const LoadSpecification& load, const std::string& key,
-                       PressedBoundary& boundary, const Communicator* ranks) {
+                       PressedBoundary& boundary) {
   if (load.side && load.side->axis >= points.dimension) {
     throw InputError(key + ".side", name(*load.side), "the body has no such side");
   }
   if (load.set.empty() && !load.side) throw InputError(key, "", "needs a side or a set");
-  const BodyCells cells(points, ranks);
-  // A part may have no point.
-  const double cell = points.cell_volume > 0.0 ? points.cell_volume : points.volume.front();
-  boundary.cross_section = cell / std::pow(points.spacing, double(points.dimension));
+  const BodyCells cells(points);
+  boundary.cross_section =
+      points.volume.front() / std::pow(points.spacing, double(points.dimension));
   Faces faces(points, cells, boundary);
   const std::vector<Index> members = load.set.empty()
                                          ? cells.outermost(*load.side)
@@ -162,8 +150,7 @@ void add_pressed_faces(const Points& points, const LoadSpecification& load, cons
       }
     }
   }
-  const auto added = double(boundary.face.size() - before);
-  if ((ranks ? ranks->sum(added) : added) == 0.0) {
+  if (boundary.face.size() == before) {
     throw InputError(
         key + ".set", '"' + load.set + '"',
         "has no point with nothing of the body beside it, so there is no boundary that "

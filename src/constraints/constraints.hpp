@@ -75,8 +75,6 @@ class Constraints {
 
   /// Moves whatever follows.
   void move(std::span<double> displacement) const;
-  /// Moves images to where their sources are.
-  void move_images(std::span<double> displacement) const;
 
   /// Shares out what handles have moved since `from` among all points that a follower's equation
   /// names, each by its coefficient, in the place of leaving it to the follower: one point of many
@@ -137,6 +135,7 @@ class Constraints {
   void move_followers(std::span<double> displacement) const;
   void fold_point(Index point, const std::vector<Dependence>& masters, double sign,
                   std::span<const double> external_force, std::span<double> gradient) const;
+  void move_images(std::span<double> displacement) const;
 
   const Points* body_;
   int dimension_;

@@ -20,15 +20,8 @@ struct Part {
   GlobalIndex whole = 0;              ///< points of the whole body
   double reach = 0.0;                 ///< distance within which ghosts are here [m]
 
-  std::vector<ImageKind> image_kinds{};  ///< of which the sources are here, see with_ghosts
-
   [[nodiscard]] Index ghosts() const { return points.count() - owned; }
   [[nodiscard]] bool is_ghost(Index point) const { return point >= owned; }
 };
-
-/// Whether a point, or what an image stands for, is this rank's own; of a whole body all are.
-[[nodiscard]] inline bool is_owned(const Points& points, Index point) {
-  return !points.owned || points.source(point) < *points.owned;
-}
 
 }  // namespace peristat

@@ -95,7 +95,7 @@ TEST(AssemblerOfPart, is_that_of_the_whole_body) {
       SCOPED_TRACE(body.name + ", surface correction " + std::to_string(int(surface)));
       Whole whole(body, surface);
       OnRanks ranks(body, surface);
-      EXPECT_EQ(count_bonds(ranks.part.points, ranks.model.bonds(), all_ranks()),
+      EXPECT_EQ(count_bonds(ranks.part.owned, ranks.model.bonds(), all_ranks()),
                 whole.model.bonds().count());
 
       const std::size_t dofs = whole.points.reference.size();

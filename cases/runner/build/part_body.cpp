@@ -10,9 +10,7 @@
 
 #include "solvers/ranks/distribute.hpp"
 #include "solvers/ranks/part_bonds.hpp"
-#include "src/conditions/pressed_boundary.hpp"
 #include "src/core/input_error.hpp"
-#include "src/geometry/image_kinds.hpp"
 #include "src/geometry/point_file.hpp"
 #include "src/geometry/point_set.hpp"
 #include "src/geometry/slab.hpp"
@@ -134,26 +132,7 @@ Part make_slab_of(const Case& from, const Communicator& ranks) {
     const auto& source = std::get<PointSource>(from.body);
     return read_slab(source.file, from.dimension, source.cross_section, ranks);
   }
-  Part slab = make_slab(*lattice, ranks);
-  if (lattice->perturbation == 0.0 && lattice->cell_perturbation == 0.0) {
-    const auto& periods = from.constraints.periods;
-    require_lattice_goes_on(slab.points, from.constraints.symmetries,
-                            {periods.begin(), periods.end()}, ranks);
-  }
-  return slab;
-}
-
-std::vector<ImageKind> kinds_of_images(const Case& from, const Points& points, double reach,
-                                       const Communicator& ranks) {
-  const auto& periods = from.constraints.periods;
-  return image_kinds(points, extent_of(points, ranks), from.constraints.symmetries,
-                     {periods.begin(), periods.end()}, reach);
-}
-
-bool has_pressures(const Case& from) {
-  return std::ranges::any_of(from.loads, [](const LoadSpecification& load) {
-    return load.kind == LoadSpecification::Kind::pressure;
-  });
+  return make_slab(*lattice, ranks);
 }
 
 }  // namespace
@@ -177,10 +156,8 @@ std::unique_ptr<const Body> make_part_body(const Case& from, const Communicator&
       refuse("lattice.spacing", "", "results have numbers for fewer than 2^31 points");
     }
     const BondSetting setting = bond_setting(from, slab.points);
-    double reach = reach_of_bonds(slab.points, from.surface_correction, setting, ranks);
-    if (has_pressures(from)) reach = std::max(reach, reach_of_pressures(slab.points));
-    const std::vector<ImageKind> images = kinds_of_images(from, slab.points, reach, ranks);
-    Part part = distribute(std::move(slab), setting.horizon, reach, ranks, threads, images);
+    const double reach = reach_of_bonds(slab.points, from.surface_correction, setting, ranks);
+    Part part = distribute(std::move(slab), setting.horizon, reach, ranks, threads);
     add_sets(from, ranks, part);
     require_sets_of_probes(from, part.points);
     return make_body(std::move(part), from, ranks, threads);
