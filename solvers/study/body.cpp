@@ -359,6 +359,7 @@ std::unique_ptr<const Body> make_body(Part part, const BodySpecification& of,
                                       const Communicator& ranks, int threads) {
   threads = usable_threads(threads);
   refuse_without_ranks(of);
+  part.points.owned = part.owned;
   check_specification(of, part.points);
   auto made = std::make_unique<Body>();
   Body& body = *made;
@@ -371,7 +372,6 @@ std::unique_ptr<const Body> make_body(Part part, const BodySpecification& of,
     const Stopwatch watch(body.seconds_neighbourhood);
     Bonds bonds = make_bonds(part, of.surface_correction, body.setting, threads);
     body.points = std::move(part.points);
-    body.points.owned = part.owned;
     refuse_coincident_points(body.points, bonds);
     const PointMaterials materials(of, body.points);
     note_materials(body, materials, threads);
