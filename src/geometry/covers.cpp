@@ -43,7 +43,7 @@ std::vector<Cover> covers_of(const Lattice& lattice, const std::vector<Coordinat
   std::vector<Cover> covers;
   for (std::size_t k = 0; k < lattice.layers.size(); ++k) {
     const Layer& layer = lattice.layers[k];
-    const auto face = outermost_face(solid, layer.side, places, lattice.spacing, SoleRank());
+    const auto face = outermost_face(solid, layer.side, places, lattice.spacing);
     if (!face) {
       throw InputError(key_of(k, "side"), name(layer.side),
                        "the body has no flat side out there that the layer could cover");

@@ -13,6 +13,7 @@
 #include "src/core/input_error.hpp"
 #include "src/core/number_text.hpp"
 #include "src/geometry/cell_piece.hpp"
+#include "src/geometry/outermost_face.hpp"
 
 namespace peristat {
 namespace {

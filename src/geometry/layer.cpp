@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "src/geometry/lattice_frame.hpp"
+#include "src/geometry/outermost_face.hpp"
 
 namespace peristat {
 namespace {
@@ -37,6 +38,11 @@ std::optional<double> outermost_face(const Solid& body, const Side& side,
     if (near > 0 && 2 * near >= feet_at(height - 0.5 * spacing)) return side.sign * height;
   }
   return std::nullopt;
+}
+
+std::optional<double> outermost_face(const Solid& body, const Side& side,
+                                     const std::vector<Coordinates>& places, double spacing) {
+  return outermost_face(body, side, places, spacing, SoleRank());
 }
 
 FrontOfFace::FrontOfFace(const Solid& body, const Side& side, double face, double depth,

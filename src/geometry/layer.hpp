@@ -4,7 +4,6 @@
 #include <string>
 #include <vector>
 
-#include "src/core/communicator.hpp"
 #include "src/geometry/side.hpp"
 #include "src/geometry/solid.hpp"
 
@@ -26,11 +25,11 @@ struct Layer {
 
 /// Height [m] of the body's outermost flat face on a side, along the side's axis; none if what
 /// stands out there is round. Told by the feet of the places on planes near the face.
-/// @param places of points in the body; those of this rank, in a call that all make
+/// @param places of points in the body
 /// @param spacing of those points [m]
 [[nodiscard]] std::optional<double> outermost_face(const Solid& body, const Side& side,
                                                    const std::vector<Coordinates>& places,
-                                                   double spacing, const Communicator& ranks);
+                                                   double spacing);
 
 /// What stands in front of a flat face of the body: outside it, up to a depth, and in front of
 /// neither of other faces that come first.
