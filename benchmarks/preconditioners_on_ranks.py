@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Iterations of conjugate gradients by preconditioner and number of MPI ranks.
 
-    benchmarks/preconditioners_on_ranks.py [--side N] [--ranks 1,2,3,4,8]
+    benchmarks/preconditioners_on_ranks.py [--side N] [--ranks 1,2,3,4,8] [--program FILE]
 
 A cube of N x N x N points (24), a bar of 8 x 8 x 240 points and a plate of 120 x 120 with a slot half
 through that no bond crosses; each with three layers that are held at one end and three that are drawn
@@ -16,7 +16,6 @@ import subprocess
 import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
-PROGRAM = ROOT / "build/release/peristat"
 KINDS = ("rigid_pieces", "surrogate", "multigrid", "riluk", "chebyshev", "block_jacobi")
 CASE = """
 dimension = {dimension}
@@ -53,9 +52,9 @@ def bodies(side):
     yield "slotted plate of 120²", 2, [box("add", (0, 0), (120, 120)), slot]
 
 
-def iterations(case, kind, ranks, folder):
+def iterations(program, case, kind, ranks, folder):
     """What a run takes; its message, if it fails."""
-    command = [PROGRAM, "run", case, "--threads", "1", "--no-plots", "--overwrite", "--quiet",
+    command = [program, "run", case, "--threads", "1", "--no-plots", "--overwrite", "--quiet",
                "--output", folder / "results", "--set", f'solver.preconditioner="{kind}"']
     if ranks > 1:
         command += ["--ranks", str(ranks)]
@@ -70,6 +69,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
     parser.add_argument("--side", type=int, default=24)
     parser.add_argument("--ranks", default="1,2,3,4,8")
+    parser.add_argument("--program", default=ROOT / "build/release/peristat")
     options = parser.parse_args()
     counts = [int(count) for count in options.ranks.split(",")]
     print("| body | preconditioner |", " | ".join(str(count) for count in counts), "|")
@@ -83,7 +83,7 @@ def main():
                 dimension=dimension, shapes=", ".join(shapes), axis="xyz"[dimension - 1],
                 held=[0] * dimension, moved=json.dumps([*still, "1e-3*load"])))
             for kind in KINDS:
-                found = [iterations(case, kind, count, folder) for count in counts]
+                found = [iterations(options.program, case, kind, count, folder) for count in counts]
                 print("|", body, "|", kind, "|", " | ".join(found), "|", flush=True)
 
 

@@ -122,7 +122,11 @@ void refuse_solvers_without_ranks(const StudyOptions& options, const Body& body)
 
 /// A rank may have no point, which no estimate is made for.
 MemoryEstimate estimate_memory_of_part(const Body& body) {
-  return body.points.count() == 0 ? MemoryEstimate{} : estimate_memory(body);
+  if (body.points.count() > 0) return estimate_memory(body);
+  MemoryEstimate nothing;
+  nothing.size.dimension = body.points.dimension;
+  nothing.size.ranks = body.part->ranks().count();
+  return nothing;
 }
 
 /// Convolutions without a potential have neither rows to solve with nor an energy to search by.

@@ -17,10 +17,10 @@ namespace peristat::tests {
 namespace {
 
 /// Longer than wide, with parts across its longer direction.
-RanksBody slender_bar() { return {"slender bar", lattice_box(3, {4, 4, 60}, {0.1, 0.1, 0.1})}; }
+RanksBody slender_bar() { return {"slender bar", lattice_box(3, {3, 3, 40}, {0.1, 0.1, 0.1})}; }
 
 /// Thinner than the horizon.
-RanksBody sheet() { return {"sheet", lattice_box(3, {2, 12, 24}, {0.1, 0.1, 0.1})}; }
+RanksBody sheet() { return {"sheet", lattice_box(3, {2, 8, 18}, {0.1, 0.1, 0.1})}; }
 
 /// With a slot half through that no bond crosses, where parts meet.
 RanksBody notched_plate() {
@@ -52,8 +52,9 @@ std::vector<Kind> all_kinds() {
        1.2},
       // The same polynomial.
       {"chebyshev", assembled(MatrixPreconditionerKind::chebyshev), 2, 1.0},
-      // Factors within the rows of a rank tell nothing of what is far beyond.
-      {"riluk", assembled(MatrixPreconditionerKind::riluk), 10, 4.0},
+      // Factors within the rows of a rank tell nothing of what is beyond: it is no two-level
+      // method.
+      {"riluk", assembled(MatrixPreconditionerKind::riluk), 150, 1.0},
       // One rank smooths by Gauss and Seidel, and factorises a small body.
       {"multigrid", assembled(MatrixPreconditionerKind::multigrid), 6, 1.2},
   };

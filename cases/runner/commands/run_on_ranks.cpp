@@ -49,6 +49,7 @@ class RanksRun {
     make();
     heed_interruptions();
     open_results();
+    study_->analyze();
     const LinearSystems& systems = study_->equations().systems();
     progress_.say(fmt::format("linear solver: {}{} ({})", study_->equations().solver().describe(),
                               systems.is_stored ? "" : ", tangent matrix-free",
