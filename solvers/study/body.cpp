@@ -424,6 +424,10 @@ MemoryEstimate estimate_memory(const Body& body) {
   size.has_symmetric_blocks = body.model.has_symmetric_blocks();
   size.is_constrained = !body.conditions->constraints().none();
   size.free_dofs = double(std::count(prescribed.begin(), prescribed.end(), 0));
+  if (body.part) {
+    size.ranks = body.part->ranks().count();
+    size.gathered_points = body.part->ranks().rank() == 0 ? double(body.part->whole()) : 0.0;
+  }
   for (const auto& term : body.model.terms()) {
     size.blocks = std::max(size.blocks, double(term->couplings().partner.size()));
   }

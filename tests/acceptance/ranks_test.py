@@ -98,6 +98,23 @@ gravity = ["0", "load*30", "-load*9.81"]
 [loading]
 table = [0, 1, 0.5]
 """
+# Thin and long, with a notch, under a load at its end.
+BEAM = """
+dimension = 3
+[lattice]
+spacing = 0.1
+shape = [{ add = "box", min = [0, 0, 0], max = [0.2, 0.3, 4] }, { subtract = "box", min = [-1, 0.1, 1.9], max = [1, 1, 2.1] }]
+layer = [{ name = "held", side = "z-" }, { name = "end", side = "z+", thickness = 1 }]
+[material]
+model = "bond"
+youngs_modulus = 1e6
+[[support]]
+set = "held"
+displacement = [0, 0, 0]
+[[load]]
+set = "end"
+total_force = ["1e-3*load", "1e-3*load", "load"]
+"""
 # Parts of it are thinner than the horizon.
 SHORT_BAR = BAR.replace("max = [4]", "max = [0.3]").replace(', thickness = 2', ", thickness = 1")
 
@@ -209,6 +226,7 @@ class SameResults(Comparison):
         for text, settings in (
             (PLATE, ('lattice.origin="nodes"', "lattice.spacing=[0.05, 0.06]", 'material.plane="strain"')),
             (PLATE, ('solver.predictor="none"', "loading.adaptive=false", 'solver.preconditioner="jacobi"')),
+            (PLATE, ('solver.tangent="stored"',)),
             (PLATE, ("loading.largest_step=0.5", "loading.smallest_step=1e-3", "loading.table=[0, 0.5]",
                      "loading.table2=[0, 1]", 'load[0].body_force=["1e6*load2", "0"]')),
             (PLATE, ('load=[{set="corner", total_force=["1e4*load", "2e3"]}]', 'quadrature.surface_correction="energy"')),
@@ -331,8 +349,27 @@ class SameResults(Comparison):
 
     def test_automatic_choices(self):
         one = self.results(1, PLATE)
-        several = self.results(2, PLATE, "--set", "solver.relative_tolerance=1e-12")
+        run, several = self.start(2, PLATE, "--set", "solver.relative_tolerance=1e-12")
+        self.assertEqual(run.returncode, 0, run.stderr)
+        self.assertIn("rigid pieces", run.stdout)
+        self.assertIn("factorisations and sines are for one rank", run.stdout.replace("\n    ", " "))
         self.expect_same_displacements(one, several)
+
+    def test_rigid_pieces(self):
+        """Of a body whose pieces stand on several ranks, and of one that is thinner than the horizon."""
+        for text in (BLOCK, BEAM):
+            self.compare(text, (2, 3, 4), "--set", 'solver.preconditioner="rigid_pieces"')
+
+    def test_other_linear_solvers(self):
+        one = self.results(1, PLATE + SOLVER)
+        for solver, preconditioner in (
+            ("pcg", "surrogate"), ("pcg", "multigrid"), ("pcg", "riluk"), ("pcg", "chebyshev"),
+            ("minres", "rigid_pieces"), ("gmres", "surrogate"),
+        ):  # fmt: skip
+            with self.subTest(solver=solver, preconditioner=preconditioner):
+                settings = f'solver.linear="{solver}"', f'solver.preconditioner="{preconditioner}"', 'solver.tangent="auto"'
+                several = self.results(3, PLATE + SOLVER, *(word for text in settings for word in ("--set", text)))
+                self.expect_same(one, several)
 
     def expect_same_displacements(self, one, several):
         with h5py.File(one / "results.h5") as expected, h5py.File(several / "results.h5") as found:
@@ -698,8 +735,9 @@ class Refusals(OnRanks):
             'solver.mode="path"',
             'solver.mode="dynamics"',
             'solver.linear="cholesky"',
-            'solver.preconditioner="rigid_pieces"',
-            'solver.tangent="stored"',
+            'solver.linear="lu"',
+            'solver.preconditioner="sines"',
+            'solver.preconditioner="local_operator"',
             'solver.operator="fft"',
             'solver.fragments="stop"',
             'material.model="cpd"',
