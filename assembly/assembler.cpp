@@ -20,10 +20,9 @@ Assembler::Assembler(const Points& points, const Model& model, int threads, cons
     terms_.push_back(term->passes({points_, model_, pattern_, workspace_}));
   }
   if (!sharing_) return;
-  // Triangles stand on bonds between ghosts, which parts leave out; histories have no ranks yet.
-  const bool is_of_bonds = model.terms().size() == 1 && model.bond_term() == model.terms()[0];
-  if (!is_of_bonds || model.has_history()) {
-    throw std::logic_error("Assembler: only bonds without damage have ranks yet");
+  if (model.has_history() || !model.balances().potential || !model.has_rows()) {
+    throw std::logic_error(
+        "Assembler: damage, convolutions and forces without a potential have no ranks yet");
   }
   of_points_.resize(points.volume.size());
 }

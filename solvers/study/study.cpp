@@ -3,14 +3,12 @@
 #include <cmath>
 #include <utility>
 
-#include <fmt/format.h>
-
-#include "solvers/linear/available_memory.hpp"
-#include "solvers/ranks/part_tangent.hpp"
 #include "solvers/study/found_loads.hpp"
 #include "solvers/study/motion.hpp"
 #include "solvers/study/part_support.hpp"
+#include "solvers/study/require_memory_for.hpp"
 #include "solvers/study/rest_stability.hpp"
+#include "solvers/study/without_equation.hpp"
 #include "src/core/number_text.hpp"
 
 namespace peristat {
@@ -75,13 +73,6 @@ void refuse_modes_of_failing_points(const Body& body, const StudyOptions& option
                    "\"fft\" take newton, relaxation or dynamics");
 }
 
-/// Degrees of freedom that have none here.
-std::vector<char> without_equation(const Body& body) {
-  const std::vector<char>& prescribed = body.conditions->prescribed();
-  if (!body.part) return prescribed;
-  return without_ghosts(*body.part, prescribed, body.points.dimension);
-}
-
 /// Of the modes there is one that sums over ranks.
 void refuse_modes_without_ranks(const StudyOptions& options) {
   if (options.loading.mode == Mode::newton) return;
@@ -109,8 +100,11 @@ void check_study(const Body& body, const StudyOptions& options) {
                      is_implicit ? "must be set: implicit steps need a body with inertia"
                                  : "is for bodies that implicit steps follow");
   }
-  if (body.part) return refuse_unheld_part(body);
-  if (!moves) refuse_unheld_bodies(body);
+  if (body.part) {
+    refuse_unheld_part(body);
+  } else if (!moves) {
+    refuse_unheld_bodies(body);
+  }
   refuse_unstable_rest(body, options);
 }
 
@@ -132,7 +126,7 @@ Study::Study(const Body& body, StudyOptions options, SolverLadder::Reporter tell
   options_.threads = usable_threads(options_.threads);
   if (options_.loading.mode == Mode::dynamics) motion_ = make_motion_setting(body);
   LinearSystems systems = choose_linear_systems(options_, body, std::move(tell));
-  require_memory(systems.bytes, fmt::format("the body with {} points", body.points.count()));
+  require_memory_for(body, systems.bytes);
   equations_ =
       std::make_unique<SolvedModel>(body.points, body.model, body.conditions->constraints(), free_,
                                     std::move(systems), options_.threads, body.part.get());

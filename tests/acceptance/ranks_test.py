@@ -1,6 +1,7 @@
 """Runs on several ranks: what they give is what one rank gives, and what they can't do they refuse."""
 
 import csv
+import json
 import os
 import re
 import signal
@@ -95,6 +96,56 @@ gravity = ["0", "load*30", "-load*9.81"]
 [loading]
 table = [0, 1, 0.5]
 """
+# Triangles, in large steps; the hole is narrower than two horizons.
+SQUARE = """
+dimension = 2
+[lattice]
+spacing = 0.1
+horizon_ratio = 2.415
+shape = [{ add = "box", min = [0, 0], max = [1.2, 1] }, { subtract = "box", min = [0.5, 0.4], max = [0.8, 0.6] }]
+layer = [{ name = "held", side = "x-", thickness = 2 }, { name = "pulled", side = "x+", thickness = 2 }]
+[material]
+model = "cpd"
+c1 = 1.0
+c2 = 30.0
+[[support]]
+set = "held"
+displacement = [0, 0]
+[[support]]
+set = "pulled"
+displacement = ["0.4*load", "0.1*load"]
+[loading]
+steps = 2
+"""
+CUBE = """
+dimension = 3
+[lattice]
+spacing = 0.1
+horizon_ratio = 1.815
+perturbation = 0.05
+shape = [{ add = "box", min = [0, 0, 0], max = [0.6, 0.4, 0.5] }]
+layer = [{ name = "held", side = "x-" }, { name = "pulled", side = "x+" }]
+[material]
+model = "cpd"
+c1 = 1.0
+c2 = 100.0
+c3 = 1e6
+[[support]]
+set = "held"
+displacement = [0, 0, 0]
+[[support]]
+set = "pulled"
+displacement = ["0.2*load", 0, "0.05*load"]
+[loading]
+steps = 1
+"""
+# A dilatation per point, which neighbours of ghosts tell.
+STATES = PLATE.replace('model = "bond"', 'model = "lps"\nplane = "strain"\npoisson_ratio = 0.4') + """
+[quadrature]
+form = "energy"
+volume_correction = "linear"
+"""
+STORED = SOLVER.replace("matrix_free", "stored")
 # Parts of it are thinner than the horizon.
 SHORT_BAR = BAR.replace("max = [4]", "max = [0.3]").replace(', thickness = 2', ", thickness = 1")
 
@@ -177,10 +228,10 @@ class SameResults(OnRanks):
                 self.assertEqual(before[key], after[key])
             self.assertAlmostEqual(int(before["linear_iterations"]), int(after["linear_iterations"]), delta=1)
 
-    def compare(self, text, ranks=(2, 3), *options):
-        one = self.results(1, text + SOLVER, *options)
+    def compare(self, text, ranks=(2, 3), *options, solver=SOLVER):
+        one = self.results(1, text + solver, *options)
         for count in ranks:
-            several = self.results(count, text + SOLVER, *options)
+            several = self.results(count, text + solver, *options)
             with self.subTest(ranks=count):
                 self.expect_same(one, several)
                 self.expect_same_iterations(one, several)
@@ -211,6 +262,30 @@ class SameResults(OnRanks):
         ):  # fmt: skip
             with self.subTest(settings=settings):
                 self.compare(text, (3,), *(word for setting in settings for word in ("--set", setting)))
+
+    def test_triangles(self):
+        one = self.compare(SQUARE, (2, 3, 4), solver=STORED)
+        self.expect_same_counts(one, 4)
+        thin = ("--set", "lattice.shape=[{add=\"box\", min=[0, 0], max=[0.4, 0.2]}]")
+        self.compare(SQUARE, (3,), *thin, "--set", 'quadrature.weights="bulk"', solver=STORED)
+        moduli = ("--set", "material={model=\"cpd\", youngs_modulus=2e9, poisson_ratio=0.25, influence=\"gaussian\"}")
+        self.compare(SQUARE, (2,), *moduli, solver=STORED)  # its c2 is negative
+
+    def test_tetrahedra(self):
+        one = self.compare(CUBE, (2, 3), solver=STORED)
+        self.expect_same_counts(one, 3)
+
+    def test_states(self):
+        self.compare(STATES, (2, 3, 4), solver=STORED)
+        block = BLOCK.replace('model = "bond"', 'model = "lps"\npoisson_ratio = 0.3').replace(
+            'surface_correction = "volume"', 'form = "energy"')
+        self.compare(block, (3,), "--set", 'material.influence="gaussian"', solver=STORED)
+
+    def expect_same_counts(self, one, ranks):
+        expected, found = (json.loads((folder / "summary.json").read_text()) for folder in (one, self.folder / f"on_{ranks}"))
+        self.assertGreater(expected["triangles"], 0)
+        for kind in ("bonds", "triangles", "tetrahedra"):
+            self.assertEqual(expected.get(kind), found.get(kind), kind)
 
     def test_probes_of_sets(self):
         probes = """
@@ -415,10 +490,8 @@ class Refusals(OnRanks):
             'solver.operator="fft"',
             'solver.fragments="stop"',
             "output.stress=true",
-            'material.model="cpd"',
             'material.kinematics="linear"',
             'material.damage={law="critical_stretch", critical=0.1}',
-            'material.influence="gaussian"',
             'quadrature.volume_correction="exact"',
             'quadrature.horizon_shape="box"',
             "lattice.angle=10",
@@ -454,9 +527,16 @@ class Refusals(OnRanks):
                 (PLATE.replace("displacement = [0, 0]", 'displacement = [0, "free"]')
                  .replace('[0, "0.05*load"]', '[0, "free"]'), "move along y"),
                 (BAR + '[[support]]\nset = "left"\ndisplacement = [1]\n', "contradict"),
+                (SQUARE.replace("c1 = 1.0\nc2 = 30.0", "youngs_modulus = 1e6\npoisson_ratio = -0.6"), "unstable before"),
+                (SQUARE.replace("max = [1.2, 1]", "max = [1.2, 0.1]"), "no triangles"),
             ):  # fmt: skip
                 with self.subTest(ranks=ranks, what=what):
                     self.assertIn(what, self.refusal(text, ranks=ranks))
+
+    def test_forces_without_a_potential(self):
+        said = self.refusal(STATES.replace('form = "energy"\n', ""))
+        self.assertIn("quadrature.form", said)
+        self.assertIn('take "energy"', said)
 
     def test_bodies_of_two_pieces(self):
         apart = PLATE.replace('{ subtract = "disk", centre = [0.5, 0.7], radius = 0.2 }',

@@ -44,13 +44,15 @@ struct Whole {
 struct OnRanks {
   OnRanks(const RanksBody& body, SurfaceCorrection surface)
       : part(make_part(body, surface)),
-        model(make_bonds(part, surface, body.setting(), 1), law_of(body.setting())),
+        model(make_bonds(part, surface, body.setting(), PartBonds::of_owned, 1),
+              law_of(body.setting())),
         sharing(part, all_ranks()),
         energy(part.points, model, 1, &sharing) {}
 
   static Part make_part(const RanksBody& body, SurfaceCorrection surface) {
     Part slab = make_slab(body.lattice, all_ranks());
-    const double reach = reach_of_bonds(slab.points, surface, body.setting(), all_ranks());
+    const double reach =
+        reach_of_bonds(slab.points, surface, body.setting(), PartBonds::of_owned, all_ranks());
     return distribute(std::move(slab), body.setting().horizon, reach, all_ranks(), 1);
   }
 
@@ -144,22 +146,9 @@ TEST(AssemblerOfPart, asks_for_ghosts_as_far_as_bonds_reach) {
   const Communicator& ranks = all_ranks();
   const Part part = distribute(make_slab(body.lattice, ranks), body.setting().horizon,
                                0.9 * body.setting().horizon, ranks, 1);
-  EXPECT_THROW(static_cast<void>(make_bonds(part, SurfaceCorrection::none, body.setting(), 1)),
+  EXPECT_THROW(static_cast<void>(make_bonds(part, SurfaceCorrection::none, body.setting(),
+                                            PartBonds::of_owned, 1)),
                std::logic_error);
-}
-
-TEST(AssemblerOfPart, refuses_what_needs_bonds_between_ghosts) {
-  BoxSetting box = small_box(2);
-  box.triangles = 1.0;
-  const BoxBody body(box);
-  Part part;
-  part.points = body.points;
-  part.owned = part.points.count();
-  for (Index i = 0; i < part.owned; ++i) {
-    part.number.push_back(GlobalIndex(part.owned) * all_ranks().rank() + i);
-  }
-  const PartOfBody sharing(part, all_ranks());
-  EXPECT_THROW(Assembler(part.points, body.model, 1, &sharing), std::logic_error);
 }
 
 /// Both ends along the last axis, one of them drawn away: flags and displacements.

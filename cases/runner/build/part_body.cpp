@@ -10,6 +10,7 @@
 
 #include "solvers/ranks/distribute.hpp"
 #include "solvers/ranks/part_bonds.hpp"
+#include "solvers/study/bonds_of_part.hpp"
 #include "src/core/input_error.hpp"
 #include "src/geometry/point_set.hpp"
 #include "src/geometry/slab.hpp"
@@ -27,6 +28,10 @@ constexpr std::array keys_of_ranks{
     // bonds
     "quadrature.volume_correction", "quadrature.surface_correction", "material.model",
     "material.plane", "material.youngs_modulus", "material.micromodulus", "material.density",
+    "material.influence",
+    // triangles and tetrahedra, states
+    "quadrature.weights", "quadrature.form", "material.poisson_ratio", "material.c1", "material.c2",
+    "material.c3", "material.calibration",
     // conditions
     "support.", "load.set", "load.body_force", "load.total_force", "load.gravity",
     // search
@@ -71,8 +76,11 @@ void refuse_values_without_ranks(const Case& from) {
       from.volume_correction != VolumeCorrection::linear) {
     refuse("quadrature.volume_correction", "", "take \"none\" or \"linear\"");
   }
-  if (from.material.model != MaterialModel::bond) {
-    refuse("material.model", "", "take \"bond\"");
+  if (is_polynomial(from.material.model)) {
+    refuse("material.model", "", "take \"bond\", \"cpd\" or \"lps\"");
+  }
+  if (from.material.model == MaterialModel::lps && from.form != SolidForm::energy) {
+    refuse("quadrature.form", "", "take \"energy\" with model \"lps\"");
   }
   if (from.solver.mode != Mode::newton) {
     refuse("solver.mode", std::string(from.solver.mode.name), "take \"newton\"");
@@ -147,7 +155,8 @@ std::unique_ptr<const Body> make_part_body(const Case& from, const Communicator&
       refuse("lattice.spacing", "", "results have numbers for fewer than 2^31 points");
     }
     const BondSetting setting = bond_setting(from, slab.points);
-    const double reach = reach_of_bonds(slab.points, from.surface_correction, setting, ranks);
+    const double reach =
+        reach_of_bonds(slab.points, from.surface_correction, setting, bonds_of_part(from), ranks);
     Part part = distribute(std::move(slab), setting.horizon, reach, ranks, threads);
     add_sets(from, ranks, part);
     require_sets_of_probes(from, part.points);

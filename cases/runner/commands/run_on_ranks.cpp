@@ -72,6 +72,12 @@ class RanksRun {
     summary_.free_dofs = ranks_.count_all(study_->free().count()).all;
     const GlobalIndex bonds = count_bonds(body_->part->owned(), body_->model.bonds(), ranks_);
     summary_.count("bonds", bonds);
+    for (const auto& term : body_->model.terms()) {
+      if (term.get() == body_->model.bond_term().get()) continue;  // told apart
+      for (const InteractionCount& kind : term->counts()) {
+        summary_.count(kind.name, count_interactions(body_->part->owned(), kind, ranks_));
+      }
+    }
     summary_.costs.seconds.neighbourhood += body_->seconds_neighbourhood;
     summary_.threads = options_.threads;
     summary_.ranks = ranks_.count();
