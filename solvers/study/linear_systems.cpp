@@ -98,7 +98,7 @@ LinearSystems systems_of_motion(const Body& body) {
   return systems;
 }
 
-/// Conjugate gradients with blocks of the points, without a stored tangent.
+/// Conjugate gradients with blocks of the points.
 LinearSystems systems_of_part(const StudyOptions& options, const Body& body) {
   constexpr int most_iterations = 20'000;
   const auto refuse = [](const std::string& key, const std::string& what) {
@@ -113,7 +113,9 @@ LinearSystems systems_of_part(const StudyOptions& options, const Body& body) {
   if (kind != Kind::automatic && kind != Kind::jacobi && kind != Kind::block_jacobi) {
     refuse("linear.preconditioner", "\"block_jacobi\" or \"jacobi\"");
   }
-  if (options.tangent == TangentStorage::stored) refuse("tangent", "\"matrix_free\"");
+  if (options.tangent == TangentStorage::matrix_free && !body.model.visits_rows()) {
+    throw InputError("tangent", "matrix_free", "is for bonds alone");
+  }
   const auto blocks =
       kind == Kind::jacobi ? BlockJacobi::Blocks::entries : BlockJacobi::Blocks::points;
   LinearSystems systems;
@@ -122,11 +124,11 @@ LinearSystems systems_of_part(const StudyOptions& options, const Body& body) {
       KrylovOptions{}.restart, &body.part->ranks());
   systems.chosen.is_direct = false;
   systems.chosen.reason = "what ranks solve with";
-  systems.is_stored = false;
+  systems.is_stored = options.tangent == TangentStorage::stored || !body.model.visits_rows();
   const LinearSolverOptions linear{LinearMethod::conjugate_gradients, Kind::block_jacobi};
   // A rank may have no point, which no estimate is made for.
   const bool is_empty = body.points.count() == 0;
-  systems.bytes = is_empty ? 0.0 : estimate_memory(body).bytes(false, false, linear);
+  systems.bytes = is_empty ? 0.0 : estimate_memory(body).bytes(false, systems.is_stored, linear);
   return systems;
 }
 
@@ -289,15 +291,25 @@ LinearSystems choose_linear_systems(const StudyOptions& options, const Body& bod
                                box_for_sines(chosen, body), std::move(tell));
 }
 
+namespace {
+
+/// Of a whole body or of a part.
+template <class Operator>
+std::unique_ptr<TangentOperator> make_operator(Assembler& assembler) {
+  if (assembler.sharing()) return std::make_unique<PartTangent<Operator>>(assembler);
+  return std::make_unique<Operator>(assembler);
+}
+
+}  // namespace
+
 std::unique_ptr<TangentOperator> LinearSystems::make_tangent(Assembler& assembler,
                                                              const Constraints& constraints) const {
-  if (assembler.sharing()) return std::make_unique<PartTangent>(assembler);
   const bool is_convolved = !assembler.has_rows();
   if (!is_convolved && !assembler.has_potential()) return std::make_unique<RowsOfEnergy>(assembler);
   if (!constraints.none()) return std::make_unique<ConstrainedTangent>(assembler, constraints);
   if (is_convolved) return std::make_unique<ConvolvedTangent>(assembler);
-  if (!is_stored) return std::make_unique<MatrixFreeTangent>(assembler);
-  return std::make_unique<Tangent>(assembler);
+  if (!is_stored) return make_operator<MatrixFreeTangent>(assembler);
+  return make_operator<Tangent>(assembler);
 }
 
 }  // namespace peristat

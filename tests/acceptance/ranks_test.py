@@ -486,7 +486,6 @@ class Refusals(OnRanks):
             'solver.mode="dynamics"',
             'solver.linear="cholesky"',
             'solver.preconditioner="rigid_pieces"',
-            'solver.tangent="stored"',
             'solver.operator="fft"',
             'solver.fragments="stop"',
             "output.stress=true",

@@ -9,6 +9,7 @@
 
 #include <gtest/gtest.h>
 
+#include "assembly/operators/matrix_free_tangent.hpp"
 #include "solvers/linear/block_jacobi.hpp"
 #include "solvers/linear/iterative_solver.hpp"
 #include "solvers/ranks/distribute.hpp"
@@ -121,7 +122,7 @@ TEST(AssemblerOfPart, is_that_of_the_whole_body) {
       expect_near(ranks, mine, forces, round_off);
       EXPECT_TRUE(std::all_of(mine.begin() + owned, mine.end(), [](double f) { return f == 0.0; }));
 
-      PartTangent tangent(ranks.energy);
+      PartTangent<MatrixFreeTangent> tangent(ranks.energy);
       tangent.linearise(ranks.energy, here, 0.0);
       std::vector<double> factor = ranks.of_part(v);
       std::fill(factor.begin() + owned, factor.end(), 1e3);
@@ -217,7 +218,7 @@ TEST(PartTangent, solves_for_the_displacements_of_the_whole_body) {
 
     OnRanks ranks(body, SurfaceCorrection::none);
     const Pulled mine(ranks.part.points, low, high);
-    PartTangent tangent(ranks.energy);
+    PartTangent<MatrixFreeTangent> tangent(ranks.energy);
     tangent.linearise(ranks.energy, std::vector<double>(ranks.part.points.reference.size()), 0.0);
     const Solved found =
         solve(tangent, without_ghosts(ranks.sharing, mine.flags, ranks.part.points.dimension),

@@ -49,9 +49,10 @@ class RanksRun {
     make();
     heed_interruptions();
     open_results();
-    progress_.say(fmt::format("linear solver: {}, tangent matrix-free ({})",
-                              study_->equations().solver().describe(),
-                              study_->equations().systems().chosen.reason));
+    const LinearSystems& systems = study_->equations().systems();
+    progress_.say(fmt::format("linear solver: {}{} ({})", study_->equations().solver().describe(),
+                              systems.is_stored ? "" : ", tangent matrix-free",
+                              systems.chosen.reason));
     const LoadSteppingResult result = study_->follow(observer());
     conclude(result);
     if (results_) results_->close(summary_);
