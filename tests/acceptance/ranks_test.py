@@ -533,7 +533,7 @@ class Refusals(OnRanks):
                     self.assertIn(what, self.refusal(text, ranks=ranks))
 
     def test_forces_without_a_potential(self):
-        said = self.refusal(STATES.replace('form = "energy"\n', ""))
+        said = self.refusal(STATES.split("[quadrature]")[0])
         self.assertIn("quadrature.form", said)
         self.assertIn('take "energy"', said)
 
