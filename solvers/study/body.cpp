@@ -322,7 +322,7 @@ void refuse_without_ranks(const BodySpecification& of) {
   const MaterialSpecification& material = of.material;
   if (is_polynomial(material.model)) refuse("material.model");
   if (material.model == MaterialModel::lps && of.form != SolidForm::energy) refuse("form");
-  if (material.kinematics != Kinematics::finite) refuse("material.kinematics");
+  if (of.is_linear()) refuse("material.kinematics");
   if (material.damage.law != DamageLaw::none) refuse("material.damage");
   if (!of.is_uniform()) refuse(of.regions.empty() ? "material" : "regions");
   if (of.force_operator != ForceOperator::bonds) refuse("force_operator");
