@@ -5,6 +5,9 @@
 #include <stdexcept>
 #include <vector>
 
+#include "solvers/ranks/agree_on_kinds.hpp"
+#include "src/geometry/counts_bond.hpp"
+
 namespace peristat {
 namespace {
 
@@ -34,7 +37,7 @@ double reach_of_bonds(const Points& points, SurfaceCorrection surface, const Bon
 }
 
 Bonds make_bonds(const Part& part, SurfaceCorrection surface, const BondSetting& setting,
-                 PartBonds which, int threads) {
+                 PartBonds which, const Communicator& ranks, int threads) {
   if (part.reach < reach_here(part.points, surface, setting, which)) {
     throw std::logic_error("the ghosts of a part don't reach as far as its bonds");
   }
@@ -47,18 +50,19 @@ Bonds make_bonds(const Part& part, SurfaceCorrection surface, const BondSetting&
     if (which == PartBonds::among_neighbours) return !(is_near[std::size_t(i)] && other);
     return which == PartBonds::of_owned || !(is_near[std::size_t(i)] || other);
   });
+  agree_on_kinds(bonds, part, ranks);
   return bonds;
 }
 
-GlobalIndex count_bonds(Index owned, const Bonds& bonds, const Communicator& ranks) {
-  GlobalIndex ends = 0;  // that are this rank's
-  for (Index i = 0; i < std::min(owned, bonds.points()); ++i) {
+GlobalIndex count_bonds(const Points& points, const Bonds& bonds, const Communicator& ranks) {
+  GlobalIndex mine = 0;
+  for (Index i = 0; i < bonds.points(); ++i) {
     for (Offset bond = bonds.offset[i]; bond < bonds.offset[i + 1]; ++bond) {
-      if (bonds.weight(bond) == 0.0) continue;
-      ends += bonds.partner[std::size_t(bond)] >= owned ? 1 : 2;
+      const Index j = bonds.partner[std::size_t(bond)];
+      if (bonds.weight(bond) != 0.0 && counts_bond(points, i, j)) ++mine;
     }
   }
-  return ranks.count_all(ends).all / 2;
+  return ranks.count_all(mine).all;
 }
 
 GlobalIndex count_interactions(Index owned, const InteractionCount& here,

@@ -22,14 +22,17 @@ enum class PartBonds {
                                     const BondSetting& setting, PartBonds which,
                                     const Communicator& ranks);
 
-/// The bonds of a body that a part has, with the weights of make_bonds.
+/// The bonds of a body that a part has, with the weights of make_bonds; those that two ranks count
+/// energies of have the same bits on both (agree_on_kinds). A call that all make.
 /// @throws std::logic_error if the part's ghosts don't reach as far as reach_of_bonds
 [[nodiscard]] Bonds make_bonds(const Part& part, SurfaceCorrection surface,
-                               const BondSetting& setting, PartBonds which, int threads);
+                               const BondSetting& setting, PartBonds which,
+                               const Communicator& ranks, int threads);
 
 /// Bonds of the whole body that have a weight, each counted once.
-/// @param owned points of the rank, the first ones
-[[nodiscard]] GlobalIndex count_bonds(Index owned, const Bonds& bonds, const Communicator& ranks);
+/// @param points of the rank
+[[nodiscard]] GlobalIndex count_bonds(const Points& points, const Bonds& bonds,
+                                      const Communicator& ranks);
 
 /// Interactions of the whole body of a kind, each counted once.
 /// @param here all that owned points take part in

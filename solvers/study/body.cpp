@@ -315,9 +315,10 @@ namespace {
 /// What the assembler of a part is made for; tables of cases are refused before.
 void refuse_without_ranks(const BodySpecification& of) {
   const auto refuse = [](const std::string& key) {
-    throw InputError(key, "",
-                     "is not for more than one rank yet: there are elastic bodies of one material, "
-                     "with supports, body forces, total forces and gravity");
+    throw InputError(
+        key, "",
+        "is not for more than one rank yet: there are elastic bodies of one material with "
+        "pre-cracks, supports, body forces, total forces and gravity");
   };
   const MaterialSpecification& material = of.material;
   if (is_polynomial(material.model)) refuse("material.model");
@@ -327,7 +328,6 @@ void refuse_without_ranks(const BodySpecification& of) {
   if (!of.is_uniform()) refuse(of.regions.empty() ? "material" : "regions");
   if (of.force_operator != ForceOperator::bonds) refuse("force_operator");
   if (of.horizon_shape != HorizonShape::ball) refuse("horizon_shape");
-  if (!of.cracks.empty()) refuse("cracks");
   if (!of.foundations.empty()) refuse("foundations");
   if (!of.controls.empty()) refuse("controls");
   if (of.end_time || of.has_inertia) refuse("end_time");
@@ -381,7 +381,7 @@ std::unique_ptr<const Body> make_body(Part part, const BodySpecification& of,
   make_model(
       body,
       [&](const BondSetting& setting) {
-        return make_bonds(part, of.surface_correction, setting, bonds_of_part(of), threads);
+        return make_bonds(part, of.surface_correction, setting, bonds_of_part(of), ranks, threads);
       },
       threads);
   LoadSetting loads = load_setting(of, body.points);

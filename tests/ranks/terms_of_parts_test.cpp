@@ -180,7 +180,8 @@ void expect_same_energies(Both& both, double scale) {
 void expect_same_counts(const Both& both) {
   const Communicator& ranks = all_ranks();
   const Index owned = both.part->part->owned();
-  EXPECT_EQ(count_bonds(owned, both.part->model.bonds(), ranks), both.whole->model.bonds().count());
+  EXPECT_EQ(count_bonds(both.part->points, both.part->model.bonds(), ranks),
+            both.whole->model.bonds().count());
   const auto& terms = both.whole->model.terms();
   EXPECT_EQ(both.part->model.terms().size(), terms.size());
   for (std::size_t slot = 0; slot < terms.size(); ++slot) {
@@ -233,6 +234,18 @@ TEST(TermsOfPart, states_are_those_of_the_whole_body) {
       expect_same_energies(both, 0.05);
       expect_same_counts(both);
     }
+  }
+}
+
+TEST(TermsOfPart, are_those_that_pre_cracks_leave) {
+  const RanksBody body = perturbed(square_with_hole());
+  for (BodySpecification of : {cpd(body), states(body, VolumeCorrection::none)}) {
+    of.cracks = {CrackSegment{{0.2, 1.31}, {1.1, 1.43}}};
+    Both both(body, of);
+    EXPECT_GT(both.whole->cut_bonds.size(), 0U);
+    expect_same_energies(both, 0.05);
+    expect_same_counts(both);
+    both.expect_near(both.part->cut_weight, both.whole->cut_weight, "what is cut");
   }
 }
 

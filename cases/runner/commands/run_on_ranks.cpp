@@ -71,7 +71,7 @@ class RanksRun {
     gathering_.emplace(*body_->part);
     summary_.points = Index(body_->part->whole());
     summary_.free_dofs = ranks_.count_all(study_->free().count()).all;
-    const GlobalIndex bonds = count_bonds(body_->part->owned(), body_->model.bonds(), ranks_);
+    const GlobalIndex bonds = count_bonds(body_->points, body_->model.bonds(), ranks_);
     summary_.count("bonds", bonds);
     for (const auto& term : body_->model.terms()) {
       if (term.get() == body_->model.bond_term().get()) continue;  // told apart
