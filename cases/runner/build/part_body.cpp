@@ -27,7 +27,8 @@ constexpr std::array keys_of_ranks{
     "lattice.angle", "lattice.volumes", "lattice.cell_perturbation", "lattice.points",
     "points.file", "points.thickness", "points.area", "points.horizon", "set.",
     // bonds
-    "quadrature.", "material.model", "material.plane", "material.youngs_modulus",
+    "quadrature.volume_correction", "quadrature.surface_correction", "quadrature.horizon_shape",
+    "crack.", "material.model", "material.plane", "material.youngs_modulus",
     "material.micromodulus", "material.density", "material.influence", "material.potential",
     "material.calibration", "material.fibre.", "material.scatter.", "region.", "interface.",
     // conditions
@@ -39,8 +40,8 @@ constexpr std::array keys_of_ranks{
     "solver.tangent", "solver.predictor", "solver.relative_tolerance", "solver.linear_tolerance",
     "solver.max_iterations",
     // results
-    "output.directory", "output.every", "probe.name", "probe.set", "probe.field", "probe.component",
-    "probe.statistic", "probe.expected", "probe.other"};
+    "output.directory", "output.every", "output.count_cracks", "probe.name", "probe.set",
+    "probe.field", "probe.component", "probe.statistic", "probe.expected", "probe.other"};
 
 /// "load[2].body_force[0]" as "load.body_force".
 std::string without_numbers(const std::string& key) {
