@@ -26,7 +26,11 @@ void refuse_constraints(const ConstraintSpecification& constraints) {
   if (!constraints.rigid_sets.empty()) refuse("rigid_sets", "a set that moves as a rigid body");
   if (!constraints.rollers.empty()) refuse("rollers", "a roller");
   if (!constraints.linear.empty()) refuse("linear", "a linear constraint");
-  if (!constraints.periods.empty()) refuse("periods", "a period");
+  for (const PeriodSpecification& period : constraints.periods) {
+    for (const auto& component : period.gradient) {
+      if (!component) refuse("periods", "a period with a free gradient");
+    }
+  }
 }
 
 /// Of a bond in the initial state, over its length: more than that is a slip of the pen, and so
