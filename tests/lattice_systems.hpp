@@ -141,7 +141,8 @@ struct Neighbour {
 };
 
 /// All of them, in both directions.
-inline std::vector<Neighbour> neighbours(const HoledBody& body) {
+/// @param with_cut those whose bonds are cut, too
+inline std::vector<Neighbour> neighbours(const HoledBody& body, bool with_cut = false) {
   std::map<std::array<Index, 3>, std::size_t> at;
   for (std::size_t i = 0; i < body.count(); ++i) at[body.box.numbers(body.box.place[i])] = i;
   std::vector<Neighbour> found;
@@ -155,7 +156,8 @@ inline std::vector<Neighbour> neighbours(const HoledBody& body) {
         return std::minmax(std::size_t(pair[0]), std::size_t(pair[1])) ==
                std::minmax(i, other->second);
       };
-      if (std::any_of(body.box.cut.begin(), body.box.cut.end(), is_cut)) continue;
+      const auto& cut = body.box.cut;
+      if (!with_cut && std::any_of(cut.begin(), cut.end(), is_cut)) continue;
       const auto& xi = arm.xi;
       found.push_back({i, other->second, xi, arm.share});
       found.push_back({other->second, i, {-xi[0], -xi[1], -xi[2]}, arm.share});

@@ -38,6 +38,7 @@ LinearSolid::LinearSolid(const CutLattice& box, const std::array<bool, 3>& is_pe
   deviatoric_ = setting.volume * d * (d + 2) * mu;
   moment_ = fields_.spectrum(Parity::even,
                              [&](std::size_t s) { return arms_[s].share * squared(arms_[s].xi); });
+  std::ranges::fill(moment_.values, 0.0);  // a pre-crack takes nothing off M
   for (const LatticeArm& arm : arms_) whole_moment_ += 2.0 * arm.share * squared(arm.xi);
   for (int i = 0; i < d; ++i) {
     arm_.push_back(fields_.spectrum(

@@ -34,7 +34,8 @@ enum class SolidForces {
 /// the point itself for both ends: forces that do not add up to zero and do work around closed
 /// paths where M varies, for comparisons alone. Its energies are the same.
 ///
-/// On bodies without damage this is StateTerm with moments of the neighbours that are there. With
+/// M counts neighbours that a pre-crack hides, as that of StateTerm does. On bodies without damage
+/// this is StateTerm with moments of the neighbours that are there. With
 /// damage it is not: StateTerm keeps M of the whole neighbourhood, here M is renewed with q as in
 /// [FCBM], so that theta of a uniform dilation stays right and points that have lost neighbours are
 /// stiffer.

@@ -91,8 +91,8 @@ LinearSystems systems_of_motion(const Body& body) {
   systems.chosen.solver = std::make_unique<NoSolver>();
   systems.chosen.is_direct = false;
   systems.chosen.reason = "explicit time steps solve no equations";
-  const bool has_products = body.model.visits_rows() || !body.model.has_rows();
-  systems.is_stored = !has_products || !body.conditions->constraints().none();
+  const bool is_followed = !body.conditions->constraints().none();
+  systems.is_stored = body.model.has_rows() && (!body.model.visits_rows() || is_followed);
   systems.bytes = estimate.body_bytes + (systems.is_stored ? estimate.tangent_bytes : 0.0) +
                   8.0 * vectors_of_motion * estimate.size.points * estimate.size.dimension;
   return systems;
@@ -279,7 +279,7 @@ LinearSystems choose_linear_systems(const StudyOptions& options, const Body& bod
                        "has no pivots, which a control and mode arc_length need; take \"bonds\"");
     }
   }
-  if (!body.conditions->constraints().none()) {
+  if (!body.conditions->constraints().none() && body.model.has_rows()) {
     if (options.tangent == TangentStorage::matrix_free) {
       throw InputError("tangent", "matrix_free",
                        "is for bodies without rigid sets, rollers, linear constraints, planes of "

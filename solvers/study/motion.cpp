@@ -16,7 +16,7 @@
 namespace peristat {
 namespace {
 
-void refuse_constraints(const ConstraintSpecification& constraints) {
+void refuse_constraints(const ConstraintSpecification& constraints, int dimension) {
   const auto refuse = [](const std::string& key, const std::string& what) {
     throw InputError(key, "",
                      what +
@@ -27,9 +27,10 @@ void refuse_constraints(const ConstraintSpecification& constraints) {
   if (!constraints.rollers.empty()) refuse("rollers", "a roller");
   if (!constraints.linear.empty()) refuse("linear", "a linear constraint");
   for (const PeriodSpecification& period : constraints.periods) {
-    for (const auto& component : period.gradient) {
-      if (!component) refuse("periods", "a period with a free gradient");
-    }
+    const auto last = period.gradient.begin() + dimension;
+    const bool is_given = std::all_of(period.gradient.begin(), last,
+                                      [](const auto& component) { return component.has_value(); });
+    if (!is_given) refuse("periods", "a period with a free gradient");
   }
 }
 
@@ -73,7 +74,7 @@ std::vector<double> densities_of(const Body& body) {
 }
 
 MotionSetting make_motion_setting(const Body& body) {
-  refuse_constraints(body.specification.constraints);
+  refuse_constraints(body.specification.constraints, body.points.dimension);
   const std::vector<double> density = densities_of(body);
   const auto d = std::size_t(body.points.dimension);
   const std::size_t dofs = body.conditions->constraints().dofs();

@@ -60,7 +60,7 @@ PULLED = """\
 steps = 1
 [[support]]
 set = "ends"
-displacement = ["0.05*x*load", "free"]
+displacement = ["0.05*x*load", "-0.01*y*load"]
 """
 MOVED = """\
 mode = "dynamics"
@@ -116,7 +116,7 @@ class Statics(Images):
         thin = "lattice.shape=[{add=\"box\", min=[-0.01, -0.001], max=[0.01, 0.001]}]"
         thin_period = 'period=[{axis="x", from=-0.01, to=0.01, gradient=["1e-4*load", 0]}, {axis="y", from=-0.001, to=0.001, gradient=["1e-5*load", "free"]}]'
         for settings in ([], ["quadrature.volume_correction=linear"], [thin, thin_period],
-                         ['period=[{axis="x", from=-0.01, to=0.01, gradient=["1e-4*load", "free"]}]'],
+                         ['period=[{axis="x", from=-0.01, to=0.01, gradient=["1e-4*load", 0]}]'],
                          ["solver.mode=relaxation", "loading.steps=1"]):  # fmt: skip
             with self.subTest(settings=settings):
                 self.both_with_reactions(CELL, *settings, share=1e-6 if "solver.mode=relaxation" in settings else 1e-9)
@@ -125,9 +125,18 @@ class Statics(Images):
         self.both_with_reactions(BLOCK)
 
     def test_points_that_fail(self):
-        failing = 'material.damage={law="energy_density", fracture_energy=1.0}'
-        run = self.both_with_reactions(CELL, failing, 'period=[{axis="x", from=-0.01, to=0.01, gradient=["2e-3*load", 0]}, {axis="y", from=-0.008, to=0.008}]',
-                                       "loading.steps=1", share=1e-8)  # fmt: skip
+        failing = 'material.damage={law="energy_density", fracture_energy=5.0}'
+        found = []
+        for name in ("bonds", "fft"):
+            found.append(self.results(CELL, f'solver.operator="{name}"', failing, "loading.steps=1",
+                                      'period=[{axis="x", from=-0.01, to=0.01, gradient=["1e-4*load", 0]}, {axis="y", from=-0.008, to=0.008}]'))  # fmt: skip
+        bonds, run = found
+        # Every pass of a tear is searched to a tolerance of its own.
+        for name in ("displacement", "damage", "energy_density"):
+            self.assertLess(abs(bonds.fields[name] - run.fields[name]).max(), 1e-7 * abs(bonds.fields[name]).max(), name)
+        for name in ("external_work", "dissipated", "stored"):
+            self.assertAlmostEqual(run.summary["energy"][name] / bonds.summary["energy"][name], 1.0, delta=1e-7, msg=name)
+        self.assertEqual(bonds.summary["broken_bonds"], run.summary["broken_bonds"])
         self.assertGreater((run.damage == 1.0).sum(), 3)
         self.assertGreater(((run.damage > 0.0) & (run.damage < 1.0)).sum(), 3)
 
