@@ -70,7 +70,7 @@ class RanksRun {
     gathering_.emplace(*body_->part);
     summary_.points = Index(body_->part->whole());
     summary_.free_dofs = ranks_.count_all(study_->free().count()).all;
-    const GlobalIndex bonds = count_bonds(body_->part->owned(), body_->model.bonds(), ranks_);
+    const GlobalIndex bonds = count_bonds(body_->points, body_->model.bonds(), ranks_);
     summary_.count("bonds", bonds);
     summary_.costs.seconds.neighbourhood += body_->seconds_neighbourhood;
     summary_.threads = options_.threads;

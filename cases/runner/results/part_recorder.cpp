@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "assembly/terms/bonds/point_stretches.hpp"
+#include "assembly/terms/damage.hpp"
 #include "cases/runner/results/part_probe.hpp"
 
 namespace peristat {
@@ -37,7 +38,11 @@ PartRecorder::Fields PartRecorder::fields(const StateView& at, std::vector<doubl
   made.displacement.assign(at.displacement.begin(), at.displacement.begin() + std::ptrdiff_t(dofs));
   made.force = std::move(force);
   made.force.resize(dofs);
-  made.damage.assign(owned, 0.0);
+  made.damage.resize(body_.points.volume.size());
+  if (case_.output.count_cracks) {
+    static_cast<void>(assess_damage(body_.model, at.history, body_.cut_weight, made.damage));
+  }
+  made.damage.resize(owned);
   made.fragment.assign(owned, 0.0);
   made.energy_density.resize(body_.points.volume.size());
   assembler_.point_energies(at, made.energy_density);
@@ -53,6 +58,9 @@ void PartRecorder::accepted(StepRecord record, const AcceptedState& state) {
   Fields made = fields(at, std::move(force));
   made.stretch.resize(body_.points.volume.size());
   record.max_stretch = find_stretches(at, made.stretch);
+  double most = 0.0;
+  for (const double of_point : made.damage) most = std::max(most, of_point);
+  record.max_damage = gathering_.part().ranks().max(most);
   made.stretch.resize(std::size_t(gathering_.part().owned()));
   const LoadingProgramme& programme = body_.conditions->programme();
   const LoadValues loads{programme.names(), programme.at(record.stage)};
