@@ -443,7 +443,9 @@ void check_cross_section(const BodySpecification& of, const Points& points) {
   if (of.cross_section != 0.0) require_positive(of.cross_section, "cross_section");
   require(points.dimension < 3 || of.cross_section == 0.0 || of.cross_section == 1.0,
           "cross_section", number_text(of.cross_section), "must be 1 in 3D");
-  if (given == 0.0) return;
+  // What a part has of a cloud has a mean of its own.
+  const bool is_known = !points.owned || points.cell_volume > 0.0;
+  if (given == 0.0 || !is_known) return;
   // The volumes' sum has round-off; a wrong thickness or spacing is off by far more.
   require(std::abs(has / given - 1.0) < 1e-6, "cross_section", number_text(given),
           "does not fit the points, whose mean volume over spacing^" +
@@ -560,10 +562,6 @@ void check_convolved_body(const BodySpecification& of) {
   if (!is_polynomial(of.material.model)) return;
   require_absent(of.eigenstrains.are_there(), "eigenstrains",
                  "do not go with the models green_bond and correspondence");
-  require_absent(
-      !of.cracks.empty(), "cracks",
-      "do not go with the models green_bond and correspondence, which know no cut bonds: "
-      "take a slot out of the body");
 }
 
 void check_linear_body(const BodySpecification& of) {
@@ -580,8 +578,6 @@ void check_linear_body(const BodySpecification& of) {
         "is for bonds with kinematics \"linear\", since the forces of bonds that turn are no "
         "convolutions unless of model \"green_bond\", for model \"correspondence\", and for the "
         "forms \"energy\" and \"printed\" of lps");
-    require(!of.is_convolved() || of.cracks.empty(), "force_operator", "fft",
-            "of lps knows no cut bonds: take a slot out of the body, or \"bonds\"");
     const DamageLaw law = of.material.damage.law;
     require(!of.is_convolved() || law == DamageLaw::none || law == DamageLaw::energy_density,
             "material.damage.law", "",
@@ -593,8 +589,6 @@ void check_linear_body(const BodySpecification& of) {
   }
   const std::string linear = "does not go with kinematics \"linear\"";
   require_absent(of.eigenstrains.are_there(), "eigenstrains", linear);
-  require_absent(!of.constraints.symmetries.empty(), "constraints.symmetries", linear);
-  require_absent(!of.constraints.periods.empty(), "constraints.periods", linear);
 }
 
 }  // namespace

@@ -12,6 +12,7 @@
 #include "solvers/ranks/part_bonds.hpp"
 #include "solvers/study/bonds_of_part.hpp"
 #include "src/core/input_error.hpp"
+#include "src/geometry/point_file.hpp"
 #include "src/geometry/point_set.hpp"
 #include "src/geometry/slab.hpp"
 
@@ -24,16 +25,19 @@ constexpr std::array keys_of_ranks{
     // points
     "lattice.spacing", "lattice.horizon_ratio", "lattice.thickness", "lattice.area",
     "lattice.origin", "lattice.perturbation", "lattice.seed", "lattice.shape.", "lattice.layer.",
-    "set.",
+    "lattice.angle", "lattice.volumes", "lattice.cell_perturbation", "lattice.points",
+    "points.file", "points.thickness", "points.area", "points.horizon", "set.",
     // bonds
-    "quadrature.volume_correction", "quadrature.surface_correction", "material.model",
-    "material.plane", "material.youngs_modulus", "material.micromodulus", "material.density",
-    "material.influence", "crack.",
+    "quadrature.volume_correction", "quadrature.surface_correction", "quadrature.horizon_shape",
+    "crack.", "material.model", "material.plane", "material.youngs_modulus",
+    "material.micromodulus", "material.density", "material.influence", "material.potential",
+    "material.calibration", "material.fibre.", "material.scatter.", "region.", "interface.",
     // triangles and tetrahedra, states
     "quadrature.weights", "quadrature.form", "material.poisson_ratio", "material.c1", "material.c2",
-    "material.c3", "material.calibration",
+    "material.c3",
     // conditions
-    "support.", "load.set", "load.body_force", "load.total_force", "load.gravity",
+    "support.", "load.set", "load.side", "load.body_force", "load.total_force", "load.gravity",
+    "load.traction", "load.depth", "eigenstrain.", "temperature.", "material.thermal_expansion",
     // search
     "loading.steps", "loading.table", "loading.table2", "loading.adaptive", "loading.smallest_step",
     "loading.largest_step", "solver.mode", "solver.linear", "solver.preconditioner",
@@ -71,16 +75,18 @@ bool has_ranks(const std::string& key) {
 
 /// Of keys whose values have ranks in part, those that have.
 void refuse_values_without_ranks(const Case& from) {
-  if (!std::holds_alternative<Lattice>(from.body)) refuse("points", "", "take a lattice");
-  if (from.volume_correction != VolumeCorrection::none &&
-      from.volume_correction != VolumeCorrection::linear) {
-    refuse("quadrature.volume_correction", "", "take \"none\" or \"linear\"");
-  }
   if (is_polynomial(from.material.model)) {
     refuse("material.model", "", "take \"bond\", \"cpd\" or \"lps\"");
   }
   if (from.material.model == MaterialModel::lps && from.form != SolidForm::energy) {
     refuse("quadrature.form", "", "take \"energy\" with model \"lps\"");
+  }
+  const bool is_lattice = std::holds_alternative<Lattice>(from.body);
+  const bool has_shares = from.volume_correction != VolumeCorrection::none &&
+                          from.volume_correction != VolumeCorrection::linear;
+  if (from.material.model != MaterialModel::bond && (!is_lattice || has_shares)) {
+    refuse("material.model", "",
+           "models but \"bond\" are for a lattice, and volume_correction \"none\" or \"linear\"");
   }
   if (from.solver.mode != Mode::newton) {
     refuse("solver.mode", std::string(from.solver.mode.name), "take \"newton\"");
@@ -134,6 +140,16 @@ void add_sets(const Case& from, const Communicator& ranks, Part& part) {
   }
 }
 
+/// Points that stand on a lattice or in a file.
+Part make_slab_of(const Case& from, const Communicator& ranks) {
+  const auto* const lattice = std::get_if<Lattice>(&from.body);
+  if (lattice == nullptr) {
+    const auto& source = std::get<PointSource>(from.body);
+    return read_slab(source.file, from.dimension, source.cross_section, ranks);
+  }
+  return make_slab(*lattice, ranks);
+}
+
 }  // namespace
 
 void refuse_keys_without_ranks(const Case& from) {
@@ -150,7 +166,7 @@ void refuse_keys_without_ranks(const Case& from) {
 std::unique_ptr<const Body> make_part_body(const Case& from, const Communicator& ranks,
                                            int threads) {
   return located_errors(from, [&] {
-    Part slab = make_slab(std::get<Lattice>(from.body), ranks);
+    Part slab = make_slab_of(from, ranks);
     if (slab.whole > std::numeric_limits<Index>::max()) {
       refuse("lattice.spacing", "", "results have numbers for fewer than 2^31 points");
     }

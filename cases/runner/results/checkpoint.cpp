@@ -65,11 +65,12 @@ Entry entry_for(const std::string& name, const std::vector<double>& values) {
 }
 
 template <class Value>
-void append(std::string& bytes, const Value* values, std::size_t count) {
-  bytes.append(reinterpret_cast<const char*>(values), count * sizeof(Value));
+std::string_view bytes_of(const Value* values, std::size_t count) {
+  return {reinterpret_cast<const char*>(values), count * sizeof(Value)};
 }
 
-/// Takes arrays away from what it packs: beside each other they would need their memory twice.
+/// Takes arrays away from what it packs, and keeps them as they are: beside a copy they would need
+/// their memory twice.
 class Packer : public StateArchive {
  public:
   void transfer(const std::string& name, bool& value) override { integer(name, value ? 1 : 0); }
@@ -101,21 +102,15 @@ class Packer : public StateArchive {
     values = std::vector<double>();
   }
 
-  /// Entries, numbers and integers one after the other, behind how many there are of each; forgets
-  /// them.
-  void append_to(std::string& bytes) {
+  /// Entries, numbers and integers one after the other, behind how many there are of each.
+  void visit(const VisitBytes& visit) const {
     const std::string entries = entries_.str();
     std::array<std::uint64_t, 3> sizes{entries.size(), 0, integers_.size()};
     for (const std::vector<double>& part : numbers_) sizes[1] += part.size();
-    // A checksum follows.
-    bytes.reserve(bytes.size() + sizeof sizes + sizes[0] + 8 * (sizes[1] + sizes[2] + 1));
-    append(bytes, sizes.data(), sizes.size());
-    bytes += entries;
-    for (std::vector<double>& part : numbers_) {
-      append(bytes, part.data(), part.size());
-      part = std::vector<double>();
-    }
-    append(bytes, integers_.data(), integers_.size());
+    visit(bytes_of(sizes.data(), sizes.size()));
+    visit(entries);
+    for (const std::vector<double>& part : numbers_) visit(bytes_of(part.data(), part.size()));
+    visit(bytes_of(integers_.data(), integers_.size()));
   }
 
  private:
@@ -240,17 +235,35 @@ void transfer(StateArchive& archive, Checkpoint& checkpoint) {
   archive.transfer("costs/seconds/checkpoints", checkpoints);
 }
 
-/// FNV-1a over words of eight bytes [http://www.isthe.com/chongo/tech/comp/fnv].
-std::uint64_t checksum(std::string_view bytes) {
-  std::uint64_t sum = 0xcbf29ce484222325u;
-  for (std::size_t at = 0; at < bytes.size(); at += sizeof sum) {
-    std::uint64_t word = 0;
-    std::memcpy(&word, bytes.data() + at, std::min(sizeof word, bytes.size() - at));
-    sum = (sum ^ word) * 0x100000001b3u;
-    sum ^= sum >> 32;  // what a multiplication does to high bits alone reaches the low ones, too
+/// FNV-1a over words of eight bytes [http://www.isthe.com/chongo/tech/comp/fnv] of pieces that
+/// follow one another.
+class Checksum {
+ public:
+  void add(std::string_view piece) {
+    while (!piece.empty()) {
+      const std::size_t taken = std::min(sizeof word_ - filled_, piece.size());
+      std::memcpy(reinterpret_cast<char*>(&word_) + filled_, piece.data(), taken);
+      piece.remove_prefix(taken);
+      filled_ += taken;
+      if (filled_ == sizeof word_) take_word();
+    }
   }
-  return sum;
-}
+  [[nodiscard]] std::uint64_t value() {
+    if (filled_ > 0) take_word();
+    return sum_;
+  }
+
+ private:
+  void take_word() {
+    sum_ = (sum_ ^ word_) * 0x100000001b3u;
+    sum_ ^= sum_ >> 32;  // what a multiplication does to high bits alone reaches the low ones, too
+    word_ = 0;
+    filled_ = 0;
+  }
+
+  std::uint64_t sum_ = 0xcbf29ce484222325u, word_ = 0;
+  std::size_t filled_ = 0;
+};
 
 /// Bytes, taken from the front.
 class Bytes {
@@ -298,14 +311,18 @@ void check_head(const std::string& line, const std::string& program) {
 
 }  // namespace
 
-std::string encode(Checkpoint checkpoint, const std::string& program) {
+void encode(Checkpoint checkpoint, const std::string& program, const VisitBytes& visit) {
   Packer packer;
   transfer(packer, checkpoint);
-  std::string bytes = head_line(program);
-  packer.append_to(bytes);
-  const std::uint64_t sum = checksum(bytes);
-  append(bytes, &sum, 1);
-  return bytes;
+  Checksum checksum;
+  const auto pass_on = [&](std::string_view piece) {
+    checksum.add(piece);
+    visit(piece);
+  };
+  pass_on(head_line(program));
+  packer.visit(pass_on);
+  const std::uint64_t sum = checksum.value();
+  visit(bytes_of(&sum, 1));
 }
 
 Checkpoint decode(std::string_view bytes, const std::string& program) {
@@ -316,8 +333,9 @@ Checkpoint decode(std::string_view bytes, const std::string& program) {
   packed.entries = rest.take(sizes[0]);
   packed.numbers = rest.values<double>(sizes[1]);
   packed.integers = rest.values<std::int64_t>(sizes[2]);
-  const std::uint64_t sum = checksum(rest.taken());
-  if (rest.values<std::uint64_t>(1).front() != sum) {
+  Checksum checksum;
+  checksum.add(rest.taken());
+  if (rest.values<std::uint64_t>(1).front() != checksum.value()) {
     throw BadCheckpoint("is damaged: its checksum is wrong");
   }
   Unpacker unpacker(std::move(packed));

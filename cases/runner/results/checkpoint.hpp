@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -39,10 +40,14 @@ class BadCheckpoint : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// Takes bytes that follow one another, a piece at a time.
+using VisitBytes = std::function<void(std::string_view)>;
+
 /// A checkpoint as bytes, with a checksum: HDF5 would take longer for it than a small body for a
-/// step. Of arrays that hold nearly only zeros, or nearly only ones, what differs is kept.
+/// step. Of arrays that hold nearly only zeros, or nearly only ones, what differs is kept. Pieces
+/// are the checkpoint's own arrays: of a large body their bytes in a row would be as much again.
 /// @param program version that writes
-[[nodiscard]] std::string encode(Checkpoint checkpoint, const std::string& program);
+void encode(Checkpoint checkpoint, const std::string& program, const VisitBytes& visit);
 
 /// The checkpoint that some bytes begin with.
 /// @param program version that reads

@@ -5,6 +5,7 @@
 #include <fstream>
 #include <iterator>
 #include <optional>
+#include <string_view>
 
 #include <fcntl.h>
 #include <unistd.h>
@@ -19,7 +20,7 @@ CheckpointFiles::~CheckpointFiles() {
   }
 }
 
-void CheckpointFiles::write(const std::string& bytes) {
+void CheckpointFiles::write(Checkpoint checkpoint, const std::string& program) {
   const std::filesystem::path file = folder_ / names[next_];
   const auto fail = [&](int error) {
     throw OutputError(file.string() + ": can't be written: " + std::strerror(error), error);
@@ -29,18 +30,36 @@ void CheckpointFiles::write(const std::string& bytes) {
     descriptor = ::open(file.c_str(), O_WRONLY | O_CREAT | O_NOFOLLOW | O_CLOEXEC, 0666);
     if (descriptor < 0) fail(errno);
   }
-  for (std::size_t at = 0; at < bytes.size();) {
-    const ssize_t written =
-        ::pwrite(descriptor, bytes.data() + at, bytes.size() - at, static_cast<off_t>(at));
-    if (written > 0) {
-      at += static_cast<std::size_t>(written);
-    } else if (written == 0 || errno != EINTR) {
-      fail(written == 0 ? ENOSPC : errno);
+  // Many of a body's pieces are single numbers: they go to the file together.
+  constexpr std::size_t least_piece = std::size_t(1) << 16;
+  off_t at = 0;
+  std::string collected;
+  const auto put = [&](std::string_view piece) {
+    while (!piece.empty()) {
+      const ssize_t written = ::pwrite(descriptor, piece.data(), piece.size(), at);
+      if (written > 0) {
+        at += written;
+        piece.remove_prefix(static_cast<std::size_t>(written));
+      } else if (written == 0 || errno != EINTR) {
+        fail(written == 0 ? ENOSPC : errno);
+      }
     }
-  }
-  if (::ftruncate(descriptor, static_cast<off_t>(bytes.size())) != 0) fail(errno);
+  };
+  const auto put_collected = [&] {
+    put(collected);
+    collected.clear();
+  };
+  encode(std::move(checkpoint), program, [&](std::string_view piece) {
+    if (collected.size() + piece.size() > least_piece) put_collected();
+    if (piece.size() > least_piece) return put(piece);
+    collected += piece;
+  });
+  put_collected();
+  if (::ftruncate(descriptor, at) != 0) fail(errno);
   next_ = 1 - next_;
 }
+
+std::filesystem::path CheckpointFiles::last() const { return folder_ / names[1 - next_]; }
 
 std::vector<std::uint8_t> CheckpointFiles::last_bytes() const {
   const std::size_t last = 1 - next_;

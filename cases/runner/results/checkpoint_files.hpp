@@ -20,9 +20,12 @@ class CheckpointFiles {
   CheckpointFiles(const CheckpointFiles&) = delete;
   CheckpointFiles& operator=(const CheckpointFiles&) = delete;
 
-  /// @param bytes see encode
+  /// @param program version that writes
   /// @throws OutputError; the checkpoint before stays
-  void write(const std::string& bytes);
+  void write(Checkpoint checkpoint, const std::string& program);
+
+  /// The file that was written last.
+  [[nodiscard]] std::filesystem::path last() const;
 
   /// Of the checkpoint that was written last; none before the first, or where it can't be read.
   [[nodiscard]] std::vector<std::uint8_t> last_bytes() const;

@@ -130,8 +130,7 @@ struct Results::Files {
   void link(WrittenStep step);
   void append_pending();
   void publish();
-  /// @return its bytes
-  std::string write_checkpoint(Checkpoint checkpoint);
+  void write_checkpoint(Checkpoint checkpoint);
   void publish_xdmf();
   void publish_summary(const Summary& summary) const;
   void gather_parts();
@@ -262,7 +261,7 @@ void Results::Files::go_on(const EarlierResults& earlier, const Checkpoint& chec
   }
   for (const WrittenStep& step : earlier.steps) link(step);
   points_part = earlier.points;
-  static_cast<void>(write_checkpoint(checkpoint));
+  write_checkpoint(checkpoint);
 }
 
 void Results::Files::append_pending() {
@@ -280,12 +279,10 @@ void Results::Files::append_pending() {
 
 void Results::Files::publish() { publish_file(folder.results(), master.image()); }
 
-std::string Results::Files::write_checkpoint(Checkpoint checkpoint) {
+void Results::Files::write_checkpoint(Checkpoint checkpoint) {
   checkpoint.rows = rows;
   checkpoint.last_with_fields = written_steps.empty() ? 0 : written_steps.back().step;
-  std::string bytes = encode(std::move(checkpoint), program);
-  checkpoints.write(bytes);
-  return bytes;
+  checkpoints.write(std::move(checkpoint), program);
 }
 
 void Results::Files::link(WrittenStep step) {
@@ -483,9 +480,10 @@ void Results::add_checkpoint(Checkpoint checkpoint) {
     files_->append_pending();
     files_->publish();
   }
-  const std::string bytes = files_->write_checkpoint(std::move(checkpoint));
+  files_->write_checkpoint(std::move(checkpoint));
   if (files_->safe_copy.is_due()) {
-    files_->safe_copy.make(files_->points_part.file, files_->written_steps, bytes);
+    files_->safe_copy.make(files_->points_part.file, files_->written_steps,
+                           files_->checkpoints.last());
   }
 }
 

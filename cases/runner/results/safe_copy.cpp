@@ -29,14 +29,21 @@ bool SafeCopy::is_due() const {
 }
 
 void SafeCopy::make(const std::string& points, const std::vector<WrittenStep>& steps,
-                    const std::string& checkpoint) {
+                    const std::filesystem::path& checkpoint) {
   const Clock::time_point begin = Clock::now();
   if (safe_steps_ == 0) sync_file(folder_.directory / points);
   for (; safe_steps_ < steps.size(); ++safe_steps_) {
     sync_file(folder_.directory / steps[safe_steps_].file);
   }
   sync_file(folder_.results());
-  write_file(temporary(folder_.safe_checkpoint()), checkpoint);
+  std::error_code error;
+  fs::remove(temporary(folder_.safe_checkpoint()), error);
+  fs::copy_file(checkpoint, temporary(folder_.safe_checkpoint()),
+                fs::copy_options::overwrite_existing, error);
+  if (error) {
+    throw OutputError(folder_.safe_checkpoint().string() + ": can't be written: " + error.message(),
+                      error.value());
+  }
   sync_file(temporary(folder_.safe_checkpoint()));
   link_as(folder_.results(), folder_.safe_results());
   rename_file(temporary(folder_.safe_checkpoint()), folder_.safe_checkpoint());
