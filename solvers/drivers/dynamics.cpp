@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "assembly/operators/convolved_tangent.hpp"
 #include "assembly/terms/damage.hpp"
 #include "solvers/motion/newmark.hpp"
 #include "solvers/motion/velocity_verlet.hpp"
@@ -61,12 +62,21 @@ const MotionSetting& Dynamics::setting() const {
 Advance Dynamics::next() {
   PathState& state = path_.state();
   if (state.dynamics.has_begun && !path_.goes_on()) return Advance::ended;
+  // Velocities change in steps that are accepted alone, and are long.
+  std::vector<double> velocity = std::exchange(state.dynamics.velocity, {}),
+                      acceleration = std::exchange(state.dynamics.acceleration, {});
   const PathState::Dynamics dynamics = state.dynamics;
+  state.dynamics.velocity = std::move(velocity);
+  state.dynamics.acceleration = std::move(acceleration);
   const int steps = state.steps;
   const Advance advance = dynamics.has_begun ? move() : begin();
   if (path_.outcome() != Outcome::converged || repeats_) {
     const double step = repeats_ ? state.dynamics.step : dynamics.step;
+    velocity = std::exchange(state.dynamics.velocity, {});
+    acceleration = std::exchange(state.dynamics.acceleration, {});
     state.dynamics = dynamics;
+    state.dynamics.velocity = std::move(velocity);
+    state.dynamics.acceleration = std::move(acceleration);
     state.dynamics.step = step;
     state.steps = steps;
     repeats_ = false;
@@ -163,9 +173,15 @@ Stiffness Dynamics::stiffness_at(const Trial& state) {
   return path_.state().dynamics.stiffness;
 }
 
+void Dynamics::give_back_tangent() {
+  if (is_implicit() || !forget_if_convolved(path_.body().tangent)) return;
+  is_linearised_ = false;
+}
+
 std::string Dynamics::choose_step(const Trial& state, double time) {
   PathState::Dynamics& dynamics = path_.state().dynamics;
   const Stiffness now = stiffness_at(state);
+  give_back_tangent();
   const bool has_changed =
       std::abs(now.bound - dynamics.last_bound) > same_stiffness / 2 * now.bound;
   dynamics.last_bound = now.bound;
@@ -306,7 +322,6 @@ Advance Dynamics::accept(Motion& motion) {
     tell(found.record,
          {attempt.state, attempt.external_force, state.pins.found.piece, state.dynamics.velocity});
   }
-  path_.last_attempt() = std::move(attempt);
   if (is_implicit()) lengthen_step(time);
   return Advance::goes_on;
 }
@@ -339,6 +354,7 @@ std::string Dynamics::fault_of(const Attempt& attempt, const FoundStep& found) {
       find_inconsistency(path_.problem(), path_.damaged(), tangent,
                          {attempt.state, attempt.external_force, attempt.largest_residual, true,
                           state.ledger.entries, found.ledger});
+  give_back_tangent();
   if (!fault.empty()) return fault;
   return fault_of_balance(found.ledger);
 }

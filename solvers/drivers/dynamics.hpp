@@ -46,6 +46,8 @@ class Dynamics : public Driver {
   [[nodiscard]] bool shorten_step(double time, Outcome outcome, const std::string& reason);
   /// The stiffness at a state; the eigenvalue is found again where the bound has changed.
   [[nodiscard]] Stiffness stiffness_at(const Trial& state);
+  /// Where the body's motion has no use of it until it is found again, and it is quickly found.
+  void give_back_tangent();
   /// Chooses the step for the present stiffness.
   /// @return why there is none
   [[nodiscard]] std::string choose_step(const Trial& state, double time);
