@@ -300,9 +300,10 @@ namespace {
 /// What the assembler of a part is made for; tables of cases are refused before.
 void refuse_without_ranks(const BodySpecification& of) {
   const auto refuse = [](const std::string& key) {
-    throw InputError(key, "",
-                     "is not for more than one rank yet: there are elastic bonds of one material, "
-                     "with supports, body forces, total forces and gravity");
+    throw InputError(
+        key, "",
+        "is not for more than one rank yet: there are elastic bonds of one material with "
+        "pre-cracks, supports, body forces, total forces and gravity");
   };
   const MaterialSpecification& material = of.material;
   if (material.model != MaterialModel::bond) refuse("material.model");
@@ -311,7 +312,6 @@ void refuse_without_ranks(const BodySpecification& of) {
   if (!of.is_uniform()) refuse(of.regions.empty() ? "material" : "regions");
   if (of.force_operator != ForceOperator::bonds) refuse("force_operator");
   if (of.horizon_shape != HorizonShape::ball) refuse("horizon_shape");
-  if (!of.cracks.empty()) refuse("cracks");
   if (!of.foundations.empty()) refuse("foundations");
   if (!of.controls.empty()) refuse("controls");
   if (of.end_time || of.has_inertia) refuse("end_time");
@@ -357,13 +357,15 @@ std::unique_ptr<const Body> make_body(Part part, const BodySpecification& of,
   body.part = std::make_unique<const PartOfBody>(part, ranks);
   {
     const Stopwatch watch(body.seconds_neighbourhood);
-    Bonds bonds = make_bonds(part, of.surface_correction, body.setting, threads);
+    Bonds bonds = make_bonds(part, of.surface_correction, body.setting, ranks, threads);
     body.points = std::move(part.points);
     body.points.owned = part.owned;
     refuse_coincident_points(body.points, bonds);
     const PointMaterials materials(of, body.points);
-    CutBonds none;
-    body.model = make_bond_model(body, materials, std::move(bonds), none);
+    CutBonds cut;
+    body.model = make_bond_model(body, materials, std::move(bonds), cut);
+    body.cut_weight = std::move(cut.weight);
+    body.cut_bonds = std::move(cut.ends);
   }
   LoadSetting loads = load_setting(of, body.points);
   loads.ranks = &ranks;

@@ -30,6 +30,7 @@ constexpr std::array keys_of_ranks{
     // bonds
     "quadrature.volume_correction", "quadrature.surface_correction", "material.model",
     "material.plane", "material.youngs_modulus", "material.micromodulus", "material.density",
+    "crack.",
     // conditions
     "support.", "load.set", "load.body_force", "load.total_force", "load.gravity",
     // search
@@ -38,7 +39,7 @@ constexpr std::array keys_of_ranks{
     "solver.tangent", "solver.predictor", "solver.relative_tolerance", "solver.linear_tolerance",
     "solver.max_iterations",
     // results
-    "output.directory", "output.every", "output.stress", "probe."};
+    "output.directory", "output.every", "output.stress", "output.count_cracks", "probe."};
 
 /// "load[2].body_force[0]" as "load.body_force".
 std::string without_numbers(const std::string& key) {
