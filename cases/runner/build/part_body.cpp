@@ -13,6 +13,7 @@
 #include "solvers/ranks/distribute.hpp"
 #include "solvers/ranks/part_bonds.hpp"
 #include "src/core/input_error.hpp"
+#include "src/geometry/point_file.hpp"
 #include "src/geometry/point_set.hpp"
 #include "src/geometry/points_on_line.hpp"
 #include "src/geometry/slab.hpp"
@@ -26,13 +27,16 @@ constexpr std::array keys_of_ranks{
     // points
     "lattice.spacing", "lattice.horizon_ratio", "lattice.thickness", "lattice.area",
     "lattice.origin", "lattice.perturbation", "lattice.seed", "lattice.shape.", "lattice.layer.",
-    "set.",
+    "lattice.angle", "lattice.volumes", "lattice.cell_perturbation", "lattice.points",
+    "points.file", "points.thickness", "points.area", "points.horizon", "set.",
     // bonds
-    "quadrature.volume_correction", "quadrature.surface_correction", "material.model",
-    "material.plane", "material.youngs_modulus", "material.micromodulus", "material.density",
+    "quadrature.", "material.model", "material.plane", "material.youngs_modulus",
+    "material.micromodulus", "material.density", "material.influence", "material.potential",
+    "material.calibration", "material.fibre.", "material.scatter.", "region.", "interface.",
     "crack.",
     // conditions
-    "support.", "load.set", "load.body_force", "load.total_force", "load.gravity",
+    "support.", "load.set", "load.side", "load.body_force", "load.total_force", "load.gravity",
+    "load.traction", "load.depth", "eigenstrain.", "temperature.", "material.thermal_expansion",
     // search
     "loading.steps", "loading.table", "loading.table2", "loading.adaptive", "loading.smallest_step",
     "loading.largest_step", "solver.mode", "solver.linear", "solver.preconditioner",
@@ -69,11 +73,6 @@ bool has_ranks(const std::string& key) {
 
 /// Of keys whose values have ranks in part, those that have.
 void refuse_values_without_ranks(const Case& from) {
-  if (!std::holds_alternative<Lattice>(from.body)) refuse("points", "", "take a lattice");
-  if (from.volume_correction != VolumeCorrection::none &&
-      from.volume_correction != VolumeCorrection::linear) {
-    refuse("quadrature.volume_correction", "", "take \"none\" or \"linear\"");
-  }
   if (from.material.model != MaterialModel::bond) {
     refuse("material.model", "", "take \"bond\"");
   }
@@ -129,6 +128,16 @@ void add_sets(const Case& from, const Communicator& ranks, Part& part) {
   }
 }
 
+/// Points that stand on a lattice or in a file.
+Part make_slab_of(const Case& from, const Communicator& ranks) {
+  const auto* const lattice = std::get_if<Lattice>(&from.body);
+  if (lattice == nullptr) {
+    const auto& source = std::get<PointSource>(from.body);
+    return read_slab(source.file, from.dimension, source.cross_section, ranks);
+  }
+  return make_slab(*lattice, ranks);
+}
+
 }  // namespace
 
 void refuse_keys_without_ranks(const Case& from) {
@@ -144,7 +153,7 @@ void refuse_keys_without_ranks(const Case& from) {
 std::unique_ptr<const Body> make_part_body(const Case& from, const Communicator& ranks,
                                            int threads) {
   return located_errors(from, [&] {
-    Part slab = make_slab(std::get<Lattice>(from.body), ranks);
+    Part slab = make_slab_of(from, ranks);
     if (slab.whole > std::numeric_limits<Index>::max()) {
       refuse("lattice.spacing", "", "results have numbers for fewer than 2^31 points");
     }
