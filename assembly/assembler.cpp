@@ -63,23 +63,33 @@ Evaluation Assembler::energy(const StateView& at) { return gradient(at, {}); }
 Evaluation Assembler::gradient(const StateView& at, std::span<double> gradient) {
   Evaluation found;
   for_each_term([&](TermPasses& term, Write how) { found += term.gradient(at, gradient, how); });
-  return sharing_ ? of_all(at, found, gradient) : found;
+  if (!sharing_) return found;
+  found.energy = energy_here(at);
+  return of_all(found, gradient);
 }
 
-Evaluation Assembler::of_all(const StateView& at, const Evaluation& mine,
-                             std::span<double> gradient) {
+double Assembler::energy_here(const StateView& at) {
   // Of a bond between two ranks each has the share of its own point.
   point_energies(at, of_points_);
-  const auto owned = std::size_t(sharing_->owned());
   double energy = 0.0;
-  for (std::size_t i = 0; i < owned; ++i) energy += of_points_[i];
+  for (std::size_t i = 0; i < std::size_t(sharing_->owned()); ++i) energy += of_points_[i];
+  return energy;
+}
+
+Evaluation Assembler::of_all(const Evaluation& mine, std::span<double> gradient) const {
+  const std::vector<double> sums =
+      sharing_->ranks().sum({mine.energy, mine.round_off, mine.released, double(mine.degenerate),
+                             double(mine.moves_equilibrium), double(mine.growth.degrading),
+                             double(mine.growth.breaking)});
   Evaluation all;
-  all.energy = sharing_->ranks().sum(energy);
-  all.round_off = sharing_->ranks().sum(mine.round_off);
-  all.degenerate =
-      sharing_->ranks().max(double(mine.degenerate)) > 0.0 || !std::isfinite(all.energy);
+  all.energy = sums[0];
+  all.round_off = sums[1];
+  all.released = sums[2];
+  all.degenerate = sums[3] > 0.0 || !std::isfinite(all.energy);
+  all.moves_equilibrium = sums[4] > 0.0;
+  all.growth = {Index(sums[5]), Index(sums[6])};  // without a utilisation: see Evaluation
   if (gradient.empty()) return all;
-  const std::size_t dofs = owned * std::size_t(points_.dimension);
+  const std::size_t dofs = std::size_t(sharing_->owned()) * std::size_t(points_.dimension);
   std::fill(gradient.begin() + std::ptrdiff_t(dofs), gradient.end(), 0.0);
   return all;
 }
@@ -97,12 +107,13 @@ Evaluation Assembler::commit(std::span<const double> displacement, History& hist
 Evaluation Assembler::commit_forces(std::span<const double> displacement, History& history,
                                     std::span<double> gradient,
                                     const SharedEnvironment& environment) {
-  refuse_on_ranks("commit_forces");
   Evaluation found;
   for_each_term([&](TermPasses& term, Write how) {
     found += term.commit_forces(displacement, environment, history, gradient, how);
   });
-  return found;
+  if (!sharing_) return found;
+  found.energy = 0.0;
+  return of_all(found, gradient);
 }
 
 void Assembler::refuse_on_ranks(const char* what) const {

@@ -314,7 +314,7 @@ void refuse_without_ranks(const BodySpecification& of) {
   if (!of.cracks.empty()) refuse("cracks");
   if (!of.foundations.empty()) refuse("foundations");
   if (!of.controls.empty()) refuse("controls");
-  if (of.end_time || of.has_inertia) refuse("end_time");
+  if (of.has_inertia) refuse("has_inertia");
   if (of.eigenstrains.are_there()) refuse("eigenstrains");
   const ConstraintSpecification& constraints = of.constraints;
   const bool is_constrained = !constraints.rigid_sets.empty() || !constraints.rollers.empty() ||

@@ -86,7 +86,9 @@ constexpr double vectors_of_motion = 9.0;
 
 /// Explicit steps solve nothing; they need products of the tangent now and then.
 LinearSystems systems_of_motion(const Body& body) {
-  const MemoryEstimate estimate = estimate_memory(body);
+  // A rank may have no point, which no estimate is made for.
+  const bool is_empty = body.points.count() == 0;
+  const MemoryEstimate estimate = is_empty ? MemoryEstimate() : estimate_memory(body);
   LinearSystems systems;
   systems.chosen.solver = std::make_unique<NoSolver>();
   systems.chosen.is_direct = false;

@@ -31,9 +31,9 @@ constexpr std::array keys_of_ranks{
     "support.", "load.set", "load.body_force", "load.total_force", "load.gravity",
     // search
     "loading.steps", "loading.table", "loading.table2", "loading.adaptive", "loading.smallest_step",
-    "loading.largest_step", "solver.mode", "solver.linear", "solver.preconditioner",
-    "solver.tangent", "solver.predictor", "solver.relative_tolerance", "solver.linear_tolerance",
-    "solver.max_iterations",
+    "loading.largest_step", "initial.", "absorbing.", "dynamics.", "solver.mode", "solver.operator",
+    "solver.linear", "solver.preconditioner", "solver.tangent", "solver.predictor",
+    "solver.relative_tolerance", "solver.linear_tolerance", "solver.max_iterations",
     // results
     "output.directory", "output.every", "probe.name", "probe.set", "probe.field", "probe.component",
     "probe.statistic", "probe.expected", "probe.other"};
@@ -64,8 +64,20 @@ bool has_ranks(const std::string& key) {
   throw InputError(key, value, "is not for more than one rank yet; " + instead);
 }
 
+/// Transforms go over the whole body, which no rank has.
+void refuse_convolutions(const Case& from) {
+  const std::string why = "is for one rank, since convolutions go over the whole body; ";
+  if (from.needs_convolutions()) {
+    throw InputError(from.has_states() ? "material.form" : "material.model", "",
+                     why + "models that have bonds go on several");
+  }
+  if (from.solver.force_operator != ForceOperator::fft) return;
+  throw InputError("solver.operator", "\"fft\"", why + "on several take \"bonds\" or \"auto\"");
+}
+
 /// Of keys whose values have ranks in part, those that have.
 void refuse_values_without_ranks(const Case& from) {
+  refuse_convolutions(from);
   if (!std::holds_alternative<Lattice>(from.body)) refuse("points", "", "take a lattice");
   if (from.volume_correction != VolumeCorrection::none &&
       from.volume_correction != VolumeCorrection::linear) {
@@ -74,19 +86,24 @@ void refuse_values_without_ranks(const Case& from) {
   if (from.material.model != MaterialModel::bond) {
     refuse("material.model", "", "take \"bond\"");
   }
-  if (from.solver.mode != Mode::newton) {
-    refuse("solver.mode", std::string(from.solver.mode.name), "take \"newton\"");
+  if (from.solver.mode != Mode::newton && from.solver.mode != Mode::dynamics) {
+    refuse("solver.mode", std::string(from.solver.mode.name), "take \"newton\" or \"dynamics\"");
+  }
+  if (from.dynamics.is_asked_for && from.dynamics.is_implicit()) {
+    refuse("dynamics.scheme", "\"newmark\"", "take \"verlet\"");
   }
 }
 
 void refuse_probes_without_ranks(const Case& from) {
-  constexpr std::array<std::string_view, 5> fields{"displacement", "force", "stretch",
-                                                   "energy_density", "opening"};
+  constexpr std::array<std::string_view, 7> fields{"displacement",          "force",   "stretch",
+                                                   "energy_density",        "opening", "velocity",
+                                                   "kinetic_energy_density"};
   for (std::size_t k = 0; k < from.probes.size(); ++k) {
     const std::string& field = from.probes[k].field;
     if (std::find(fields.begin(), fields.end(), field) != fields.end()) continue;
     refuse("probe[" + std::to_string(k) + "].field", '"' + field + '"',
-           "take displacement, force, stretch, energy_density or opening");
+           "take displacement, velocity, force, stretch, energy_density, kinetic_energy_density or "
+           "opening");
   }
 }
 

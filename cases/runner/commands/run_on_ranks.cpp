@@ -13,6 +13,7 @@
 #include "cases/runner/commands/run_facts.hpp"
 #include "cases/runner/process/failure.hpp"
 #include "cases/runner/process/interruption.hpp"
+#include "cases/runner/results/motion_columns.hpp"
 #include "cases/runner/results/part_recorder.hpp"
 #include "cases/runner/results/probe.hpp"
 #include "cases/runner/results/results.hpp"
@@ -81,6 +82,13 @@ class RanksRun {
     const double most = ranks_.max(double(body_->part->owned()));
     const double ghosts = ranks_.sum(double(body_->points.count() - body_->part->owned()));
     progress_.say(fmt::format("at most {:.0f} points on a rank, {:.0f} ghosts", most, ghosts));
+    if (from_.dynamics.is_asked_for) {
+      // Refuses a step that is not stable before results are touched.
+      const Stiffness& stiffness = study_->find_initial_stiffness();
+      progress_.say(fmt::format("stable {}time step: {:.6g} s",
+                                from_.dynamics.is_implicit() ? "explicit " : "",
+                                stiffness.stable_step()));
+    }
     progress_.follow_to(body_->conditions->programme().end());
   }
 
@@ -107,6 +115,7 @@ class RanksRun {
     for (const ProbeSpecification& probe : from_.probes) {
       columns.push_back(columns_of(probe, from_.dimension));
     }
+    for (ProbeColumns& of_motion : motion_columns(from_)) columns.push_back(std::move(of_motion));
     return columns;
   }
 

@@ -5,12 +5,18 @@
 #include <utility>
 
 #include "assembly/terms/bonds/point_stretches.hpp"
+#include "cases/runner/results/motion_columns.hpp"
 #include "cases/runner/results/part_probe.hpp"
 
 namespace peristat {
 
 StepFields PartRecorder::Fields::view() const {
-  return {&displacement, &force, &damage, &energy_density, &stretch, &fragment, nullptr};
+  StepFields fields{&displacement, &force, &damage, &energy_density, &stretch, &fragment, nullptr};
+  if (is_motion) {
+    fields.velocity = &velocity;
+    fields.kinetic_energy_density = &kinetic_energy_density;
+  }
+  return fields;
 }
 
 void PartRecorder::iteration(const IterationRecord& record) {
@@ -46,6 +52,16 @@ PartRecorder::Fields PartRecorder::fields(const StateView& at, std::vector<doubl
   return made;
 }
 
+void PartRecorder::add_motion(std::span<const double> velocity, Fields& made) const {
+  const auto d = std::size_t(body_.points.dimension);
+  made.is_motion = true;
+  made.velocity.assign(velocity.begin(), velocity.begin() + std::ptrdiff_t(made.force.size()));
+  made.kinetic_energy_density.assign(made.damage.size(), 0.0);
+  for (std::size_t k = 0; k < made.velocity.size(); ++k) {
+    made.kinetic_energy_density[k / d] += 0.5 * density_[k / d] * velocity[k] * velocity[k];
+  }
+}
+
 void PartRecorder::accepted(StepRecord record, const AcceptedState& state) {
   const StateView at = state.trial.at();
   std::vector<double> force = state.trial.gradient;
@@ -54,6 +70,8 @@ void PartRecorder::accepted(StepRecord record, const AcceptedState& state) {
   made.stretch.resize(body_.points.volume.size());
   record.max_stretch = find_stretches(at, made.stretch);
   made.stretch.resize(std::size_t(gathering_.part().owned()));
+  if (case_.dynamics.is_asked_for) add_motion(state.velocity, made);
+  add_motion_values(record, body_.points.dimension, record.probes);
   const LoadingProgramme& programme = body_.conditions->programme();
   const LoadValues loads{programme.names(), programme.at(record.stage)};
   for (const ProbeSpecification& probe : case_.probes) {

@@ -10,6 +10,7 @@
 #include "cases/runner/results/step_part.hpp"
 #include "solvers/drivers/observer.hpp"
 #include "solvers/study/body.hpp"
+#include "solvers/study/motion.hpp"
 
 namespace peristat {
 
@@ -25,7 +26,9 @@ class PartRecorder {
         assembler_(assembler),
         gathering_(gathering),
         results_(results),
-        progress_(progress) {}
+        progress_(progress) {
+    if (from.dynamics.is_asked_for) density_ = densities_of(body);
+  }
 
   void iteration(const IterationRecord& record);
   void decided(const DecisionRecord& record);
@@ -40,10 +43,13 @@ class PartRecorder {
   /// Of the points that this rank owns.
   struct Fields {
     std::vector<double> displacement, force, damage, energy_density, stretch, fragment;
+    std::vector<double> velocity, kinetic_energy_density;
+    bool is_motion = false;
     [[nodiscard]] StepFields view() const;
   };
   [[nodiscard]] Fields fields(const StateView& at, std::vector<double> force) const;
   [[nodiscard]] double find_stretches(const StateView& at, std::vector<double>& stretch) const;
+  void add_motion(std::span<const double> velocity, Fields& made) const;
   void send(const Fields& fields) const;
 
   const Case& case_;
@@ -52,6 +58,7 @@ class PartRecorder {
   const RowGathering& gathering_;
   Results* const results_;
   Progress& progress_;
+  std::vector<double> density_;  // of a motion
   double relative_residual_ = 0.0;
   std::optional<StepRecord> last_;
   std::optional<Fields> unwritten_;  // of the last step
