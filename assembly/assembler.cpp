@@ -8,6 +8,28 @@
 #include "src/core/stopwatch.hpp"
 
 namespace peristat {
+namespace {
+
+void clear_ghosts(const Sharing& sharing, int dimension, std::span<double> gradient) {
+  if (gradient.empty()) return;
+  const std::size_t dofs = std::size_t(sharing.owned()) * std::size_t(dimension);
+  std::fill(gradient.begin() + std::ptrdiff_t(dofs), gradient.end(), 0.0);
+}
+
+/// What ranks have found together but for the energy.
+Evaluation without_energy(const Communicator& ranks, const Evaluation& mine) {
+  const std::vector<double> sums =
+      ranks.sum({mine.released, double(mine.degenerate), double(mine.moves_equilibrium),
+                 double(mine.growth.degrading), double(mine.growth.breaking)});
+  Evaluation all;
+  all.released = sums[0];
+  all.degenerate = sums[1] > 0.0;
+  all.moves_equilibrium = sums[2] > 0.0;
+  all.growth = {Index(sums[3]), Index(sums[4])};
+  return all;
+}
+
+}  // namespace
 
 Assembler::Assembler(const Points& points, const Model& model, int threads, const Sharing* sharing)
     : points_(points),
@@ -63,34 +85,22 @@ Evaluation Assembler::energy(const StateView& at) { return gradient(at, {}); }
 Evaluation Assembler::gradient(const StateView& at, std::span<double> gradient) {
   Evaluation found;
   for_each_term([&](TermPasses& term, Write how) { found += term.gradient(at, gradient, how); });
-  if (!sharing_) return found;
-  found.energy = energy_here(at);
-  return of_all(found, gradient);
+  return sharing_ ? of_all(at, found, gradient) : found;
 }
 
-double Assembler::energy_here(const StateView& at) {
+Evaluation Assembler::of_all(const StateView& at, const Evaluation& mine,
+                             std::span<double> gradient) {
   // Of a bond between two ranks each has the share of its own point.
   point_energies(at, of_points_);
+  const auto owned = std::size_t(sharing_->owned());
   double energy = 0.0;
-  for (std::size_t i = 0; i < std::size_t(sharing_->owned()); ++i) energy += of_points_[i];
-  return energy;
-}
-
-Evaluation Assembler::of_all(const Evaluation& mine, std::span<double> gradient) const {
-  const std::vector<double> sums =
-      sharing_->ranks().sum({mine.energy, mine.round_off, mine.released, double(mine.degenerate),
-                             double(mine.moves_equilibrium), double(mine.growth.degrading),
-                             double(mine.growth.breaking)});
+  for (std::size_t i = 0; i < owned; ++i) energy += of_points_[i];
   Evaluation all;
-  all.energy = sums[0];
-  all.round_off = sums[1];
-  all.released = sums[2];
-  all.degenerate = sums[3] > 0.0 || !std::isfinite(all.energy);
-  all.moves_equilibrium = sums[4] > 0.0;
-  all.growth = {Index(sums[5]), Index(sums[6])};  // without a utilisation: see Evaluation
-  if (gradient.empty()) return all;
-  const std::size_t dofs = std::size_t(sharing_->owned()) * std::size_t(points_.dimension);
-  std::fill(gradient.begin() + std::ptrdiff_t(dofs), gradient.end(), 0.0);
+  all.energy = sharing_->ranks().sum(energy);
+  all.round_off = sharing_->ranks().sum(mine.round_off);
+  all.degenerate =
+      sharing_->ranks().max(double(mine.degenerate)) > 0.0 || !std::isfinite(all.energy);
+  clear_ghosts(*sharing_, points_.dimension, gradient);
   return all;
 }
 
@@ -112,8 +122,8 @@ Evaluation Assembler::commit_forces(std::span<const double> displacement, Histor
     found += term.commit_forces(displacement, environment, history, gradient, how);
   });
   if (!sharing_) return found;
-  found.energy = 0.0;
-  return of_all(found, gradient);
+  clear_ghosts(*sharing_, points_.dimension, gradient);
+  return without_energy(sharing_->ranks(), found);
 }
 
 void Assembler::refuse_on_ranks(const char* what) const {

@@ -98,9 +98,8 @@ class Assembler : public Energy {
  private:
   void refuse_on_ranks(const char* what) const;
   /// Of the whole body, and of owned points, from what a pass over the part has found.
-  [[nodiscard]] Evaluation of_all(const Evaluation& mine, std::span<double> gradient) const;
-  /// Of owned points [J].
-  [[nodiscard]] double energy_here(const StateView& at);
+  [[nodiscard]] Evaluation of_all(const StateView& at, const Evaluation& mine,
+                                  std::span<double> gradient);
 
   /// Whether a term tells no more of its tangent than an outline.
   [[nodiscard]] bool is_outlined(std::size_t term) const;

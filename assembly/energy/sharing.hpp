@@ -1,7 +1,6 @@
 #pragma once
 
 #include <span>
-#include <vector>
 
 #include "src/core/communicator.hpp"
 #include "src/core/types.hpp"
@@ -19,8 +18,6 @@ class Sharing {
 
   [[nodiscard]] virtual const Communicator& ranks() const = 0;
   [[nodiscard]] virtual Index owned() const = 0;
-  /// Of each owned point in the whole body, ascending.
-  [[nodiscard]] virtual const std::vector<GlobalIndex>& number() const = 0;
 
   /// Gives ghosts what their owners have; a call that all ranks make.
   /// @param values points x dimension

@@ -7,6 +7,7 @@
 
 #include "assembly/terms/damage.hpp"
 #include "solvers/motion/newmark.hpp"
+#include "solvers/motion/shared_stiffness.hpp"
 #include "solvers/motion/velocity_verlet.hpp"
 #include "src/core/number_text.hpp"
 

@@ -1,5 +1,3 @@
-#include "solvers/motion/stable_step.hpp"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -7,6 +5,8 @@
 #include <vector>
 
 #include "solvers/linear/vector_verbs.hpp"
+#include "solvers/motion/shared_stiffness.hpp"
+#include "solvers/ranks/part_of_body.hpp"
 #include "src/core/counter_random.hpp"
 
 namespace peristat {
@@ -66,7 +66,8 @@ struct Shared {
 
   /// Of an owned point.
   [[nodiscard]] GlobalIndex number(Index point) const {
-    return sharing ? sharing->number()[std::size_t(point)] : GlobalIndex(point);
+    if (!sharing) return point;
+    return dynamic_cast<const PartOfBody&>(*sharing).number()[std::size_t(point)];
   }
 
   const Sharing* sharing;
@@ -221,6 +222,16 @@ double bound_of(const TangentOperator& tangent, const FreeDofs& free, std::span<
 }
 
 }  // namespace
+
+Stiffness bound_stiffness(const TangentOperator& tangent, const FreeDofs& free,
+                          std::span<const double> mass, int most_points) {
+  return bound_stiffness(tangent, free, mass, most_points, nullptr);
+}
+
+Stiffness find_stiffness(const TangentOperator& tangent, const FreeDofs& free,
+                         std::span<const double> mass, int most_points) {
+  return find_stiffness(tangent, free, mass, most_points, nullptr);
+}
 
 double Stiffness::stable_step() const {
   return eigenvalue > 0.0 ? 2.0 / std::sqrt(eigenvalue) : std::numeric_limits<double>::infinity();

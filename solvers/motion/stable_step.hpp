@@ -5,7 +5,6 @@
 #include "assembly/energy/energy.hpp"
 #include "assembly/operators/tangent_operator.hpp"
 #include "solvers/linear/free_dofs.hpp"
-#include "solvers/linear/sums.hpp"
 
 namespace peristat {
 
@@ -32,16 +31,12 @@ struct Stiffness {
 /// @param tangent of a state, with that projection
 /// @param mass per degree of freedom [kg]
 /// @param most_points of an interaction: 2 of a bond, 4 of a tetrahedron; 0: not known
-/// @param sharing null: the body is whole; otherwise the tangent is that of a part, and all ranks
-///        make the call
 [[nodiscard]] Stiffness bound_stiffness(const TangentOperator& tangent, const FreeDofs& free,
-                                        std::span<const double> mass, int most_points,
-                                        const Sharing* sharing = nullptr);
+                                        std::span<const double> mass, int most_points);
 
 /// Finds the eigenvalue, too, with products of the tangent; of one that is not symmetric by powers
 /// of it.
 [[nodiscard]] Stiffness find_stiffness(const TangentOperator& tangent, const FreeDofs& free,
-                                       std::span<const double> mass, int most_points,
-                                       const Sharing* sharing = nullptr);
+                                       std::span<const double> mass, int most_points);
 
 }  // namespace peristat

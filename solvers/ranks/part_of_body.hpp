@@ -21,7 +21,8 @@ class PartOfBody : public Sharing {
   [[nodiscard]] Index owned() const override { return Index(number_.size()); }
   void update_ghosts(std::span<double> values) const override { ghosts_->update(values.data()); }
 
-  [[nodiscard]] const std::vector<GlobalIndex>& number() const override { return number_; }
+  /// Of each owned point in the whole body, ascending.
+  [[nodiscard]] const std::vector<GlobalIndex>& number() const { return number_; }
   [[nodiscard]] GlobalIndex whole() const { return whole_; }  ///< points of the whole body
   [[nodiscard]] Traffic traffic() const { return ghosts_->traffic(); }
 

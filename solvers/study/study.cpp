@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "solvers/linear/available_memory.hpp"
+#include "solvers/motion/shared_stiffness.hpp"
 #include "solvers/ranks/part_tangent.hpp"
 #include "solvers/study/found_loads.hpp"
 #include "solvers/study/motion.hpp"
