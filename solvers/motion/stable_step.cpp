@@ -211,6 +211,15 @@ double power(ScaledProduct& product, Vector at, const Sums& sums) {
   return largest;
 }
 
+/// To 20 bits: Lanczos' method makes much of round-off, which is another on ranks, and the step
+/// must not hang on it.
+double rounded_up(double value) {
+  constexpr int bits = 20;
+  int exponent = 0;
+  const double share = std::frexp(value, &exponent);
+  return std::ldexp(std::ceil(std::ldexp(share, bits)), exponent - bits);
+}
+
 double bound_of(const TangentOperator& tangent, const FreeDofs& free, std::span<const double> mass,
                 int most_points, double largest, const Sums& of_body) {
   if (most_points > 0) return most_points * largest;
@@ -260,7 +269,7 @@ Stiffness find_stiffness(const TangentOperator& tangent, const FreeDofs& free,
   const double found = tangent.is_symmetric()
                            ? margin * lanczos(product, std::move(start), of.sums)
                            : power_margin * power(product, std::move(start), of.sums);
-  return {bound, std::min(bound, found)};
+  return {bound, std::min(bound, rounded_up(found))};
 }
 
 }  // namespace peristat

@@ -143,7 +143,7 @@ def rows(output, table):
         return list(csv.DictReader(file))
 
 
-class SameResults(OnRanks):
+class Compared(OnRanks):
     def expect_same(self, one, several):
         with h5py.File(one / "results.h5") as expected, h5py.File(several / "results.h5") as found:
             names = [name for name in objects(expected) if name != "checkpoint"]
@@ -187,6 +187,8 @@ class SameResults(OnRanks):
                 self.expect_same_iterations(one, several)
         return one
 
+
+class SameResults(Compared):
     def test_a_bar(self):
         self.compare(BAR)
 
@@ -298,7 +300,7 @@ class SameResults(OnRanks):
         self.assertEqual(run.stdout.count("completed in"), 1)
 
 
-class Motions(SameResults):
+class Motions(Compared):
     """Explicit steps: waves, supports and loads that move, layers that absorb."""
 
     MOVING = (
