@@ -144,7 +144,10 @@ void fold_followers(const EquilibriumProblem& problem, std::span<const double> e
 
 double heating_work(Assembler& assembler, const StateView& from, const StateView& to) {
   const auto [before, after] = std::pair(from.environment, to.environment);
-  if (before == after || (before && after && *before == *after)) return 0.0;
+  const bool is_same = before == after || (before && after && *before == *after);
+  // Its points may see no change where those of other ranks do.
+  const Sums sums(assembler.sharing(), assembler.points().dimension);
+  if (sums.largest_of_all(is_same ? 0.0 : 1.0) == 0.0) return 0.0;
   const auto added_at = [&](const StateView& at) {
     const auto energy_under = [&](const SharedEnvironment& environment) {
       return assembler.energy({at.displacement, at.history, Damage::held, environment}).energy;
@@ -163,7 +166,9 @@ double environment_norm(const EquilibriumProblem& problem, const StateView& at,
     static_cast<void>(problem.assembler.gradient(at, with));
   }
   static_cast<void>(problem.assembler.gradient({at.displacement, at.history, at.damage}, without));
-  return norm_of(with.size(), [&](std::size_t dof) { return with[dof] - without[dof]; });
+  const Sums sums = problem.sums();
+  return sums.norm_of(sums.own(with.size()),
+                      [&](std::size_t dof) { return with[dof] - without[dof]; });
 }
 
 void evaluate(const EquilibriumProblem& problem, std::span<const double> external_force,
@@ -198,11 +203,12 @@ double residual_scale(const EquilibriumProblem& problem, std::span<const double>
 
 double load_norm(const EquilibriumProblem& problem, std::span<const double> external_force,
                  const Trial& state, Damage damage) {
-  const double reactions = norm_of(external_force.size(), [&](std::size_t dof) {
+  const Sums sums = problem.sums();
+  const double reactions = sums.norm_of(sums.own(external_force.size()), [&](std::size_t dof) {
     const bool is_free = problem.free.equation[dof] != FreeDofs::none;
     return is_free ? 0.0 : state.gradient[dof] - external_force[dof];
   });
-  return std::max({norm(external_force), reactions,
+  return std::max({sums.norm(external_force), reactions,
                    environment_norm(problem, state.at(damage), state.gradient)});
 }
 

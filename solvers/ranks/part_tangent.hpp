@@ -1,30 +1,37 @@
 #pragma once
 
+#include <algorithm>
 #include <span>
+#include <stdexcept>
 #include <vector>
 
 #include "assembly/assembler.hpp"
-#include "assembly/operators/matrix_free_tangent.hpp"
 
 namespace peristat {
 
-/// The tangent of a part of a body: rows of owned points are the whole body's, for products bring
-/// ghosts what their owners multiply by. Rows and diagonal blocks of ghosts are parts of theirs,
-/// and mean nothing. All ranks make the same calls.
-struct PartTangent : TangentOperator {
-  /// @throws std::logic_error unless the energy visits_rows, and is of a part
-  explicit PartTangent(Assembler& energy);
+/// The tangent of a part of a body: a Tangent, MatrixFreeTangent or other operator of its points,
+/// which brings ghosts what their owners multiply by. Rows of owned points are the whole body's.
+/// Rows and diagonal blocks of ghosts are parts of theirs, and mean nothing. All ranks make the
+/// same calls.
+template <class Operator>
+struct PartTangent final : Operator {
+  /// @throws std::logic_error for the energy of a whole body
+  explicit PartTangent(Assembler& energy) : Operator(energy), sharing_(energy.sharing()) {
+    if (!sharing_) throw std::logic_error("PartTangent: of a whole body");
+    this->reference = energy.points().reference;
+    factor_.resize(this->reference.size());
+  }
 
-  [[nodiscard]] std::vector<double> positions() const override { return tangent_.positions(); }
-  void linearise(Energy& energy, const StateView& at, double projection) override;
   /// What v has for ghosts does not count; what the result has for them means nothing.
-  void multiply(std::span<const double> v, std::span<double> result) const override;
+  void multiply(std::span<const double> v, std::span<double> result) const override {
+    std::copy(v.begin(), v.end(), factor_.begin());
+    sharing_->update_ghosts(factor_);
+    Operator::multiply(factor_, result);
+  }
   [[nodiscard]] bool multiplies_in_place() const override { return true; }
-  void for_each_row(const RowVisitor& visit) const override { tangent_.for_each_row(visit); }
 
  private:
-  const Assembler& energy_;
-  MatrixFreeTangent tangent_;
+  const Sharing* sharing_;
   mutable std::vector<double> factor_;  // with the ghosts' values
 };
 

@@ -1,21 +1,35 @@
 #include "solvers/ranks/point_records.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <numeric>
 #include <stdexcept>
 #include <string>
 
 namespace peristat {
+namespace {
+
+/// Of the cell of each point: parts have those of lattices.
+int corners_of(const Points& points) {
+  if (points.polygons.empty()) return 0;
+  const int corners = points.dimension == 1 ? 2 : 4;
+  if (points.polygons.corners.size() != std::size_t(corners) * points.volume.size()) {
+    throw std::logic_error("cells of other numbers of corners stay here");
+  }
+  return corners;
+}
+
+}  // namespace
 
 PointRecords::PointRecords(const Part& like) : dimension_(like.points.dimension) {
   const Points& points = like.points;
-  if (!points.images.source.empty() || !points.neighbours.empty() || !points.polygons.empty() ||
-      !points.ghosts.empty()) {
-    throw std::logic_error("images, given neighbours, polygons and sites of quadratures stay here");
+  if (!points.images.source.empty() || !points.neighbours.empty() || !points.ghosts.empty()) {
+    throw std::logic_error("images, given neighbours and sites of quadratures stay here");
   }
+  corners_ = corners_of(points);
   const std::size_t numbers = (points.sets.size() + sets_per_number - 1) / sets_per_number;
-  records_.doubles = dimension_ + 1;
+  records_.doubles = dimension_ + 1 + 2 * corners_;
   records_.integers = 2 + int(numbers);
   of_sets_.assign(numbers, std::vector<long long>(points.volume.size(), 0));
   for (const auto& [name, members] : points.sets) {
@@ -31,6 +45,11 @@ void PointRecords::add(const Part& part, Index point, int owner) {
   const auto first = part.points.reference.begin() + std::ptrdiff_t(point) * dimension_;
   records_.values.insert(records_.values.end(), first, first + dimension_);
   records_.values.push_back(part.points.volume[std::size_t(point)]);
+  if (corners_ > 0) {
+    for (const auto& corner : part.points.polygons.of(std::size_t(point))) {
+      records_.values.insert(records_.values.end(), corner.begin(), corner.end());
+    }
+  }
   records_.numbers.push_back(part.number[std::size_t(point)]);
   records_.numbers.push_back(owner);
   for (const auto& sets : of_sets_) records_.numbers.push_back(sets[std::size_t(point)]);
@@ -53,6 +72,12 @@ void PointRecords::append_to(Part& part, const Records& received, bool as_ghosts
     }
     points.reference.insert(points.reference.end(), value, value + dimension_);
     points.volume.push_back(value[dimension_]);
+    if (corners_ > 0) {
+      std::vector<std::array<double, 2>> cell(std::size_t(corners_), {0.0, 0.0});
+      const double* at = value + dimension_ + 1;
+      for (auto& corner : cell) corner = {at[0], at[1]}, at += 2;
+      points.polygons.append(cell);
+    }
     part.number.push_back(number[0]);
     if (as_ghosts) part.owner.push_back(int(number[1]));
   }
@@ -66,6 +91,7 @@ Part empty_part(const Part& like) {
   part.points.angle = like.points.angle;
   part.points.cell_volume = like.points.cell_volume;
   part.points.lattice = like.points.lattice;
+  if (!like.points.polygons.empty()) part.points.polygons.offset.push_back(0);
   for (const auto& [name, members] : like.points.sets) part.points.sets[name];
   part.whole = like.whole;
   return part;

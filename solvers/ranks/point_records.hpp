@@ -5,11 +5,11 @@
 
 namespace peristat {
 
-/// Points as records: position, volume, number in the whole body, owner and sets.
+/// Points as records: position, volume, cell, number in the whole body, owner and sets.
 class PointRecords {
  public:
   /// @param like a part whose dimension, spacing and names of sets the points share
-  /// @throws std::logic_error for points with more than places, volumes and sets
+  /// @throws std::logic_error for points with more than places, volumes, a lattice's cells and sets
   explicit PointRecords(const Part& like);
 
   /// @param owner rank that owns the point from now on
@@ -25,6 +25,7 @@ class PointRecords {
   Records records_;
   std::vector<std::vector<long long>> of_sets_;  // by point of `like`, the numbers with its sets
   int dimension_;
+  int corners_ = 0;  // of each point's cell; 0: none is known
   std::vector<std::string> names_;
 };
 

@@ -20,6 +20,7 @@
 #include "solvers/study/collocation_model.hpp"
 #include "solvers/study/cpd_model.hpp"
 #include "solvers/study/fracture_data.hpp"
+#include "solvers/study/idle_interfaces.hpp"
 #include "solvers/study/linear_model.hpp"
 #include "solvers/study/state_model.hpp"
 #include "solvers/study/surface_sites.hpp"
@@ -85,7 +86,7 @@ Model make_bond_model(const Body& body, const PointMaterials& materials, Bonds b
   const BondMaterials mixed(of, materials, body.factors, body.points,
                             micromoduli(of, materials, body.setting));
   if (!of.is_uniform()) {
-    refuse_idle_interfaces(of, materials, bonds);
+    refuse_idle_interfaces(of, materials, bonds, body.part ? &body.part->ranks() : nullptr);
     mixed.weigh(bonds);
   }
   cut = cut_bonds(bonds, body.points, of.cracks);
@@ -98,6 +99,14 @@ void reach_twice(BodySize& size) {
   size.has_symmetric_blocks = false;
   size.coupling_ratio = 2.0 * size.horizon_ratio;
   size.blocks = expected_bonds(size.points, size.dimension, size.coupling_ratio);
+}
+
+/// Regions and random factors of the points.
+void note_materials(Body& body, const PointMaterials& materials, int threads) {
+  using Quantity = ScatterSpecification::Quantity;
+  body.region = materials.regions();
+  body.factors = {materials.factors(body.points, Quantity::stiffness, threads),
+                  materials.factors(body.points, Quantity::strength, threads)};
 }
 
 /// Model of a body, and what its pre-cracks have cut.
@@ -114,10 +123,7 @@ void make_model(Body& body, int threads) {
   Bonds bonds = make_bonds(body.points, of.surface_correction, setting, threads);
   refuse_coincident_points(body.points, bonds);
   const PointMaterials materials(of, body.points);
-  body.region = materials.regions();
-  using Quantity = ScatterSpecification::Quantity;
-  body.factors = {materials.factors(body.points, Quantity::stiffness, threads),
-                  materials.factors(body.points, Quantity::strength, threads)};
+  note_materials(body, materials, threads);
   CutBonds cut;
   if (is_linear) {
     body.model = make_linear_model(of, materials, body.factors, body.points, body.setting,
@@ -301,21 +307,27 @@ namespace {
 void refuse_without_ranks(const BodySpecification& of) {
   const auto refuse = [](const std::string& key) {
     throw InputError(key, "",
-                     "is not for more than one rank yet: there are elastic bonds of one material, "
-                     "with supports, body forces, total forces and gravity");
+                     "is not for more than one rank yet: there are elastic bonds with supports, "
+                     "body forces, total forces and gravity");
   };
   const MaterialSpecification& material = of.material;
   if (material.model != MaterialModel::bond) refuse("material.model");
   if (material.kinematics != Kinematics::finite) refuse("material.kinematics");
   if (material.damage.law != DamageLaw::none) refuse("material.damage");
-  if (!of.is_uniform()) refuse(of.regions.empty() ? "material" : "regions");
+  for (std::size_t k = 0; k < of.regions.size(); ++k) {
+    const bool fails = of.regions[k].material.damage.law != DamageLaw::none;
+    if (fails) refuse("regions[" + std::to_string(k) + "].material.damage");
+  }
+  for (std::size_t k = 0; k < of.interfaces.size(); ++k) {
+    const auto& own = of.interfaces[k].material;
+    const bool fails = own && own->damage.law != DamageLaw::none;
+    if (fails) refuse("interfaces[" + std::to_string(k) + "].material.damage");
+  }
   if (of.force_operator != ForceOperator::bonds) refuse("force_operator");
-  if (of.horizon_shape != HorizonShape::ball) refuse("horizon_shape");
   if (!of.cracks.empty()) refuse("cracks");
   if (!of.foundations.empty()) refuse("foundations");
   if (!of.controls.empty()) refuse("controls");
   if (of.has_inertia) refuse("has_inertia");
-  if (of.eigenstrains.are_there()) refuse("eigenstrains");
   const ConstraintSpecification& constraints = of.constraints;
   const bool is_constrained = !constraints.rigid_sets.empty() || !constraints.rollers.empty() ||
                               !constraints.linear.empty() || !constraints.symmetries.empty() ||
@@ -324,7 +336,7 @@ void refuse_without_ranks(const BodySpecification& of) {
   using Kind = LoadSpecification::Kind;
   for (std::size_t k = 0; k < of.loads.size(); ++k) {
     const Kind kind = of.loads[k].kind;
-    if (kind != Kind::body_force && kind != Kind::total_force && kind != Kind::gravity) {
+    if (kind == Kind::pressure || kind == Kind::stress) {
       refuse("loads[" + std::to_string(k) + "]." + load_key(kind));
     }
   }
@@ -347,6 +359,7 @@ std::unique_ptr<const Body> make_body(Part part, const BodySpecification& of,
                                       const Communicator& ranks, int threads) {
   threads = usable_threads(threads);
   refuse_without_ranks(of);
+  part.points.owned = part.owned;
   check_specification(of, part.points);
   auto made = std::make_unique<Body>();
   Body& body = *made;
@@ -359,16 +372,16 @@ std::unique_ptr<const Body> make_body(Part part, const BodySpecification& of,
     const Stopwatch watch(body.seconds_neighbourhood);
     Bonds bonds = make_bonds(part, of.surface_correction, body.setting, threads);
     body.points = std::move(part.points);
-    body.points.owned = part.owned;
     refuse_coincident_points(body.points, bonds);
     const PointMaterials materials(of, body.points);
+    note_materials(body, materials, threads);
     CutBonds none;
     body.model = make_bond_model(body, materials, std::move(bonds), none);
   }
   LoadSetting loads = load_setting(of, body.points);
   loads.ranks = &ranks;
-  body.conditions = std::make_unique<Conditions>(body.points, of.supports, of.loads,
-                                                 programme_of(of), of.controls, loads);
+  body.conditions = std::make_unique<Conditions>(
+      body.points, of.supports, of.loads, programme_of(of), of.controls, loads, of.eigenstrains);
   return made;
 }
 
@@ -411,6 +424,10 @@ MemoryEstimate estimate_memory(const Body& body) {
   size.has_symmetric_blocks = body.model.has_symmetric_blocks();
   size.is_constrained = !body.conditions->constraints().none();
   size.free_dofs = double(std::count(prescribed.begin(), prescribed.end(), 0));
+  if (body.part) {
+    size.ranks = body.part->ranks().count();
+    size.gathered_points = body.part->ranks().rank() == 0 ? double(body.part->whole()) : 0.0;
+  }
   for (const auto& term : body.model.terms()) {
     size.blocks = std::max(size.blocks, double(term->couplings().partner.size()));
   }

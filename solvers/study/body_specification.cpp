@@ -443,7 +443,9 @@ void check_cross_section(const BodySpecification& of, const Points& points) {
   if (of.cross_section != 0.0) require_positive(of.cross_section, "cross_section");
   require(points.dimension < 3 || of.cross_section == 0.0 || of.cross_section == 1.0,
           "cross_section", number_text(of.cross_section), "must be 1 in 3D");
-  if (given == 0.0) return;
+  // What a part has of a cloud has a mean of its own.
+  const bool is_known = !points.owned || points.cell_volume > 0.0;
+  if (given == 0.0 || !is_known) return;
   // The volumes' sum has round-off; a wrong thickness or spacing is off by far more.
   require(std::abs(has / given - 1.0) < 1e-6, "cross_section", number_text(given),
           "does not fit the points, whose mean volume over spacing^" +

@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "solvers/study/bond_potential.hpp"
+#include "solvers/study/idle_interfaces.hpp"
 #include "src/core/input_error.hpp"
 #include "src/core/number_text.hpp"
 #include "src/materials/bulk_bonds.hpp"
@@ -230,17 +231,25 @@ BondMaterials::Failing BondMaterials::smooth_potential(const Bonds& bonds) const
 
 void refuse_idle_interfaces(const BodySpecification& from, const PointMaterials& materials,
                             const Bonds& bonds) {
-  std::vector<char> is_met(from.interfaces.size());
+  refuse_idle_interfaces(from, materials, bonds, nullptr);
+}
+
+void refuse_idle_interfaces(const BodySpecification& from, const PointMaterials& materials,
+                            const Bonds& bonds, const Communicator* ranks) {
+  std::vector<double> is_met(from.interfaces.size());
   for (Index i = 0; i < bonds.points(); ++i) {
     for (Offset bond = bonds.offset[i]; bond < bonds.offset[i + 1]; ++bond) {
       const std::size_t a = materials.of(i), b = materials.of(bonds.partner[bond]);
       if (a == b) continue;
       const InterfaceSpecification* const met = &materials.between(a, b);
-      for (std::size_t k = 0; k < is_met.size(); ++k) is_met[k] |= met == &from.interfaces[k];
+      for (std::size_t k = 0; k < is_met.size(); ++k) {
+        if (met == &from.interfaces[k]) is_met[k] = 1.0;
+      }
     }
   }
+  if (ranks) is_met = ranks->max(is_met);
   for (std::size_t k = 0; k < is_met.size(); ++k) {
-    if (is_met[k]) continue;
+    if (is_met[k] > 0.0) continue;
     throw InputError("interfaces[" + std::to_string(k) + "]", "",
                      "no bond joins points of these materials: they are farther apart than the "
                      "horizon, or another interface is of this pair");

@@ -49,12 +49,14 @@ PointMaterials::PointMaterials(const BodySpecification& from, const Points& poin
   const auto left = std::count(of_point_.begin(), of_point_.end(), of_none);
   if (left == 0) return;
   const auto first = std::find(of_point_.begin(), of_point_.end(), of_none) - of_point_.begin();
-  throw InputError("regions", "",
-                   std::to_string(left) +
-                       (left == 1 ? " point is of no material, at "
-                                  : " points are of no material, one of them at ") +
-                       place_of(points, Index(first)) +
-                       "; put them in a region, or give what is in none a [material]");
+  // A part of a body does not know how many there are in all.
+  const std::string how_many = points.owned ? "some points" : std::to_string(left) + " points";
+  throw InputError(
+      "regions", "",
+      (left == 1 && !points.owned ? "1 point is of no material, at "
+                                  : how_many + " are of no material, one of them at ") +
+          place_of(points, Index(first)) +
+          "; put them in a region, or give what is in none a [material]");
 }
 
 std::vector<std::int32_t> PointMaterials::regions() const {

@@ -208,8 +208,9 @@ Conditions::Loaded Conditions::loaded(const LoadSpecification& load, const LoadS
                                       const std::string& table) const {
   using Kind = LoadSpecification::Kind;
   if (load.kind == Kind::traction) {
-    TractionAreas areas =
-        with_table(table, [&] { return traction_areas(points_, load, setting.horizon, table); });
+    TractionAreas areas = with_table(table, [&] {
+      return traction_areas(points_, load, setting.horizon, table, setting.ranks);
+    });
     return {std::move(areas.points), std::move(areas.area)};
   }
   Loaded on;

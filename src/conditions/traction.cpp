@@ -46,9 +46,10 @@ Face face_of(const Points& points, const BodyCells& cells, const LoadSpecificati
 }  // namespace
 
 TractionAreas traction_areas(const Points& points, const LoadSpecification& load, double horizon,
-                             const std::string& key) {
-  const BodyCells cells(points);
+                             const std::string& key, const Communicator* ranks) {
+  const BodyCells cells(points, ranks);
   const auto [row, side] = face_of(points, cells, load, key);
+  const Index owned = points.owned.value_or(points.own());
   const double depth = load.depth == Depth::row ? 1.0 : std::max(1.0, horizon / points.spacing);
   TractionAreas areas;
   for (const Index outermost : row) {
@@ -69,7 +70,14 @@ TractionAreas traction_areas(const Points& points, const LoadSpecification& load
       cell = beside(cell, {side.axis, -side.sign});
     }
     const double area = points.volume[outermost] / points.spacing;
-    for (std::size_t k = first; k < areas.area.size(); ++k) areas.area[k] *= area / whole;
+    std::size_t kept = first;
+    for (std::size_t k = first; k < areas.area.size(); ++k) {
+      if (areas.points[k] >= owned) continue;  // a ghost's part is its owner's
+      areas.points[kept] = areas.points[k];
+      areas.area[kept++] = areas.area[k] * (area / whole);
+    }
+    areas.points.resize(kept);
+    areas.area.resize(kept);
   }
   return areas;
 }

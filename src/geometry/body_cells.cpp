@@ -2,17 +2,30 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "src/core/input_error.hpp"
 
 namespace peristat {
 
-BodyCells::BodyCells(const Points& points) : of_(points) {
+namespace {
+
+bool has_cut_cell(const Points& points) {
+  constexpr double round_off = 1e-9;
+  return !points.polygons.empty() ||
+         (points.cell_volume > 0.0 && std::ranges::any_of(points.volume, [&](double volume) {
+            return std::abs(volume / points.cell_volume - 1.0) > round_off;
+          }));
+}
+
+}  // namespace
+
+BodyCells::BodyCells(const Points& points, const Communicator* ranks) : of_(points), ranks_(ranks) {
   if (!points.lattice) {
     throw InputError("", "",
                      "needs points on a lattice: those of a file and of blue noise have no sides");
   }
-  if (points.angle != 0.0 || !points.spacing.is_square() || points.cell_volume > 0.0) {
+  if (points.angle != 0.0 || !points.spacing.is_square() || has_cut_cell(points)) {
     throw InputError("", "",
                      "needs whole square or cubic cells along the axes: no angle, one spacing, and "
                      "volumes = \"cells\"");
@@ -48,14 +61,16 @@ bool BodyCells::is_exposed(Index point, const Side& side) const {
 
 std::vector<Index> BodyCells::outermost(const Side& side) const {
   const auto along = [&](const auto& entry) { return side.sign * entry.first[side.axis]; };
-  const auto last =
-      std::max_element(cells_.begin(), cells_.end(),
-                       [&](const auto& a, const auto& b) { return along(a) < along(b); });
+  double last = -std::numeric_limits<double>::infinity();
+  for (const auto& entry : cells_) last = std::max(last, double(along(entry)));
+  if (ranks_) last = ranks_->max(last);
   std::vector<Index> row;
   for (const auto& entry : cells_) {
-    if (along(entry) == along(*last) && !of_.is_image(entry.second)) row.push_back(entry.second);
+    if (double(along(entry)) == last && !of_.is_image(entry.second)) row.push_back(entry.second);
   }
-  if (row.empty()) {
+  double count = double(row.size());
+  if (ranks_) count = ranks_->sum(count);
+  if (count == 0.0) {
     throw InputError("", name(side), "on this side the body goes on beyond a plane or period");
   }
   std::sort(row.begin(), row.end());
@@ -63,17 +78,31 @@ std::vector<Index> BodyCells::outermost(const Side& side) const {
 }
 
 std::vector<Side> BodyCells::exposed_sides(std::span<const Index> points) const {
-  std::vector<Side> sides;
-  for (int axis = 0; axis < of_.dimension; ++axis) {
-    for (const int sign : {-1, 1}) {
-      const Side side{axis, sign};
-      if (std::all_of(points.begin(), points.end(), [&](Index point) {
-            return cell(point)[axis] == cell(points.front())[axis] &&
-                   this->point(cell(point)) == point && is_exposed(point, side);
-          })) {
-        sides.push_back(side);
+  const Index owned = of_.owned.value_or(of_.own());  // ghosts do not see all around them
+  std::vector<double> least(6, std::numeric_limits<double>::infinity());  // of cells, and of -cells
+  std::vector<double> is_exposed_there(6, 1.0);  // 2 axis + (1 on the upper side)
+  for (const Index point : points) {
+    if (point >= owned) continue;
+    const LatticeCell at = cell(point);
+    const bool is_of_body = this->point(at) == point;
+    for (int axis = 0; axis < of_.dimension; ++axis) {
+      for (const int sign : {-1, 1}) {
+        const auto k = std::size_t(2 * axis + (sign > 0));
+        least[k] = std::min(least[k], -sign * double(at[axis]));
+        if (!is_of_body || !is_exposed(point, {axis, sign})) is_exposed_there[k] = 0.0;
       }
     }
+  }
+  if (ranks_) {
+    least = ranks_->min(least);
+    is_exposed_there = ranks_->min(is_exposed_there);
+  }
+  std::vector<Side> sides;
+  for (int axis = 0; axis < of_.dimension; ++axis) {
+    const auto lower = std::size_t(2 * axis), upper = lower + 1;
+    if (least[lower] != -least[upper]) continue;  // more than one plane
+    if (is_exposed_there[lower] > 0.0) sides.push_back({axis, -1});
+    if (is_exposed_there[upper] > 0.0) sides.push_back({axis, 1});
   }
   return sides;
 }

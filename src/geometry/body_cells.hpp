@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "src/core/communicator.hpp"
 #include "src/geometry/points.hpp"
 #include "src/geometry/side.hpp"
 
@@ -18,23 +19,29 @@ using LatticeCell = std::array<std::int64_t, 3>;
 /// its boundary. Points of layers are not in the body.
 class BodyCells {
  public:
-  /// @throws InputError (without a key) for points that stand on no lattice
-  explicit BodyCells(const Points& points);
+  /// @param ranks that have parts of the body, with ghosts a spacing around their points; null: it
+  ///        is whole
+  /// @throws InputError (without a key) for points that stand on no lattice, and for cells that are
+  ///         not whole
+  explicit BodyCells(const Points& points, const Communicator* ranks = nullptr);
 
   [[nodiscard]] LatticeCell cell(Index point) const;
   /// The body's point there, or -1.
   [[nodiscard]] Index point(const LatticeCell& cell) const;
   [[nodiscard]] bool is_exposed(Index point, const Side& side) const;
 
-  /// The body's outermost plane of points on a side, ascending: what a layer stands in front of.
+  /// The body's outermost plane of points on a side, ascending: what a layer stands in front of. A
+  /// call that all ranks make; each gets what it has of the plane.
   /// @throws InputError (without a key) where the body goes on beyond a plane or period
   [[nodiscard]] std::vector<Index> outermost(const Side& side) const;
 
-  /// The sides on which points make one plane of cells that is exposed there.
+  /// The sides on which points make one plane of cells that is exposed there. A call that all ranks
+  /// make, with what they have of the points.
   [[nodiscard]] std::vector<Side> exposed_sides(std::span<const Index> points) const;
 
  private:
   const Points& of_;
+  const Communicator* ranks_;
   std::vector<std::pair<LatticeCell, Index>> cells_;  // ascending
 };
 

@@ -1,198 +1,33 @@
 #include "src/geometry/images.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
-#include <optional>
-#include <string>
-#include <utility>
 
-#include "src/core/input_error.hpp"
-#include "src/core/number_text.hpp"
-#include "src/geometry/points.hpp"
+#include "src/geometry/image_kinds.hpp"
 
 namespace peristat {
-namespace {
 
-/// A point nearer to a plane than this share of the spacing stands on it.
-constexpr double on_plane = 0.05;
-
-/// Of the images that a body thinner than its horizon would need.
-constexpr double most_repeats = 100.0;
-
-/// Where all points lie along an axis [m].
-struct Extent {
-  double least = std::numeric_limits<double>::infinity(), most = -least;
-  Index first = 0, last = 0;  ///< points that lie there
-};
-
-Extent extent_along(const Points& points, int axis) {
-  Extent extent;
-  for (Index i = 0; i < points.count(); ++i) {
-    const double at = points.reference[std::size_t(i) * points.dimension + std::size_t(axis)];
-    if (at < extent.least) extent.least = at, extent.first = i;
-    if (at > extent.most) extent.most = at, extent.last = i;
-  }
-  return extent;
-}
-
-/// x' = mirror x + shift along one axis.
-struct AxisImage {
-  double mirror = 1.0, shift = 0.0;
-  int periods = 0;
-};
-
-std::string axis_name(int axis) { return std::string(1, "xyz"[axis]); }
-
-void require_axis(int axis, int dimension, const std::string& key) {
-  if (axis >= 0 && axis < dimension) return;
-  throw InputError(key, axis < 0 || axis > 2 ? std::to_string(axis) : '"' + axis_name(axis) + '"',
-                   "must be an axis of the body, which has " + std::to_string(dimension));
-}
-
-int repeats(double horizon, double length, const std::string& key) {
-  const double count = std::ceil(horizon / length) + 1.0;
-  if (count <= most_repeats) return static_cast<int>(count);
-  throw InputError(key, "",
-                   "the body is " + number_text(length) +
-                       " m long between its sides, less than a hundredth of the horizon");
-}
-
-/// Checks a plane against the points, and tells on which side they lie (1: above).
-int side_of(const Points& points, const SymmetryPlane& plane, const std::string& table) {
-  const Extent extent = extent_along(points, plane.axis);
-  const double close = on_plane * points.spacing;
-  for (const auto& [at, point] :
-       {std::pair(extent.least, extent.first), std::pair(extent.most, extent.last)}) {
-    if (std::abs(at - plane.at) > close) continue;
-    throw InputError(table + ".at", number_text(plane.at),
-                     "the plane runs through points, one of them at " +
-                         place_text(points.position(point), points.dimension) +
-                         " m. It has to lie between points and their images, half a spacing "
-                         "before the first ones");
-  }
-  if (extent.least < plane.at && extent.most > plane.at) {
-    throw InputError(table + ".at", number_text(plane.at),
-                     "points lie on both sides of the plane: between " + number_text(extent.least) +
-                         " and " + number_text(extent.most) + " m along " + axis_name(plane.axis) +
-                         ". Model the part on one side of it");
-  }
-  return extent.least > plane.at ? 1 : -1;
-}
-
-std::vector<AxisImage> mirrored(const Points& points, int axis,
-                                const std::vector<std::pair<std::size_t, SymmetryPlane>>& planes,
-                                double horizon) {
-  std::vector<AxisImage> images{{}};
-  std::optional<double> lower, upper;
-  for (const auto& [k, plane] : planes) {
-    const std::string table = "symmetries[" + std::to_string(k) + "]";
-    std::optional<double>& bound = side_of(points, plane, table) > 0 ? lower : upper;
-    if (bound) {
-      throw InputError(table + ".axis", '"' + axis_name(axis) + '"',
-                       "there is a plane across this axis on the same side of the body already");
-    }
-    bound = plane.at;
-  }
-  if (lower && upper) {
-    const double period = 2.0 * (*upper - *lower);
-    const int most = repeats(horizon, period, "symmetries");
-    for (int k = -most; k <= most; ++k) {
-      if (k != 0) images.push_back({1.0, k * period, 0});
-      images.push_back({-1.0, 2.0 * *lower + k * period, 0});
-    }
-  } else if (lower || upper) {
-    images.push_back({-1.0, 2.0 * (lower ? *lower : *upper), 0});
-  }
-  return images;
-}
-
-std::vector<AxisImage> repeated(const Points& points, const Period& period,
-                                const std::string& table, double horizon) {
-  const double length = period.to - period.from;
-  if (!(length > 0.0)) {
-    throw InputError(table + ".to", number_text(period.to), "must be above from");
-  }
-  const Extent extent = extent_along(points, period.axis);
-  if (extent.least < period.from || extent.most > period.to ||
-      extent.most - extent.least > length - on_plane * points.spacing) {
-    throw InputError(table + ".to", number_text(period.to),
-                     "points lie between " + number_text(extent.least) + " and " +
-                         number_text(extent.most) + " m along " + axis_name(period.axis) +
-                         ": not all of them between from and to, or at both of these");
-  }
-  std::vector<AxisImage> images{{}};
-  const int most = repeats(horizon, length, table + ".to");
-  for (int k = -most; k <= most; ++k) {
-    if (k != 0) images.push_back({1.0, k * length, k});
-  }
-  return images;
-}
-
-std::vector<AxisImage> images_along(const Points& points, int axis,
-                                    const std::vector<SymmetryPlane>& planes,
-                                    const std::vector<Period>& periods, double horizon) {
-  std::vector<std::pair<std::size_t, SymmetryPlane>> own;
-  for (std::size_t k = 0; k < planes.size(); ++k) {
-    require_axis(planes[k].axis, points.dimension, "symmetries[" + std::to_string(k) + "].axis");
-    if (planes[k].axis == axis) own.emplace_back(k, planes[k]);
-  }
-  std::vector<AxisImage> images = mirrored(points, axis, own, horizon);
-  bool is_taken = !own.empty();
-  for (std::size_t k = 0; k < periods.size(); ++k) {
-    const std::string table = "periods[" + std::to_string(k) + "]";
-    require_axis(periods[k].axis, points.dimension, table + ".axis");
-    if (periods[k].axis != axis) continue;
-    if (is_taken) {
-      throw InputError(table + ".axis", '"' + axis_name(axis) + '"',
-                       "this axis has a plane of symmetry or a period already");
-    }
-    is_taken = true;
-    images = repeated(points, periods[k], table, horizon);
-  }
-  return images;
-}
-
-}  // namespace
-
-void add_images(Points& points, const std::vector<SymmetryPlane>& planes,
-                const std::vector<Period>& periods, double reach_of_body) {
-  if (planes.empty() && periods.empty()) return;
-  const std::string first = planes.empty() ? "periods[0].axis" : "symmetries[0].axis";
-  if (!points.neighbours.empty()) {
-    throw InputError(first, "", "given neighbours know nothing beyond a plane or period");
-  }
-  if (points.angle != 0.0) {
-    throw InputError(first, "", "a lattice that is turned does not go on beyond a plane or period");
-  }
-  std::vector<ImageKind> kinds{{}};
-  std::array<Extent, 3> extents;
-  for (int axis = 0; axis < points.dimension; ++axis) {
-    const std::size_t c = std::size_t(axis);
-    extents[c] = extent_along(points, axis);
-    std::vector<ImageKind> with_axis;
-    for (const AxisImage& along : images_along(points, axis, planes, periods, reach_of_body)) {
-      for (ImageKind kind : kinds) {
-        kind.mirror[c] = along.mirror;
-        kind.shift[c] = along.shift;
-        kind.periods[c] = along.periods;
-        with_axis.push_back(kind);
-      }
-    }
-    kinds = std::move(with_axis);
-  }
+void add_images(Points& points, const std::vector<ImageKind>& kinds, double reach_of_body) {
   const Index own = points.count();
   // A little more: which pairs are bonded the search decides.
   const double reach = 1.001 * reach_of_body;
+  Coordinates least, most;
+  least.fill(std::numeric_limits<double>::infinity());
+  most.fill(-std::numeric_limits<double>::infinity());
+  for (Index i = 0; i < own; ++i) {
+    const Coordinates at = points.position(i);
+    for (std::size_t c = 0; c < 3; ++c) {
+      least[c] = std::min(least[c], at[c]);
+      most[c] = std::max(most[c], at[c]);
+    }
+  }
   for (const ImageKind& kind : kinds) {
-    const bool is_identity = kind.mirror == ImageKind{}.mirror && kind.shift == Coordinates{};
-    if (is_identity) continue;
     points.images.kinds.push_back(kind);
     for (Index i = 0; i < own; ++i) {
       const Coordinates at = kind.place(points.position(i));
       double squared = 0.0;
       for (std::size_t c = 0; c < std::size_t(points.dimension); ++c) {
-        const double beyond = std::max({0.0, extents[c].least - at[c], at[c] - extents[c].most});
+        const double beyond = std::max({0.0, least[c] - at[c], at[c] - most[c]});
         squared += beyond * beyond;
       }
       if (squared > reach * reach) continue;
@@ -204,31 +39,15 @@ void add_images(Points& points, const std::vector<SymmetryPlane>& planes,
   }
 }
 
+void add_images(Points& points, const std::vector<SymmetryPlane>& planes,
+                const std::vector<Period>& periods, double reach_of_body) {
+  const BodyExtent body = extent_of(points, SoleRank());
+  add_images(points, image_kinds(points, body, planes, periods, reach_of_body), reach_of_body);
+}
+
 void require_lattice_goes_on(const Points& lattice, const std::vector<SymmetryPlane>& planes,
                              const std::vector<Period>& periods) {
-  constexpr double same = 1e-6;  // of a spacing
-  const auto require = [&](const std::string& key, int axis, double found, double wanted) {
-    const double spacing = lattice.spacing.along(axis);
-    if (std::abs(found - wanted * spacing) <= same * spacing) return;
-    throw InputError(key, "",
-                     "the lattice does not go on beyond it: its outermost points are " +
-                         number_text(found) + " m away along " + axis_name(axis) + " instead of " +
-                         number_text(wanted * spacing));
-  };
-  for (std::size_t k = 0; k < planes.size(); ++k) {
-    require_axis(planes[k].axis, lattice.dimension, "symmetries[" + std::to_string(k) + "].axis");
-    static_cast<void>(side_of(lattice, planes[k], "symmetries[" + std::to_string(k) + "]"));
-    const Extent extent = extent_along(lattice, planes[k].axis);
-    const double away =
-        std::min(std::abs(extent.least - planes[k].at), std::abs(extent.most - planes[k].at));
-    require("symmetries[" + std::to_string(k) + "].at", planes[k].axis, away, 0.5);
-  }
-  for (std::size_t k = 0; k < periods.size(); ++k) {
-    require_axis(periods[k].axis, lattice.dimension, "periods[" + std::to_string(k) + "].axis");
-    const Extent extent = extent_along(lattice, periods[k].axis);
-    const double missing = periods[k].to - periods[k].from - (extent.most - extent.least);
-    require("periods[" + std::to_string(k) + "].to", periods[k].axis, missing, 1.0);
-  }
+  require_lattice_goes_on(lattice, planes, periods, SoleRank());
 }
 
 Points without_images(const Points& points) {

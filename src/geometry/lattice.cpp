@@ -151,12 +151,9 @@ Points make_points(const Lattice& lattice) {
   require_numbers(lattice);
   if (lattice.arrangement == Arrangement::blue_noise) return make_blue_noise_points(lattice);
   std::vector<Site> body = body_sites(lattice);
-  if (body.empty()) {
-    throw InputError(
-        "shapes", "",
-        "no lattice point lies in the body; spacing = " + number_text(lattice.spacing));
-  }
-  const LayerSites outside = layer_sites(lattice, body);
+  const SoleRank alone;
+  const LayerSites outside = layer_sites(lattice, outermost_of_body(lattice, body, alone), body);
+  refuse_empty_layers(lattice, outside, alone);
 
   Points points;
   points.dimension = lattice.dimension;

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <iterator>
 #include <limits>
 #include <map>
 #include <memory>
@@ -12,7 +11,9 @@
 
 #include "src/core/expression.hpp"
 #include "src/core/input_error.hpp"
+#include "src/core/number_text.hpp"
 #include "src/geometry/cell_piece.hpp"
+#include "src/geometry/outermost_face.hpp"
 
 namespace peristat {
 namespace {
@@ -39,13 +40,26 @@ std::string key_of(std::size_t layer, const char* key) {
   return "layers[" + std::to_string(layer) + "]." + key;
 }
 
+/// Calls visit(cell) as LatticeFrame::for_each_cell does for what two boxes share.
+template <class Visit>
+void for_each_cell(const LatticeFrame& frame, Box box, const Box& window, double beside_it,
+                   const Visit& visit) {
+  for (std::size_t c = 0; c < 3; ++c) {
+    box.min[c] = std::max(box.min[c], window.min[c]);
+    box.max[c] = std::min(box.max[c], window.max[c]);
+    if (box.min[c] > box.max[c]) return;
+  }
+  frame.for_each_cell(box, beside_it, visit);
+}
+
 /// What the region has of the lattice's cells, in ascending order of these; `near` gives a region
 /// that is the same within a distance of a place.
 template <class Shape, class Near>
-std::vector<Site> pieces(const LatticeFrame& frame, const Shape& region, const Near& near) {
+std::vector<Site> pieces(const LatticeFrame& frame, const Shape& region, const Box& window,
+                         const Near& near) {
   std::vector<Site> sites;
   const double reach = frame.half_diagonal() * (1.0 + grid_tolerance);
-  frame.for_each_cell(region.bounds(), 0.5, [&](const Cell& cell) {
+  for_each_cell(frame, region.bounds(), window, 0.5, [&](const Cell& cell) {
     const Coordinates place = frame.position(cell);
     const auto nearby = near(region, place, reach);
     if (!nearby.may_end_near(place, reach)) {
@@ -92,16 +106,36 @@ void merge_small(int dimension, std::vector<Site>& sites) {
   sites.resize(kept);
 }
 
-/// Sites of whole cells in front of the body, before `where`.
-std::vector<Site> copies_of_outermost_plane(const LatticeFrame& frame,
-                                            const std::vector<Site>& body, const Layer& layer) {
-  const auto [axis, sign] = layer.side;
-  std::int64_t outermost = sign * body.front().cell[axis];
-  for (const Site& site : body) outermost = std::max(outermost, sign * site.cell[axis]);
+/// Sites of whole cells of the body.
+std::vector<Site> whole_sites(const Lattice& lattice, const Box& window) {
+  const LatticeFrame frame = frame_of(lattice);
+  const Solid solid(lattice.dimension, lattice.shapes);
   std::vector<Site> sites;
-  for (const Site& site : body) {
+  for_each_cell(frame, solid.bounds(), window, grid_tolerance, [&](const Cell& cell) {
+    const Coordinates place = frame.position(cell);
+    if (solid.contains(place)) sites.push_back({cell, place, 1.0, place});
+  });
+  return sites;
+}
+
+/// Sites of whole cells in front of the body, before `where`.
+std::vector<Site> copies_of_outermost_plane(const Lattice& lattice, const LatticeFrame& frame,
+                                            const OutermostOfBody& outermost, const Layer& layer,
+                                            const Box& window) {
+  const auto [axis, sign] = layer.side;
+  const std::int64_t row = (sign > 0 ? outermost.high : outermost.low)[axis];
+  // The plane may stand beside the window that its copies are wanted in: it is found again.
+  constexpr double beside_plane = 0.25;  // in spacings
+  Box plane = window;
+  Cell of_plane{};
+  of_plane[axis] = row;
+  const double at = frame.position(of_plane)[axis];
+  plane.min[axis] = at - beside_plane * frame.spacing().along(axis);
+  plane.max[axis] = at + beside_plane * frame.spacing().along(axis);
+  std::vector<Site> sites;
+  for (const Site& site : whole_sites(lattice, plane)) {
     Cell cell = site.cell;
-    if (sign * cell[axis] != outermost) continue;
+    if (cell[axis] != row) continue;
     for (int shift = 1; shift <= layer.thickness; ++shift) {
       cell[axis] += sign;
       sites.push_back({cell, frame.position(cell), 1.0, frame.position(cell)});
@@ -113,23 +147,13 @@ std::vector<Site> copies_of_outermost_plane(const LatticeFrame& frame,
 /// What stands in front of the flat faces that layers are on, side by side.
 class Faces {
  public:
-  Faces(const Lattice& lattice, const LatticeFrame& frame, const std::vector<Site>& body)
-      : frame_(frame), solid_(lattice.dimension, lattice.shapes), is_cut_(is_cut(lattice)) {
-    std::vector<Coordinates> places;
-    for (const Site& site : body) places.push_back(site.centroid);
-    for (std::size_t k = 0; k < lattice.layers.size(); ++k) {
-      const Layer& layer = lattice.layers[k];
-      const auto is_on_it = [&](const Face& face) { return face.side == layer.side; };
-      if (std::any_of(faces_.begin(), faces_.end(), is_on_it)) continue;
-      const auto height = outermost_face(solid_, layer.side, places, frame.spacing());
-      if (!height) {
-        throw InputError(key_of(k, "side"),
-                         "xyz"[layer.side.axis] + std::string(layer.side.sign > 0 ? "+" : "-"),
-                         "the body has no flat face out there; a layer on a turned lattice or "
-                         "with fractional volumes needs one");
-      }
-      add(layer.side, *height, deepest(lattice, layer.side));
-    }
+  Faces(const Lattice& lattice, const LatticeFrame& frame, const OutermostOfBody& outermost,
+        const Box& window)
+      : frame_(frame),
+        solid_(lattice.dimension, lattice.shapes),
+        window_(window),
+        is_cut_(is_cut(lattice)) {
+    for (const auto& [side, height] : outermost.faces) add(side, height, deepest(lattice, side));
   }
 
   /// Moves sites that share a cell with the body's or with those of other faces, and these, to the
@@ -183,10 +207,11 @@ class Faces {
     const FrontOfFace& front = *face.front;
     if (is_cut_) {
       face.sites = pieces(
-          frame_, front, [](const FrontOfFace& all, auto&, double) -> auto& { return all; });
+          frame_, front, window_,
+          [](const FrontOfFace& all, auto&, double) -> auto& { return all; });
       merge_small(frame_.dimension(), face.sites);
     } else {
-      frame_.for_each_cell(front.bounds(), grid_tolerance, [&](const Cell& cell) {
+      for_each_cell(frame_, front.bounds(), window_, grid_tolerance, [&](const Cell& cell) {
         const Coordinates place = frame_.position(cell);
         if (front.contains(place)) face.sites.push_back({cell, place, 1.0, place});
       });
@@ -196,6 +221,7 @@ class Faces {
 
   const LatticeFrame& frame_;
   Solid solid_;
+  Box window_;
   bool is_cut_;
   std::vector<Face> faces_;
 };
@@ -270,104 +296,101 @@ double most_sites(const Lattice& lattice) {
   return all >= 0 ? all : infinity;  // infinite times zero is not a number
 }
 
-std::vector<Site> body_sites(const Lattice& lattice) {
-  const LatticeFrame frame = frame_of(lattice);
+Box everywhere() { return {{-infinity, -infinity, -infinity}, {infinity, infinity, infinity}}; }
+
+double depth_of_window(const Lattice& lattice) {
+  // Small parts of cells go to their neighbours by what these have: two cells away; cells stand
+  // around their places, and places move to centroids.
+  constexpr double cells = 4.0;
+  return cells * lattice.spacing.largest();
+}
+
+std::vector<Site> body_sites(const Lattice& lattice, const Box& window) {
+  if (!is_cut(lattice)) return whole_sites(lattice, window);
   const Solid solid(lattice.dimension, lattice.shapes);
-  std::vector<Site> sites;
-  if (is_cut(lattice)) {
-    sites = pieces(frame, solid, [](const Solid& all, const Coordinates& place, double reach) {
-      return all.near(place, reach);
-    });
-    merge_small(lattice.dimension, sites);
-    return sites;
-  }
-  frame.for_each_cell(solid.bounds(), grid_tolerance, [&](const Cell& cell) {
-    const Coordinates place = frame.position(cell);
-    if (solid.contains(place)) sites.push_back({cell, place, 1.0, place});
-  });
+  std::vector<Site> sites = pieces(frame_of(lattice), solid, window,
+                                   [](const Solid& all, const Coordinates& place, double reach) {
+                                     return all.near(place, reach);
+                                   });
+  merge_small(lattice.dimension, sites);
   return sites;
 }
 
-LayerSites layer_sites(const Lattice& lattice, std::vector<Site>& body) {
+OutermostOfBody outermost_of_body(const Lattice& lattice, const std::vector<Site>& body,
+                                  const Communicator& ranks) {
+  std::vector<double> least(6, infinity);  // of cells along each axis, and of -cells
+  for (const Site& site : body) {
+    for (std::size_t c = 0; c < 3; ++c) {
+      least[c] = std::min(least[c], double(site.cell[c]));
+      least[c + 3] = std::min(least[c + 3], -double(site.cell[c]));
+    }
+  }
+  least = ranks.min(least);
+  if (least[0] == infinity) {
+    throw InputError(
+        "shapes", "",
+        "no lattice point lies in the body; spacing = " + number_text(lattice.spacing));
+  }
+  OutermostOfBody outermost;
+  for (std::size_t c = 0; c < 3; ++c) {
+    outermost.low[c] = std::int64_t(least[c]);
+    outermost.high[c] = std::int64_t(-least[c + 3]);
+  }
+  const LatticeFrame frame = frame_of(lattice);
+  if (!has_faces(lattice, frame)) return outermost;
+  const Solid solid(lattice.dimension, lattice.shapes);
+  std::vector<Coordinates> places;
+  for (const Site& site : body) places.push_back(site.centroid);
+  for (std::size_t k = 0; k < lattice.layers.size(); ++k) {
+    const Side& side = lattice.layers[k].side;
+    const bool is_known = std::any_of(outermost.faces.begin(), outermost.faces.end(),
+                                      [&](const auto& face) { return face.first == side; });
+    if (is_known) continue;
+    const auto height = outermost_face(solid, side, places, frame.spacing(), ranks);
+    if (!height) {
+      throw InputError(key_of(k, "side"), "xyz"[side.axis] + std::string(side.sign > 0 ? "+" : "-"),
+                       "the body has no flat face out there; a layer on a turned lattice or "
+                       "with fractional volumes needs one");
+    }
+    outermost.faces.emplace_back(side, *height);
+  }
+  return outermost;
+}
+
+LayerSites layer_sites(const Lattice& lattice, const OutermostOfBody& outermost,
+                       std::vector<Site>& body, const Box& window) {
   const LatticeFrame frame = frame_of(lattice);
   std::optional<Faces> faces;
-  if (has_faces(lattice, frame)) faces.emplace(lattice, frame, body);
+  if (has_faces(lattice, frame)) faces.emplace(lattice, frame, outermost, window);
   if (faces) faces->part_from(body);
   SharedSites shared(is_cut(lattice));
   for (std::size_t k = 0; k < lattice.layers.size(); ++k) {
     const Layer& layer = lattice.layers[k];
     std::vector<Site> sites =
-        faces ? faces->of(layer) : copies_of_outermost_plane(frame, body, layer);
-    if (sites.empty()) {
-      throw InputError(key_of(k, "thickness"), std::to_string(layer.thickness),
+        faces ? faces->of(layer)
+              : copies_of_outermost_plane(lattice, frame, outermost, layer, window);
+    shared.found.standing.push_back(double(sites.size()));
+    keep_where(lattice, k, sites);
+    shared.add(layer, sites);
+  }
+  return std::move(shared.found);
+}
+
+void refuse_empty_layers(const Lattice& lattice, const LayerSites& layers,
+                         const Communicator& ranks) {
+  std::vector<double> counts = layers.standing;
+  for (const auto& members : layers.of_layer) counts.push_back(double(members.size()));
+  counts = ranks.sum(counts);
+  for (std::size_t k = 0; k < lattice.layers.size(); ++k) {
+    if (counts[k] == 0.0) {
+      throw InputError(key_of(k, "thickness"), std::to_string(lattice.layers[k].thickness),
                        "no lattice point stands in the layer");
     }
-    keep_where(lattice, k, sites);
-    if (sites.empty()) refuse_empty_layer(lattice, k);
-    shared.add(layer, sites);
-  }
-  return std::move(shared.found);
-}
-
-LatticeRows rows_of_body(const Lattice& lattice, int axis) {
-  const LatticeFrame::Range range =
-      frame_of(lattice).range_of(Solid(lattice.dimension, lattice.shapes).bounds(), grid_tolerance);
-  const auto first = std::int64_t(range.first[axis]);
-  return {axis, first, first + std::int64_t(range.count[axis])};
-}
-
-std::vector<Site> body_sites(const Lattice& lattice, const LatticeRows& rows) {
-  const LatticeFrame frame = frame_of(lattice);
-  const Solid solid(lattice.dimension, lattice.shapes);
-  Cell first{}, last{};
-  for (int axis = 0; axis < 3; ++axis) {
-    const LatticeRows all = rows_of_body(lattice, axis);
-    first[axis] = axis == rows.axis ? std::max(all.first, rows.first) : all.first;
-    last[axis] = axis == rows.axis ? std::min(all.last, rows.last) : all.last;
-  }
-  std::vector<Site> sites;
-  Cell cell{};
-  for (cell[0] = first[0]; cell[0] < last[0]; ++cell[0]) {
-    for (cell[1] = first[1]; cell[1] < last[1]; ++cell[1]) {
-      for (cell[2] = first[2]; cell[2] < last[2]; ++cell[2]) {
-        const Coordinates place = frame.position(cell);
-        if (solid.contains(place)) sites.push_back({cell, place, 1.0, place});
-      }
+    if (counts[lattice.layers.size() + k] == 0.0) {
+      throw InputError(key_of(k, "where"), '"' + lattice.layers[k].where + '"',
+                       "selects no point of the layer");
     }
   }
-  return sites;
-}
-
-LayerSites layer_sites(const Lattice& lattice, const LatticeRows& rows,
-                       const std::vector<Site>& body, const Cell& low, const Cell& high) {
-  const LatticeFrame frame = frame_of(lattice);
-  SharedSites shared(false);
-  for (std::size_t k = 0; k < lattice.layers.size(); ++k) {
-    const Layer& layer = lattice.layers[k];
-    const auto [axis, sign] = layer.side;
-    const std::int64_t outermost = sign > 0 ? high[axis] : low[axis];
-    // A plane across the rows' axis is another rank's, perhaps; it is found again.
-    std::vector<Site> plane;
-    if (axis == rows.axis) {
-      plane = body_sites(lattice, {axis, outermost, outermost + 1});
-    } else {
-      std::copy_if(body.begin(), body.end(), std::back_inserter(plane),
-                   [&, on = axis](const Site& site) { return site.cell[on] == outermost; });
-    }
-    std::vector<Site> sites;
-    if (!plane.empty()) sites = copies_of_outermost_plane(frame, plane, layer);
-    std::erase_if(sites, [&](const Site& site) {
-      return site.cell[rows.axis] < rows.first || site.cell[rows.axis] >= rows.last;
-    });
-    keep_where(lattice, k, sites);
-    shared.add(layer, sites);
-  }
-  return std::move(shared.found);
-}
-
-void refuse_empty_layer(const Lattice& lattice, std::size_t number) {
-  throw InputError(key_of(number, "where"), '"' + lattice.layers[number].where + '"',
-                   "selects no point of the layer");
 }
 
 }  // namespace peristat

@@ -2,8 +2,10 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
+#include "src/core/communicator.hpp"
 #include "src/geometry/lattice.hpp"
 #include "src/geometry/lattice_frame.hpp"
 
@@ -21,7 +23,11 @@ struct Site {
 struct LayerSites {
   std::vector<Site> sites;
   std::vector<std::vector<Index>> of_layer;  // ascending
+  std::vector<double> standing;              ///< sites of each layer before its `where`
 };
+
+/// A box that holds everything.
+[[nodiscard]] Box everywhere();
 
 [[nodiscard]] LatticeFrame frame_of(const Lattice& lattice);
 
@@ -29,33 +35,38 @@ struct LayerSites {
 [[nodiscard]] double most_sites(const Lattice& lattice);
 
 /// Sites of the body, in ascending order of their cells, each at its cell's place.
-[[nodiscard]] std::vector<Site> body_sites(const Lattice& lattice);
+/// @param window where they are wanted: beyond it there may be some, and those beside its sides
+///        within may be wrong, up to `depth_of_window`
+[[nodiscard]] std::vector<Site> body_sites(const Lattice& lattice,
+                                           const Box& window = everywhere());
+
+/// How much larger a window has to be than where sites are to be right, along each axis [m].
+[[nodiscard]] double depth_of_window(const Lattice& lattice);
+
+/// What layers have to know of the whole body.
+struct OutermostOfBody {
+  Cell low{}, high{};  ///< least and largest cells along each of the lattice's axes
+  /// Heights of the flat faces that layers stand in front of, in their order [m]; none where layers
+  /// are copies of the outermost plane.
+  std::vector<std::pair<Side, double>> faces{};
+};
+
+/// @param body sites of the body that this rank has, each of them on one rank; a call that all make
+/// @throws InputError ("shapes", "layers[0].side") on all of them
+[[nodiscard]] OutermostOfBody outermost_of_body(const Lattice& lattice,
+                                                const std::vector<Site>& body,
+                                                const Communicator& ranks);
 
 /// Where body and layers, or layers of several sides, have parts of the same cell, each goes to its
 /// centroid.
-/// @throws InputError ("layers[0].where", "layers[0].side", ...)
-[[nodiscard]] LayerSites layer_sites(const Lattice& lattice, std::vector<Site>& body);
+/// @param body sites of the body in the window
+/// @throws InputError ("layers[0].where")
+[[nodiscard]] LayerSites layer_sites(const Lattice& lattice, const OutermostOfBody& outermost,
+                                     std::vector<Site>& body, const Box& window = everywhere());
 
-/// Rows of places across an axis of a lattice that is not turned.
-struct LatticeRows {
-  int axis = 0;
-  std::int64_t first = 0, last = 0;  ///< of cells along the axis, last not included
-};
-
-/// Rows in which a body of whole cells may have places.
-[[nodiscard]] LatticeRows rows_of_body(const Lattice& lattice, int axis);
-
-/// The sites of whole cells that body_sites has in these rows, in the same order.
-[[nodiscard]] std::vector<Site> body_sites(const Lattice& lattice, const LatticeRows& rows);
-
-/// The sites that layer_sites has in these rows, of whole cells; layers may have none there.
-/// @param body       the body's sites in these rows
-/// @param low, high  least and largest cells along each axis of all of the body's sites
-[[nodiscard]] LayerSites layer_sites(const Lattice& lattice, const LatticeRows& rows,
-                                     const std::vector<Site>& body, const Cell& low,
-                                     const Cell& high);
-
-/// @throws InputError for a layer without a point
-[[noreturn]] void refuse_empty_layer(const Lattice& lattice, std::size_t number);
+/// @param layers those that this rank has of them; a call that all make
+/// @throws InputError for a layer without a point, on all of them
+void refuse_empty_layers(const Lattice& lattice, const LayerSites& layers,
+                         const Communicator& ranks);
 
 }  // namespace peristat

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "src/geometry/lattice_frame.hpp"
+#include "src/geometry/outermost_face.hpp"
 
 namespace peristat {
 namespace {
@@ -15,7 +16,8 @@ constexpr double below_face = 1e-3;
 }  // namespace
 
 std::optional<double> outermost_face(const Solid& body, const Side& side,
-                                     const std::vector<Coordinates>& places, double spacing) {
+                                     const std::vector<Coordinates>& places, double spacing,
+                                     const Communicator& ranks) {
   std::vector<double> heights;
   Coordinates outwards{};
   outwards[side.axis] = side.sign;
@@ -23,10 +25,11 @@ std::optional<double> outermost_face(const Solid& body, const Side& side,
   std::sort(heights.begin(), heights.end(), std::greater<>());
   heights.erase(std::unique(heights.begin(), heights.end()), heights.end());
   const auto feet_at = [&](double height) {
-    return std::count_if(places.begin(), places.end(), [&](Coordinates place) {
+    const auto here = std::count_if(places.begin(), places.end(), [&](Coordinates place) {
       place[side.axis] = side.sign * height;
       return body.contains(place);
     });
+    return ranks.count_all(here).all;
   };
   for (const double height : heights) {
     const auto near = feet_at(height - below_face * spacing);
@@ -35,6 +38,11 @@ std::optional<double> outermost_face(const Solid& body, const Side& side,
     if (near > 0 && 2 * near >= feet_at(height - 0.5 * spacing)) return side.sign * height;
   }
   return std::nullopt;
+}
+
+std::optional<double> outermost_face(const Solid& body, const Side& side,
+                                     const std::vector<Coordinates>& places, double spacing) {
+  return outermost_face(body, side, places, spacing, SoleRank());
 }
 
 FrontOfFace::FrontOfFace(const Solid& body, const Side& side, double face, double depth,

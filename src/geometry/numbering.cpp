@@ -69,7 +69,8 @@ Points renumbered(const Points& points, const std::vector<Index>& order) {
   result.lattice = points.lattice;
   result.reference.reserve(points.reference.size());
   result.volume.reserve(points.volume.size());
-  std::vector<Index> new_number(order.size());
+  constexpr Index left_out = -1;
+  std::vector<Index> new_number(points.volume.size(), left_out);
   for (const Index old : order) {
     new_number[old] = result.count();
     const auto first = points.reference.begin() + std::ptrdiff_t(old) * points.dimension;
@@ -80,6 +81,7 @@ Points renumbered(const Points& points, const std::vector<Index>& order) {
   for (NeighbourShares pair : points.neighbours) {
     pair.i = new_number[pair.i];
     pair.j = new_number[pair.j];
+    if (pair.i == left_out || pair.j == left_out) continue;
     if (pair.i > pair.j) {
       std::swap(pair.i, pair.j);
       std::swap(pair.of_i, pair.of_j);
@@ -93,7 +95,9 @@ Points renumbered(const Points& points, const std::vector<Index>& order) {
   for (const auto& [name, members] : points.sets) {
     std::vector<Index>& new_members = result.sets[name];
     new_members.reserve(members.size());
-    for (const Index old : members) new_members.push_back(new_number[old]);
+    for (const Index old : members) {
+      if (new_number[old] != left_out) new_members.push_back(new_number[old]);
+    }
     std::sort(new_members.begin(), new_members.end());
   }
   return result;

@@ -38,7 +38,8 @@ class LocalityCells {
 [[nodiscard]] std::vector<Index> locality_order(int dimension, const Spacing& spacing,
                                                 const std::vector<double>& reference);
 
-/// Points renumbered: new point k is old point order[k]; sets follow.
+/// Points renumbered: new point k is old point order[k]; sets follow. Points that the order does
+/// not name are left out, with what they were neighbours of.
 [[nodiscard]] Points renumbered(const Points& points, const std::vector<Index>& order);
 
 }  // namespace peristat

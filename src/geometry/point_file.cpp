@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <functional>
 #include <limits>
 #include <optional>
 #include <string_view>
@@ -53,25 +54,31 @@ std::optional<std::pair<Index, Index>> points_at_one_place(const Points& points,
   return std::nullopt;
 }
 
+/// A point as the file has it.
+struct PointRow {
+  std::size_t line = 0;
+  Coordinates place{};
+  double volume = 0.0;
+  std::string_view sets{};  ///< names joined by |
+};
+
 class Reader {
  public:
-  Reader(const std::filesystem::path& file, int dimension) : file_(file) {
-    points_.dimension = dimension;
-  }
+  Reader(const std::filesystem::path& file, int dimension) : file_(file), dimension_(dimension) {}
 
-  Points read(double cross_section, const std::optional<NeighbourFile>& neighbours) {
+  /// Calls visit(row) for every point, in the order of the file.
+  void for_each_point(const std::function<void(const PointRow&)>& visit) {
+    columns_.clear();
+    count_ = 0;
     for_each_row(file_, [&](std::size_t line, std::string_view text) {
       line_ = line;
-      columns_.empty() ? read_header(text) : read_point(text);
+      columns_.empty() ? read_header(text) : visit(read_point(text));
     });
     if (columns_.empty()) refuse_file("no line names the columns, which are " + allowed_columns());
-    if (points_.count() == 0) refuse_file("the file has no points");
-    finish(cross_section, neighbours);
-    return std::move(points_);
+    if (count_ == 0) refuse_file("the file has no points");
   }
 
- private:
-  [[noreturn]] void refuse(const std::string& what) const { refuse(line_, what); }
+  [[nodiscard]] Index count() const { return count_; }
 
   [[noreturn]] void refuse(std::size_t line, const std::string& what) const {
     throw InputError("", "", what, file_.string() + ":" + std::to_string(line));
@@ -81,9 +88,12 @@ class Reader {
     throw InputError("file", file_.string(), what);
   }
 
+ private:
+  [[noreturn]] void refuse(const std::string& what) const { refuse(line_, what); }
+
   std::vector<std::string> required_columns() const {
     std::vector<std::string> names{"x", "y", "z"};
-    names.resize(points_.dimension);
+    names.resize(std::size_t(dimension_));
     names.push_back("volume");
     return names;
   }
@@ -122,7 +132,7 @@ class Reader {
     }
   }
 
-  void read_point(std::string_view text) {
+  PointRow read_point(std::string_view text) {
     std::vector<std::string_view> cells = fields(text);
     const bool set_left_out = !by_comma_ && columns_.back() == "set";
     if (set_left_out && cells.size() + 1 == columns_.size()) cells.emplace_back();
@@ -130,24 +140,22 @@ class Reader {
       refuse(std::to_string(cells.size()) + " values for " + std::to_string(columns_.size()) +
              " columns");
     }
-    const Index point = points_.count();
-    if (point == std::numeric_limits<Index>::max() - 1) refuse("too many points");
-    Coordinates place{};
+    if (count_ == std::numeric_limits<Index>::max() - 1) refuse("too many points");
+    PointRow row;
+    row.line = line_;
     for (std::size_t k = 0; k < cells.size(); ++k) {
       const std::string& column = columns_[k];
       if (column == "set") {
-        add_to_sets(point, cells[k]);
+        row.sets = cells[k];
       } else if (column == "volume") {
-        const double volume = number(column, cells[k]);
-        if (!(volume > 0)) refuse("volume = " + std::string(cells[k]) + " must be positive");
-        points_.volume.push_back(volume);
+        row.volume = number(column, cells[k]);
+        if (!(row.volume > 0)) refuse("volume = " + std::string(cells[k]) + " must be positive");
       } else {
-        place[column[0] - 'x'] = number(column, cells[k]);
+        row.place[std::size_t(column[0] - 'x')] = number(column, cells[k]);
       }
     }
-    points_.reference.insert(points_.reference.end(), place.begin(),
-                             place.begin() + points_.dimension);
-    lines_.push_back(line_);
+    ++count_;
+    return row;
   }
 
   double number(const std::string& column, std::string_view text) const {
@@ -158,48 +166,141 @@ class Reader {
     return *value;
   }
 
-  void add_to_sets(Index point, std::string_view names) {
-    for (const std::string_view name : split(names, '|')) {
-      if (name.empty()) continue;
-      std::vector<Index>& set = points_.sets[std::string(name)];
-      if (set.empty() || set.back() != point) set.push_back(point);
-    }
-  }
-
-  void finish(double cross_section, const std::optional<NeighbourFile>& neighbours) {
-    double mean = 0.0;
-    for (const double volume : points_.volume) mean += volume / points_.count();
-    points_.spacing = std::pow(mean / cross_section, 1.0 / points_.dimension);
-    if (!std::isfinite(points_.spacing) || !(points_.spacing > 0)) {
-      refuse_file("the mean volume " + number_text(mean) + " gives no usable spacing");
-    }
-    if (const auto pair = points_at_one_place(points_, same_place_tolerance * points_.spacing)) {
-      const auto [first, second] = *pair;
-      refuse(lines_[second],
-             "the point at " + place_text(points_.position(second), points_.dimension) +
-                 " stands at the place of the point in line " + std::to_string(lines_[first]));
-    }
-    if (neighbours) points_.neighbours = read_neighbours(*neighbours, points_);
-    points_ =
-        renumbered(points_, locality_order(points_.dimension, points_.spacing, points_.reference));
-  }
-
   std::filesystem::path file_;
+  int dimension_;
   std::size_t line_ = 0;
+  Index count_ = 0;
   bool by_comma_ = false;
   std::vector<std::string> columns_;
-  Points points_;
-  std::vector<std::size_t> lines_;  // per point, before renumbering
 };
+
+/// Points of a file, all or some of them.
+class Collection {
+ public:
+  explicit Collection(int dimension) { points.dimension = dimension; }
+
+  void add(const PointRow& row) {
+    name_sets(row);
+    for (const std::string_view name : split(row.sets, '|')) {
+      if (name.empty()) continue;
+      std::vector<Index>& set = points.sets.at(std::string(name));
+      if (set.empty() || set.back() != points.count()) set.push_back(points.count());
+    }
+    points.reference.insert(points.reference.end(), row.place.begin(),
+                            row.place.begin() + points.dimension);
+    points.volume.push_back(row.volume);
+    lines_.push_back(row.line);
+  }
+  /// Of a point that is not added: its sets are known everywhere.
+  void name_sets(const PointRow& row) {
+    for (const std::string_view name : split(row.sets, '|')) {
+      if (!name.empty()) points.sets.try_emplace(std::string(name));
+    }
+  }
+
+  void refuse_shared_places(const Reader& reader) const {
+    const auto pair = points_at_one_place(points, same_place_tolerance * points.spacing);
+    if (!pair) return;
+    const auto [first, second] = *pair;
+    reader.refuse(lines_[second],
+                  "the point at " + place_text(points.position(second), points.dimension) +
+                      " stands at the place of the point in line " + std::to_string(lines_[first]));
+  }
+
+  Points points;
+
+ private:
+  std::vector<std::size_t> lines_;  // per point
+};
+
+double spacing_of(double mean_volume, double cross_section, int dimension, const Reader& reader) {
+  const double spacing = std::pow(mean_volume / cross_section, 1.0 / dimension);
+  if (!std::isfinite(spacing) || !(spacing > 0)) {
+    reader.refuse_file("the mean volume " + number_text(mean_volume) + " gives no usable spacing");
+  }
+  return spacing;
+}
+
+void check_cross_section(double cross_section) {
+  if (std::isfinite(cross_section) && cross_section > 0) return;
+  throw InputError("cross_section", number_text(cross_section), "must be positive and finite");
+}
+
+/// What numbers of points follow from.
+struct WholeFile {
+  Coordinates low, high;
+  double spacing = 0.0;
+};
+
+WholeFile look_at_file(Reader& reader, int dimension, double cross_section) {
+  WholeFile whole;
+  whole.low.fill(std::numeric_limits<double>::infinity());
+  whole.high.fill(-std::numeric_limits<double>::infinity());
+  reader.for_each_point([&](const PointRow& row) {
+    for (std::size_t c = 0; c < 3; ++c) {
+      whole.low[c] = std::min(whole.low[c], row.place[c]);
+      whole.high[c] = std::max(whole.high[c], row.place[c]);
+    }
+  });
+  const Index count = reader.count();
+  double mean = 0.0;
+  reader.for_each_point([&](const PointRow& row) { mean += row.volume / count; });
+  whole.spacing = spacing_of(mean, cross_section, dimension, reader);
+  return whole;
+}
 
 }  // namespace
 
 Points read_points(const std::filesystem::path& file, int dimension, double cross_section,
                    const std::optional<NeighbourFile>& neighbours) {
-  if (!(std::isfinite(cross_section) && cross_section > 0)) {
-    throw InputError("cross_section", number_text(cross_section), "must be positive and finite");
+  check_cross_section(cross_section);
+  Reader reader(file, dimension);
+  Collection read(dimension);
+  reader.for_each_point([&](const PointRow& row) { read.add(row); });
+  Points& points = read.points;
+  double mean = 0.0;
+  for (const double volume : points.volume) mean += volume / points.count();
+  points.spacing = spacing_of(mean, cross_section, dimension, reader);
+  read.refuse_shared_places(reader);
+  if (neighbours) points.neighbours = read_neighbours(*neighbours, points);
+  return renumbered(points, locality_order(dimension, points.spacing, points.reference));
+}
+
+Part read_slab(const std::filesystem::path& file, int dimension, double cross_section,
+               const Communicator& ranks) {
+  check_cross_section(cross_section);
+  Reader reader(file, dimension);
+  const WholeFile whole = look_at_file(reader, dimension, cross_section);
+  const LocalityCells cells(dimension, whole.spacing, whole.low, whole.high);
+  const double rows = cells.of(whole.high.data())[0] + 1.0;
+  const double first = std::floor(rows * ranks.rank() / ranks.count());
+  const double last = std::floor(rows * (ranks.rank() + 1) / ranks.count());
+  Collection read(dimension);
+  read.points.spacing = whole.spacing;
+  // With those of the rows beside it, which may stand at the places of its own.
+  reader.for_each_point([&](const PointRow& row) {
+    const double of_point = cells.of(row.place.data())[0];
+    const bool is_near = of_point >= first - 1.0 && of_point < last + 1.0;
+    is_near ? read.add(row) : read.name_sets(row);
+  });
+  read.refuse_shared_places(reader);
+
+  const Points& near = read.points;
+  std::vector<std::pair<LocalityCells::Key, Index>> places;
+  for (Index i = 0; i < near.count(); ++i) {
+    const LocalityCells::Key cell = cells.of(&near.reference[std::size_t(i) * near.dimension]);
+    if (cell[0] >= first && cell[0] < last) places.emplace_back(cell, i);
   }
-  return Reader(file, dimension).read(cross_section, neighbours);
+  std::sort(places.begin(), places.end());
+  std::vector<Index> order;
+  for (const auto& [cell, point] : places) order.push_back(point);
+  Part part;
+  part.points = renumbered(near, order);
+  part.owned = part.points.count();
+  const Communicator::Counts counts = ranks.count_all(part.owned);
+  part.whole = counts.all;
+  for (Index i = 0; i < part.owned; ++i) part.number.push_back(counts.before + i);
+  return part;
 }
 
 }  // namespace peristat

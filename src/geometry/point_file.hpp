@@ -3,7 +3,9 @@
 #include <filesystem>
 #include <optional>
 
+#include "src/core/communicator.hpp"
 #include "src/geometry/neighbour_file.hpp"
+#include "src/geometry/part.hpp"
 #include "src/geometry/points.hpp"
 
 namespace peristat {
@@ -23,5 +25,11 @@ namespace peristat {
 [[nodiscard]] Points read_points(const std::filesystem::path& file, int dimension,
                                  double cross_section,
                                  const std::optional<NeighbourFile>& neighbours = {});
+
+/// A part of the points that read_points gives, without ghosts, as make_slab's: every rank reads
+/// the file, and keeps no more than a slab. A call that all make.
+/// @throws InputError as read_points does, of two points at one place perhaps on one rank alone
+[[nodiscard]] Part read_slab(const std::filesystem::path& file, int dimension, double cross_section,
+                             const Communicator& ranks);
 
 }  // namespace peristat

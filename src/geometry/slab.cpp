@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <iterator>
 #include <limits>
 #include <string>
 #include <utility>
@@ -11,39 +12,81 @@
 #include "src/core/number_text.hpp"
 #include "src/geometry/lattice_sites.hpp"
 #include "src/geometry/numbering.hpp"
+#include "src/geometry/perturbed_cells.hpp"
 #include "src/geometry/perturbed_points.hpp"
+#include "src/geometry/solid.hpp"
 
 namespace peristat {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-void require_rows(const Lattice& lattice) {
+void refuse_without_slabs(const Lattice& lattice) {
   const auto refuse = [](const char* key, const std::string& value, const std::string& what) {
-    throw InputError(key, value, "is not for several ranks yet: " + what);
+    throw InputError(key, value, "is not for several ranks: " + what);
   };
   if (lattice.arrangement == Arrangement::blue_noise) {
-    refuse("arrangement", "blue_noise", "take arrangement = \"lattice\", or one rank");
-  }
-  if (lattice.angle != 0.0) {
-    refuse("angle", number_text(lattice.angle), "take an angle of 0, or one rank");
-  }
-  if (lattice.volumes == CellVolumes::fractional) {
-    refuse("volumes", "fractional", "take volumes = \"cells\", or one rank");
-  }
-  if (lattice.cell_perturbation > 0.0) {
-    refuse("cell_perturbation", number_text(lattice.cell_perturbation),
-           "take a cell_perturbation of 0, or one rank");
+    refuse("arrangement", "blue_noise",
+           "every point is placed by those before it; take arrangement = \"lattice\", or one rank");
   }
   if (estimate_points(lattice) < 0x1p53) return;
   refuse("spacing", number_text(lattice.spacing), "there must be fewer than 2^53 points");
 }
 
-/// A rank's share of rows, as equal as whole rows can be.
-LatticeRows share_of(const LatticeRows& all, const Communicator& ranks) {
-  const std::int64_t count = all.last - all.first;
-  const auto begin = [&](std::int64_t rank) { return all.first + count * rank / ranks.count(); };
-  return {all.axis, begin(ranks.rank()), begin(ranks.rank() + 1)};
+/// Places between two planes across an axis.
+struct Between {
+  int axis = 0;
+  double from = -infinity, to = infinity;
+
+  /// The upper one is not between.
+  [[nodiscard]] bool has(const Coordinates& place) const {
+    return place[std::size_t(axis)] >= from && place[std::size_t(axis)] < to;
+  }
+  /// With so much beside it.
+  [[nodiscard]] Box window(double depth) const {
+    Box box = everywhere();
+    box.min[std::size_t(axis)] = from - depth;
+    box.max[std::size_t(axis)] = to + depth;
+    return box;
+  }
+};
+
+/// A share of the rows of places along the direction in which numbers run slowest.
+class ShareOfRows {
+ public:
+  ShareOfRows(const Lattice& lattice, const LocalityCells& cells, const Coordinates& low,
+              const Coordinates& high, const Communicator& ranks)
+      : cells_(cells) {
+    const double rows = cells.of(high.data())[0] + 1.0;
+    const int axis = cells.slowest();
+    const double spacing = lattice.spacing.along(axis);
+    first_ = std::floor(rows * ranks.rank() / ranks.count());
+    last_ = std::floor(rows * (ranks.rank() + 1) / ranks.count());
+    about_ = {axis, low[std::size_t(axis)] + (first_ - 0.5) * spacing,
+              low[std::size_t(axis)] + (last_ - 0.5) * spacing};
+  }
+
+  /// Not by planes: round-off must not tell another row than numbers do.
+  [[nodiscard]] bool has(const Coordinates& place) const {
+    const double row = cells_.of(place.data())[0];
+    return row >= first_ && row < last_;
+  }
+  [[nodiscard]] Box window(double depth) const { return about_.window(depth); }
+
+ private:
+  const LocalityCells& cells_;
+  double first_ = 0.0, last_ = 0.0;
+  Between about_;
+};
+
+/// A share of all places, by planes that cut a length into equal parts.
+Between share_of_length(int axis, double low, double high, const Communicator& ranks) {
+  const auto plane = [&](int number) {
+    if (number == 0) return -infinity;
+    if (number == ranks.count()) return infinity;
+    return low + (high - low) * number / ranks.count();
+  };
+  return {axis, plane(ranks.rank()), plane(ranks.rank() + 1)};
 }
 
 /// Least and largest of what all ranks have, along each axis.
@@ -64,73 +107,86 @@ struct Extent {
   }
 };
 
-Cell cell_of(const Coordinates& at) {
-  return {std::int64_t(at[0]), std::int64_t(at[1]), std::int64_t(at[2])};
-}
-
-/// Cells that the body reaches; each rank looks at a share of them.
-Extent extent_of_body(const Lattice& lattice, const Communicator& ranks) {
-  int longest = 0;
-  const auto rows = [&](int axis) { return rows_of_body(lattice, axis); };
-  for (int axis = 1; axis < lattice.dimension; ++axis) {
-    const LatticeRows one = rows(axis), best = rows(longest);
-    if (one.last - one.first > best.last - best.first) longest = axis;
-  }
-  Extent extent;
-  LatticeRows mine = share_of(rows(longest), ranks);
-  for (const std::int64_t last = mine.last; mine.first < last; ++mine.first) {
-    mine.last = mine.first + 1;  // a row at a time: only its extent is kept
-    for (const Site& site : body_sites(lattice, mine)) {
-      extent.add({double(site.cell[0]), double(site.cell[1]), double(site.cell[2])});
-    }
-  }
-  extent.gather(ranks);
-  if (extent.low[0] > extent.high[0]) {
-    throw InputError(
-        "shapes", "",
-        "no lattice point lies in the body; spacing = " + number_text(lattice.spacing));
-  }
-  return extent;
-}
-
-/// Sites of a slab.
+/// Sites of a slab, and some beside it.
 struct SlabSites {
   std::vector<Site> body;
   LayerSites layers;
 };
 
-SlabSites sites_of(const Lattice& lattice, const Communicator& ranks, const Extent& cells,
-                   int axis) {
-  const Cell low = cell_of(cells.low), high = cell_of(cells.high);
-  LatticeRows all{axis, low[axis], high[axis] + 1};
-  for (const Layer& layer : lattice.layers) {
-    if (layer.side.axis != axis) continue;
-    if (layer.side.sign < 0) all.first = std::min(all.first, low[axis] - layer.thickness);
-    if (layer.side.sign > 0) all.last = std::max(all.last, high[axis] + 1 + layer.thickness);
+/// Takes out the sites of layers that are not in a slab.
+template <class Slab>
+LayerSites restricted(const LayerSites& layers, const Slab& slab) {
+  constexpr Index nowhere = -1;
+  LayerSites kept;
+  std::vector<Index> number;
+  for (const Site& site : layers.sites) {
+    const bool is_here = slab.has(site.place);
+    number.push_back(is_here ? Index(kept.sites.size()) : nowhere);
+    if (is_here) kept.sites.push_back(site);
   }
-  const LatticeRows mine = share_of(all, ranks);
+  for (const std::vector<Index>& members : layers.of_layer) {
+    std::vector<Index>& of_layer = kept.of_layer.emplace_back();
+    for (const Index site : members) {
+      if (number[std::size_t(site)] != nowhere) of_layer.push_back(number[std::size_t(site)]);
+    }
+  }
+  kept.standing = layers.standing;
+  return kept;
+}
+
+template <class Slab>
+std::vector<Site> restricted(const std::vector<Site>& sites, const Slab& slab) {
+  std::vector<Site> kept;
+  std::copy_if(sites.begin(), sites.end(), std::back_inserter(kept),
+               [&](const Site& site) { return slab.has(site.place); });
+  return kept;
+}
+
+/// Sites that may be in a slab.
+SlabSites sites_near(const Lattice& lattice, const OutermostOfBody& outermost, const Box& window) {
   SlabSites sites;
-  sites.body = body_sites(lattice, mine);
-  sites.layers = layer_sites(lattice, mine, sites.body, low, high);
-  for (std::size_t k = 0; k < lattice.layers.size(); ++k) {
-    const auto members = std::int64_t(sites.layers.of_layer[k].size());
-    if (ranks.count_all(members).all == 0) refuse_empty_layer(lattice, k);
-  }
+  sites.body = body_sites(lattice, window);
+  sites.layers = layer_sites(lattice, outermost, sites.body, window);
   return sites;
 }
 
-Extent extent_of(const SlabSites& sites, const Communicator& ranks) {
-  Extent extent;
-  for (const Site& site : sites.body) extent.add(site.place);
-  for (const Site& site : sites.layers.sites) extent.add(site.place);
-  extent.gather(ranks);
-  return extent;
+/// What every rank has to know of the whole body.
+struct WholeLattice {
+  OutermostOfBody outermost;
+  Extent extent;  ///< of all places
+};
+
+/// Each rank looks at a share of the body's length.
+WholeLattice look_at_whole(const Lattice& lattice, const Communicator& ranks) {
+  const Box box = Solid(lattice.dimension, lattice.shapes).bounds();
+  int axis = 0;
+  const auto length = [&](int c) { return box.max[c] - box.min[c]; };
+  for (int c = 1; c < lattice.dimension; ++c) {
+    if (length(c) > length(axis)) axis = c;
+  }
+  const Between share = share_of_length(axis, box.min[axis], box.max[axis], ranks);
+  const Box window = share.window(depth_of_window(lattice));
+  WholeLattice whole;
+  whole.outermost =
+      outermost_of_body(lattice, restricted(body_sites(lattice, window), share), ranks);
+  const SlabSites sites = sites_near(lattice, whole.outermost, window);
+  refuse_empty_layers(lattice, restricted(sites.layers, share), ranks);
+  for (const std::vector<Site>* all : {&sites.body, &sites.layers.sites}) {
+    for (const Site& site : *all) {
+      if (share.has(site.place)) whole.extent.add(site.place);
+    }
+  }
+  whole.extent.gather(ranks);
+  return whole;
 }
 
-Points points_of(const Lattice& lattice, const SlabSites& sites) {
+/// Points of a slab, each where its site is, in the order of these.
+/// @param cells of the body's sites, where they are perturbed
+Points points_of(const Lattice& lattice, const SlabSites& sites, CellPolygons cells) {
   Points points;
   points.dimension = lattice.dimension;
   points.spacing = lattice.spacing;
+  points.angle = lattice.angle;
   // Said, because a part has no mean volume to tell it by where it has no point.
   points.cell_volume = std::pow(lattice.spacing, lattice.dimension) * lattice.cross_section;
   points.lattice.emplace();
@@ -140,7 +196,7 @@ Points points_of(const Lattice& lattice, const SlabSites& sites) {
     for (const Site& site : *all) {
       points.reference.insert(points.reference.end(), site.place.begin(),
                               site.place.begin() + lattice.dimension);
-      points.volume.push_back(points.cell_volume);
+      points.volume.push_back(points.cell_volume * site.share);
     }
   }
   for (std::size_t k = 0; k < lattice.layers.size(); ++k) {
@@ -151,14 +207,22 @@ Points points_of(const Lattice& lattice, const SlabSites& sites) {
     std::sort(set.begin(), set.end());
     set.erase(std::unique(set.begin(), set.end()), set.end());
   }
+  if (lattice.cell_perturbation == 0.0) return points;
+  points.polygons = std::move(cells);
+  if (points.polygons.empty()) points.polygons.offset.push_back(0);  // there are none here
+  for (std::size_t k = 0; k < sites.layers.sites.size(); ++k) {
+    points.polygons.append(whole_cell(lattice));
+  }
   return points;
 }
 
 /// As locality_order, by the extent of the whole body.
-std::vector<Index> order_of(const LocalityCells& cells, const Points& points) {
+std::vector<Index> order_of(const LocalityCells& cells, const SlabSites& sites) {
   std::vector<std::pair<LocalityCells::Key, Index>> places;
-  for (Index i = 0; i < points.count(); ++i) {
-    places.emplace_back(cells.of(&points.reference[std::size_t(i) * points.dimension]), i);
+  for (const std::vector<Site>* all : {&sites.body, &sites.layers.sites}) {
+    for (const Site& site : *all) {
+      places.emplace_back(cells.of(site.place.data()), Index(places.size()));
+    }
   }
   std::sort(places.begin(), places.end());
   std::vector<Index> order;
@@ -166,30 +230,46 @@ std::vector<Index> order_of(const LocalityCells& cells, const Points& points) {
   return order;
 }
 
+/// Moves the sites of a slab to where their perturbed cells have their centroids.
+/// @param near sites of the body in a window around the slab
+template <class Slab>
+CellPolygons perturb_cells_of(const Lattice& lattice, const Slab& slab, std::vector<Site> near,
+                              std::vector<Site>& body) {
+  std::vector<bool> is_here;
+  for (const Site& site : near) is_here.push_back(slab.has(site.place));
+  const CellPolygons all = perturb_cells(lattice, near);
+  CellPolygons cells;
+  body.clear();
+  for (std::size_t k = 0; k < near.size(); ++k) {
+    if (!is_here[k]) continue;
+    body.push_back(near[k]);
+    cells.append(all.of(k));
+  }
+  return cells;
+}
+
 }  // namespace
 
 Part make_slab(const Lattice& lattice, const Communicator& ranks) {
   check_lattice(lattice);
-  require_rows(lattice);
-  const Extent cells = extent_of_body(lattice, ranks);
+  refuse_without_slabs(lattice);
+  const WholeLattice whole = look_at_whole(lattice, ranks);
   // Numbers run slowest along the longest direction: slabs across it have numbers that follow one
-  // another. Which one that is layers may change, and where they stand only sites tell.
-  int axis = 0;
-  for (int c = 1; c < lattice.dimension; ++c) {
-    if (cells.high[c] - cells.low[c] > cells.high[axis] - cells.low[axis]) axis = c;
-  }
-  SlabSites sites = sites_of(lattice, ranks, cells, axis);
-  const Extent extent = extent_of(sites, ranks);
-  const LocalityCells locality(lattice.dimension, lattice.spacing, extent.low, extent.high);
-  if (locality.slowest() != axis) {
-    axis = locality.slowest();
-    sites = sites_of(lattice, ranks, cells, axis);
+  // another.
+  const LocalityCells locality(lattice.dimension, lattice.spacing, whole.extent.low,
+                               whole.extent.high);
+  const ShareOfRows slab(lattice, locality, whole.extent.low, whole.extent.high, ranks);
+  const SlabSites near =
+      sites_near(lattice, whole.outermost, slab.window(depth_of_window(lattice)));
+  SlabSites sites{restricted(near.body, slab), restricted(near.layers, slab)};
+  const std::vector<Index> order = order_of(locality, sites);  // before anything is perturbed
+  CellPolygons cells;
+  if (lattice.cell_perturbation > 0.0) {
+    cells = perturb_cells_of(lattice, slab, near.body, sites.body);
   }
 
   Part part;
-  const Points unsorted = points_of(lattice, sites);
-  const std::vector<Index> order = order_of(locality, unsorted);
-  part.points = renumbered(unsorted, order);
+  part.points = renumbered(points_of(lattice, sites, std::move(cells)), order);
   std::vector<bool> is_body(order.size());
   for (std::size_t k = 0; k < order.size(); ++k) {
     is_body[k] = std::size_t(order[k]) < sites.body.size();

@@ -6,11 +6,11 @@
 
 namespace peristat {
 
-/// A part of the points that make_points gives, without ghosts: those of a slab of the lattice's
-/// rows, which follow one another. Nobody makes more than a slab and planes of layers beside it.
-/// There are ranks without points where there are more of them than rows.
-/// @throws InputError on all ranks as make_points does, and for what slabs don't tell yet: blue
-///         noise, lattices that are turned, cells that are cut or perturbed
+/// A part of the points that make_points gives, without ghosts: those of a slab of the body, which
+/// follow one another. Nobody makes more than a slab and a few rows beside it. There are ranks
+/// without points where there are more of them than rows. A call that all make.
+/// @throws InputError as make_points does, an expression without a value perhaps on one rank alone;
+///         and for blue noise
 [[nodiscard]] Part make_slab(const Lattice& lattice, const Communicator& ranks);
 
 }  // namespace peristat

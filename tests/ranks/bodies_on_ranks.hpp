@@ -80,8 +80,48 @@ struct RanksBody {
   return body;
 }
 
+/// Turned, with layers in front of its sides and a hole.
+[[nodiscard]] inline RanksBody turned_plate() {
+  RanksBody body = plate_with_hole();
+  body.name = "turned plate";
+  body.lattice.angle = 25.0;
+  return body;
+}
+
+/// Its boundary cuts cells; small parts go to their neighbours, and layers have parts of cells.
+[[nodiscard]] inline RanksBody cut_plate() {
+  RanksBody body = turned_plate();
+  body.name = "cut plate";
+  body.lattice.volumes = CellVolumes::fractional;
+  return body;
+}
+
+[[nodiscard]] inline RanksBody cut_block() {
+  RanksBody body{"cut block", lattice_box(3, {6.3, 5.4, 7.7}, {0.1, 0.1, 0.1}), 2.015};
+  body.lattice.shapes.push_back({ShapeStep::Action::subtract, Sphere{{0.5, 0.5, 0.6}, 0.22}});
+  body.lattice.volumes = CellVolumes::fractional;
+  body.lattice.layers = {{"front", {2, 1}, 2}, {"left", {0, -1}, 1}};
+  return body;
+}
+
+[[nodiscard]] inline RanksBody perturbed_cells() {
+  RanksBody body = plate_with_hole();
+  body.name = "perturbed cells";
+  body.lattice.cell_perturbation = 0.2;
+  return body;
+}
+
+[[nodiscard]] inline RanksBody bar_of_perturbed_cells() {
+  RanksBody body = bar();
+  body.name = "bar of perturbed cells";
+  body.lattice.cell_perturbation = 0.2;
+  return body;
+}
+
 [[nodiscard]] inline std::vector<RanksBody> all_bodies() {
-  return {bar(), three_points(), short_bar(), strip(), plate_with_hole(), wide_layers(), block()};
+  return {bar(),         three_points(), short_bar(),       strip(),
+          wide_layers(), block(),        plate_with_hole(), turned_plate(),
+          cut_plate(),   cut_block(),    perturbed_cells(), bar_of_perturbed_cells()};
 }
 
 }  // namespace peristat::tests

@@ -30,7 +30,12 @@ void expect_points_of(const Part& part, const Points& whole) {
       EXPECT_EQ(part.points.reference[here * d + c], whole.reference[there * d + c]);
     }
     EXPECT_EQ(part.points.volume[here], whole.volume[there]);
+    if (!whole.polygons.empty()) {
+      EXPECT_EQ(part.points.polygons.of(here), whole.polygons.of(there));
+    }
   }
+  EXPECT_EQ(part.points.polygons.empty(), whole.polygons.empty());
+  EXPECT_EQ(part.points.angle, whole.angle);
   EXPECT_EQ(part.points.sets.size(), whole.sets.size());
   for (const auto& [name, members] : whole.sets) {
     const auto found = part.points.sets.find(name);
@@ -100,20 +105,14 @@ TEST(Slab, refuses_on_all_ranks_what_it_does_not_tell) {
   };
   Lattice lattice = strip().lattice;
   EXPECT_EQ(key_of(lattice), "none");
-  lattice.angle = 30.0;
-  EXPECT_EQ(key_of(lattice), "angle");
-  lattice = strip().lattice;
-  lattice.volumes = CellVolumes::fractional;
-  EXPECT_EQ(key_of(lattice), "volumes");
-  lattice = strip().lattice;
-  lattice.cell_perturbation = 0.1;
-  EXPECT_EQ(key_of(lattice), "cell_perturbation");
-  lattice = strip().lattice;
   lattice.arrangement = Arrangement::blue_noise;
   EXPECT_EQ(key_of(lattice), "arrangement");
   lattice = strip().lattice;
   lattice.layers = {{"none", {0, 1}, 1, "x < 0"}};
   EXPECT_EQ(key_of(lattice), "layers[0].where");
+  lattice = turned_plate().lattice;
+  lattice.shapes[0].shape = Disk{{1.0, 1.0}, 0.8};
+  EXPECT_EQ(key_of(lattice), "layers[0].side");
   lattice = strip().lattice;
   lattice.shapes.push_back({ShapeStep::Action::subtract, lattice.shapes[0].shape});
   EXPECT_EQ(key_of(lattice), "shapes");

@@ -8,10 +8,14 @@
 #include <utility>
 #include <variant>
 
+#include "cases/runner/build/body.hpp"
+#include "cases/runner/build/recorded_points.hpp"
 #include "solvers/ranks/distribute.hpp"
 #include "solvers/ranks/part_bonds.hpp"
 #include "src/core/input_error.hpp"
+#include "src/geometry/point_file.hpp"
 #include "src/geometry/point_set.hpp"
+#include "src/geometry/points_on_line.hpp"
 #include "src/geometry/slab.hpp"
 
 namespace peristat {
@@ -23,20 +27,22 @@ constexpr std::array keys_of_ranks{
     // points
     "lattice.spacing", "lattice.horizon_ratio", "lattice.thickness", "lattice.area",
     "lattice.origin", "lattice.perturbation", "lattice.seed", "lattice.shape.", "lattice.layer.",
-    "set.",
+    "lattice.angle", "lattice.volumes", "lattice.cell_perturbation", "lattice.points",
+    "points.file", "points.thickness", "points.area", "points.horizon", "set.",
     // bonds
-    "quadrature.volume_correction", "quadrature.surface_correction", "material.model",
-    "material.plane", "material.youngs_modulus", "material.micromodulus", "material.density",
+    "quadrature.", "material.model", "material.plane", "material.youngs_modulus",
+    "material.micromodulus", "material.density", "material.influence", "material.potential",
+    "material.calibration", "material.fibre.", "material.scatter.", "region.", "interface.",
     // conditions
-    "support.", "load.set", "load.body_force", "load.total_force", "load.gravity",
+    "support.", "load.set", "load.side", "load.body_force", "load.total_force", "load.gravity",
+    "load.traction", "load.depth", "eigenstrain.", "temperature.", "material.thermal_expansion",
     // search
     "loading.steps", "loading.table", "loading.table2", "loading.adaptive", "loading.smallest_step",
     "loading.largest_step", "initial.", "absorbing.", "dynamics.", "solver.mode", "solver.operator",
     "solver.linear", "solver.preconditioner", "solver.tangent", "solver.predictor",
     "solver.relative_tolerance", "solver.linear_tolerance", "solver.max_iterations",
     // results
-    "output.directory", "output.every", "probe.name", "probe.set", "probe.field", "probe.component",
-    "probe.statistic", "probe.expected", "probe.other"};
+    "output.directory", "output.every", "output.stress", "probe."};
 
 /// "load[2].body_force[0]" as "load.body_force".
 std::string without_numbers(const std::string& key) {
@@ -78,11 +84,6 @@ void refuse_convolutions(const Case& from) {
 /// Of keys whose values have ranks in part, those that have.
 void refuse_values_without_ranks(const Case& from) {
   refuse_convolutions(from);
-  if (!std::holds_alternative<Lattice>(from.body)) refuse("points", "", "take a lattice");
-  if (from.volume_correction != VolumeCorrection::none &&
-      from.volume_correction != VolumeCorrection::linear) {
-    refuse("quadrature.volume_correction", "", "take \"none\" or \"linear\"");
-  }
   if (from.material.model != MaterialModel::bond) {
     refuse("material.model", "", "take \"bond\"");
   }
@@ -94,29 +95,27 @@ void refuse_values_without_ranks(const Case& from) {
   }
 }
 
-void refuse_probes_without_ranks(const Case& from) {
-  constexpr std::array<std::string_view, 7> fields{"displacement",          "force",   "stretch",
-                                                   "energy_density",        "opening", "velocity",
-                                                   "kinetic_energy_density"};
+/// Refuses probes of sets that are not there, and of places off the body.
+void require_places_of_probes(const Case& from, const RecordedPoints& recorded) {
+  const Points& points = recorded.points();
   for (std::size_t k = 0; k < from.probes.size(); ++k) {
-    const std::string& field = from.probes[k].field;
-    if (std::find(fields.begin(), fields.end(), field) != fields.end()) continue;
-    refuse("probe[" + std::to_string(k) + "].field", '"' + field + '"',
-           "take displacement, velocity, force, stretch, energy_density, kinetic_energy_density or "
-           "opening");
-  }
-}
-
-/// Refuses probes of sets that are not there.
-void require_sets_of_probes(const Case& from, const Points& points) {
-  for (std::size_t k = 0; k < from.probes.size(); ++k) {
+    const ProbeSpecification& probe = from.probes[k];
     const std::string table = "probe[" + std::to_string(k) + "]";
     const auto require = [&](const std::string& key, const std::string& set) {
       if (set.empty() || points.sets.contains(set)) return;
       throw InputError(table + key, '"' + set + '"', "no set of this name");
     };
-    require(".set", from.probes[k].set);
-    require(".other", from.probes[k].other);
+    require(".set", probe.set);
+    require(".other", probe.other);
+    if (probe.at &&
+        nearest_recorded(recorded, *probe.at).distance > 2.0 * points.spacing.largest()) {
+      throw InputError(table + ".at", "", "no point lies within two spacings of this place");
+    }
+    if (!probe.from) continue;
+    const auto here = points_on_line(points, *probe.from, *probe.to, recorded.count()).size();
+    if (recorded.ranks().count_all(std::int64_t(here)).all == 0) {
+      throw InputError(table + ".from", "", "no point lies within half a spacing of this line");
+    }
   }
 }
 
@@ -143,6 +142,16 @@ void add_sets(const Case& from, const Communicator& ranks, Part& part) {
   }
 }
 
+/// Points that stand on a lattice or in a file.
+Part make_slab_of(const Case& from, const Communicator& ranks) {
+  const auto* const lattice = std::get_if<Lattice>(&from.body);
+  if (lattice == nullptr) {
+    const auto& source = std::get<PointSource>(from.body);
+    return read_slab(source.file, from.dimension, source.cross_section, ranks);
+  }
+  return make_slab(*lattice, ranks);
+}
+
 }  // namespace
 
 void refuse_keys_without_ranks(const Case& from) {
@@ -152,14 +161,13 @@ void refuse_keys_without_ranks(const Case& from) {
       refuse(key, "", "docs/cluster.md lists the keys that are");
     }
     refuse_values_without_ranks(from);
-    refuse_probes_without_ranks(from);
   });
 }
 
 std::unique_ptr<const Body> make_part_body(const Case& from, const Communicator& ranks,
                                            int threads) {
   return located_errors(from, [&] {
-    Part slab = make_slab(std::get<Lattice>(from.body), ranks);
+    Part slab = make_slab_of(from, ranks);
     if (slab.whole > std::numeric_limits<Index>::max()) {
       refuse("lattice.spacing", "", "results have numbers for fewer than 2^31 points");
     }
@@ -167,8 +175,11 @@ std::unique_ptr<const Body> make_part_body(const Case& from, const Communicator&
     const double reach = reach_of_bonds(slab.points, from.surface_correction, setting, ranks);
     Part part = distribute(std::move(slab), setting.horizon, reach, ranks, threads);
     add_sets(from, ranks, part);
-    require_sets_of_probes(from, part.points);
-    return make_body(std::move(part), from, ranks, threads);
+    BodySpecification of = from;
+    if (tells_stress(from)) of.evaluation_bytes_per_point = stress_bytes_per_point(from.dimension);
+    std::unique_ptr<const Body> body = make_body(std::move(part), of, ranks, threads);
+    require_places_of_probes(from, {body->points, body->part.get()});
+    return body;
   });
 }
 

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "src/core/communicator.hpp"
+#include "src/geometry/layer.hpp"
+
+namespace peristat {
+
+/// outermost_face of a body that ranks have parts of: a call that all make, with the places that
+/// each has.
+[[nodiscard]] std::optional<double> outermost_face(const Solid& body, const Side& side,
+                                                   const std::vector<Coordinates>& places,
+                                                   double spacing, const Communicator& ranks);
+
+}  // namespace peristat

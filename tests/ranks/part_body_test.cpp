@@ -1,0 +1,209 @@
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "assembly/assembler.hpp"
+#include "solvers/ranks/distribute.hpp"
+#include "solvers/ranks/part_bonds.hpp"
+#include "solvers/study/body.hpp"
+#include "src/core/input_error.hpp"
+#include "src/geometry/slab.hpp"
+#include "tests/bodies.hpp"
+#include "tests/ranks/bodies_on_ranks.hpp"
+#include "tests/ranks/on_ranks.hpp"
+
+namespace peristat::tests {
+namespace {
+
+constexpr double round_off = 1e-11;
+
+/// A body with its sets, as one rank and as all make it.
+struct BodyOfTest {
+  std::string name;
+  Lattice lattice;
+  BodySpecification of;
+  std::vector<SetRule> sets{};
+};
+
+Part part_of(const BodyOfTest& body) {
+  const Communicator& ranks = all_ranks();
+  Part slab = make_slab(body.lattice, ranks);
+  const double reach = reach_of_bonds(slab.points, body.of.surface_correction,
+                                      bond_setting(body.of, slab.points), ranks);
+  Part part = distribute(std::move(slab), body.of.horizon, reach, ranks, 1);
+  for (const SetRule& rule : body.sets) part.points.sets[rule.name] = select(part.points, rule);
+  return part;
+}
+
+Points whole_of(const BodyOfTest& body) {
+  Points points = make_points(body.lattice);
+  for (const SetRule& rule : body.sets) add_set(points, rule);
+  return points;
+}
+
+/// Of a plate 1.7 x 2.6 with a hole, or of half of it.
+BodyOfTest plate(const std::string& name) {
+  BodyOfTest body{name, plate_with_hole().lattice, {}, {}};
+  body.of.horizon = 0.3015;
+  body.of.material.youngs_modulus = 3.0;
+  body.of.material.density = 2.0;
+  body.of.supports = {{"below", {"0", "0", {}}}};
+  body.sets = {{"upper", "y > 1.6"}, {"inner", "sqrt((x-1.2)^2 + (y-1.7)^2) < 0.55"}};
+  return body;
+}
+
+std::vector<BodyOfTest> bodies_of_test() {
+  std::vector<BodyOfTest> all;
+  BodyOfTest regions = plate("regions, fibres, random fields");
+  regions.of.surface_correction = SurfaceCorrection::energy;
+  regions.of.volume_correction = VolumeCorrection::linear;
+  MaterialSpecification stiff = regions.of.material;
+  stiff.youngs_modulus = 9.0;
+  stiff.fibre = FibreSpecification{30.0, {}, 4.0, {}, {}};
+  stiff.scatter = {{ScatterSpecification::Quantity::stiffness, {}, {8.0, 0.3, 5}}};
+  regions.of.regions = {{"upper", stiff}};
+  all.push_back(regions);
+
+  BodyOfTest shares = plate("exact shares, another influence");
+  shares.of.surface_correction = SurfaceCorrection::volume;
+  shares.of.volume_correction = VolumeCorrection::exact_centroids;
+  shares.of.material.influence = "gaussian";
+  shares.of.material.calibration = Calibration::lattice;
+  all.push_back(shares);
+
+  BodyOfTest square = plate("square horizons of a turned lattice");
+  square.lattice.angle = 25.0;
+  square.of.horizon_shape = HorizonShape::box;
+  all.push_back(square);
+
+  BodyOfTest polygons = plate("polygons");
+  polygons.lattice.cell_perturbation = 0.2;
+  polygons.of.volume_correction = VolumeCorrection::exact;
+  all.push_back(polygons);
+
+  BodyOfTest loads = plate("loads");
+  using Kind = LoadSpecification::Kind;
+  loads.of.loads = {{Kind::body_force, "upper", {"load*x", "y", "0"}},
+                    {Kind::total_force, "upper", {"3*load", "1", "0"}},
+                    {Kind::gravity, "", {"0", "-9.81", "0"}}};
+  LoadSpecification traction{Kind::traction, "", {"load", "2*x", "0"}};
+  traction.side = Side{1, 1};
+  loads.of.loads.push_back(traction);
+  traction.side = Side{0, 1};
+  traction.depth = Depth::horizon;
+  loads.of.loads.push_back(traction);
+  loads.of.eigenstrains.given = {{"inner", "0.01*load"}, {"", "0.002*y"}};
+  all.push_back(loads);
+
+  return all;
+}
+
+/// Expects per point what the whole body has.
+void expect_same(const Part& part, const std::vector<double>& mine,
+                 const std::vector<double>& whole, std::size_t width, const std::string& what) {
+  const double scale = largest(whole);
+  for (Index i = 0; i < part.owned; ++i) {
+    for (std::size_t c = 0; c < width; ++c) {
+      const double expected = whole[std::size_t(part.number[std::size_t(i)]) * width + c];
+      EXPECT_NEAR(mine[std::size_t(i) * width + c], expected, round_off * scale) << what;
+    }
+  }
+}
+
+/// Energy, and forces folded onto what is followed, in a random state at an end of the programme.
+struct Evaluated {
+  double energy = 0.0;
+  std::vector<double> forces, loads, strain;
+};
+
+Evaluated evaluate(const Body& body, const std::function<GlobalIndex(Index)>& number,
+                   std::size_t dofs_of_whole) {
+  const auto d = std::size_t(body.points.dimension);
+  const std::vector<double> random = Random(5).vector(dofs_of_whole, 0.05 * body.points.spacing);
+  const Conditions& conditions = *body.conditions;
+  const Constraints& constraints = conditions.constraints();
+  std::vector<double> u(constraints.dofs());
+  for (Index i = 0; i < body.points.own(); ++i) {
+    for (std::size_t c = 0; c < d; ++c) {
+      u[std::size_t(i) * d + c] = random[std::size_t(number(i)) * d + c];
+    }
+  }
+  conditions.prescribe(1.0, u);
+  constraints.move(u);
+  if (body.part) {
+    const auto first = u.begin() + std::ptrdiff_t(std::size_t(body.part->owned()) * d);
+    std::fill(first, u.begin() + std::ptrdiff_t(std::size_t(body.points.own()) * d), 1e3);
+    body.part->update_ghosts(u);
+  }
+  Assembler assembler(body.points, body.model, 1, body.part.get());
+  Evaluated found;
+  found.forces.resize(u.size());
+  found.loads.resize(u.size());
+  conditions.external_force(1.0, found.loads);
+  const SharedEnvironment environment = conditions.environment(1.0);
+  if (environment) found.strain = environment->eigenstretch;
+  const History history = assembler.initial_history();
+  found.energy = assembler.gradient({u, history, Damage::grows, environment}, found.forces).energy;
+  constraints.fold(u, found.loads, found.forces);
+  return found;
+}
+
+TEST(PartBody, is_that_of_the_whole_body) {
+  for (const BodyOfTest& of : bodies_of_test()) {
+    SCOPED_TRACE(of.name);
+    const auto whole = make_body(whole_of(of), of.of, 1);
+    const Part part = part_of(of);
+    const auto mine = make_body(part, of.of, all_ranks(), 1);
+    const auto d = std::size_t(whole->points.dimension);
+    const std::size_t dofs = std::size_t(whole->points.own()) * d;
+    const Evaluated expected = evaluate(
+        *whole, [](Index i) { return GlobalIndex(i); }, dofs);
+    const Evaluated found = evaluate(
+        *mine, [&](Index i) { return part.number[std::size_t(i)]; }, dofs);
+    EXPECT_GT(expected.energy, 0.0);
+    EXPECT_NEAR(found.energy, expected.energy, round_off * expected.energy);
+    expect_same(part, found.forces, expected.forces, d, "forces");
+    expect_same(part, found.loads, expected.loads, d, "loads");
+    EXPECT_EQ(found.strain.empty(), expected.strain.empty());
+    if (!found.strain.empty()) expect_same(part, found.strain, expected.strain, 1, "strain");
+    EXPECT_EQ(count_bonds(part.owned, mine->model.bonds(), all_ranks()),
+              whole->model.bonds().count());
+    EXPECT_EQ(mine->region.empty(), whole->region.empty());
+    EXPECT_EQ(mine->factors.stiffness.empty(), whole->factors.stiffness.empty());
+    for (Index i = 0; i < part.owned; ++i) {
+      const auto here = std::size_t(i), there = std::size_t(part.number[here]);
+      if (!whole->region.empty()) {
+        EXPECT_EQ(mine->region[here], whole->region[there]);
+      }
+      if (!whole->factors.stiffness.empty()) {
+        EXPECT_EQ(mine->factors.stiffness[here], whole->factors.stiffness[there]);
+      }
+    }
+  }
+}
+
+TEST(PartBody, refuses_an_interface_that_no_rank_crosses) {
+  BodyOfTest body = plate("two parts far from one another");
+  body.sets = {{"low", "y < 0.6"}, {"high", "y > 2.4"}};
+  MaterialSpecification other = body.of.material;
+  other.youngs_modulus = 5.0;
+  body.of.regions = {{"low", other}, {"high", other}};
+  body.of.interfaces = {{{"low", "material"}, {}, {}}};
+  EXPECT_NE(make_body(part_of(body), body.of, all_ranks(), 1), nullptr);
+  body.of.interfaces = {{{"low", "high"}, {}, {}}};
+  std::string key;
+  try {
+    static_cast<void>(make_body(part_of(body), body.of, all_ranks(), 1));
+  } catch (const InputError& error) {
+    key = error.key();
+  }
+  EXPECT_EQ(key, "interfaces[0]");
+}
+
+}  // namespace
+}  // namespace peristat::tests
