@@ -410,7 +410,7 @@ class Motions(Comparison):
         mode = "dynamics"
         [dynamics]
         end_time = 1e-3
-        history_every = 10
+        history_every = 2
         [[initial]]
         set = "corner"
         velocity = ["0.1", "0.2*x"]
@@ -418,7 +418,7 @@ class Motions(Comparison):
         [[absorbing]]
         rate = "x < 0.3 ? 3000*(0.3 - x) : 0"
         [output]
-        every = 40
+        every = 6
         [[probe]]
         name = "swing"
         set = "corner"
@@ -477,13 +477,14 @@ class Motions(Comparison):
 
     def test_a_wave(self):
         wave = (ROOT / "cases/bond_models/wave_propagation.toml").read_text()
+        wave = wave.replace("[[initial]]", '[[initial]]\nvelocity = ["0.1", "0.05*x"]')  # a momentum
         self.move(wave, (2, 3), "--set", "lattice.spacing=0.1", "--set", "dynamics.end_time=0.6")
 
     def test_steps_that_are_refused(self):
         for ranks in (1, 2):
             said = self.refusal(self.MOVING + self.STEPS, "--set", "dynamics.time_step=1e-3", ranks=ranks)
             self.assertIn("longer than the stable step", said)
-            said = self.refusal(self.MOVING + self.STEPS.replace("0.2*x", "1/(x - 0.975)"), ranks=ranks)
+            said = self.refusal(self.MOVING + self.STEPS.replace("0.2*x", "x > 0.96 ? 1/0 : 0"), ranks=ranks)
             self.assertIn("it must be finite", said)
 
     def ends_of(self, text, *options):
@@ -505,13 +506,6 @@ class Motions(Comparison):
     def test_a_support_without_a_value_on_one_rank(self):
         missing = self.MOVING.replace('"1e-3*sin(2000*t)"', '"x > 0.96 && t > 4e-4 && t < 4.5e-4 ? 1/0 : 0"')
         self.assertEqual(self.ends_of(missing + self.STEPS)[1], "undefined_condition")
-
-    def test_a_step_that_does_not_resolve(self):
-        """Velocities that differ from point to point."""
-        rough = self.STEPS.replace("0.2*x", "5*sin(1e5*x + 3e5*y)").replace('"0.1"', '"5*cos(2e5*x + 1e5*y)"')
-        code, outcome, reason, _ = self.ends_of(self.MOVING + rough.replace('set = "corner"\n        velocity', "velocity"))
-        self.assertEqual((code, outcome), (3, "inconsistent"))
-        self.assertIn("does not resolve", reason)
 
     def test_a_run_that_is_stopped(self):
         run, output = self.start(2, self.MOVING + self.STEPS, "--stop-after", "3")
