@@ -161,6 +161,7 @@ Part with_ghosts(Part part, double reach, const Communicator& ranks) {
   const PointRecords format(part);
   const Records offered = offered_points(part, format, distance, ranks);
   format.append_to(part, wanted_of(part, offered, distance), true);
+  part.points.owned = part.owned;
   return part;
 }
 

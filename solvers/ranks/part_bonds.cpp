@@ -2,6 +2,9 @@
 
 #include <stdexcept>
 
+#include "solvers/ranks/agree_on_kinds.hpp"
+#include "src/geometry/counts_bond.hpp"
+
 namespace peristat {
 namespace {
 
@@ -18,23 +21,26 @@ double reach_of_bonds(const Points& points, SurfaceCorrection surface, const Bon
 }
 
 Bonds make_bonds(const Part& part, SurfaceCorrection surface, const BondSetting& setting,
-                 int threads) {
+                 const Communicator& ranks, int threads) {
   if (part.reach < reach_here(part.points, surface, setting)) {
     throw std::logic_error("the ghosts of a part don't reach as far as its bonds");
   }
   Bonds bonds = make_bonds(part.points, surface, setting, threads);
   // Ghosts come last, so that a lower point that is one has no other partners.
   bonds.remove_if([&](Index i, Offset) { return part.is_ghost(i); });
+  agree_on_kinds(bonds, part, ranks);
   return bonds;
 }
 
-GlobalIndex count_bonds(Index owned, const Bonds& bonds, const Communicator& ranks) {
-  GlobalIndex ends = 0;  // that are this rank's
-  for (Offset bond = 0; bond < bonds.count(); ++bond) {
-    if (bonds.weight(bond) == 0.0) continue;
-    ends += bonds.partner[std::size_t(bond)] >= owned ? 1 : 2;
+GlobalIndex count_bonds(const Points& points, const Bonds& bonds, const Communicator& ranks) {
+  GlobalIndex mine = 0;
+  for (Index i = 0; i < bonds.points(); ++i) {
+    for (Offset bond = bonds.offset[i]; bond < bonds.offset[i + 1]; ++bond) {
+      const Index j = bonds.partner[std::size_t(bond)];
+      if (bonds.weight(bond) != 0.0 && counts_bond(points, i, j)) ++mine;
+    }
   }
-  return ranks.count_all(ends).all / 2;
+  return ranks.count_all(mine).all;
 }
 
 }  // namespace peristat

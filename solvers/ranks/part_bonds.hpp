@@ -13,13 +13,15 @@ namespace peristat {
                                     const BondSetting& setting, const Communicator& ranks);
 
 /// The bonds of a body that a part has: every one with a point that its rank owns, with the weights
-/// of make_bonds. A bond of points of two ranks is on both; none is between ghosts.
+/// of make_bonds. A bond of points of two ranks is on both, with the same bits (agree_on_kinds);
+/// none is between ghosts. A call that all make.
 /// @throws std::logic_error if the part's ghosts don't reach as far as reach_of_bonds
 [[nodiscard]] Bonds make_bonds(const Part& part, SurfaceCorrection surface,
-                               const BondSetting& setting, int threads);
+                               const BondSetting& setting, const Communicator& ranks, int threads);
 
 /// Bonds of the whole body that have a weight, each counted once.
-/// @param owned points of the rank, the first ones
-[[nodiscard]] GlobalIndex count_bonds(Index owned, const Bonds& bonds, const Communicator& ranks);
+/// @param points of the rank
+[[nodiscard]] GlobalIndex count_bonds(const Points& points, const Bonds& bonds,
+                                      const Communicator& ranks);
 
 }  // namespace peristat

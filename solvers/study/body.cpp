@@ -307,7 +307,8 @@ namespace {
 void refuse_without_ranks(const BodySpecification& of) {
   const auto refuse = [](const std::string& key) {
     throw InputError(key, "",
-                     "is not for more than one rank yet: there are elastic bonds with supports, "
+                     "is not for more than one rank yet: there are elastic bonds with "
+                     "pre-cracks, supports, "
                      "body forces, total forces and gravity");
   };
   const MaterialSpecification& material = of.material;
@@ -324,7 +325,6 @@ void refuse_without_ranks(const BodySpecification& of) {
     if (fails) refuse("interfaces[" + std::to_string(k) + "].material.damage");
   }
   if (of.force_operator != ForceOperator::bonds) refuse("force_operator");
-  if (!of.cracks.empty()) refuse("cracks");
   if (!of.foundations.empty()) refuse("foundations");
   if (!of.controls.empty()) refuse("controls");
   if (of.has_inertia) refuse("has_inertia");
@@ -370,13 +370,15 @@ std::unique_ptr<const Body> make_body(Part part, const BodySpecification& of,
   body.part = std::make_unique<const PartOfBody>(part, ranks);
   {
     const Stopwatch watch(body.seconds_neighbourhood);
-    Bonds bonds = make_bonds(part, of.surface_correction, body.setting, threads);
+    Bonds bonds = make_bonds(part, of.surface_correction, body.setting, ranks, threads);
     body.points = std::move(part.points);
     refuse_coincident_points(body.points, bonds);
     const PointMaterials materials(of, body.points);
     note_materials(body, materials, threads);
-    CutBonds none;
-    body.model = make_bond_model(body, materials, std::move(bonds), none);
+    CutBonds cut;
+    body.model = make_bond_model(body, materials, std::move(bonds), cut);
+    body.cut_weight = std::move(cut.weight);
+    body.cut_bonds = std::move(cut.ends);
   }
   LoadSetting loads = load_setting(of, body.points);
   loads.ranks = &ranks;

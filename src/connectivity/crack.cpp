@@ -286,7 +286,8 @@ CutBonds cut_bonds(Bonds& bonds, const Points& points, const std::vector<Crack>&
   CutBonds removed{std::vector<double>(points.volume.size(), 0.0), {}};
   bonds.remove_if([&](Index i, Offset bond) {
     const Index j = bonds.partner[bond];
-    const Coordinates a = points.position(i), b = points.position(j);
+    // Ranks number points differently, and are to cut alike: the end that comes first by its place.
+    const auto [a, b] = std::minmax({points.position(i), points.position(j)});
     const Box box = box_around(a, b);
     const double slack = 2.0 * touching_tolerance * bonds.length(bond);  // more than cuts allows
     for (std::size_t k = 0; k < cracks.size(); ++k) {

@@ -219,6 +219,16 @@ class SameResults(Comparison):
     def test_a_perturbed_block_with_corrections_under_its_weight(self):
         self.compare(BLOCK)
 
+    def test_pre_cracks(self):
+        in_plane = PLATE + '[[crack]]\nfrom = [0, 1.02]\nto = [0.33, 1.05]\n[[crack]]\nfrom = [0.7, 0.3]\nto = [1, 0.3]\n'
+        one = self.compare(in_plane, (2, 3, 4), "--set", "output.count_cracks=true")
+        with h5py.File(one / "results.h5") as file:
+            self.assertGreater(file["steps/000002/damage"][()].max(), 0.2)
+        in_space = BLOCK + "[[crack]]\nvertices = [[0, 0, 0.5], [0.4, 0, 0.5], [0.4, 0.6, 0.52], [0, 0.6, 0.52]]\n"
+        one = self.compare(in_space, (3,))
+        with h5py.File(one / "results.h5") as file:
+            self.assertEqual(file["steps/000002/damage"][()].max(), 0.0)
+
     def test_a_body_thinner_than_the_horizon_and_ranks_without_a_point(self):
         self.compare(SHORT_BAR, (2, 3, 8))
 
@@ -864,7 +874,6 @@ class Refusals(OnRanks):
             'material.kinematics="linear"',
             'material.damage={law="critical_stretch", critical=0.1}',
             'lattice.points="blue_noise"',
-            "crack=[{from=[0, 1], to=[0.3, 1]}]",
             'rigid=[{set="corner"}]',
             'symmetry=[{axis="x", at=0}]',
             'foundation=[{name="f", set="corner", stiffness=[1, 1]}]',

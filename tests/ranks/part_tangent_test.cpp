@@ -23,7 +23,7 @@ TEST(AssemblerOfPart, is_that_of_the_whole_body) {
       SCOPED_TRACE(body.name + ", surface correction " + std::to_string(int(surface)));
       Whole whole(body, surface);
       OnRanks ranks(body, surface);
-      EXPECT_EQ(count_bonds(ranks.part.owned, ranks.model.bonds(), all_ranks()),
+      EXPECT_EQ(count_bonds(ranks.part.points, ranks.model.bonds(), all_ranks()),
                 whole.model.bonds().count());
 
       const std::size_t dofs = whole.points.reference.size();
@@ -73,8 +73,9 @@ TEST(AssemblerOfPart, asks_for_ghosts_as_far_as_bonds_reach) {
   const Communicator& ranks = all_ranks();
   const Part part = distribute(make_slab(body.lattice, ranks), body.setting().horizon,
                                0.9 * body.setting().horizon, ranks, 1);
-  EXPECT_THROW(static_cast<void>(make_bonds(part, SurfaceCorrection::none, body.setting(), 1)),
-               std::logic_error);
+  EXPECT_THROW(
+      static_cast<void>(make_bonds(part, SurfaceCorrection::none, body.setting(), ranks, 1)),
+      std::logic_error);
 }
 
 TEST(AssemblerOfPart, refuses_what_needs_bonds_between_ghosts) {

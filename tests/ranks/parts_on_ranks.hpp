@@ -43,7 +43,7 @@ struct Whole {
 struct OnRanks {
   OnRanks(const RanksBody& body, SurfaceCorrection surface)
       : part(make_part(body, surface)),
-        model(make_bonds(part, surface, body.setting(), 1), law_of(body.setting())),
+        model(make_bonds(part, surface, body.setting(), all_ranks(), 1), law_of(body.setting())),
         sharing(part, all_ranks()),
         energy(part.points, model, 1, &sharing),
         matrix_free(energy),

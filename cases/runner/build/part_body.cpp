@@ -33,6 +33,7 @@ constexpr std::array keys_of_ranks{
     "quadrature.", "material.model", "material.plane", "material.youngs_modulus",
     "material.micromodulus", "material.density", "material.influence", "material.potential",
     "material.calibration", "material.fibre.", "material.scatter.", "region.", "interface.",
+    "crack.",
     // conditions
     "support.", "load.set", "load.side", "load.body_force", "load.total_force", "load.gravity",
     "load.traction", "load.depth", "eigenstrain.", "temperature.", "material.thermal_expansion",
@@ -42,7 +43,7 @@ constexpr std::array keys_of_ranks{
     "solver.linear", "solver.preconditioner", "solver.tangent", "solver.predictor",
     "solver.relative_tolerance", "solver.linear_tolerance", "solver.max_iterations",
     // results
-    "output.directory", "output.every", "output.stress", "probe."};
+    "output.directory", "output.every", "output.stress", "output.count_cracks", "probe."};
 
 /// "load[2].body_force[0]" as "load.body_force".
 std::string without_numbers(const std::string& key) {

@@ -55,7 +55,7 @@ void count(const Body& body, const FreeDofs& free, const RunOptions& options,
     for (const InteractionCount& kind : term->counts()) summary.count(kind.name, kind.count);
   }
   if (body.part) {
-    summary.count("bonds", count_bonds(body.part->owned(), body.model.bonds(), ranks));
+    summary.count("bonds", count_bonds(body.points, body.model.bonds(), ranks));
   }
   summary.costs.seconds.neighbourhood += body.seconds_neighbourhood;
   summary.threads = options.threads;
