@@ -82,9 +82,18 @@ constexpr double vectors_of_events = 12.0, numbers_of_events_per_bond = 6.0;
 /// Of mode dynamics: mass, its inverse, velocities before and after, and those of Lanczos' method.
 constexpr double vectors_of_motion = 9.0;
 
+/// A rank may have no point, which no estimate is made for.
+MemoryEstimate estimate_memory_of_part(const Body& body) {
+  if (body.points.count() > 0) return estimate_memory(body);
+  MemoryEstimate nothing;
+  nothing.size.dimension = body.points.dimension;
+  nothing.size.ranks = body.part->ranks().count();
+  return nothing;
+}
+
 /// Explicit steps solve nothing; they need products of the tangent now and then.
 LinearSystems systems_of_motion(const Body& body) {
-  const MemoryEstimate estimate = estimate_memory(body);
+  const MemoryEstimate estimate = estimate_memory_of_part(body);
   LinearSystems systems;
   systems.chosen.solver = std::make_unique<NoSolver>();
   systems.chosen.is_direct = false;
@@ -118,15 +127,6 @@ void refuse_solvers_without_ranks(const StudyOptions& options, const Body& body)
   }
   if (!body.model.has_rows()) refuse("force_operator", "\"bonds\"");
   if (!body.conditions->constraints().none()) refuse("constraints", "none");
-}
-
-/// A rank may have no point, which no estimate is made for.
-MemoryEstimate estimate_memory_of_part(const Body& body) {
-  if (body.points.count() > 0) return estimate_memory(body);
-  MemoryEstimate nothing;
-  nothing.size.dimension = body.points.dimension;
-  nothing.size.ranks = body.part->ranks().count();
-  return nothing;
 }
 
 /// Convolutions without a potential have neither rows to solve with nor an energy to search by.
