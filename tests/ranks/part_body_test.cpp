@@ -171,7 +171,7 @@ TEST(PartBody, is_that_of_the_whole_body) {
     expect_same(part, found.loads, expected.loads, d, "loads");
     EXPECT_EQ(found.strain.empty(), expected.strain.empty());
     if (!found.strain.empty()) expect_same(part, found.strain, expected.strain, 1, "strain");
-    EXPECT_EQ(count_bonds(part.owned, mine->model.bonds(), all_ranks()),
+    EXPECT_EQ(count_bonds(mine->points, mine->model.bonds(), all_ranks()),
               whole->model.bonds().count());
     EXPECT_EQ(mine->region.empty(), whole->region.empty());
     EXPECT_EQ(mine->factors.stiffness.empty(), whole->factors.stiffness.empty());
