@@ -623,7 +623,7 @@ class Ends(OnRanks):
         self.assertIn("is a file", run.stderr)
 
     def test_a_rank_that_is_killed_ends_all(self):
-        file = self.case(PLATE.replace("spacing = 0.05", "spacing = 0.004").replace("steps = 2", "steps = 50") + SOLVER)
+        file = self.case(PLATE.replace("spacing = 0.05", "spacing = 0.025").replace("steps = 2", "steps = 5000") + SOLVER)
         words = [PROGRAM, "run", "--ranks", "2", str(file), "--threads", "1", "--output", str(self.folder / "out")]
         run = subprocess.Popen(words, env=ENVIRONMENT, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         try:
@@ -653,7 +653,7 @@ class Ends(OnRanks):
 
     def limited(self, limit, of_all, room):
         """A run whose last rank, or all of them, come to a limit of the system when they have accepted two steps."""
-        file = self.case(PLATE.replace("spacing = 0.05", "spacing = 0.01").replace("steps = 2", "steps = 500") + SOLVER)
+        file = self.case(PLATE.replace("spacing = 0.05", "spacing = 0.025").replace("steps = 2", "steps = 5000") + SOLVER)
         words = [PROGRAM, "run", "--ranks", "2", str(file), "--threads", "1", "--output", str(self.folder / "out")]
         run = subprocess.Popen(words, env=ENVIRONMENT, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
         try:
