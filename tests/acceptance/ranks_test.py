@@ -745,7 +745,7 @@ class Ends(OnRanks):
         self.assertIn("is a file", run.stderr)
 
     def test_a_rank_that_is_killed_ends_all(self):
-        file = self.case(PLATE.replace("spacing = 0.05", "spacing = 0.004").replace("steps = 2", "steps = 50") + SOLVER)
+        file = self.case(PLATE.replace("spacing = 0.05", "spacing = 0.025").replace("steps = 2", "steps = 5000") + SOLVER)
         words = [PROGRAM, "run", "--ranks", "2", str(file), "--threads", "1", "--output", str(self.folder / "out")]
         run = subprocess.Popen(words, env=ENVIRONMENT, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         try:
@@ -773,35 +773,23 @@ class Ends(OnRanks):
         with h5py.File(output / "results.h5") as file:
             self.assertGreaterEqual(len(file["history/step"]), len(steps) + 2 * len(numbers_of_ranks) - 1)
 
-    def limited(self, limit, of_all, room):
-        """A run whose last rank, or all of them, come to a limit of the system when they have accepted two steps."""
-        file = self.case(PLATE.replace("spacing = 0.05", "spacing = 0.01").replace("steps = 2", "steps = 500") + SOLVER)
+    def test_files_that_can_not_grow_end_all(self):
+        """Like a full disk, which faults_test.py has for one rank."""
+        file = self.case(PLATE.replace("spacing = 0.05", "spacing = 0.025").replace("steps = 2", "steps = 5000") + SOLVER)
         words = [PROGRAM, "run", "--ranks", "2", str(file), "--threads", "1", "--output", str(self.folder / "out")]
         run = subprocess.Popen(words, env=ENVIRONMENT, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
         try:
-            ranks = self.wait_for_ranks(run.pid, steps=2)
-            for rank in ranks if of_all else ranks[-1:]:
-                resource.prlimit(rank, limit, (room, room))
+            for rank in self.wait_for_ranks(run.pid, steps=2):
+                resource.prlimit(rank, resource.RLIMIT_FSIZE, (1 << 14, 1 << 14))
             said = run.communicate(timeout=60)[1]
         finally:
             run.kill()
             run.wait()
+        self.assertEqual(run.returncode, 5, said)
         self.assertRegex(said, "accepted steps? (is|are) in")
         summary = json.loads((self.folder / "out/summary.json").read_text())
         self.assertEqual(summary["status"], "failed", said)
         self.assertGreater(summary["steps"], 1)
-        return run.returncode, said
-
-    def test_a_rank_without_memory_ends_all(self):
-        code, said = self.limited(resource.RLIMIT_AS, False, 1 << 20)
-        self.assertEqual(code, 4, said)
-        self.assertIn("out of memory", said)
-        self.expect_going_on(self.folder / "out", 2)
-
-    def test_files_that_can_not_grow_end_all(self):
-        """Like a full disk, which faults_test.py has for one rank."""
-        code, said = self.limited(resource.RLIMIT_FSIZE, True, 1 << 14)
-        self.assertEqual(code, 5, said)
         self.expect_going_on(self.folder / "out", 3)
 
     def test_an_interruption_ends_a_run_in_order(self):
