@@ -111,6 +111,11 @@ void check_study(const Body& body, const StudyOptions& options) {
                                  : "is for bodies that implicit steps follow");
   }
   if (body.part) {
+    // Whose histories the driver looks at here alone, where all ranks are to decide alike.
+    if (moves && body.model.has_history()) {
+      throw InputError("material.damage", "",
+                       "is not for more than one rank in mode dynamics; take one");
+    }
     if (!moves) refuse_unheld_part(body);
     return;
   }
