@@ -327,7 +327,7 @@ void refuse_without_ranks(const BodySpecification& of) {
   if (of.force_operator != ForceOperator::bonds) refuse("force_operator");
   if (!of.foundations.empty()) refuse("foundations");
   if (!of.controls.empty()) refuse("controls");
-  if (of.end_time || of.has_inertia) refuse("end_time");
+  if (of.has_inertia) refuse("has_inertia");
   const ConstraintSpecification& constraints = of.constraints;
   const bool is_constrained = !constraints.rigid_sets.empty() || !constraints.rollers.empty() ||
                               !constraints.linear.empty() || !constraints.symmetries.empty() ||

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "solvers/linear/available_memory.hpp"
+#include "solvers/motion/shared_stiffness.hpp"
 #include "solvers/ranks/part_tangent.hpp"
 #include "solvers/study/found_loads.hpp"
 #include "solvers/study/motion.hpp"
@@ -82,11 +83,11 @@ std::vector<char> without_equation(const Body& body) {
   return without_ghosts(*body.part, prescribed, body.points.dimension);
 }
 
-/// Of the modes there is one that sums over ranks.
+/// Of the modes there are two that sum over ranks.
 void refuse_modes_without_ranks(const StudyOptions& options) {
-  if (options.loading.mode == Mode::newton) return;
+  if (options.loading.mode == Mode::newton || options.loading.mode == Mode::dynamics) return;
   throw InputError("loading.mode", std::string(options.loading.mode.name),
-                   "is not for more than one rank yet; take newton");
+                   "is not for more than one rank yet; take newton or dynamics");
 }
 
 }  // namespace
@@ -109,7 +110,10 @@ void check_study(const Body& body, const StudyOptions& options) {
                      is_implicit ? "must be set: implicit steps need a body with inertia"
                                  : "is for bodies that implicit steps follow");
   }
-  if (body.part) return refuse_unheld_part(body);
+  if (body.part) {
+    if (!moves) refuse_unheld_part(body);
+    return;
+  }
   if (!moves) refuse_unheld_bodies(body);
   refuse_unstable_rest(body, options);
 }
@@ -159,7 +163,8 @@ const Stiffness& Study::find_initial_stiffness() {
   const History history = assembler.initial_history();
   tangent.linearise(assembler, {displacement, history, Damage::grows, conditions.environment(0.0)},
                     projection_for_stiffness(assembler));
-  motion_->at_start = find_stiffness(tangent, free, motion_->mass, motion_->most_points);
+  motion_->at_start =
+      find_stiffness(tangent, free, motion_->mass, motion_->most_points, assembler.sharing());
   const double step = options_.loading.dynamics.time_step;
   const double stable = motion_->at_start->stable_step();
   if (options_.loading.dynamics.scheme == MotionScheme::newmark) {

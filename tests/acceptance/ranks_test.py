@@ -166,9 +166,11 @@ def rows(output, table):
 class Comparison(OnRanks):
     def expect_same(self, one, several):
         with h5py.File(one / "results.h5") as expected, h5py.File(several / "results.h5") as found:
-            names = [name for name in objects(expected) if name != "checkpoint"]
+            names = objects(expected)
             self.assertEqual(names, objects(found))
             for name in names:
+                if name == "checkpoint":
+                    continue  # of seconds, too
                 if not isinstance(expected[name], h5py.Dataset) or name.startswith("iterations/"):
                     continue
                 if name == "case/as_resolved" or name.startswith("case/settings"):
@@ -184,8 +186,9 @@ class Comparison(OnRanks):
         if name.endswith(("balance_error", "/reason", "pin_force")):
             return  # differences of large numbers
         scale = numpy.abs(expected[()]).max(initial=0)
-        if name.startswith("history/reaction"):
-            scale = max(numpy.abs(file[()]).max() for key, file in expected.parent.items() if "reaction" in key)
+        if name.startswith(("history/reaction", "history/momentum")):
+            kind = name.split("_")[0].split("/")[1]
+            scale = max(numpy.abs(file[()]).max() for key, file in expected.parent.items() if kind in key)
         difference = numpy.abs(expected[()] - found[()]).max(initial=0)
         self.assertLessEqual(difference, 1e-9 * scale, name)
 
@@ -197,10 +200,10 @@ class Comparison(OnRanks):
                 self.assertEqual(before[key], after[key])
             self.assertAlmostEqual(int(before["linear_iterations"]), int(after["linear_iterations"]), delta=1)
 
-    def compare(self, text, ranks=(2, 3), *options):
-        one = self.results(1, text + SOLVER, *options)
+    def compare(self, text, ranks=(2, 3), *options, solver=SOLVER):
+        one = self.results(1, text + solver, *options)
         for count in ranks:
-            several = self.results(count, text + SOLVER, *options)
+            several = self.results(count, text + solver, *options)
             with self.subTest(ranks=count):
                 self.expect_same(one, several)
                 self.expect_same_iterations(one, several)
@@ -357,6 +360,10 @@ class SameResults(Comparison):
         with h5py.File(one / "results.h5") as file:
             self.assertEqual(list(file["steps"]), ["000002", "000003"])
 
+    def test_operators(self):
+        for operator in ("auto", "bonds"):
+            self.compare(PLATE, (2,), "--set", f'solver.operator="{operator}"')
+
     def test_automatic_choices(self):
         one = self.results(1, PLATE)
         run, several = self.start(2, PLATE, "--set", "solver.relative_tolerance=1e-12")
@@ -399,6 +406,123 @@ class SameResults(Comparison):
         self.assertEqual(run.returncode, 0, run.stderr)
         self.expect_same(one, output)
         self.assertEqual(run.stdout.count("completed in"), 1)
+
+
+class Motions(Comparison):
+    """Explicit steps: waves, supports and loads that move, layers that absorb."""
+
+    MOVING = (
+        PLATE.replace('"0.05*load"', '"1e-3*sin(2000*t)"')
+        .replace('["1e6*load*y", 0]', '["1e6*t*2000*y", "1e5*exp(-t*5000)"]')
+        .replace("youngs_modulus", "density = 1000\nyoungs_modulus")
+        .replace("[loading]\nsteps = 2\n", "")
+    )
+    STEPS = """
+        [solver]
+        mode = "dynamics"
+        [dynamics]
+        end_time = 1e-3
+        history_every = 2
+        [[initial]]
+        set = "corner"
+        velocity = ["0.1", "0.2*x"]
+        displacement = ["1e-4*exp(-(y - 1.2)^2*50)", "0"]
+        [[absorbing]]
+        rate = "x < 0.3 ? 3000*(0.3 - x) : 0"
+        [output]
+        every = 6
+        [[probe]]
+        name = "swing"
+        set = "corner"
+        field = "velocity"
+        component = "y"
+    """
+
+    def move(self, text, ranks=(2, 3), *options):
+        return self.compare(text, ranks, *options, solver="")
+
+    def test_a_plate_whose_supports_and_loads_move(self):
+        one = self.move(self.MOVING + self.STEPS, (2, 3, 4))
+        last = rows(one, "history.csv")[-1]
+        for name in ("kinetic_energy", "external_work", "drained_energy", "momentum_x", "swing"):
+            self.assertNotEqual(float(last[next(key for key in last if key.startswith(name))]), 0.0, name)
+
+    def test_given_steps_and_a_row_each(self):
+        self.move(self.MOVING + self.STEPS, (3,), "--set", "dynamics.time_step=5e-6", "--set", "dynamics.history_every=1",
+                  "--set", "dynamics.end_time=1e-4", "--set", "output.every=7")  # fmt: skip
+
+    def test_a_free_body_and_ranks_without_a_point(self):
+        bar = """
+            dimension = 1
+            [lattice]
+            spacing = 0.1
+            area = 2.0
+            shape = [{ add = "box", min = [0], max = [0.5] }]
+            [material]
+            model = "bond"
+            micromodulus = 7.0
+            density = 3.0
+            [solver]
+            mode = "dynamics"
+            [dynamics]
+            end_time = 3.0
+            [[initial]]
+            velocity = ["0.01*x + 0.1"]
+        """
+        self.move(bar, (2, 7))
+
+    def test_two_pieces(self):
+        apart = self.MOVING.replace('{ subtract = "disk", centre = [0.5, 0.7], radius = 0.2 }',
+                                    '{ subtract = "box", min = [-1, 0.5], max = [2, 0.8] }')  # fmt: skip
+        self.move(apart + self.STEPS, (3,))
+
+    def test_a_block_under_its_weight(self):
+        block = BLOCK.replace("load*", "").replace("[loading]\ntable = [0, 1, 0.5]", "")
+        self.move(block + """
+            [solver]
+            mode = "dynamics"
+            [dynamics]
+            end_time = 0.05
+            step_share = 0.5
+            history_every = 5
+        """, (2, 3))  # fmt: skip
+
+    def test_a_wave(self):
+        wave = (ROOT / "cases/bond_models/wave_propagation.toml").read_text()
+        wave = wave.replace("[[initial]]", '[[initial]]\nvelocity = ["0.1", "0.05*x"]')  # a momentum
+        self.move(wave, (2, 3), "--set", "lattice.spacing=0.1", "--set", "dynamics.end_time=0.6")
+
+    def test_steps_that_are_refused(self):
+        for ranks in (1, 2):
+            said = self.refusal(self.MOVING + self.STEPS, "--set", "dynamics.time_step=1e-3", ranks=ranks)
+            self.assertIn("longer than the stable step", said)
+            said = self.refusal(self.MOVING + self.STEPS.replace("0.2*x", "x > 0.96 ? 1/0 : 0"), ranks=ranks)
+            self.assertIn("it must be finite", said)
+
+    def ends_of(self, text, *options):
+        found = []
+        for ranks in (1, 2, 3):
+            run, output = self.start(ranks, text, *options)
+            decision = rows(output, "decisions.csv")[-1]
+            found.append((run.returncode, decision["outcome"], decision["reason"], decision["stage"]))
+        self.assertEqual(found[0], found[1])
+        self.assertEqual(found[0], found[2])
+        return found[0]
+
+    def test_a_load_without_a_value_on_one_rank(self):
+        missing = self.MOVING.replace('"1e5*exp(-t*5000)"', '"x > 0.96 && t > 4e-4 && t < 4.5e-4 ? 1/0 : 0"')
+        code, outcome, reason, _ = self.ends_of(missing + self.STEPS)
+        self.assertEqual((code, outcome), (3, "undefined_condition"))
+        self.assertIn("finite", reason)
+
+    def test_a_support_without_a_value_on_one_rank(self):
+        missing = self.MOVING.replace('"1e-3*sin(2000*t)"', '"x > 0.96 && t > 4e-4 && t < 4.5e-4 ? 1/0 : 0"')
+        self.assertEqual(self.ends_of(missing + self.STEPS)[1], "undefined_condition")
+
+    def test_a_run_that_is_stopped(self):
+        run, output = self.start(2, self.MOVING + self.STEPS, "--stop-after", "3")
+        self.assertEqual(run.returncode, 130, run.stderr)
+        self.assertEqual(len(rows(output, "history.csv")), 3)
 
 
 def resume(ranks, output, *options):
@@ -501,7 +625,7 @@ class GoesOn(Comparison):
         said = resume(2, output)
         self.assertEqual(said.returncode, 2, said.stderr)
         self.assertIn("its checksum is wrong", said.stderr)
-class Bodies(SameResults):
+class Bodies(Comparison):
     """Shipped cases, coarser, and small bodies: what they are made of is the same on all ranks."""
 
     def compare_shipped(self, case, *settings, ranks=(2, 3)):
@@ -743,12 +867,10 @@ class Refusals(OnRanks):
             'solver.mode="adaptive"',
             'solver.mode="arc_length"',
             'solver.mode="path"',
-            'solver.mode="dynamics"',
             'solver.linear="cholesky"',
             'solver.linear="lu"',
             'solver.preconditioner="sines"',
             'solver.preconditioner="local_operator"',
-            'solver.operator="fft"',
             'solver.fragments="stop"',
             'material.model="cpd"',
             'material.kinematics="linear"',
@@ -766,6 +888,16 @@ class Refusals(OnRanks):
                 said = self.refusal(PLATE, "--set", key)
                 self.assertIn(key.split("=")[0].split(".")[0], said)
                 self.assertEqual(said.count("peristat:"), 1)
+
+    def test_convolutions(self):
+        """Bonds stand in for them where the material has some."""
+        said = self.refusal(PLATE, "--set", 'solver.operator="fft"')
+        self.assertIn("solver.operator", said)
+        self.assertIn('take "bonds" or "auto"', said)
+        for model in ("green_bond", "correspondence"):
+            for operator in ("fft", "auto"):
+                said = self.refusal(PLATE, "--set", f'solver.operator="{operator}"', "--set", f'material.model="{model}"')
+                self.assertIn("models that have bonds", said)
 
     def test_what_one_rank_refuses_too(self):
         for ranks in (1, 2):

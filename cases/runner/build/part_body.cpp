@@ -39,9 +39,9 @@ constexpr std::array keys_of_ranks{
     "load.traction", "load.depth", "eigenstrain.", "temperature.", "material.thermal_expansion",
     // search
     "loading.steps", "loading.table", "loading.table2", "loading.adaptive", "loading.smallest_step",
-    "loading.largest_step", "solver.mode", "solver.linear", "solver.preconditioner",
-    "solver.tangent", "solver.predictor", "solver.relative_tolerance", "solver.linear_tolerance",
-    "solver.max_iterations",
+    "loading.largest_step", "initial.", "absorbing.", "dynamics.", "solver.mode", "solver.operator",
+    "solver.linear", "solver.preconditioner", "solver.tangent", "solver.predictor",
+    "solver.relative_tolerance", "solver.linear_tolerance", "solver.max_iterations",
     // results
     "output.directory", "output.every", "output.stress", "output.count_cracks", "probe."};
 
@@ -71,13 +71,28 @@ bool has_ranks(const std::string& key) {
   throw InputError(key, value, "is not for more than one rank yet; " + instead);
 }
 
+/// Transforms go over the whole body, which no rank has.
+void refuse_convolutions(const Case& from) {
+  const std::string why = "is for one rank, since convolutions go over the whole body; ";
+  if (from.needs_convolutions()) {
+    throw InputError(from.has_states() ? "material.form" : "material.model", "",
+                     why + "models that have bonds go on several");
+  }
+  if (from.solver.force_operator != ForceOperator::fft) return;
+  throw InputError("solver.operator", "\"fft\"", why + "on several take \"bonds\" or \"auto\"");
+}
+
 /// Of keys whose values have ranks in part, those that have.
 void refuse_values_without_ranks(const Case& from) {
+  refuse_convolutions(from);
   if (from.material.model != MaterialModel::bond) {
     refuse("material.model", "", "take \"bond\"");
   }
-  if (from.solver.mode != Mode::newton) {
-    refuse("solver.mode", std::string(from.solver.mode.name), "take \"newton\"");
+  if (from.solver.mode != Mode::newton && from.solver.mode != Mode::dynamics) {
+    refuse("solver.mode", std::string(from.solver.mode.name), "take \"newton\" or \"dynamics\"");
+  }
+  if (from.dynamics.is_asked_for && from.dynamics.is_implicit()) {
+    refuse("dynamics.scheme", "\"newmark\"", "take \"verlet\"");
   }
 }
 
