@@ -8,6 +8,28 @@
 #include "src/core/stopwatch.hpp"
 
 namespace peristat {
+namespace {
+
+void clear_ghosts(const Sharing& sharing, int dimension, std::span<double> gradient) {
+  if (gradient.empty()) return;
+  const std::size_t dofs = std::size_t(sharing.owned()) * std::size_t(dimension);
+  std::fill(gradient.begin() + std::ptrdiff_t(dofs), gradient.end(), 0.0);
+}
+
+/// What ranks have found together but for the energy.
+Evaluation without_energy(const Communicator& ranks, const Evaluation& mine) {
+  const std::vector<double> sums =
+      ranks.sum({mine.released, double(mine.degenerate), double(mine.moves_equilibrium),
+                 double(mine.growth.degrading), double(mine.growth.breaking)});
+  Evaluation all;
+  all.released = sums[0];
+  all.degenerate = sums[1] > 0.0;
+  all.moves_equilibrium = sums[2] > 0.0;
+  all.growth = {Index(sums[3]), Index(sums[4])};
+  return all;
+}
+
+}  // namespace
 
 Assembler::Assembler(const Points& points, const Model& model, int threads, const Sharing* sharing)
     : points_(points),
@@ -77,9 +99,7 @@ Evaluation Assembler::of_all(const StateView& at, const Evaluation& mine,
   all.round_off = sharing_->ranks().sum(mine.round_off);
   all.degenerate =
       sharing_->ranks().max(double(mine.degenerate)) > 0.0 || !std::isfinite(all.energy);
-  if (gradient.empty()) return all;
-  const std::size_t dofs = owned * std::size_t(points_.dimension);
-  std::fill(gradient.begin() + std::ptrdiff_t(dofs), gradient.end(), 0.0);
+  clear_ghosts(*sharing_, points_.dimension, gradient);
   return all;
 }
 
@@ -96,12 +116,13 @@ Evaluation Assembler::commit(std::span<const double> displacement, History& hist
 Evaluation Assembler::commit_forces(std::span<const double> displacement, History& history,
                                     std::span<double> gradient,
                                     const SharedEnvironment& environment) {
-  refuse_on_ranks("commit_forces");
   Evaluation found;
   for_each_term([&](TermPasses& term, Write how) {
     found += term.commit_forces(displacement, environment, history, gradient, how);
   });
-  return found;
+  if (!sharing_) return found;
+  clear_ghosts(*sharing_, points_.dimension, gradient);
+  return without_energy(sharing_->ranks(), found);
 }
 
 void Assembler::refuse_on_ranks(const char* what) const {

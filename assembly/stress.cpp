@@ -45,9 +45,11 @@ Stress stress_from(const Points& points, DeformationGradients gradients,
                    std::vector<double> virials, const std::vector<double>& out_of_plane,
                    AcrossPlane of, bool is_linear) {
   using Tensor = TensorOf<D>;
-  const auto own = std::size_t(points.own());
+  const auto own = std::size_t(points.owned.value_or(points.own()));
   constexpr std::size_t entries = std::size_t(D) * D;
   virials.resize(own * entries);
+  gradients.displacement.resize(own * entries);
+  gradients.is_determined.resize(own);
   Stress found{std::move(gradients.displacement),
                std::vector<double>(own * entries),
                std::move(virials),

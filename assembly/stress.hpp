@@ -6,7 +6,8 @@
 
 namespace peristat {
 
-/// Strain and stress of the points that stand for themselves; tensors are points x dimension x
+/// Strain and stress of the points that stand for themselves, and of a part of a body of those that
+/// are owned; tensors are points x dimension x
 /// dimension, row major.
 ///
 ///   F      deformation gradient of the unbroken bonds, see deformation_gradients

@@ -9,7 +9,7 @@ namespace peristat {
 
 /// Derivative of forces that have no potential: products are computed anew each time, rows when
 /// they are asked for. The energy outlives it.
-struct RowsOfEnergy final : UnsymmetricTangent {
+struct RowsOfEnergy : UnsymmetricTangent {
   explicit RowsOfEnergy(Energy& energy);
 
   [[nodiscard]] std::vector<double> positions() const override;

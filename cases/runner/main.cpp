@@ -19,7 +19,6 @@
 #include "cases/runner/commands/key_reference.hpp"
 #include "cases/runner/commands/resume.hpp"
 #include "cases/runner/commands/run.hpp"
-#include "cases/runner/commands/run_on_ranks.hpp"
 #include "cases/runner/commands/unknown_option.hpp"
 #include "cases/runner/input/case.hpp"
 #include "cases/runner/input/toml_text.hpp"
@@ -89,6 +88,10 @@ void add_run_options(CLI::App& command, CommandLine& line) {
       .add_option("--stop-after", line.steps,
                   "stop after so many accepted steps as if interrupted; resume goes on")
       ->type_name("STEPS")
+      ->check(CLI::PositiveNumber);
+  command
+      .add_option("--ranks", line.ranks,
+                  "run on so many ranks, which mpirun starts (docs/cluster.md)")
       ->check(CLI::PositiveNumber);
   command.add_flag("--no-plots", line.no_plots,
                    "draw no pictures at the end (./peristat draws them)");
@@ -228,9 +231,10 @@ auto on_each_rank(const Communicator* ranks, const Act& act) {
 
 Exit execute(const CLI::App& program, const CommandLine& line, int threads,
              const Communicator* ranks) {
+  const SoleRank sole;
   if (program.got_subcommand("keys")) return print_keys(line.table);
   if (program.got_subcommand("resume")) {
-    return resume(line.results, overrides(line), run_options(line, threads));
+    return resume(line.results, overrides(line), run_options(line, threads), ranks ? *ranks : sole);
   }
   const bool is_calibration = program.got_subcommand("calibrate");
   if (is_calibration && line.case_file.empty()) return calibrate(line);
@@ -244,8 +248,7 @@ Exit execute(const CLI::App& program, const CommandLine& line, int threads,
   if (program.got_subcommand("check-tangent")) {
     return check_tangent(from, line.deformation, threads);
   }
-  if (ranks) return run_on_ranks(from, run_options(line, threads), *ranks);
-  return run(from, run_options(line, threads));
+  return run(from, run_options(line, threads), ranks ? *ranks : sole);
 }
 
 /// Sentence about what stands on the command line without being expected.
@@ -290,8 +293,8 @@ const Communicator* start_ranks_of(const CLI::App& program, int asked_for) {
     all_have_failed() = false;
     return nullptr;
   }
-  if (!program.got_subcommand("run")) {
-    throw InputError("", "", "no command but run is for more than one rank");
+  if (!program.got_subcommand("run") && !program.got_subcommand("resume")) {
+    throw InputError("", "", "no command but run and resume is for more than one rank");
   }
   all_have_failed() = false;
   return all_ranks().get();
@@ -313,9 +316,7 @@ std::vector<std::string> arguments_of_ranks(int count, char** arguments) {
 
 /// Ends all ranks, who may wait for this one.
 int end_all_ranks(const Failure& failure) {
-  // What all have met one should tell: it ends the others while they wait here.
-  constexpr unsigned seconds_for_the_first = 2;
-  if (all_ranks()->rank() > 0) sleep(seconds_for_the_first);
+  give_way_to_first(*all_ranks());
   all_ranks()->abort("peristat: " + failure.message, static_cast<int>(failure.code));
   return static_cast<int>(failure.code);
 }
@@ -347,10 +348,6 @@ int main(int count, char** arguments) try {
   run_command->add_option("--output", line.output, "results folder (default: the case's)");
   run_command->add_flag("--overwrite", line.overwrite,
                         "replace the results of another case, or of version 1, in the folder");
-  run_command
-      ->add_option("--ranks", line.ranks,
-                   "run on so many ranks, which mpirun starts (docs/cluster.md)")
-      ->check(CLI::PositiveNumber);
   add_run_options(*run_command, line);
   CLI::App* resume_command =
       program.add_subcommand("resume", "go on with a run that has not come to its end");

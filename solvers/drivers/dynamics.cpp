@@ -8,6 +8,7 @@
 #include "assembly/operators/convolved_tangent.hpp"
 #include "assembly/terms/damage.hpp"
 #include "solvers/motion/newmark.hpp"
+#include "solvers/motion/shared_stiffness.hpp"
 #include "solvers/motion/velocity_verlet.hpp"
 #include "src/core/number_text.hpp"
 
@@ -161,7 +162,8 @@ Stiffness Dynamics::stiffness_at(const Trial& state) {
   const auto& [assembler, solver, tangent, free] = path_.body();
   tangent.linearise(assembler, state.at(), projection_for_stiffness(assembler));
   is_linearised_ = true;
-  const Stiffness now = bound_stiffness(tangent, free, setting().mass, setting().most_points);
+  const Stiffness now =
+      bound_stiffness(tangent, free, setting().mass, setting().most_points, assembler.sharing());
   const Stiffness& known = path_.state().dynamics.stiffness;
   const bool is_enough = options_.time_step > 0.0 && now.stable_step() >= options_.time_step;
   if (is_enough) return now;
@@ -169,7 +171,7 @@ Stiffness Dynamics::stiffness_at(const Trial& state) {
     return {now.bound, known.eigenvalue * std::max(1.0, now.bound / known.bound)};
   }
   path_.state().dynamics.stiffness =
-      find_stiffness(tangent, free, setting().mass, setting().most_points);
+      find_stiffness(tangent, free, setting().mass, setting().most_points, assembler.sharing());
   return path_.state().dynamics.stiffness;
 }
 
@@ -262,20 +264,23 @@ MotionRecord Dynamics::motion_record(const Motion& motion) const {
   record.modified_energy = record.kinetic_energy + motion.at().stored_energy -
                            dynamics.correction_at_start - dynamics.correction;
   const FreeDofs& free = path_.free();
+  std::vector<double> momentum(record.momentum.size(), 0.0);
   for (const Index dof : free.dof) {
-    record.momentum[std::size_t(dof % free.dimension)] +=
-        setting().mass[dof] * motion.velocity()[dof];
+    momentum[std::size_t(dof % free.dimension)] += setting().mass[dof] * motion.velocity()[dof];
   }
+  momentum = path_.problem().sums().of_all(std::move(momentum));
+  std::copy(momentum.begin(), momentum.end(), record.momentum.begin());
   return record;
 }
 
-Ledger Dynamics::ledger_with(const Motion& motion, double dissipated) const {
+Ledger Dynamics::ledger_with(const Motion& motion, const MotionSums& sums,
+                             double dissipated) const {
   const PathLedger& ledger = path_.state().ledger;
   Ledger after = ledger.entries;
   after.stored = motion.at().stored_energy;
-  after.dissipated = dissipated + ledger.released + motion.sums().released;
-  after.external_work += motion.sums().work;
-  after.drained += motion.sums().absorbed;
+  after.dissipated = dissipated + ledger.released + sums.released;
+  after.external_work += sums.work;
+  after.drained += sums.absorbed;
   after.kinetic = motion.kinetic_energy();
   return after;
 }
@@ -289,12 +294,13 @@ Advance Dynamics::accept(Motion& motion) {
   FoundStep found;
   found.record.mode = Mode::dynamics.name;
   found.record.settled = true;
-  found.record.newton_iterations = motion.sums().iterations;
+  const MotionSums sums = motion.sums();
+  found.record.newton_iterations = sums.iterations;
   found.record.motion = motion_record(motion);
   found.record.broken_bonds = damaged.broken_bonds;
-  found.growth = motion.sums().growth;
-  found.energies.released = motion.sums().released;
-  found.ledger = ledger_with(motion, damaged.dissipated_energy);
+  found.growth = sums.growth;
+  found.energies.released = sums.released;
+  found.ledger = ledger_with(motion, sums, damaged.dissipated_energy);
   std::vector<double> velocity = motion.take_velocity(), acceleration = motion.take_acceleration();
   Attempt attempt;
   attempt.at = time;

@@ -55,7 +55,8 @@ class Dynamics : public Driver {
   /// Of what is prescribed, the mean over a time step.
   void add_velocity_of_supports(double time, std::vector<double>& velocity) const;
   [[nodiscard]] MotionRecord motion_record(const Motion& motion) const;
-  [[nodiscard]] Ledger ledger_with(const Motion& motion, double dissipated) const;
+  [[nodiscard]] Ledger ledger_with(const Motion& motion, const MotionSums& sums,
+                                   double dissipated) const;
   [[nodiscard]] std::string fault_of(const Attempt& attempt, const FoundStep& found);
   [[nodiscard]] std::string fault_of_balance(const Ledger& after);
   [[nodiscard]] Advance fail(Outcome outcome, double time, const std::string& what);

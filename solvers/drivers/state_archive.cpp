@@ -21,7 +21,7 @@ void transfer_history(StateArchive& archive, const std::string& name, History& h
   for (int k = 0; k < terms; ++k) {
     const auto term = static_cast<std::size_t>(k);
     std::vector<double> values(history.of(term).begin(), history.of(term).end());
-    archive.transfer(name + "/history_" + std::to_string(k), values);
+    archive.transfer(name + "/history_" + std::to_string(k), values, Rows::bonds);
     history.replace(term, std::move(values));
   }
 }
@@ -36,24 +36,24 @@ void transfer_ledger(StateArchive& archive, PathLedger& ledger) {
   archive.transfer("ledger/numerical_work", numerical_work);
   archive.transfer("ledger/kinetic", kinetic);
   archive.transfer("ledger/released", released);
-  archive.transfer("ledger/force", force);
+  archive.transfer("ledger/force", force, Rows::dofs);
 }
 
 void transfer_pins(StateArchive& archive, FragmentPins& pins) {
   auto& [found, pinned] = pins;
   auto& [piece, count, loose, found_pinned] = found;
-  archive.transfer("pins/found/piece", piece);
+  archive.transfer("pins/found/piece", piece, Rows::points);
   archive.transfer("pins/found/count", count);
-  archive.transfer("pins/found/loose", loose);
-  archive.transfer("pins/found/pinned", found_pinned);
-  archive.transfer("pins/pinned", pinned);
+  archive.transfer("pins/found/loose", loose, Rows::list_of_points);
+  archive.transfer("pins/found/pinned", found_pinned, Rows::dofs);
+  archive.transfer("pins/pinned", pinned, Rows::dofs);
 }
 
 void transfer_tangent(StateArchive& archive, TangentReference& tangent) {
   auto& [at, lost] = tangent;
   [[maybe_unused]] auto& [displacement, stage, history, load, environment] = at;
   const std::string name = "events/tangent";
-  archive.transfer(name + "/displacement", displacement);
+  archive.transfer(name + "/displacement", displacement, Rows::dofs);
   archive.transfer(name + "/stage", stage);
   transfer_optional(archive, name + "/load", load);
   transfer_history(archive, name, history);
@@ -66,11 +66,11 @@ void transfer_tangent(StateArchive& archive, TangentReference& tangent) {
     direction.insert(direction.end(), one.direction.begin(), one.direction.end());
     stiffness.push_back(one.stiffness);
   }
-  archive.transfer(name + "/bond", bond);
-  archive.transfer(name + "/first", first);
-  archive.transfer(name + "/second", second);
-  archive.transfer(name + "/direction", direction);
-  archive.transfer(name + "/stiffness", stiffness);
+  archive.transfer(name + "/bond", bond, Rows::whole);
+  archive.transfer(name + "/first", first, Rows::whole);
+  archive.transfer(name + "/second", second, Rows::whole);
+  archive.transfer(name + "/direction", direction, Rows::whole);
+  archive.transfer(name + "/stiffness", stiffness, Rows::whole);
   lost.clear();
   for (std::size_t k = 0; k < bond.size(); ++k) {
     const double* const along = &direction[3 * k];
@@ -87,7 +87,7 @@ void transfer(StateArchive& archive, PathState& state) {
          relaxed, control_sign, arc, hand_over, events, dynamics] = state;
   // Made anew from the stage, see Path.
   [[maybe_unused]] auto& [displacement, stage, history, load, environment] = accepted;
-  archive.transfer("accepted/displacement", displacement);
+  archive.transfer("accepted/displacement", displacement, Rows::dofs);
   archive.transfer("accepted/stage", stage);
   transfer_optional(archive, "accepted/load", load);
   transfer_history(archive, "accepted", history);
@@ -107,12 +107,13 @@ void transfer(StateArchive& archive, PathState& state) {
   auto& [relaxed_increment, motion] = relaxed;
   auto& [velocity] = motion;
   archive.transfer("relaxed/increment", relaxed_increment);
-  archive.transfer("relaxed/velocity", velocity);
+  archive.number_free_dofs(pins);
+  archive.transfer("relaxed/velocity", velocity, Rows::free_dofs);
   archive.transfer("control_sign", control_sign);
   auto& [arc_increment, direction, stage_direction, displacement_scale, negative_pivots,
          passes_critical_point] = arc;
   archive.transfer("arc/increment", arc_increment);
-  archive.transfer("arc/direction", direction);
+  archive.transfer("arc/direction", direction, Rows::dofs);
   archive.transfer("arc/stage_direction", stage_direction);
   archive.transfer("arc/displacement_scale", displacement_scale);
   archive.transfer("arc/negative_pivots", negative_pivots);
@@ -139,8 +140,8 @@ void transfer(StateArchive& archive, PathState& state) {
          largest_energy, stiffness, last_bound, look_interval, next_look] = dynamics;
   auto& [bound, eigenvalue] = stiffness;
   archive.transfer("dynamics/has_begun", has_begun);
-  archive.transfer("dynamics/velocity", time_velocity);
-  archive.transfer("dynamics/acceleration", acceleration);
+  archive.transfer("dynamics/velocity", time_velocity, Rows::dofs);
+  archive.transfer("dynamics/acceleration", acceleration, Rows::dofs);
   archive.transfer("dynamics/step", time_step);
   archive.transfer("dynamics/correction_at_start", correction_at_start);
   archive.transfer("dynamics/correction", correction);

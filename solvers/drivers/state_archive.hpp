@@ -9,6 +9,17 @@
 
 namespace peristat {
 
+/// What the values of an array are of: of a part of a body it has those of its own.
+enum class Rows {
+  whole,           ///< of nothing that a body has parts of
+  points,          ///< one per point
+  dofs,            ///< one per degree of freedom
+  recorded_dofs,   ///< likewise of points that stand for themselves and are owned
+  free_dofs,       ///< one per degree of freedom that is solved for
+  bonds,           ///< one per bond
+  list_of_points,  ///< numbers of points, ascending
+};
+
 /// Where the values of a path's state are written to, or read from, by their names.
 class StateArchive {
  public:
@@ -18,9 +29,12 @@ class StateArchive {
   virtual void transfer(const std::string& name, int& value) = 0;
   virtual void transfer(const std::string& name, std::int64_t& value) = 0;
   virtual void transfer(const std::string& name, double& value) = 0;
-  virtual void transfer(const std::string& name, std::vector<char>& values) = 0;
-  virtual void transfer(const std::string& name, std::vector<Index>& values) = 0;
-  virtual void transfer(const std::string& name, std::vector<double>& values) = 0;
+  virtual void transfer(const std::string& name, std::vector<char>& values, Rows rows) = 0;
+  virtual void transfer(const std::string& name, std::vector<Index>& values, Rows rows) = 0;
+  virtual void transfer(const std::string& name, std::vector<double>& values, Rows rows) = 0;
+
+  /// Told before what Rows::free_dofs depend on: the state's pins.
+  virtual void number_free_dofs(const FragmentPins&) {}
 };
 
 /// Writes a path's state to an archive, or reads it from one, whole: a member that is added to it

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "assembly/energy/sharing.hpp"
 #include "solvers/linear/preconditioner.hpp"
 #include "solvers/linear/trilinos/matrix_preconditioner.hpp"
 
@@ -10,7 +11,9 @@ namespace peristat {
 /// configuration.
 class AssembledPreconditioner : public Preconditioner {
  public:
-  explicit AssembledPreconditioner(MatrixPreconditionerKind kind) : preconditioner_(kind) {}
+  /// @param sharing of a part of a body, which outlives it; null: the body is whole
+  explicit AssembledPreconditioner(MatrixPreconditionerKind kind, const Sharing* sharing = nullptr)
+      : preconditioner_(kind), sharing_(sharing) {}
 
   void analyze(const BlockPattern&, const FreeDofs& free) override { free_ = &free; }
   /// @throws std::logic_error for a tangent without stored blocks
@@ -22,6 +25,7 @@ class AssembledPreconditioner : public Preconditioner {
 
  private:
   MatrixPreconditioner preconditioner_;
+  const Sharing* sharing_;
   const FreeDofs* free_ = nullptr;
   std::string description_ = "Trilinos";
 };

@@ -1,13 +1,44 @@
 #include "solvers/linear/compressed_rows.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <cstddef>
+#include <utility>
 #include <vector>
 
-namespace peristat {
+#include "solvers/linear/sums.hpp"
 
-CompressedRows compressed_rows(const Tangent& tangent, const FreeDofs& free) {
+namespace peristat {
+namespace {
+
+/// Which column each degree of freedom has; those of ghosts that the rows reach come last, and
+/// rows.ghosts tells their equations.
+std::vector<Index> number_columns(const BlockPattern& pattern, const FreeDofs& free,
+                                  const Sharing& sharing, CompressedRows& rows) {
+  const auto d = std::size_t(free.dimension), owned = std::size_t(sharing.owned());
+  const double first = double(sharing.ranks().count_all(free.count()).before);
+  std::vector<double> number(free.equation.size());
+  for (std::size_t k = 0; k < number.size(); ++k) {
+    number[k] = free.equation[k] == FreeDofs::none ? -1.0 : first + free.equation[k];
+  }
+  sharing.update_ghosts(number);
+  std::vector<char> is_reached(number.size() / d, 0);
+  for (Offset bond = 0; bond < pattern.offset[owned]; ++bond) {
+    is_reached[std::size_t(pattern.partner[bond])] = 1;
+  }
+  std::vector<Index> column = free.equation;
+  for (std::size_t k = owned * d; k < number.size(); ++k) {
+    if (!is_reached[k / d] || number[k] < 0.0) continue;
+    column[k] = free.count() + Index(rows.ghosts.size());
+    rows.ghosts.push_back(static_cast<long long>(number[k]));
+  }
+  return column;
+}
+
+}  // namespace
+
+CompressedRows compressed_rows(const Tangent& tangent, const FreeDofs& free,
+                               const Sharing* sharing) {
   const BlockPattern& pattern = tangent.pattern;
   const Index points = pattern.points();
   const int d = tangent.dimension;
@@ -30,6 +61,12 @@ CompressedRows compressed_rows(const Tangent& tangent, const FreeDofs& free) {
 
   CompressedRows rows;
   rows.rows = free.count();
+  std::vector<Index> with_ghosts;
+  if (sharing) {
+    rows.ranks = &sharing->ranks();
+    with_ghosts = number_columns(pattern, free, *sharing, rows);
+  }
+  const std::vector<Index>& column_of = sharing ? with_ghosts : free.equation;
   rows.begin.reserve(std::size_t(rows.rows) + 1);
   rows.begin.push_back(0);
   const std::size_t entries =
@@ -41,9 +78,9 @@ CompressedRows compressed_rows(const Tangent& tangent, const FreeDofs& free) {
       if (free.equation[std::size_t(i) * d + r] == FreeDofs::none) continue;
       const auto append = [&](Index j, const auto& entry_of_column) {
         for (int c = 0; c < d; ++c) {
-          const Index equation = free.equation[std::size_t(j) * d + c];
-          if (equation == FreeDofs::none) continue;
-          rows.column.push_back(equation);
+          const Index column = column_of[std::size_t(j) * d + c];
+          if (column == FreeDofs::none) continue;
+          rows.column.push_back(column);
           rows.value.push_back(entry_of_column(c));
         }
       };
@@ -62,17 +99,22 @@ CompressedRows compressed_rows(const Tangent& tangent, const FreeDofs& free) {
 
 EquationBlocks equation_blocks(const FreeDofs& free) { return {free.dimension, free.dof}; }
 
-NearNullSpace rigid_motions(std::span<const double> positions, const FreeDofs& free) {
+NearNullSpace rigid_motions(std::span<const double> positions, const FreeDofs& free,
+                            const Sharing* sharing) {
   const int d = free.dimension;
-  const std::size_t equations = free.dof.size();
+  const Sums sums(sharing, d);
+  const std::size_t equations = free.dof.size(), dofs = sums.own(positions.size());
   // Centred, so that rotations and translations are far from parallel.
-  std::array<double, 3> centre{};
-  for (std::size_t dof = 0; dof < positions.size(); ++dof) centre[dof % d] += positions[dof];
-  for (double& component : centre) component /= std::max(1.0, double(positions.size()) / d);
+  std::vector<double> centre(4, 0.0);
+  for (std::size_t dof = 0; dof < dofs; ++dof) centre[dof % d] += positions[dof];
+  centre[3] = double(dofs) / d;
+  centre = sums.of_all(std::move(centre));
+  for (int c = 0; c < 3; ++c) centre[std::size_t(c)] /= std::max(1.0, centre[3]);
   double size = 0.0;
-  for (std::size_t dof = 0; dof < positions.size(); ++dof) {
+  for (std::size_t dof = 0; dof < dofs; ++dof) {
     size = std::max(size, std::abs(positions[dof] - centre[dof % d]));
   }
+  size = sums.largest_of_all(size);
   if (size == 0.0) size = 1.0;
 
   NearNullSpace motions;

@@ -2,6 +2,7 @@
 
 #include <span>
 
+#include "assembly/energy/sharing.hpp"
 #include "assembly/operators/tangent.hpp"
 #include "solvers/linear/free_dofs.hpp"
 #include "solvers/linear/trilinos/matrix_preconditioner.hpp"
@@ -9,7 +10,11 @@
 namespace peristat {
 
 /// K_ff, the rows and columns of the free degrees of freedom, both triangles.
-[[nodiscard]] CompressedRows compressed_rows(const Tangent& tangent, const FreeDofs& free);
+/// @param sharing of a part of a body, whose ghosts have no equations here, but columns; a call
+/// that
+///        all ranks then make
+[[nodiscard]] CompressedRows compressed_rows(const Tangent& tangent, const FreeDofs& free,
+                                             const Sharing* sharing = nullptr);
 
 /// Which point and component each equation is of.
 [[nodiscard]] EquationBlocks equation_blocks(const FreeDofs& free);
@@ -18,6 +23,8 @@ namespace peristat {
 /// of freedom, one after the other. Lengths are divided by the body's, so that all entries are of
 /// order one.
 /// @param positions points x dimension, row major [m]
-[[nodiscard]] NearNullSpace rigid_motions(std::span<const double> positions, const FreeDofs& free);
+/// @param sharing of a part of a body; a call that all ranks then make
+[[nodiscard]] NearNullSpace rigid_motions(std::span<const double> positions, const FreeDofs& free,
+                                          const Sharing* sharing = nullptr);
 
 }  // namespace peristat

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "solvers/linear/vector_verbs.hpp"
+#include "solvers/linear/worst_outcome.hpp"
 #include "src/core/stopwatch.hpp"
 
 namespace peristat {
@@ -43,11 +44,6 @@ IterativeSolver::IterativeSolver(KrylovMethod method,
       restart_(restart),
       ranks_(ranks) {}
 
-LinearOutcome IterativeSolver::of_all(LinearOutcome outcome) const {
-  // They stand in the order of what may follow: solved comes first.
-  return ranks_ ? LinearOutcome(int(ranks_->max(double(outcome)))) : outcome;
-}
-
 double IterativeSolver::norm_of_all(std::span<const double> v) const {
   return ranks_ ? std::sqrt(ranks_->sum(dot(v, v))) : norm(v);
 }
@@ -70,7 +66,7 @@ LinearOutcome IterativeSolver::build() {
   worn_ = false;
   iterations_per_digit_ = 0.0;
   ++statistics_.factorisations;
-  const LinearOutcome outcome = of_all(preconditioner_->build(*tangent_));
+  const LinearOutcome outcome = worst_outcome(ranks_, preconditioner_->build(*tangent_));
   built_ = built_now_ = outcome == LinearOutcome::solved;
   return outcome;
 }
@@ -97,7 +93,7 @@ LinearOutcome IterativeSolver::factorize(const TangentOperator& tangent, FactorU
   built_now_ = false;
   if (is_empty(std::size_t(free_->count()))) return LinearOutcome::solved;
   largest_diagonal_ = 0.0;
-  const LinearOutcome outcome = of_all(look_at(tangent));
+  const LinearOutcome outcome = worst_outcome(ranks_, look_at(tangent));
   if (outcome != LinearOutcome::solved) return outcome;
   if (ranks_) largest_diagonal_ = ranks_->max(largest_diagonal_);
   if (use == FactorUse::may_reuse && built_ && !worn_) return LinearOutcome::solved;

@@ -37,8 +37,6 @@ class IterativeSolver : public LinearSolver {
  private:
   /// Whether there are values that can be solved with.
   [[nodiscard]] LinearOutcome look_at(const TangentOperator& tangent);
-  /// The worst of all ranks' outcomes.
-  [[nodiscard]] LinearOutcome of_all(LinearOutcome outcome) const;
   [[nodiscard]] double norm_of_all(std::span<const double> v) const;
   /// Whether no rank has any of them.
   [[nodiscard]] bool is_empty(std::size_t equations) const;

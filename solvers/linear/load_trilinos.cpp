@@ -46,9 +46,13 @@ bool MatrixPreconditioner::build(const CompressedRows& matrix, const EquationBlo
   try {
     implementation_->preconditioner->build(matrix, blocks, near_null_space);
     return true;
+  } catch (const trilinos::NoPreconditioner& error) {
+    implementation_->failure = error.what();
   } catch (const std::bad_alloc&) {
+    if (matrix.ranks) throw;
     implementation_->failure = "out of memory";
   } catch (const std::exception& error) {
+    if (matrix.ranks) throw;
     implementation_->failure = error.what();
   }
   return false;

@@ -47,41 +47,53 @@ constexpr double most_vectors = 200.0, least_vectors = 30.0, share_of_vectors = 
 /// Iterations after which GMRES with the local operator is given up, where there is another way.
 constexpr int patience_of_gmres = 600;
 
+/// Iterations in one solve of a ladder on several ranks, where no factorisation takes over.
+constexpr int patience_on_ranks = 2000;
+
 /// Iterations for a system of masses with a little stiffness: two to five are the rule.
 constexpr int patience_with_inertia = 100;
 
 using SharedBox = std::shared_ptr<const LatticeBox>;
 
-std::unique_ptr<Preconditioner> make_preconditioner(PreconditionerKind kind, const SharedBox& box) {
+std::unique_ptr<Preconditioner> make_preconditioner(PreconditionerKind kind, const SharedBox& box,
+                                                    const Sharing* sharing) {
   switch (kind) {
     case PreconditionerKind::jacobi:
       return std::make_unique<BlockJacobi>(BlockJacobi::Blocks::entries);
     case PreconditionerKind::block_jacobi:
       return std::make_unique<BlockJacobi>(BlockJacobi::Blocks::points);
     case PreconditionerKind::surrogate:
-      return std::make_unique<Surrogate>();
+      return std::make_unique<Surrogate>(sharing);
     case PreconditionerKind::sines:
       if (!box) throw std::logic_error("sines need the box of a lattice");
       return std::make_unique<Sines>(box);
     case PreconditionerKind::riluk:
-      return std::make_unique<AssembledPreconditioner>(MatrixPreconditionerKind::riluk);
+      return std::make_unique<AssembledPreconditioner>(MatrixPreconditionerKind::riluk, sharing);
     case PreconditionerKind::chebyshev:
-      return std::make_unique<AssembledPreconditioner>(MatrixPreconditionerKind::chebyshev);
+      return std::make_unique<AssembledPreconditioner>(MatrixPreconditionerKind::chebyshev,
+                                                       sharing);
     case PreconditionerKind::multigrid:
-      return std::make_unique<AssembledPreconditioner>(MatrixPreconditionerKind::multigrid);
+      return std::make_unique<AssembledPreconditioner>(MatrixPreconditionerKind::multigrid,
+                                                       sharing);
     case PreconditionerKind::local_operator:
       return std::make_unique<LocalOperator>();
     case PreconditionerKind::rigid_pieces:
     case PreconditionerKind::automatic:
       break;
   }
-  return std::make_unique<RigidPieces>();
+  return std::make_unique<RigidPieces>(sharing);
+}
+
+const Communicator* ranks_of(const Sharing* sharing) {
+  return sharing ? &sharing->ranks() : nullptr;
 }
 
 std::unique_ptr<LinearSolver> make_iterative(
     PreconditionerKind kind, int max_iterations, const SharedBox& box = {},
-    KrylovMethod method = KrylovMethod::conjugate_gradients) {
-  return std::make_unique<IterativeSolver>(method, make_preconditioner(kind, box), max_iterations);
+    KrylovMethod method = KrylovMethod::conjugate_gradients, const Sharing* sharing = nullptr) {
+  return std::make_unique<IterativeSolver>(method, make_preconditioner(kind, box, sharing),
+                                           max_iterations, KrylovOptions{}.restart,
+                                           ranks_of(sharing));
 }
 
 KrylovMethod krylov_method(LinearMethod method) {
@@ -159,22 +171,41 @@ ChosenSolver choose(const LinearProblem& problem, SolverLadder::Reporter tell) {
           is_direct ? direct : iterative, fmt::format("auto: {}", reason)};
 }
 
+ChosenSolver choose_on_ranks(const LinearProblem& problem, SolverLadder::Reporter tell) {
+  const auto rung = [sharing = problem.sharing](const char* name, PreconditionerKind kind,
+                                                int most) {
+    return SolverLadder::Rung{
+        name,
+        [=] { return make_iterative(kind, most, {}, KrylovMethod::conjugate_gradients, sharing); }};
+  };
+  std::vector<SolverLadder::Rung> rungs{
+      rung("pcg with rigid_pieces", PreconditionerKind::rigid_pieces, patience_on_ranks),
+      rung("pcg with surrogate", PreconditionerKind::surrogate, patience_on_ranks),
+      rung("pcg with block_jacobi", PreconditionerKind::block_jacobi, most_iterations)};
+  return {std::make_unique<SolverLadder>(std::move(rungs), std::move(tell)), false,
+          Seconds(problem).iterative, "auto: factorisations and sines are for one rank"};
+}
+
 /// Vectors that GMRES keeps before it begins anew.
 int restart_for(const LinearProblem& problem) {
   const double vector = 8.0 * std::max(problem.unknowns, 1.0);
-  const double room = share_of_vectors * problem.available_bytes / vector;
+  double room = share_of_vectors * problem.available_bytes / vector;
+  if (problem.sharing) room = problem.sharing->ranks().min(room);
   return static_cast<int>(std::clamp(room, least_vectors, most_vectors));
 }
 
 std::unique_ptr<LinearSolver> make_unsymmetric(LinearMethod method, PreconditionerKind kind,
                                                const LinearProblem& problem, int max_iterations) {
   if (method == LinearMethod::lu) return std::make_unique<SparseLu>(problem.available_bytes);
-  if (kind == PreconditionerKind::automatic) kind = PreconditionerKind::local_operator;
+  if (kind == PreconditionerKind::automatic) {
+    kind = problem.sharing ? PreconditionerKind::block_jacobi : PreconditionerKind::local_operator;
+  }
   auto preconditioner = kind == PreconditionerKind::local_operator
                             ? std::make_unique<LocalOperator>(problem.available_bytes)
-                            : make_preconditioner(kind, {});
+                            : make_preconditioner(kind, {}, problem.sharing);
   return std::make_unique<IterativeSolver>(krylov_method(method), std::move(preconditioner),
-                                           max_iterations, restart_for(problem));
+                                           max_iterations, restart_for(problem),
+                                           ranks_of(problem.sharing));
 }
 
 /// Estimated seconds of a load step with an unsymmetric tangent, which passes over its bonds twice
@@ -204,10 +235,15 @@ ChosenSolver choose_unsymmetric(const LinearProblem& problem, SolverLadder::Repo
   const auto [direct, iterative] = UnsymmetricSeconds(problem);
   const bool fits = problem.factor_bytes <= problem.available_bytes;
   const bool is_small = problem.factor_flops <= small_factorisation;
-  const bool is_direct = !problem.has_inertia && fits && (is_small || direct <= iterative);
+  const bool is_direct =
+      !problem.sharing && !problem.has_inertia && fits && (is_small || direct <= iterative);
   std::vector<SolverLadder::Rung> rungs;
   std::string reason;
-  if (problem.has_inertia) {
+  if (problem.sharing) {
+    rungs = {patient};
+    if (problem.has_inertia) rungs.insert(rungs.begin(), light);
+    reason = "factorisations are for one rank";
+  } else if (problem.has_inertia) {
     rungs = {light, gmres, fits ? lu : patient};
     reason = "masses dominate";
   } else if (is_direct) {
@@ -317,13 +353,14 @@ ChosenSolver make_linear_solver(const LinearSolverOptions& options, const Linear
     case LinearMethod::minres:
     case LinearMethod::gmres:
       return {make_iterative(options.preconditioner, most_iterations, problem.box,
-                             krylov_method(options.method)),
+                             krylov_method(options.method), problem.sharing),
               false, Seconds(problem).iterative, "as the case asks"};
     case LinearMethod::automatic:
     case LinearMethod::lu:
     case LinearMethod::bicgstab:
       break;
   }
+  if (problem.sharing) return choose_on_ranks(problem, std::move(tell));
   return choose(problem, std::move(tell));
 }
 

@@ -4,6 +4,7 @@
 #include <memory>
 #include <string>
 
+#include "assembly/energy/sharing.hpp"
 #include "solvers/linear/linear_solver.hpp"
 #include "solvers/linear/solver_ladder.hpp"
 #include "src/geometry/lattice_box.hpp"
@@ -61,6 +62,7 @@ struct LinearProblem {
   bool may_soften = false;    ///< damage grows in implicit steps: stability is in question
   bool solves_often = false;  ///< many systems have the same tangent
   bool has_inertia = false;   ///< masses are part of the tangent, as in implicit time steps
+  const Sharing* sharing = nullptr;  ///< of a part of a body, which outlives the solver
   /// Where the points stand, which sines need; nothing: they can't be taken.
   std::shared_ptr<const LatticeBox> box{};
 };
@@ -77,6 +79,9 @@ struct ChosenSolver {
 /// a matter of a tenth of a second, where pivots are to tell whether a softening body is stable and
 /// a factorisation takes less than a second, and where it is estimated to be faster; otherwise
 /// conjugate gradients with rigid pieces. Both give way to others when they fail (SolverLadder).
+///
+/// Of a part of a body, what iterates: no rank has the whole of a tangent to factorise, nor of the
+/// box of a lattice. All ranks make the same call and choose alike.
 ///
 /// Of an unsymmetric tangent: BiCGStab with block Jacobi where masses dominate; L U where its
 /// factor fits and is estimated to be faster; otherwise GMRES with the local operator.

@@ -54,23 +54,31 @@ double krylov_bytes(const BodySize& size, bool is_gmres) {
   return 8.0 * size.points * (vectors * d + d + 0.5 * d * (d + 1.0));
 }
 
-/// What rigid pieces add to that.
-double rigid_pieces_bytes(const BodySize& size) {
-  const double d = size.dimension, points = size.points;
+/// The coarse level of rigid pieces.
+double coarse_bytes(const BodySize& size, double points) {
+  const double d = size.dimension;
   const double motions = 0.5 * d * (d + 1.0);
-  // Boxes of 5/3 horizons; in 3D larger ones where their factor would take 100 bytes per point.
+  // Boxes of 5/3 horizons; in 3D larger ones where their factor would take 100 bytes per point, on
+  // many ranks per point of sixteen ranks.
   const double ratio = size.coupling_ratio > 0.0 ? size.coupling_ratio : size.horizon_ratio;
+  const double most = 100.0 * std::min(1.0, 16.0 / double(size.ranks)) * points;
   double pieces = points / std::pow(5.0 / 3.0 * ratio, d);
-  if (size.dimension == 3) pieces = std::min(pieces, std::pow(0.0434 * points, 0.75));
+  if (size.dimension == 3) pieces = std::min(pieces, std::pow(most / (8.0 * 36.0 * 8.0), 0.75));
   const double coarse = motions * pieces;
-  const double factor =
-      size.dimension == 3 ? std::min(8.0 * 36.0 * 8.0 * std::pow(pieces, 4.0 / 3.0), 100.0 * points)
-                          : 8.0 * 3.2 * coarse * std::log2(std::max(coarse, 2.0));
+  const double factor = size.dimension == 3
+                            ? std::min(8.0 * 36.0 * 8.0 * std::pow(pieces, 4.0 / 3.0), most)
+                            : 8.0 * 3.2 * coarse * std::log2(std::max(coarse, 2.0));
   // Blocks with the neighbours of a piece, 26 in 3D, half of them stored: with their keys, and as
   // entries of which CHOLMOD makes two copies. Then there are no Krylov vectors yet.
   const double gathered = 72.0 * motions * motions * pieces * 0.5 * (std::pow(3.0, d) + 1.0);
-  return points * (4.0 * d + 16.0) + factor_overhead * factor +
-         std::max(0.0, gathered - 8.0 * 6.0 * d * points);
+  return factor_overhead * factor + std::max(0.0, gathered - 8.0 * 6.0 * d * size.points);
+}
+
+/// What rigid pieces add to that.
+double rigid_pieces_bytes(const BodySize& size) {
+  const double gathered = size.gathered_points < 0.0 ? size.points : size.gathered_points;
+  return size.points * (4.0 * size.dimension + 16.0) +
+         (gathered > 0.0 ? coarse_bytes(size, gathered) : 0.0);
 }
 
 /// What the surrogate adds: its springs, as a tangent and as a matrix, and their factor.
@@ -86,6 +94,24 @@ double surrogate_bytes(const BodySize& size) {
     factor = 8.0 * std::pow(points, 4.0 / 3.0) / std::sqrt(cubes);
   }
   return 8.0 * d * d * (3.0 * blocks + factor);
+}
+
+/// Bytes per entry of the whole matrix that a preconditioner of Trilinos takes, as measured: two
+/// copies of the compressed rows, and in RILUK the factors, in multigrid the coarser levels.
+double trilinos_bytes_per_entry(PreconditionerKind kind) {
+  return kind == PreconditionerKind::chebyshev ? 24.0
+         : kind == PreconditionerKind::riluk   ? 36.0
+                                               : 33.0;
+}
+
+/// On several ranks: the springs as a tangent, and as a matrix with multigrid's coarser levels.
+double distributed_surrogate_bytes(const BodySize& size) {
+  const double d = size.dimension;
+  const std::array<double, 3> springs{1.0, 4.0, 9.0};
+  const double blocks = springs[std::size_t(size.dimension) - 1];
+  return d * d * size.points *
+         (8.0 * blocks +
+          trilinos_bytes_per_entry(PreconditionerKind::multigrid) * (2.0 * blocks + 1.0));
 }
 
 /// Of an unsymmetric tangent's rows that are factorised: as they are told, and as UMFPACK takes
@@ -115,14 +141,6 @@ constexpr double vectors_of_unsymmetric_gmres = 70.0;
 /// components in single precision.
 double sines_bytes(const BodySize& size) {
   return 4.0 * size.points + (8.0 + 4.0 * size.dimension) * size.places;
-}
-
-/// Bytes per entry of the whole matrix that a preconditioner of Trilinos takes, as measured: two
-/// copies of the compressed rows, and in RILUK the factors, in multigrid the coarser levels.
-double trilinos_bytes_per_entry(PreconditionerKind kind) {
-  return kind == PreconditionerKind::chebyshev ? 24.0
-         : kind == PreconditionerKind::riluk   ? 36.0
-                                               : 33.0;
 }
 
 /// Of an iterative solver with its preconditioner.
@@ -218,6 +236,7 @@ double MemoryEstimate::iterative_bytes(const LinearSolverOptions& options) const
     case PreconditionerKind::rigid_pieces:
       return bytes + rigid_pieces_bytes(size);
     case PreconditionerKind::surrogate:
+      if (size.ranks > 1) return bytes + multigrid_bytes + distributed_surrogate_bytes(size);
       return bytes + surrogate_bytes(size);
     case PreconditionerKind::sines:
       return bytes + sines_bytes(size);

@@ -20,7 +20,9 @@ struct BodySize {
   bool has_symmetric_blocks = true;  ///< off-diagonal blocks of the tangent are
   bool is_constrained = false;       ///< degrees of freedom follow others
   double free_dofs = 0.0;
-  double entries_per_row = 0.0;  ///< of an unsymmetric tangent; 0: the tangent is symmetric
+  double entries_per_row = 0.0;   ///< of an unsymmetric tangent; 0: the tangent is symmetric
+  int ranks = 1;                  ///< that have a part each, of which these are the counts
+  double gathered_points = -1.0;  ///< whose coarse level is here; less than 0: those above
 
   [[nodiscard]] double stored_blocks() const { return blocks > 0.0 ? blocks : bonds; }
   [[nodiscard]] bool is_symmetric() const { return entries_per_row == 0.0; }

@@ -10,7 +10,8 @@
 namespace peristat {
 
 /// Approximate inverse of K_ff; symmetric and positive definite, but for those of unsymmetric
-/// tangents.
+/// tangents. Of a part of a body all ranks build it and apply it at the
+/// same time; each may meet an outcome of its own, the worst of which counts.
 class Preconditioner {
  public:
   virtual ~Preconditioner() = default;

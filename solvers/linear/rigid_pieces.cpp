@@ -16,7 +16,10 @@
 #include <fmt/format.h>
 #include <omp.h>
 
+#include "assembly/energy/ghost_values.hpp"
 #include "solvers/linear/block_jacobi.hpp"
+#include "solvers/linear/gathered_pieces.hpp"
+#include "solvers/linear/worst_outcome.hpp"
 #include "src/geometry/squared_distance.hpp"
 
 namespace peristat {
@@ -31,16 +34,19 @@ constexpr double box_in_horizons = 5.0 / 3.0, box_in_spacings = 2.5;
 
 /// Whether the coarse factor of a grid of boxes is too large for a body; boxes then grow beyond
 /// that width.
-/// @param boxes along each direction
-bool is_too_fine(int dimension, const std::array<double, 3>& boxes, double points) {
+/// @param boxes  along each direction
+/// @param points of the whole body
+/// @param ranks  that share them: one of them has the factor
+bool is_too_fine(int dimension, const std::array<double, 3>& boxes, double points, int ranks) {
   const double all = boxes[0] * boxes[1] * boxes[2];
   if (dimension < 3) return all > (dimension == 1 ? 1e6 : 2e5);
   // Blocks of 6 x 6 numbers in the factor: nested dissection's, or those within the band of a
   // slender body.
   const double section = all / *std::max_element(boxes.begin(), boxes.end());
   const double blocks = std::min(8.0 * std::pow(all, 4.0 / 3.0), 2.0 * section * all);
-  constexpr double bytes_per_point = 100.0, bytes_of_block = 36.0 * 8.0;
-  return bytes_of_block * blocks > bytes_per_point * points && all > 1.0;
+  constexpr double bytes_per_point = 100.0, bytes_of_block = 36.0 * 8.0, most_shares = 16.0;
+  const double share = std::min(1.0, most_shares / double(ranks));
+  return bytes_of_block * blocks > bytes_per_point * share * points && all > 1.0;
 }
 
 /// A motion that keeps less than this of its length beside the others is one of theirs.
@@ -90,45 +96,85 @@ Index root(std::vector<Index>& parent, Index i) {
 
 struct RigidPieces::Levels {
   const FreeDofs* free = nullptr;
+  const Sharing* sharing = nullptr;  // of a part of a body
+  std::vector<Index> with_ghosts;    // of a part: equations, with those of ghosts on their ranks
+  const Index* equation = nullptr;   // per degree of freedom: none, or one of this rank's
+  GatheredPieces gathered_pieces;
   BlockJacobi fine{BlockJacobi::Blocks::points};
   Eigen::CholmodSupernodalLLT<Matrix, Eigen::Lower> coarse;
   std::vector<Index> box;    // per point
-  std::vector<Index> piece;  // per point
+  std::vector<Index> piece;  // per point; none: a ghost that no bond here reaches
   /// Points x dimension, from the centre of their piece: Q is made of them whenever it is needed.
   /// Single precision is enough for what is a choice of subspace.
   std::vector<float> arm;
-  /// Pieces x motions x motions: column k has the amounts of the piece's motions that make its k-th
-  /// orthonormal one.
+  /// Pieces of the body x motions x motions: column k has the amounts of the piece's motions that
+  /// make its k-th orthonormal one. This, `first` and the factor are where pieces are gathered.
   std::vector<double> to_basis;
   std::vector<Index> first;   // coarse equation of each piece, and their number
-  std::vector<Index> member;  // points, grouped by piece
-  std::vector<Index> offset;  // of each piece in member
+  std::vector<Index> member;  // points of this rank, grouped by its pieces
+  std::vector<Index> offset;  // of each piece here in member
   Eigen::VectorXd coarse_residual, coarse_correction;
-  double length_unit = 1.0;  // of the arms [m]: keeps them within what single precision holds
+  bool has_boxes = false;     // of the present pattern
+  bool is_fine_alone = true;  // there are no coarse equations
+  double length_unit = 1.0;   // of the arms [m]: keeps them within what single precision holds
   int dimension = 0, threads = 1;
 
-  /// Boxes in the reference configuration: they don't depend on when the solver was made.
+  [[nodiscard]] const Communicator* ranks() const { return sharing ? &sharing->ranks() : nullptr; }
+  [[nodiscard]] Index owned(Index points) const { return sharing ? sharing->owned() : points; }
+  [[nodiscard]] Index pieces_here() const { return static_cast<Index>(offset.size()) - 1; }
+
+  /// Of a part of a body, which degrees of freedom of ghosts have equations there.
+  void take_part() {
+    equation = free->equation.data();
+    if (!sharing) return;
+    std::vector<double> is_free(free->equation.size());
+    for (std::size_t k = 0; k < is_free.size(); ++k) {
+      is_free[k] = free->equation[k] == FreeDofs::none ? 0.0 : 1.0;
+    }
+    sharing->update_ghosts(is_free);
+    with_ghosts = free->equation;
+    const auto own = std::size_t(sharing->owned()) * std::size_t(dimension);
+    for (std::size_t k = own; k < is_free.size(); ++k) {
+      with_ghosts[k] = is_free[k] > 0.0 ? 0 : FreeDofs::none;
+    }
+    equation = with_ghosts.data();
+  }
+
+  /// Boxes in the reference configuration: they don't depend on when the solver was made, nor on
+  /// ranks.
   void find_boxes(const TangentOperator& tangent, std::span<const double> position) {
     const int d = dimension;
-    const Index points = tangent.pattern.points();
+    const Index points = tangent.pattern.points(), own = owned(points);
     double longest = 0.0, shortest = std::numeric_limits<double>::infinity();
-    for (Index i = 0; i < points; ++i) {
+    for (Index i = 0; i < own; ++i) {
       for (Offset bond = tangent.pattern.offset[i]; bond < tangent.pattern.offset[i + 1]; ++bond) {
         const double squared = squared_distance(position, d, i, tangent.pattern.partner[bond]);
         longest = std::max(longest, squared);
         shortest = std::min(shortest, squared);
       }
     }
-    longest = std::sqrt(longest);
-    length_unit = longest > 0.0 ? longest : 1.0;
-    shortest = std::sqrt(std::min(shortest, longest * longest));
     std::array<double, 3> least, most, count{1.0, 1.0, 1.0};
     least.fill(std::numeric_limits<double>::infinity());
     most.fill(-std::numeric_limits<double>::infinity());
-    for (std::size_t k = 0; k < position.size(); ++k) {
+    for (std::size_t k = 0; k < std::size_t(own) * std::size_t(d); ++k) {
       least[k % d] = std::min(least[k % d], position[k]);
       most[k % d] = std::max(most[k % d], position[k]);
     }
+    double all = points;
+    if (const Communicator* const with = ranks()) {
+      const std::vector<double> ends = with->max(
+          {longest, -shortest, most[0], most[1], most[2], -least[0], -least[1], -least[2]});
+      longest = ends[0];
+      shortest = -ends[1];
+      for (std::size_t c = 0; c < 3; ++c) {
+        most[c] = ends[2 + c];
+        least[c] = -ends[5 + c];
+      }
+      all = double(with->count_all(own).all);
+    }
+    longest = std::sqrt(longest);
+    length_unit = longest > 0.0 ? longest : 1.0;
+    shortest = std::sqrt(std::min(shortest, longest * longest));
     double width = std::max({box_in_horizons * longest, box_in_spacings * shortest,
                              std::numeric_limits<double>::min()});
     do {
@@ -136,7 +182,8 @@ struct RigidPieces::Levels {
         count[c] = std::max(1.0, std::round((most[c] - least[c] + shortest) / width));
       }
       width *= 1.1;
-    } while (is_too_fine(d, count, points));
+    } while (is_too_fine(d, count, all, ranks() ? ranks()->count() : 1));
+    has_boxes = true;
     box.resize(points);
     for (Index i = 0; i < points; ++i) {
       double number = 0.0;
@@ -150,15 +197,31 @@ struct RigidPieces::Levels {
     }
   }
 
-  /// Parts of the boxes that unbroken bonds join.
-  void find_pieces(const TangentOperator& tangent) {
+  /// Traces of the diagonal blocks of ghosts, as their owners have them.
+  [[nodiscard]] std::vector<double> traces_of_ghosts(const TangentOperator& tangent) const {
+    if (!sharing) return {};
+    std::vector<double> traces(std::size_t(tangent.pattern.points()));
+    for (Index i = 0; i < sharing->owned(); ++i) traces[std::size_t(i)] = trace(tangent, i);
+    update_ghost_values(*sharing, dimension, traces);
+    traces.erase(traces.begin(), traces.begin() + std::ptrdiff_t(sharing->owned()));
+    return traces;
+  }
+
+  [[nodiscard]] static double trace(const TangentOperator& tangent, Index i) {
+    const int d = tangent.dimension;
+    double sum = 0.0;
+    for (int c = 0; c < d; ++c) sum += tangent.diagonal[std::size_t(i) * (d * d) + c * (d + 1)];
+    return sum;
+  }
+
+  /// Points that unbroken bonds join within their box, by one that stands for them.
+  [[nodiscard]] std::vector<Index> join_in_boxes(const TangentOperator& tangent) const {
     const BlockPattern& pattern = tangent.pattern;
-    const int d = dimension, entries = d * d;
-    const Index points = pattern.points();
-    const auto trace = [&](Index i) {
-      double sum = 0.0;
-      for (int c = 0; c < d; ++c) sum += tangent.diagonal[std::size_t(i) * entries + c * (d + 1)];
-      return sum;
+    const int entries = dimension * dimension;
+    const Index points = pattern.points(), own = owned(points);
+    const std::vector<double> of_ghosts = traces_of_ghosts(tangent);
+    const auto trace_of = [&](Index i) {
+      return i < own ? trace(tangent, i) : of_ghosts[std::size_t(i - own)];
     };
     std::vector<Index> parent(points);
     std::iota(parent.begin(), parent.end(), 0);
@@ -166,13 +229,14 @@ struct RigidPieces::Levels {
     // Bonds to later threads' points are left to the end.
     std::vector<std::vector<std::pair<Index, Index>>> across(std::size_t(tangent.threads()));
     tangent.for_each_row([&](int thread, Index i, std::span<const double> blocks) {
+      if (i >= own) return;
       for (Offset bond = pattern.offset[i]; bond < pattern.offset[i + 1]; ++bond) {
         const Index j = pattern.partner[bond];
         if (box[i] != box[j]) continue;
         const double* block = &blocks[std::size_t(bond - pattern.offset[i]) * entries];
         double largest = 0.0;
         for (int k = 0; k < entries; ++k) largest = std::max(largest, std::abs(block[k]));
-        if (!(largest > broken * std::min(trace(i), trace(j)))) continue;
+        if (!(largest > broken * std::min(trace_of(i), trace_of(j)))) continue;
         if (j < tangent.ranges[std::size_t(thread)].last) {
           join(i, j);
         } else {
@@ -183,20 +247,58 @@ struct RigidPieces::Levels {
     for (const auto& pairs : across) {
       for (const auto& [i, j] : pairs) join(i, j);
     }
-    std::vector<Index> number(points, -1);
-    piece.resize(points);
-    Index pieces = 0;
+    for (Index i = 0; i < points; ++i) parent[i] = root(parent, i);
+    return parent;
+  }
+
+  /// Numbers the pieces here in the order of their points; ghosts that no bond here reaches have
+  /// none.
+  /// @return how many
+  Index number_pieces_of_part(const TangentOperator& tangent, const std::vector<Index>& joined) {
+    const BlockPattern& pattern = tangent.pattern;
+    const Index points = pattern.points(), own = sharing->owned();
+    std::vector<char> is_reached(std::size_t(points), 0);
+    std::fill_n(is_reached.begin(), own, char(1));
+    for (Offset bond = 0; bond < pattern.offset[own]; ++bond) {
+      is_reached[std::size_t(pattern.partner[bond])] = 1;
+    }
+    const std::vector<std::int64_t> labels = labels_over_ranks(*sharing, dimension, joined);
+    std::unordered_map<std::int64_t, Index> number;
+    std::vector<std::int64_t> of_pieces;
+    piece.assign(points, FreeDofs::none);
     for (Index i = 0; i < points; ++i) {
-      Index& of_root = number[root(parent, i)];
-      if (of_root < 0) of_root = pieces++;
-      piece[i] = of_root;
+      if (!is_reached[std::size_t(i)]) continue;
+      const auto [at, is_new] = number.try_emplace(labels[std::size_t(i)], Index(of_pieces.size()));
+      if (is_new) of_pieces.push_back(labels[std::size_t(i)]);
+      piece[i] = at->second;
+    }
+    gathered_pieces = GatheredPieces(sharing->ranks(), of_pieces);
+    return Index(of_pieces.size());
+  }
+
+  /// Parts of the boxes that unbroken bonds join.
+  void find_pieces(const TangentOperator& tangent) {
+    const Index points = tangent.pattern.points(), own = owned(points);
+    const std::vector<Index> joined = join_in_boxes(tangent);
+    Index pieces = 0;
+    if (sharing) {
+      pieces = number_pieces_of_part(tangent, joined);
+    } else {
+      std::vector<Index> number(points, FreeDofs::none);
+      piece.resize(points);
+      for (Index i = 0; i < points; ++i) {
+        Index& of_root = number[joined[i]];
+        if (of_root < 0) of_root = pieces++;
+        piece[i] = of_root;
+      }
+      gathered_pieces = GatheredPieces(pieces);
     }
     offset.assign(std::size_t(pieces) + 1, 0);
-    for (Index i = 0; i < points; ++i) ++offset[piece[i] + 1];
+    for (Index i = 0; i < own; ++i) ++offset[piece[i] + 1];
     std::partial_sum(offset.begin(), offset.end(), offset.begin());
-    member.resize(points);
+    member.resize(own);
     std::vector<Index> place(offset.begin(), offset.end() - 1);
-    for (Index i = 0; i < points; ++i) member[place[piece[i]]++] = i;
+    for (Index i = 0; i < own; ++i) member[place[piece[i]]++] = i;
   }
 
   /// Vector of a point's degrees of freedom, 0 where one is prescribed.
@@ -204,7 +306,7 @@ struct RigidPieces::Levels {
   std::array<double, D> at_free(Index i, const ValueOf& value_of) const {
     std::array<double, D> result;
     for (int c = 0; c < D; ++c) {
-      const Index e = free->equation[std::size_t(i) * D + c];
+      const Index e = equation[std::size_t(i) * D + c];
       result[c] = e == FreeDofs::none ? 0.0 : value_of(c, e);
     }
     return result;
@@ -230,34 +332,69 @@ struct RigidPieces::Levels {
         &to_basis[std::size_t(p) * motions * motions]);
   }
 
-  /// Orthonormal motions of each piece on its equations, by Gram and Schmidt's method done twice.
+  [[nodiscard]] std::span<const Index> members(Index p) const {
+    return std::span<const Index>(member).subspan(std::size_t(offset[p]),
+                                                  std::size_t(offset[p + 1] - offset[p]));
+  }
+
+  /// Of all points with a piece, from its centre.
   template <int D>
-  void find_basis(std::span<const double> position) {
-    constexpr int motions = motions_of(D);
-    using Vector = Eigen::Matrix<double, motions, 1>;
-    const Index pieces = static_cast<Index>(offset.size()) - 1;
-    arm.resize(position.size());
-    to_basis.assign(std::size_t(pieces) * motions * motions, 0.0);
-    first.assign(std::size_t(pieces) + 1, 0);
+  void find_arms(std::span<const double> position) {
+    const Index pieces = pieces_here();
+    std::vector<double> sums(std::size_t(pieces) * (D + 1), 0.0);  // of positions, and how many
 #pragma omp parallel for num_threads(threads) schedule(static)
     for (Index p = 0; p < pieces; ++p) {
-      const std::span<const Index> members(&member[offset[p]],
-                                           &member[offset[p]] + (offset[p + 1] - offset[p]));
-      std::array<double, 3> centre{};
-      for (const Index i : members) {
-        for (int c = 0; c < D; ++c) centre[c] += position[std::size_t(i) * D + c];
+      double* const of_piece = &sums[std::size_t(p) * (D + 1)];
+      for (const Index i : members(p)) {
+        for (int c = 0; c < D; ++c) of_piece[c] += position[std::size_t(i) * D + c];
       }
-      for (double& c : centre) c /= double(members.size());
+      of_piece[D] = double(members(p).size());
+    }
+    sums = gathered_pieces.share_out(gathered_pieces.sum(std::move(sums), D + 1), D + 1);
+    arm.resize(position.size());
+    const Index points = static_cast<Index>(piece.size());
+#pragma omp parallel for num_threads(threads) schedule(static)
+    for (Index i = 0; i < points; ++i) {
+      if (piece[i] == FreeDofs::none) continue;
+      const double* const of_piece = &sums[std::size_t(piece[i]) * (D + 1)];
+      for (int c = 0; c < D; ++c) {
+        const std::size_t dof = std::size_t(i) * D + c;
+        arm[dof] = static_cast<float>((position[dof] - of_piece[c] / of_piece[D]) / length_unit);
+      }
+    }
+  }
+
+  /// Gram's matrices of the motions of the pieces on their equations.
+  template <int D>
+  std::vector<double> find_grams() {
+    constexpr int motions = motions_of(D), entries = motions * motions;
+    const Index pieces = pieces_here();
+    std::vector<double> grams(std::size_t(pieces) * entries, 0.0);
+#pragma omp parallel for num_threads(threads) schedule(static)
+    for (Index p = 0; p < pieces; ++p) {
       Eigen::Matrix<double, motions, motions> gram;
       gram.setZero();
-      for (const Index i : members) {
-        for (int c = 0; c < D; ++c) {
-          const std::size_t dof = std::size_t(i) * D + c;
-          arm[dof] = static_cast<float>((position[dof] - centre[c]) / length_unit);
-        }
+      for (const Index i : members(p)) {
         const auto at_i = motions_at<D>(i);
         gram.noalias() += at_i * at_i.transpose();
       }
+      std::copy_n(gram.data(), entries, &grams[std::size_t(p) * entries]);
+    }
+    return gathered_pieces.sum(std::move(grams), entries);
+  }
+
+  /// Orthonormal motions of each piece on its equations, by Gram and Schmidt's method done twice.
+  template <int D>
+  void find_basis(std::vector<double> grams) {
+    constexpr int motions = motions_of(D), entries = motions * motions;
+    using Vector = Eigen::Matrix<double, motions, 1>;
+    const Index pieces = static_cast<Index>(grams.size() / entries);
+    to_basis.assign(grams.size(), 0.0);
+    first.assign(std::size_t(pieces) + 1, 0);
+#pragma omp parallel for num_threads(threads) schedule(static)
+    for (Index p = 0; p < pieces; ++p) {
+      Eigen::Matrix<double, motions, motions> gram;
+      std::copy_n(&grams[std::size_t(p) * entries], entries, gram.data());
       auto basis = basis_of<D>(p);
       int kept = 0;
       for (int m = 0; m < motions; ++m) {
@@ -308,15 +445,17 @@ struct RigidPieces::Levels {
     std::size_t last_ = 0;
   };
 
-  /// Lower triangle of E.
+  /// Blocks of the lower triangle of E by threads, or by ranks where they are gathered.
   template <int D>
-  Matrix coarse_matrix(const TangentOperator& tangent) {
+  std::vector<CoarseBlocks<D>> coarse_blocks(const TangentOperator& tangent) const {
     constexpr int motions = motions_of(D);
     using Motions = Eigen::Matrix<double, motions, D>;
     using Entries = Eigen::Map<const Eigen::Matrix<double, D, D, Eigen::RowMajor>>;
     const BlockPattern& pattern = tangent.pattern;
+    const Index points_here = owned(pattern.points());
     std::vector<CoarseBlocks<D>> parts(std::size_t(tangent.threads()));
     tangent.for_each_row([&](int thread, Index i, std::span<const double> blocks) {
+      if (i >= points_here) return;
       CoarseBlocks<D>& part = parts[std::size_t(thread)];
       const Index own = piece[i];
       const Motions at_i = motions_at<D>(i);
@@ -326,8 +465,10 @@ struct RigidPieces::Levels {
       // mostly follow one another.
       Motions of_run = Motions::Zero();
       Index run = FreeDofs::none;
+      bool is_shared = false;
       const auto end_run = [&] {
         if (run == FreeDofs::none) return;
+        if (is_shared) of_run *= 0.5;  // the rank that owns the ghosts has the other half
         const Eigen::Matrix<double, motions, motions> block = at_i * of_run.transpose();
         if (run == own) {
           part.between(own, own) += block + block.transpose();
@@ -340,9 +481,10 @@ struct RigidPieces::Levels {
       };
       for (Offset bond = pattern.offset[i]; bond < pattern.offset[i + 1]; ++bond) {
         const Index j = pattern.partner[bond];
-        if (piece[j] != run) {
+        if (piece[j] != run || (j >= points_here) != is_shared) {
           end_run();
           run = piece[j];
+          is_shared = j >= points_here;
         }
         const double* block = &blocks[std::size_t(bond - pattern.offset[i]) * D * D];
         for (int r = 0; r < D; ++r) {
@@ -354,10 +496,35 @@ struct RigidPieces::Levels {
       }
       end_run();
     });
-    return gathered<D>(parts);
+    return sharing ? of_ranks<D>(parts) : parts;
   }
 
-  /// E from its blocks, which are in terms of the pieces' motions, not of the basis.
+  template <int D>
+  std::vector<CoarseBlocks<D>> of_ranks(const std::vector<CoarseBlocks<D>>& parts) const {
+    using Block = typename CoarseBlocks<D>::Block;
+    GatheredPieces::Pairs pairs;
+    for (const CoarseBlocks<D>& part : parts) {
+      part.for_each([&](Index a, Index b, const Block& block) {
+        pairs.row.push_back(a);
+        pairs.column.push_back(b);
+        pairs.values.insert(pairs.values.end(), block.data(), block.data() + block.size());
+      });
+    }
+    std::vector<CoarseBlocks<D>> gathered(1);
+    gathered_pieces.for_each_pair(std::move(pairs), int(Block::SizeAtCompileTime),
+                                  [&](Index a, Index b, const double* values) {
+                                    const Eigen::Map<const Block> block(values);
+                                    if (a >= b) {
+                                      gathered[0].between(a, b) += block;
+                                    } else {
+                                      gathered[0].between(b, a) += block.transpose();
+                                    }
+                                  });
+    return gathered;
+  }
+
+  /// Lower triangle of E from its blocks, which are in terms of the pieces' motions, not of the
+  /// basis.
   template <int D>
   Matrix gathered(const std::vector<CoarseBlocks<D>>& parts) {
     using Block = typename CoarseBlocks<D>::Block;
@@ -412,9 +579,16 @@ struct RigidPieces::Levels {
 
   template <int D>
   LinearOutcome build_coarse(const TangentOperator& tangent) {
-    find_basis<D>(tangent.positions());
-    if (first.back() == 0) return LinearOutcome::solved;
-    coarse.compute(coarse_matrix<D>(tangent));
+    find_arms<D>(tangent.positions());
+    find_basis<D>(find_grams<D>());
+    is_fine_alone = first.back() == 0;
+    if (const Communicator* const with = ranks()) {
+      is_fine_alone = with->max(double(first.back())) == 0.0;
+    }
+    if (is_fine_alone) return LinearOutcome::solved;
+    const std::vector<CoarseBlocks<D>> blocks = coarse_blocks<D>(tangent);
+    if (!gathered_pieces.gathers()) return LinearOutcome::solved;
+    coarse.compute(gathered<D>(blocks));
     const int status = coarse.cholmod().status;
     if (status == CHOLMOD_OUT_OF_MEMORY || status == CHOLMOD_TOO_LARGE) {
       return LinearOutcome::out_of_memory;
@@ -424,23 +598,18 @@ struct RigidPieces::Levels {
     return LinearOutcome::solved;
   }
 
+  /// E^-1 on the moments of all pieces, to amounts of their motions, in place.
   template <int D>
-  void add_coarse(std::span<const double> residual, std::span<double> correction) {
+  void solve_coarse(std::vector<double>& of_pieces) {
     constexpr int motions = motions_of(D);
-    const Index pieces = static_cast<Index>(first.size()) - 1;
-    const auto members = [&](Index p) {
-      return std::span<const Index>(member).subspan(std::size_t(offset[p]),
-                                                    std::size_t(offset[p + 1] - offset[p]));
-    };
     using Vector = Eigen::Matrix<double, motions, 1>;
+    const Index pieces = static_cast<Index>(first.size()) - 1;
+    const auto of_piece = [&](Index p) {
+      return Eigen::Map<Vector>(&of_pieces[std::size_t(p) * motions]);
+    };
 #pragma omp parallel for num_threads(threads) schedule(static)
     for (Index p = 0; p < pieces; ++p) {
-      Vector sum = Vector::Zero();
-      for (const Index i : members(p)) {
-        const auto at_i = moments<D>(&arm[std::size_t(i) * D],
-                                     at_free<D>(i, [&](int, Index e) { return residual[e]; }));
-        for (int m = 0; m < motions; ++m) sum[m] += at_i[m];
-      }
+      const Vector sum = of_piece(p);
       const Vector in_basis = basis_of<D>(p).transpose() * sum;
       for (Index k = first[p]; k < first[p + 1]; ++k) coarse_residual[k] = in_basis[k - first[p]];
     }
@@ -449,9 +618,32 @@ struct RigidPieces::Levels {
     for (Index p = 0; p < pieces; ++p) {
       Vector in_basis = Vector::Zero();
       for (Index k = first[p]; k < first[p + 1]; ++k) in_basis[k - first[p]] = coarse_correction[k];
-      const Vector of_piece = basis_of<D>(p) * in_basis;
+      const Vector amount = basis_of<D>(p) * in_basis;
+      of_piece(p) = amount;
+    }
+  }
+
+  template <int D>
+  void add_coarse(std::span<const double> residual, std::span<double> correction) {
+    constexpr int motions = motions_of(D);
+    const Index pieces = pieces_here();
+    std::vector<double> of_pieces(std::size_t(pieces) * motions, 0.0);
+#pragma omp parallel for num_threads(threads) schedule(static)
+    for (Index p = 0; p < pieces; ++p) {
+      double* const sum = &of_pieces[std::size_t(p) * motions];
+      for (const Index i : members(p)) {
+        const auto at_i = moments<D>(&arm[std::size_t(i) * D],
+                                     at_free<D>(i, [&](int, Index e) { return residual[e]; }));
+        for (int m = 0; m < motions; ++m) sum[m] += at_i[m];
+      }
+    }
+    of_pieces = gathered_pieces.sum(std::move(of_pieces), motions);
+    if (gathered_pieces.gathers()) solve_coarse<D>(of_pieces);
+    of_pieces = gathered_pieces.share_out(std::move(of_pieces), motions);
+#pragma omp parallel for num_threads(threads) schedule(static)
+    for (Index p = 0; p < pieces; ++p) {
       std::array<double, motions> amount;
-      for (int m = 0; m < motions; ++m) amount[m] = of_piece[m];
+      for (int m = 0; m < motions; ++m) amount[m] = of_pieces[std::size_t(p) * motions + m];
       for (const Index i : members(p)) {
         const std::array<double, D> moved = displacement<D>(&arm[std::size_t(i) * D], amount);
         for (int c = 0; c < D; ++c) {
@@ -463,7 +655,8 @@ struct RigidPieces::Levels {
   }
 };
 
-RigidPieces::RigidPieces() : levels_(std::make_unique<Levels>()) {
+RigidPieces::RigidPieces(const Sharing* sharing) : levels_(std::make_unique<Levels>()) {
+  levels_->sharing = sharing;
   levels_->coarse.cholmod().print = 0;  // negative pivots are an outcome, no warning
 }
 RigidPieces::~RigidPieces() = default;
@@ -471,17 +664,18 @@ RigidPieces::~RigidPieces() = default;
 void RigidPieces::analyze(const BlockPattern& pattern, const FreeDofs& free) {
   levels_->free = &free;
   levels_->dimension = free.dimension;
-  levels_->box.clear();
+  levels_->has_boxes = false;
   levels_->fine.analyze(pattern, free);
 }
 
 LinearOutcome RigidPieces::build(const TangentOperator& tangent) {
   Levels& levels = *levels_;
   levels.threads = tangent.threads();
-  levels.first.assign(1, 0);
-  const LinearOutcome outcome = levels.fine.build(tangent);
+  levels.is_fine_alone = true;
+  levels.take_part();
+  const LinearOutcome outcome = worst_outcome(levels.ranks(), levels.fine.build(tangent));
   if (outcome != LinearOutcome::solved) return outcome;
-  if (levels.box.empty()) levels.find_boxes(tangent, tangent.reference);
+  if (!levels.has_boxes) levels.find_boxes(tangent, tangent.reference);
   levels.find_pieces(tangent);
   if (tangent.dimension == 1) return levels.build_coarse<1>(tangent);
   if (tangent.dimension == 2) return levels.build_coarse<2>(tangent);
@@ -491,7 +685,7 @@ LinearOutcome RigidPieces::build(const TangentOperator& tangent) {
 void RigidPieces::apply(std::span<const double> residual, std::span<double> correction) {
   Levels& levels = *levels_;
   levels.fine.apply(residual, correction);
-  if (levels.first.back() == 0) return;
+  if (levels.is_fine_alone) return;
   if (levels.dimension == 1) levels.add_coarse<1>(residual, correction);
   if (levels.dimension == 2) levels.add_coarse<2>(residual, correction);
   if (levels.dimension == 3) levels.add_coarse<3>(residual, correction);
@@ -499,7 +693,7 @@ void RigidPieces::apply(std::span<const double> residual, std::span<double> corr
 
 std::string RigidPieces::describe() const {
   if (levels_->offset.empty()) return "rigid pieces";
-  return fmt::format("{} rigid pieces", levels_->offset.size() - 1);
+  return fmt::format("{} rigid pieces", levels_->gathered_pieces.count());
 }
 
 }  // namespace peristat

@@ -2,6 +2,7 @@
 
 #include <memory>
 
+#include "assembly/energy/sharing.hpp"
 #include "solvers/linear/preconditioner.hpp"
 
 namespace peristat {
@@ -21,9 +22,13 @@ namespace peristat {
 /// neither the size nor the shape of a body: 30 to 50 to 1e-8. The method is two-level additive
 /// Schwarz with a coarse space of aggregates' rigid motions (Nicolaides, SIAM J. Numer. Anal. 24,
 /// 1987; Jönsthövel et al., Comput. Mech. 50, 2012).
+///
+/// Pieces of a body on several ranks are those of the whole: they may stand on several of them, and
+/// rank 0 has E and its factor.
 class RigidPieces : public Preconditioner {
  public:
-  RigidPieces();
+  /// @param sharing of a part of a body, which outlives it; null: the body is whole
+  explicit RigidPieces(const Sharing* sharing = nullptr);
   ~RigidPieces() override;
 
   void analyze(const BlockPattern& pattern, const FreeDofs& free) override;

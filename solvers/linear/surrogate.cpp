@@ -8,10 +8,13 @@
 
 #include <fmt/format.h>
 
+#include "assembly/energy/ghost_values.hpp"
 #include "assembly/operators/tangent.hpp"
 #include "solvers/linear/block_jacobi.hpp"
 #include "solvers/linear/cholesky.hpp"
 #include "solvers/linear/compressed_rows.hpp"
+#include "solvers/linear/sums.hpp"
+#include "solvers/linear/worst_outcome.hpp"
 #include "src/geometry/squared_distance.hpp"
 
 namespace peristat {
@@ -35,10 +38,11 @@ constexpr double loose = 1e-3;
 
 struct Surrogate::StandIn {
   const FreeDofs* free = nullptr;
+  const Sharing* sharing = nullptr;  // of a part of a body
   BlockJacobi fine{BlockJacobi::Blocks::points};
   Bonds short_bonds;
-  std::vector<char> is_short;  // per bond of the pattern; empty before the first tangent
-  std::unique_ptr<Tangent> springs;
+  std::vector<char> is_short;        // per bond of the pattern
+  std::unique_ptr<Tangent> springs;  // null: before the first tangent
   Cholesky solver{FactorReuse{.max_iterations = 0}};
   std::optional<MatrixPreconditioner> multigrid;  // instead of the factor, if it holds one
   std::vector<double> correction;
@@ -46,7 +50,7 @@ struct Surrogate::StandIn {
   /// Chooses the short bonds, in the reference configuration.
   LinearOutcome choose_bonds(const TangentOperator& tangent, std::span<const double> position) {
     const BlockPattern& pattern = tangent.pattern;
-    const Index points = pattern.points();
+    const Index points = pattern.points(), of_rank = sharing ? sharing->owned() : points;
     // Spacing about a point: the mean distance of as many nearest neighbours as a lattice's point
     // has at one spacing.
     constexpr std::size_t most = 6;
@@ -54,7 +58,7 @@ struct Surrogate::StandIn {
     std::vector<std::array<double, most>> distances(points);
     for (auto& list : distances) list.fill(std::numeric_limits<double>::infinity());
     const auto for_each_bond = [&](const auto& visit) {
-      for (Index i = 0; i < points; ++i) {
+      for (Index i = 0; i < of_rank; ++i) {
         for (Offset bond = pattern.offset[i]; bond < pattern.offset[i + 1]; ++bond) {
           visit(i, pattern.partner[bond], bond);
         }
@@ -79,6 +83,7 @@ struct Surrogate::StandIn {
       }
       spacing[i] = count > 0 ? sum / double(count) : 0.0;
     }
+    if (sharing) update_ghost_values(*sharing, tangent.dimension, spacing);
     is_short.assign(std::size_t(pattern.blocks()), 0);
     short_bonds.offset.assign(std::size_t(points) + 1, 0);
     for_each_bond([&](Index i, Index j, Offset bond) {
@@ -92,6 +97,10 @@ struct Surrogate::StandIn {
     springs =
         std::make_unique<Tangent>(BlockPattern(short_bonds), tangent.dimension, tangent.threads());
     multigrid.reset();
+    if (sharing) {  // nobody has the whole of it to factorise
+      multigrid.emplace(MatrixPreconditionerKind::multigrid);
+      return LinearOutcome::solved;
+    }
     const LinearOutcome analysis = solver.analyze(springs->pattern, *free);
     if (analysis == LinearOutcome::out_of_memory ||
         solver.estimate().flops > largest_factorisation) {
@@ -105,8 +114,10 @@ struct Surrogate::StandIn {
     const BlockPattern& pattern = tangent.pattern;
     const int d = tangent.dimension, entries = d * d;
     const auto count = std::size_t(tangent.threads());
+    const Index of_rank = sharing ? sharing->owned() : pattern.points();
     std::vector<double> moment(count, 0.0), short_moment(count, 0.0);
     tangent.for_each_row([&](int thread, Index i, std::span<const double> blocks) {
+      if (i >= of_rank) return;
       Offset spring = short_bonds.offset[i];
       for (Offset bond = pattern.offset[i]; bond < pattern.offset[i + 1]; ++bond) {
         const double* block = &blocks[std::size_t(bond - pattern.offset[i]) * entries];
@@ -120,10 +131,11 @@ struct Surrogate::StandIn {
         for (int r = 0; r < d; ++r) {
           for (int c = 0; c < d; ++c) along -= arm[r] * block[r * d + c] * arm[c];
         }
-        const double k_l2 = std::max(along, 0.0);  // k l^2
-        moment[thread] += k_l2;
+        const double k_l2 = std::max(along, 0.0);              // k l^2
+        const double share = j < of_rank ? k_l2 : 0.5 * k_l2;  // another rank has the other half
+        moment[thread] += share;
         if (!is_short[bond]) continue;
-        short_moment[thread] += k_l2;
+        short_moment[thread] += share;
         double* to = &springs->off_diagonal[std::size_t(spring) * entries];
         const double scale = squared > 0.0 ? -k_l2 / (squared * squared) : 0.0;
         for (int r = 0; r < d; ++r) {
@@ -135,6 +147,9 @@ struct Surrogate::StandIn {
     double all = 0.0, of_short = 0.0;
     for (const double part : moment) all += part;
     for (const double part : short_moment) of_short += part;
+    const Sums sums(sharing, d);
+    all = sums.of_all(all);
+    of_short = sums.of_all(of_short);
     const double gamma = of_short > 0.0 ? all / of_short : 1.0;
     std::fill(springs->diagonal.begin(), springs->diagonal.end(), 0.0);
     for (Index i = 0; i < pattern.points(); ++i) {
@@ -162,14 +177,16 @@ struct Surrogate::StandIn {
   }
 };
 
-Surrogate::Surrogate() : stand_in_(std::make_unique<StandIn>()) {}
+Surrogate::Surrogate(const Sharing* sharing) : stand_in_(std::make_unique<StandIn>()) {
+  stand_in_->sharing = sharing;
+}
 Surrogate::~Surrogate() = default;
 
 void Surrogate::analyze(const BlockPattern& pattern, const FreeDofs& free) {
   StandIn& s = *stand_in_;
   s.free = &free;
   s.fine.analyze(pattern, free);
-  s.is_short.clear();
+  s.springs.reset();
   s.short_bonds = {};
   s.solver.count_pivots(false);
   s.correction.resize(std::size_t(free.count()));
@@ -177,17 +194,19 @@ void Surrogate::analyze(const BlockPattern& pattern, const FreeDofs& free) {
 
 LinearOutcome Surrogate::build(const TangentOperator& tangent) {
   StandIn& s = *stand_in_;
-  const LinearOutcome outcome = s.fine.build(tangent);
+  const Sharing* const sharing = s.sharing;
+  const LinearOutcome outcome =
+      worst_outcome(sharing ? &sharing->ranks() : nullptr, s.fine.build(tangent));
   if (outcome != LinearOutcome::solved) return outcome;
   const std::vector<double> position = tangent.positions();
-  if (s.is_short.empty()) {
+  if (!s.springs) {
     const LinearOutcome analysis = s.choose_bonds(tangent, tangent.reference);
     if (analysis != LinearOutcome::solved) return analysis;
   }
   s.find_springs(tangent, position);
   if (s.multigrid) {
-    return s.multigrid->build(compressed_rows(*s.springs, *s.free), equation_blocks(*s.free),
-                              rigid_motions(position, *s.free))
+    return s.multigrid->build(compressed_rows(*s.springs, *s.free, sharing),
+                              equation_blocks(*s.free), rigid_motions(position, *s.free, sharing))
                ? LinearOutcome::solved
                : LinearOutcome::inaccurate;
   }

@@ -2,6 +2,7 @@
 
 #include <memory>
 
+#include "assembly/energy/sharing.hpp"
 #include "solvers/linear/preconditioner.hpp"
 
 namespace peristat {
@@ -19,10 +20,12 @@ namespace peristat {
 /// number depends on neither size nor shape: 12 to 16 iterations to 1e-8.
 ///
 /// S is factorised by Cholesky, some ten times cheaper than K; where that is still more than a few
-/// seconds' work (3D bodies from some 35^3 points) a cycle of multigrid stands for S^-1.
+/// seconds' work (3D bodies from some 35^3 points), and on several ranks, a cycle of multigrid
+/// stands for S^-1.
 class Surrogate : public Preconditioner {
  public:
-  Surrogate();
+  /// @param sharing of a part of a body, which outlives it; null: the body is whole
+  explicit Surrogate(const Sharing* sharing = nullptr);
   ~Surrogate() override;
 
   void analyze(const BlockPattern& pattern, const FreeDofs& free) override;

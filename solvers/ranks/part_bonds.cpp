@@ -32,12 +32,12 @@ std::vector<char> owned_and_neighbours(const Part& part, const Bonds& bonds) {
 }  // namespace
 
 double reach_of_bonds(const Points& points, SurfaceCorrection surface, const BondSetting& setting,
-                      PartBonds which, const Communicator& ranks) {
+                      const Communicator& ranks, PartBonds which) {
   return ranks.max(reach_here(points, surface, setting, which));
 }
 
 Bonds make_bonds(const Part& part, SurfaceCorrection surface, const BondSetting& setting,
-                 PartBonds which, const Communicator& ranks, int threads) {
+                 const Communicator& ranks, int threads, PartBonds which) {
   if (part.reach < reach_here(part.points, surface, setting, which)) {
     throw std::logic_error("the ghosts of a part don't reach as far as its bonds");
   }

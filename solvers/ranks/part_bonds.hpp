@@ -19,15 +19,15 @@ enum class PartBonds {
 /// call that all ranks make.
 /// @param points those of the rank, without ghosts or with them
 [[nodiscard]] double reach_of_bonds(const Points& points, SurfaceCorrection surface,
-                                    const BondSetting& setting, PartBonds which,
-                                    const Communicator& ranks);
+                                    const BondSetting& setting, const Communicator& ranks,
+                                    PartBonds which = PartBonds::of_owned);
 
 /// The bonds of a body that a part has, with the weights of make_bonds; those that two ranks count
 /// energies of have the same bits on both (agree_on_kinds). A call that all make.
 /// @throws std::logic_error if the part's ghosts don't reach as far as reach_of_bonds
 [[nodiscard]] Bonds make_bonds(const Part& part, SurfaceCorrection surface,
-                               const BondSetting& setting, PartBonds which,
-                               const Communicator& ranks, int threads);
+                               const BondSetting& setting, const Communicator& ranks, int threads,
+                               PartBonds which = PartBonds::of_owned);
 
 /// Bonds of the whole body that have a weight, each counted once.
 /// @param points of the rank

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "assembly/energy/sharing.hpp"
@@ -23,12 +24,23 @@ class PartOfBody : public Sharing {
 
   /// Of each owned point in the whole body, ascending.
   [[nodiscard]] const std::vector<GlobalIndex>& number() const { return number_; }
+  /// Of a point that is here, perhaps a ghost.
+  [[nodiscard]] GlobalIndex number_of(Index point) const {
+    const auto at = std::size_t(point);
+    return at < number_.size() ? number_[at] : ghost_number_[at - number_.size()];
+  }
+  /// The point that has a number in the whole body, if it is here.
+  [[nodiscard]] std::optional<Index> find(GlobalIndex number) const;
+  [[nodiscard]] int owner_of_ghost(Index ghost) const {
+    return ghost_owner_[std::size_t(ghost) - number_.size()];
+  }
   [[nodiscard]] GlobalIndex whole() const { return whole_; }  ///< points of the whole body
   [[nodiscard]] Traffic traffic() const { return ghosts_->traffic(); }
 
  private:
   const Communicator& ranks_;
-  std::vector<GlobalIndex> number_;
+  std::vector<GlobalIndex> number_, ghost_number_;
+  std::vector<int> ghost_owner_;
   GlobalIndex whole_;
   std::unique_ptr<GhostExchange> ghosts_;
 };

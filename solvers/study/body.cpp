@@ -321,10 +321,10 @@ namespace {
 /// What the assembler of a part is made for; tables of cases are refused before.
 void refuse_without_ranks(const BodySpecification& of) {
   const auto refuse = [](const std::string& key) {
-    throw InputError(
-        key, "",
-        "is not for more than one rank yet: there are elastic bodies with pre-cracks, supports, "
-        "eigenstrains, tractions, body forces, total forces and gravity");
+    throw InputError(key, "",
+                     "is not for more than one rank yet: there are elastic bodies with "
+                     "pre-cracks, supports, "
+                     "body forces, total forces and gravity");
   };
   const MaterialSpecification& material = of.material;
   if (is_polynomial(material.model)) refuse("material.model");
@@ -347,7 +347,7 @@ void refuse_without_ranks(const BodySpecification& of) {
   if (of.force_operator != ForceOperator::bonds) refuse("force_operator");
   if (!of.foundations.empty()) refuse("foundations");
   if (!of.controls.empty()) refuse("controls");
-  if (of.end_time || of.has_inertia) refuse("end_time");
+  if (of.has_inertia) refuse("has_inertia");
   const ConstraintSpecification& constraints = of.constraints;
   const bool is_constrained = !constraints.rigid_sets.empty() || !constraints.rollers.empty() ||
                               !constraints.linear.empty() || !constraints.symmetries.empty() ||
@@ -397,7 +397,7 @@ std::unique_ptr<const Body> make_body(Part part, const BodySpecification& of,
   make_model(
       body,
       [&](const BondSetting& setting) {
-        return make_bonds(part, of.surface_correction, setting, bonds_of_part(of), ranks, threads);
+        return make_bonds(part, of.surface_correction, setting, ranks, threads, bonds_of_part(of));
       },
       threads);
   LoadSetting loads = load_setting(of, body.points);
@@ -448,6 +448,10 @@ MemoryEstimate estimate_memory(const Body& body) {
   size.has_symmetric_blocks = body.model.has_symmetric_blocks();
   size.is_constrained = !body.conditions->constraints().none();
   size.free_dofs = double(std::count(prescribed.begin(), prescribed.end(), 0));
+  if (body.part) {
+    size.ranks = body.part->ranks().count();
+    size.gathered_points = body.part->ranks().rank() == 0 ? double(body.part->whole()) : 0.0;
+  }
   for (const auto& term : body.model.terms()) {
     size.blocks = std::max(size.blocks, double(term->couplings().partner.size()));
   }

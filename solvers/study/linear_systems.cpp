@@ -10,8 +10,6 @@
 #include "assembly/operators/rows_of_energy.hpp"
 #include "assembly/operators/tangent.hpp"
 #include "solvers/linear/available_memory.hpp"
-#include "solvers/linear/block_jacobi.hpp"
-#include "solvers/linear/iterative_solver.hpp"
 #include "solvers/linear/no_solver.hpp"
 #include "solvers/linear/sines_estimate.hpp"
 #include "solvers/ranks/part_tangent.hpp"
@@ -84,9 +82,18 @@ constexpr double vectors_of_events = 12.0, numbers_of_events_per_bond = 6.0;
 /// Of mode dynamics: mass, its inverse, velocities before and after, and those of Lanczos' method.
 constexpr double vectors_of_motion = 9.0;
 
+/// A rank may have no point, which no estimate is made for.
+MemoryEstimate estimate_memory_of_part(const Body& body) {
+  if (body.points.count() > 0) return estimate_memory(body);
+  MemoryEstimate nothing;
+  nothing.size.dimension = body.points.dimension;
+  nothing.size.ranks = body.part->ranks().count();
+  return nothing;
+}
+
 /// Explicit steps solve nothing; they need products of the tangent now and then.
 LinearSystems systems_of_motion(const Body& body) {
-  const MemoryEstimate estimate = estimate_memory(body);
+  const MemoryEstimate estimate = estimate_memory_of_part(body);
   LinearSystems systems;
   systems.chosen.solver = std::make_unique<NoSolver>();
   systems.chosen.is_direct = false;
@@ -98,38 +105,34 @@ LinearSystems systems_of_motion(const Body& body) {
   return systems;
 }
 
-/// Conjugate gradients with blocks of the points.
-LinearSystems systems_of_part(const StudyOptions& options, const Body& body) {
-  constexpr int most_iterations = 20'000;
+/// No rank has the whole of a tangent, or of the box of a lattice.
+void refuse_solvers_without_ranks(const StudyOptions& options, const Body& body) {
   const auto refuse = [](const std::string& key, const std::string& what) {
-    throw InputError(key, "", "is not for more than one rank yet; take " + what);
+    throw InputError(key, "", "is for one rank; on several take " + what);
   };
   const LinearMethod method = options.linear.method;
-  if (method != LinearMethod::automatic && method != LinearMethod::conjugate_gradients) {
-    refuse("linear.method", "\"pcg\"");
+  if (method == LinearMethod::cholesky || method == LinearMethod::ldlt) {
+    refuse("linear.method", "\"auto\", \"pcg\", \"minres\" or \"gmres\"");
   }
-  using Kind = PreconditionerKind;
-  const Kind kind = options.linear.preconditioner;
-  if (kind != Kind::automatic && kind != Kind::jacobi && kind != Kind::block_jacobi) {
+  if (method == LinearMethod::lu) refuse("linear.method", "\"auto\", \"gmres\" or \"bicgstab\"");
+  const PreconditionerKind kind = options.linear.preconditioner;
+  if (kind == PreconditionerKind::sines) {
+    refuse("linear.preconditioner", "\"rigid_pieces\" or \"surrogate\"");
+  }
+  if (kind == PreconditionerKind::local_operator) {
     refuse("linear.preconditioner", "\"block_jacobi\" or \"jacobi\"");
   }
-  if (options.tangent == TangentStorage::matrix_free && !body.model.visits_rows()) {
-    throw InputError("tangent", "matrix_free", "is for bonds alone");
+  const bool is_of_points = kind == PreconditionerKind::automatic ||
+                            kind == PreconditionerKind::block_jacobi ||
+                            kind == PreconditionerKind::jacobi;
+  if (!body.model.visits_rows() && !is_of_points) {
+    refuse("linear.preconditioner", "\"block_jacobi\" or \"jacobi\" with models but \"bond\"");
   }
-  const auto blocks =
-      kind == Kind::jacobi ? BlockJacobi::Blocks::entries : BlockJacobi::Blocks::points;
-  LinearSystems systems;
-  systems.chosen.solver = std::make_unique<IterativeSolver>(
-      KrylovMethod::conjugate_gradients, std::make_unique<BlockJacobi>(blocks), most_iterations,
-      KrylovOptions{}.restart, &body.part->ranks());
-  systems.chosen.is_direct = false;
-  systems.chosen.reason = "what ranks solve with";
-  systems.is_stored = options.tangent == TangentStorage::stored || !body.model.visits_rows();
-  const LinearSolverOptions linear{LinearMethod::conjugate_gradients, Kind::block_jacobi};
-  // A rank may have no point, which no estimate is made for.
-  const bool is_empty = body.points.count() == 0;
-  systems.bytes = is_empty ? 0.0 : estimate_memory(body).bytes(false, systems.is_stored, linear);
-  return systems;
+  if (finds_loads(options, *body.conditions)) {
+    refuse("loading.mode", "loads that are given: those that are found need pivots");
+  }
+  if (!body.model.has_rows()) refuse("force_operator", "\"bonds\"");
+  if (!body.conditions->constraints().none()) refuse("constraints", "none");
 }
 
 /// Convolutions without a potential have neither rows to solve with nor an energy to search by.
@@ -214,10 +217,10 @@ std::shared_ptr<const LatticeBox> box_for_sines(const StudyOptions& options, con
 LinearSystems choose_linear_systems(const StudyOptions& options, const Model& model,
                                     const MemoryEstimate& estimate,
                                     std::shared_ptr<const LatticeBox> box,
-                                    SolverLadder::Reporter tell) {
+                                    SolverLadder::Reporter tell, const Sharing* sharing) {
   LinearSolverOptions linear =
       model.has_rows() ? options.linear : options_of_convolutions(options, box != nullptr);
-  const bool is_symmetric = estimate.size.is_symmetric();
+  const bool is_symmetric = model.balances().potential;
   require_agreement(linear, is_symmetric);
   // Who names a preconditioner wants it used.
   if (is_symmetric && linear.method == LinearMethod::automatic &&
@@ -227,6 +230,7 @@ LinearSystems choose_linear_systems(const StudyOptions& options, const Model& mo
     throw InputError("tangent", "matrix_free", "is for bonds alone");
   LinearProblem problem;
   problem.is_symmetric = is_symmetric;
+  problem.sharing = sharing;
   problem.unknowns = estimate.size.free_dofs;
   problem.has_inertia = options.loading.mode == Mode::dynamics;
   problem.bonds = estimate.size.stored_blocks();
@@ -266,8 +270,18 @@ LinearSystems choose_linear_systems(const StudyOptions& options, const Body& bod
                                     SolverLadder::Reporter tell) {
   const bool is_explicit = options.loading.dynamics.scheme == MotionScheme::verlet;
   if (options.loading.mode == Mode::dynamics && is_explicit) return systems_of_motion(body);
-  if (body.part) return systems_of_part(options, body);
   refuse_to_solve_for(body, options.loading);
+  if (body.part) {
+    refuse_solvers_without_ranks(options, body);
+    StudyOptions of_part = options;
+    // Pieces of parts are tested on tangents of bonds alone.
+    if (!body.model.visits_rows() &&
+        options.linear.preconditioner == PreconditionerKind::automatic) {
+      of_part.linear.preconditioner = PreconditionerKind::block_jacobi;
+    }
+    return choose_linear_systems(of_part, body.model, estimate_memory_of_part(body), {},
+                                 std::move(tell), body.part.get());
+  }
   StudyOptions chosen = options;
   if (!body.model.has_rows()) {
     const ConstraintSpecification& of = body.specification.constraints;
@@ -312,7 +326,7 @@ std::unique_ptr<TangentOperator> make_operator(Assembler& assembler) {
 std::unique_ptr<TangentOperator> LinearSystems::make_tangent(Assembler& assembler,
                                                              const Constraints& constraints) const {
   const bool is_convolved = !assembler.has_rows();
-  if (!is_convolved && !assembler.has_potential()) return std::make_unique<RowsOfEnergy>(assembler);
+  if (!is_convolved && !assembler.has_potential()) return make_operator<RowsOfEnergy>(assembler);
   if (is_convolved) return make_convolved_tangent(assembler, constraints);
   if (!constraints.none()) return std::make_unique<ConstrainedTangent>(assembler, constraints);
   if (!is_stored) return make_operator<MatrixFreeTangent>(assembler);

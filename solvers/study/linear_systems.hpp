@@ -36,10 +36,12 @@ struct LinearSystems {
 /// @param estimate what the body is estimated to need
 /// @param box see box_for_sines
 /// @param tell see make_linear_solver
+/// @param sharing of a part of a body; null: it is whole
 /// @throws InputError ("tangent") if the model's can't do without being stored
 [[nodiscard]] LinearSystems choose_linear_systems(const StudyOptions& options, const Model& model,
                                                   const MemoryEstimate& estimate,
                                                   std::shared_ptr<const LatticeBox> box,
-                                                  SolverLadder::Reporter tell);
+                                                  SolverLadder::Reporter tell,
+                                                  const Sharing* sharing = nullptr);
 
 }  // namespace peristat

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <utility>
 
+#include "solvers/motion/shared_stiffness.hpp"
 #include "solvers/study/found_loads.hpp"
 #include "solvers/study/motion.hpp"
 #include "solvers/study/part_support.hpp"
@@ -73,11 +74,11 @@ void refuse_modes_of_failing_points(const Body& body, const StudyOptions& option
                    "\"fft\" take newton, relaxation or dynamics");
 }
 
-/// Of the modes there is one that sums over ranks.
+/// Of the modes there are two that sum over ranks.
 void refuse_modes_without_ranks(const StudyOptions& options) {
-  if (options.loading.mode == Mode::newton) return;
+  if (options.loading.mode == Mode::newton || options.loading.mode == Mode::dynamics) return;
   throw InputError("loading.mode", std::string(options.loading.mode.name),
-                   "is not for more than one rank yet; take newton");
+                   "is not for more than one rank yet; take newton or dynamics");
 }
 
 }  // namespace
@@ -101,7 +102,12 @@ void check_study(const Body& body, const StudyOptions& options) {
                                  : "is for bodies that implicit steps follow");
   }
   if (body.part) {
-    refuse_unheld_part(body);
+    // Whose histories the driver looks at here alone, where all ranks are to decide alike.
+    if (moves && body.model.has_history()) {
+      throw InputError("material.damage", "",
+                       "is not for more than one rank in mode dynamics; take one");
+    }
+    if (!moves) refuse_unheld_part(body);
   } else if (!moves) {
     refuse_unheld_bodies(body);
   }
@@ -153,7 +159,8 @@ const Stiffness& Study::find_initial_stiffness() {
   const History history = assembler.initial_history();
   tangent.linearise(assembler, {displacement, history, Damage::grows, conditions.environment(0.0)},
                     projection_for_stiffness(assembler));
-  motion_->at_start = find_stiffness(tangent, free, motion_->mass, motion_->most_points);
+  motion_->at_start =
+      find_stiffness(tangent, free, motion_->mass, motion_->most_points, assembler.sharing());
   const double step = options_.loading.dynamics.time_step;
   const double stable = motion_->at_start->stable_step();
   if (options_.loading.dynamics.scheme == MotionScheme::newmark) {

@@ -7,10 +7,15 @@ namespace peristat {
 
 std::vector<PointOnLine> points_on_line(const Points& points, const Coordinates& from,
                                         const Coordinates& to) {
+  return points_on_line(points, from, to, points.own());
+}
+
+std::vector<PointOnLine> points_on_line(const Points& points, const Coordinates& from,
+                                        const Coordinates& to, Index count) {
   const double length = std::hypot(to[0] - from[0], to[1] - from[1], to[2] - from[2]);
   const double reach = (0.5 + 1e-9) * points.spacing;  // of a row half a spacing off, too
   std::vector<PointOnLine> found;
-  for (Index point = 0; point < points.own(); ++point) {
+  for (Index point = 0; point < count; ++point) {
     const Coordinates at = points.position(point);
     double along = 0.0;
     for (std::size_t c = 0; c < 3; ++c) along += (at[c] - from[c]) * (to[c] - from[c]) / length;

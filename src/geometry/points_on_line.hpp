@@ -17,5 +17,8 @@ struct PointOnLine {
 /// another, in their order along it.
 [[nodiscard]] std::vector<PointOnLine> points_on_line(const Points& points, const Coordinates& from,
                                                       const Coordinates& to);
+/// Of the first `count` points.
+[[nodiscard]] std::vector<PointOnLine> points_on_line(const Points& points, const Coordinates& from,
+                                                      const Coordinates& to, Index count);
 
 }  // namespace peristat

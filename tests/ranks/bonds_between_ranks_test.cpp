@@ -27,7 +27,7 @@ struct Both {
       : whole(make_points(body.lattice)), part(make_part(body, surface)) {
     const BondSetting setting = body.setting();
     Bonds all = make_bonds(whole, surface, setting, 1);
-    Bonds here = make_bonds(part, surface, setting, PartBonds::of_owned, all_ranks(), 1);
+    Bonds here = make_bonds(part, surface, setting, all_ranks(), 1);
     cut_of_whole = cut_bonds(all, whole, cracks);
     cut_of_part = cut_bonds(here, part.points, cracks);
     of_whole = std::move(all);
@@ -36,8 +36,7 @@ struct Both {
 
   static Part make_part(const RanksBody& body, SurfaceCorrection surface) {
     Part slab = make_slab(body.lattice, all_ranks());
-    const double reach =
-        reach_of_bonds(slab.points, surface, body.setting(), PartBonds::of_owned, all_ranks());
+    const double reach = reach_of_bonds(slab.points, surface, body.setting(), all_ranks());
     return distribute(std::move(slab), body.setting().horizon, reach, all_ranks(), 1);
   }
 

@@ -9,86 +9,11 @@
 
 #include <gtest/gtest.h>
 
-#include "assembly/operators/matrix_free_tangent.hpp"
 #include "solvers/linear/block_jacobi.hpp"
-#include "solvers/linear/iterative_solver.hpp"
-#include "solvers/ranks/distribute.hpp"
-#include "solvers/ranks/part_bonds.hpp"
-#include "solvers/ranks/part_of_body.hpp"
-#include "src/geometry/slab.hpp"
-#include "tests/bodies.hpp"
-#include "tests/ranks/bodies_on_ranks.hpp"
-#include "tests/ranks/on_ranks.hpp"
+#include "tests/ranks/parts_on_ranks.hpp"
 
 namespace peristat::tests {
 namespace {
-
-constexpr double youngs_modulus = 3.0;  // [Pa]
-
-BondPotential law_of(const BondSetting& setting) {
-  return Harmonic{micromodulus(youngs_modulus, setting)};
-}
-
-/// The whole body, as one rank has it.
-struct Whole {
-  Whole(const RanksBody& body, SurfaceCorrection surface)
-      : points(make_points(body.lattice)),
-        model(make_bonds(points, surface, body.setting(), 1), law_of(body.setting())),
-        assembler(points, model, 1) {}
-
-  Points points;
-  Model model;
-  Assembler assembler;
-};
-
-/// This rank's part of it.
-struct OnRanks {
-  OnRanks(const RanksBody& body, SurfaceCorrection surface)
-      : part(make_part(body, surface)),
-        model(make_bonds(part, surface, body.setting(), PartBonds::of_owned, all_ranks(), 1),
-              law_of(body.setting())),
-        sharing(part, all_ranks()),
-        energy(part.points, model, 1, &sharing) {}
-
-  static Part make_part(const RanksBody& body, SurfaceCorrection surface) {
-    Part slab = make_slab(body.lattice, all_ranks());
-    const double reach =
-        reach_of_bonds(slab.points, surface, body.setting(), PartBonds::of_owned, all_ranks());
-    return distribute(std::move(slab), body.setting().horizon, reach, all_ranks(), 1);
-  }
-
-  /// What the whole body has, of the points that are here.
-  [[nodiscard]] std::vector<double> of_part(const std::vector<double>& whole) const {
-    const auto d = std::size_t(part.points.dimension);
-    std::vector<double> result;
-    for (const GlobalIndex number : part.number) {
-      const auto first = whole.begin() + std::ptrdiff_t(std::size_t(number) * d);
-      result.insert(result.end(), first, first + std::ptrdiff_t(d));
-    }
-    return result;
-  }
-  [[nodiscard]] std::vector<double> without_ghosts(std::vector<double> values) const {
-    values.resize(std::size_t(part.owned) * std::size_t(part.points.dimension));
-    return values;
-  }
-
-  Part part;
-  Model model;
-  PartOfBody sharing;
-  Assembler energy;
-};
-
-/// Expects what this rank has of its own points to be what the whole body has.
-void expect_near(const OnRanks& ranks, const std::vector<double>& mine,
-                 const std::vector<double>& whole, double tolerance) {
-  const std::vector<double> here = ranks.without_ghosts(mine);
-  const std::vector<double> expected = ranks.without_ghosts(ranks.of_part(whole));
-  const double scale = largest(whole);
-  EXPECT_GT(scale, 0.0);
-  for (std::size_t k = 0; k < here.size(); ++k) {
-    EXPECT_NEAR(here[k], expected[k], tolerance * scale);
-  }
-}
 
 TEST(AssemblerOfPart, is_that_of_the_whole_body) {
   constexpr double round_off = 1e-12;
@@ -122,12 +47,13 @@ TEST(AssemblerOfPart, is_that_of_the_whole_body) {
       expect_near(ranks, mine, forces, round_off);
       EXPECT_TRUE(std::all_of(mine.begin() + owned, mine.end(), [](double f) { return f == 0.0; }));
 
-      PartTangent<MatrixFreeTangent> tangent(ranks.energy);
-      tangent.linearise(ranks.energy, here, 0.0);
-      std::vector<double> factor = ranks.of_part(v);
-      std::fill(factor.begin() + owned, factor.end(), 1e3);
-      tangent.multiply(factor, factor);
-      expect_near(ranks, factor, product, round_off);
+      for (TangentOperator* const tangent : ranks.tangents()) {
+        tangent->linearise(ranks.energy, here, 0.0);
+        std::vector<double> factor = ranks.of_part(v);
+        std::fill(factor.begin() + owned, factor.end(), 1e3);
+        tangent->multiply(factor, factor);
+        expect_near(ranks, factor, product, round_off);
+      }
     }
   }
 }
@@ -147,56 +73,13 @@ TEST(AssemblerOfPart, asks_for_ghosts_as_far_as_bonds_reach) {
   const Communicator& ranks = all_ranks();
   const Part part = distribute(make_slab(body.lattice, ranks), body.setting().horizon,
                                0.9 * body.setting().horizon, ranks, 1);
-  EXPECT_THROW(static_cast<void>(make_bonds(part, SurfaceCorrection::none, body.setting(),
-                                            PartBonds::of_owned, all_ranks(), 1)),
-               std::logic_error);
+  EXPECT_THROW(
+      static_cast<void>(make_bonds(part, SurfaceCorrection::none, body.setting(), ranks, 1)),
+      std::logic_error);
 }
 
-/// Both ends along the last axis, one of them drawn away: flags and displacements.
-struct Pulled {
-  explicit Pulled(const Points& points, double low, double high) {
-    const auto d = std::size_t(points.dimension);
-    flags.assign(points.reference.size(), 0);
-    displacement.assign(points.reference.size(), 0.0);
-    const double depth = 3.0 * points.spacing;
-    for (std::size_t k = 0; k < points.reference.size(); k += d) {
-      const double at = points.reference[k + d - 1];
-      if (at > low + depth && at < high - depth) continue;
-      std::fill_n(flags.begin() + std::ptrdiff_t(k), d, char(1));
-      if (at >= high - depth) displacement[k + d - 1] = 0.01 * (high - low);
-    }
-  }
-  std::vector<char> flags;
-  std::vector<double> displacement;
-};
-
-struct Solved {
-  LinearOutcome outcome = LinearOutcome::inaccurate;
-  int iterations = 0;
-  std::vector<double> displacement;
-};
-
-/// K d = -K u of what is prescribed.
-Solved solve(const TangentOperator& tangent, const std::vector<char>& no_equation,
-             const std::vector<double>& prescribed, const Communicator* ranks,
-             KrylovMethod method = KrylovMethod::conjugate_gradients) {
-  const FreeDofs free(no_equation, tangent.dimension);
-  IterativeSolver solver(method, std::make_unique<BlockJacobi>(BlockJacobi::Blocks::points), 2000,
-                         KrylovOptions{}.restart, ranks);
-  EXPECT_EQ(solver.analyze(tangent.pattern, free), LinearOutcome::solved);
-  EXPECT_EQ(solver.factorize(tangent, FactorUse::factorize_now), LinearOutcome::solved);
-  std::vector<double> forces(prescribed.size()), b(std::size_t(free.count())), x(b.size());
-  tangent.multiply(prescribed, forces);
-  free.restrict_to_free(forces, b);
-  for (double& entry : b) entry = -entry;
-  Solved solved;
-  solved.outcome = solver.solve(b, x, 1e-12);
-  solved.iterations = solver.last_iterations();
-  solved.displacement = prescribed;
-  for (std::size_t e = 0; e < x.size(); ++e) {
-    solved.displacement[std::size_t(free.dof[e])] += x[e];
-  }
-  return solved;
+std::unique_ptr<Preconditioner> blocks() {
+  return std::make_unique<BlockJacobi>(BlockJacobi::Blocks::points);
 }
 
 TEST(PartTangent, solves_for_the_displacements_of_the_whole_body) {
@@ -213,16 +96,16 @@ TEST(PartTangent, solves_for_the_displacements_of_the_whole_body) {
     const Pulled pulled(whole.points, low, high);
     MatrixFreeTangent stiffness(whole.assembler);
     stiffness.linearise(whole.assembler, std::vector<double>(d * whole.points.volume.size()), 0.0);
-    const Solved expected = solve(stiffness, pulled.flags, pulled.displacement, nullptr);
+    const Solved expected = solve(stiffness, pulled.flags, pulled.displacement, blocks(), nullptr);
     EXPECT_EQ(expected.outcome, LinearOutcome::solved);
 
     OnRanks ranks(body, SurfaceCorrection::none);
     const Pulled mine(ranks.part.points, low, high);
-    PartTangent<MatrixFreeTangent> tangent(ranks.energy);
+    PartTangent<MatrixFreeTangent>& tangent = ranks.matrix_free;
     tangent.linearise(ranks.energy, std::vector<double>(ranks.part.points.reference.size()), 0.0);
     const Solved found =
         solve(tangent, without_ghosts(ranks.sharing, mine.flags, ranks.part.points.dimension),
-              mine.displacement, &communicator);
+              mine.displacement, blocks(), &communicator);
     EXPECT_EQ(found.outcome, LinearOutcome::solved);
     EXPECT_NEAR(found.iterations, expected.iterations, 1);
     EXPECT_EQ(communicator.min(double(found.iterations)),
@@ -239,7 +122,7 @@ TEST(PartTangent, solves_for_the_displacements_of_the_whole_body) {
                               KrylovMethod::gmres, KrylovMethod::bicgstab}) {
       const Solved again =
           solve(tangent, without_ghosts(ranks.sharing, mine.flags, ranks.part.points.dimension),
-                mine.displacement, &communicator, method);
+                mine.displacement, blocks(), &communicator, method);
       EXPECT_EQ(again.outcome, LinearOutcome::solved);
       expect_near(ranks, again.displacement, expected.displacement, 1e-9);
       if (method == KrylovMethod::conjugate_gradients) {

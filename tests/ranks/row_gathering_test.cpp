@@ -39,6 +39,76 @@ TEST(RowGathering, brings_the_values_of_all_points_in_their_order_and_in_parts) 
   }
 }
 
+TEST(RowGathering, gives_back_the_values_of_owned_points_and_counts_before_them) {
+  const Communicator& ranks = all_ranks();
+  for (const RanksBody& body : all_bodies()) {
+    SCOPED_TRACE(body.name);
+    const double horizon = body.setting().horizon;
+    const PartOfBody part(distribute(make_slab(body.lattice, ranks), horizon, horizon, ranks, 1),
+                          ranks);
+    for (const std::int64_t most_rows : {std::int64_t(1), std::int64_t(5), std::int64_t(1) << 20}) {
+      const RowGathering gathering(part, most_rows);
+      const std::vector<double> mine =
+          gathering.scatter<double>(2, [&](std::uint64_t first, std::uint64_t count) {
+            std::vector<double> rows;
+            for (std::uint64_t k = first; k < first + count; ++k) {
+              rows.insert(rows.end(), {0.5 * double(k), -double(k)});
+            }
+            return rows;
+          });
+      ASSERT_EQ(mine.size(), 2 * part.number().size());
+      std::vector<std::int64_t> counts;
+      for (std::size_t i = 0; i < part.number().size(); ++i) {
+        EXPECT_EQ(mine[2 * i], 0.5 * double(part.number()[i]));
+        EXPECT_EQ(mine[2 * i + 1], -double(part.number()[i]));
+        counts.push_back(part.number()[i] % 3);
+      }
+      const auto [before, all] = gathering.counted_before(counts);
+      const auto sum_to = [](GlobalIndex end) {  // of k % 3 for k < end
+        return end / 3 * 3 + (end % 3 == 2 ? 1 : 0);
+      };
+      EXPECT_EQ(all, sum_to(part.whole()));
+      for (std::size_t i = 0; i < before.size(); ++i) {
+        EXPECT_EQ(before[i], sum_to(part.number()[i]));
+      }
+    }
+  }
+}
+
+TEST(RowGathering, brings_what_is_told_of_bonds_in_their_order_and_in_parts) {
+  struct Item {
+    Index first_point, second_point;
+    double value;
+  };
+  const Communicator& ranks = all_ranks();
+  const RanksBody body = plate_with_hole();
+  const double horizon = body.setting().horizon;
+  const PartOfBody part(distribute(make_slab(body.lattice, ranks), horizon, horizon, ranks, 1),
+                        ranks);
+  for (const std::int64_t most_rows : {std::int64_t(7), std::int64_t(1) << 20}) {
+    std::vector<Item> mine;  // up to three of each point, the largest one first
+    for (const GlobalIndex number : part.number()) {
+      for (Index k = Index(number % 4); k-- > 0;) {
+        mine.push_back({Index(number), Index(number) + k, double(number) + 0.25 * k});
+      }
+    }
+    const std::int64_t all = ranks.count_all(std::int64_t(mine.size())).all;
+    std::vector<Item> items;
+    RowGathering(part, most_rows).gather_of_bonds(mine, [&](const std::vector<Item>& some) {
+      EXPECT_LE(some.size(), std::size_t(most_rows));
+      items.insert(items.end(), some.begin(), some.end());
+    });
+    ASSERT_EQ(std::int64_t(items.size()), ranks.rank() == 0 ? all : 0);
+    for (std::size_t k = 0; k < items.size(); ++k) {
+      EXPECT_EQ(items[k].value,
+                items[k].first_point + 0.25 * (items[k].second_point - items[k].first_point));
+      if (k > 0) {
+        EXPECT_LT(items[k - 1].value, items[k].value);
+      }
+    }
+  }
+}
+
 TEST(RowSink, writes_parts_of_rows_one_after_the_other) {
   const Communicator& ranks = all_ranks();
   const RanksBody body = plate_with_hole();

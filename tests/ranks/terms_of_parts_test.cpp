@@ -82,7 +82,7 @@ std::unique_ptr<const Body> part_of_body(const RanksBody& body, const BodySpecif
   Part slab = make_slab(body.lattice, ranks);
   const BondSetting setting = bond_setting(of, slab.points);
   const double reach =
-      reach_of_bonds(slab.points, of.surface_correction, setting, bonds_of_part(of), ranks);
+      reach_of_bonds(slab.points, of.surface_correction, setting, ranks, bonds_of_part(of));
   return make_body(distribute(std::move(slab), of.horizon, reach, ranks, 1), of, ranks, 1);
 }
 

@@ -56,9 +56,9 @@ double point_stretches(const Points& points, const Model& model, const StateView
     default:
       find_largest<3>(points, model, at, stretches);
   }
-  const double largest = *std::max_element(stretches.begin(), stretches.end());
+  const double largest = stretches.empty() ? none : std::ranges::max(stretches);
   std::replace(stretches.begin(), stretches.end(), none, 0.0);
-  return largest == none ? 0.0 : largest;
+  return largest;
 }
 
 }  // namespace peristat

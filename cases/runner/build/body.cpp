@@ -19,14 +19,13 @@
 #include "src/neighbourhood/ghost_sites.hpp"
 
 namespace peristat {
-namespace {
 
-/// Strain and stress of a point, and what they are found from: five tensors that are told and three
-/// beside them, symmetric halves of two, principal values and scalars.
 double stress_bytes_per_point(int dimension) {
   const double d = dimension;
   return sizeof(double) * (8.0 * d * d + d * (d + 1.0) + d + 2.0);
 }
+
+namespace {
 
 /// Input errors of `make` speak of keys inside a table.
 template <class Make>

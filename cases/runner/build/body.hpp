@@ -17,6 +17,10 @@ namespace peristat {
 /// @throws InputError (with place), MemoryError if the estimate exceeds the memory available
 [[nodiscard]] std::unique_ptr<const Body> make_body(const Case& from, int threads);
 
+/// What finding strain and stress takes, per point: five tensors that are told and three beside
+/// them, symmetric halves of two, principal values and scalars [byte].
+[[nodiscard]] double stress_bytes_per_point(int dimension);
+
 /// The same points and conditions with elastic bonds of another horizon (solver.
 /// elastic_horizon_ratio), or nothing if the case asks for none.
 [[nodiscard]] std::optional<Model> make_elastic_stand_in(const Case& from, const Body& body,

@@ -8,12 +8,15 @@
 #include <utility>
 #include <variant>
 
+#include "cases/runner/build/body.hpp"
+#include "cases/runner/build/recorded_points.hpp"
 #include "solvers/ranks/distribute.hpp"
 #include "solvers/ranks/part_bonds.hpp"
 #include "solvers/study/bonds_of_part.hpp"
 #include "src/core/input_error.hpp"
 #include "src/geometry/point_file.hpp"
 #include "src/geometry/point_set.hpp"
+#include "src/geometry/points_on_line.hpp"
 #include "src/geometry/slab.hpp"
 
 namespace peristat {
@@ -28,24 +31,22 @@ constexpr std::array keys_of_ranks{
     "lattice.angle", "lattice.volumes", "lattice.cell_perturbation", "lattice.points",
     "points.file", "points.thickness", "points.area", "points.horizon", "set.",
     // bonds
-    "quadrature.volume_correction", "quadrature.surface_correction", "quadrature.horizon_shape",
-    "crack.", "material.model", "material.plane", "material.youngs_modulus",
+    "quadrature.", "material.model", "material.plane", "material.youngs_modulus",
     "material.micromodulus", "material.density", "material.influence", "material.potential",
     "material.calibration", "material.fibre.", "material.scatter.", "region.", "interface.",
+    "crack.",
     // triangles and tetrahedra, states
-    "quadrature.weights", "quadrature.form", "material.poisson_ratio", "material.c1", "material.c2",
-    "material.c3",
+    "material.poisson_ratio", "material.c1", "material.c2", "material.c3",
     // conditions
     "support.", "load.set", "load.side", "load.body_force", "load.total_force", "load.gravity",
     "load.traction", "load.depth", "eigenstrain.", "temperature.", "material.thermal_expansion",
     // search
     "loading.steps", "loading.table", "loading.table2", "loading.adaptive", "loading.smallest_step",
-    "loading.largest_step", "solver.mode", "solver.linear", "solver.preconditioner",
-    "solver.tangent", "solver.predictor", "solver.relative_tolerance", "solver.linear_tolerance",
-    "solver.max_iterations",
+    "loading.largest_step", "initial.", "absorbing.", "dynamics.", "solver.mode", "solver.operator",
+    "solver.linear", "solver.preconditioner", "solver.tangent", "solver.predictor",
+    "solver.relative_tolerance", "solver.linear_tolerance", "solver.max_iterations",
     // results
-    "output.directory", "output.every", "output.count_cracks", "probe.name", "probe.set",
-    "probe.field", "probe.component", "probe.statistic", "probe.expected", "probe.other"};
+    "output.directory", "output.every", "output.stress", "output.count_cracks", "probe."};
 
 /// "load[2].body_force[0]" as "load.body_force".
 std::string without_numbers(const std::string& key) {
@@ -73,12 +74,21 @@ bool has_ranks(const std::string& key) {
   throw InputError(key, value, "is not for more than one rank yet; " + instead);
 }
 
+/// Transforms go over the whole body, which no rank has.
+void refuse_convolutions(const Case& from) {
+  const std::string why = "is for one rank, since convolutions go over the whole body; ";
+  if (from.needs_convolutions()) {
+    throw InputError(from.has_states() ? "material.form" : "material.model", "",
+                     why + "models that have bonds go on several");
+  }
+  if (from.solver.force_operator != ForceOperator::fft) return;
+  throw InputError("solver.operator", "\"fft\"", why + "on several take \"bonds\" or \"auto\"");
+}
+
 /// Of keys whose values have ranks in part, those that have.
 void refuse_values_without_ranks(const Case& from) {
-  if (is_polynomial(from.material.model)) {
-    refuse("material.model", "", "take \"bond\", \"cpd\" or \"lps\"");
-  }
-  if (from.material.model == MaterialModel::lps && from.form != SolidForm::energy) {
+  refuse_convolutions(from);
+  if (from.is_collocated()) {
     refuse("quadrature.form", "", "take \"energy\" with model \"lps\"");
   }
   const bool is_lattice = std::holds_alternative<Lattice>(from.body);
@@ -88,32 +98,35 @@ void refuse_values_without_ranks(const Case& from) {
     refuse("material.model", "",
            "models but \"bond\" are for a lattice, and volume_correction \"none\" or \"linear\"");
   }
-  if (from.solver.mode != Mode::newton) {
-    refuse("solver.mode", std::string(from.solver.mode.name), "take \"newton\"");
+  if (from.solver.mode != Mode::newton && from.solver.mode != Mode::dynamics) {
+    refuse("solver.mode", std::string(from.solver.mode.name), "take \"newton\" or \"dynamics\"");
+  }
+  if (from.dynamics.is_asked_for && from.dynamics.is_implicit()) {
+    refuse("dynamics.scheme", "\"newmark\"", "take \"verlet\"");
   }
 }
 
-void refuse_probes_without_ranks(const Case& from) {
-  constexpr std::array<std::string_view, 5> fields{"displacement", "force", "stretch",
-                                                   "energy_density", "opening"};
+/// Refuses probes of sets that are not there, and of places off the body.
+void require_places_of_probes(const Case& from, const RecordedPoints& recorded) {
+  const Points& points = recorded.points();
   for (std::size_t k = 0; k < from.probes.size(); ++k) {
-    const std::string& field = from.probes[k].field;
-    if (std::find(fields.begin(), fields.end(), field) != fields.end()) continue;
-    refuse("probe[" + std::to_string(k) + "].field", '"' + field + '"',
-           "take displacement, force, stretch, energy_density or opening");
-  }
-}
-
-/// Refuses probes of sets that are not there.
-void require_sets_of_probes(const Case& from, const Points& points) {
-  for (std::size_t k = 0; k < from.probes.size(); ++k) {
+    const ProbeSpecification& probe = from.probes[k];
     const std::string table = "probe[" + std::to_string(k) + "]";
     const auto require = [&](const std::string& key, const std::string& set) {
       if (set.empty() || points.sets.contains(set)) return;
       throw InputError(table + key, '"' + set + '"', "no set of this name");
     };
-    require(".set", from.probes[k].set);
-    require(".other", from.probes[k].other);
+    require(".set", probe.set);
+    require(".other", probe.other);
+    if (probe.at &&
+        nearest_recorded(recorded, *probe.at).distance > 2.0 * points.spacing.largest()) {
+      throw InputError(table + ".at", "", "no point lies within two spacings of this place");
+    }
+    if (!probe.from) continue;
+    const auto here = points_on_line(points, *probe.from, *probe.to, recorded.count()).size();
+    if (recorded.ranks().count_all(std::int64_t(here)).all == 0) {
+      throw InputError(table + ".from", "", "no point lies within half a spacing of this line");
+    }
   }
 }
 
@@ -159,7 +172,6 @@ void refuse_keys_without_ranks(const Case& from) {
       refuse(key, "", "docs/cluster.md lists the keys that are");
     }
     refuse_values_without_ranks(from);
-    refuse_probes_without_ranks(from);
   });
 }
 
@@ -172,11 +184,14 @@ std::unique_ptr<const Body> make_part_body(const Case& from, const Communicator&
     }
     const BondSetting setting = bond_setting(from, slab.points);
     const double reach =
-        reach_of_bonds(slab.points, from.surface_correction, setting, bonds_of_part(from), ranks);
+        reach_of_bonds(slab.points, from.surface_correction, setting, ranks, bonds_of_part(from));
     Part part = distribute(std::move(slab), setting.horizon, reach, ranks, threads);
     add_sets(from, ranks, part);
-    require_sets_of_probes(from, part.points);
-    return make_body(std::move(part), from, ranks, threads);
+    BodySpecification of = from;
+    if (tells_stress(from)) of.evaluation_bytes_per_point = stress_bytes_per_point(from.dimension);
+    std::unique_ptr<const Body> body = make_body(std::move(part), of, ranks, threads);
+    require_places_of_probes(from, {body->points, body->part.get()});
+    return body;
   });
 }
 

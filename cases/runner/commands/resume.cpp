@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "cases/runner/build/part_body.hpp"
 #include "cases/runner/input/case.hpp"
 #include "cases/runner/input/case_difference.hpp"
 #include "cases/runner/input/case_keys.hpp"
@@ -103,14 +104,15 @@ bool is_finished(const EarlierRun& earlier, const LoadingProgramme& way) {
 }  // namespace
 
 Exit resume(const std::filesystem::path& directory, const Settings& settings,
-            const RunOptions& options) {
+            const RunOptions& options, const Communicator& ranks) {
   require_extending(settings);
-  EarlierRun earlier(directory, PERISTAT_VERSION);
+  EarlierRun earlier(directory, PERISTAT_VERSION, ranks);
   Settings all = settings_in(earlier);
   const std::string text = case_text(earlier, all);
   const Case then = read_case(earlier.case_file(), text, all);
   all.insert(all.end(), settings.begin(), settings.end());
   const Case from = read_case(earlier.case_file(), text, all);
+  if (ranks.count() > 1) refuse_keys_without_ranks(from);
   require_same_beginning(programme_of(then), programme_of(from), earlier.checkpoint().path);
   require_stand_in(earlier.checkpoint().path, from);
   if (std::any_of(settings.begin(), settings.end(),
@@ -118,13 +120,13 @@ Exit resume(const std::filesystem::path& directory, const Settings& settings,
     earlier.forget_solvers();
   }
   if (is_finished(earlier, programme_of(from))) {
-    Progress(options.quiet, options.log_file)
+    Progress(options.quiet, options.log_file, ranks.rank() == 0)
         .say(fmt::format("the run in {} has come to its end: {} steps, load factor {:.6g}",
                          directory.string(), earlier.checkpoint().path.steps,
                          programme_of(from).at(earlier.checkpoint().path.accepted.stage)[0]));
     return Exit::done;
   }
-  return run(from, options, &earlier);
+  return run(from, options, ranks, &earlier);
 }
 
 }  // namespace peristat

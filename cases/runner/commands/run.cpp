@@ -11,6 +11,8 @@
 #include <fmt/format.h>
 
 #include "cases/runner/build/body.hpp"
+#include "cases/runner/build/part_body.hpp"
+#include "cases/runner/build/recorded_points.hpp"
 #include "cases/runner/build/solver_options.hpp"
 #include "cases/runner/commands/run_facts.hpp"
 #include "cases/runner/process/failure.hpp"
@@ -24,6 +26,7 @@
 #include "cases/runner/results/results.hpp"
 #include "solvers/linear/cholesky.hpp"
 #include "solvers/linear/lu_factor.hpp"
+#include "solvers/ranks/part_bonds.hpp"
 #include "solvers/study/crack_trapping.hpp"
 #include "solvers/study/found_loads.hpp"
 #include "solvers/study/study.hpp"
@@ -35,22 +38,31 @@ namespace peristat {
 namespace {
 
 std::vector<LineTable> lines_of(const Case& from, const Points& points) {
+  const RecordedPoints recorded(points);
   std::vector<LineTable> lines;
   for (const ProbeSpecification& probe : from.probes) {
-    if (probe.from) lines.push_back(LineProbe(probe, points).table());
+    if (probe.from) lines.push_back(LineProbe(probe, recorded).table());
   }
   return lines;
 }
 
 /// What is known of a run before its first step.
-void count(const Body& body, const FreeDofs& free, const RunOptions& options, Summary& summary) {
-  summary.points = body.points.own();
-  summary.free_dofs = free.count();
+void count(const Body& body, const FreeDofs& free, const RunOptions& options,
+           const Communicator& ranks, Summary& summary) {
+  summary.points = body.part ? Index(body.part->whole()) : body.points.own();
+  summary.free_dofs = ranks.count_all(free.count()).all;
   for (const auto& term : body.model.terms()) {
-    for (const InteractionCount& kind : term->counts()) summary.count(kind.name, kind.count);
+    for (const InteractionCount& kind : term->counts()) {
+      summary.count(kind.name,
+                    body.part ? count_interactions(body.part->owned(), kind, ranks) : kind.count);
+    }
+  }
+  if (body.part) {
+    summary.count("bonds", count_bonds(body.points, body.model.bonds(), ranks));
   }
   summary.costs.seconds.neighbourhood += body.seconds_neighbourhood;
   summary.threads = options.threads;
+  summary.ranks = ranks.count();
 }
 
 std::unique_ptr<SolvedModel> solved_stand_in(const Case& from, const Study& study,
@@ -93,10 +105,12 @@ class CaseRun {
  public:
   /// @param earlier run to go on from; null: from rest
   /// @param results is made as soon as the case is known to be right
-  CaseRun(const Case& from, const RunOptions& options, EarlierRun* earlier, Progress& progress,
-          Summary& summary, std::optional<Results>& results)
+  CaseRun(const Case& from, const RunOptions& options, const Communicator& ranks,
+          EarlierRun* earlier, Progress& progress, Summary& summary,
+          std::optional<Results>& results)
       : from_(from),
         options_(options),
+        ranks_(ranks),
         earlier_(earlier),
         progress_(progress),
         summary_(summary),
@@ -126,26 +140,47 @@ class CaseRun {
  private:
   /// Body, equations and their solver; refuses what can't be run.
   void make() {
-    body_ = make_body(from_, options_.threads);
+    body_ = ranks_.count() > 1 ? make_part_body(from_, ranks_, options_.threads)
+                               : make_body(from_, options_.threads);
+    if (body_->part) gathering_.emplace(*body_->part);
     further_ = {from_.output.stress, lines_of(from_, body_->points)};
     study_.emplace(*body_, study_options(from_, options_.threads),
                    [this](const std::string& reason) { recorder_->changed_solver(reason); });
+    if (gathering_) {
+      recorded_.emplace(body_->points, body_->part.get());
+      numbering_.emplace(*recorded_, *gathering_, body_->model.bonds(),
+                         body_->conditions->prescribed());
+    }
     if (earlier_) {
       earlier_results_ = earlier_->results(support_sets_, probes_, further_.lines);
+      earlier_->load(numbering());
       require_body_of(*earlier_);
     }
-    const Index points = body_->points.own();
-    const FreeDofs& free = study_->free();
-    progress_.say(fmt::format("{} points, {} bonds, {} free degrees of freedom, {} threads", points,
-                              body_->model.count_of_bonds(), free.count(), options_.threads));
-    for (const std::string& line : describe_interactions(*body_)) progress_.say(line);
-    count(*body_, free, options_, summary_);
+    count(*body_, study_->free(), options_, ranks_, summary_);
+    tell_size();
     // Loads that can't be found are refused before results are touched.
     if (finds_loads(study_->options(), *body_->conditions)) study_->analyze();
     if (from_.dynamics.is_asked_for) describe_motion();
     progress_.follow_to(body_->conditions->programme().end());
     crack_tips_ = located_errors(
         from_, [&] { return make_crack_tips(*body_, from_.crack_tips, study_->options()); });
+  }
+
+  void tell_size() {
+    const std::int64_t bonds =
+        body_->part ? summary_.counted("bonds") : body_->model.count_of_bonds();
+    const std::string of_ranks =
+        body_->part ? fmt::format("{} ranks with {} threads each", ranks_.count(), options_.threads)
+                    : fmt::format("{} threads", options_.threads);
+    progress_.say(fmt::format("{} points, {} bonds, {} free degrees of freedom, {}",
+                              summary_.points, bonds, summary_.free_dofs, of_ranks));
+    if (body_->part) {
+      const double most = ranks_.max(double(body_->part->owned()));
+      const double ghosts = ranks_.sum(double(body_->points.count() - body_->part->owned()));
+      progress_.say(fmt::format("at most {:.0f} points on a rank, {:.0f} ghosts", most, ghosts));
+    } else {
+      for (const std::string& line : describe_interactions(*body_)) progress_.say(line);
+    }
   }
 
   /// Refuses a step that is not stable before results are touched.
@@ -162,11 +197,13 @@ class CaseRun {
     const auto refuse = [&](const std::string& why) {
       throw InputError("", "", why, earlier.directory().string());
     };
-    if (!earlier.has_points(without_images(body_->points))) {
+    const auto all_say = [&](bool holds) { return ranks_.min(double(holds)) > 0.0; };
+    if (!all_say(
+            earlier.has_points(only_recorded({body_->points, body_->part.get()}), gathering()))) {
       refuse("its points are not those of the run that the case makes now");
     }
-    if (!is_of_body(earlier.checkpoint().path, study_->equations().assembler(),
-                    body_->conditions->prescribed())) {
+    if (!all_say(is_of_body(earlier.checkpoint().path, study_->equations().assembler(),
+                            body_->conditions->prescribed()))) {
       refuse("its checkpoint is of another body");
     }
   }
@@ -175,19 +212,20 @@ class CaseRun {
     Assembler& assembler = study_->equations().assembler();
     const CaseText text{from_.as_read, from_.as_resolved,    from_.title,
                         versions(),    identity(from_.file), from_.settings};
+    const Points points = only_recorded({body_->points, body_->part.get()});
     if (earlier_) {
-      results_.emplace(*earlier_, earlier_results_, without_images(body_->points), text,
-                       support_sets_, probes_, further_);
+      results_.emplace(*earlier_, earlier_results_, points, text, support_sets_, probes_, further_,
+                       numbering());
       recorder_.emplace(from_, *body_, assembler, *results_, progress_, crack_tips_);
       recorder_->go_on(earlier_->checkpoint(), earlier_results_, support_sets_, probes_);
       earlier_results_ = {};
       tell_beginning();
     } else {
-      results_.emplace(from_.output.directory, without_images(body_->points), text, support_sets_,
-                       probes_, constant_fields_of(*body_), options_.overwrite, further_);
+      results_.emplace(from_.output.directory, points, text, support_sets_, probes_,
+                       constant_fields_of(*body_), options_.overwrite, further_, gathering());
       recorder_.emplace(from_, *body_, assembler, *results_, progress_, crack_tips_);
     }
-    leave_note(from_.output.directory);
+    if (ranks_.rank() == 0) leave_note(from_.output.directory);
   }
 
   void tell_beginning() {
@@ -228,22 +266,34 @@ class CaseRun {
     told.decision = [this](const DecisionRecord& record) { recorder_->decided(record); };
     told.accepted = [this](const StepRecord& record, const AcceptedState& state) {
       recorder_->accepted(record, state);
-      summary_.max_displacement = largest_displacement(state.trial.displacement, body_->points);
+      summary_.max_displacement = largest_of_all(state.trial.displacement);
       ++steps_here_;
     };
     told.reached = [this](const PathState& state) {
       const Stopwatch watch(seconds_of_checkpoints_);
       Checkpoint checkpoint = recorder_->checkpoint(state);
       checkpoint.costs = costs(state.relaxation_seconds);
-      results_->add_checkpoint(std::move(checkpoint));
+      results_->add_checkpoint(std::move(checkpoint), numbering());
     };
     told.describe = [this](const InputError& error) {
       return std::string(located(from_, error).what());
     };
     told.interrupted = [this] {
-      return interruption_requested() || (options_.steps > 0 && steps_here_ >= options_.steps);
+      const bool here =
+          interruption_requested() || (options_.steps > 0 && steps_here_ >= options_.steps);
+      return ranks_.count() == 1 ? here : ranks_.max(double(here)) > 0.0;
     };
     return told;
+  }
+
+  /// Null: the body is whole.
+  [[nodiscard]] const RowGathering* gathering() const {
+    return gathering_ ? &*gathering_ : nullptr;
+  }
+  [[nodiscard]] StateNumbering* numbering() { return numbering_ ? &*numbering_ : nullptr; }
+
+  [[nodiscard]] double largest_of_all(const std::vector<double>& displacement) const {
+    return ranks_.max(largest_displacement(displacement, body_->points));
   }
 
   /// Of this session and those before.
@@ -265,13 +315,24 @@ class CaseRun {
       const double reached = body_->conditions->load_factor(load_point(result.state));
       summary_.reason = failure_reason(result, reached);
     }
-    summary_.max_displacement = largest_displacement(result.state.displacement, body_->points);
+    summary_.max_displacement = largest_of_all(result.state.displacement);
     recorder_->finish();
     summary_.costs = costs(result.relaxation_seconds);
+    if (body_->part) tell_traffic();
     if (result.outcome == Outcome::converged || result.outcome == Outcome::interrupted) return;
     const Dossier dossier =
         make_dossier(from_, *body_, result, recorder_->last(), recorder_->decisions());
     results_->add_dossier(dossier.text, dossier.residual, dossier.displacement);
+  }
+
+  /// What ranks send to one another, as counts that do not depend on the machine.
+  void tell_traffic() {
+    const Traffic mine = body_->part->traffic();
+    const double exchanges = std::max(1.0, double(mine.exchanges));
+    const double messages = ranks_.sum(double(mine.messages)) / exchanges;
+    const double bytes = ranks_.sum(double(mine.bytes)) / exchanges;
+    progress_.say(fmt::format("ghosts exchanged {} times: {:.0f} messages, {:.0f} bytes each",
+                              mine.exchanges, messages, bytes));
   }
 
   Exit tell(const LoadSteppingResult& result) {
@@ -297,6 +358,7 @@ class CaseRun {
 
   const Case& from_;
   const RunOptions& options_;
+  const Communicator& ranks_;
   EarlierRun* const earlier_;
   Progress& progress_;
   Summary& summary_;
@@ -309,6 +371,10 @@ class CaseRun {
   double seconds_of_checkpoints_ = 0.0;
   int steps_here_ = 0;  // accepted in this session
   std::unique_ptr<const Body> body_;
+  // Of ranks.
+  std::optional<RowGathering> gathering_;
+  std::optional<RecordedPoints> recorded_;
+  std::optional<StateNumbering> numbering_;
   std::optional<Study> study_;
   std::optional<Model> stand_in_;
   std::unique_ptr<SolvedModel> standing_in_;
@@ -318,18 +384,26 @@ class CaseRun {
 
 }  // namespace
 
-Exit run(const Case& from, const RunOptions& options, EarlierRun* earlier) {
+Exit run(const Case& from, const RunOptions& options, const Communicator& ranks,
+         EarlierRun* earlier) {
   make_write_faults_errors();
-  Progress progress(options.quiet, options.log_file);
+  const bool tells = ranks.rank() == 0;
+  Progress progress(options.quiet, options.log_file, tells);
   Summary summary;
   std::optional<Results> results;
   try {
-    return located_errors(
-        from, [&] { return CaseRun(from, options, earlier, progress, summary, results).run(); });
+    return located_errors(from, [&] {
+      return CaseRun(from, options, ranks, earlier, progress, summary, results).run();
+    });
   } catch (...) {
     if (!results) throw;
     const Failure failure = current_failure();
+    if (ranks.count() > 1) give_way_to_first(ranks);
     results->fail(summary, failure.message);
+    if (ranks.count() > 1) {
+      ranks.abort(fmt::format("peristat: {}\n{}", failure.message, results->what_is_left()),
+                  static_cast<int>(failure.code));
+    }
     progress.problem(failure.message);
     progress.problem(results->what_is_left());
     if (failure.code == Exit::out_of_memory) {

@@ -6,6 +6,7 @@
 #include "cases/runner/input/case.hpp"
 #include "cases/runner/process/exit.hpp"
 #include "cases/runner/results/earlier_run.hpp"
+#include "src/core/communicator.hpp"
 
 namespace peristat {
 
@@ -23,11 +24,16 @@ struct RunOptions {
 /// Runs a case and writes its results folder; follows SIGINT, SIGTERM, SIGUSR1 and SIGHUP by
 /// closing the results and returning `interrupted`. The folder's absolute path is written to the
 /// file that the environment variable PERISTAT_NOTE names, for the launcher.
+/// @param ranks   that have a part of the body each; all make this call, and rank 0 tells and
+/// writes
+///                what all have. The exit code is the same on all
 /// @param earlier run that is gone on from: of the same case, or of one that this one extends
 /// @throws InputError, MemoryError before anything is written
 /// @throws MachineError if the machine fails, std::bad_alloc if the memory does: every accepted
 /// step
-///         is kept, and the summary says "failed" if it can be written
-[[nodiscard]] Exit run(const Case& from, const RunOptions& options, EarlierRun* earlier = nullptr);
+///         is kept, and the summary says "failed" if it can be written. Of several ranks perhaps on
+///         one alone: the others must be ended then (Communicator::abort)
+[[nodiscard]] Exit run(const Case& from, const RunOptions& options, const Communicator& ranks,
+                       EarlierRun* earlier = nullptr);
 
 }  // namespace peristat

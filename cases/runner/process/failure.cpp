@@ -5,6 +5,7 @@
 #include <system_error>
 
 #include <sys/resource.h>
+#include <unistd.h>
 
 #include "solvers/linear/available_memory.hpp"
 #include "solvers/linear/memory_estimate.hpp"
@@ -40,6 +41,11 @@ Failure current_failure() {
   } catch (const std::exception& error) {
     return {Exit::bug, error.what()};
   }
+}
+
+void give_way_to_first(const Communicator& ranks) {
+  constexpr unsigned seconds = 2;
+  if (ranks.rank() > 0) sleep(seconds);
 }
 
 }  // namespace peristat

@@ -3,6 +3,7 @@
 #include <string>
 
 #include "cases/runner/process/exit.hpp"
+#include "src/core/communicator.hpp"
 
 namespace peristat {
 
@@ -15,5 +16,8 @@ struct Failure {
 /// Of the exception that is being handled: wrong input, too little memory, a fault of the machine,
 /// and a bug where it is none of these.
 [[nodiscard]] Failure current_failure();
+
+/// Gives rank 0 the time to tell what all ranks have met: it ends the others while they wait here.
+void give_way_to_first(const Communicator& ranks);
 
 }  // namespace peristat

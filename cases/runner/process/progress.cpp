@@ -38,11 +38,12 @@ std::size_t columns(int descriptor) {
 
 }  // namespace
 
-Progress::Progress(bool quiet, const std::string& log_file)
-    : quiet_(quiet),
-      live_(!quiet && isatty(STDOUT_FILENO) == 1),
+Progress::Progress(bool quiet, const std::string& log_file, bool tells)
+    : tells_(tells),
+      quiet_(quiet || !tells),
+      live_(!quiet_ && isatty(STDOUT_FILENO) == 1),
       start_(std::chrono::steady_clock::now()) {
-  if (log_file.empty()) return;
+  if (log_file.empty() || !tells) return;
   log_ = std::fopen(log_file.c_str(), "w");
   if (!log_) {
     const int error = errno;
@@ -89,6 +90,7 @@ void Progress::say(const std::string& line) {
 }
 
 void Progress::problem(const std::string& line) {
+  if (!tells_) return;
   erase_live_line();
   write_to_standard_error(line);
   write_to_log(line);

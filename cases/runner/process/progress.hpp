@@ -18,8 +18,9 @@ class Progress {
  public:
   /// @param quiet nothing on the terminal, except what `problem` tells
   /// @param log_file empty for none
+  /// @param tells    whether anything is told at all, problems and the log, too: of ranks one does
   /// @throws InputError (key "--log") if the log file can't be written
-  Progress(bool quiet, const std::string& log_file);
+  Progress(bool quiet, const std::string& log_file, bool tells = true);
   ~Progress();
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
@@ -41,7 +42,7 @@ class Progress {
   void moved(const StepRecord& record);
   [[nodiscard]] std::string time_left() const;
 
-  bool quiet_, live_;
+  bool tells_, quiet_, live_;
   bool live_line_shown_ = false;
   double load_factor_ = 0.0;  // accepted
   double last_stage_ = 1.0;

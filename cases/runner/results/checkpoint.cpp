@@ -4,6 +4,7 @@
 #include <array>
 #include <bit>
 #include <cstring>
+#include <optional>
 #include <sstream>
 #include <stdexcept>
 #include <utility>
@@ -14,13 +15,6 @@ namespace peristat {
 namespace {
 
 constexpr std::string_view magic = "peristat checkpoint";
-
-/// All values of a checkpoint in a row, to be read.
-struct Packed {
-  std::string entries;  ///< their names and sizes, a line each: see Entry
-  std::vector<double> numbers;
-  std::vector<std::int64_t> integers;
-};
 
 /// A named array of a checkpoint. Of a sparse one the places of what differs from `usual` stand
 /// among the integers.
@@ -52,127 +46,333 @@ bool is_same(double a, double b) {
   return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b);
 }
 
+/// How many of some values differ from 0, and from 1.
+struct Differences {
+  std::size_t from_0 = 0, from_1 = 0, of = 0;
+};
+
 /// As what an array is written: whole bonds and bodies at rest are full of zeros or ones.
-Entry entry_for(const std::string& name, const std::vector<double>& values) {
-  const auto others = [&](double usual) {
-    return std::size_t(std::count_if(values.begin(), values.end(),
-                                     [&](double value) { return !is_same(value, usual); }));
-  };
-  const std::size_t not_0 = others(0.0), not_1 = others(1.0), fewest = std::min(not_0, not_1);
+Entry entry_for(const std::string& name, const Differences& found) {
+  const std::size_t fewest = std::min(found.from_0, found.from_1);
   // A place takes as much room as a value.
-  if (2 * fewest >= values.size()) return {name, values.size()};
-  return {name, values.size(), fewest, true, not_0 <= not_1 ? 0.0 : 1.0};
+  if (2 * fewest >= found.of) return {name, found.of};
+  return {name, found.of, fewest, true, found.from_0 <= found.from_1 ? 0.0 : 1.0};
 }
 
 template <class Value>
-std::string_view bytes_of(const Value* values, std::size_t count) {
-  return {reinterpret_cast<const char*>(values), count * sizeof(Value)};
+std::string_view bytes_of(const std::vector<Value>& values) {
+  return {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(Value)};
 }
 
-/// Takes arrays away from what it packs, and keeps them as they are: beside a copy they would need
-/// their memory twice.
+/// A value of an array that ranks have parts of, and its place in the whole one.
+struct PlacedValue {
+  std::int64_t place;
+  double value;
+};
+
+/// Of an array that ranks have parts of, what is told here.
+struct PlacedPart {
+  std::vector<PlacedValue> values{};
+  std::int64_t size = 0;      ///< of the whole array
+  std::uint64_t written = 0;  ///< values, of all ranks
+  bool are_integers = false;  ///< or numbers,
+  bool are_sparse = false;    ///< with their places among the integers
+};
+
+/// What stands in a row among the numbers, and among the integers, of a checkpoint.
+struct Piece {
+  std::vector<double> numbers{};
+  std::vector<std::int64_t> integers{};
+  PlacedPart part{};
+
+  [[nodiscard]] std::uint64_t count_of_numbers() const {
+    return numbers.size() + (part.are_integers ? 0 : part.written);
+  }
+  [[nodiscard]] std::uint64_t count_of_integers() const {
+    return integers.size() + (part.are_integers || part.are_sparse ? part.written : 0);
+  }
+};
+
+/// Takes arrays away from what it packs: beside each other they would need their memory twice.
 class Packer : public StateArchive {
  public:
+  explicit Packer(StateNumbering* numbering) : numbering_(numbering) {}
+
   void transfer(const std::string& name, bool& value) override { integer(name, value ? 1 : 0); }
   void transfer(const std::string& name, int& value) override { integer(name, value); }
   void transfer(const std::string& name, std::int64_t& value) override { integer(name, value); }
   void transfer(const std::string& name, double& value) override {
     entries_ << Entry{name, 1};
-    numbers_.push_back({value});
+    pieces_.emplace_back().numbers = {value};
   }
-  void transfer(const std::string& name, std::vector<char>& values) override {
-    integers(name, values);
+  void transfer(const std::string& name, std::vector<char>& values, Rows rows) override {
+    integers(name, values, rows);
   }
-  void transfer(const std::string& name, std::vector<Index>& values) override {
-    integers(name, values);
+  void transfer(const std::string& name, std::vector<Index>& values, Rows rows) override {
+    if (numbering_ && rows == Rows::list_of_points) values = numbering_->numbers_of_all(values);
+    integers(name, values, rows);
   }
-  void transfer(const std::string& name, std::vector<double>& values) override {
-    const Entry entry = entry_for(name, values);
+  void transfer(const std::string& name, std::vector<double>& values, Rows rows) override {
+    if (has_parts(rows)) return numbers_of_part(name, std::exchange(values, {}), rows);
+    Piece& piece = pieces_.emplace_back();
+    const auto others = [&](double usual) {
+      return std::size_t(
+          std::ranges::count_if(values, [&](double value) { return !is_same(value, usual); }));
+    };
+    const Entry entry = entry_for(name, {others(0.0), others(1.0), values.size()});
     entries_ << entry;
-    if (!entry.is_sparse) {
-      numbers_.push_back(std::exchange(values, {}));
-      return;
-    }
-    std::vector<double>& others = numbers_.emplace_back();
-    for (std::size_t k = 0; k < values.size(); ++k) {
-      if (is_same(values[k], entry.usual)) continue;
-      others.push_back(values[k]);
-      integers_.push_back(static_cast<std::int64_t>(k));
-    }
-    values = std::vector<double>();
+    piece.numbers = std::exchange(values, {});
+    if (entry.is_sparse) keep_others(piece, entry.usual);
+  }
+  void number_free_dofs(const FragmentPins& pins) override {
+    if (numbering_) numbering_->pin(pins);
   }
 
-  /// Entries, numbers and integers one after the other, behind how many there are of each.
-  void visit(const VisitBytes& visit) const {
+  /// Entries, numbers and integers one after the other, behind how many there are of each; forgets
+  /// the numbers.
+  void put(const PutBytes& put) {
     const std::string entries = entries_.str();
-    std::array<std::uint64_t, 3> sizes{entries.size(), 0, integers_.size()};
-    for (const std::vector<double>& part : numbers_) sizes[1] += part.size();
-    visit(bytes_of(sizes.data(), sizes.size()));
-    visit(entries);
-    for (const std::vector<double>& part : numbers_) visit(bytes_of(part.data(), part.size()));
-    visit(bytes_of(integers_.data(), integers_.size()));
+    std::vector<std::uint64_t> sizes{entries.size(), 0, 0};
+    for (const Piece& piece : pieces_) {
+      sizes[1] += piece.count_of_numbers();
+      sizes[2] += piece.count_of_integers();
+    }
+    put(bytes_of(sizes));
+    put(entries);
+    for (Piece& piece : pieces_) {
+      put(bytes_of(piece.numbers));
+      piece.numbers = std::vector<double>();
+      if (!piece.part.are_integers) put_part<double>(piece.part, put, &PlacedValue::value);
+    }
+    for (const Piece& piece : pieces_) {
+      put(bytes_of(piece.integers));
+      if (piece.part.are_integers) put_part<std::int64_t>(piece.part, put, &PlacedValue::value);
+      if (piece.part.are_sparse) put_part<std::int64_t>(piece.part, put, &PlacedValue::place);
+    }
   }
 
  private:
-  void integer(const std::string& name, std::int64_t value) {
-    entries_ << Entry{name, 1};
-    integers_.push_back(value);
-  }
-  template <class Value>
-  void integers(const std::string& name, const std::vector<Value>& values) {
-    entries_ << Entry{name, values.size()};
-    integers_.insert(integers_.end(), values.begin(), values.end());
+  [[nodiscard]] bool has_parts(Rows rows) const {
+    return numbering_ && rows != Rows::whole && rows != Rows::list_of_points;
   }
 
+  static void keep_others(Piece& piece, double usual) {
+    std::vector<double> others;
+    for (std::size_t k = 0; k < piece.numbers.size(); ++k) {
+      if (is_same(piece.numbers[k], usual)) continue;
+      others.push_back(piece.numbers[k]);
+      piece.integers.push_back(static_cast<std::int64_t>(k));
+    }
+    piece.numbers = std::move(others);
+  }
+
+  void integer(const std::string& name, std::int64_t value) {
+    entries_ << Entry{name, 1};
+    pieces_.emplace_back().integers = {value};
+  }
+
+  template <class Value>
+  void integers(const std::string& name, const std::vector<Value>& values, Rows rows) {
+    Piece& piece = pieces_.emplace_back();
+    if (has_parts(rows)) {
+      piece.part = part_of(rows, {values.begin(), values.end()});
+      piece.part.are_integers = true;
+    } else {
+      piece.integers.assign(values.begin(), values.end());
+    }
+    entries_ << Entry{name, std::size_t(piece.count_of_integers())};
+  }
+
+  void numbers_of_part(const std::string& name, const std::vector<double>& values, Rows rows) {
+    PlacedPart& part = pieces_.emplace_back().part;
+    part = part_of(rows, values);
+    const auto others = [&](double usual) {
+      const auto here = std::ranges::count_if(
+          part.values, [&](const PlacedValue& at) { return !is_same(at.value, usual); });
+      return std::size_t(numbering_->gathering().part().ranks().count_all(here).all);
+    };
+    const Entry entry = entry_for(name, {others(0.0), others(1.0), std::size_t(part.size)});
+    entries_ << entry;
+    if (!entry.is_sparse) return;
+    part.are_sparse = true;
+    part.written = entry.others;
+    std::erase_if(part.values, [&](const auto& at) { return is_same(at.value, entry.usual); });
+  }
+
+  [[nodiscard]] PlacedPart part_of(Rows rows, const std::vector<double>& values) const {
+    PlacedPart part;
+    part.size = numbering_->whole_size(rows, values.size());
+    part.written = std::uint64_t(part.size);
+    for (const auto& [whole, here] : numbering_->places(rows, values.size())) {
+      part.values.push_back({whole, values[here]});
+    }
+    return part;
+  }
+
+  template <class Written, class Member>
+  void put_part(const PlacedPart& part, const PutBytes& put, Member member) const {
+    if (part.written == 0) return;
+    numbering_->gathering().gather_in_order(
+        part.values, part.size, [](const PlacedValue& at) { return std::pair(at.place, 0); },
+        [&](const std::vector<PlacedValue>& all) {
+          std::vector<Written> written;
+          for (const PlacedValue& at : all) written.push_back(static_cast<Written>(at.*member));
+          put(bytes_of(written));
+        });
+  }
+
+  StateNumbering* numbering_;
   std::ostringstream entries_;
-  std::vector<std::vector<double>> numbers_;
-  std::vector<std::int64_t> integers_;
+  std::vector<Piece> pieces_;
+};
+
+/// Values that stand in a row in some bytes, taken from the front.
+template <class Value>
+class Values {
+ public:
+  Values(const CheckpointBytes& bytes, std::uint64_t first, std::uint64_t count)
+      : bytes_(bytes), at_(first), left_(count) {}
+
+  Value take() {
+    if (next_ == buffer_.size()) fill();
+    return buffer_[next_++];
+  }
+  void skip(std::uint64_t count) {
+    require(count <= left());
+    const std::uint64_t here = std::min<std::uint64_t>(count, buffer_.size() - next_);
+    next_ += here;
+    at_ += (count - here) * sizeof(Value);
+    left_ -= count - here;
+  }
+  [[nodiscard]] std::uint64_t left() const { return left_ + (buffer_.size() - next_); }
+
+  static void require(bool holds) {
+    if (!holds) throw BadCheckpoint("is damaged: its entries and its values disagree");
+  }
+
+ private:
+  void fill() {
+    constexpr std::uint64_t most = 1 << 17;
+    require(left_ > 0);
+    buffer_.resize(std::min(left_, most));
+    next_ = 0;
+    const std::string read = bytes_.read(at_, buffer_.size() * sizeof(Value));
+    if (read.size() != buffer_.size() * sizeof(Value)) {
+      throw BadCheckpoint("is damaged: it is not whole");
+    }
+    std::memcpy(buffer_.data(), read.data(), read.size());
+    at_ += read.size();
+    left_ -= buffer_.size();
+  }
+
+  const CheckpointBytes& bytes_;
+  std::uint64_t at_, left_;  // of what is not in the buffer
+  std::vector<Value> buffer_;
+  std::size_t next_ = 0;
+};
+
+/// What is wanted of an array of the whole body, whose values come in its order.
+class ArrayTaker {
+ public:
+  /// @param usual what values are that don't come
+  ArrayTaker(const WantedState& wanted, Rows rows, std::size_t size, double usual)
+      : numbering_(rows == Rows::whole || rows == Rows::list_of_points ? nullptr
+                                                                       : wanted.numbering),
+        rows_(rows) {
+    std::optional<std::size_t> here = size;
+    if (numbering_) here = numbering_->size_here(rows, std::int64_t(size));
+    takes_ = wanted.has_arrays && here && size > 0;
+    if (!takes_) return;
+    values_.assign(*here, usual);
+    if (numbering_) places_ = numbering_->places(rows, *here);
+  }
+
+  /// Whether it takes any.
+  [[nodiscard]] bool takes() const { return takes_; }
+
+  void take(std::size_t place, double value) {
+    if (!numbering_) {
+      values_[place] = value;
+      return;
+    }
+    while (next_ < places_.size() && places_[next_].whole < std::int64_t(place)) ++next_;
+    if (next_ < places_.size() && places_[next_].whole == std::int64_t(place)) {
+      values_[places_[next_].here] = value;
+    }
+  }
+
+  std::vector<double> values() {
+    if (numbering_) numbering_->give_to_others(rows_, values_);
+    return std::move(values_);
+  }
+
+ private:
+  StateNumbering* numbering_;
+  Rows rows_;
+  bool takes_ = false;
+  std::vector<double> values_;
+  std::vector<StateNumbering::Place> places_;
+  std::size_t next_ = 0;
 };
 
 class Unpacker : public StateArchive {
  public:
-  explicit Unpacker(Packed packed) : packed_(std::move(packed)), entries_(packed_.entries) {}
+  Unpacker(const std::string& entries, Values<double> numbers, Values<std::int64_t> integers,
+           const WantedState& wanted)
+      : entries_(entries),
+        numbers_(std::move(numbers)),
+        integers_(std::move(integers)),
+        wanted_(wanted) {}
 
   void transfer(const std::string& name, bool& value) override { value = integer(name) != 0; }
   void transfer(const std::string& name, int& value) override { value = int(integer(name)); }
   void transfer(const std::string& name, std::int64_t& value) override { value = integer(name); }
   void transfer(const std::string& name, double& value) override {
     require(next(name).size == 1);
-    value = take(packed_.numbers, next_number_);
+    value = numbers_.take();
   }
-  void transfer(const std::string& name, std::vector<char>& values) override {
-    integers(name, values);
+  void transfer(const std::string& name, std::vector<char>& values, Rows rows) override {
+    integers(name, values, rows);
   }
-  void transfer(const std::string& name, std::vector<Index>& values) override {
-    integers(name, values);
+  void transfer(const std::string& name, std::vector<Index>& values, Rows rows) override {
+    integers(name, values, rows);
+    if (wanted_.numbering && rows == Rows::list_of_points) {
+      values = wanted_.numbering->points_here(values);
+    }
   }
-  void transfer(const std::string& name, std::vector<double>& values) override {
+  void transfer(const std::string& name, std::vector<double>& values, Rows rows) override {
     const Entry entry = next(name);
     const std::size_t written = entry.is_sparse ? entry.others : entry.size;
-    require(written <= packed_.numbers.size() - next_number_);
+    require(written <= numbers_.left() && (!entry.is_sparse || written <= integers_.left()));
     require(!entry.is_sparse || entry.size < most_values);
-    values.assign(entry.size, entry.usual);
-    for (std::size_t k = 0; k < written; ++k) {
-      const std::size_t place =
-          entry.is_sparse ? std::size_t(take(packed_.integers, next_integer_)) : k;
-      require(place < values.size());
-      values[place] = take(packed_.numbers, next_number_);
+    ArrayTaker taker(wanted_, rows, entry.size, entry.usual);
+    values.clear();
+    if (!taker.takes()) {
+      numbers_.skip(written);
+      if (entry.is_sparse) integers_.skip(written);
+      return;
     }
+    for (std::size_t k = 0; k < written; ++k) {
+      const std::size_t place = entry.is_sparse ? std::size_t(integers_.take()) : k;
+      require(place < entry.size);
+      taker.take(place, numbers_.take());
+    }
+    values = taker.values();
+  }
+  void number_free_dofs(const FragmentPins& pins) override {
+    if (wanted_.numbering) wanted_.numbering->pin(pins);
   }
 
   void require_end() {
     std::string rest;
-    require(!(entries_ >> rest) && next_number_ == packed_.numbers.size() &&
-            next_integer_ == packed_.integers.size());
+    require(!(entries_ >> rest) && numbers_.left() == 0 && integers_.left() == 0);
   }
 
  private:
   /// No body has more bonds: what claims to is damaged.
   static constexpr std::size_t most_values = std::size_t(1) << 40;
 
-  static void require(bool holds) {
-    if (!holds) throw BadCheckpoint("is damaged: its entries and its values disagree");
-  }
+  static void require(bool holds) { Values<double>::require(holds); }
 
   Entry next(const std::string& name) {
     std::string line;
@@ -184,29 +384,26 @@ class Unpacker : public StateArchive {
     return entry;
   }
 
-  template <class Value>
-  static Value take(const std::vector<Value>& values, std::size_t& at) {
-    require(at < values.size());
-    return values[at++];
-  }
-
   std::int64_t integer(const std::string& name) {
     require(next(name).size == 1);
-    return take(packed_.integers, next_integer_);
+    return integers_.take();
   }
 
   template <class Value>
-  void integers(const std::string& name, std::vector<Value>& values) {
+  void integers(const std::string& name, std::vector<Value>& values, Rows rows) {
     const Entry entry = next(name);
-    require(entry.size <= packed_.integers.size() - next_integer_);
+    require(entry.size <= integers_.left());
     values.clear();
-    for (std::size_t k = 0; k < entry.size; ++k)
-      values.push_back(static_cast<Value>(take(packed_.integers, next_integer_)));
+    ArrayTaker taker(wanted_, rows, entry.size, 0.0);
+    if (!taker.takes()) return integers_.skip(entry.size);
+    for (std::size_t k = 0; k < entry.size; ++k) taker.take(k, double(integers_.take()));
+    for (const double value : taker.values()) values.push_back(static_cast<Value>(value));
   }
 
-  Packed packed_;
   std::istringstream entries_;
-  std::size_t next_number_ = 0, next_integer_ = 0;
+  Values<double> numbers_;
+  Values<std::int64_t> integers_;
+  WantedState wanted_;
 };
 
 // As in state_archive.cpp the bindings name every member, so that none can be forgotten.
@@ -220,8 +417,8 @@ void transfer(StateArchive& archive, Checkpoint& checkpoint) {
   archive.transfer("rows/broken_bonds", broken_bonds);
   archive.transfer("last_with_fields", last_with_fields);
   auto& [told_stretches, force] = unwritten;
-  archive.transfer("unwritten/told_stretches", told_stretches);
-  archive.transfer("unwritten/force", force);
+  archive.transfer("unwritten/told_stretches", told_stretches, Rows::bonds);
+  archive.transfer("unwritten/force", force, Rows::recorded_dofs);
   auto& [factorisations, linear_iterations, seconds] = costs;
   archive.transfer("costs/factorisations", factorisations);
   archive.transfer("costs/linear_iterations", linear_iterations);
@@ -235,62 +432,44 @@ void transfer(StateArchive& archive, Checkpoint& checkpoint) {
   archive.transfer("costs/seconds/checkpoints", checkpoints);
 }
 
-/// FNV-1a over words of eight bytes [http://www.isthe.com/chongo/tech/comp/fnv] of pieces that
-/// follow one another.
+/// FNV-1a over words of eight bytes [http://www.isthe.com/chongo/tech/comp/fnv], of bytes that come
+/// in parts.
 class Checksum {
  public:
-  void add(std::string_view piece) {
-    while (!piece.empty()) {
-      const std::size_t taken = std::min(sizeof word_ - filled_, piece.size());
-      std::memcpy(reinterpret_cast<char*>(&word_) + filled_, piece.data(), taken);
-      piece.remove_prefix(taken);
-      filled_ += taken;
-      if (filled_ == sizeof word_) take_word();
+  void add(std::string_view bytes) {
+    if (!begun_.empty()) {
+      const std::size_t more = std::min(word_size - begun_.size(), bytes.size());
+      begun_ += bytes.substr(0, more);
+      bytes.remove_prefix(more);
+      if (begun_.size() < word_size) return;
+      add_words(begun_);
+      begun_.clear();
+    }
+    const std::size_t whole = bytes.size() / word_size * word_size;
+    add_words(bytes.substr(0, whole));
+    begun_ = bytes.substr(whole);
+  }
+  /// Of what has been added so far.
+  [[nodiscard]] std::uint64_t sum() const {
+    Checksum ended = *this;
+    ended.add_words(ended.begun_);
+    return ended.sum_;
+  }
+
+ private:
+  static constexpr std::size_t word_size = sizeof(std::uint64_t);
+
+  void add_words(std::string_view bytes) {
+    for (std::size_t at = 0; at < bytes.size(); at += word_size) {
+      std::uint64_t word = 0;
+      std::memcpy(&word, bytes.data() + at, std::min(word_size, bytes.size() - at));
+      sum_ = (sum_ ^ word) * 0x100000001b3u;
+      sum_ ^= sum_ >> 32;  // what a multiplication does to high bits alone reaches the low ones too
     }
   }
-  [[nodiscard]] std::uint64_t value() {
-    if (filled_ > 0) take_word();
-    return sum_;
-  }
 
- private:
-  void take_word() {
-    sum_ = (sum_ ^ word_) * 0x100000001b3u;
-    sum_ ^= sum_ >> 32;  // what a multiplication does to high bits alone reaches the low ones, too
-    word_ = 0;
-    filled_ = 0;
-  }
-
-  std::uint64_t sum_ = 0xcbf29ce484222325u, word_ = 0;
-  std::size_t filled_ = 0;
-};
-
-/// Bytes, taken from the front.
-class Bytes {
- public:
-  explicit Bytes(std::string_view bytes) : whole_(bytes), rest_(bytes) {}
-
-  std::string_view take(std::uint64_t size) {
-    if (size > rest_.size()) throw BadCheckpoint("is damaged: it is not whole");
-    const std::string_view taken = rest_.substr(0, size);
-    rest_.remove_prefix(size);
-    return taken;
-  }
-  std::string line() { return std::string(take(rest_.find('\n') + 1)); }
-  template <class Value>
-  std::vector<Value> values(std::uint64_t count) {
-    if (count > rest_.size() / sizeof(Value)) throw BadCheckpoint("is damaged: it is not whole");
-    std::vector<Value> values(count);
-    const std::string_view taken = take(count * sizeof(Value));
-    if (!taken.empty()) std::memcpy(values.data(), taken.data(), taken.size());
-    return values;
-  }
-  [[nodiscard]] std::string_view taken() const {
-    return whole_.substr(0, whole_.size() - rest_.size());
-  }
-
- private:
-  std::string_view whole_, rest_;
+  std::uint64_t sum_ = 0xcbf29ce484222325u;
+  std::string begun_;  // of a word
 };
 
 /// "peristat checkpoint 1 0.1.0": the layout, and the version of the program that has written it.
@@ -309,40 +488,92 @@ void check_head(const std::string& line, const std::string& program) {
                       std::to_string(checkpoint_layout));
 }
 
-}  // namespace
+/// Where the parts of a checkpoint are.
+struct Outline {
+  std::string entries;
+  std::uint64_t first_number = 0, numbers = 0, integers = 0;
 
-void encode(Checkpoint checkpoint, const std::string& program, const VisitBytes& visit) {
-  Packer packer;
-  transfer(packer, checkpoint);
-  Checksum checksum;
-  const auto pass_on = [&](std::string_view piece) {
-    checksum.add(piece);
-    visit(piece);
+  [[nodiscard]] std::uint64_t first_integer() const { return first_number + 8 * numbers; }
+  [[nodiscard]] std::uint64_t end() const { return first_integer() + 8 * integers; }
+};
+
+Outline outline_of(const CheckpointBytes& bytes, const std::string& program) {
+  const auto require = [](bool holds) {
+    if (!holds) throw BadCheckpoint("is damaged: it is not whole");
   };
-  pass_on(head_line(program));
-  packer.visit(pass_on);
-  const std::uint64_t sum = checksum.value();
-  visit(bytes_of(&sum, 1));
+  constexpr std::uint64_t most_of_head = 256;
+  const std::string head = bytes.read(0, std::min(bytes.size, most_of_head));
+  const std::size_t end_of_line = head.find('\n');
+  require(end_of_line != std::string::npos);
+  check_head(head.substr(0, end_of_line), program);
+  std::array<std::uint64_t, 3> sizes{};
+  std::uint64_t at = end_of_line + 1;
+  require(at + sizeof sizes <= bytes.size);
+  std::memcpy(sizes.data(), bytes.read(at, sizeof sizes).data(), sizeof sizes);
+  at += sizeof sizes;
+  require(sizes[0] <= bytes.size - at);
+  Outline outline{bytes.read(at, sizes[0]), at + sizes[0], sizes[1], sizes[2]};
+  const std::uint64_t values = (bytes.size - outline.first_number) / 8;  // with the checksum
+  require(sizes[1] < values && sizes[2] < values - sizes[1]);
+  return outline;
 }
 
-Checkpoint decode(std::string_view bytes, const std::string& program) {
-  Bytes rest(bytes);
-  check_head(rest.line(), program);
-  const auto sizes = rest.values<std::uint64_t>(3);
-  Packed packed;
-  packed.entries = rest.take(sizes[0]);
-  packed.numbers = rest.values<double>(sizes[1]);
-  packed.integers = rest.values<std::int64_t>(sizes[2]);
+}  // namespace
+
+void write_checkpoint(Checkpoint checkpoint, const std::string& program, StateNumbering* numbering,
+                      const PutBytes& put) {
+  Packer packer(numbering);
+  transfer(packer, checkpoint);
   Checksum checksum;
-  checksum.add(rest.taken());
-  if (rest.values<std::uint64_t>(1).front() != checksum.value()) {
-    throw BadCheckpoint("is damaged: its checksum is wrong");
-  }
-  Unpacker unpacker(std::move(packed));
+  const bool writes = !numbering || numbering->gathering().part().ranks().rank() == 0;
+  const auto add = [&](std::string_view bytes) {
+    if (!writes || bytes.empty()) return;
+    checksum.add(bytes);
+    put(bytes);
+  };
+  add(head_line(program));
+  packer.put(add);
+  const std::uint64_t sum = checksum.sum();
+  if (writes) put({reinterpret_cast<const char*>(&sum), sizeof sum});
+}
+
+Checkpoint read_checkpoint(const CheckpointBytes& bytes, const std::string& program,
+                           const WantedState& wanted) {
+  const Outline outline = outline_of(bytes, program);
+  Unpacker unpacker(outline.entries, {bytes, outline.first_number, outline.numbers},
+                    {bytes, outline.first_integer(), outline.integers}, wanted);
   Checkpoint checkpoint;
   transfer(unpacker, checkpoint);
   unpacker.require_end();
   return checkpoint;
+}
+
+void require_whole(const CheckpointBytes& bytes, const std::string& program) {
+  const std::uint64_t end = outline_of(bytes, program).end();
+  constexpr std::uint64_t most = 1 << 20;
+  Checksum checksum;
+  for (std::uint64_t at = 0; at < end; at += most) {
+    checksum.add(bytes.read(at, std::min(most, end - at)));
+  }
+  std::uint64_t sum = 0;
+  const std::string written = bytes.read(end, sizeof sum);
+  std::memcpy(&sum, written.data(), std::min(sizeof sum, written.size()));
+  if (checksum.sum() != sum) throw BadCheckpoint("is damaged: its checksum is wrong");
+}
+
+std::string encode(Checkpoint checkpoint, const std::string& program) {
+  std::string bytes;
+  write_checkpoint(std::move(checkpoint), program, nullptr,
+                   [&](std::string_view part) { bytes += part; });
+  return bytes;
+}
+
+Checkpoint decode(std::string_view bytes, const std::string& program) {
+  const CheckpointBytes source{bytes.size(), [&](std::uint64_t first, std::uint64_t count) {
+                                 return std::string(bytes.substr(first, count));
+                               }};
+  require_whole(source, program);
+  return read_checkpoint(source, program, {});
 }
 
 }  // namespace peristat

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "cases/runner/results/run_costs.hpp"
+#include "cases/runner/results/state_numbering.hpp"
 #include "solvers/drivers/path_state.hpp"
 
 namespace peristat {
@@ -40,18 +41,44 @@ class BadCheckpoint : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Takes bytes that follow one another, a piece at a time.
-using VisitBytes = std::function<void(std::string_view)>;
+/// Takes the bytes of a checkpoint, part after part.
+using PutBytes = std::function<void(std::string_view)>;
 
-/// A checkpoint as bytes, with a checksum: HDF5 would take longer for it than a small body for a
-/// step. Of arrays that hold nearly only zeros, or nearly only ones, what differs is kept. Pieces
-/// are the checkpoint's own arrays: of a large body their bytes in a row would be as much again.
-/// @param program version that writes
-void encode(Checkpoint checkpoint, const std::string& program, const VisitBytes& visit);
+/// Writes a checkpoint as bytes, with a checksum: HDF5 would take longer for it than a small body
+/// for a step. Of arrays that hold nearly only zeros, or nearly only ones, what differs is kept.
+/// The bytes are those of the whole body whatever the number of ranks, and no rank ever has all of
+/// them.
+/// @param program   version that writes
+/// @param numbering null: the body is whole; otherwise a call that all ranks make
+/// @param put       called at rank 0
+void write_checkpoint(Checkpoint checkpoint, const std::string& program, StateNumbering* numbering,
+                      const PutBytes& put);
 
-/// The checkpoint that some bytes begin with.
+/// Where the bytes of a checkpoint are.
+struct CheckpointBytes {
+  std::uint64_t size = 0;
+  std::function<std::string(std::uint64_t first, std::uint64_t count)> read;
+};
+
+/// What of a checkpoint is wanted.
+struct WantedState {
+  bool has_arrays = true;               ///< without them a path's state has numbers alone
+  StateNumbering* numbering = nullptr;  ///< null: arrays are of the whole body
+};
+
+/// The checkpoint that some bytes begin with. Of a part of a body an array is left empty that is of
+/// another body.
 /// @param program version that reads
-/// @throws BadCheckpoint: it has another layout (named with both programs), or is damaged
+/// @throws BadCheckpoint: it has another layout (named with both programs), or is damaged as far as
+///         that shows without its checksum
+[[nodiscard]] Checkpoint read_checkpoint(const CheckpointBytes& bytes, const std::string& program,
+                                         const WantedState& wanted);
+
+/// @throws BadCheckpoint if the bytes are no checkpoint to the last bit
+void require_whole(const CheckpointBytes& bytes, const std::string& program);
+
+/// Both for bytes in memory.
+[[nodiscard]] std::string encode(Checkpoint checkpoint, const std::string& program);
 [[nodiscard]] Checkpoint decode(std::string_view bytes, const std::string& program);
 
 }  // namespace peristat

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -20,15 +21,12 @@ class CheckpointFiles {
   CheckpointFiles(const CheckpointFiles&) = delete;
   CheckpointFiles& operator=(const CheckpointFiles&) = delete;
 
-  /// @param program version that writes
+  /// @param put_into writes the bytes of a checkpoint, see write_checkpoint
   /// @throws OutputError; the checkpoint before stays
-  void write(Checkpoint checkpoint, const std::string& program);
+  void write(const std::function<void(const PutBytes&)>& put_into);
 
-  /// The file that was written last.
+  /// The file that was written last; empty before the first.
   [[nodiscard]] std::filesystem::path last() const;
-
-  /// Of the checkpoint that was written last; none before the first, or where it can't be read.
-  [[nodiscard]] std::vector<std::uint8_t> last_bytes() const;
 
   /// Names of the files in the folder.
   static constexpr std::array<const char*, 2> names{"checkpoint.0", "checkpoint.1"};
@@ -41,12 +39,11 @@ class CheckpointFiles {
 
 /// The later one of the checkpoints in a folder that are whole.
 /// @throws BadCheckpoint if there is none
-[[nodiscard]] Checkpoint newest_checkpoint(const std::filesystem::path& folder,
-                                           const std::string& program);
+[[nodiscard]] std::filesystem::path newest_checkpoint(const std::filesystem::path& folder,
+                                                      const std::string& program);
 
-/// The checkpoint in a file.
-/// @throws BadCheckpoint
-[[nodiscard]] Checkpoint read_checkpoint(const std::filesystem::path& file,
-                                         const std::string& program);
+/// The bytes of a file, read as they are asked for.
+/// @throws BadCheckpoint if it can't be read
+[[nodiscard]] CheckpointBytes bytes_of_file(const std::filesystem::path& file);
 
 }  // namespace peristat

@@ -55,6 +55,7 @@ std::array<double, 2> extent(const Points& points, Members set, int axis, const 
                  b = points.position(j)[std::size_t(axis)];
     if (std::abs(b - a) <= 0.5 * spacing && touches(ends, set)) middles.push_back(0.5 * (a + b));
   }
+  middles = crack.of_all(std::move(middles));
   if (middles.empty()) return {0.0, 0.0};
   const auto [begin, end] =
       interval_of(std::move(middles), period_along(points, std::size_t(axis)));
@@ -101,13 +102,16 @@ class CellFaces {
   Coordinates origin_;
 };
 
-/// Summed by size: a run that was resumed knows its broken bonds in another order.
-double area(const Points& points, Members set, std::span<const BondEnds> separated) {
+/// Of the separated bonds from one on. Summed by size: a run that was resumed knows its broken
+/// bonds in another order.
+double area(const Points& points, Members set, std::size_t first, const CrackState& crack) {
   const CellFaces of_cells(points);
   std::vector<double> faces;
-  for (const BondEnds& ends : separated) {
-    if (touches(ends, set)) faces.push_back(of_cells.area(ends));
+  for (const BondEnds& ends : crack.separated.subspan(first)) {
+    const double size = touches(ends, set) ? of_cells.area(ends) : 0.0;
+    if (size != 0.0) faces.push_back(size);
   }
+  faces = crack.of_all(std::move(faces));
   std::sort(faces.begin(), faces.end());
   return std::accumulate(faces.begin(), faces.end(), 0.0);
 }
@@ -119,14 +123,17 @@ double angle(const Points& points, Members set, int axis, const CrackState& crac
     auto operator<=>(const Face&) const = default;
   };
   const CellFaces of_cells(points);
-  std::vector<Face> faces;  // in an order of their own, as in area()
+  std::vector<double> mine;
   const auto along = std::size_t(axis), across = std::size_t(1 - axis);
   for (const BondEnds& ends : crack.separated) {
     const double size = touches(ends, set) ? of_cells.area(ends) : 0.0;
     if (size == 0.0) continue;
     const Coordinates a = points.position(ends[0]), b = points.position(ends[1]);
-    faces.push_back({0.5 * (a[along] + b[along]), 0.5 * (a[across] + b[across]), size});
+    mine.insert(mine.end(), {0.5 * (a[along] + b[along]), 0.5 * (a[across] + b[across]), size});
   }
+  const std::vector<double> all = crack.of_all(std::move(mine));
+  std::vector<Face> faces;  // in an order of their own, as in area()
+  for (std::size_t k = 0; k < all.size(); k += 3) faces.push_back({all[k], all[k + 1], all[k + 2]});
   std::ranges::sort(faces);
   double area = 0.0, x = 0.0, y = 0.0, xx = 0.0, xy = 0.0, yy = 0.0;
   for (const Face& face : faces) {
@@ -163,7 +170,7 @@ const std::vector<CrackMeasure>& measures() {
       {"crack_angle", "degree", true, angle},
       {"crack_area", "m2", false,
        [](const Points& points, Members set, int, const CrackState& crack) {
-         return area(points, set, crack.separated);
+         return area(points, set, 0, crack);
        }},
       {"work_of_fracture", "J/m2", false,
        [](const Points& points, Members set, int, const CrackState& crack) {
@@ -181,7 +188,7 @@ const std::vector<CrackMeasure>& measures() {
 }  // namespace
 
 double grown_area(const Points& points, Members set, const CrackState& crack) {
-  return area(points, set, crack.separated.subspan(crack.cut));
+  return area(points, set, crack.cut, crack);
 }
 
 const CrackMeasure* crack_measure(const std::string& name) {

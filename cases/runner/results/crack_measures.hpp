@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "src/core/concatenated.hpp"
 #include "src/geometry/points.hpp"
 #include "src/neighbourhood/bonds.hpp"
 
@@ -17,11 +18,18 @@ struct CrackGrowth {
 
 /// How far cracks have come.
 struct CrackState {
-  std::span<const BondEnds> separated;  ///< bonds that pre-cracks have cut, then those that broke
+  /// Bonds that pre-cracks have cut, then those that broke: those that are told here.
+  std::span<const BondEnds> separated;
   std::size_t cut = 0;                  ///< how many of them pre-cracks have cut
   double taken_up = 0.0;                ///< work that is not stored any more [J]
   double dissipated = 0.0;              ///< by damage [J]
   CrackGrowth before{};                 ///< when the area through the set grew last
+  const Communicator* ranks = nullptr;  ///< that have other separated bonds; null: these are all
+
+  /// What all ranks have, by a call that all make.
+  [[nodiscard]] std::vector<double> of_all(std::vector<double> mine) const {
+    return ranks ? concatenated(mine, *ranks) : mine;
+  }
 };
 
 /// What a probe can tell of the cracks through a set: of the separated bonds that have an end in

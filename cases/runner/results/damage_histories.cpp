@@ -7,9 +7,9 @@ Index image_number(const Points& points, Index point) {
   return static_cast<Index>(points.images.kind[std::size_t(point - points.own())]) + 1;
 }
 
-std::optional<BondHistories> DamageHistories::changes(const Points& points, const Bonds& bonds,
-                                                      std::span<const double> history) const {
-  if (history.empty()) return std::nullopt;
+BondHistories DamageHistories::changes(const RecordedPoints& recorded, const Bonds& bonds,
+                                       std::span<const double> history) const {
+  const Points& points = recorded.points();
   const bool has_images = points.own() < points.count();
   BondHistories changed;
   auto known = known_.begin();
@@ -19,8 +19,9 @@ std::optional<BondHistories> DamageHistories::changes(const Points& points, cons
       const double before = is_known ? (known++)->second : 0.0;
       if (history[bond] == before || points.is_image(i)) continue;
       const Index second = bonds.partner[bond];
-      changed.first_point.push_back(i);
-      changed.second_point.push_back(points.source(second));
+      if (!recorded.tells(i, second)) continue;
+      changed.first_point.push_back(recorded.number(i));
+      changed.second_point.push_back(recorded.number(second));
       changed.largest_stretch.push_back(history[bond]);
       if (has_images) changed.second_image.push_back(image_number(points, second));
     }

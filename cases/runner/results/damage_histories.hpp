@@ -1,10 +1,10 @@
 #pragma once
 
-#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
 
+#include "cases/runner/build/recorded_points.hpp"
 #include "solvers/problem/records.hpp"
 #include "src/geometry/points.hpp"
 #include "src/neighbourhood/bonds.hpp"
@@ -18,10 +18,10 @@ namespace peristat {
 /// those that differ from 0 are kept: nearly all bonds of a body are never damaged.
 class DamageHistories {
  public:
-  /// The bonds whose history is another one than the reader knows; none without histories. Bonds
-  /// between two images, which repeat others, are left out.
-  [[nodiscard]] std::optional<BondHistories> changes(const Points& points, const Bonds& bonds,
-                                                     std::span<const double> history) const;
+  /// The bonds whose history is another one than the reader knows. Bonds between two images, which
+  /// repeat others, are left out, and those that another rank tells.
+  [[nodiscard]] BondHistories changes(const RecordedPoints& points, const Bonds& bonds,
+                                      std::span<const double> history) const;
 
   /// What the reader knows, of all bonds.
   [[nodiscard]] std::vector<double> told(Offset bonds) const;

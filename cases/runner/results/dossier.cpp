@@ -2,10 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
+#include <cstdint>
+#include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+
+#include "cases/runner/build/recorded_points.hpp"
+#include "src/core/concatenated.hpp"
 
 namespace peristat {
 namespace {
@@ -91,9 +95,49 @@ std::string suggestion(Outcome outcome, Mode mode) {
   return "";
 }
 
-std::string coordinates_text(const Points& points, Index point) {
-  const Coordinates at = points.position(point);
-  return fmt::format("({:.6g})", fmt::join(at.begin(), at.begin() + points.dimension, ", "));
+struct WorstPoint {
+  double residual = 0.0;  ///< 2-norm [N]
+  std::int64_t number = 0;
+  Coordinates place{};
+
+  [[nodiscard]] bool comes_before(const WorstPoint& other) const {
+    return std::pair(-residual, number) < std::pair(-other.residual, other.number);
+  }
+};
+
+void keep_worst(std::vector<WorstPoint>& points) {
+  const std::size_t kept = std::min(worst_told, points.size());
+  std::partial_sort(points.begin(), points.begin() + std::ptrdiff_t(kept), points.end(),
+                    [](const WorstPoint& a, const WorstPoint& b) { return a.comes_before(b); });
+  points.resize(kept);
+}
+
+/// The points with the largest residual, of all ranks.
+std::vector<WorstPoint> worst_points(const RecordedPoints& recorded,
+                                     const std::vector<double>& residual) {
+  const auto d = std::size_t(recorded.dimension());
+  std::vector<WorstPoint> worst;
+  for (Index point = 0; point < recorded.count(); ++point) {
+    double squared = 0.0;
+    for (std::size_t c = 0; c < d; ++c) {
+      squared += residual[std::size_t(point) * d + c] * residual[std::size_t(point) * d + c];
+    }
+    worst.push_back(
+        {std::sqrt(squared), recorded.number(point), recorded.points().position(point)});
+  }
+  keep_worst(worst);
+  std::vector<double> mine;
+  for (const WorstPoint& point : worst) {
+    mine.insert(mine.end(), {point.residual, double(point.number)});
+    mine.insert(mine.end(), point.place.begin(), point.place.end());
+  }
+  const std::vector<double> all = concatenated(mine, recorded.ranks());
+  worst.clear();
+  for (auto at = all.begin(); at != all.end(); at += 5) {
+    worst.push_back({at[0], std::int64_t(at[1]), {at[2], at[3], at[4]}});
+  }
+  keep_worst(worst);
+  return worst;
 }
 
 }  // namespace
@@ -101,13 +145,13 @@ std::string coordinates_text(const Points& points, Index point) {
 Dossier make_dossier(const Case& from, const Body& body, const LoadSteppingResult& result,
                      const std::optional<StepRecord>& last,
                      const std::vector<DecisionRecord>& decisions) {
-  const Points points = without_images(body.points);
-  const auto d = std::size_t(points.dimension);
+  const RecordedPoints recorded(body.points, body.part.get());
+  const auto dofs = std::size_t(recorded.count()) * std::size_t(recorded.dimension());
   const Attempt& attempt = result.last_attempt;
   Dossier dossier;
-  dossier.residual.assign(points.reference.size(), 0.0);
+  dossier.residual.assign(dofs, 0.0);
   dossier.displacement = attempt.state.displacement;
-  dossier.displacement.resize(points.reference.size(), 0.0);
+  dossier.displacement.resize(dofs, 0.0);
   const std::vector<char>& prescribed = body.conditions->prescribed();
   for (std::size_t dof = 0; dof < std::min(attempt.state.gradient.size(), dossier.residual.size());
        ++dof) {
@@ -153,20 +197,12 @@ Dossier make_dossier(const Case& from, const Body& body, const LoadSteppingResul
   }
   say("");
 
-  std::vector<double> size(std::size_t(points.count()), 0.0);
-  for (std::size_t dof = 0; dof < dossier.residual.size(); ++dof) {
-    size[dof / d] += dossier.residual[dof] * dossier.residual[dof];
-  }
-  std::vector<Index> order(size.size());
-  std::iota(order.begin(), order.end(), 0);
-  const std::size_t told = std::min(worst_told, order.size());
-  std::partial_sort(order.begin(), order.begin() + std::ptrdiff_t(told), order.end(),
-                    [&](Index a, Index b) { return size[a] > size[b]; });
   say("Worst points of that residual (all of it: /dossier/residual in results.h5)");
   say("  point       residual [N]   reference position [m]");
-  for (std::size_t k = 0; k < told; ++k) {
-    say(fmt::format("  {:<10}  {:<12.4g}   {}", order[k], std::sqrt(size[order[k]]),
-                    coordinates_text(points, order[k])));
+  for (const WorstPoint& worst : worst_points(recorded, dossier.residual)) {
+    say(fmt::format(
+        "  {:<10}  {:<12.4g}   ({:.6g})", worst.number, worst.residual,
+        fmt::join(worst.place.begin(), worst.place.begin() + recorded.dimension(), ", ")));
   }
   say("");
   say("Last decisions (all of them: decisions.csv)");

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <memory>
 #include <system_error>
 
 #include <unistd.h>
@@ -41,9 +42,14 @@ bool has_checkpoints(const ResultsFolder& folder) {
 }
 
 /// Of a run that has ended.
-Checkpoint checkpoint_in(const Hdf5File& file, const std::string& program) {
-  const std::vector<std::uint8_t> bytes = file.bytes("/checkpoint");
-  return decode({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, program);
+CheckpointBytes checkpoint_in(const fs::path& results) {
+  const auto file = std::make_shared<const Hdf5File>(Hdf5File::open_for_reading(results));
+  const std::uint64_t size = file->count_of_rows("/checkpoint");
+  return {size, [file, size](std::uint64_t first, std::uint64_t count) {
+            const std::uint64_t here = std::min(count, size - std::min(first, size));
+            const auto bytes = file->some_rows<std::uint8_t>("/checkpoint", first, here);
+            return std::string(bytes.begin(), bytes.end());
+          }};
 }
 
 ResultsMarker claim(const fs::path& directory) {
@@ -76,8 +82,20 @@ void put_beside(const fs::path& file, const fs::path& name) {
 
 }  // namespace
 
-EarlierRun::EarlierRun(const fs::path& directory, const std::string& program)
-    : folder_{fs::absolute(directory).lexically_normal()} {
+EarlierRun::EarlierRun(const fs::path& directory, const std::string& program,
+                       const Communicator& ranks)
+    : folder_{fs::absolute(directory).lexically_normal()}, program_(program), ranks_(ranks) {
+  if (ranks.rank() == 0) choose();
+  std::string chosen(1, generation_ == Generation::safe ? 's' : 'n');
+  chosen += checkpoint_file_.string();
+  ranks.broadcast(chosen);
+  if (ranks.rank() == 0) return;
+  checkpoint_file_ = chosen.substr(1);
+  read(chosen.front() == 's' ? Generation::safe : Generation::newest);
+}
+
+/// Finds out which state is gone on from, and whether it can be.
+void EarlierRun::choose() {
   try {
     marker_.emplace(claim(folder_.directory));
     if (::access(folder_.directory.c_str(), W_OK) != 0) {
@@ -89,16 +107,19 @@ EarlierRun::EarlierRun(const fs::path& directory, const std::string& program)
     throw refusal(error.code().message());
   }
   const auto fault_of = [&](Generation which) {
-    return fault_aside([&] { read(which, program); });
+    return fault_aside([&] {
+      read(which);
+      require_whole_checkpoint();
+    });
   };
   const auto fault = fault_of(Generation::newest);
   if (!fault) {
-    read(Generation::newest, program);
+    read(Generation::newest);
     return;
   }
   const std::string loss = "the run can't be gone on with: " + *fault;
   if (!fs::exists(folder_.safe_results()) || fault_of(Generation::safe)) throw refusal(loss);
-  read(Generation::safe, program);
+  read(Generation::safe);
   remark_ = loss + "; an older state, which had reached the disk, is taken instead";
 }
 
@@ -106,7 +127,8 @@ InputError EarlierRun::refusal(const std::string& reason) const {
   return {"", "", reason, folder_.directory.string()};
 }
 
-void EarlierRun::read(Generation which, const std::string& program) {
+void EarlierRun::read(Generation which) {
+  generation_ = which;
   results_ = which == Generation::newest ? folder_.results() : folder_.safe_results();
   const auto file = Hdf5File::open_for_reading(results_);
   is_gathered_ = !file.link_target("/points");
@@ -117,9 +139,11 @@ void EarlierRun::read(Generation which, const std::string& program) {
         "checkpoint; run the case again");
   }
   try {
-    checkpoint_ = is_gathered_                ? checkpoint_in(file, program)
-                  : which == Generation::safe ? read_checkpoint(folder_.safe_checkpoint(), program)
-                                              : newest_checkpoint(folder_.parts(), program);
+    if (!is_gathered_ && checkpoint_file_.empty()) {
+      checkpoint_file_ = which == Generation::safe ? folder_.safe_checkpoint()
+                                                   : newest_checkpoint(folder_.parts(), program_);
+    }
+    checkpoint_ = read_checkpoint(bytes_of_checkpoint(), program_, {.has_arrays = false});
   } catch (const BadCheckpoint& error) {
     throw BadCheckpoint(std::string("its checkpoint ") + error.what());
   }
@@ -131,15 +155,51 @@ void EarlierRun::read(Generation which, const std::string& program) {
       first_rows(file, "/iterations", iteration_columns(), checkpoint_.rows.iterations));
 }
 
+void EarlierRun::require_whole_checkpoint() const {
+  try {
+    require_whole(bytes_of_checkpoint(), program_);
+  } catch (const BadCheckpoint& error) {
+    throw BadCheckpoint(std::string("its checkpoint ") + error.what());
+  }
+}
+
+CheckpointBytes EarlierRun::bytes_of_checkpoint() const {
+  return is_gathered_ ? checkpoint_in(results_) : bytes_of_file(checkpoint_file_);
+}
+
+void EarlierRun::load(StateNumbering* numbering) {
+  CheckpointBytes bytes = bytes_of_checkpoint();
+  if (ranks_.count() > 1) {
+    // What each picks its own from.
+    bytes.read = [this, read = bytes.read](std::uint64_t first, std::uint64_t count) {
+      std::string part;
+      if (ranks_.rank() == 0) part = read(first, count);
+      ranks_.broadcast(part);
+      return part;
+    };
+  }
+  const PathState::Rungs rungs = checkpoint_.path.rungs;
+  try {
+    checkpoint_ = read_checkpoint(bytes, program_, {.numbering = numbering});
+  } catch (const BadCheckpoint& error) {
+    throw refusal(std::string("its checkpoint ") + error.what());
+  }
+  checkpoint_.path.rungs = rungs;
+}
+
 bool EarlierRun::is_concluded() const { return is_gathered_ && fs::exists(folder_.summary()); }
 
 EarlierResults EarlierRun::results(const std::vector<std::string>& support_sets,
                                    const std::vector<ProbeColumns>& probes,
                                    const std::vector<LineTable>& lines) const {
-  const auto fault =
-      fault_aside([&] { try_to_copy(folder_, read_results(support_sets, probes, lines)); });
-  if (fault) throw refusal("its results are damaged: " + *fault);
-  return read_results(support_sets, probes, lines);
+  if (ranks_.rank() == 0) {
+    const auto fault =
+        fault_aside([&] { try_to_copy(folder_, read_results(support_sets, probes, lines)); });
+    if (fault) throw refusal("its results are damaged: " + *fault);
+  }
+  EarlierResults earlier = read_results(support_sets, probes, lines);
+  static_cast<void>(ranks_.count_all(0));  // no rank writes before all have read
+  return earlier;
 }
 
 EarlierResults EarlierRun::read_results(const std::vector<std::string>& support_sets,
@@ -181,11 +241,12 @@ EarlierResults EarlierRun::read_results(const std::vector<std::string>& support_
   return earlier;
 }
 
-bool EarlierRun::has_points(const Points& points) const {
+bool EarlierRun::has_points(const Points& points, const RowGathering* gathering) const {
+  if (ranks_.rank() > 0) return holds_points(nullptr, "", points, gathering);
   const auto file = Hdf5File::open_for_reading(results_);
   const ObjectInFile place = place_of(file, results_, "/points");
-  return holds_points(Hdf5File::open_for_reading(folder_.directory / place.file), place.object,
-                      points);
+  const auto holder = Hdf5File::open_for_reading(folder_.directory / place.file);
+  return holds_points(&holder, place.object, points, gathering);
 }
 
 ClaimedFolder EarlierRun::take_over(const RunIdentity& run, EarlierResults& earlier) {

@@ -127,6 +127,13 @@ void append_values(hid_t dataset, const std::string& path, hid_t type, const voi
   checked(H5Dwrite(dataset, type, dataspace({count}), space, transfer, values), "write " + path);
 }
 
+std::vector<hsize_t> extents(hid_t space, const std::string& path) {
+  const int rank = checked(H5Sget_simple_extent_ndims(space), "size " + path);
+  std::vector<hsize_t> extents(static_cast<std::size_t>(rank));
+  checked(H5Sget_simple_extent_dims(space, extents.data(), nullptr), "size " + path);
+  return extents;
+}
+
 template <class Value>
 std::vector<Value> read_dataset(hid_t file, const std::string& path, hid_t type) {
   const Handle dataset(H5Dopen2(file, path.c_str(), H5P_DEFAULT), H5Dclose, "open " + path);
@@ -357,6 +364,37 @@ std::vector<std::int64_t> Hdf5File::integers(const std::string& path) const {
 
 std::vector<std::uint8_t> Hdf5File::bytes(const std::string& path) const {
   return read_dataset<std::uint8_t>(id_, path, H5T_NATIVE_UINT8);
+}
+
+template <class Value>
+std::vector<Value> Hdf5File::some_rows(const std::string& path, std::uint64_t first,
+                                       std::uint64_t count) const {
+  const Handle dataset(H5Dopen2(id_, path.c_str(), H5P_DEFAULT), H5Dclose, "open " + path);
+  const Handle space(H5Dget_space(dataset), H5Sclose, "size " + path);
+  std::vector<hsize_t> extent(extents(space, path)), start(extent.size(), 0);
+  start.at(0) = first;
+  extent.at(0) = count;
+  hsize_t values = 1;
+  for (const hsize_t along : extent) values *= along;
+  std::vector<Value> rows(values);
+  if (rows.empty()) return rows;
+  checked(H5Sselect_hyperslab(space, H5S_SELECT_SET, start.data(), nullptr, extent.data(), nullptr),
+          "select rows of " + path);
+  checked(H5Dread(dataset, type_of(Value{}), dataspace({values}), space, H5P_DEFAULT, rows.data()),
+          "read " + path);
+  return rows;
+}
+
+template std::vector<double> Hdf5File::some_rows<double>(const std::string&, std::uint64_t,
+                                                         std::uint64_t) const;
+template std::vector<std::uint8_t> Hdf5File::some_rows<std::uint8_t>(const std::string&,
+                                                                     std::uint64_t,
+                                                                     std::uint64_t) const;
+
+std::uint64_t Hdf5File::count_of_rows(const std::string& path) const {
+  const Handle dataset(H5Dopen2(id_, path.c_str(), H5P_DEFAULT), H5Dclose, "open " + path);
+  const Handle space(H5Dget_space(dataset), H5Sclose, "size " + path);
+  return extents(space, path).at(0);
 }
 
 std::string Hdf5File::text(const std::string& path) const { return read_texts(id_, path).at(0); }

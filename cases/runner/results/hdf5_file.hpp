@@ -89,6 +89,11 @@ class Hdf5File {
   [[nodiscard]] std::vector<double> numbers(const std::string& path) const;
   [[nodiscard]] std::vector<std::int64_t> integers(const std::string& path) const;
   [[nodiscard]] std::vector<std::uint8_t> bytes(const std::string& path) const;
+  /// The values of some rows, and how many rows there are: values are double or uint8.
+  template <class Value>
+  [[nodiscard]] std::vector<Value> some_rows(const std::string& path, std::uint64_t first,
+                                             std::uint64_t count) const;
+  [[nodiscard]] std::uint64_t count_of_rows(const std::string& path) const;
   [[nodiscard]] std::string text(const std::string& path) const;
   /// Rows of a table, see make_table.
   [[nodiscard]] std::vector<Row> rows(const std::string& group,

@@ -1,11 +1,32 @@
 #include "cases/runner/results/line_probe.hpp"
 
+#include <algorithm>
+#include <cstddef>
+#include <utility>
+
 #include "cases/runner/input/probe_fields.hpp"
 #include "cases/runner/results/probe.hpp"
+#include "src/core/concatenated.hpp"
 
 namespace peristat {
-LineProbe::LineProbe(const ProbeSpecification& probe, const Points& points)
-    : probe_(probe), points_(points), places_(points_on_line(points, *probe.from, *probe.to)) {}
+namespace {
+
+/// Where rows of numbers begin, ascending by their first two.
+std::vector<std::size_t> in_order(const std::vector<double>& rows, std::size_t width) {
+  std::vector<std::size_t> begin;
+  for (std::size_t at = 0; at < rows.size(); at += width) begin.push_back(at);
+  std::ranges::sort(begin, [&](std::size_t a, std::size_t b) {
+    return std::pair(rows[a], rows[a + 1]) < std::pair(rows[b], rows[b + 1]);
+  });
+  return begin;
+}
+
+}  // namespace
+
+LineProbe::LineProbe(const ProbeSpecification& probe, const RecordedPoints& points)
+    : probe_(probe),
+      points_(points),
+      places_(points_on_line(points.points(), *probe.from, *probe.to, points.count())) {}
 
 LineTable LineProbe::table() const {
   using Kind = Column::Kind;
@@ -14,11 +35,11 @@ LineTable LineProbe::table() const {
                    {Kind::number, "load_factor", "1", "load factor of the step"},
                    {Kind::integer, "point", "1", "number of the point"},
                    {Kind::number, "distance", "m", "of the point from the begin, along the line"}}};
-  for (int c = 0; c < points_.dimension; ++c) {
+  for (int c = 0; c < points_.dimension(); ++c) {
     table.columns.push_back({Kind::number, {"xyz"[c]}, "m", "reference position of the point"});
   }
   const ProbeField& field = *probe_field(probe_.field);
-  for (const std::string& component : chosen_components(probe_, points_.dimension)) {
+  for (const std::string& component : chosen_components(probe_, points_.dimension())) {
     const std::string name = component.empty() ? field.name : field.name + "_" + component;
     table.columns.push_back({Kind::number, name, field.unit, name + " of the point"});
   }
@@ -26,14 +47,22 @@ LineTable LineProbe::table() const {
 }
 
 std::vector<Row> LineProbe::rows(const StepRecord& record, const StepFields& fields) const {
-  std::vector<Row> rows;
+  const auto d = std::size_t(points_.dimension());
+  const std::size_t width = 2 + d + chosen_components(probe_, points_.dimension()).size();
+  std::vector<double> mine;  // distance, number, position, values
   for (const auto& [distance, point] : places_) {
-    Row row{std::int64_t{record.step}, record.load_factor, std::int64_t{point}, distance};
-    const Coordinates at = points_.position(point);
-    for (int c = 0; c < points_.dimension; ++c) row.emplace_back(at[std::size_t(c)]);
-    for (const double value : values_at(probe_, points_.dimension, fields, point)) {
-      row.emplace_back(value);
-    }
+    mine.insert(mine.end(), {distance, double(points_.number(point))});
+    const Coordinates at = points_.points().position(point);
+    mine.insert(mine.end(), at.begin(), at.begin() + std::ptrdiff_t(d));
+    const std::vector<double> values = values_at(probe_, points_.dimension(), fields, point);
+    mine.insert(mine.end(), values.begin(), values.end());
+  }
+  const std::vector<double> all = concatenated(mine, points_.ranks());
+  std::vector<Row> rows;
+  for (const std::size_t first : in_order(all, width)) {
+    const auto of_point = all.begin() + std::ptrdiff_t(first);
+    Row row{std::int64_t{record.step}, record.load_factor, std::int64_t(of_point[1]), of_point[0]};
+    row.insert(row.end(), of_point + 2, of_point + std::ptrdiff_t(width));
     rows.push_back(std::move(row));
   }
   return rows;

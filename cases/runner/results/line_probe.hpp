@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "cases/runner/build/recorded_points.hpp"
 #include "cases/runner/input/case.hpp"
 #include "cases/runner/results/line_table.hpp"
 #include "solvers/problem/records.hpp"
@@ -9,20 +10,20 @@
 
 namespace peristat {
 
-/// Points of a body along a line, in their order, for a probe that has one.
+/// Points of a body along a line, in their order, for a probe that has one. Both outlive it.
 class LineProbe {
  public:
-  LineProbe(const ProbeSpecification& probe, const Points& points);
+  LineProbe(const ProbeSpecification& probe, const RecordedPoints& points);
 
   /// step, load_factor, point, distance from the begin of the line, x, y, z, and the values.
   [[nodiscard]] LineTable table() const;
-  /// A row per point.
+  /// A row per point, of all ranks; a call that all make.
   [[nodiscard]] std::vector<Row> rows(const StepRecord& record, const StepFields& fields) const;
 
  private:
   const ProbeSpecification& probe_;
-  const Points& points_;
-  std::vector<PointOnLine> places_;
+  const RecordedPoints& points_;
+  std::vector<PointOnLine> places_;  // of this rank
 };
 
 }  // namespace peristat

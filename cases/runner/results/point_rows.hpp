@@ -6,6 +6,7 @@
 #include <cstring>
 #include <functional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "cases/runner/results/hdf5_file.hpp"
@@ -46,7 +47,117 @@ class RowGathering {
     }
   }
 
+  /// Gives each rank the values of the points that it owns. A call that all ranks make.
+  /// @param take called for rows that follow one another, at rank 0 only
+  template <class Value, class Take>
+  [[nodiscard]] std::vector<Value> scatter(std::size_t values_per_row, const Take& take) const {
+    std::vector<Value> mine;
+    auto next = part_.number().begin();
+    for (std::int64_t first = 0; first < part_.whole(); first += most_rows_) {
+      const std::int64_t count = std::min(most_rows_, std::int64_t(part_.whole()) - first);
+      std::vector<Value> rows;
+      if (part_.ranks().rank() == 0) rows = take(std::uint64_t(first), std::uint64_t(count));
+      std::string bytes(reinterpret_cast<const char*>(rows.data()), rows.size() * sizeof(Value));
+      part_.ranks().broadcast(bytes);
+      rows.resize(bytes.size() / sizeof(Value));
+      std::memcpy(rows.data(), bytes.data(), bytes.size());
+      for (; next != part_.number().end() && *next < first + count; ++next) {
+        const auto row = rows.begin() + std::ptrdiff_t(std::size_t(*next - first) * values_per_row);
+        mine.insert(mine.end(), row, row + std::ptrdiff_t(values_per_row));
+      }
+    }
+    return mine;
+  }
+
+  /// Brings items to rank 0 in their order and in parts. A call that all ranks make.
+  /// @tparam Item of plain bytes
+  /// @param order_of an item: two whole numbers, from 0 to `most_order` the first one
+  /// @param put called with items that follow one another, at rank 0 only
+  template <class Item, class OrderOf, class Put>
+  void gather_in_order(std::vector<Item> mine, std::int64_t most_order, const OrderOf& order_of,
+                       const Put& put) const {
+    const Communicator& ranks = part_.ranks();
+    const std::int64_t all = ranks.count_all(std::int64_t(mine.size())).all;
+    if (all == 0) return;
+    std::ranges::sort(mine, {}, order_of);
+    auto next = mine.begin();
+    std::int64_t part = all <= most_rows_ ? most_order + 1 : most_order / (all / most_rows_) + 1;
+    for (std::int64_t first = 0; first <= most_order; first += part, part *= 2) {
+      const auto end_of = [&] {
+        return std::partition_point(next, mine.end(), [&](const Item& item) {
+          return std::int64_t(order_of(item).first) < first + part;
+        });
+      };
+      while (part > 1 && ranks.count_all(end_of() - next).all > most_rows_) part /= 2;
+      std::vector<Item> items = gathered(std::vector<Item>(next, end_of()));
+      next = end_of();
+      std::ranges::sort(items, {}, order_of);
+      if (ranks.rank() == 0) put(items);
+    }
+  }
+
+  /// What is told of bonds, ascending by their numbers `first_point` and `second_point`.
+  template <class Item, class Put>
+  void gather_of_bonds(std::vector<Item> mine, const Put& put) const {
+    gather_in_order(
+        std::move(mine), std::int64_t(part_.whole()),
+        [](const Item& item) { return std::pair(item.first_point, item.second_point); }, put);
+  }
+
+  /// Adds up a count per owned point over the points of the whole body in their order.
+  /// @return the sum before each owned point, and that of all. A call that all ranks make.
+  [[nodiscard]] std::pair<std::vector<std::int64_t>, std::int64_t> counted_before(
+      const std::vector<std::int64_t>& counts) const {
+    const std::vector<GlobalIndex>& number = part_.number();
+    std::vector<std::int64_t> before(counts.size());
+    std::int64_t sum = 0;
+    auto next = number.begin();
+    for (std::int64_t first = 0; first < part_.whole(); first += most_rows_) {
+      const auto end = std::lower_bound(next, number.end(), first + most_rows_);
+      std::vector<std::int64_t> sums = sums_before(counts, first, next, end, sum);
+      for (; next != end; ++next) {
+        before[std::size_t(next - number.begin())] = sums[std::size_t(*next - first)];
+      }
+      sum = sums.back();
+    }
+    return {std::move(before), sum};
+  }
+
  private:
+  using Number = std::vector<GlobalIndex>::const_iterator;
+
+  /// Of the points of a part: the sum before each of them, and behind the last one; on all ranks.
+  [[nodiscard]] std::vector<std::int64_t> sums_before(const std::vector<std::int64_t>& counts,
+                                                      std::int64_t first, Number next, Number end,
+                                                      std::int64_t sum) const {
+    const auto rows = std::size_t(std::min(most_rows_, std::int64_t(part_.whole()) - first));
+    const Number begin = part_.number().begin();
+    const Packed<std::int64_t> packed{first, 1};
+    const std::string mine = packed.pack(part_.number().data(), std::size_t(next - begin),
+                                         std::size_t(end - begin), counts.data());
+    std::vector<std::int64_t> sums(rows + 1, 0);
+    part_.ranks().gather(mine,
+                         [&](int, const std::string& received) { packed.unpack(received, sums); });
+    for (std::int64_t& entry : sums) entry = std::exchange(sum, sum + entry);
+    std::string bytes(reinterpret_cast<const char*>(sums.data()), sums.size() * sizeof sum);
+    part_.ranks().broadcast(bytes);
+    std::memcpy(sums.data(), bytes.data(), bytes.size());
+    return sums;
+  }
+
+  /// Items of all ranks, at rank 0.
+  template <class Item>
+  [[nodiscard]] std::vector<Item> gathered(const std::vector<Item>& mine) const {
+    std::vector<Item> items;
+    const std::string bytes(reinterpret_cast<const char*>(mine.data()), mine.size() * sizeof(Item));
+    part_.ranks().gather(bytes, [&](int, const std::string& received) {
+      const std::size_t known = items.size();
+      items.resize(known + received.size() / sizeof(Item));
+      if (!received.empty()) std::memcpy(&items[known], received.data(), received.size());
+    });
+    return items;
+  }
+
   /// Rows with their places behind `first`.
   template <class Value>
   struct Packed {
@@ -81,6 +192,38 @@ class RowGathering {
   std::int64_t most_rows_;
 };
 
+/// Where values per point come from: a file, of a body that is whole here, or given out by rank 0
+/// in parts. Calls that all ranks make.
+class RowSource {
+ public:
+  /// @param file null on ranks that rank 0 reads for
+  /// @param gathering null: the body is whole
+  RowSource(const Hdf5File* file, const RowGathering* gathering)
+      : file_(file), gathering_(gathering) {}
+
+  /// What rank 0 finds.
+  template <class Find>
+  [[nodiscard]] bool all_agree(const Find& find) const {
+    const bool is_found = file_ && find();
+    if (!gathering_) return is_found;
+    return gathering_->part().ranks().max(is_found ? 1.0 : 0.0) > 0.0;
+  }
+
+  /// Of the points that are owned here.
+  template <class Value>
+  [[nodiscard]] std::vector<Value> read(const std::string& path, std::size_t values_per_row) const {
+    if (!gathering_) return file_->some_rows<Value>(path, 0, file_->count_of_rows(path));
+    return gathering_->scatter<Value>(values_per_row,
+                                      [&](std::uint64_t first, std::uint64_t count) {
+                                        return file_->some_rows<Value>(path, first, count);
+                                      });
+  }
+
+ private:
+  const Hdf5File* file_;
+  const RowGathering* gathering_;
+};
+
 /// Where values per point go: into a file, of a body that is whole here, or gathered from ranks.
 class RowSink {
  public:
@@ -107,6 +250,37 @@ class RowSink {
         gathering_->gather<Value>(values, values_per_row, put);
       });
     }
+  }
+
+  /// Values of bonds, ascending by their points.
+  /// @param first_point, second_point, values of the bonds that are told here
+  /// @param count of all
+  template <class Value>
+  void write_of_bonds(const std::string& path, const std::vector<Index>& first_point,
+                      const std::vector<Index>& second_point, const std::vector<Value>& values,
+                      std::uint64_t count, const DatasetLabel& label) const {
+    if (!gathering_ || count == 0) {
+      if (file_) file_->write(path, values, {count}, label);
+      return;
+    }
+    struct Item {
+      Index first_point, second_point;
+      Value value;
+    };
+    std::vector<Item> mine;
+    for (std::size_t k = 0; k < values.size(); ++k) {
+      mine.push_back({first_point[k], second_point[k], values[k]});
+    }
+    if (!file_) return gathering_->gather_of_bonds(std::move(mine), [](const auto&) {});
+    file_->write_rows<Value>(path, {count}, label, [&](const Hdf5File::PutRows<Value>& put) {
+      std::uint64_t first = 0;
+      gathering_->gather_of_bonds(std::move(mine), [&](const std::vector<Item>& items) {
+        std::vector<Value> rows;
+        for (const Item& item : items) rows.push_back(item.value);
+        put(first, rows);
+        first += rows.size();
+      });
+    });
   }
 
  private:

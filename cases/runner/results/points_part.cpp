@@ -165,17 +165,26 @@ std::uint64_t bytes_of(const Points& points, const std::vector<PointCounts>& cou
          points.images.kinds.size() * 6 * sizeof(double);
 }
 
-bool holds_points(const Hdf5File& file, const std::string& group, const Points& points) {
+bool holds_points(const Hdf5File* file, const std::string& group, const Points& points,
+                  const RowGathering* gathering) {
   std::vector<std::string> names;
   for (const auto& [set, members] : points.sets) names.push_back(name_of_flags(set));
   std::sort(names.begin(), names.end());
-  if (file.names(group + "/sets") != names) return false;
+  const RowSource source(file, gathering);
+  const std::uint64_t rows = gathering ? gathering->rows() : points.volume.size();
+  const bool is_outline_held = source.all_agree([&] {
+    return file->names(group + "/sets") == names && holds_neighbours(*file, group, points) &&
+           file->count_of_rows(group + "/volume") == rows;
+  });
+  if (!is_outline_held) return false;
+  const auto d = std::size_t(points.dimension);
+  bool are_held = are_same(source.read<double>(group + "/reference", d), points.reference);
+  are_held = are_same(source.read<double>(group + "/volume", 1), points.volume) && are_held;
   for (const auto& [set, members] : points.sets) {
-    if (file.bytes(group + "/sets/" + name_of_flags(set)) != flags(points, members)) return false;
+    const std::string path = group + "/sets/" + name_of_flags(set);
+    are_held = source.read<std::uint8_t>(path, 1) == flags(points, members) && are_held;
   }
-  return holds_neighbours(file, group, points) &&
-         are_same(file.numbers(group + "/reference"), points.reference) &&
-         are_same(file.numbers(group + "/volume"), points.volume);
+  return are_held;
 }
 
 }  // namespace peristat

@@ -35,7 +35,11 @@ void send_points(const Points& points, const std::vector<PointCounts>& counts,
                                      std::uint64_t rows);
 
 /// Whether a group that write_points has written is of these points and sets, to the last bit.
-[[nodiscard]] bool holds_points(const Hdf5File& file, const std::string& group,
-                                const Points& points);
+/// @param file      null on ranks that rank 0 reads for
+/// @param gathering null: the points are all; otherwise they are those that this rank owns, which
+/// is
+///                  what it is told of by this call that all ranks make
+[[nodiscard]] bool holds_points(const Hdf5File* file, const std::string& group,
+                                const Points& points, const RowGathering* gathering);
 
 }  // namespace peristat

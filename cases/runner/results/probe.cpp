@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <optional>
+#include <span>
 #include <string>
 #include <utility>
 
@@ -11,8 +13,8 @@
 
 #include "cases/runner/input/probe_fields.hpp"
 #include "cases/runner/results/crack_measures.hpp"
+#include "src/core/concatenated.hpp"
 #include "src/core/expression.hpp"
-#include "src/geometry/nearest_point.hpp"
 
 namespace peristat {
 namespace {
@@ -37,22 +39,42 @@ const std::vector<double>& values_of(const ProbeField& field, const StepFields& 
   return *(fields.*members.at(field.name));
 }
 
+/// Rows of all ranks that have the same least squares as theirs: of a body in parts, where a set
+/// may be large, their triangular factor in the place of rows.
+Eigen::MatrixXd rows_of_all(Eigen::MatrixXd mine, const Communicator& ranks) {
+  if (ranks.count() == 1) return mine;
+  const Eigen::Index columns = mine.cols();
+  if (mine.rows() > columns) {
+    mine = Eigen::HouseholderQR<Eigen::MatrixXd>(mine)
+               .matrixQR()
+               .topRows(columns)
+               .triangularView<Eigen::Upper>()
+               .toDenseMatrix();
+  }
+  using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  const RowMajor rows = mine;
+  const std::vector<double> all = concatenated({rows.data(), rows.data() + rows.size()}, ranks);
+  return Eigen::Map<const RowMajor>(all.data(), Eigen::Index(all.size()) / columns, columns);
+}
+
 /// Poisson's ratio of the homogeneous deformation that fits the displacements of a set best (least
 /// squares), -(mean lateral strain) / (strain along the axis); 0 while there is no strain along it.
-double fitted_poisson_ratio(const ProbeSpecification& probe, const Points& points,
+double fitted_poisson_ratio(const ProbeSpecification& probe, const RecordedPoints& points,
                             const std::vector<double>& displacement) {
-  const std::vector<Index>& members = points.sets.at(probe.set);
-  const int d = points.dimension;
-  Eigen::MatrixXd positions(members.size(), d + 1), displacements(members.size(), d);
+  const std::span<const Index> members = points.members(probe.set);
+  const int d = points.dimension();
+  Eigen::MatrixXd mine(members.size(), 2 * d + 1);  // position, 1, displacement
   for (std::size_t k = 0; k < members.size(); ++k) {
     for (int c = 0; c < d; ++c) {
-      positions(k, c) = points.reference[std::size_t(members[k]) * d + c];
-      displacements(k, c) = displacement[std::size_t(members[k]) * d + c];
+      mine(k, c) = points.points().reference[std::size_t(members[k]) * d + c];
+      mine(k, d + 1 + c) = displacement[std::size_t(members[k]) * d + c];
     }
-    positions(k, d) = 1.0;
+    mine(k, d) = 1.0;
   }
+  const Eigen::MatrixXd rows = rows_of_all(std::move(mine), points.ranks());
   // Of full rank for any set of two or more points in every direction, by the smallest solution for
   // others.
+  const Eigen::MatrixXd positions = rows.leftCols(d + 1), displacements = rows.rightCols(d);
   const Eigen::MatrixXd gradient = positions.completeOrthogonalDecomposition().solve(displacements);
   double lateral = 0.0;
   for (int c = 0; c < d; ++c) {
@@ -62,14 +84,47 @@ double fitted_poisson_ratio(const ProbeSpecification& probe, const Points& point
   return axial == 0.0 ? 0.0 : -lateral / axial;
 }
 
-std::vector<double> mean_of(const std::vector<double>& values, const std::vector<Index>& members,
-                            int components) {
-  std::vector<double> mean(components, 0.0);
+/// Means over the members of a set, on all ranks.
+/// @param values_of of a member, as many numbers as there are columns
+template <class ValuesOf>
+std::vector<double> mean_of(const RecordedPoints& points, const std::string& set,
+                            std::size_t columns, const ValuesOf& values_of) {
+  const std::span<const Index> members = points.members(set);
+  std::vector<double> sums(columns + 1, -0.0);  // which changes no number, not even the sign of 0
   for (const Index point : members) {
-    for (int c = 0; c < components; ++c) mean[c] += values[std::size_t(point) * components + c];
+    const std::vector<double> values = values_of(point);
+    for (std::size_t c = 0; c < columns; ++c) sums[c] += values[c];
   }
-  for (double& value : mean) value /= double(members.size());
-  return mean;
+  sums[columns] = double(members.size());
+  sums = points.ranks().sum(sums);
+  for (std::size_t c = 0; c < columns; ++c) sums[c] /= sums[columns];
+  sums.pop_back();
+  return sums;
+}
+
+/// The largest of each column.
+template <class ValuesOf>
+std::vector<double> largest_of(const RecordedPoints& points, const std::string& set,
+                               std::size_t columns, const ValuesOf& values_of) {
+  std::vector<double> largest(columns, -std::numeric_limits<double>::infinity());
+  for (const Index point : points.members(set)) {
+    const std::vector<double> values = values_of(point);
+    for (std::size_t c = 0; c < columns; ++c) largest[c] = std::max(largest[c], values[c]);
+  }
+  return points.ranks().max(largest);
+}
+
+std::vector<double> opening_of(const ProbeSpecification& probe, const RecordedPoints& points,
+                               const std::vector<double>& displacement) {
+  const auto d = std::size_t(points.dimension());
+  const auto of_point = [&](Index point) {
+    const auto first = displacement.begin() + std::ptrdiff_t(std::size_t(point) * d);
+    return std::vector<double>(first, first + std::ptrdiff_t(d));
+  };
+  std::vector<double> opening = mean_of(points, probe.set, d, of_point);
+  const std::vector<double> other = mean_of(points, probe.other, d, of_point);
+  for (std::size_t c = 0; c < d; ++c) opening[c] -= other[c];
+  return opening;
 }
 
 /// tr F - d of a point.
@@ -83,43 +138,49 @@ double divergence_at(const std::vector<double>& gradients, int dimension, Index 
 }
 
 /// Root mean square, or the largest, of the lengths of what separates a set from expected values.
-double error_over_set(const ProbeSpecification& probe, const Points& points,
+double error_over_set(const ProbeSpecification& probe, const RecordedPoints& points,
                       const StepFields& fields, const LoadValues& loads) {
   std::vector<Expression> expected;
   for (const std::string& text : probe.expected) {
-    expected.emplace_back(text, points.dimension, points.spacing, loads.names);
+    expected.emplace_back(text, points.dimension(), points.points().spacing, loads.names);
   }
-  const std::vector<Index>& members = points.sets.at(probe.set);
-  double sum = 0.0, largest = 0.0;
-  for (const Index point : members) {
-    const std::vector<double> values = values_at(probe, points.dimension, fields, point);
-    double squared = 0.0;
+  const auto squared = [&](Index point) {
+    const std::vector<double> values = values_at(probe, points.dimension(), fields, point);
+    double sum = 0.0;
     for (std::size_t c = 0; c < values.size(); ++c) {
-      const double difference = values[c] - expected[c](points.position(point), loads.values);
-      squared += difference * difference;
+      const double difference =
+          values[c] - expected[c](points.points().position(point), loads.values);
+      sum += difference * difference;
     }
-    sum += squared;
-    largest = std::max(largest, std::sqrt(squared));
-  }
-  return probe.statistic == Statistic::max_error ? largest
-                                                 : std::sqrt(sum / double(members.size()));
+    return std::vector<double>{sum};
+  };
+  return std::sqrt(probe.statistic == Statistic::max_error
+                       ? largest_of(points, probe.set, 1, squared)[0]
+                       : mean_of(points, probe.set, 1, squared)[0]);
 }
 
-std::vector<double> over_set(const ProbeSpecification& probe, const Points& points,
+std::vector<double> over_set(const ProbeSpecification& probe, const RecordedPoints& points,
                              const StepFields& fields) {
-  const std::vector<Index>& members = points.sets.at(probe.set);
-  std::vector<double> total = values_at(probe, points.dimension, fields, members.front());
-  for (auto member = members.begin() + 1; member != members.end(); ++member) {
-    const std::vector<double> more = values_at(probe, points.dimension, fields, *member);
-    for (std::size_t c = 0; c < total.size(); ++c) {
-      total[c] = probe.statistic == Statistic::mean  ? total[c] + more[c]
-                 : probe.statistic == Statistic::max ? std::max(total[c], more[c])
-                                                     : std::min(total[c], more[c]);
-    }
-  }
-  if (probe.statistic != Statistic::mean) return total;
-  for (double& value : total) value /= double(members.size());
-  return total;
+  const std::size_t columns = chosen_components(probe, points.dimension()).size();
+  const double sign = probe.statistic == Statistic::min ? -1.0 : 1.0;
+  const auto values = [&](Index point) {
+    std::vector<double> found = values_at(probe, points.dimension(), fields, point);
+    for (double& value : found) value *= sign;
+    return found;
+  };
+  if (probe.statistic == Statistic::mean) return mean_of(points, probe.set, columns, values);
+  std::vector<double> found = largest_of(points, probe.set, columns, values);
+  for (double& value : found) value *= sign;
+  return found;
+}
+
+/// Of the point nearest to a place, which its rank tells all others.
+std::vector<double> at_place(const ProbeSpecification& probe, const RecordedPoints& points,
+                             const StepFields& fields) {
+  const std::optional<Index> nearest = nearest_recorded(points, *probe.at).here;
+  std::vector<double> values;
+  if (nearest) values = values_at(probe, points.dimension(), fields, *nearest);
+  return concatenated(values, points.ranks());
 }
 
 }  // namespace
@@ -154,26 +215,18 @@ ProbeColumns columns_of(const ProbeSpecification& probe, int dimension) {
           probe_field(probe.field)->unit};
 }
 
-std::vector<double> probe_values(const ProbeSpecification& probe, const Points& points,
+std::vector<double> probe_values(const ProbeSpecification& probe, const RecordedPoints& points,
                                  const StepFields& fields, const CrackState& crack,
                                  const LoadValues& loads) {
   if (probe.field == "poisson_ratio") {
     return {fitted_poisson_ratio(probe, points, *fields.displacement)};
   }
   if (const CrackMeasure* measure = crack_measure(probe.field)) {
-    return {measure->value(points, points.sets.at(probe.set), probe.axis, crack)};
+    const Points& all = points.points();
+    return {measure->value(all, all.sets.at(probe.set), probe.axis, crack)};
   }
-  if (probe.at) {
-    return values_at(probe, points.dimension, fields, nearest_point(points, *probe.at).point);
-  }
-  const std::vector<Index>& members = points.sets.at(probe.set);
-  if (probe.field == "opening") {
-    std::vector<double> opening = mean_of(*fields.displacement, members, points.dimension);
-    const std::vector<double> other =
-        mean_of(*fields.displacement, points.sets.at(probe.other), points.dimension);
-    for (std::size_t c = 0; c < opening.size(); ++c) opening[c] -= other[c];
-    return opening;
-  }
+  if (probe.at) return at_place(probe, points, fields);
+  if (probe.field == "opening") return opening_of(probe, points, *fields.displacement);
   if (is_of_error(probe.statistic)) return {error_over_set(probe, points, fields, loads)};
   return over_set(probe, points, fields);
 }

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "cases/runner/build/recorded_points.hpp"
 #include "cases/runner/input/case.hpp"
 #include "cases/runner/results/crack_measures.hpp"
 #include "cases/runner/results/results.hpp"
@@ -30,11 +31,13 @@ struct LoadValues {
 /// the point nearest to a place (of points as near the one with the lowest number), one value per
 /// component; for "poisson_ratio" that of the homogeneous deformation that fits the set best, for
 /// "opening" the mean displacement of the set minus that of the other, and what a CrackMeasure
-/// tells. Of an error, one value: the root mean square or the largest of |v - v_expected|.
+/// tells. Of an error, one value: the root mean square or the largest of |v - v_expected|. A call
+/// that all ranks make, and get the same from.
+/// @param fields of the points that are recorded here
 /// @throws InputError ("expected[c]") if an expected value is not finite
 [[nodiscard]] std::vector<double> probe_values(const ProbeSpecification& probe,
-                                               const Points& points, const StepFields& fields,
-                                               const CrackState& crack,
+                                               const RecordedPoints& points,
+                                               const StepFields& fields, const CrackState& crack,
                                                const LoadValues& loads = {});
 
 }  // namespace peristat

@@ -1,6 +1,7 @@
 #include "cases/runner/results/recorder.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <span>
 #include <utility>
 
@@ -22,8 +23,8 @@ StepFields Recorder::Fields::view(bool with_stress) const {
                     &fragment,
                     histories ? &*histories : nullptr};
   if (stress && with_stress) stress->show_in(fields);
-  if (!velocity.empty()) {
-    fields.velocity = &velocity;
+  if (velocity) {
+    fields.velocity = &*velocity;
     fields.kinetic_energy_density = &kinetic_energy_density;
   }
   return fields;
@@ -46,31 +47,36 @@ Recorder::Fields Recorder::fields(const StateView& at, std::vector<double> force
   made.force = std::move(force);
   for (auto* field : {&made.damage, &made.energy_density, &made.stretch}) field->resize(points);
   made.fragment.assign(own_, 0.0);
-  made.histories = written_histories_.changes(points_, body_.model.bonds(),
-                                              bond_stretches(body_.model, at.history));
+  if (body_.model.failing_bonds()) {
+    made.histories = written_histories_.changes(recorded_, body_.model.bonds(),
+                                                bond_stretches(body_.model, at.history));
+  }
   assembler_.point_energies(at, made.energy_density);
-  for (std::size_t i = own_; i < points; ++i) {
+  for (auto i = std::size_t(points_.own()); i < points; ++i) {
     made.energy_density[std::size_t(points_.source(Index(i)))] += made.energy_density[i];
   }
   for (std::size_t i = 0; i < own_; ++i) made.energy_density[i] /= points_.volume[i];
-  made.max_stretch = point_stretches(points_, body_.model, at, made.stretch);
+  const double largest =
+      recorded_.ranks().max(point_stretches(points_, body_.model, at, made.stretch));
+  made.max_stretch = std::isfinite(largest) ? largest : 0.0;
   const auto cut_weight =
       case_.output.count_cracks ? std::span(body_.cut_weight) : std::span<const double>();
-  made.max_damage =
-      assess_damage(body_.model, at.history, cut_weight, made.damage, points_.images.source)
-          .max_damage;
+  static_cast<void>(
+      assess_damage(body_.model, at.history, cut_weight, made.damage, points_.images.source));
   for (auto* field : {&made.damage, &made.energy_density, &made.stretch}) field->resize(own_);
+  for (const double damage : made.damage) made.max_damage = std::max(made.max_damage, damage);
+  made.max_damage = recorded_.ranks().max(made.max_damage);
   std::copy_n(piece.begin(), std::min(piece.size(), own_), made.fragment.begin());
   if (tells_stress(case_)) made.stress = make_stress_fields(body_, assembler_, at);
-  if (!velocity.empty()) add_motion(velocity, made);
+  if (case_.dynamics.is_asked_for) add_motion(velocity, made);
   return made;
 }
 
 void Recorder::add_motion(std::span<const double> velocity, Fields& made) const {
   const auto d = std::size_t(points_.dimension);
-  made.velocity.assign(velocity.begin(), velocity.begin() + std::ptrdiff_t(own_ * d));
+  made.velocity.emplace(velocity.begin(), velocity.begin() + std::ptrdiff_t(own_ * d));
   made.kinetic_energy_density.assign(own_, 0.0);
-  for (std::size_t k = 0; k < made.velocity.size(); ++k) {
+  for (std::size_t k = 0; k < made.velocity->size(); ++k) {
     made.kinetic_energy_density[k / d] += 0.5 * density_[k / d] * velocity[k] * velocity[k];
   }
 }
@@ -97,7 +103,7 @@ void Recorder::accepted(StepRecord record, const AcceptedState& state) {
   for (const ProbeSpecification& probe : case_.probes) {
     if (probe.from) continue;
     record.probes[probe.name] =
-        probe_values(probe, points_, all, crack_state(record, probe.name), loads);
+        probe_values(probe, recorded_, all, crack_state(record, probe.name), loads);
   }
   note_growth(record);
   const std::string without_release = add_crack_tip_values(
@@ -122,10 +128,13 @@ void Recorder::accepted(StepRecord record, const AcceptedState& state) {
 
 CrackState Recorder::crack_state(const StepRecord& record, const std::string& probe) const {
   const auto before = growth_.find(probe);
-  return {separated_, body_.cut_bonds.size(),
+  return {separated_,
+          cut_,
           record.external_work + record.numerical_work - record.stored_energy -
               (record.motion ? record.motion->kinetic_energy : 0.0),
-          record.dissipated_energy, before == growth_.end() ? CrackGrowth{} : before->second};
+          record.dissipated_energy,
+          before == growth_.end() ? CrackGrowth{} : before->second,
+          recorded_.part() ? &recorded_.ranks() : nullptr};
 }
 
 void Recorder::note_growth(const StepRecord& record) {
@@ -156,7 +165,8 @@ void Recorder::go_on(const Checkpoint& checkpoint, const EarlierResults& earlier
   if (!earlier.history.empty()) last_ = read_step(earlier.history.back(), support_sets, probes);
   for (const BondEnds& ends : newly_broken(path.accepted.history)) separated_.push_back(ends);
   find_growth(earlier, support_sets, probes);
-  const bool is_unwritten = !checkpoint.unwritten.force.empty();
+  const bool is_unwritten =  // a rank may own no point
+      recorded_.ranks().max(double(!checkpoint.unwritten.force.empty())) > 0.0;
   written_histories_.tell(is_unwritten ? std::span(checkpoint.unwritten.told_stretches)
                                        : bond_stretches(body_.model, path.accepted.history));
   if (is_unwritten) {
@@ -214,6 +224,7 @@ std::vector<BondEnds> Recorder::newly_broken(const History& history) {
   for (Index i = 0; i < bonds.points(); ++i) {
     for (Offset bond = bonds.offset[i]; bond < bonds.offset[i + 1]; ++bond) {
       if (!broken[bond] || broken_[bond] || bonds.weight(bond) == 0.0) continue;
+      if (!recorded_.tells(i, bonds.partner[bond])) continue;
       ends.push_back({i, bonds.partner[bond]});
     }
   }
@@ -225,8 +236,8 @@ void Recorder::record_broken_bonds(const StepRecord& record, const History& hist
   std::vector<BrokenBondRecord> records;
   for (const BondEnds& ends : newly_broken(history)) {
     const auto [i, j] = ends;
-    records.push_back({record.step, record.broke_at.value_or(record.load_factor), i,
-                       points_.source(j), image_number(points_, j)});
+    records.push_back({record.step, record.broke_at.value_or(record.load_factor),
+                       recorded_.number(i), recorded_.number(j), image_number(points_, j)});
     separated_.push_back(ends);
   }
   results_.add(records);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "cases/runner/build/body.hpp"
+#include "cases/runner/build/recorded_points.hpp"
 #include "cases/runner/input/case.hpp"
 #include "cases/runner/process/progress.hpp"
 #include "cases/runner/results/crack_measures.hpp"
@@ -21,23 +22,27 @@
 namespace peristat {
 
 /// Turns accepted equilibria into rows, fields and probes of the results folder, and tells what
-/// happens.
+/// happens. Of a body that ranks have parts of, all make the same calls.
 class Recorder {
  public:
   Recorder(const Case& from, const Body& body, Assembler& assembler, Results& results,
            Progress& progress, const std::vector<CrackTip>& crack_tips)
       : case_(from),
         points_(body.points),
-        own_(std::size_t(body.points.own())),
+        recorded_(body.points, body.part.get()),
+        own_(std::size_t(recorded_.count())),
         assembler_(assembler),
         results_(results),
         progress_(progress),
         body_(body),
-        crack_tips_(crack_tips),
-        separated_(body.cut_bonds) {
+        crack_tips_(crack_tips) {
+    for (const BondEnds& ends : body.cut_bonds) {
+      if (recorded_.tells(ends[0], ends[1])) separated_.push_back(ends);
+    }
+    cut_ = separated_.size();
     if (from.dynamics.is_asked_for) density_ = densities_of(body);
     for (const ProbeSpecification& probe : from.probes) {
-      if (probe.from) lines_.emplace_back(probe, body.points);
+      if (probe.from) lines_.emplace_back(probe, recorded_);
     }
   }
 
@@ -63,7 +68,8 @@ class Recorder {
  private:
   struct Fields {
     std::vector<double> displacement, force, damage, energy_density, stretch, fragment;
-    std::vector<double> velocity, kinetic_energy_density;  ///< empty: of a body at rest
+    std::optional<std::vector<double>> velocity;  ///< of a body in motion
+    std::vector<double> kinetic_energy_density;
     double max_damage = 0.0, max_stretch = 0.0;
     std::optional<BondHistories> histories;
     std::optional<StressFields> stress;  ///< where a probe or the results need it
@@ -92,7 +98,8 @@ class Recorder {
 
   const Case& case_;
   const Points& points_;
-  std::size_t own_;  // points that are recorded: images are not
+  const RecordedPoints recorded_;
+  std::size_t own_;  // how many these are
   Assembler& assembler_;
   Results& results_;
   Progress& progress_;
@@ -103,7 +110,9 @@ class Recorder {
   DamageHistories written_histories_;  // in the last state that was written with fields
   std::vector<double> density_;        // per point, of a body in motion [kg/m3]
   std::vector<LineProbe> lines_;
-  std::vector<BondEnds> separated_;  // by pre-cracks, and broken until the last accepted state
+  /// By pre-cracks, and broken until the last accepted state: bonds that are told here.
+  std::vector<BondEnds> separated_;
+  std::size_t cut_ = 0;                        // of these by pre-cracks
   std::map<std::string, CrackGrowth> growth_;  // of the probes of resistance to cracks
   double relative_residual_ = 0.0;
   std::optional<StepRecord> last_;

@@ -84,6 +84,17 @@ std::int64_t peak_memory_bytes() {
   return 0;
 }
 
+void write_dossier(const RowSink& sink, const std::vector<double>& residual,
+                   const std::vector<double>& displacement, StepShape shape) {
+  const auto dimension = static_cast<std::uint64_t>(shape.dimension);
+  sink.write("/dossier/residual", residual, {dimension},
+             {"N",
+              "residual of the state in which the last search ended, 0 where displacements are "
+              "prescribed"});
+  sink.write("/dossier/displacement", displacement, {dimension},
+             {"m", "displacement of the state in which the last search ended"});
+}
+
 /// The parts of a results folder; the one that was opened last stays open, as one may hold many.
 class PartReader {
  public:
@@ -103,11 +114,26 @@ class PartReader {
   std::optional<Hdf5File> file_;
 };
 
+/// Copies the bytes of a checkpoint, in parts.
+void copy_checkpoint(const std::filesystem::path& from, Hdf5File& file) {
+  const CheckpointBytes bytes = bytes_of_file(from);
+  constexpr std::uint64_t most = 1 << 20;
+  file.write_rows<std::uint8_t>(
+      "/checkpoint", {bytes.size}, {"none", "what the run can go on from, for peristat"},
+      [&](const Hdf5File::PutRows<std::uint8_t>& put) {
+        for (std::uint64_t at = 0; at < bytes.size; at += most) {
+          const std::string part = bytes.read(at, std::min(most, bytes.size - at));
+          put(at, {part.begin(), part.end()});
+        }
+      });
+}
+
 /// What results begin with: nothing but a folder, or those of an earlier run.
 struct Beginning {
   ClaimedFolder folder;
   const EarlierResults* earlier = nullptr;
   const Checkpoint* checkpoint = nullptr;
+  StateNumbering* numbering = nullptr;
 
   [[nodiscard]] std::vector<Row> rows(std::vector<Row> EarlierResults::*table) const {
     return earlier ? earlier->*table : std::vector<Row>();
@@ -123,17 +149,22 @@ struct Results::Files {
         const RowGathering* of_ranks = nullptr);
 
   void describe(const CaseText& text);
-  void go_on(const EarlierResults& earlier, const Checkpoint& checkpoint);
+  void go_on(const EarlierResults& earlier, const Checkpoint& checkpoint,
+             StateNumbering* numbering);
   void add(const StepRecord& record, const std::optional<StepFields>& step_fields);
   void add_fields(const StepRecord& record, const StepFields& step_fields);
   void write_step(const StepRecord& record, const StepPart& part);
   void link(WrittenStep step);
   void append_pending();
   void publish();
-  void write_checkpoint(Checkpoint checkpoint);
+  void write_checkpoint(Checkpoint checkpoint, StateNumbering* numbering);
+  void add_dossier(const std::vector<double>& residual, const std::vector<double>& displacement);
   void publish_xdmf();
   void publish_summary(const Summary& summary) const;
   void gather_parts();
+
+  /// On ranks the largest of what the others have had when the run ended.
+  std::int64_t peak_memory_of_others = 0;
 
   const RowGathering* gathering;
   StepShape shape;
@@ -162,6 +193,7 @@ struct Results::Files {
   Clock::time_point xdmf_time{};  ///< when it was last published
   std::vector<Row> pending_iterations, pending_decisions, pending_broken_bonds;
   ObjectInFile points_part;
+  std::optional<ObjectInFile> dossier_part;
   std::vector<WrittenStep> written_steps;
   int last_step = std::numeric_limits<int>::min();
   bool closed = false;
@@ -204,7 +236,7 @@ Results::Files::Files(Beginning beginning, const Points& points, const CaseText&
   }
   describe(text);
   if (beginning.earlier) {
-    go_on(*beginning.earlier, *beginning.checkpoint);
+    go_on(*beginning.earlier, *beginning.checkpoint, beginning.numbering);
   } else {
     publish_part(folder.points(), bytes_of(points, counts, std::uint64_t(shape.points)),
                  [&](Hdf5File& file) { write_points(file, points, counts, gathering); });
@@ -240,7 +272,8 @@ void Results::Files::describe(const CaseText& text) {
 
 /// Takes up what an earlier run has left. Its checkpoint is written before the results that link to
 /// it, so that a kill between leaves the earlier run as it was.
-void Results::Files::go_on(const EarlierResults& earlier, const Checkpoint& checkpoint) {
+void Results::Files::go_on(const EarlierResults& earlier, const Checkpoint& checkpoint,
+                           StateNumbering* numbering) {
   master.append("/history", history_header, earlier.history);
   master.append("/iterations", iteration_columns(), earlier.iterations);
   master.append("/decisions", decision_columns(), earlier.decisions);
@@ -261,7 +294,7 @@ void Results::Files::go_on(const EarlierResults& earlier, const Checkpoint& chec
   }
   for (const WrittenStep& step : earlier.steps) link(step);
   points_part = earlier.points;
-  write_checkpoint(checkpoint);
+  write_checkpoint(checkpoint, numbering);
 }
 
 void Results::Files::append_pending() {
@@ -279,10 +312,12 @@ void Results::Files::append_pending() {
 
 void Results::Files::publish() { publish_file(folder.results(), master.image()); }
 
-void Results::Files::write_checkpoint(Checkpoint checkpoint) {
+void Results::Files::write_checkpoint(Checkpoint checkpoint, StateNumbering* numbering) {
   checkpoint.rows = rows;
   checkpoint.last_with_fields = written_steps.empty() ? 0 : written_steps.back().step;
-  checkpoints.write(std::move(checkpoint), program);
+  checkpoints.write([&](const PutBytes& put) {
+    peristat::write_checkpoint(std::move(checkpoint), program, numbering, put);
+  });
 }
 
 void Results::Files::link(WrittenStep step) {
@@ -334,6 +369,20 @@ void Results::Files::add_fields(const StepRecord& record, const StepFields& step
   publish();
 }
 
+void Results::Files::add_dossier(const std::vector<double>& residual,
+                                 const std::vector<double>& displacement) {
+  const std::uint64_t bytes = 2 * sizeof(double) * std::uint64_t(shape.points * shape.dimension);
+  const std::filesystem::path file = folder.parts() / "dossier.h5";
+  publish_part(file, bytes, [&](Hdf5File& made) {
+    made.make_group("/dossier");
+    const RowSink sink =
+        gathering ? RowSink(&made, *gathering) : RowSink(made, std::uint64_t(shape.points));
+    write_dossier(sink, residual, displacement, shape);
+  });
+  dossier_part = ObjectInFile{name_in(folder, file), "/dossier"};
+  master.link("/dossier", dossier_part->file, dossier_part->object);
+}
+
 void Results::Files::publish_xdmf() {
   if (!xdmf_is_behind) return;
   publish_file(folder.xdmf(), xdmf.text());
@@ -342,19 +391,21 @@ void Results::Files::publish_xdmf() {
 }
 
 void Results::Files::publish_summary(const Summary& summary) const {
-  publish_reserved_file(folder.summary(), summary_json(summary, totals, peak_memory_bytes()));
+  const std::int64_t most = std::max(peak_memory_bytes(), peak_memory_of_others);
+  publish_reserved_file(folder.summary(), summary_json(summary, totals, most));
 }
 
 /// Replaces the links of results.h5 by what they link to and removes the parts.
 void Results::Files::gather_parts() {
   const std::filesystem::path gathered = temporary(folder.results());
-  const std::vector<std::uint8_t> checkpoint = checkpoints.last_bytes();
+  const std::filesystem::path checkpoint = checkpoints.last();
   try {
     std::set<std::string> parts{points_part.file};
+    if (dossier_part) parts.insert(dossier_part->file);
     for (const WrittenStep& step : written_steps) parts.insert(step.file);
     const std::string_view image = master.image();
-    std::uint64_t room = image.size() + checkpoint.size() + room_for_structure +
-                         written_steps.size() * room_for_step;
+    std::uint64_t room = image.size() + room_for_structure + written_steps.size() * room_for_step;
+    if (!checkpoint.empty()) room += std::filesystem::file_size(checkpoint);
     for (const std::string& part : parts) {
       room += std::filesystem::file_size(folder.directory / part);
     }
@@ -362,6 +413,10 @@ void Results::Files::gather_parts() {
     PartReader reader(folder);
     file.unlink("/points");
     file.copy(reader.open(points_part.file), points_part.object, "/points");
+    if (dossier_part) {
+      file.unlink("/dossier");
+      file.copy(reader.open(dossier_part->file), dossier_part->object, "/dossier");
+    }
     for (const WrittenStep& step : written_steps) {
       file.unlink("/steps/" + step.name());
       file.copy(reader.open(step.file), step.group, "/steps/" + step.name());
@@ -370,10 +425,7 @@ void Results::Files::gather_parts() {
       file.unlink("/xdmf/" + step.name());
       write_views(file, "/xdmf/" + step.name(), "/steps/" + step.name(), step.fields, shape);
     }
-    if (!checkpoint.empty()) {
-      file.write("/checkpoint", checkpoint, {checkpoint.size()},
-                 {"none", "what the run can go on from, for peristat"});
-    }
+    if (!checkpoint.empty()) copy_checkpoint(checkpoint, file);
     file.close();
     if (safe_copy.is_due()) sync_file(gathered);  // the parts go
     rename_file(gathered, folder.results());
@@ -387,10 +439,35 @@ void Results::Files::gather_parts() {
   remove_parts(folder);
 }
 
+/// What a rank has that writes nothing.
+struct Results::Sender {
+  const RowGathering& gathering;
+  StepShape shape;
+  std::filesystem::path directory;
+  int last_with_fields = 0;
+  StepTotals totals{};
+
+  void send(const StepRecord& record, const StepFields& fields) {
+    StepPart(shape, fields, &gathering).send();
+    last_with_fields = record.step;
+  }
+  /// In the place of rank 0, which waits for this one.
+  void publish_summary(const Summary& summary) const {
+    publish_reserved_file(ResultsFolder{directory}.summary(),
+                          summary_json(summary, totals, peak_memory_bytes()));
+  }
+};
+
 Results::Results(const std::filesystem::path& directory, const Points& points, const CaseText& text,
                  const std::vector<std::string>& support_sets,
                  const std::vector<ProbeColumns>& probes, const std::vector<PointCounts>& counts,
                  bool overwrite, const FurtherOutput& further, const RowGathering* gathering) {
+  if (gathering && gathering->part().ranks().rank() > 0) {
+    const StepShape shape{Index(gathering->rows()), points.dimension, further.has_stress};
+    sender_ = std::make_unique<Sender>(Sender{*gathering, shape, directory});
+    send_points(points, counts, *gathering);
+    return;
+  }
   double seconds = 0.0;
   {
     const Stopwatch stopwatch(seconds);
@@ -405,19 +482,32 @@ Results::Results(const std::filesystem::path& directory, const Points& points, c
 
 Results::Results(EarlierRun& run, EarlierResults& earlier, const Points& points,
                  const CaseText& text, const std::vector<std::string>& support_sets,
-                 const std::vector<ProbeColumns>& probes, const FurtherOutput& further) {
+                 const std::vector<ProbeColumns>& probes, const FurtherOutput& further,
+                 StateNumbering* numbering) {
+  const RowGathering* const gathering = numbering ? &numbering->gathering() : nullptr;
+  if (gathering && gathering->part().ranks().rank() > 0) {
+    const StepShape shape{Index(gathering->rows()), points.dimension, further.has_stress};
+    sender_ = std::make_unique<Sender>(Sender{*gathering, shape, run.directory()});
+    for (const Row& row : earlier.history) {
+      sender_->totals.add(read_step(row, support_sets, probes));
+    }
+    if (!earlier.steps.empty()) sender_->last_with_fields = earlier.steps.back().step;
+    write_checkpoint(run.checkpoint(), "", numbering, {});
+    return;
+  }
   double seconds = run.checkpoint().costs.seconds.output;
   {
     const Stopwatch stopwatch(seconds);
     ClaimedFolder folder = run.take_over(identity(text, further), earlier);
-    files_ =
-        std::make_unique<Files>(Beginning{std::move(folder), &earlier, &run.checkpoint()}, points,
-                                text, support_sets, probes, std::vector<PointCounts>(), further);
+    files_ = std::make_unique<Files>(
+        Beginning{std::move(folder), &earlier, &run.checkpoint(), numbering}, points, text,
+        support_sets, probes, std::vector<PointCounts>(), further, gathering);
   }
   files_->seconds = seconds;
 }
 
 Results::~Results() {
+  if (sender_) return;
   try {
     files_->publish_xdmf();
   } catch (const OutputError&) {
@@ -426,6 +516,7 @@ Results::~Results() {
 }
 
 void Results::add(const IterationRecord& record) {
+  if (sender_) return;
   const Stopwatch stopwatch(files_->seconds);
   if (files_->closed) throw std::logic_error("results: closed");
   Row row = make_row(record);
@@ -436,6 +527,7 @@ void Results::add(const IterationRecord& record) {
 }
 
 void Results::add(const DecisionRecord& record) {
+  if (sender_) return;
   const Stopwatch stopwatch(files_->seconds);
   if (files_->closed) throw std::logic_error("results: closed");
   Row row = make_row(record);
@@ -445,17 +537,23 @@ void Results::add(const DecisionRecord& record) {
 }
 
 void Results::add(const std::vector<BrokenBondRecord>& records) {
+  if (sender_) return sender_->gathering.gather_of_bonds(records, [](const auto&) {});
   const Stopwatch stopwatch(files_->seconds);
   if (files_->closed) throw std::logic_error("results: closed");
-  for (const BrokenBondRecord& record : records) {
-    Row row = make_row(record);
-    files_->broken_bonds.append(row);
-    files_->pending_broken_bonds.push_back(std::move(row));
-    ++files_->rows.broken_bonds;
-  }
+  const auto append = [&](const std::vector<BrokenBondRecord>& some) {
+    for (const BrokenBondRecord& record : some) {
+      Row row = make_row(record);
+      files_->broken_bonds.append(row);
+      files_->pending_broken_bonds.push_back(std::move(row));
+      ++files_->rows.broken_bonds;
+    }
+  };
+  if (!files_->gathering) return append(records);
+  files_->gathering->gather_of_bonds(records, append);
 }
 
 void Results::add_line(const std::string& name, const std::vector<Row>& rows) {
+  if (sender_) return;
   const Stopwatch stopwatch(files_->seconds);
   if (files_->closed) throw std::logic_error("results: closed");
   const auto line = std::ranges::find_if(
@@ -468,19 +566,24 @@ void Results::add_line(const std::string& name, const std::vector<Row>& rows) {
 }
 
 void Results::add(const StepRecord& record, const std::optional<StepFields>& fields) {
+  if (sender_) {
+    if (fields) sender_->send(record, *fields);
+    return sender_->totals.add(record);
+  }
   const Stopwatch stopwatch(files_->seconds);
   if (files_->closed) throw std::logic_error("results: closed");
   files_->add(record, fields);
 }
 
-void Results::add_checkpoint(Checkpoint checkpoint) {
+void Results::add_checkpoint(Checkpoint checkpoint, StateNumbering* numbering) {
+  if (sender_) return write_checkpoint(std::move(checkpoint), "", numbering, {});
   const Stopwatch stopwatch(files_->seconds);
   if (files_->closed) throw std::logic_error("results: closed");
   if (!files_->pending_decisions.empty()) {  // about the step to come
     files_->append_pending();
     files_->publish();
   }
-  files_->write_checkpoint(std::move(checkpoint));
+  files_->write_checkpoint(std::move(checkpoint), numbering);
   if (files_->safe_copy.is_due()) {
     files_->safe_copy.make(files_->points_part.file, files_->written_steps,
                            files_->checkpoints.last());
@@ -488,6 +591,10 @@ void Results::add_checkpoint(Checkpoint checkpoint) {
 }
 
 void Results::add_fields(const StepRecord& record, const StepFields& fields) {
+  if (sender_) {
+    if (sender_->last_with_fields != record.step) sender_->send(record, fields);
+    return;
+  }
   const Stopwatch stopwatch(files_->seconds);
   if (files_->closed) throw std::logic_error("results: closed");
   files_->add_fields(record, fields);
@@ -495,23 +602,25 @@ void Results::add_fields(const StepRecord& record, const StepFields& fields) {
 
 void Results::add_dossier(const std::string& text, const std::vector<double>& residual,
                           const std::vector<double>& displacement) {
+  if (sender_)
+    return write_dossier({nullptr, sender_->gathering}, residual, displacement, sender_->shape);
   const Stopwatch stopwatch(files_->seconds);
   if (files_->closed) throw std::logic_error("results: closed");
-  const Hdf5File::Shape shape{static_cast<std::uint64_t>(files_->shape.points),
-                              static_cast<std::uint64_t>(files_->shape.dimension)};
-  files_->master.make_group("/dossier");
-  files_->master.write("/dossier/residual", residual, shape,
-                       {"N",
-                        "residual of the state in which the last search ended, 0 where "
-                        "displacements are prescribed"});
-  files_->master.write("/dossier/displacement", displacement, shape,
-                       {"m", "displacement of the state in which the last search ended"});
+  files_->add_dossier(residual, displacement);
   publish_file(files_->folder.dossier(), text);
 }
 
 void Results::close(Summary summary) {
+  if (sender_) {
+    static_cast<void>(sender_->gathering.part().ranks().max(double(peak_memory_bytes())));
+    return;
+  }
   const Stopwatch stopwatch(files_->seconds);
   if (files_->closed) throw std::logic_error("results: closed");
+  if (files_->gathering) {
+    const Communicator& ranks = files_->gathering->part().ranks();
+    files_->peak_memory_of_others = std::int64_t(ranks.max(double(peak_memory_bytes())));
+  }
   files_->closed = true;
   files_->append_pending();
   std::exception_ptr failure;
@@ -531,9 +640,10 @@ void Results::close(Summary summary) {
 
 void Results::fail(Summary summary, const std::string& reason) noexcept {
   try {
-    files_->closed = true;
     summary.status = "failed";
     summary.reason = reason;
+    if (sender_) return sender_->publish_summary(summary);
+    files_->closed = true;
     files_->publish_summary(summary);
   } catch (const std::exception&) {
     // The folder is gone or can't be written, which is what the reason says.
@@ -541,17 +651,17 @@ void Results::fail(Summary summary, const std::string& reason) noexcept {
 }
 
 std::string Results::what_is_left() const {
-  const ResultsFolder& folder = files_->folder;
+  const ResultsFolder folder = sender_ ? ResultsFolder{sender_->directory} : files_->folder;
   std::error_code error;
   if (!std::filesystem::exists(folder.results(), error)) {
     return folder.directory.string() + " is gone: nothing of this run is left there";
   }
-  const int steps = files_->totals.steps;
+  const int steps = sender_ ? sender_->totals.steps : files_->totals.steps;
   return (steps == 1 ? "1 accepted step is in "
                      : std::to_string(steps) + " accepted steps are in ") +
          folder.directory.string();
 }
 
-double Results::seconds_spent() const { return files_->seconds; }
+double Results::seconds_spent() const { return sender_ ? 0.0 : files_->seconds; }
 
 }  // namespace peristat

@@ -46,13 +46,15 @@ struct FurtherOutput {
 /// std::logic_error that names it, before anything is written. What can't be written later (disk
 /// full, folder gone) throws OutputError, a std::runtime_error that names the file and the reason;
 /// what was published before stays readable.
+///
+/// Of a body that ranks have parts of, all make the same calls with what is theirs: rank 0 writes,
+/// the others send (RowGathering). Records are the same on all ranks.
 class Results {
  public:
   /// Creates the folder and its files; an earlier run of the same case file is replaced, other
   /// files are left alone.
-  /// @param gathering null: points and fields are those of all; otherwise of those that rank 0
-  /// owns,
-  ///        which alone has results: others send theirs meanwhile (send_points, StepPart::send)
+  /// @param points and counts of all points, or with `gathering` of those that the rank owns
+  /// @param gathering null: the body is whole
   /// @param overwrite also an earlier run of another case is replaced
   /// @throws InputError ("directory") if the folder can't be written or must be left
   ///         alone, see claim_results_folder; (key "probe") if a probe's name is the name of
@@ -65,17 +67,18 @@ class Results {
   /// Goes on with the results of an earlier run from its checkpoint. What it holds beyond that, and
   /// what tells how it ended, is dropped.
   /// @param earlier what it holds up to there; its files are named anew where they move
+  /// @param numbering null: the body is whole
   /// @throws OutputError
   Results(EarlierRun& run, EarlierResults& earlier, const Points& points, const CaseText& text,
           const std::vector<std::string>& support_sets, const std::vector<ProbeColumns>& probes,
-          const FurtherOutput& further = {});
+          const FurtherOutput& further = {}, StateNumbering* numbering = nullptr);
   ~Results();
   Results(const Results&) = delete;
   Results& operator=(const Results&) = delete;
 
   void add(const IterationRecord& record);
   void add(const DecisionRecord& record);
-  /// Bonds that the step added next has broken.
+  /// Bonds that the step added next has broken; of ranks those that are told here.
   void add(const std::vector<BrokenBondRecord>& records);
   /// Rows of a line of the step added next.
   void add_line(const std::string& name, const std::vector<Row>& rows);
@@ -87,14 +90,16 @@ class Results {
   /// Publishes what a run can go on from, once it has added the path's last step; its rows are
   /// counted here. Now and then it sees to it that all this has reached the disk, as seldom as that
   /// takes a hundredth of the time.
-  void add_checkpoint(Checkpoint checkpoint);
+  /// @param numbering null: the body is whole
+  void add_checkpoint(Checkpoint checkpoint, StateNumbering* numbering = nullptr);
 
   /// Publishes the fields of the step added last, unless they were added with it: for the end of a
   /// run whose last step was one that only enters the history.
   void add_fields(const StepRecord& record, const StepFields& fields);
 
   /// Adds what is known of a search that failed: dossier.txt, and in results.h5 its residual [N]
-  /// and the displacement [m] of the state it ended in (points x dimension).
+  /// and the displacement [m] of the state it ended in (points x dimension, on ranks of those that
+  /// are owned).
   void add_dossier(const std::string& text, const std::vector<double>& residual,
                    const std::vector<double>& displacement);
 
@@ -116,7 +121,9 @@ class Results {
 
  private:
   struct Files;
+  struct Sender;
   std::unique_ptr<Files> files_;
+  std::unique_ptr<Sender> sender_;  ///< in the place of files, on ranks after the first one
 };
 
 }  // namespace peristat

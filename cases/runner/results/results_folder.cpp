@@ -33,8 +33,9 @@ bool is_part(const fs::path& file) {
   const std::string name = file.filename().string();
   const std::size_t digits = name.find_first_not_of("0123456789");
   const std::string rest = name.substr(std::min(digits, name.size()));
-  for (const char* part : {"points.h5", "earlier.h5", "safe_results.h5", "safe_checkpoint",
-                           CheckpointFiles::names[0], CheckpointFiles::names[1]}) {
+  for (const char* part :
+       {"points.h5", "dossier.h5", "earlier.h5", "safe_results.h5", "safe_checkpoint",
+        CheckpointFiles::names[0], CheckpointFiles::names[1]}) {
     if (name == part || name == part + std::string(".tmp")) return true;
   }
   return digits >= 6 && (rest == ".h5" || rest == ".h5.tmp");

@@ -21,6 +21,16 @@ void link_as(const fs::path& file, const fs::path& name) {
   rename_file(temporary(name), name);
 }
 
+/// In place of what carries the name, which may be a link.
+void put_copy(const fs::path& from, const fs::path& to) {
+  std::error_code error;
+  fs::remove(to, error);
+  fs::copy_file(from, to, error);
+  if (error) {
+    throw OutputError(to.string() + ": can't be written: " + error.message(), error.value());
+  }
+}
+
 }  // namespace
 
 bool SafeCopy::is_due() const {
@@ -36,14 +46,7 @@ void SafeCopy::make(const std::string& points, const std::vector<WrittenStep>& s
     sync_file(folder_.directory / steps[safe_steps_].file);
   }
   sync_file(folder_.results());
-  std::error_code error;
-  fs::remove(temporary(folder_.safe_checkpoint()), error);
-  fs::copy_file(checkpoint, temporary(folder_.safe_checkpoint()),
-                fs::copy_options::overwrite_existing, error);
-  if (error) {
-    throw OutputError(folder_.safe_checkpoint().string() + ": can't be written: " + error.message(),
-                      error.value());
-  }
+  put_copy(checkpoint, temporary(folder_.safe_checkpoint()));
   sync_file(temporary(folder_.safe_checkpoint()));
   link_as(folder_.results(), folder_.safe_results());
   rename_file(temporary(folder_.safe_checkpoint()), folder_.safe_checkpoint());

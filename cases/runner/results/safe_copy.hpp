@@ -22,7 +22,7 @@ class SafeCopy {
   /// Writes through. The folder is as a run can go on from it.
   /// @param points file that holds the points, in the folder
   /// @param steps written so far
-  /// @param checkpoint the file of the last one
+  /// @param checkpoint file that was written last
   /// @throws OutputError
   void make(const std::string& points, const std::vector<WrittenStep>& steps,
             const std::filesystem::path& checkpoint);

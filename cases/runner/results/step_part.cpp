@@ -121,20 +121,24 @@ void check(const FieldKind& kind, const std::vector<double>& values, StepShape s
   }
 }
 
-/// The histories of bonds that have changed, as the group `path`.
-void write_histories(Hdf5File& file, const std::string& path, const BondHistories& changed) {
-  const Hdf5File::Shape shape{changed.largest_stretch.size()};
-  file.make_group(path);
-  file.write(path + "/first_point", changed.first_point, shape,
-             {"1", "lower point of each bond whose history has changed since the step before"});
-  file.write(path + "/second_point", changed.second_point, shape,
-             {"1", "other point of each bond whose history has changed since the step before"});
+/// The histories of bonds that have changed, in the group `path`.
+/// @param count of all ranks
+void write_histories(const RowSink& sink, const std::string& path, const BondHistories& changed,
+                     std::uint64_t count) {
+  const auto write = [&](const std::string& name, const auto& values, const DatasetLabel& label) {
+    sink.write_of_bonds(path + name, changed.first_point, changed.second_point, values, count,
+                        label);
+  };
+  write("/first_point", changed.first_point,
+        {"1", "lower point of each bond whose history has changed since the step before"});
+  write("/second_point", changed.second_point,
+        {"1", "other point of each bond whose history has changed since the step before"});
   if (!changed.second_image.empty()) {
-    file.write(path + "/second_image", changed.second_image, shape,
-               {"1", "image of that point it ends at, row of /points/images from 1; 0: itself"});
+    write("/second_image", changed.second_image,
+          {"1", "image of that point it ends at, row of /points/images from 1; 0: itself"});
   }
-  file.write(path + "/largest_stretch", changed.largest_stretch, shape,
-             {"1", "largest stretch that has damaged the bond; -1: the bond never fails"});
+  write("/largest_stretch", changed.largest_stretch,
+        {"1", "largest stretch that has damaged the bond; -1: the bond never fails"});
 }
 
 }  // namespace
@@ -154,6 +158,13 @@ StepPart::StepPart(StepShape shape, const StepFields& fields, const RowGathering
     check(kind, *(fields.*kind.values), here);
     names_.push_back(kind.name);
   }
+  if (!fields.histories) return;
+  const std::size_t changed = fields.histories->largest_stretch.size();
+  changed_bonds_ = changed;
+  if (gathering) {
+    const Communicator& ranks = gathering->part().ranks();
+    changed_bonds_ = std::uint64_t(ranks.count_all(std::int64_t(changed)).all);
+  }
 }
 
 std::uint64_t StepPart::bytes() const {
@@ -163,10 +174,7 @@ std::uint64_t StepPart::bytes() const {
     for (const std::uint64_t extent : kind_of(name).shape(shape_)) values *= extent;
     bytes += values * sizeof(double);
   }
-  if (fields_.histories) {
-    bytes += fields_.histories->largest_stretch.size() * (sizeof(double) + 3 * sizeof(Index));
-  }
-  return bytes;
+  return bytes + changed_bonds_ * (sizeof(double) + 3 * sizeof(Index));
 }
 
 void StepPart::write(Hdf5File& file, const WrittenStep& step) const {
@@ -177,8 +185,8 @@ void StepPart::write(Hdf5File& file, const WrittenStep& step) const {
   if (fields_.velocity != nullptr) file.set_attribute(step.group, "time", step.load_factor);
   const RowSink sink =
       gathering_ ? RowSink(&file, *gathering_) : RowSink(file, std::uint64_t(shape_.points));
+  if (fields_.histories) file.make_group(step.group + "/history");
   write_rows(sink, step.group);
-  if (fields_.histories) write_histories(file, step.group + "/history", *fields_.histories);
   if (shape_.has_views()) write_views(file, step.views, step.group, names_, shape_);
 }
 
@@ -190,6 +198,9 @@ void StepPart::write_rows(const RowSink& sink, const std::string& group) const {
     Hdf5File::Shape row = kind.shape(shape_);
     row.erase(row.begin());
     sink.write(group + "/" + name, *(fields_.*kind.values), row, kind.label);
+  }
+  if (fields_.histories) {
+    write_histories(sink, group + "/history", *fields_.histories, changed_bonds_);
   }
 }
 

@@ -40,7 +40,7 @@ class StepPart {
   /// @param fields outlive it
   /// @param gathering null: the fields are of all points; otherwise of those that this rank owns,
   /// and
-  ///        while rank 0 writes all others send
+  ///        while rank 0 writes all others send; a call that all ranks make
   /// @throws std::logic_error that names a field of the wrong size, or with values that are not
   ///         finite
   StepPart(StepShape shape, const StepFields& fields, const RowGathering* gathering = nullptr);
@@ -60,6 +60,7 @@ class StepPart {
   const StepFields& fields_;
   const RowGathering* gathering_;
   std::vector<std::string> names_;
+  std::uint64_t changed_bonds_ = 0;  // whose histories are told, of all ranks
 };
 
 /// Names of the fields that a step's group holds.

@@ -9,7 +9,8 @@
 
 namespace peristat {
 
-/// Strain and stress of a state as results tell them, of the points that stand for themselves.
+/// Strain and stress of a state as results tell them, of the points that stand for
+/// themselves, and of a part of a body of those that are owned.
 struct StressFields {
   Stress found;
   std::vector<double> strain, stress;  ///< without what symmetry repeats: xx, yy, zz, xy, yz, xz

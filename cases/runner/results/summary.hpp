@@ -23,6 +23,8 @@ struct Summary {
   double max_displacement = 0.0;
   int threads = 1, ranks = 1;
 
+  /// Of a kind that was counted.
+  [[nodiscard]] std::int64_t counted(const std::string& kind) const;
   void count(const std::string& kind, std::int64_t interactions_of_kind);
 };
 

@@ -1,5 +1,6 @@
 #include "cases/runner/results/summary_json.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <concepts>
 #include <cstdio>
@@ -49,6 +50,11 @@ class Members {
 };
 
 }  // namespace
+
+std::int64_t Summary::counted(const std::string& kind) const {
+  return std::ranges::find(interactions, kind, &std::pair<std::string, std::int64_t>::first)
+      ->second;
+}
 
 void Summary::count(const std::string& kind, std::int64_t interactions_of_kind) {
   for (auto& [known, number] : interactions) {

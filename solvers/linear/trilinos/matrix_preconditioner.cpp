@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <random>
 #include <stdexcept>
@@ -12,15 +14,21 @@
 #include <Ifpack2_RILUK.hpp>
 #include <MueLu_Hierarchy.hpp>
 #include <MueLu_ParameterListInterpreter.hpp>
+#include <MueLu_SmootherBase.hpp>
 #include <MueLu_TpetraOperator.hpp>
 #include <MueLu_Utilities.hpp>
-#include <Teuchos_DefaultSerialComm.hpp>
+#include <Teuchos_Comm.hpp>
 #include <Tpetra_CrsMatrix.hpp>
+#include <Tpetra_Import.hpp>
 #include <Tpetra_Map.hpp>
 #include <Tpetra_MultiVector.hpp>
 #include <Trilinos_version.h>
+#include <Xpetra_Matrix.hpp>
+#include <Xpetra_MultiVector.hpp>
 
+#include "solvers/linear/trilinos/gathered_factor.hpp"
 #include "solvers/linear/trilinos/module.hpp"
+#include "solvers/linear/trilinos/teuchos_communicator.hpp"
 
 namespace peristat::trilinos {
 namespace {
@@ -36,8 +44,8 @@ using Matrix = Tpetra::CrsMatrix<double, int, long long>;
 using RowMatrix = Tpetra::RowMatrix<double, int, long long>;
 using Cycle = MueLu::TpetraOperator<double, int, long long>;
 
-/// MueLu ends by describing what it has built, by a call of MPI and even if it prints nothing. MPI
-/// is not running.
+/// MueLu ends by describing what it has built, by a call of MPI and even if it prints nothing. On
+/// one rank MPI is not running.
 class Hierarchy : public MueLu::Hierarchy<double, int, long long> {
  public:
   using MueLu::Hierarchy<double, int, long long>::describe;
@@ -72,22 +80,90 @@ double diagonal_entry(const CompressedRows& matrix, int row) {
   return found != last && *found == row ? matrix.value[found - matrix.column.begin()] : 0.0;
 }
 
+double sum(const CompressedRows& matrix, double mine) {
+  return matrix.ranks ? matrix.ranks->sum(mine) : mine;
+}
+
+/// @throws NoPreconditioner on all ranks where one of them has met it
+void refuse(const CompressedRows& matrix, bool has_met, const char* what) {
+  if (sum(matrix, has_met ? 1.0 : 0.0) > 0.0) throw NoPreconditioner(what);
+}
+
 /// Trilinos would go on with anything.
 void check(const CompressedRows& matrix) {
-  if (matrix.rows == 0) throw std::runtime_error("no equations");
-  for (const double value : matrix.value) {
-    if (!std::isfinite(value)) throw std::runtime_error("an entry is not finite");
-  }
+  if (sum(matrix, matrix.rows) == 0.0) throw NoPreconditioner("no equations");
+  refuse(matrix,
+         std::any_of(matrix.value.begin(), matrix.value.end(),
+                     [](double value) { return !std::isfinite(value); }),
+         "an entry is not finite");
+  bool is_positive = true;
   for (int row = 0; row < matrix.rows; ++row) {
-    if (!(diagonal_entry(matrix, row) > 0.0)) {
-      throw std::runtime_error("a diagonal entry is not positive");
-    }
+    is_positive = is_positive && diagonal_entry(matrix, row) > 0.0;
   }
+  refuse(matrix, !is_positive, "a diagonal entry is not positive");
+}
+
+RCP<const Teuchos::Comm<int>> communicator_of(const CompressedRows& matrix) {
+  const SoleRank sole;
+  return teuchos_communicator(matrix.ranks ? *matrix.ranks : sole);
+}
+
+/// As many rows as each rank has.
+RCP<const Map> map_of_rows(const CompressedRows& matrix, int rows) {
+  const auto any = Teuchos::OrdinalTraits<Tpetra::global_size_t>::invalid();
+  return rcp(new Map(any, std::size_t(rows), 0, communicator_of(matrix)));
+}
+
+/// What other ranks have in the rows that have columns here.
+class GhostColumns {
+ public:
+  explicit GhostColumns(const CompressedRows& matrix) : own_(std::size_t(matrix.rows)) {
+    if (!matrix.ranks) return;
+    const auto any = Teuchos::OrdinalTraits<Tpetra::global_size_t>::invalid();
+    const RCP<const Map> rows = map_of_rows(matrix, matrix.rows);
+    const RCP<const Map> ghosts = rcp(new Map(any, matrix.ghosts, 0, rows->getComm()));
+    import_ = rcp(new Tpetra::Import<int, long long>(rows, ghosts));
+    sent_ = rcp(new Vector(rows, 1));
+    received_ = rcp(new Vector(ghosts, 1));
+  }
+
+  /// @param values of the rows here, then of these
+  void update(std::vector<double>& values) const {
+    if (import_.is_null()) return;
+    std::copy_n(values.begin(), own_, sent_->getDataNonConst(0).begin());
+    received_->doImport(*sent_, *import_, Tpetra::INSERT);
+    const Teuchos::ArrayRCP<const double> received = received_->getData(0);
+    values.resize(own_);
+    values.insert(values.end(), received.begin(), received.end());
+  }
+
+ private:
+  std::size_t own_;
+  RCP<Tpetra::Import<int, long long>> import_;  // null: all rows are here
+  RCP<Vector> sent_, received_;
+};
+
+/// Of Tpetra's copy: its own rows, and where ghosts are in the whole of it.
+RCP<const Map> map_of_columns(const CompressedRows& from, const Embedding& to,
+                              const GhostColumns& ghosts, const RCP<const Map>& rows) {
+  if (!from.ranks) return rows;
+  const std::int64_t first = from.ranks->count_all(to.rows).before;
+  std::vector<double> place;
+  for (const int row : to.row_of_equation) place.push_back(double(first + row));
+  ghosts.update(place);
+  std::vector<long long> columns;
+  for (int row = 0; row < to.rows; ++row) columns.push_back(first + row);
+  for (std::size_t k = std::size_t(from.rows); k < place.size(); ++k) {
+    columns.push_back(static_cast<long long>(place[k]));
+  }
+  const auto any = Teuchos::OrdinalTraits<Tpetra::global_size_t>::invalid();
+  return rcp(new Map(any, columns, 0, rows->getComm()));
 }
 
 /// Tpetra's copy of a matrix, with rows of its own for the prescribed degrees of freedom of points
 /// that have others: nothing but a diagonal, so that they couple with nothing.
-RCP<Matrix> tpetra_matrix(const CompressedRows& from, const Embedding& to) {
+RCP<Matrix> tpetra_matrix(const CompressedRows& from, const Embedding& to,
+                          const GhostColumns& ghosts) {
   const auto rows = static_cast<std::size_t>(to.rows);
   const std::size_t added = rows - to.row_of_equation.size();
   double trace = 0.0;
@@ -95,7 +171,8 @@ RCP<Matrix> tpetra_matrix(const CompressedRows& from, const Embedding& to) {
 
   using Local = Matrix::local_matrix_device_type;
   // Before the arrays: this starts Kokkos.
-  const RCP<const Map> map = rcp(new Map(to.rows, 0, rcp(new Teuchos::SerialComm<int>)));
+  const RCP<const Map> map = map_of_rows(from, to.rows);
+  const RCP<const Map> columns = map_of_columns(from, to, ghosts, map);
   const Local::row_map_type::non_const_type begin("begin", rows + 1);
   const Local::index_type::non_const_type column("column", from.column.size() + added);
   const Local::values_type::non_const_type value("value", from.value.size() + added);
@@ -105,7 +182,8 @@ RCP<Matrix> tpetra_matrix(const CompressedRows& from, const Embedding& to) {
     begin(row) = filled;
     if (equation < from.rows && to.row_of_equation[equation] == row) {
       for (std::size_t k = from.begin[equation]; k < from.begin[equation + 1]; ++k, ++filled) {
-        column(filled) = to.row_of_equation[from.column[k]];
+        const int of = from.column[k];
+        column(filled) = of < from.rows ? to.row_of_equation[of] : to.rows + (of - from.rows);
         value(filled) = from.value[k];
       }
       ++equation;
@@ -116,7 +194,7 @@ RCP<Matrix> tpetra_matrix(const CompressedRows& from, const Embedding& to) {
   }
   begin(rows) = filled;
 
-  const RCP<Matrix> matrix = rcp(new Matrix(map, map, begin, column, value));
+  const RCP<Matrix> matrix = rcp(new Matrix(map, columns, begin, column, value));
   matrix->expertStaticFillComplete(map, map);
   return matrix;
 }
@@ -150,36 +228,44 @@ double largest_eigenvalue(const std::vector<double>& diagonal, const std::vector
 /// Largest eigenvalue of D^-1 A, D the diagonal of A, by Lanczos' method on D^-1/2 A D^-1/2. A few
 /// dozen steps reach what takes hundreds of the power method, and from a start that is always the
 /// same: Ifpack2's is random, and no two preconditioners would agree.
-double largest_eigenvalue(const CompressedRows& matrix, int steps) {
+double largest_eigenvalue(const CompressedRows& matrix, const GhostColumns& ghosts, int steps) {
   const auto rows = static_cast<std::size_t>(matrix.rows);
+  const auto count =
+      matrix.ranks ? matrix.ranks->count_all(matrix.rows) : Communicator::Counts{0, matrix.rows};
   std::vector<double> scale(rows), last(rows, 0.0), current(rows), next(rows);
   std::mt19937 random;
+  random.discard(static_cast<unsigned long long>(count.before));
   double squared = 0.0;
   for (std::size_t row = 0; row < rows; ++row) {
     scale[row] = 1.0 / std::sqrt(diagonal_entry(matrix, static_cast<int>(row)));
     current[row] = double(random()) * 0x1p-32 - 0.5;
     squared += current[row] * current[row];
   }
+  squared = sum(matrix, squared);
   for (double& entry : current) entry /= std::sqrt(squared);
+  ghosts.update(scale);
 
   std::vector<double> diagonal, squares;
   double beside = 0.0;
-  for (int step = 0; step < steps && step < matrix.rows; ++step) {
+  for (int step = 0; step < steps && step < count.all; ++step) {
+    ghosts.update(current);
     double projection = 0.0;
     for (std::size_t row = 0; row < rows; ++row) {
-      double sum = 0.0;
+      double product = 0.0;
       for (std::size_t k = matrix.begin[row]; k < matrix.begin[row + 1]; ++k) {
-        sum += matrix.value[k] * scale[matrix.column[k]] * current[matrix.column[k]];
+        product += matrix.value[k] * scale[matrix.column[k]] * current[matrix.column[k]];
       }
-      next[row] = scale[row] * sum - beside * last[row];
+      next[row] = scale[row] * product - beside * last[row];
       projection += next[row] * current[row];
     }
+    projection = sum(matrix, projection);
     diagonal.push_back(projection);
     squared = 0.0;
     for (std::size_t row = 0; row < rows; ++row) {
       next[row] -= projection * current[row];
       squared += next[row] * next[row];
     }
+    squared = sum(matrix, squared);
     beside = std::sqrt(squared);
     // The start spans an invariant space: there is nothing more to find in it.
     if (beside <= 1e-10 * projection) break;
@@ -187,11 +273,13 @@ double largest_eigenvalue(const CompressedRows& matrix, int steps) {
     for (double& entry : next) entry /= beside;
     std::swap(last, current);
     std::swap(current, next);
+    next.resize(rows);
   }
   return largest_eigenvalue(diagonal, squares);
 }
 
-RCP<Operator> make_riluk(const RCP<Matrix>& matrix, const MatrixPreconditionerOptions& options) {
+RCP<Operator> make_riluk(const CompressedRows& from, const RCP<Matrix>& matrix,
+                         const MatrixPreconditionerOptions& options) {
   const auto riluk = rcp(new Ifpack2::RILUK<RowMatrix>(RCP<const RowMatrix>(matrix)));
   Teuchos::ParameterList parameters;
   parameters.set("fact: iluk level-of-fill", options.level_of_fill);
@@ -200,11 +288,10 @@ RCP<Operator> make_riluk(const RCP<Matrix>& matrix, const MatrixPreconditionerOp
   riluk->compute();
   // Ifpack2 goes on after any pivot; what it keeps are their inverses.
   const Teuchos::ArrayRCP<const double> pivots = riluk->getD().getData(0);
-  for (const double inverse : pivots) {
-    if (!(inverse > 0.0 && std::isfinite(inverse))) {
-      throw std::runtime_error("a pivot of the incomplete factors is not positive");
-    }
-  }
+  refuse(from,
+         std::any_of(pivots.begin(), pivots.end(),
+                     [](double inverse) { return !(inverse > 0.0 && std::isfinite(inverse)); }),
+         "a pivot of the incomplete factors is not positive");
   return riluk;
 }
 
@@ -222,8 +309,46 @@ RCP<Operator> make_chebyshev(const RCP<Matrix>& matrix, double eigenvalue,
   return chebyshev;
 }
 
-RCP<Operator> make_multigrid(const RCP<Matrix>& matrix, double eigenvalue, int block_size,
-                             const Embedding& embedding, const NearNullSpace& near_null_space,
+/// Solves the coarsest level of multigrid on several ranks. KLU2 of Amesos2 13.2 has wrong
+/// solutions of what is not on one.
+class CoarsestLevel : public MueLu::SmootherBase<double, int, long long> {
+ public:
+  using Level = Xpetra::Matrix<double, int, long long>;
+  using Vectors = Xpetra::MultiVector<double, int, long long>;
+
+  CoarsestLevel(const CompressedRows& from, const Level& matrix) : factor_(*from.ranks) {
+    GatheredRows rows;
+    rows.begin.push_back(0);
+    for (std::size_t row = 0; row < matrix.getNodeNumRows(); ++row) {
+      Teuchos::ArrayView<const int> columns;
+      Teuchos::ArrayView<const double> values;
+      matrix.getLocalRowView(int(row), columns, values);
+      rows.number.push_back(matrix.getRowMap()->getGlobalElement(int(row)));
+      for (const int column : columns) {
+        rows.column.push_back(matrix.getColMap()->getGlobalElement(column));
+      }
+      rows.value.insert(rows.value.end(), values.begin(), values.end());
+      rows.begin.push_back(rows.value.size());
+    }
+    if (!factor_.factorize(rows)) {
+      throw NoPreconditioner("the coarsest level of multigrid can't be factorised");
+    }
+  }
+
+  void Apply(Vectors& x, const Vectors& b, bool /*x_is_zero*/) const override {
+    factor_.solve(b.getData(0).getRawPtr(), x.getDataNonConst(0).getRawPtr());
+  }
+  [[nodiscard]] std::size_t getNodeSmootherComplexity() const override {
+    return Teuchos::OrdinalTraits<std::size_t>::invalid();
+  }
+
+ private:
+  GatheredFactor factor_;
+};
+
+RCP<Operator> make_multigrid(const CompressedRows& from, const RCP<Matrix>& matrix,
+                             double eigenvalue, int block_size, const Embedding& embedding,
+                             const NearNullSpace& near_null_space,
                              const MatrixPreconditionerOptions& options) {
   Teuchos::ParameterList parameters;
   parameters.set("verbosity", "none");
@@ -232,12 +357,19 @@ RCP<Operator> make_multigrid(const RCP<Matrix>& matrix, double eigenvalue, int b
   // On the coarse levels; ten, the default, give 1.35 for 1.60.
   parameters.set("sa: eigenvalue estimate num iterations", 80);
   parameters.set("coarse: max size", options.largest_coarse_system);
-  parameters.set("coarse: type", "KLU2");
+  parameters.set("coarse: type", from.ranks ? "none" : "KLU2");
   // The same before and after the coarse correction, and symmetric in itself: so is the cycle.
-  parameters.set("smoother: type", "RELAXATION");
   Teuchos::ParameterList& smoother = parameters.sublist("smoother: params");
-  smoother.set("relaxation: type", "Symmetric Gauss-Seidel");
-  smoother.set("relaxation: sweeps", 1);
+  if (from.ranks) {  // whose number makes no difference to a polynomial
+    parameters.set("smoother: type", "CHEBYSHEV");
+    smoother.set("chebyshev: degree", 3);
+    smoother.set("chebyshev: ratio eigenvalue", 20.0);
+    smoother.set("chebyshev: zero starting solution", true);
+  } else {
+    parameters.set("smoother: type", "RELAXATION");
+    smoother.set("relaxation: type", "Symmetric Gauss-Seidel");
+    smoother.set("relaxation: sweeps", 1);
+  }
 
   MueLu::ParameterListInterpreter<double, int, long long> setup(parameters,
                                                                 matrix->getRowMap()->getComm());
@@ -267,6 +399,15 @@ RCP<Operator> make_multigrid(const RCP<Matrix>& matrix, double eigenvalue, int b
                                 MueLu::TpetraMultiVector_To_XpetraMultiVector(motions));
   }
   setup.SetupHierarchy(*hierarchy);
+  if (from.ranks) {
+    using Level = CoarsestLevel::Level;
+    const RCP<MueLu::Level>& last = hierarchy->GetLevel(hierarchy->GetNumLevels() - 1);
+    const auto coarsest = Teuchos::rcp_dynamic_cast<Level>(
+        last->Get<RCP<Xpetra::Operator<double, int, long long>>>("A"));
+    const RCP<MueLu::SmootherBase<double, int, long long>> solver =
+        rcp(new CoarsestLevel(from, *coarsest));
+    last->Set("PreSmoother", solver);
+  }
   return rcp(new Cycle(hierarchy));
 }
 
@@ -281,18 +422,20 @@ class TrilinosPreconditioner : public Preconditioner {
     check(from);
     const bool by_points = kind_ == MatrixPreconditionerKind::multigrid;
     embedding_ = embed(from.rows, by_points ? blocks : EquationBlocks{});
-    const RCP<Matrix> matrix = tpetra_matrix(from, embedding_);
+    const GhostColumns ghosts(from);
+    const RCP<Matrix> matrix = tpetra_matrix(from, embedding_, ghosts);
     switch (kind_) {
       case MatrixPreconditionerKind::riluk:
-        inverse_ = make_riluk(matrix, options_);
+        inverse_ = make_riluk(from, matrix, options_);
         break;
       case MatrixPreconditionerKind::chebyshev:
-        inverse_ =
-            make_chebyshev(matrix, largest_eigenvalue(from, options_.lanczos_steps), options_);
+        inverse_ = make_chebyshev(matrix, largest_eigenvalue(from, ghosts, options_.lanczos_steps),
+                                  options_);
         break;
       case MatrixPreconditionerKind::multigrid:
-        inverse_ = make_multigrid(matrix, largest_eigenvalue(from, options_.lanczos_steps),
-                                  blocks.size, embedding_, near_null_space, options_);
+        inverse_ =
+            make_multigrid(from, matrix, largest_eigenvalue(from, ghosts, options_.lanczos_steps),
+                           blocks.size, embedding_, near_null_space, options_);
         break;
     }
     argument_ = rcp(new Vector(matrix->getRowMap(), 1));

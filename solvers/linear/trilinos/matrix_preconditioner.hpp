@@ -5,17 +5,26 @@
 #include <string>
 #include <vector>
 
+#include "src/core/communicator.hpp"
+
 // Stands between C++20 and Trilinos, which is compiled as C++17: this header is read by both.
 
 namespace peristat {
 
 /// A square matrix by rows: row i has the entries [begin[i], begin[i + 1]), columns ascending, the
 /// diagonal always among them. Of a symmetric matrix both triangles.
+///
+/// Several ranks may have a part of the rows each, perhaps none: columns are then those of its own
+/// rows and, from `rows` on, those of rows that others have.
 struct CompressedRows {
   int rows = 0;
   std::vector<std::size_t> begin;  ///< rows + 1
   std::vector<int> column;
   std::vector<double> value;
+  const Communicator* ranks = nullptr;  ///< null: all rows are here
+  /// Rows of others that have columns here, by their numbers in the whole matrix: there the ranks'
+  /// rows follow one another.
+  std::vector<long long> ghosts{};
 };
 
 /// Displacements that (nearly) cost no energy, per equation: the rigid motions.
@@ -50,7 +59,8 @@ struct MatrixPreconditionerOptions {
 /// Approximate inverse M of an assembled symmetric positive definite matrix A; M is symmetric
 /// positive definite, too, up to round-off, and fit for conjugate gradients.
 ///
-/// Works on one thread. Prints nothing.
+/// Works on one thread. Prints nothing. Of several ranks all make the same calls, of matrices with
+/// their parts of the rows.
 class MatrixPreconditioner {
  public:
   /// Throws std::runtime_error where Trilinos can't be loaded.
@@ -59,7 +69,9 @@ class MatrixPreconditioner {
   ~MatrixPreconditioner();
 
   /// Takes a matrix, of which it keeps what it needs. Riluk and chebyshev need the matrix alone.
-  /// @return false where there is no such preconditioner; failure() says why
+  /// @return false where there is no such preconditioner, on all ranks; failure() says why. What
+  /// one
+  ///         rank meets alone leaves as an exception: the others wait.
   [[nodiscard]] bool build(const CompressedRows& matrix, const EquationBlocks& blocks = {},
                            const NearNullSpace& near_null_space = {});
   [[nodiscard]] const std::string& failure() const;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <stdexcept>
 #include <string>
 
 #include "solvers/linear/trilinos/krylov.hpp"
@@ -11,6 +12,11 @@
 // is all that the two know of each other.
 
 namespace peristat::trilinos {
+
+/// That there is no preconditioner, which all ranks find at the same place.
+struct NoPreconditioner : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
 
 /// A MatrixPreconditioner, from the inside. build() throws where there is none.
 class Preconditioner {

@@ -173,11 +173,13 @@ class Memory : public StateArchive {
   void transfer(const std::string& name, int& value) override { keep(name, value); }
   void transfer(const std::string& name, std::int64_t& value) override { keep(name, value); }
   void transfer(const std::string& name, double& value) override { keep(name, value); }
-  void transfer(const std::string& name, std::vector<char>& values) override { keep(name, values); }
-  void transfer(const std::string& name, std::vector<Index>& values) override {
+  void transfer(const std::string& name, std::vector<char>& values, Rows) override {
     keep(name, values);
   }
-  void transfer(const std::string& name, std::vector<double>& values) override {
+  void transfer(const std::string& name, std::vector<Index>& values, Rows) override {
+    keep(name, values);
+  }
+  void transfer(const std::string& name, std::vector<double>& values, Rows) override {
     keep(name, values);
   }
 

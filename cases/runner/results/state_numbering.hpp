@@ -1,0 +1,79 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "cases/runner/build/recorded_points.hpp"
+#include "cases/runner/results/point_rows.hpp"
+#include "solvers/drivers/state_archive.hpp"
+#include "src/neighbourhood/bonds.hpp"
+
+namespace peristat {
+
+/// Where the values of a path's state stand in the arrays of the whole body, for a part of it.
+/// Points and their degrees of freedom are in the order of their numbers in the whole body, bonds
+/// in that of their lower and then of their upper point, as on one rank; each value is told by one
+/// rank. All calls are ones that all ranks make.
+class StateNumbering {
+ public:
+  /// What arrays are of outlives it.
+  StateNumbering(const RecordedPoints& points, const RowGathering& gathering, const Bonds& bonds,
+                 const std::vector<char>& prescribed);
+
+  [[nodiscard]] const RowGathering& gathering() const { return gathering_; }
+
+  /// Of an array of the whole body, or of its part here.
+  [[nodiscard]] std::int64_t whole_size(Rows rows, std::size_t here);
+  /// Nothing if no array of the body has the size.
+  [[nodiscard]] std::optional<std::size_t> size_here(Rows rows, std::int64_t whole);
+
+  /// A value that is told here.
+  struct Place {
+    std::int64_t whole;
+    std::size_t here;
+  };
+  /// Ascending; of arrays of a size that one of the above has told.
+  [[nodiscard]] std::vector<Place> places(Rows rows, std::size_t size_here) const;
+
+  /// Gives what others tell to those that have it, too: ghosts, and bonds between parts.
+  void give_to_others(Rows rows, std::vector<double>& values) const;
+
+  /// Numbers of the points that ranks list, ascending, and of such numbers the owned points.
+  [[nodiscard]] std::vector<Index> numbers_of_all(const std::vector<Index>& points) const;
+  [[nodiscard]] std::vector<Index> points_here(const std::vector<Index>& numbers) const;
+
+  /// What is solved for besides what is prescribed: Rows::free_dofs are of these.
+  void pin(const FragmentPins& pins);
+
+ private:
+  /// How many rows the whole body has, and this part, and values of a row. What an array has beyond
+  /// them is the same on all ranks, or means nothing.
+  struct Extent {
+    std::int64_t whole = 0, here = 0, width = 1;
+  };
+  [[nodiscard]] Extent extent(Rows rows) const;
+  /// Finds the numbers of free degrees of freedom, once for these pins.
+  void number_free_dofs();
+  void visit_rows(Rows rows, const std::function<void(std::int64_t, std::size_t)>& visit) const;
+  void visit_bonds(const std::function<void(std::int64_t, std::size_t)>& visit) const;
+  /// The bonds of an owned point that are told here, ascending by their other points.
+  [[nodiscard]] std::vector<Offset> told_bonds(Index point) const;
+  void give_to_ghosts(std::vector<double>& values, std::size_t width) const;
+  void give_bonds(std::vector<double>& values) const;
+
+  const RecordedPoints& points_;
+  const PartOfBody& part_;
+  const RowGathering& gathering_;
+  const Bonds& bonds_;
+  const std::vector<char>& prescribed_;
+  std::vector<std::int64_t> first_bond_;  // of each owned point, in the whole body
+  std::int64_t whole_bonds_ = 0;
+  std::vector<char> pinned_;
+  std::optional<std::vector<std::int64_t>> first_free_;  // likewise of free degrees of freedom
+  std::vector<char> is_free_;                            // per degree of freedom of owned points
+  std::int64_t whole_free_ = 0, free_here_ = 0;
+};
+
+}  // namespace peristat
