@@ -370,7 +370,7 @@ class Bodies(Comparing):
 
     def test_temperatures(self):
         case = (ROOT / "cases/thermal/bimetal.toml").read_text()
-        held = '[[support]]\nset = "steel"\ndisplacement = [0, "free"]\n[[support]]\nset = "middle"\ndisplacement = ["free", 0]\n'
+        held = '[[support]]\nset = "steel"\ndisplacement = [0, "free"]\n[[support]]\nset = "middle"\ndisplacement = ["free", 0]\n[[support]]\nset = "tip"\ndisplacement = [0, "free"]\n'
         case = case.split("[[symmetry]]")[0] + held + "[[probe]]" + case.split("[[probe]]")[1]
         case = case.replace("0.04", "0.02").replace("spacing = 1e-4", "spacing = 5e-4")
         one = self.compare(case, (2, 3), "--set", "loading.table=[0, 1, 0.5]")
