@@ -328,7 +328,8 @@ class Bodies(Comparing):
 
     def test_several_materials(self):
         self.compare_shipped("regions/bimaterial", "lattice.spacing=0.01")
-        self.compare_shipped("regions/composite", "lattice.spacing=1e-3")
+        # A third solution would be of round-off, with as many iterations as that gives.
+        self.compare_shipped("regions/composite", "lattice.spacing=1e-3", "solver.relative_tolerance=1e-7")
 
     def test_interfaces_and_random_fields(self):
         two = ('region=[{set="corner", material={youngs_modulus=1e8, scatter=[{of="stiffness", distribution="weibull", '
