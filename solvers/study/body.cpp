@@ -306,10 +306,10 @@ namespace {
 /// What the assembler of a part is made for; tables of cases are refused before.
 void refuse_without_ranks(const BodySpecification& of) {
   const auto refuse = [](const std::string& key) {
-    throw InputError(key, "",
-                     "is not for more than one rank yet: there are elastic bonds with "
-                     "pre-cracks, supports, "
-                     "body forces, total forces and gravity");
+    throw InputError(
+        key, "",
+        "is not for more than one rank yet: there are elastic bonds with pre-cracks, supports, "
+        "eigenstrains, tractions, body forces, total forces and gravity");
   };
   const MaterialSpecification& material = of.material;
   if (material.model != MaterialModel::bond) refuse("material.model");
@@ -373,7 +373,7 @@ std::unique_ptr<const Body> make_body(Part part, const BodySpecification& of,
     Bonds bonds = make_bonds(part, of.surface_correction, body.setting, ranks, threads);
     body.points = std::move(part.points);
     refuse_coincident_points(body.points, bonds);
-    const PointMaterials materials(of, body.points);
+    const PointMaterials materials(body.specification, body.points);
     note_materials(body, materials, threads);
     CutBonds cut;
     body.model = make_bond_model(body, materials, std::move(bonds), cut);

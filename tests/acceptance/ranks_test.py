@@ -186,6 +186,8 @@ class Comparison(OnRanks):
         if name.endswith(("balance_error", "/reason", "pin_force")):
             return  # differences of large numbers
         scale = numpy.abs(expected[()]).max(initial=0)
+        if name.startswith("history/") and name[-2:] in ("_x", "_y", "_z"):  # of a vector
+            scale = max(numpy.abs(expected.parent[key][()]).max() for key in expected.parent if key[:-2] == name[8:-2])
         if name.startswith(("history/reaction", "history/momentum")):
             kind = name.split("_")[0].split("/")[1]
             scale = max(numpy.abs(file[()]).max() for key, file in expected.parent.items() if kind in key)
@@ -625,6 +627,7 @@ class GoesOn(Comparison):
         said = resume(2, output)
         self.assertEqual(said.returncode, 2, said.stderr)
         self.assertIn("its checksum is wrong", said.stderr)
+
 class Bodies(Comparison):
     """Shipped cases, coarser, and small bodies: what they are made of is the same on all ranks."""
 

@@ -30,10 +30,10 @@ constexpr std::array keys_of_ranks{
     "lattice.angle", "lattice.volumes", "lattice.cell_perturbation", "lattice.points",
     "points.file", "points.thickness", "points.area", "points.horizon", "set.",
     // bonds
-    "quadrature.", "material.model", "material.plane", "material.youngs_modulus",
+    "quadrature.volume_correction", "quadrature.surface_correction", "quadrature.horizon_shape",
+    "crack.", "material.model", "material.plane", "material.youngs_modulus",
     "material.micromodulus", "material.density", "material.influence", "material.potential",
     "material.calibration", "material.fibre.", "material.scatter.", "region.", "interface.",
-    "crack.",
     // conditions
     "support.", "load.set", "load.side", "load.body_force", "load.total_force", "load.gravity",
     "load.traction", "load.depth", "eigenstrain.", "temperature.", "material.thermal_expansion",
