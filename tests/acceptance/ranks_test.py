@@ -649,7 +649,8 @@ class Bodies(Comparison):
 
     def test_several_materials(self):
         self.compare_shipped("regions/bimaterial", "lattice.spacing=0.01")
-        self.compare_shipped("regions/composite", "lattice.spacing=1e-3")
+        # A third solution would be of round-off, with as many iterations as that gives.
+        self.compare_shipped("regions/composite", "lattice.spacing=1e-3", "solver.relative_tolerance=1e-7")
 
     def test_interfaces_and_random_fields(self):
         two = ('region=[{set="corner", material={youngs_modulus=1e8, scatter=[{of="stiffness", distribution="weibull", '
@@ -691,7 +692,7 @@ class Bodies(Comparison):
 
     def test_temperatures(self):
         case = (ROOT / "cases/thermal/bimetal.toml").read_text()
-        held = '[[support]]\nset = "steel"\ndisplacement = [0, "free"]\n[[support]]\nset = "middle"\ndisplacement = ["free", 0]\n'
+        held = '[[support]]\nset = "steel"\ndisplacement = [0, "free"]\n[[support]]\nset = "middle"\ndisplacement = ["free", 0]\n[[support]]\nset = "tip"\ndisplacement = [0, "free"]\n'
         case = case.split("[[symmetry]]")[0] + held + "[[probe]]" + case.split("[[probe]]")[1]
         case = case.replace("0.04", "0.02").replace("spacing = 1e-4", "spacing = 5e-4")
         one = self.compare(case, (2, 3), "--set", "loading.table=[0, 1, 0.5]")
