@@ -321,10 +321,10 @@ namespace {
 /// What the assembler of a part is made for; tables of cases are refused before.
 void refuse_without_ranks(const BodySpecification& of) {
   const auto refuse = [](const std::string& key) {
-    throw InputError(key, "",
-                     "is not for more than one rank yet: there are elastic bodies with "
-                     "pre-cracks, supports, "
-                     "body forces, total forces and gravity");
+    throw InputError(
+        key, "",
+        "is not for more than one rank yet: there are elastic bodies with pre-cracks, supports, "
+        "eigenstrains, tractions, body forces, total forces and gravity");
   };
   const MaterialSpecification& material = of.material;
   if (is_polynomial(material.model)) refuse("material.model");

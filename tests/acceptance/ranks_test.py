@@ -701,6 +701,7 @@ class GoesOn(Comparison):
         said = resume(2, output)
         self.assertEqual(said.returncode, 2, said.stderr)
         self.assertIn("its checksum is wrong", said.stderr)
+
 class Bodies(Comparison):
     """Shipped cases, coarser, and small bodies: what they are made of is the same on all ranks."""
 

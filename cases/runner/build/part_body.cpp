@@ -31,12 +31,13 @@ constexpr std::array keys_of_ranks{
     "lattice.angle", "lattice.volumes", "lattice.cell_perturbation", "lattice.points",
     "points.file", "points.thickness", "points.area", "points.horizon", "set.",
     // bonds
-    "quadrature.", "material.model", "material.plane", "material.youngs_modulus",
+    "quadrature.volume_correction", "quadrature.surface_correction", "quadrature.horizon_shape",
+    "crack.", "material.model", "material.plane", "material.youngs_modulus",
     "material.micromodulus", "material.density", "material.influence", "material.potential",
     "material.calibration", "material.fibre.", "material.scatter.", "region.", "interface.",
-    "crack.",
     // triangles and tetrahedra, states
-    "material.poisson_ratio", "material.c1", "material.c2", "material.c3",
+    "quadrature.weights", "quadrature.form", "material.poisson_ratio", "material.c1", "material.c2",
+    "material.c3",
     // conditions
     "support.", "load.set", "load.side", "load.body_force", "load.total_force", "load.gravity",
     "load.traction", "load.depth", "eigenstrain.", "temperature.", "material.thermal_expansion",
