@@ -343,6 +343,7 @@ void refuse_without_ranks(const BodySpecification& of) {
   if (material.model != MaterialModel::bond) {
     if (!of.is_uniform()) refuse(of.regions.empty() ? "material" : "regions");
     if (of.eigenstrains.are_there()) refuse("eigenstrains");
+    if (of.end_time) refuse("end_time");
   }
   if (of.force_operator != ForceOperator::bonds) refuse("force_operator");
   if (!of.foundations.empty()) refuse("foundations");

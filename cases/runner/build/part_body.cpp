@@ -95,6 +95,10 @@ void refuse_values_without_ranks(const Case& from) {
   const bool is_lattice = std::holds_alternative<Lattice>(from.body);
   const bool has_shares = from.volume_correction != VolumeCorrection::none &&
                           from.volume_correction != VolumeCorrection::linear;
+  const bool moves = from.solver.mode == Mode::dynamics;
+  if (from.material.model != MaterialModel::bond && (moves || tells_stress(from))) {
+    refuse(moves ? "solver.mode" : "output.stress", "", "it is for model \"bond\"");
+  }
   if (from.material.model != MaterialModel::bond && (!is_lattice || has_shares)) {
     refuse("material.model", "",
            "models but \"bond\" are for a lattice, and volume_correction \"none\" or \"linear\"");
