@@ -213,6 +213,10 @@ def rows(output, table):
         return list(csv.DictReader(file))
 
 
+def nine_digits(text):
+    return re.sub(r"\d+\.\d+(e[-+]?\d+)?", lambda number: f"{float(number[0]):.9g}", text)
+
+
 class Comparison(OnRanks):
     def expect_same(self, one, several):
         with h5py.File(one / "results.h5") as expected, h5py.File(several / "results.h5") as found:
@@ -230,6 +234,9 @@ class Comparison(OnRanks):
     def expect_same_data(self, name, expected, found):
         self.assertEqual((expected.shape, expected.dtype), (found.shape, found.dtype), name)
         self.assertEqual(dict(expected.attrs.items()).keys(), dict(found.attrs.items()).keys(), name)
+        if name == "decisions/reason":  # numbers in them have all their digits
+            self.assertEqual(*([nine_digits(text) for text in data.asstr()[()]] for data in (expected, found)))
+            return
         if expected.dtype.kind != "f":
             self.assertTrue(numpy.array_equal(expected[()], found[()]), name)
             return
@@ -959,10 +966,9 @@ class Refusals(OnRanks):
         said = self.refusal(PLATE, "--set", 'solver.operator="fft"')
         self.assertIn("solver.operator", said)
         self.assertIn('take "bonds" or "auto"', said)
-        for model in ("green_bond", "correspondence"):
-            for operator in ("fft", "auto"):
-                said = self.refusal(PLATE, "--set", f'solver.operator="{operator}"', "--set", f'material.model="{model}"')
-                self.assertIn("models that have bonds", said)
+        for operator in ("fft", "auto"):
+            said = self.refusal(PLATE, "--set", f'solver.operator="{operator}"', "--set", 'material.model="green_bond"')
+            self.assertIn("models that have bonds", said)
 
     def test_what_one_rank_refuses_too(self):
         for ranks in (1, 2):

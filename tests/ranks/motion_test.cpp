@@ -22,11 +22,10 @@ namespace {
 /// Of waves that a velocity and a displacement of one corner begin.
 BodySpecification in_motion(const RanksBody& body) {
   BodySpecification of{.horizon = body.horizon_ratio * body.lattice.spacing};
-  of.volume_correction = VolumeCorrection::linear;
   of.material.youngs_modulus = 3.0;
   of.material.density = 2.0;
   of.end_time = 0.5;
-  of.initial.push_back({"", {"0.01*exp(-20*(x-0.3)^2)"}, {"0.3*x", "-0.2*x*x"}});
+  of.initial.push_back({"", {"0.01*exp(-20*(x-0.3)^2)", "0", "0"}, {"0.3*x", "-0.2*x*x", "0"}});
   of.absorbing.push_back({"", "x > 0.6 ? 3 : 0"});
   return of;
 }
