@@ -602,10 +602,14 @@ class Motions(Comparison):
         missing = self.MOVING.replace('"1e-3*sin(2000*t)"', '"x > 0.96 && t > 4e-4 && t < 4.5e-4 ? 1/0 : 0"')
         self.assertEqual(self.ends_of(missing + self.STEPS)[1], "undefined_condition")
 
-    def test_a_run_that_is_stopped(self):
+    def test_a_run_that_is_stopped_and_goes_on(self):
+        whole = self.results(1, self.MOVING + self.STEPS).rename(self.folder / "whole")
         run, output = self.start(2, self.MOVING + self.STEPS, "--stop-after", "3")
         self.assertEqual(run.returncode, 130, run.stderr)
         self.assertEqual(len(rows(output, "history.csv")), 3)
+        again = resume(3, output)
+        self.assertEqual(again.returncode, 0, again.stderr)
+        self.expect_same(whole, output)
 
 
 def resume(ranks, output, *options):
