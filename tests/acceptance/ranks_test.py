@@ -144,6 +144,7 @@ class SameResults(Comparison):
             name = "pulled"
             at = [0.02, 1.4]
             field = "stress"
+            component = "yy"
             [[probe]]
             name = "row"
             from = [0.1, 1.2]
@@ -182,7 +183,7 @@ class SameResults(Comparison):
             self.assertEqual(len(file["lines/row/point"]), 2 * len(set(file["lines/row/point"])))
             self.assertGreater(len(file["lines/row/point"]), 20)
         last = rows(one, "history.csv")[-1]
-        for name in ("place_y", "pulled_yy", "hardest", "ratio", "divergence"):
+        for name in ("place_y", "pulled", "hardest", "ratio", "divergence"):
             self.assertNotEqual(float(last[name]), 0.0, name)
 
     def test_stress_in_three_dimensions_and_of_a_bar_shorter_than_the_horizon(self):
