@@ -8,6 +8,28 @@
 #include "src/core/stopwatch.hpp"
 
 namespace peristat {
+namespace {
+
+void clear_ghosts(const Sharing& sharing, int dimension, std::span<double> gradient) {
+  if (gradient.empty()) return;
+  const std::size_t dofs = std::size_t(sharing.owned()) * std::size_t(dimension);
+  std::fill(gradient.begin() + std::ptrdiff_t(dofs), gradient.end(), 0.0);
+}
+
+/// What ranks have found together but for the energy.
+Evaluation without_energy(const Communicator& ranks, const Evaluation& mine) {
+  const std::vector<double> sums =
+      ranks.sum({mine.released, double(mine.degenerate), double(mine.moves_equilibrium),
+                 double(mine.growth.degrading), double(mine.growth.breaking)});
+  Evaluation all;
+  all.released = sums[0];
+  all.degenerate = sums[1] > 0.0;
+  all.moves_equilibrium = sums[2] > 0.0;
+  all.growth = {Index(sums[3]), Index(sums[4])};
+  return all;
+}
+
+}  // namespace
 
 Assembler::Assembler(const Points& points, const Model& model, int threads, const Sharing* sharing)
     : points_(points),
@@ -20,9 +42,14 @@ Assembler::Assembler(const Points& points, const Model& model, int threads, cons
     terms_.push_back(term->passes({points_, model_, pattern_, workspace_}));
   }
   if (!sharing_) return;
-  // Triangles stand on bonds between ghosts, which parts leave out.
-  const bool is_of_bonds = model.terms().size() == 1 && model.bond_term() == model.terms()[0];
-  if (!is_of_bonds) throw std::logic_error("Assembler: only bonds have ranks yet");
+  if (!model.balances().potential || !model.has_rows()) {
+    throw std::logic_error(
+        "Assembler: convolutions and forces without a potential have no ranks yet");
+  }
+  // Triangles stand on bonds between ghosts, whose history is other ranks'.
+  if (model.has_history() && model.terms().size() > 1) {
+    throw std::logic_error("Assembler: damage has ranks of bonds alone");
+  }
   of_points_.resize(points.volume.size());
 }
 Assembler::~Assembler() = default;
@@ -82,9 +109,7 @@ Evaluation Assembler::of_all(const StateView& at, const Evaluation& mine,
   all.degenerate = sums[3] > 0.0 || !std::isfinite(all.energy);
   all.moves_equilibrium = sums[4] > 0.0;
   all.growth = {Index(sums[5]), Index(sums[6])};  // without a utilisation: see Evaluation
-  if (gradient.empty()) return all;
-  const std::size_t dofs = owned * std::size_t(points_.dimension);
-  std::fill(gradient.begin() + std::ptrdiff_t(dofs), gradient.end(), 0.0);
+  clear_ghosts(*sharing_, points_.dimension, gradient);
   return all;
 }
 
@@ -101,12 +126,13 @@ Evaluation Assembler::commit(std::span<const double> displacement, History& hist
 Evaluation Assembler::commit_forces(std::span<const double> displacement, History& history,
                                     std::span<double> gradient,
                                     const SharedEnvironment& environment) {
-  refuse_on_ranks("commit_forces");
   Evaluation found;
   for_each_term([&](TermPasses& term, Write how) {
     found += term.commit_forces(displacement, environment, history, gradient, how);
   });
-  return found;
+  if (!sharing_) return found;
+  clear_ghosts(*sharing_, points_.dimension, gradient);
+  return without_energy(sharing_->ranks(), found);
 }
 
 void Assembler::refuse_on_ranks(const char* what) const {

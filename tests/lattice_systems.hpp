@@ -11,6 +11,7 @@
 
 #include <gtest/gtest.h>
 
+#include "assembly/convolutions/cut_lattice.hpp"
 #include "assembly/convolutions/lattice_forces.hpp"
 #include "assembly/convolutions/lattice_springs.hpp"
 #include "src/geometry/lattice.hpp"
@@ -27,6 +28,7 @@ struct HoledSetting {
   VolumeCorrection volume = VolumeCorrection::none;
   double angle = 0.0;
   Spacing spacing = 0.1;
+  bool is_cut = false;  ///< a crack runs in from the side to the middle
 };
 
 /// Boxes of odd and even sizes, before and after padding.
@@ -36,7 +38,10 @@ inline std::vector<HoledSetting> holed_settings() {
           {{10, 13}, 2.015, VolumeCorrection::none, 27.0},
           {{11, 12}, 3.015, VolumeCorrection::none, 0.0, Spacing({0.1, 0.08}, 2)},
           {{7, 6, 9}, 2.015, VolumeCorrection::linear},
-          {{6, 8, 7}, 3.015}};
+          {{6, 8, 7}, 3.015},
+          {{12, 11}, 3.015, VolumeCorrection::linear, 0.0, 0.1, true},
+          {{10, 13}, 2.015, VolumeCorrection::none, 27.0, 0.1, true},
+          {{6, 8, 7}, 2.015, VolumeCorrection::none, 0.0, 0.1, true}};
 }
 
 /// Places along the axes of one body of each dimension.
@@ -48,7 +53,7 @@ inline constexpr std::array<bool, 3> open{};
 /// A lattice's body with a hole.
 struct HoledBody {
   Points points;
-  LatticeBox box;
+  CutLattice box;
   Kernel kernel;
 
   explicit HoledBody(const HoledSetting& setting) {
@@ -74,6 +79,7 @@ struct HoledBody {
     kernel.horizon = setting.ratio * setting.spacing;
     kernel.cross_section = lattice.cross_section;
     kernel.volume_correction = setting.volume;
+    if (setting.is_cut) cut();
   }
 
   [[nodiscard]] int dimension() const { return points.dimension; }
@@ -82,6 +88,33 @@ struct HoledBody {
   [[nodiscard]] std::vector<LatticeArm> arms() const {
     return lattice_arms(kernel, points.spacing, points.angle, volume());
   }
+  /// Cuts the bonds that cross the middle of the box along its first axis, in one half of it.
+  void cut() {
+    const auto is_above = [&](Index point) {
+      const std::array<Index, 3> at = box.numbers(box.place[std::size_t(point)]);
+      return std::array{2 * at[0] >= box.extent[0], 2 * at[1] >= box.extent[1]};
+    };
+    for (Index i = 0; i < points.count(); ++i) {
+      for (Index j = i + 1; j < points.count(); ++j) {
+        const auto here = is_above(i), there = is_above(j);
+        const bool crosses = here[0] != there[0] && !here[1] && !there[1];
+        if (crosses && are_neighbours(i, j)) box.cut.push_back({i, j});
+      }
+    }
+  }
+
+  /// But for cuts.
+  [[nodiscard]] bool are_neighbours(Index i, Index j) const {
+    const std::array<Index, 3> a = box.numbers(box.place[std::size_t(i)]),
+                               b = box.numbers(box.place[std::size_t(j)]);
+    const LatticeStep along{b[0] - a[0], b[1] - a[1], b[2] - a[2]},
+        against{-along[0], -along[1], -along[2]};
+    const std::vector<LatticeArm> all = arms();
+    return std::any_of(all.begin(), all.end(), [&](const LatticeArm& arm) {
+      return arm.step == along || arm.step == against;
+    });
+  }
+
   /// Strains of some ten per cent, without symmetry.
   [[nodiscard]] std::vector<double> random(std::uint64_t seed) const {
     return Random(seed).vector(points.reference.size(), 0.1 * points.spacing);
@@ -108,7 +141,8 @@ struct Neighbour {
 };
 
 /// All of them, in both directions.
-inline std::vector<Neighbour> neighbours(const HoledBody& body) {
+/// @param with_cut those whose bonds are cut, too
+inline std::vector<Neighbour> neighbours(const HoledBody& body, bool with_cut = false) {
   std::map<std::array<Index, 3>, std::size_t> at;
   for (std::size_t i = 0; i < body.count(); ++i) at[body.box.numbers(body.box.place[i])] = i;
   std::vector<Neighbour> found;
@@ -118,6 +152,12 @@ inline std::vector<Neighbour> neighbours(const HoledBody& body) {
       for (std::size_t c = 0; c < 3; ++c) there[c] += Index(arm.step[c]);
       const auto other = at.find(there);
       if (other == at.end()) continue;
+      const auto is_cut = [&](const std::array<Index, 2>& pair) {
+        return std::minmax(std::size_t(pair[0]), std::size_t(pair[1])) ==
+               std::minmax(i, other->second);
+      };
+      const auto& cut = body.box.cut;
+      if (!with_cut && std::any_of(cut.begin(), cut.end(), is_cut)) continue;
       const auto& xi = arm.xi;
       found.push_back({i, other->second, xi, arm.share});
       found.push_back({other->second, i, {-xi[0], -xi[1], -xi[2]}, arm.share});
@@ -380,7 +420,7 @@ inline LatticeBox bar(Index along) {
 }
 
 using MakeForces = std::function<std::unique_ptr<LatticeForces>(
-    const LatticeBox& box, const std::array<bool, 3>& is_periodic)>;
+    const CutLattice& box, const std::array<bool, 3>& is_periodic)>;
 
 /// A period does what it does between two others.
 inline void expect_to_see_images(const MakeForces& make) {

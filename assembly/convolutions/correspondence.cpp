@@ -92,7 +92,7 @@ double energy_density(const Matrix<D, double>& H, const LamePair& constants) {
 
 }  // namespace
 
-Correspondence::Correspondence(const LatticeBox& box, const std::array<bool, 3>& is_periodic,
+Correspondence::Correspondence(const CutLattice& box, const std::array<bool, 3>& is_periodic,
                                std::vector<LatticeArm> arms, const Setting& setting, int threads)
     : arms_(std::move(arms)),
       setting_(setting),
@@ -150,8 +150,13 @@ void Correspondence::renew_shapes() {
     Tensors<D> inverse(&inverse_shapes_[i * D * D]);
     const bool has_one = eigenvalues<D>(shape)[0] > least_shape * whole_shape_;
     inverse.setZero();
-    if (has_one) inverse = shape.inverse();
+    if (has_one && share(i) > 0.0) inverse = shape.inverse();
   });
+  if (!has_images()) return;
+  shared_sizes_.resize(points);
+  fields_.fill(0, [&](std::size_t i) { return share(i); });
+  fields_.find_sums(
+      size_, 0, [&](std::size_t i, double sum) { shared_sizes_[i] = share(i) * sizes_[i] + sum; });
 }
 
 /// sum q' kappa eta xi, or its rate for the rate of u, and fields 0 ... D - 1 of u.
@@ -221,20 +226,28 @@ void Correspondence::find_stress_rates() {
 template <int D>
 void Correspondence::find_pulls(const std::vector<double>& u, double sign,
                                 std::span<double> force) {
-  const double twice = 2.0 * setting_.stabilisation;
+  const double beta = setting_.stabilisation;
   for (std::size_t i = 0; i < D; ++i) {
     std::array<Product, D + 1> products;
     for (std::size_t j = 0; j < D; ++j) {
       fields_.fill(D + j, [&](std::size_t x) { return stresses_[(x * D + i) * D + j]; });
       products[j] = {&arm_[j], D + j};
     }
-    products[D] = {&size_, i, twice};
+    products[D] = {&size_, i, 2.0 * beta};
+    if (has_images()) {
+      fields_.fill(2 * D, [&](std::size_t x) { return share(x) * u[x * D + i]; });
+      products[D] = {&size_, 2 * D, beta};
+    }
     fields_.find_sums(products, [&](std::size_t x, double sum) {
-      sum -= twice * sizes_[x] * u[x * D + i];
+      sum -= beta * sizes_of_ends(x) * u[x * D + i];
       for (std::size_t j = 0; j < D; ++j) {
         sum += stresses_[(x * D + i) * D + j] * arms_left_[x * D + j];
       }
       force[x * D + i] = sign * fields_.integrity(x) * sum;
+    });
+    if (!has_images()) continue;
+    fields_.find_sums(size_, i, [&](std::size_t x, double sum) {
+      force[x * D + i] += sign * fields_.integrity(x) * share(x) * beta * sum;
     });
   }
 }
@@ -278,8 +291,8 @@ void Correspondence::find_energies(std::span<double> energy) {
     const ConstTensors<D> gradient(&gradients_[x * D * D]), shape(&shapes_[x * D * D]);
     const double rest = energy[x] - (gradient * shape).cwiseProduct(gradient).sum();
     const double density = energy_density<D>(matrix_at<D>(gradients_, x), setting_.constants);
-    energy[x] =
-        fields_.integrity(x) * (setting_.volume * density + 0.5 * setting_.stabilisation * rest);
+    energy[x] = share(x) * fields_.integrity(x) *
+                (setting_.volume * density + 0.5 * setting_.stabilisation * rest);
   });
 }
 
@@ -323,7 +336,7 @@ void Correspondence::outline_blocks(std::span<double> diagonal) {
     const ConstVectors<D> arms(&arms_left_[i * D]);
     const Eigen::Matrix<double, D, 1> g = -(ConstTensors<D>(&inverse_shapes_[i * D * D]) * arms);
     Eigen::Matrix<double, D, D> block = V * (lambda + mu) * g * g.transpose();
-    block.diagonal().array() += V * mu * g.squaredNorm() + beta * (2.0 * sizes_[i] + g.dot(arms));
+    block.diagonal().array() += V * mu * g.squaredNorm() + beta * (sizes_of_ends(i) + g.dot(arms));
     Tensors<D>(&diagonal[i * D * D]) += fields_.integrity(i) * block;
   });
 }
@@ -402,7 +415,8 @@ void Correspondence::bound_rows(std::span<double> row_sums) {
   fields_.fill(1, [&](std::size_t i) { return weight[i]; });
   fields_.find_sums(lengths, 1, [&](std::size_t i, double sum) {
     const double arms = ConstVectors<D>(&arms_left_[i * D]).norm();
-    const double row = fields_.integrity(i) * (sum + weight[i] * arms + 4.0 * beta * sizes_[i]);
+    const double row =
+        fields_.integrity(i) * (sum + weight[i] * arms + 2.0 * beta * sizes_of_ends(i));
     for (std::size_t c = 0; c < D; ++c) row_sums[i * D + c] = row;
   });
 }
@@ -429,14 +443,15 @@ void Correspondence::add_virials(const std::vector<double>& u, std::span<double>
       const Matrix<D, double> stress = first_stress<D, double>(H, setting_.constants);
       virial = setting_.volume * ConstTensors<D>(stress[0].data());
     }
-    Tensors<D>(&virials[i * D * D]) += fields_.integrity(i) * virial;
+    Tensors<D>(&virials[i * D * D]) += share(i) * fields_.integrity(i) * virial;
   });
 }
 
 std::size_t Correspondence::points_without_gradient() const {
   const auto d = std::size_t(fields_.dimension());
   std::size_t count = 0;
-  for (std::size_t i = 0; i < fields_.points(); ++i) count += inverse_shapes_[i * d * d] == 0.0;
+  const std::size_t own = std::min(setting_.own, fields_.points());
+  for (std::size_t i = 0; i < own; ++i) count += inverse_shapes_[i * d * d] == 0.0;
   return count;
 }
 
@@ -453,8 +468,8 @@ double Correspondence::expected_bytes(const LatticeBox& box,
 double Correspondence::bytes() const {
   double numbers = 0.0;
   for (const std::vector<double>* kept :
-       {&sizes_, &arms_left_, &shapes_, &inverse_shapes_, &state_, &displacement_, &direction_,
-        &gradients_, &gradient_rates_, &stresses_}) {
+       {&sizes_, &shared_sizes_, &arms_left_, &shapes_, &inverse_shapes_, &state_, &displacement_,
+        &direction_, &gradients_, &gradient_rates_, &stresses_}) {
     numbers += double(kept->size());
   }
   const auto spectra = double(1 + arm_.size() + shape_.size());

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -40,13 +41,15 @@ class Correspondence : public LatticeForces {
     LamePair constants;          ///< in plane stress those of the plane [Pa]
     double volume = 0.0;         ///< V of each point [m3]
     double stabilisation = 0.0;  ///< beta [N/m7] for shares kappa in m6
+    /// Points from this one on stand for others, whose energy theirs is: they have no H and no z.
+    std::size_t own = std::numeric_limits<std::size_t>::max();
   };
 
   /// @param box the points and their places
   /// @param is_periodic axes along which the lattice goes on as it began: points see their images
   /// @param arms of two opposite steps one
   /// @throws std::logic_error for a period that is not longer than the arms, or another dimension
-  Correspondence(const LatticeBox& box, const std::array<bool, 3>& is_periodic,
+  Correspondence(const CutLattice& box, const std::array<bool, 3>& is_periodic,
                  std::vector<LatticeArm> arms, const Setting& setting, int threads);
 
   /// 7 real transforms in 2D and 11 in 3D.
@@ -78,6 +81,9 @@ class Correspondence : public LatticeForces {
   [[nodiscard]] const LatticeFields& fields() const { return fields_; }
 
  private:
+  [[nodiscard]] bool has_images() const { return setting_.own < fields_.points(); }
+  /// 1 of points with an energy of their own, 0 of others.
+  [[nodiscard]] double share(std::size_t point) const { return point < setting_.own ? 1.0 : 0.0; }
   void take_up(std::span<const double> displacement);
   template <int D>
   void renew_shapes();
@@ -89,6 +95,10 @@ class Correspondence : public LatticeForces {
   void find_stresses();
   template <int D>
   void find_stress_rates();
+  /// Sum of q' kappa over the ends of bonds.
+  [[nodiscard]] double sizes_of_ends(std::size_t point) const {
+    return shared_sizes_.empty() ? 2.0 * sizes_[point] : shared_sizes_[point];
+  }
   template <int D>
   void find_pulls(const std::vector<double>& u, double sign, std::span<double> force);
   template <int D>
@@ -111,6 +121,8 @@ class Correspondence : public LatticeForces {
   double whole_size_ = 0.0, whole_shape_ = 0.0;
   // Sums of q' times these, per point, and K^-1, 0 where it has none; matrices row by row.
   std::vector<double> sizes_, arms_left_, shapes_, inverse_shapes_;
+  // Sums of q' kappa, one for each end of a bond that has an energy; empty: both have.
+  std::vector<double> shared_sizes_;
   std::vector<double> state_;                       // u that gradients_ belong to; empty: none
   std::vector<double> displacement_;                // the same without its mean
   std::vector<double> direction_;                   // of the rates, without its mean

@@ -143,7 +143,7 @@ Vector<D, double> vector_at(const std::vector<double>& field, std::size_t point)
 
 }  // namespace
 
-GreenBonds::GreenBonds(const LatticeBox& box, const std::array<bool, 3>& is_periodic,
+GreenBonds::GreenBonds(const CutLattice& box, const std::array<bool, 3>& is_periodic,
                        std::span<const LatticeSpring> springs, int threads)
     : springs_(springs.begin(), springs.end()),
       fields_(box, is_periodic, steps_of(springs), threads),

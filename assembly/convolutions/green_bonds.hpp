@@ -34,7 +34,7 @@ class GreenBonds : public LatticeForces {
   /// @param is_periodic axes along which the lattice goes on as it began: points see their images
   /// @param springs of two opposite steps one
   /// @throws std::logic_error for a period that is not longer than the bonds
-  GreenBonds(const LatticeBox& box, const std::array<bool, 3>& is_periodic,
+  GreenBonds(const CutLattice& box, const std::array<bool, 3>& is_periodic,
              std::span<const LatticeSpring> springs, int threads);
 
   /// 7 real transforms in 2D and 11 in 3D.

@@ -144,7 +144,7 @@ void mix_row(const std::array<const double*, pairs_of(D)>& amplitudes,
 
 }  // namespace
 
-LatticeFields::LatticeFields(const LatticeBox& box, const std::array<bool, 3>& is_periodic,
+LatticeFields::LatticeFields(const CutLattice& box, const std::array<bool, 3>& is_periodic,
                              std::vector<LatticeStep> steps, int threads)
     : dimension_(box.dimension),
       steps_(std::move(steps)),
@@ -158,6 +158,66 @@ LatticeFields::LatticeFields(const LatticeBox& box, const std::array<bool, 3>& i
     const std::array<Index, 3> at = as_last(box.numbers(place), dimension_);
     where_.push_back(std::uint32_t(transform().at(at[0], at[1], at[2])));
   }
+  find_cuts(box);
+}
+
+void LatticeFields::find_cuts(const CutLattice& box) {
+  for (const auto& pair : box.cut) {
+    beside_cuts_.insert(beside_cuts_.end(), pair.begin(), pair.end());
+  }
+  std::ranges::sort(beside_cuts_);
+  const auto repeated = std::ranges::unique(beside_cuts_);
+  beside_cuts_.erase(repeated.begin(), repeated.end());
+  std::map<LatticeStep, std::uint32_t> number;
+  for (std::size_t s = 0; s < steps_.size(); ++s) number[steps_[s]] = std::uint32_t(s);
+  const auto beside = [&](Index point) {
+    return std::uint32_t(std::ranges::lower_bound(beside_cuts_, point) - beside_cuts_.begin());
+  };
+  for (const auto& [i, j] : box.cut) {
+    const std::array<Index, 3> here = box.numbers(box.place[std::size_t(i)]),
+                               there = box.numbers(box.place[std::size_t(j)]);
+    LatticeStep step{}, opposite{};
+    for (std::size_t c = 0; c < 3; ++c) {
+      step[c] = there[c] - here[c];
+      opposite[c] = -step[c];
+    }
+    const auto along = number.find(step), against = number.find(opposite);
+    if (along != number.end()) {
+      cuts_.push_back({beside(i), beside(j), along->second, false});
+      cuts_.push_back({beside(j), beside(i), along->second, true});
+    } else if (against != number.end()) {
+      cuts_.push_back({beside(i), beside(j), against->second, true});
+      cuts_.push_back({beside(j), beside(i), against->second, false});
+    } else {
+      throw std::logic_error("a pair is cut that sees nothing of each other");
+    }
+  }
+}
+
+void LatticeFields::keep_beside_cuts(std::size_t field) {
+  if (beside_cuts_.empty()) return;
+  values_beside_.resize(std::max(values_beside_.size(), field + 1));
+  std::vector<double>& kept = values_beside_[field];
+  kept.clear();
+  for (const Index point : beside_cuts_) {
+    kept.push_back(fields_[field].data()[where_[std::size_t(point)]]);
+  }
+}
+
+void LatticeFields::add_cuts(const Product& product, std::vector<double>& sums) const {
+  const double opposite = product.kernel->parity == Parity::even ? 1.0 : -1.0;
+  const std::vector<double>& values = values_beside_[product.field];
+  for (const Cut& cut : cuts_) {
+    const double of_step = product.kernel->values[cut.step];
+    sums[cut.at] +=
+        product.factor * (cut.is_opposite ? opposite * of_step : of_step) * values[cut.neighbour];
+  }
+}
+
+void LatticeFields::take_off_cuts(std::span<const double> sums, double* from) const {
+  for (std::size_t k = 0; k < beside_cuts_.size(); ++k) {
+    from[where_[std::size_t(beside_cuts_[k])]] -= sums[k];
+  }
 }
 
 LatticeSpectrum LatticeFields::spectrum(Parity parity,
@@ -168,7 +228,10 @@ LatticeSpectrum LatticeFields::spectrum(Parity parity,
     kernel.push_back({as_last(steps_[s], dimension_), value(s)});
     values[kernel.back().step] = kernel.back().value;
   }
-  LatticeSpectrum result{convolution_.amplitudes(kernel, parity), parity, {}};
+  LatticeSpectrum result{convolution_.amplitudes(kernel, parity), parity, {}, {}};
+  for (std::size_t s = 0; !cuts_.empty() && s < steps_.size(); ++s) {
+    result.values.push_back(value(s));
+  }
   for (std::size_t axis = 0; axis < 2; ++axis) {
     result.mirror[axis] = mirrored_sign(values, axis, parity == Parity::even ? 1.0 : -1.0);
   }
@@ -233,6 +296,10 @@ void LatticeFields::gather(std::span<const Product> products, bool begins) {
   const auto modes = std::ptrdiff_t(transform().row_modes()),
              rows = std::ptrdiff_t(transform().rows());
   double* const to = buffer(sum_).data();
+  if (begins) sums_of_cuts_.assign(beside_cuts_.size(), 0.0);
+  for (std::size_t p = 0; !cuts_.empty() && p < products.size(); ++p) {
+    add_cuts(products[p], sums_of_cuts_);
+  }
   std::vector<KeptRows> kept;
   for (const Product& product : products) kept.emplace_back(*product.kernel, transform());
 #pragma omp parallel for num_threads(threads()) schedule(static)
@@ -252,6 +319,7 @@ void LatticeFields::gather(std::span<const Product> products, bool begins) {
 const double* LatticeFields::sums_to_places() {
   transform().to_places(buffer(sum_));
   ++transforms_;
+  take_off_cuts(sums_of_cuts_, buffer(sum_).data());
   return buffer(sum_).data();
 }
 
@@ -280,6 +348,13 @@ void LatticeFields::mix(std::span<const LatticeSpectrum> kernels) {
   }
   for (std::size_t c = 0; c < D; ++c) transform().to_places(fields_[c]);
   transforms_ += D;
+  for (int i = 0; i < D && !cuts_.empty(); ++i) {
+    std::vector<double> of_cuts(beside_cuts_.size(), 0.0);
+    for (int j = 0; j < D; ++j) {
+      add_cuts({&kernels[pair_of(i, j, D)], std::size_t(j)}, of_cuts);
+    }
+    take_off_cuts(of_cuts, fields_[std::size_t(i)].data());
+  }
 }
 
 std::vector<double> LatticeFields::pairs() {

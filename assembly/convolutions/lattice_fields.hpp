@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "src/geometry/lattice_box.hpp"
+#include "assembly/convolutions/cut_lattice.hpp"
 #include "src/neighbourhood/lattice_kernel.hpp"
 #include "src/transforms/convolution.hpp"
 
@@ -44,6 +44,7 @@ struct LatticeSpectrum {
   Convolution::Parity parity = Convolution::Parity::even;
   /// g of the step with this component turned round is that much of g; 0: neither g nor -g.
   std::array<int, 3> mirror{};
+  std::vector<double> values{};  ///< g of each step, in a lattice with pairs that are cut
 };
 
 /// What all operators of a lattice's points by convolutions share: the points' places on a padded
@@ -54,7 +55,8 @@ struct LatticeSpectrum {
 ///
 /// of several fields b = q times a value at once, at the cost of one transform (convolutions
 /// [g * b] of [FCBM] app. A but for the sign of odd kernels). Places without a point have q = 0.
-/// The same bits on any number of threads.
+/// Pairs of points that are cut (CutLattice) are summed one by one and taken off: the lattice
+/// itself goes on through a crack. The same bits on any number of threads.
 class LatticeFields {
  public:
   using Parity = Convolution::Parity;
@@ -64,7 +66,7 @@ class LatticeFields {
   /// @param steps to neighbours, of two opposite ones one
   /// @throws std::logic_error for a period that is not longer than the steps, or for fields of more
   ///                          than 2^32 numbers
-  LatticeFields(const LatticeBox& box, const std::array<bool, 3>& is_periodic,
+  LatticeFields(const CutLattice& box, const std::array<bool, 3>& is_periodic,
                 std::vector<LatticeStep> steps, int threads);
 
   [[nodiscard]] int dimension() const { return dimension_; }
@@ -100,6 +102,7 @@ class LatticeFields {
   void fill(std::size_t field, const Value& value) {
     double* const to = cleared(field);
     for_points([&](std::size_t point) { to[where_[point]] = integrity_[point] * value(point); });
+    keep_beside_cuts(field);
     to_modes(field);
   }
 
@@ -164,6 +167,13 @@ class LatticeFields {
 
   fftw::Buffer& buffer(std::size_t field);
   [[nodiscard]] double* cleared(std::size_t field);
+  void find_cuts(const CutLattice& box);
+  /// Before its values become modes.
+  void keep_beside_cuts(std::size_t field);
+  /// sums += what products have over the pairs that are cut.
+  void add_cuts(const Product& product, std::vector<double>& sums) const;
+  /// Takes sums over pairs that are cut off those over all neighbours.
+  void take_off_cuts(std::span<const double> sums, double* from) const;
   void to_modes(std::size_t field);
   [[nodiscard]] const double* sums_to_places();
   template <int D>
@@ -178,6 +188,17 @@ class LatticeFields {
   fftw::Buffer own_sum_;
   std::size_t sum_ = of_its_own;
   std::size_t transforms_ = 0;
+
+  /// One point of a pair that is cut, and the step that the other one is away from it: numbers of
+  /// points beside cuts, and of steps.
+  struct Cut {
+    std::uint32_t at = 0, neighbour = 0, step = 0;
+    bool is_opposite = false;
+  };
+  std::vector<Cut> cuts_;
+  std::vector<Index> beside_cuts_;                  // points with a neighbour that is cut off
+  std::vector<std::vector<double>> values_beside_;  // of each field, at these
+  std::vector<double> sums_of_cuts_;                // at these, of what has been gathered
 };
 
 /// Of springs or arms.

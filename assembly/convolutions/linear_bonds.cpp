@@ -39,7 +39,7 @@ LatticeStencil stencil_of(LatticeFields& fields, std::span<const LatticeSpring> 
 
 }  // namespace
 
-LinearBonds::LinearBonds(const LatticeBox& box, const std::array<bool, 3>& is_periodic,
+LinearBonds::LinearBonds(const CutLattice& box, const std::array<bool, 3>& is_periodic,
                          std::span<const LatticeSpring> springs, int threads)
     : springs_(springs.begin(), springs.end()),
       fields_(box, is_periodic, steps_of(springs), threads) {
@@ -211,7 +211,7 @@ double convolved_bytes(const LatticeBox& box, std::span<const LatticeSpring> spr
          double(box.place.size()) * (12.0 + 8.0 * pairs);
 }
 
-std::vector<std::vector<double>> lattice_sums(const LatticeBox& box,
+std::vector<std::vector<double>> lattice_sums(const CutLattice& box,
                                               std::span<const LatticeSpring> springs,
                                               std::span<const std::vector<double>> kernels,
                                               std::span<const double> field, int threads) {

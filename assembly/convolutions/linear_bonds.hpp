@@ -4,10 +4,10 @@
 #include <span>
 #include <vector>
 
+#include "assembly/convolutions/cut_lattice.hpp"
 #include "assembly/convolutions/lattice_fields.hpp"
 #include "assembly/convolutions/lattice_forces.hpp"
 #include "assembly/convolutions/lattice_springs.hpp"
-#include "src/geometry/lattice_box.hpp"
 
 namespace peristat {
 
@@ -28,7 +28,7 @@ class LinearBonds : public LatticeForces {
   /// @param is_periodic axes along which the lattice goes on as it began: points see their images
   /// @param springs of two opposite steps one
   /// @throws std::logic_error for a period that bonds are as long as
-  LinearBonds(const LatticeBox& box, const std::array<bool, 3>& is_periodic,
+  LinearBonds(const CutLattice& box, const std::array<bool, 3>& is_periodic,
               std::span<const LatticeSpring> springs, int threads);
 
   void set_integrity(std::span<const double> integrity) override;
@@ -74,7 +74,7 @@ class LinearBonds : public LatticeForces {
 /// sum_j g(x_j - x_i) b_j per point of a lattice, for each of some even kernels g with a value for
 /// the step of each spring and the opposite one.
 [[nodiscard]] std::vector<std::vector<double>> lattice_sums(
-    const LatticeBox& box, std::span<const LatticeSpring> springs,
+    const CutLattice& box, std::span<const LatticeSpring> springs,
     std::span<const std::vector<double>> kernels, std::span<const double> field, int threads);
 
 }  // namespace peristat

@@ -26,7 +26,7 @@ double row_times(const double* pairs, int i, const double* u) {
 
 }  // namespace
 
-LinearSolid::LinearSolid(const LatticeBox& box, const std::array<bool, 3>& is_periodic,
+LinearSolid::LinearSolid(const CutLattice& box, const std::array<bool, 3>& is_periodic,
                          std::vector<LatticeArm> arms, const Setting& setting, int threads)
     : arms_(std::move(arms)),
       setting_(setting),
@@ -38,6 +38,7 @@ LinearSolid::LinearSolid(const LatticeBox& box, const std::array<bool, 3>& is_pe
   deviatoric_ = setting.volume * d * (d + 2) * mu;
   moment_ = fields_.spectrum(Parity::even,
                              [&](std::size_t s) { return arms_[s].share * squared(arms_[s].xi); });
+  std::ranges::fill(moment_.values, 0.0);  // a pre-crack takes nothing off M
   for (const LatticeArm& arm : arms_) whole_moment_ += 2.0 * arm.share * squared(arm.xi);
   for (int i = 0; i < d; ++i) {
     arm_.push_back(fields_.spectrum(
@@ -72,6 +73,7 @@ void LinearSolid::renew_sums() {
     inverse_moment_[i] = is_lonely ? 0.0 : 1.0 / sum;
   });
   fields_.leave_out_lonely(0.0, [&](std::size_t i) { return inverse_moment_[i]; });
+  for (std::size_t i = setting_.own; i < points; ++i) inverse_moment_[i] = 0.0;
   for (std::size_t c = 0; c < D; ++c) {
     fields_.find_sums(arm_[c], 0, [&](std::size_t i, double sum) { arms_left_[i * D + c] = sum; });
   }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -33,7 +34,8 @@ enum class SolidForces {
 /// the point itself for both ends: forces that do not add up to zero and do work around closed
 /// paths where M varies, for comparisons alone. Its energies are the same.
 ///
-/// On bodies without damage this is StateTerm with moments of the neighbours that are there. With
+/// M counts neighbours that a pre-crack hides, as that of StateTerm does. On bodies without damage
+/// this is StateTerm with moments of the neighbours that are there. With
 /// damage it is not: StateTerm keeps M of the whole neighbourhood, here M is renewed with q as in
 /// [FCBM], so that theta of a uniform dilation stays right and points that have lost neighbours are
 /// stiffer.
@@ -45,13 +47,16 @@ class LinearSolid : public LatticeForces {
     LamePair constants;   ///< in plane stress those of the plane [Pa]
     double volume = 0.0;  ///< V of each point [m3]
     SolidForces form = SolidForces::energy;
+    /// Points from this one on stand for others, whose energy theirs is: they have neither b nor p.
+    /// For form `energy`.
+    std::size_t own = std::numeric_limits<std::size_t>::max();
   };
 
   /// @param box the points and their places
   /// @param is_periodic axes along which the lattice goes on as it began: points see their images
   /// @param arms of two opposite steps one; a factor that all shares have does not matter
   /// @throws std::logic_error for a period that is not longer than the arms, or another dimension
-  LinearSolid(const LatticeBox& box, const std::array<bool, 3>& is_periodic,
+  LinearSolid(const CutLattice& box, const std::array<bool, 3>& is_periodic,
               std::vector<LatticeArm> arms, const Setting& setting, int threads);
 
   /// 11 real transforms in 2D and 18 in 3D.

@@ -7,7 +7,20 @@ namespace peristat {
 
 ConvolvedTangent::ConvolvedTangent(Energy& energy)
     : TangentOperator(energy.pattern(), energy.points().dimension, energy.threads()),
-      energy_(&energy) {}
+      energy_(&energy) {
+  forget();
+}
+
+bool forget_if_convolved(TangentOperator& tangent) {
+  auto* const convolved = dynamic_cast<ConvolvedTangent*>(&tangent);
+  if (convolved != nullptr) convolved->forget();
+  return convolved != nullptr;
+}
+
+void ConvolvedTangent::forget() {
+  diagonal = std::vector<double>();
+  at_ = {};
+}
 
 std::vector<double> ConvolvedTangent::positions() const {
   return at_.positions(energy_->points().reference);
@@ -18,7 +31,7 @@ void ConvolvedTangent::linearise(Energy& energy, const StateView& at, double pro
   reference = energy.points().reference;
   at_.keep(at);
   projection_ = projection;
-  std::fill(diagonal.begin(), diagonal.end(), 0.0);
+  diagonal.assign(reference.size() * std::size_t(dimension), 0.0);
   std::vector<double> unused(energy.points().reference.size());
   energy.outline_rows(at, diagonal, unused);
 }

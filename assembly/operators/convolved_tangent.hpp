@@ -16,6 +16,8 @@ struct ConvolvedTangent : TangentOperator {
   [[nodiscard]] std::vector<double> positions() const override;
   /// @param projection see TermPasses::product; diagonal blocks and sums are without
   void linearise(Energy& energy, const StateView& at, double projection) override;
+  /// Gives back what `linearise` finds again at little cost.
+  void forget();
   void multiply(std::span<const double> v, std::span<double> result) const override;
   [[nodiscard]] bool has_rows() const override { return false; }
   /// @throws std::logic_error
@@ -31,5 +33,10 @@ struct ConvolvedTangent : TangentOperator {
   KeptState at_;
   double projection_ = 0.0;
 };
+
+/// Lets a tangent of convolutions forget what it has found, until it is linearised again; others
+/// keep what took them long to find.
+/// @return whether it has
+bool forget_if_convolved(TangentOperator& tangent);
 
 }  // namespace peristat

@@ -17,20 +17,31 @@ void with_law(const Model& model, const Visit& visit) {
   if (const BondTerm* const bonds = model.failing_bonds()) bonds->with_damage_law(visit);
 }
 
+/// A bond of an image is its source's, and what a source has its images have.
+void gather_images(std::span<const Index> sources, std::vector<double>& sums) {
+  const std::size_t own = sums.size() - sources.size();
+  for (std::size_t k = 0; k < sources.size(); ++k) sums[std::size_t(sources[k])] += sums[own + k];
+  for (std::size_t k = 0; k < sources.size(); ++k) sums[own + k] = sums[std::size_t(sources[k])];
+}
+
 /// Of points that have lost their integrity: with every point its bonds are broken.
 DamageState assess_points(const PointTerm& term, std::span<const double> history,
-                          std::span<const double> cut_weight, std::span<double> damage) {
+                          std::span<const double> cut_weight, std::span<double> damage,
+                          std::span<const Index> image_sources) {
   DamageState state;
   std::ranges::fill(damage, 0.0);
   if (history.empty() && cut_weight.empty()) return state;
   const std::vector<double> whole(damage.size(), 1.0);
-  const NeighbourSums left =
-      term.neighbours(history.empty() ? whole : history.first(damage.size()));
+  NeighbourSums left = term.neighbours(history.empty() ? whole : history.first(damage.size()));
   state.dissipated_energy = history.empty() ? 0.0 : history.back();
   const double count = 0.5 * std::accumulate(left.count.begin(), left.count.end(), 0.0);
   state.broken_bonds = static_cast<Index>(std::round(double(term.count()) - count));
+  std::vector<double> all = term.whole_weight();
+  for (std::size_t i = 0; i < cut_weight.size(); ++i) all[i] += cut_weight[i];
+  gather_images(image_sources, all);
+  gather_images(image_sources, left.weight);
   for (std::size_t i = 0; i < damage.size(); ++i) {
-    const double of_point = term.whole_weight()[i] + (cut_weight.empty() ? 0.0 : cut_weight[i]);
+    const double of_point = all[i];
     if (!history.empty() && history[i] == 0.0) {
       damage[i] = 1.0;
     } else if (of_point > 0.0) {
@@ -65,8 +76,11 @@ const PointTerm* failing_points(const Model& model) {
 DamageState assess_damage(const Model& model, const History& history,
                           std::span<const double> cut_weight, std::span<double> damage,
                           const Points* points) {
+  const std::span<const Index> image_sources =
+      points != nullptr ? std::span<const Index>(points->images.source) : std::span<const Index>();
   if (const PointTerm* const of_points = failing_points(model)) {
-    return assess_points(*of_points, history.of(model.slot_of(*of_points)), cut_weight, damage);
+    return assess_points(*of_points, history.of(model.slot_of(*of_points)), cut_weight, damage,
+                         image_sources);
   }
   const Bonds& bonds = model.bonds();
   DamageState state;
@@ -101,19 +115,9 @@ DamageState assess_damage(const Model& model, const History& history,
       return law.integrity_after(largest);
     });
   });
-  const std::vector<Index> none;
-  const std::vector<Index>& image_sources = points != nullptr ? points->images.source : none;
-  const std::size_t own = damage.size() - image_sources.size();
-  for (std::vector<double>* sums : {&whole, &left}) {
-    for (std::size_t k = 0; k < image_sources.size(); ++k) {
-      (*sums)[std::size_t(image_sources[k])] += (*sums)[own + k];
-    }
-    for (std::size_t k = 0; k < image_sources.size(); ++k) {
-      (*sums)[own + k] = (*sums)[std::size_t(image_sources[k])];
-    }
-  }
   const bool is_part = points != nullptr && points->owned;
   const std::size_t told = is_part ? std::size_t(*points->owned) : damage.size();
+  for (std::vector<double>* sums : {&whole, &left}) gather_images(image_sources, *sums);
   for (std::size_t i = 0; i < damage.size(); ++i) {
     damage[i] = whole[i] > 0.0 ? std::clamp(1.0 - left[i] / whole[i], 0.0, 1.0) : 0.0;
     if (i < told) state.max_damage = std::max(state.max_damage, damage[i]);

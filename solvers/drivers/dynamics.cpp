@@ -5,8 +5,10 @@
 #include <stdexcept>
 #include <utility>
 
+#include "assembly/operators/convolved_tangent.hpp"
 #include "assembly/terms/damage.hpp"
 #include "solvers/motion/newmark.hpp"
+#include "solvers/motion/shared_stiffness.hpp"
 #include "solvers/motion/velocity_verlet.hpp"
 #include "src/core/number_text.hpp"
 
@@ -61,12 +63,21 @@ const MotionSetting& Dynamics::setting() const {
 Advance Dynamics::next() {
   PathState& state = path_.state();
   if (state.dynamics.has_begun && !path_.goes_on()) return Advance::ended;
+  // Velocities change in steps that are accepted alone, and are long.
+  std::vector<double> velocity = std::exchange(state.dynamics.velocity, {}),
+                      acceleration = std::exchange(state.dynamics.acceleration, {});
   const PathState::Dynamics dynamics = state.dynamics;
+  state.dynamics.velocity = std::move(velocity);
+  state.dynamics.acceleration = std::move(acceleration);
   const int steps = state.steps;
   const Advance advance = dynamics.has_begun ? move() : begin();
   if (path_.outcome() != Outcome::converged || repeats_) {
     const double step = repeats_ ? state.dynamics.step : dynamics.step;
+    velocity = std::exchange(state.dynamics.velocity, {});
+    acceleration = std::exchange(state.dynamics.acceleration, {});
     state.dynamics = dynamics;
+    state.dynamics.velocity = std::move(velocity);
+    state.dynamics.acceleration = std::move(acceleration);
     state.dynamics.step = step;
     state.steps = steps;
     repeats_ = false;
@@ -151,7 +162,8 @@ Stiffness Dynamics::stiffness_at(const Trial& state) {
   const auto& [assembler, solver, tangent, free] = path_.body();
   tangent.linearise(assembler, state.at(), projection_for_stiffness(assembler));
   is_linearised_ = true;
-  const Stiffness now = bound_stiffness(tangent, free, setting().mass, setting().most_points);
+  const Stiffness now =
+      bound_stiffness(tangent, free, setting().mass, setting().most_points, assembler.sharing());
   const Stiffness& known = path_.state().dynamics.stiffness;
   const bool is_enough = options_.time_step > 0.0 && now.stable_step() >= options_.time_step;
   if (is_enough) return now;
@@ -159,13 +171,19 @@ Stiffness Dynamics::stiffness_at(const Trial& state) {
     return {now.bound, known.eigenvalue * std::max(1.0, now.bound / known.bound)};
   }
   path_.state().dynamics.stiffness =
-      find_stiffness(tangent, free, setting().mass, setting().most_points);
+      find_stiffness(tangent, free, setting().mass, setting().most_points, assembler.sharing());
   return path_.state().dynamics.stiffness;
+}
+
+void Dynamics::give_back_tangent() {
+  if (is_implicit() || !forget_if_convolved(path_.body().tangent)) return;
+  is_linearised_ = false;
 }
 
 std::string Dynamics::choose_step(const Trial& state, double time) {
   PathState::Dynamics& dynamics = path_.state().dynamics;
   const Stiffness now = stiffness_at(state);
+  give_back_tangent();
   const bool has_changed =
       std::abs(now.bound - dynamics.last_bound) > same_stiffness / 2 * now.bound;
   dynamics.last_bound = now.bound;
@@ -246,20 +264,23 @@ MotionRecord Dynamics::motion_record(const Motion& motion) const {
   record.modified_energy = record.kinetic_energy + motion.at().stored_energy -
                            dynamics.correction_at_start - dynamics.correction;
   const FreeDofs& free = path_.free();
+  std::vector<double> momentum(record.momentum.size(), 0.0);
   for (const Index dof : free.dof) {
-    record.momentum[std::size_t(dof % free.dimension)] +=
-        setting().mass[dof] * motion.velocity()[dof];
+    momentum[std::size_t(dof % free.dimension)] += setting().mass[dof] * motion.velocity()[dof];
   }
+  momentum = path_.problem().sums().of_all(std::move(momentum));
+  std::copy(momentum.begin(), momentum.end(), record.momentum.begin());
   return record;
 }
 
-Ledger Dynamics::ledger_with(const Motion& motion, double dissipated) const {
+Ledger Dynamics::ledger_with(const Motion& motion, const MotionSums& sums,
+                             double dissipated) const {
   const PathLedger& ledger = path_.state().ledger;
   Ledger after = ledger.entries;
   after.stored = motion.at().stored_energy;
-  after.dissipated = dissipated + ledger.released + motion.sums().released;
-  after.external_work += motion.sums().work;
-  after.drained += motion.sums().absorbed;
+  after.dissipated = dissipated + ledger.released + sums.released;
+  after.external_work += sums.work;
+  after.drained += sums.absorbed;
   after.kinetic = motion.kinetic_energy();
   return after;
 }
@@ -273,12 +294,13 @@ Advance Dynamics::accept(Motion& motion) {
   FoundStep found;
   found.record.mode = Mode::dynamics.name;
   found.record.settled = true;
-  found.record.newton_iterations = motion.sums().iterations;
+  const MotionSums sums = motion.sums();
+  found.record.newton_iterations = sums.iterations;
   found.record.motion = motion_record(motion);
   found.record.broken_bonds = damaged.broken_bonds;
-  found.growth = motion.sums().growth;
-  found.energies.released = motion.sums().released;
-  found.ledger = ledger_with(motion, damaged.dissipated_energy);
+  found.growth = sums.growth;
+  found.energies.released = sums.released;
+  found.ledger = ledger_with(motion, sums, damaged.dissipated_energy);
   std::vector<double> velocity = motion.take_velocity(), acceleration = motion.take_acceleration();
   Attempt attempt;
   attempt.at = time;
@@ -306,7 +328,6 @@ Advance Dynamics::accept(Motion& motion) {
     tell(found.record,
          {attempt.state, attempt.external_force, state.pins.found.piece, state.dynamics.velocity});
   }
-  path_.last_attempt() = std::move(attempt);
   if (is_implicit()) lengthen_step(time);
   return Advance::goes_on;
 }
@@ -339,6 +360,7 @@ std::string Dynamics::fault_of(const Attempt& attempt, const FoundStep& found) {
       find_inconsistency(path_.problem(), path_.damaged(), tangent,
                          {attempt.state, attempt.external_force, attempt.largest_residual, true,
                           state.ledger.entries, found.ledger});
+  give_back_tangent();
   if (!fault.empty()) return fault;
   return fault_of_balance(found.ledger);
 }

@@ -46,6 +46,8 @@ class Dynamics : public Driver {
   [[nodiscard]] bool shorten_step(double time, Outcome outcome, const std::string& reason);
   /// The stiffness at a state; the eigenvalue is found again where the bound has changed.
   [[nodiscard]] Stiffness stiffness_at(const Trial& state);
+  /// Where the body's motion has no use of it until it is found again, and it is quickly found.
+  void give_back_tangent();
   /// Chooses the step for the present stiffness.
   /// @return why there is none
   [[nodiscard]] std::string choose_step(const Trial& state, double time);
@@ -53,7 +55,8 @@ class Dynamics : public Driver {
   /// Of what is prescribed, the mean over a time step.
   void add_velocity_of_supports(double time, std::vector<double>& velocity) const;
   [[nodiscard]] MotionRecord motion_record(const Motion& motion) const;
-  [[nodiscard]] Ledger ledger_with(const Motion& motion, double dissipated) const;
+  [[nodiscard]] Ledger ledger_with(const Motion& motion, const MotionSums& sums,
+                                   double dissipated) const;
   [[nodiscard]] std::string fault_of(const Attempt& attempt, const FoundStep& found);
   [[nodiscard]] std::string fault_of_balance(const Ledger& after);
   [[nodiscard]] Advance fail(Outcome outcome, double time, const std::string& what);

@@ -6,7 +6,7 @@
 #include <limits>
 #include <utility>
 
-#include "assembly/energy/ghost_values.hpp"
+#include "src/core/sharing.hpp"
 
 namespace peristat {
 namespace {

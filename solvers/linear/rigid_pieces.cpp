@@ -16,10 +16,10 @@
 #include <fmt/format.h>
 #include <omp.h>
 
-#include "assembly/energy/ghost_values.hpp"
 #include "solvers/linear/block_jacobi.hpp"
 #include "solvers/linear/gathered_pieces.hpp"
 #include "solvers/linear/worst_outcome.hpp"
+#include "src/core/sharing.hpp"
 #include "src/geometry/squared_distance.hpp"
 
 namespace peristat {

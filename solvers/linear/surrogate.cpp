@@ -8,13 +8,13 @@
 
 #include <fmt/format.h>
 
-#include "assembly/energy/ghost_values.hpp"
 #include "assembly/operators/tangent.hpp"
 #include "solvers/linear/block_jacobi.hpp"
 #include "solvers/linear/cholesky.hpp"
 #include "solvers/linear/compressed_rows.hpp"
 #include "solvers/linear/sums.hpp"
 #include "solvers/linear/worst_outcome.hpp"
+#include "src/core/sharing.hpp"
 #include "src/geometry/squared_distance.hpp"
 
 namespace peristat {

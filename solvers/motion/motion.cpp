@@ -26,7 +26,7 @@ Motion::Motion(const EquilibriumProblem& problem, const MotionSetting& setting, 
   if (conditions.supports_move()) {
     const auto &prescribed = conditions.prescribed(),
                &dependent = conditions.constraints().dependent();
-    for (std::size_t dof = 0; dof < prescribed.size(); ++dof) {
+    for (std::size_t dof = 0; dof < problem.sums().own(prescribed.size()); ++dof) {
       if (prescribed[dof] && !dependent[dof]) moved_.push_back(Index(dof));
     }
   }
@@ -61,6 +61,25 @@ void Motion::note_before() {
   }
 }
 
+void Motion::change_supports_and_loads(std::span<double> displacement) {
+  const Conditions& conditions = problem_.conditions;
+  if (!conditions.supports_move() && !conditions.loads_change()) return;
+  take_on_all_ranks([&] {
+    if (conditions.supports_move()) conditions.prescribe(time_, displacement);
+    change_loads();
+  });
+}
+
+void Motion::require_conditions_on_all_ranks(double time) {
+  if (!problem_.assembler.sharing()) return;
+  take_on_all_ranks([&] {
+    std::vector<double> values(at_.displacement.size());
+    problem_.conditions.prescribe(time, values);
+    problem_.conditions.external_force(time, values);
+    static_cast<void>(problem_.conditions.environment(time));
+  });
+}
+
 void Motion::change_loads() {
   if (!problem_.conditions.loads_change()) return;
   last_force_.swap(external_force_);
@@ -71,7 +90,7 @@ void Motion::change_loads() {
 void Motion::change_environment() {
   if (!problem_.conditions.environment_changes()) return;
   last_environment_ = at_.environment;
-  at_.environment = problem_.conditions.environment(time_);
+  take_on_all_ranks([&] { at_.environment = problem_.conditions.environment(time_); });
   add_half_of_heating();
 }
 
@@ -81,8 +100,11 @@ void Motion::complete_heating() {
 
 void Motion::add_half_of_heating() {
   const Environment& now = *at_.environment;
-  if (now.eigenstretch.empty() && now.ground.empty()) return;  // pressures have no energy
-  sums_.work += 0.5 * (energy_under(at_.environment) - energy_under(last_environment_));
+  const bool has_energy = !now.eigenstretch.empty() || !now.ground.empty();  // pressures have none
+  if (problem_.sums().largest_of_all(has_energy ? 1.0 : 0.0) == 0.0) return;
+  const double heating = 0.5 * (energy_under(at_.environment) - energy_under(last_environment_));
+  const Sharing* const sharing = problem_.assembler.sharing();
+  if (!sharing || sharing->ranks().rank() == 0) sums_.work += heating;  // of the whole body
 }
 
 double Motion::energy_under(const SharedEnvironment& environment) {
@@ -95,7 +117,7 @@ void Motion::add_work_of_supports() {
     sums_.work += 0.5 * (last_reaction_[k] + at_.gradient[moved_[k]]) *
                   (at_.displacement[moved_[k]] - last_place_[k]);
   }
-  for (std::size_t k = 0; k < at_.follower_force.size(); ++k) {
+  for (std::size_t k = 0; k < problem_.sums().own(at_.follower_force.size()); ++k) {
     sums_.work += 0.5 * (last_follower_force_[k] + at_.follower_force[k]) *
                   (at_.displacement[k] - last_displacement_[k]);
   }
@@ -121,12 +143,20 @@ bool Motion::find_energy() {
   return !at_.degenerate;
 }
 
+MotionSums Motion::sums() const {
+  MotionSums all = sums_;
+  const std::vector<double> of_all = problem_.sums().of_all({sums_.work, sums_.absorbed});
+  all.work = of_all[0];
+  all.absorbed = of_all[1];
+  return all;
+}
+
 double Motion::kinetic_energy() const {
   double twice = 0.0;
   for (const Index dof : problem_.free.dof) {
     twice += setting_.mass[dof] * velocity_[dof] * velocity_[dof];
   }
-  return 0.5 * twice;
+  return 0.5 * problem_.sums().of_all(twice);
 }
 
 double Motion::squared_force() const {
@@ -135,7 +165,7 @@ double Motion::squared_force() const {
     const double force = external_force_[dof] - at_.gradient[dof];
     sum += force * force * inverse_mass_[dof];
   }
-  return sum;
+  return problem_.sums().of_all(sum);
 }
 
 }  // namespace peristat

@@ -1,10 +1,12 @@
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "solvers/motion/motion_setting.hpp"
 #include "solvers/problem/equilibrium.hpp"
+#include "src/core/input_error.hpp"
 
 namespace peristat {
 
@@ -25,6 +27,9 @@ struct MotionSums {
 /// order in it.
 ///
 /// Masses and velocities of what is prescribed do not enter: supports do the work of dE/dx alone.
+///
+/// Of a body that ranks have parts of, each moves the points that it owns, and ghosts follow their
+/// owners; energies and sums are those of the whole body, in calls that all ranks make.
 class Motion {
  public:
   /// Damages what is stretched too far in the state.
@@ -52,7 +57,7 @@ class Motion {
   [[nodiscard]] const std::vector<double>& external_force() const { return external_force_; }
   /// 0 where it is prescribed [m/s].
   [[nodiscard]] const std::vector<double>& velocity() const { return velocity_; }
-  [[nodiscard]] const MotionSums& sums() const { return sums_; }
+  [[nodiscard]] MotionSums sums() const;
 
   /// Finds the stored energy of the present state.
   /// @return false if that is no state
@@ -64,6 +69,20 @@ class Motion {
   [[nodiscard]] double squared_force() const;
 
  protected:
+  /// Takes conditions to a time: all ranks, or none where one alone finds no value at its points.
+  template <class Take>
+  void take_on_all_ranks(const Take& take) {
+    const Sharing* const sharing = problem_.assembler.sharing();
+    if (!sharing) return take();
+    std::optional<InputError> refusal;
+    try {
+      take();
+    } catch (const InputError& error) {
+      refusal = error;
+    }
+    if (sharing->ranks().max(refusal ? 1.0 : 0.0) == 0.0) return;
+    throw refusal.value_or(InputError("", "", "a condition has no value on another rank"));
+  }
   /// Lets velocities decay for half a step.
   void absorb(double half_step);
   /// Finds the forces of the present state, and damages it.
@@ -71,7 +90,12 @@ class Motion {
   [[nodiscard]] bool find_forces();
   /// Before a step: of what its work is summed.
   void note_before();
+  /// Takes loads to the present time, and what is prescribed to its place there.
+  /// @throws InputError on all ranks alike
+  void change_supports_and_loads(std::span<double> displacement);
   void change_loads();
+  /// Before a search at a time, in which one rank alone would find a condition without a value.
+  void require_conditions_on_all_ranks(double time);
   /// Takes what the energy depends on to a time, with half of the work of that.
   void change_environment();
   /// The other half, in the new place.
@@ -94,7 +118,7 @@ class Motion {
   Trial at_;
   std::vector<double> external_force_, velocity_;
   double time_ = 0.0;
-  MotionSums sums_;
+  MotionSums sums_;  // work and what is absorbed: of this rank's points
 
  private:
   void add_half_of_heating();

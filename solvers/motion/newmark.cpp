@@ -31,6 +31,7 @@ Newmark::Newmark(const EquilibriumProblem& problem, const MotionSetting& setting
 }
 
 Outcome Newmark::step(double dt, double time) {
+  require_conditions_on_all_ranks(time);
   const std::vector<double> velocity_before = velocity_;
   const double absorbed_before = sums_.absorbed;
   absorb(0.5 * dt);

@@ -1,5 +1,3 @@
-#include "solvers/motion/stable_step.hpp"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -7,6 +5,8 @@
 #include <vector>
 
 #include "solvers/linear/vector_verbs.hpp"
+#include "solvers/motion/shared_stiffness.hpp"
+#include "solvers/ranks/part_of_body.hpp"
 #include "src/core/counter_random.hpp"
 
 namespace peristat {
@@ -60,27 +60,52 @@ double largest_of_block(const double* block, const double* mass, const char* is_
   return largest;
 }
 
-/// The point whose block is stiffest, and how stiff it is.
-struct Stiffest {
-  Index point = 0;
-  double eigenvalue = 0.0;
+/// A body, whole or the part of it that this rank has.
+struct Shared {
+  Shared(const Sharing* of, int dimension) : sharing(of), sums(of, dimension) {}
+
+  /// Of an owned point.
+  [[nodiscard]] GlobalIndex number(Index point) const {
+    if (!sharing) return point;
+    return dynamic_cast<const PartOfBody&>(*sharing).number()[std::size_t(point)];
+  }
+
+  const Sharing* sharing;
+  Sums sums;
 };
 
-Stiffest stiffest_point(const TangentOperator& tangent, const FreeDofs& free,
-                        std::span<const double> mass) {
-  const auto d = std::size_t(tangent.dimension);
-  Stiffest found;
+/// How stiff a point is.
+double stiffness_of_point(const TangentOperator& tangent, const FreeDofs& free,
+                          std::span<const double> mass, Index point) {
+  const auto d = std::size_t(tangent.dimension), first = std::size_t(point) * d;
+  std::array<char, 3> is_free{};
+  for (std::size_t c = 0; c < d; ++c) is_free[c] = free.equation[first + c] != FreeDofs::none;
+  return largest_of_block(&tangent.diagonal[first * d], &mass[first], is_free.data(),
+                          tangent.dimension);
+}
+
+double stiffest(const TangentOperator& tangent, const FreeDofs& free, std::span<const double> mass,
+                const Sums& sums) {
+  double largest = 0.0;  // ghosts have no equation, and no stiffness by that
   for (Index i = 0; i < tangent.pattern.points(); ++i) {
-    std::array<char, 3> is_free{};
-    for (std::size_t c = 0; c < d; ++c) {
-      is_free[c] = free.equation[std::size_t(i) * d + c] != FreeDofs::none;
-    }
-    const double value =
-        largest_of_block(&tangent.diagonal[std::size_t(i) * d * d], &mass[std::size_t(i) * d],
-                         is_free.data(), tangent.dimension);
-    if (value > found.eigenvalue) found = {i, value};
+    largest = std::max(largest, stiffness_of_point(tangent, free, mass, i));
   }
-  return found;
+  return sums.largest_of_all(largest);
+}
+
+/// The first of the points that are as stiff as the stiffest, by its number in the whole body.
+/// Round-off, which ranks have in another order, must not tell which.
+GlobalIndex first_stiffest(const TangentOperator& tangent, const FreeDofs& free,
+                           std::span<const double> mass, double largest, const Shared& of) {
+  constexpr double as_stiff = 1e-9, beyond_all = 1e300;
+  const auto d = std::size_t(tangent.dimension);
+  const auto own = Index(of.sums.own(std::size_t(tangent.pattern.points()) * d) / d);
+  double number = beyond_all;
+  for (Index i = 0; i < own && number == beyond_all; ++i) {
+    const double stiffness = stiffness_of_point(tangent, free, mass, i);
+    if (stiffness >= (1.0 - as_stiff) * largest) number = double(of.number(i));
+  }
+  return GlobalIndex(-of.sums.largest_of_all(-number));
 }
 
 /// Largest eigenvalue of a symmetric tridiagonal matrix, by bisection on the signs of its pivots.
@@ -127,33 +152,37 @@ class ScaledProduct {
 
 /// Random, and as much again at the point that is stiffest: a frequency that lives there alone is
 /// then not overlooked.
-Vector start_vector(const FreeDofs& free, Index stiffest, int dimension) {
+Vector start_vector(const FreeDofs& free, GlobalIndex stiffest, int dimension, const Shared& of) {
   constexpr std::uint64_t seed = 20;
   Vector start(free.equation.size(), 0.0);
+  const auto number_of = [&](Index dof) {
+    const bool is_of_point = std::size_t(dof) < of.sums.own(start.size());
+    if (!of.sharing || !is_of_point) return GlobalIndex(dof);
+    return of.number(dof / dimension) * dimension + dof % dimension;
+  };
   for (const Index dof : free.dof) {
-    start[dof] = 2.0 * open_unit(random_bits(seed, std::uint64_t(dof))) - 1.0;
+    start[dof] = 2.0 * open_unit(random_bits(seed, std::uint64_t(number_of(dof)))) - 1.0;
   }
-  const double length = norm(start);
-  for (int c = 0; c < dimension; ++c) {
-    const std::size_t dof = std::size_t(stiffest) * std::size_t(dimension) + std::size_t(c);
-    if (free.equation[dof] != FreeDofs::none) start[dof] += std::copysign(length, start[dof]);
+  const double length = of.sums.norm(start);
+  for (const Index dof : free.dof) {
+    if (number_of(dof) / dimension == stiffest) start[dof] += std::copysign(length, start[dof]);
   }
-  const double whole = norm(start);
+  const double whole = of.sums.norm(start);
   for (double& entry : start) entry /= whole;
   return start;
 }
 
 /// Largest Ritz value, from below.
-double lanczos(ScaledProduct& product, Vector at) {
+double lanczos(ScaledProduct& product, Vector at, const Sums& sums) {
   Vector before(at.size(), 0.0), next(at.size());
   Vector diagonal, beside, found;
   for (std::size_t k = 0; k < most_iterations; ++k) {
     product(at, next);
-    diagonal.push_back(dot(at, next));
+    diagonal.push_back(sums.dot(at, next));
     add_scaled(next, -diagonal.back(), at);
     if (k > 0) add_scaled(next, -beside.back(), before);
     found.push_back(largest_eigenvalue(diagonal, beside));
-    const double left = norm(next);
+    const double left = sums.norm(next);
     if (!(left > 1e-12 * found.back())) break;
     if (k >= least_iterations &&
         found.back() - found[k - look_back] <= settled_share * found.back()) {
@@ -168,12 +197,12 @@ double lanczos(ScaledProduct& product, Vector at) {
 }
 
 /// By the growth of a vector, from below: the method has no use of symmetry, and is slow.
-double power(ScaledProduct& product, Vector at) {
+double power(ScaledProduct& product, Vector at, const Sums& sums) {
   Vector next(at.size());
   double largest = 0.0;
   for (int k = 0; k < power_iterations; ++k) {
     product(at, next);
-    const double length = norm(next);
+    const double length = sums.norm(next);
     if (!(length > 0.0)) break;
     if (2 * k >= power_iterations) largest = std::max(largest, length);
     at.swap(next);
@@ -182,17 +211,36 @@ double power(ScaledProduct& product, Vector at) {
   return largest;
 }
 
+/// To 20 bits: Lanczos' method makes much of round-off, which is another on ranks, and the step
+/// must not hang on it.
+double rounded_up(double value) {
+  constexpr int bits = 20;
+  int exponent = 0;
+  const double share = std::frexp(value, &exponent);
+  return std::ldexp(std::ceil(std::ldexp(share, bits)), exponent - bits);
+}
+
 double bound_of(const TangentOperator& tangent, const FreeDofs& free, std::span<const double> mass,
-                int most_points, double stiffest) {
-  if (most_points > 0) return most_points * stiffest;
+                int most_points, double largest, const Sums& of_body) {
+  if (most_points > 0) return most_points * largest;
   Vector sums(mass.size());
   tangent.absolute_row_sums(sums);
   double bound = 0.0;
   for (const Index dof : free.dof) bound = std::max(bound, sums[dof] / mass[dof]);
-  return bound;
+  return of_body.largest_of_all(bound);
 }
 
 }  // namespace
+
+Stiffness bound_stiffness(const TangentOperator& tangent, const FreeDofs& free,
+                          std::span<const double> mass, int most_points) {
+  return bound_stiffness(tangent, free, mass, most_points, nullptr);
+}
+
+Stiffness find_stiffness(const TangentOperator& tangent, const FreeDofs& free,
+                         std::span<const double> mass, int most_points) {
+  return find_stiffness(tangent, free, mass, most_points, nullptr);
+}
 
 double Stiffness::stable_step() const {
   return eigenvalue > 0.0 ? 2.0 / std::sqrt(eigenvalue) : std::numeric_limits<double>::infinity();
@@ -201,22 +249,27 @@ double Stiffness::stable_step() const {
 double projection_for_stiffness(const Energy& energy) { return energy.has_rows() ? 1.0 : 0.0; }
 
 Stiffness bound_stiffness(const TangentOperator& tangent, const FreeDofs& free,
-                          std::span<const double> mass, int most_points) {
-  const double bound =
-      bound_of(tangent, free, mass, most_points, stiffest_point(tangent, free, mass).eigenvalue);
+                          std::span<const double> mass, int most_points, const Sharing* sharing) {
+  const Shared of(sharing, tangent.dimension);
+  const double largest = stiffest(tangent, free, mass, of.sums);
+  const double bound = bound_of(tangent, free, mass, most_points, largest, of.sums);
   return {bound, bound};
 }
 
 Stiffness find_stiffness(const TangentOperator& tangent, const FreeDofs& free,
-                         std::span<const double> mass, int most_points) {
-  const Stiffest stiffest = stiffest_point(tangent, free, mass);
-  const double bound = bound_of(tangent, free, mass, most_points, stiffest.eigenvalue);
-  if (!(bound > 0.0) || free.dof.empty()) return {bound, bound};
+                         std::span<const double> mass, int most_points, const Sharing* sharing) {
+  const Shared of(sharing, tangent.dimension);
+  const double largest = stiffest(tangent, free, mass, of.sums);
+  const double bound = bound_of(tangent, free, mass, most_points, largest, of.sums);
+  const double equations = of.sums.of_all(double(free.dof.size()));
+  if (!(bound > 0.0) || equations == 0.0) return {bound, bound};
   ScaledProduct product(tangent, free, mass);
-  Vector start = start_vector(free, stiffest.point, tangent.dimension);
-  const double found = tangent.is_symmetric() ? margin * lanczos(product, std::move(start))
-                                              : power_margin * power(product, std::move(start));
-  return {bound, std::min(bound, found)};
+  Vector start =
+      start_vector(free, first_stiffest(tangent, free, mass, largest, of), tangent.dimension, of);
+  const double found = tangent.is_symmetric()
+                           ? margin * lanczos(product, std::move(start), of.sums)
+                           : power_margin * power(product, std::move(start), of.sums);
+  return {bound, std::min(bound, rounded_up(found))};
 }
 
 }  // namespace peristat

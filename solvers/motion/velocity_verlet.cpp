@@ -48,19 +48,14 @@ Outcome VelocityVerlet::step(double dt, double time) {
   has_moved_ = true;
   change_environment();
   drift(dt);
-  go_where_prescribed();
+  change_supports_and_loads(at_.displacement);
   move_followers(problem_, at_);
   complete_heating();
-  change_loads();
   if (!find_forces()) return Outcome::degenerate;
   add_work([&](Index dof) { return dt * velocity_[dof]; });
   kick(0.5 * dt);
   absorb(0.5 * dt);
   return Outcome::converged;
-}
-
-void VelocityVerlet::go_where_prescribed() {
-  if (problem_.conditions.supports_move()) problem_.conditions.prescribe(time_, at_.displacement);
 }
 
 void VelocityVerlet::complete_sums() {

@@ -26,7 +26,6 @@ class VelocityVerlet : public Motion {
  private:
   void kick(double half_step);
   void drift(double dt);
-  void go_where_prescribed();
 
   double last_dt_ = 0.0, force_at_change_ = 0.0;
   bool has_moved_ = false;

@@ -1,6 +1,9 @@
 #include "solvers/ranks/part_bonds.hpp"
 
+#include <algorithm>
+#include <numeric>
 #include <stdexcept>
+#include <vector>
 
 #include "solvers/ranks/agree_on_kinds.hpp"
 #include "src/geometry/counts_bond.hpp"
@@ -8,26 +11,45 @@
 namespace peristat {
 namespace {
 
-double reach_here(const Points& points, SurfaceCorrection surface, const BondSetting& setting) {
-  const double once = search_radius(points, setting);
-  return surface == SurfaceCorrection::none ? once : 2.0 * once;
+double reach_here(const Points& points, SurfaceCorrection surface, const BondSetting& setting,
+                  PartBonds which) {
+  const int more = int(surface != SurfaceCorrection::none) + int(which == PartBonds::of_neighbours);
+  return (1 + more) * search_radius(points, setting);
+}
+
+/// Per point, whether it is this rank's or has a bond with one that is.
+std::vector<char> owned_and_neighbours(const Part& part, const Bonds& bonds) {
+  std::vector<char> is_near(part.points.volume.size(), 0);
+  std::fill_n(is_near.begin(), part.owned, char(1));
+  for (Index i = 0; i < part.owned; ++i) {
+    for (Offset bond = bonds.offset[i]; bond < bonds.offset[i + 1]; ++bond) {
+      is_near[std::size_t(bonds.partner[std::size_t(bond)])] = 1;
+    }
+  }
+  return is_near;
 }
 
 }  // namespace
 
 double reach_of_bonds(const Points& points, SurfaceCorrection surface, const BondSetting& setting,
-                      const Communicator& ranks) {
-  return ranks.max(reach_here(points, surface, setting));
+                      const Communicator& ranks, PartBonds which) {
+  return ranks.max(reach_here(points, surface, setting, which));
 }
 
 Bonds make_bonds(const Part& part, SurfaceCorrection surface, const BondSetting& setting,
-                 const Communicator& ranks, int threads) {
-  if (part.reach < reach_here(part.points, surface, setting)) {
+                 const Communicator& ranks, int threads, PartBonds which) {
+  if (part.reach < reach_here(part.points, surface, setting, which)) {
     throw std::logic_error("the ghosts of a part don't reach as far as its bonds");
   }
   Bonds bonds = make_bonds(part.points, surface, setting, threads);
+  const std::vector<char> is_near = owned_and_neighbours(part, bonds);
   // Ghosts come last, so that a lower point that is one has no other partners.
-  bonds.remove_if([&](Index i, Offset) { return part.is_ghost(i); });
+  bonds.remove_if([&](Index i, Offset bond) {
+    if (!part.is_ghost(i)) return false;
+    const char other = is_near[std::size_t(bonds.partner[std::size_t(bond)])];
+    if (which == PartBonds::among_neighbours) return !(is_near[std::size_t(i)] && other);
+    return which == PartBonds::of_owned || !(is_near[std::size_t(i)] || other);
+  });
   agree_on_kinds(bonds, part, ranks);
   return bonds;
 }
@@ -41,6 +63,14 @@ GlobalIndex count_bonds(const Points& points, const Bonds& bonds, const Communic
     }
   }
   return ranks.count_all(mine).all;
+}
+
+GlobalIndex count_interactions(Index owned, const InteractionCount& here,
+                               const Communicator& ranks) {
+  const auto first = here.per_point.begin();
+  const GlobalIndex corners = std::accumulate(first, first + owned, GlobalIndex(0));
+  const int points = here.orders == 1 ? 2 : here.orders == 2 ? 3 : 4;  // the factorial of one less
+  return ranks.count_all(corners).all / points;
 }
 
 }  // namespace peristat

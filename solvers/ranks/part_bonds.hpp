@@ -1,27 +1,42 @@
 #pragma once
 
+#include "assembly/terms/term.hpp"
 #include "src/core/communicator.hpp"
 #include "src/geometry/part.hpp"
 #include "src/materials/quadrature.hpp"
 
 namespace peristat {
 
-/// How far ghosts must reach for the bonds of a part [m]: as far as these, twice where a surface
-/// correction asks for what the neighbours of a point see. A call that all ranks make.
+/// Which bonds of a body a part has. A bond of points of two ranks is on both.
+enum class PartBonds {
+  of_owned,          ///< every one with a point that its rank owns
+  among_neighbours,  ///< and those between ghosts, which triangles and tetrahedra stand on
+  of_neighbours      ///< all of its points and of their neighbours, which have states of their own
+};
+
+/// How far ghosts must reach for the bonds of a part [m]: as far as these, once more where these
+/// are of neighbours, and where a surface correction asks for what the neighbours of a point see. A
+/// call that all ranks make.
 /// @param points those of the rank, without ghosts or with them
 [[nodiscard]] double reach_of_bonds(const Points& points, SurfaceCorrection surface,
-                                    const BondSetting& setting, const Communicator& ranks);
+                                    const BondSetting& setting, const Communicator& ranks,
+                                    PartBonds which = PartBonds::of_owned);
 
-/// The bonds of a body that a part has: every one with a point that its rank owns, with the weights
-/// of make_bonds. A bond of points of two ranks is on both, with the same bits (agree_on_kinds);
-/// none is between ghosts. A call that all make.
+/// The bonds of a body that a part has, with the weights of make_bonds; those that two ranks count
+/// energies of have the same bits on both (agree_on_kinds). A call that all make.
 /// @throws std::logic_error if the part's ghosts don't reach as far as reach_of_bonds
 [[nodiscard]] Bonds make_bonds(const Part& part, SurfaceCorrection surface,
-                               const BondSetting& setting, const Communicator& ranks, int threads);
+                               const BondSetting& setting, const Communicator& ranks, int threads,
+                               PartBonds which = PartBonds::of_owned);
 
 /// Bonds of the whole body that have a weight, each counted once.
 /// @param points of the rank
 [[nodiscard]] GlobalIndex count_bonds(const Points& points, const Bonds& bonds,
                                       const Communicator& ranks);
+
+/// Interactions of the whole body of a kind, each counted once.
+/// @param here all that owned points take part in
+[[nodiscard]] GlobalIndex count_interactions(Index owned, const InteractionCount& here,
+                                             const Communicator& ranks);
 
 }  // namespace peristat

@@ -15,8 +15,9 @@
 #include "assembly/terms/springs/foundation_term.hpp"
 #include "assembly/terms/springs/inertia_term.hpp"
 #include "solvers/linear/available_memory.hpp"
-#include "solvers/ranks/part_bonds.hpp"
+#include "solvers/ranks/sum_on_machine.hpp"
 #include "solvers/study/bond_potential.hpp"
+#include "solvers/study/bonds_of_part.hpp"
 #include "solvers/study/collocation_model.hpp"
 #include "solvers/study/cpd_model.hpp"
 #include "solvers/study/fracture_data.hpp"
@@ -110,7 +111,9 @@ void note_materials(Body& body, const PointMaterials& materials, int threads) {
 }
 
 /// Model of a body, and what its pre-cracks have cut.
-void make_model(Body& body, int threads) {
+/// @param make_network finds the bonds that a setting makes
+template <class MakeNetwork>
+void make_model(Body& body, const MakeNetwork& make_network, int threads) {
   const BodySpecification& of = body.specification;
   const Stopwatch watch(body.seconds_neighbourhood);
   const bool is_cpd = of.material.model == MaterialModel::cpd;
@@ -120,7 +123,7 @@ void make_model(Body& body, int threads) {
   if (of.has_states()) setting = state_setting(std::move(setting));
   const bool is_linear = of.is_linear() || of.is_convolved();
   setting = network_setting(of, body.points, std::move(setting));
-  Bonds bonds = make_bonds(body.points, of.surface_correction, setting, threads);
+  Bonds bonds = make_network(setting);
   refuse_coincident_points(body.points, bonds);
   const PointMaterials materials(of, body.points);
   note_materials(body, materials, threads);
@@ -136,7 +139,7 @@ void make_model(Body& body, int threads) {
                                         std::move(bonds), cut, body.collocation, threads);
   } else if (is_cpd) {
     body.model = make_cpd_model(of, materials, body.factors, body.points, body.setting,
-                                std::move(bonds), cut, threads);
+                                std::move(bonds), cut, body.part.get(), threads);
   } else {
     body.model = make_bond_model(body, materials, std::move(bonds), cut);
   }
@@ -144,11 +147,18 @@ void make_model(Body& body, int threads) {
   body.cut_bonds = std::move(cut.ends);
 }
 
-/// Stores interactions that can be stored if they fit into half of what everything else leaves.
+/// Stores interactions that can be stored if they fit into half of what everything else leaves: on
+/// a machine those of all its ranks, or none.
 void store_interactions(Body& body, int threads) {
   InteractionStorage& storage = body.interaction_storage;
   for (const auto& term : body.model.terms()) storage.needed += term->bytes_to_store();
-  storage.room = std::max(0.5 * (available_memory() - estimate_memory(body).least_bytes()), 0.0);
+  // A rank may have no point, which no estimate is made for.
+  double others = body.points.count() == 0 ? 0.0 : estimate_memory(body).least_bytes();
+  if (body.part) {
+    storage.needed = sum_on_machine(body.part->ranks(), storage.needed);
+    others = sum_on_machine(body.part->ranks(), others);
+  }
+  storage.room = std::max(0.5 * (available_memory() - others), 0.0);
   if (!storage.fits()) return;
   for (const auto& term : body.model.terms()) term->store(body.points, threads);
 }
@@ -282,7 +292,12 @@ std::unique_ptr<const Body> make_body(Points points, const BodySpecification& of
   // States have no product without a stored tangent.
   require_memory(estimate_memory(expected).bytes(false, stores_states, {}),
                  fmt::format("the body with {} points", body.points.count()));
-  make_model(body, threads);
+  make_model(
+      body,
+      [&](const BondSetting& setting) {
+        return make_bonds(body.points, of.surface_correction, setting, threads);
+      },
+      threads);
   LoadSetting loads = load_setting(of, body.points);
   if (of.is_collocated()) {
     loads.surface = surface_sites(body.points, body.model, of.boundary.get(), of.boundary_names,
@@ -308,15 +323,19 @@ void refuse_without_ranks(const BodySpecification& of) {
   const auto refuse = [](const std::string& key) {
     throw InputError(
         key, "",
-        "is not for more than one rank yet: there are bonds with pre-cracks, supports, "
-        "body forces, total forces and gravity, and damage of one material");
+        "is not for more than one rank yet: there are bodies with pre-cracks, supports, "
+        "eigenstrains, tractions, body forces, total forces and gravity, and damage of bonds of "
+        "one material");
   };
   const MaterialSpecification& material = of.material;
-  if (material.model != MaterialModel::bond) refuse("material.model");
-  if (material.kinematics != Kinematics::finite) refuse("material.kinematics");
+  if (is_polynomial(material.model)) refuse("material.model");
+  if (material.model == MaterialModel::lps && of.form != SolidForm::energy) refuse("form");
+  if (of.is_linear()) refuse("material.kinematics");
   // Laws that differ from bond to bond have no test on ranks.
-  const bool is_mixed = !of.is_uniform();
-  if (material.damage.law != DamageLaw::none && is_mixed) refuse("material.damage");
+  const bool is_damaged = material.damage.law != DamageLaw::none;
+  if (is_damaged && (material.model != MaterialModel::bond || !of.is_uniform())) {
+    refuse("material.damage");
+  }
   for (std::size_t k = 0; k < of.regions.size(); ++k) {
     const bool fails = of.regions[k].material.damage.law != DamageLaw::none;
     if (fails) refuse("regions[" + std::to_string(k) + "].material.damage");
@@ -326,10 +345,15 @@ void refuse_without_ranks(const BodySpecification& of) {
     const bool fails = own && own->damage.law != DamageLaw::none;
     if (fails) refuse("interfaces[" + std::to_string(k) + "].material.damage");
   }
+  if (material.model != MaterialModel::bond) {
+    if (!of.is_uniform()) refuse(of.regions.empty() ? "material" : "regions");
+    if (of.eigenstrains.are_there()) refuse("eigenstrains");
+    if (of.end_time) refuse("end_time");
+  }
   if (of.force_operator != ForceOperator::bonds) refuse("force_operator");
   if (!of.foundations.empty()) refuse("foundations");
   if (!of.controls.empty()) refuse("controls");
-  if (of.end_time || of.has_inertia) refuse("end_time");
+  if (of.has_inertia) refuse("has_inertia");
   const ConstraintSpecification& constraints = of.constraints;
   const bool is_constrained = !constraints.rigid_sets.empty() || !constraints.rollers.empty() ||
                               !constraints.linear.empty() || !constraints.symmetries.empty() ||
@@ -344,15 +368,20 @@ void refuse_without_ranks(const BodySpecification& of) {
   }
 }
 
-/// @throws MemoryError for a part that can't fit
-void require_memory_for(const Points& points, const BodySpecification& of) {
-  if (points.count() == 0) return;  // which no estimate is made for
+double bytes_of_part(const Points& points, const BodySpecification& of) {
+  if (points.count() == 0) return 0.0;  // which no estimate is made for
   BodySize expected = size_of(points);
   expected.horizon_ratio = reach_ratio(of.volume_correction, of.horizon_shape, points.dimension,
                                        of.horizon / points.spacing);
   expected.bonds = expected_bonds(expected.points, points.dimension, expected.horizon_ratio);
-  require_memory(estimate_memory(expected).least_bytes(),
-                 fmt::format("a part with {} points", points.count()));
+  if (of.has_states()) reach_twice(expected);
+  return estimate_memory(expected).bytes(false, of.has_states(), {});
+}
+
+/// @throws MemoryError for parts that can't fit into the machine that they share
+void require_memory_for(const Part& part, const BodySpecification& of, const Communicator& ranks) {
+  require_memory(sum_on_machine(ranks, bytes_of_part(part.points, of)),
+                 fmt::format("the parts on a machine of the body with {} points", part.whole));
 }
 
 }  // namespace
@@ -368,24 +397,21 @@ std::unique_ptr<const Body> make_body(Part part, const BodySpecification& of,
   body.setting = bond_setting(of, part.points);
   body.specification = with_stretches(of, body.setting, part.points.spacing);
   require_resolved(part.points, body.setting.horizon);
-  require_memory_for(part.points, of);
+  require_memory_for(part, of, ranks);
   body.part = std::make_unique<const PartOfBody>(part, ranks);
-  {
-    const Stopwatch watch(body.seconds_neighbourhood);
-    Bonds bonds = make_bonds(part, of.surface_correction, body.setting, ranks, threads);
-    body.points = std::move(part.points);
-    refuse_coincident_points(body.points, bonds);
-    const PointMaterials materials(of, body.points);
-    note_materials(body, materials, threads);
-    CutBonds cut;
-    body.model = make_bond_model(body, materials, std::move(bonds), cut);
-    body.cut_weight = std::move(cut.weight);
-    body.cut_bonds = std::move(cut.ends);
-  }
+  body.points = part.points;
+  make_model(
+      body,
+      [&](const BondSetting& setting) {
+        return make_bonds(part, of.surface_correction, setting, ranks, threads, bonds_of_part(of));
+      },
+      threads);
   LoadSetting loads = load_setting(of, body.points);
   loads.ranks = &ranks;
   body.conditions = std::make_unique<Conditions>(
       body.points, of.supports, of.loads, programme_of(of), of.controls, loads, of.eigenstrains);
+  const Stopwatch watch(body.seconds_neighbourhood);
+  store_interactions(body, threads);
   return made;
 }
 

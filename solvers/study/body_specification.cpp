@@ -562,10 +562,6 @@ void check_convolved_body(const BodySpecification& of) {
   if (!is_polynomial(of.material.model)) return;
   require_absent(of.eigenstrains.are_there(), "eigenstrains",
                  "do not go with the models green_bond and correspondence");
-  require_absent(
-      !of.cracks.empty(), "cracks",
-      "do not go with the models green_bond and correspondence, which know no cut bonds: "
-      "take a slot out of the body");
 }
 
 void check_linear_body(const BodySpecification& of) {
@@ -582,8 +578,6 @@ void check_linear_body(const BodySpecification& of) {
         "is for bonds with kinematics \"linear\", since the forces of bonds that turn are no "
         "convolutions unless of model \"green_bond\", for model \"correspondence\", and for the "
         "forms \"energy\" and \"printed\" of lps");
-    require(!of.is_convolved() || of.cracks.empty(), "force_operator", "fft",
-            "of lps knows no cut bonds: take a slot out of the body, or \"bonds\"");
     const DamageLaw law = of.material.damage.law;
     require(!of.is_convolved() || law == DamageLaw::none || law == DamageLaw::energy_density,
             "material.damage.law", "",
@@ -595,8 +589,6 @@ void check_linear_body(const BodySpecification& of) {
   }
   const std::string linear = "does not go with kinematics \"linear\"";
   require_absent(of.eigenstrains.are_there(), "eigenstrains", linear);
-  require_absent(!of.constraints.symmetries.empty(), "constraints.symmetries", linear);
-  require_absent(!of.constraints.periods.empty(), "constraints.periods", linear);
 }
 
 }  // namespace

@@ -20,17 +20,36 @@ struct HigherConstant {
   FactorsOfKinds factors{};  ///< over the kinds of points of several materials
 };
 
+/// Gives ghosts what their owners have, one value per point.
+void update_ghosts(const PartOfBody& part, int dimension, std::vector<double>& values) {
+  const auto d = std::size_t(dimension);
+  std::vector<double> first(values.size() * d, 0.0);  // of as many as an exchange is made for
+  for (std::size_t i = 0; i < values.size(); ++i) first[i * d] = values[i];
+  part.update_ghosts(first);
+  for (std::size_t i = 0; i < values.size(); ++i) values[i] = first[i * d];
+}
+
+/// Of the points of a part in the whole body, which are few enough for a double.
+PointNumbers numbers_of(const PartOfBody& part, const Points& points) {
+  std::vector<double> numbers(points.volume.size(), 0.0);
+  std::copy(part.number().begin(), part.number().end(), numbers.begin());
+  update_ghosts(part, points.dimension, numbers);
+  return {numbers.begin(), numbers.end()};
+}
+
 /// @param bonds of the whole body, which the effective volumes belong to: a crack is no surface
 /// @param left those that have an influence and that pre-cracks have not cut; an interaction with
 ///        another one is lost
+/// @param part null: the body is whole. Otherwise a ghost's interactions are its owner's to count
 template <class Measure>
 Simplices<Measure> make_simplices(const BodySpecification& from, const Points& points,
                                   const Bonds& bonds, const Bonds& left,
                                   const BulkNeighbourhood& bulk, const Kernel& kernel,
                                   HigherConstant constant, const PointFactors& factors,
-                                  int threads) {
+                                  const PartOfBody* part, int threads) {
   Interactions<Measure> interactions(points, bonds, kernel.cross_section, threads);
-  if (interactions.count() == 0) {
+  const auto found = double(interactions.count());
+  if ((part ? part->ranks().max(found) : found) == 0.0) {
     constexpr bool is_triangle = Measure::arms == 2;
     throw InputError(is_triangle ? "material.c2" : "material.c3", number_text(constant.constant),
                      std::string("the body has no ") + (is_triangle ? "triangles" : "tetrahedra") +
@@ -41,6 +60,7 @@ Simplices<Measure> make_simplices(const BodySpecification& from, const Points& p
   }
   auto shares = weight_shares<Measure>(
       points, effective_volumes(interactions, neighbour_counts(bonds), bulk, from.weights));
+  if (part) update_ghosts(*part, points.dimension, shares);
   for (std::size_t i = 0; i < factors.stiffness.size(); ++i) shares[i] *= factors.stiffness[i];
   if (left.count() < bonds.count()) {
     interactions = Interactions<Measure>(points, left, kernel.cross_section, threads);
@@ -182,7 +202,7 @@ CpdConstants cpd_constants_of(const MaterialSpecification& material, const std::
 
 Model make_cpd_model(const BodySpecification& from, const PointMaterials& materials,
                      const PointFactors& factors, const Points& points, const BondSetting& setting,
-                     Bonds bonds, CutBonds& cut, int threads) {
+                     Bonds bonds, CutBonds& cut, const PartOfBody* part, int threads) {
   // Tables over the materials of four points.
   constexpr std::size_t most = 24;
   if (materials.all().size() > most) {
@@ -230,15 +250,16 @@ Model make_cpd_model(const BodySpecification& from, const PointMaterials& materi
   std::optional<Simplices<Volume>> tetrahedra;
   if (of_triangles.constant != 0.0) {
     triangles = make_simplices<Area>(from, points, bonds, model.bonds(), bulk, setting,
-                                     of_triangles, factors, threads);
+                                     of_triangles, factors, part, threads);
   }
   if (of_tetrahedra.constant != 0.0) {
     tetrahedra = make_simplices<Volume>(from, points, bonds, model.bonds(), bulk, setting,
-                                        of_tetrahedra, factors, threads);
+                                        of_tetrahedra, factors, part, threads);
   }
   if (triangles || tetrahedra) {
     model.add(std::make_shared<SimplexTerm>(model.bond_term(), std::move(triangles),
-                                            std::move(tetrahedra)));
+                                            std::move(tetrahedra),
+                                            part ? numbers_of(*part, points) : PointNumbers()));
   }
   return model;
 }

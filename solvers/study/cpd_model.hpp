@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "assembly/terms/model.hpp"
+#include "solvers/ranks/part_of_body.hpp"
 #include "solvers/study/body_specification.hpp"
 #include "solvers/study/bond_materials.hpp"
 #include "solvers/study/point_materials.hpp"
@@ -35,9 +36,11 @@ void refuse_damage_of_negative_constants(const MaterialSpecification& material,
 /// @throws InputError for damage together with a negative constant
 /// @param bonds whose weights are to be set
 /// @param cut gets the bonds that pre-cracks have cut
+/// @param part null: the body is whole. Otherwise of a part, with the bonds among_neighbours; a
+///        call that all ranks make
 [[nodiscard]] Model make_cpd_model(const BodySpecification& from, const PointMaterials& materials,
                                    const PointFactors& factors, const Points& points,
                                    const BondSetting& setting, Bonds bonds, CutBonds& cut,
-                                   int threads);
+                                   const PartOfBody* part, int threads);
 
 }  // namespace peristat

@@ -61,7 +61,14 @@ LatticeBox box_of(const BodySpecification& from, const Points& points) {
                        "goes without a surface_correction, whose factors belong to single bonds");
   }
   if (points.own() < points.count()) {
-    refuse_convolution(from, "does not go with planes of symmetry and periods");
+    if (!from.cracks.empty()) {
+      refuse_convolution(from, "does not go with pre-cracks beside planes of symmetry or periods");
+    }
+    if (from.form == SolidForm::printed) {
+      refuse_convolution(from,
+                         "of the form printed does not go with planes of symmetry and periods, "
+                         "across which forces without a potential have no image");
+    }
   }
   if (!points.neighbours.empty()) refuse_convolution(from, "finds its neighbours by itself");
   std::string why_not;
@@ -209,6 +216,7 @@ std::vector<double> bearable_energies(const PointMaterials& materials, const Poi
 ForceOperator faster_operator(const BodySpecification& from, const Points& points,
                               bool is_explicit) {
   if (from.needs_convolutions()) return ForceOperator::fft;
+  // With images convolutions take twice as long.
   const bool has_images = !from.constraints.symmetries.empty() || !from.constraints.periods.empty();
   const bool may_be = (from.is_linear() || from.has_states()) && !has_images;
   const double ratio = from.horizon / points.spacing;
@@ -239,15 +247,25 @@ BondSetting network_setting(const BodySpecification& from, const Points& points,
 
 namespace {
 
-/// What convolutions have in common, without pre-cracks.
+/// What convolutions have in common.
+/// @param cut gets what pre-cracks have cut
 ConvolvedLattice lattice_of(const BodySpecification& from, const Points& points,
-                            const BondSetting& of_springs, double modulus, int threads) {
+                            const BondSetting& of_springs, double modulus, CutBonds& cut,
+                            int threads) {
   ConvolvedLattice lattice;
   lattice.box = box_of(from, points);
+  lattice.own = std::size_t(points.own());
   lattice.springs =
       lattice_springs(of_springs, points.spacing, points.angle, modulus, points.volume.front());
-  lattice.all_bonds = [&points, of_springs, threads] {
-    return make_bonds(points, SurfaceCorrection::none, of_springs, threads);
+  if (!from.cracks.empty()) {
+    cut = told(cut_of_lattice(points, of_springs, from.cracks, threads));
+    lattice.box.cut = cut.ends;
+  }
+  lattice.all_bonds = [&points, of_springs, cracks = from.cracks, threads] {
+    Bonds all = make_bonds(points, SurfaceCorrection::none, of_springs, threads);
+    if (points.own() < points.count()) drop_weightless(all);
+    static_cast<void>(cut_bonds(all, points, cracks));
+    return all;
   };
   return lattice;
 }
@@ -260,7 +278,7 @@ LamePair constants_of(const MaterialSpecification& material, int dimension) {
 /// Its springs have the solid's Young's modulus and influence.
 Model make_convolved_solid(const BodySpecification& from, const PointMaterials& materials,
                            const Points& points, const BondSetting& setting, Bonds bonds,
-                           int threads) {
+                           CutBonds& cut, int threads) {
   const MaterialSpecification& material = *materials.all().front().of;
   const BondSetting of_springs = state_setting(setting);
   const double modulus = micromodulus(*material.youngs_modulus, of_springs);
@@ -270,19 +288,21 @@ Model make_convolved_solid(const BodySpecification& from, const PointMaterials& 
   return Model(std::make_shared<LinearTerm>(
       std::make_shared<const Bonds>(std::move(bonds)), modulus,
       bearable_energies(materials, points, setting.horizon),
-      lattice_of(from, points, of_springs, modulus, threads), threads,
-      ConvolvedSolid{lattice_arms(setting, points.spacing, points.angle, volume),
-                     {constants_of(material, points.dimension), volume, form}}));
+      lattice_of(from, points, of_springs, modulus, cut, threads), threads,
+      ConvolvedSolid{
+          lattice_arms(setting, points.spacing, points.angle, volume),
+          {constants_of(material, points.dimension), volume, form, std::size_t(points.own())}}));
 }
 
 Model make_green_bonds(const BodySpecification& from, const PointMaterials& materials,
-                       const Points& points, const BondSetting& setting, Bonds bonds, int threads) {
+                       const Points& points, const BondSetting& setting, Bonds bonds, CutBonds& cut,
+                       int threads) {
   const PointMaterials::Material& material = materials.all().front();
   const double modulus = micromodulus_of(*material.of, material.key, setting).at(1.0);
   return Model(std::make_shared<ConvolvedTerm>(
       std::make_shared<const Bonds>(std::move(bonds)), modulus,
       bearable_energies(materials, points, setting.horizon),
-      lattice_of(from, points, setting, modulus, threads), ConvolvedGreenBonds{}, threads));
+      lattice_of(from, points, setting, modulus, cut, threads), ConvolvedGreenBonds{}, threads));
 }
 
 /// Micromodulus of bonds that have the same bulk modulus.
@@ -307,7 +327,7 @@ void require_gradients(const Correspondence& material) {
 /// bonds of its bulk modulus, over the horizon ([FCBM] A-12, as a material of its own unit).
 Model make_correspondence(const BodySpecification& from, const PointMaterials& materials,
                           const Points& points, const BondSetting& setting, Bonds bonds,
-                          int threads) {
+                          CutBonds& cut, int threads) {
   const MaterialSpecification& material = *materials.all().front().of;
   const double modulus = micromodulus(*material.youngs_modulus, setting);
   const double volume = points.volume.front();
@@ -315,9 +335,10 @@ Model make_correspondence(const BodySpecification& from, const PointMaterials& m
   law.arms = lattice_arms(setting, points.spacing, points.angle, volume);
   law.setting.constants = constants_of(material, points.dimension);
   law.setting.volume = volume;
+  law.setting.own = std::size_t(points.own());
   law.setting.stabilisation =
       material.stabilisation * modulus_of_bulk(law.setting.constants, setting) / setting.horizon;
-  ConvolvedLattice lattice = lattice_of(from, points, setting, modulus, threads);
+  ConvolvedLattice lattice = lattice_of(from, points, setting, modulus, cut, threads);
   require_gradients(Correspondence(lattice.box, {}, law.arms, law.setting, threads));
   return Model(
       std::make_shared<ConvolvedTerm>(std::make_shared<const Bonds>(std::move(bonds)), modulus,
@@ -330,14 +351,18 @@ Model make_correspondence(const BodySpecification& from, const PointMaterials& m
 Model make_linear_model(const BodySpecification& from, const PointMaterials& materials,
                         const PointFactors& factors, const Points& points,
                         const BondSetting& setting, Bonds bonds, CutBonds& cut, int threads) {
+  if (points.own() < points.count()) drop_weightless(bonds);
+  if (from.force_operator == ForceOperator::fft) {
+    static_cast<void>(cut_bonds(bonds, points, from.cracks));
+  }
   if (from.has_states()) {
-    return make_convolved_solid(from, materials, points, setting, std::move(bonds), threads);
+    return make_convolved_solid(from, materials, points, setting, std::move(bonds), cut, threads);
   }
   if (from.material.model == MaterialModel::green_bond) {
-    return make_green_bonds(from, materials, points, setting, std::move(bonds), threads);
+    return make_green_bonds(from, materials, points, setting, std::move(bonds), cut, threads);
   }
   if (from.material.model == MaterialModel::correspondence) {
-    return make_correspondence(from, materials, points, setting, std::move(bonds), threads);
+    return make_correspondence(from, materials, points, setting, std::move(bonds), cut, threads);
   }
   std::vector<DirectedConstant> moduli;
   for (const auto& material : all_materials(from, materials)) {
@@ -346,21 +371,7 @@ Model make_linear_model(const BodySpecification& from, const PointMaterials& mat
   const BondMaterials mixed(from, materials, factors, points, std::move(moduli));
   std::optional<ConvolvedLattice> lattice;
   if (from.force_operator == ForceOperator::fft) {
-    lattice.emplace();
-    lattice->box = box_of(from, points);
-    lattice->springs = lattice_springs(setting, points.spacing, points.angle, mixed.modulus(),
-                                       points.volume.front());
-    if (!from.cracks.empty()) {
-      lattice->cut =
-          std::make_shared<const Bonds>(cut_of_lattice(points, setting, from.cracks, threads));
-    }
-    lattice->all_bonds = [&points, setting, cracks = from.cracks, threads] {
-      Bonds all = make_bonds(points, SurfaceCorrection::none, setting, threads);
-      static_cast<void>(cut_bonds(all, points, cracks));
-      return all;
-    };
-    static_cast<void>(cut_bonds(bonds, points, from.cracks));
-    if (lattice->cut) cut = told(*lattice->cut);
+    lattice = lattice_of(from, points, setting, mixed.modulus(), cut, threads);
   } else {
     if (!from.is_uniform()) {
       refuse_idle_interfaces(from, materials, bonds);

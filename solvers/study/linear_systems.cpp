@@ -4,8 +4,8 @@
 #include <string>
 #include <utility>
 
+#include "assembly/operators/constrained_product.hpp"
 #include "assembly/operators/constrained_tangent.hpp"
-#include "assembly/operators/convolved_tangent.hpp"
 #include "assembly/operators/matrix_free_tangent.hpp"
 #include "assembly/operators/rows_of_energy.hpp"
 #include "assembly/operators/tangent.hpp"
@@ -82,15 +82,24 @@ constexpr double vectors_of_events = 12.0, numbers_of_events_per_bond = 6.0;
 /// Of mode dynamics: mass, its inverse, velocities before and after, and those of Lanczos' method.
 constexpr double vectors_of_motion = 9.0;
 
+/// A rank may have no point, which no estimate is made for.
+MemoryEstimate estimate_memory_of_part(const Body& body) {
+  if (body.points.count() > 0) return estimate_memory(body);
+  MemoryEstimate nothing;
+  nothing.size.dimension = body.points.dimension;
+  nothing.size.ranks = body.part->ranks().count();
+  return nothing;
+}
+
 /// Explicit steps solve nothing; they need products of the tangent now and then.
 LinearSystems systems_of_motion(const Body& body) {
-  const MemoryEstimate estimate = estimate_memory(body);
+  const MemoryEstimate estimate = estimate_memory_of_part(body);
   LinearSystems systems;
   systems.chosen.solver = std::make_unique<NoSolver>();
   systems.chosen.is_direct = false;
   systems.chosen.reason = "explicit time steps solve no equations";
-  const bool has_products = body.model.visits_rows() || !body.model.has_rows();
-  systems.is_stored = !has_products || !body.conditions->constraints().none();
+  const bool is_followed = !body.conditions->constraints().none();
+  systems.is_stored = body.model.has_rows() && (!body.model.visits_rows() || is_followed);
   systems.bytes = estimate.body_bytes + (systems.is_stored ? estimate.tangent_bytes : 0.0) +
                   8.0 * vectors_of_motion * estimate.size.points * estimate.size.dimension;
   return systems;
@@ -113,20 +122,17 @@ void refuse_solvers_without_ranks(const StudyOptions& options, const Body& body)
   if (kind == PreconditionerKind::local_operator) {
     refuse("linear.preconditioner", "\"block_jacobi\" or \"jacobi\"");
   }
+  const bool is_of_points = kind == PreconditionerKind::automatic ||
+                            kind == PreconditionerKind::block_jacobi ||
+                            kind == PreconditionerKind::jacobi;
+  if (!body.model.visits_rows() && !is_of_points) {
+    refuse("linear.preconditioner", "\"block_jacobi\" or \"jacobi\" with models but \"bond\"");
+  }
   if (finds_loads(options, *body.conditions)) {
     refuse("loading.mode", "loads that are given: those that are found need pivots");
   }
   if (!body.model.has_rows()) refuse("force_operator", "\"bonds\"");
   if (!body.conditions->constraints().none()) refuse("constraints", "none");
-}
-
-/// A rank may have no point, which no estimate is made for.
-MemoryEstimate estimate_memory_of_part(const Body& body) {
-  if (body.points.count() > 0) return estimate_memory(body);
-  MemoryEstimate nothing;
-  nothing.size.dimension = body.points.dimension;
-  nothing.size.ranks = body.part->ranks().count();
-  return nothing;
 }
 
 /// Convolutions without a potential have neither rows to solve with nor an energy to search by.
@@ -162,6 +168,12 @@ std::shared_ptr<const LatticeBox> box_of_convolutions(const StudyOptions& option
   const bool is_wanted =
       asked == PreconditionerKind::automatic || asked == PreconditionerKind::sines;
   if (!is_wanted) return nullptr;
+  if (!body.conditions->constraints().none()) {
+    if (asked == PreconditionerKind::automatic) return nullptr;
+    throw InputError("linear.preconditioner", "sines",
+                     "is for bodies without planes of symmetry and periods, whose equations are "
+                     "not those of points on a lattice; take \"block_jacobi\"");
+  }
   if (body.points.angle != 0.0) {
     if (asked == PreconditionerKind::automatic) return nullptr;
     throw InputError("linear.preconditioner", "sines",
@@ -261,12 +273,19 @@ LinearSystems choose_linear_systems(const StudyOptions& options, const Body& bod
   refuse_to_solve_for(body, options.loading);
   if (body.part) {
     refuse_solvers_without_ranks(options, body);
-    return choose_linear_systems(options, body.model, estimate_memory_of_part(body), {},
+    StudyOptions of_part = options;
+    // Pieces of parts are tested on tangents of bonds alone.
+    if (!body.model.visits_rows() &&
+        options.linear.preconditioner == PreconditionerKind::automatic) {
+      of_part.linear.preconditioner = PreconditionerKind::block_jacobi;
+    }
+    return choose_linear_systems(of_part, body.model, estimate_memory_of_part(body), {},
                                  std::move(tell), body.part.get());
   }
   StudyOptions chosen = options;
   if (!body.model.has_rows()) {
-    if (!body.conditions->constraints().none()) {
+    const ConstraintSpecification& of = body.specification.constraints;
+    if (!of.rigid_sets.empty() || !of.rollers.empty() || !of.linear.empty()) {
       throw InputError("constraints", "",
                        "rigid sets, rollers and linear constraints do not go with operator "
                        "\"fft\"; take \"bonds\"");
@@ -276,7 +295,7 @@ LinearSystems choose_linear_systems(const StudyOptions& options, const Body& bod
                        "has no pivots, which a control and mode arc_length need; take \"bonds\"");
     }
   }
-  if (!body.conditions->constraints().none()) {
+  if (!body.conditions->constraints().none() && body.model.has_rows()) {
     if (options.tangent == TangentStorage::matrix_free) {
       throw InputError("tangent", "matrix_free",
                        "is for bodies without rigid sets, rollers, linear constraints, planes of "
@@ -308,8 +327,8 @@ std::unique_ptr<TangentOperator> LinearSystems::make_tangent(Assembler& assemble
                                                              const Constraints& constraints) const {
   const bool is_convolved = !assembler.has_rows();
   if (!is_convolved && !assembler.has_potential()) return make_operator<RowsOfEnergy>(assembler);
+  if (is_convolved) return make_convolved_tangent(assembler, constraints);
   if (!constraints.none()) return std::make_unique<ConstrainedTangent>(assembler, constraints);
-  if (is_convolved) return std::make_unique<ConvolvedTangent>(assembler);
   if (!is_stored) return make_operator<MatrixFreeTangent>(assembler);
   return make_operator<Tangent>(assembler);
 }

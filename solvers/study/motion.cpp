@@ -16,7 +16,7 @@
 namespace peristat {
 namespace {
 
-void refuse_constraints(const ConstraintSpecification& constraints) {
+void refuse_constraints(const ConstraintSpecification& constraints, int dimension) {
   const auto refuse = [](const std::string& key, const std::string& what) {
     throw InputError(key, "",
                      what +
@@ -26,7 +26,12 @@ void refuse_constraints(const ConstraintSpecification& constraints) {
   if (!constraints.rigid_sets.empty()) refuse("rigid_sets", "a set that moves as a rigid body");
   if (!constraints.rollers.empty()) refuse("rollers", "a roller");
   if (!constraints.linear.empty()) refuse("linear", "a linear constraint");
-  if (!constraints.periods.empty()) refuse("periods", "a period");
+  for (const PeriodSpecification& period : constraints.periods) {
+    const auto last = period.gradient.begin() + dimension;
+    const bool is_given = std::all_of(period.gradient.begin(), last,
+                                      [](const auto& component) { return component.has_value(); });
+    if (!is_given) refuse("periods", "a period with a free gradient");
+  }
 }
 
 /// Of a bond in the initial state, over its length: more than that is a slip of the pen, and so
@@ -69,7 +74,7 @@ std::vector<double> densities_of(const Body& body) {
 }
 
 MotionSetting make_motion_setting(const Body& body) {
-  refuse_constraints(body.specification.constraints);
+  refuse_constraints(body.specification.constraints, body.points.dimension);
   const std::vector<double> density = densities_of(body);
   const auto d = std::size_t(body.points.dimension);
   const std::size_t dofs = body.conditions->constraints().dofs();

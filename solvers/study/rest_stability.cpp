@@ -1,6 +1,7 @@
 #include "solvers/study/rest_stability.hpp"
 
 #include <cmath>
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
@@ -9,12 +10,14 @@
 
 #include <fmt/format.h>
 
-#include "solvers/linear/available_memory.hpp"
+#include "solvers/linear/block_jacobi.hpp"
 #include "solvers/linear/cholesky.hpp"
 #include "solvers/linear/iterative_solver.hpp"
 #include "solvers/linear/rigid_pieces.hpp"
 #include "solvers/study/cpd_model.hpp"
 #include "solvers/study/linear_systems.hpp"
+#include "solvers/study/require_memory_for.hpp"
+#include "solvers/study/without_equation.hpp"
 #include "src/core/input_error.hpp"
 #include "src/core/number_text.hpp"
 
@@ -32,14 +35,18 @@ struct Stability {
   std::optional<Inertia> inertia;
 };
 
-Stability at_rest(LinearSolver& solver, const TangentOperator& tangent, const FreeDofs& free) {
+/// @param before equations of the ranks before this one
+Stability at_rest(LinearSolver& solver, const TangentOperator& tangent, const FreeDofs& free,
+                  std::int64_t before) {
   LinearOutcome outcome = solver.analyze(tangent.pattern, free);
   if (outcome == LinearOutcome::solved) {
     outcome = solver.factorize(tangent, FactorUse::factorize_now);
   }
   if (outcome == LinearOutcome::solved && !solver.inertia()) {
     std::vector<double> start(std::size_t(free.count())), x(start.size(), 0.0);
-    for (std::size_t k = 0; k < start.size(); ++k) start[k] = std::sin(1.0 + 1e4 * double(k));
+    for (std::size_t k = 0; k < start.size(); ++k) {
+      start[k] = std::sin(1.0 + 1e4 * double(before + std::int64_t(k)));
+    }
     outcome = solver.solve(start, x, search_tolerance);
   }
   return {outcome, solver.inertia()};
@@ -61,12 +68,15 @@ std::pair<PointMaterials::Material, std::string> negative_material(const Body& b
 void refuse_unstable_rest(const Body& body, const StudyOptions& options) {
   if (body.specification.material.model != MaterialModel::cpd) return;
   const auto [of, negative] = negative_material(body);
-  const FreeDofs free(body.conditions->prescribed(), body.points.dimension);
-  if (negative.empty() || free.count() == 0) return;
+  const FreeDofs free(without_equation(body), body.points.dimension);
+  const Communicator* const ranks = body.part ? &body.part->ranks() : nullptr;
+  const Communicator::Counts equations =
+      ranks ? ranks->count_all(free.count()) : Communicator::Counts{0, free.count()};
+  if (negative.empty() || equations.all == 0) return;
 
   const LinearSystems systems = choose_linear_systems(options, body, {});
-  require_memory(systems.bytes, fmt::format("the body with {} points", body.points.count()));
-  Assembler assembler(body.points, body.model, usable_threads(options.threads));
+  require_memory_for(body, systems.bytes);
+  Assembler assembler(body.points, body.model, usable_threads(options.threads), body.part.get());
   const Constraints& constraints = body.conditions->constraints();
   const std::unique_ptr<TangentOperator> tangent = systems.make_tangent(assembler, constraints);
   const std::vector<double> reference(constraints.dofs(), 0.0);
@@ -76,10 +86,13 @@ void refuse_unstable_rest(const Body& body, const StudyOptions& options) {
   if (systems.chosen.is_direct) {
     solver = std::make_unique<Cholesky>(FactorReuse{0});
   } else {
+    std::unique_ptr<Preconditioner> preconditioner = std::make_unique<RigidPieces>();
+    if (ranks) preconditioner = std::make_unique<BlockJacobi>(BlockJacobi::Blocks::points);
     solver = std::make_unique<IterativeSolver>(KrylovMethod::conjugate_gradients,
-                                               std::make_unique<RigidPieces>(), most_iterations);
+                                               std::move(preconditioner), most_iterations,
+                                               KrylovOptions{}.restart, ranks);
   }
-  const auto [outcome, inertia] = at_rest(*solver, *tangent, free);
+  const auto [outcome, inertia] = at_rest(*solver, *tangent, free, equations.before);
   if (outcome != LinearOutcome::not_positive_definite) return;
   const std::string pivots =
       inertia ? fmt::format(" (its tangent has {} negative pivots)", inertia->negative) : "";

@@ -3,13 +3,12 @@
 #include <cmath>
 #include <utility>
 
-#include <fmt/format.h>
-
-#include "solvers/linear/available_memory.hpp"
-#include "solvers/ranks/part_tangent.hpp"
+#include "solvers/motion/shared_stiffness.hpp"
 #include "solvers/study/found_loads.hpp"
 #include "solvers/study/motion.hpp"
+#include "solvers/study/require_memory_for.hpp"
 #include "solvers/study/rest_stability.hpp"
+#include "solvers/study/without_equation.hpp"
 #include "src/core/number_text.hpp"
 
 namespace peristat {
@@ -74,19 +73,12 @@ void refuse_modes_of_failing_points(const Body& body, const StudyOptions& option
                    "\"fft\" take newton, relaxation or dynamics");
 }
 
-/// Degrees of freedom that have none here.
-std::vector<char> without_equation(const Body& body) {
-  const std::vector<char>& prescribed = body.conditions->prescribed();
-  if (!body.part) return prescribed;
-  return without_ghosts(*body.part, prescribed, body.points.dimension);
-}
-
 /// Of the modes some sum over ranks.
 void refuse_modes_without_ranks(const StudyOptions& options) {
   const Mode mode = options.loading.mode;
-  if (mode == Mode::newton || mode == Mode::adaptive || mode == Mode::relaxation) return;
+  if (mode != Mode::path && mode != Mode::arc_length) return;
   throw InputError("loading.mode", std::string(mode.name),
-                   "is not for more than one rank; take newton, adaptive or relaxation");
+                   "is not for more than one rank; take newton, adaptive, relaxation or dynamics");
 }
 
 }  // namespace
@@ -109,8 +101,13 @@ void check_study(const Body& body, const StudyOptions& options) {
                      is_implicit ? "must be set: implicit steps need a body with inertia"
                                  : "is for bodies that implicit steps follow");
   }
+  // Whose histories the driver looks at here alone, where all ranks are to decide alike.
+  if (body.part && moves && body.model.has_history()) {
+    throw InputError("material.damage", "",
+                     "is not for more than one rank in mode dynamics; take one");
+  }
   if (!moves) refuse_unheld_bodies(body);
-  if (!body.part) refuse_unstable_rest(body, options);
+  refuse_unstable_rest(body, options);
 }
 
 SolvedModel::SolvedModel(const Points& points, const Model& model, const Constraints& constraints,
@@ -131,7 +128,7 @@ Study::Study(const Body& body, StudyOptions options, SolverLadder::Reporter tell
   options_.threads = usable_threads(options_.threads);
   if (options_.loading.mode == Mode::dynamics) motion_ = make_motion_setting(body);
   LinearSystems systems = choose_linear_systems(options_, body, std::move(tell));
-  require_memory(systems.bytes, fmt::format("the body with {} points", body.points.count()));
+  require_memory_for(body, systems.bytes);
   equations_ =
       std::make_unique<SolvedModel>(body.points, body.model, body.conditions->constraints(), free_,
                                     std::move(systems), options_.threads, body.part.get());
@@ -158,7 +155,8 @@ const Stiffness& Study::find_initial_stiffness() {
   const History history = assembler.initial_history();
   tangent.linearise(assembler, {displacement, history, Damage::grows, conditions.environment(0.0)},
                     projection_for_stiffness(assembler));
-  motion_->at_start = find_stiffness(tangent, free, motion_->mass, motion_->most_points);
+  motion_->at_start =
+      find_stiffness(tangent, free, motion_->mass, motion_->most_points, assembler.sharing());
   const double step = options_.loading.dynamics.time_step;
   const double stable = motion_->at_start->stable_step();
   if (options_.loading.dynamics.scheme == MotionScheme::newmark) {

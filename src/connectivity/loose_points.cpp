@@ -230,8 +230,8 @@ std::vector<char> strip_loose_points(Web& web, std::vector<Support>& support,
     }
     goes_on = false;
     if (sharing == nullptr) continue;
-    const std::vector<double> told =
-        as_owners_have(*sharing, {is_loose.begin(), is_loose.end()}, web.dimension());
+    std::vector<double> told(is_loose.begin(), is_loose.end());
+    update_ghost_values(*sharing, web.dimension(), told);
     for (std::size_t ghost = std::size_t(own); ghost < told.size(); ++ghost) {
       if (told[ghost] == 0.0 || is_loose[ghost]) continue;
       is_loose[ghost] = 1;

@@ -43,7 +43,8 @@ std::pair<std::vector<Index>, std::size_t> shared_pieces(const Components& here,
   const double first = double(sharing.ranks().count_all(std::int64_t(here.size.size())).before);
   std::vector<double> label(here.of_point.begin(), here.of_point.end());
   for (double& of_point : label) of_point += first;
-  const std::vector<double> of_owner = as_owners_have(sharing, label, dimension);
+  std::vector<double> of_owner = label;
+  update_ghost_values(sharing, dimension, of_owner);
   std::vector<char> has_own(here.size.size(), 0);
   for (std::size_t i = 0; i < own; ++i) has_own[std::size_t(here.of_point[i])] = 1;
   std::set<std::pair<double, double>> ties;

@@ -4,7 +4,6 @@
 #include <cstring>
 #include <span>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "src/core/communicator.hpp"
@@ -31,16 +30,13 @@ class Sharing {
   virtual void update_ghosts(std::span<double> values) const = 0;
 };
 
-/// A number per point, those of ghosts as their owners have them. A call that all ranks make.
-[[nodiscard]] inline std::vector<double> as_owners_have(const Sharing& sharing,
-                                                        std::vector<double> of_points,
-                                                        int dimension) {
+/// Gives ghosts the one value per point that their owners have; a call that all ranks make.
+inline void update_ghost_values(const Sharing& sharing, int dimension, std::span<double> values) {
   const auto d = std::size_t(dimension);
-  std::vector<double> values(of_points.size() * d, 0.0);
-  for (std::size_t i = 0; i < of_points.size(); ++i) values[i * d] = of_points[i];
-  sharing.update_ghosts(values);
-  for (std::size_t i = 0; i < of_points.size(); ++i) of_points[i] = values[i * d];
-  return of_points;
+  std::vector<double> vectors(values.size() * d);
+  for (std::size_t i = 0; i < values.size(); ++i) vectors[i * d] = values[i];
+  sharing.update_ghosts(vectors);
+  for (std::size_t i = 0; i < values.size(); ++i) values[i] = vectors[i * d];
 }
 
 /// Numbers of points in the whole body, those of ghosts too. A call that all ranks make.
@@ -48,7 +44,8 @@ class Sharing {
                                                        int dimension) {
   std::vector<double> numbers(sharing.number().begin(), sharing.number().end());
   numbers.resize(points, 0.0);
-  return as_owners_have(sharing, std::move(numbers), dimension);
+  update_ghost_values(sharing, dimension, numbers);
+  return numbers;
 }
 
 /// What the ranks give one after the other; each gives as many numbers as it wants. A call that all

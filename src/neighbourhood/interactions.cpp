@@ -37,7 +37,7 @@ using Counts = std::vector<PointCount>;
 template <class Measure>
 Interactions<Measure>::Interactions(const Points& points, const Bonds& bonds, double cross_section,
                                     int threads)
-    : own_(points.own()),
+    : own_(points.owned.value_or(points.own())),
       per_point_(std::size_t(points.count()), 0),
       effective_counts_(std::size_t(points.count()), 0.0),
       shares_(std::size_t(points.count()), 1.0 / (Measure::arms + 1)),

@@ -402,13 +402,10 @@ class Refusals(CommandLine):
 
     def test_what_nothing_sums(self):
         green, correspondence = GREEN, CORRESPONDENCE
-        crack = "crack=[{from=[0.0062, 0.008], to=[0.0062, 0.02]}]"
         printed = ["material.model=lps", "material.poisson_ratio=0.2", "quadrature.form=printed"]
         for given, words in (
             (green[:1], ("solver.operator", "convolutions alone", "fft")),
             (correspondence[:1], ("solver.operator", "convolutions alone", "fft")),
-            ([*green, crack], ("crack", "slot")),
-            ([*correspondence, crack], ("crack", "slot")),
             ([*green, "lattice.perturbation=0.1"], ("solver.operator", "lattice has its places", "no other sums")),
             ([*green, "solver.linear=cholesky"], ("solver.linear", "pcg")),
             ([*green, "solver.mode=arc_length"], ("pivots",)),

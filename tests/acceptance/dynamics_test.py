@@ -333,7 +333,7 @@ class Refusals(Folder):
     def test_constraints_with_masses_of_their_own(self):
         sets = '[[set]]\nname = "top"\nwhere = "y > 0.7"\n'
         for table in ('[[rigid]]\nset = "top"\ndisplacement = [0, "free"]\nrotation = ["free"]\n',
-                      '[[roller]]\nset = "top"\nnormal = [1, 1]\n', '[[period]]\naxis = "x"\nfrom = -0.8\nto = 0.8\n'):  # fmt: skip
+                      '[[roller]]\nset = "top"\nnormal = [1, 1]\n', '[[period]]\naxis = "x"\nfrom = -0.8\nto = 0.8\ngradient = ["free", 0]\n'):  # fmt: skip
             with self.subTest(table=table):
                 self.assertIn("dynamics", self.refusal(SQUARE + sets + table))
 

@@ -66,6 +66,7 @@ history_every = 100
 [output]
 every = 10000
 """
+CRACKS = "crack=[{from=[0.0062, 0.008], to=[0.0062, 0.02]}, {from=[0.0149, 0.001], to=[0.0173, 0.0052]}]"
 FAILING = 'material.damage={law="energy_density", fracture_energy=2.0, no_fail=["left", "right"]}'
 GLASS = ["lattice.spacing=4e-4", "lattice.horizon_ratio=3.1"]  # of branching_2d
 
@@ -167,10 +168,9 @@ class Solved:
 
 class Statics(CommandLine):
     def test_both_operators_solve_the_same(self):
-        crack = "crack=[{from=[0.0062, 0.008], to=[0.0062, 0.02]}, {from=[0.0149, 0.001], to=[0.0173, 0.0052]}]"
-        for settings in ([], [crack], ['lattice.spacing=[1e-3, 0.8e-3]'], ["lattice.angle=30", "quadrature.volume_correction=linear"],
+        for settings in ([], [CRACKS], ['lattice.spacing=[1e-3, 0.8e-3]'], ["lattice.angle=30", "quadrature.volume_correction=linear"],
                          ["lattice.horizon_ratio=2.015", "solver.preconditioner=block_jacobi"],
-                         [crack, "lattice.horizon_ratio=5.1", "solver.mode=relaxation"]):  # fmt: skip
+                         [CRACKS, "lattice.horizon_ratio=5.1", "solver.mode=relaxation"]):  # fmt: skip
             with self.subTest(settings=settings):
                 # Relaxation ends at its own tolerance, on ways that round-off parts.
                 self.both(STRIP, *settings, share=1e-7 if "solver.mode=relaxation" in settings else 1e-9)
@@ -205,8 +205,9 @@ class Statics(CommandLine):
 
     def test_solids_as_an_energy_are_the_same_without_damage(self):
         lps = ["material.model=lps", "material.poisson_ratio=0.2", "quadrature.form=energy"]
-        bonds, fft = (self.results(STRIP, *lps, f"solver.operator={name}") for name in ("bonds", "fft"))
-        self.same(bonds, fft, 1e-9)
+        for settings in ([], [CRACKS]):
+            bonds, fft = (self.results(STRIP, *lps, *settings, f"solver.operator={name}") for name in ("bonds", "fft"))
+            self.same(bonds, fft, 1e-9)
 
     def test_solids_with_lame_constants_alike_are_bonds(self):
         # Nothing is left of the dilatation: bonds of the weights 1/M + 1/M' ([FCBM] 5.6), M of whom there is.

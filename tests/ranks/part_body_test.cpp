@@ -68,6 +68,11 @@ std::vector<BodyOfTest> bodies_of_test() {
   stiff.scatter = {{ScatterSpecification::Quantity::stiffness, {}, {8.0, 0.3, 5}}};
   regions.of.regions = {{"upper", stiff}};
   all.push_back(regions);
+  regions.name = "an interface with constants of its own";
+  MaterialSpecification between;
+  between.youngs_modulus = 0.5;
+  regions.of.interfaces = {{{"upper", "material"}, {}, between}};
+  all.push_back(regions);
 
   BodyOfTest shares = plate("exact shares, another influence");
   shares.of.surface_correction = SurfaceCorrection::volume;

@@ -78,20 +78,6 @@ TEST(AssemblerOfPart, asks_for_ghosts_as_far_as_bonds_reach) {
       std::logic_error);
 }
 
-TEST(AssemblerOfPart, refuses_what_needs_bonds_between_ghosts) {
-  BoxSetting box = small_box(2);
-  box.triangles = 1.0;
-  const BoxBody body(box);
-  Part part;
-  part.points = body.points;
-  part.owned = part.points.count();
-  for (Index i = 0; i < part.owned; ++i) {
-    part.number.push_back(GlobalIndex(part.owned) * all_ranks().rank() + i);
-  }
-  const PartOfBody sharing(part, all_ranks());
-  EXPECT_THROW(Assembler(part.points, body.model, 1, &sharing), std::logic_error);
-}
-
 std::unique_ptr<Preconditioner> blocks() {
   return std::make_unique<BlockJacobi>(BlockJacobi::Blocks::points);
 }

@@ -112,7 +112,7 @@ TEST(Slab, refuses_on_all_ranks_what_it_does_not_tell) {
   EXPECT_EQ(key_of(lattice), "layers[0].where");
   lattice = turned_plate().lattice;
   lattice.shapes[0].shape = Disk{{1.0, 1.0}, 0.8};
-  EXPECT_EQ(key_of(lattice), "layers[0].side");
+  EXPECT_EQ(key_of(lattice), "layers[0].thickness");  // as make_points
   lattice = strip().lattice;
   lattice.shapes.push_back({ShapeStep::Action::subtract, lattice.shapes[0].shape});
   EXPECT_EQ(key_of(lattice), "shapes");

@@ -4,7 +4,6 @@
 #include <utility>
 
 #include "assembly/convolutions/linear_bonds.hpp"
-#include "assembly/terms/linear/cut_forces.hpp"
 #include "assembly/terms/linear/linear_bond_sums.hpp"
 #include "assembly/terms/states/state_term.hpp"
 
@@ -26,10 +25,9 @@ std::unique_ptr<LatticeForces> LinearTerm::forces(const Points& points, Workspac
     return std::make_unique<LinearSolid>(of.box, open, solid_->arms, solid_->setting,
                                          shared.threads());
   }
-  auto whole = std::make_unique<LinearBonds>(of.box, open, of.springs, shared.threads());
-  if (!of.cut) return whole;
-  return std::make_unique<CutForces>(std::move(whole), points, *of.cut, micromodulus(),
-                                     shared.threads());
+  return with_images(of, [&] {
+    return std::make_unique<LinearBonds>(of.box, open, of.springs, shared.threads());
+  });
 }
 
 double LinearTerm::bound_over_blocks(int dimension) const {
@@ -45,7 +43,8 @@ Balances LinearTerm::balances() const {
 
 double LinearTerm::bytes_of_forces() const {
   const ConvolvedLattice& of = *lattice();
-  return solid_ ? convolved_bytes(of.box, solid_->arms) : convolved_bytes(of.box, of.springs);
+  if (solid_) return convolved_bytes(of.box, solid_->arms);
+  return (of.has_images() ? 2.0 : 1.0) * convolved_bytes(of.box, of.springs);
 }
 
 }  // namespace peristat

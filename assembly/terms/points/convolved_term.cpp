@@ -21,7 +21,9 @@ std::unique_ptr<LatticeForces> ConvolvedTerm::forces(const Points& /*points*/,
     return std::make_unique<Correspondence>(lattice()->box, open, of->arms, of->setting,
                                             shared.threads());
   }
-  return std::make_unique<GreenBonds>(lattice()->box, open, lattice()->springs, shared.threads());
+  return with_images(*lattice(), [&] {
+    return std::make_unique<GreenBonds>(lattice()->box, open, lattice()->springs, shared.threads());
+  });
 }
 
 Balances ConvolvedTerm::balances() const {
@@ -33,7 +35,8 @@ double ConvolvedTerm::bytes_of_forces() const {
   if (correspondence() != nullptr) {
     return Correspondence::expected_bytes(lattice()->box, lattice()->springs);
   }
-  return GreenBonds::expected_bytes(lattice()->box, lattice()->springs);
+  return (lattice()->has_images() ? 2.0 : 1.0) *
+         GreenBonds::expected_bytes(lattice()->box, lattice()->springs);
 }
 
 }  // namespace peristat

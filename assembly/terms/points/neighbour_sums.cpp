@@ -1,5 +1,6 @@
 #include "assembly/terms/points/neighbour_sums.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <utility>
@@ -23,8 +24,9 @@ NeighbourSums neighbour_sums(const Bonds& bonds, std::span<const double> integri
   return sums;
 }
 
-NeighbourSums neighbour_sums(const LatticeBox& box, std::span<const LatticeSpring> springs,
-                             double micromodulus, std::span<const double> integrity, int threads) {
+NeighbourSums neighbour_sums(const CutLattice& box, std::span<const LatticeSpring> springs,
+                             double micromodulus, std::span<const double> integrity,
+                             std::size_t own, int threads) {
   std::array<std::vector<double>, 2> kernels;
   auto& [weight, one] = kernels;
   one.assign(springs.size(), 1.0);
@@ -34,6 +36,15 @@ NeighbourSums neighbour_sums(const LatticeBox& box, std::span<const LatticeSprin
   }
   std::vector<std::vector<double>> found = lattice_sums(box, springs, kernels, integrity, threads);
   NeighbourSums sums{std::move(found[0]), std::move(found[1])};
+  if (own < integrity.size()) {
+    std::vector<double> without_images(integrity.begin(), integrity.end());
+    std::fill(without_images.begin() + std::ptrdiff_t(own), without_images.end(), 0.0);
+    found = lattice_sums(box, springs, kernels, without_images, threads);
+    for (std::size_t i = 0; i < integrity.size(); ++i) {
+      sums.weight[i] = 0.5 * ((i < own ? sums.weight[i] : 0.0) + found[0][i]);
+      if (i >= own) sums.count[i] = found[1][i];
+    }
+  }
   for (std::size_t i = 0; i < integrity.size(); ++i) {
     sums.weight[i] *= integrity[i];
     sums.count[i] *= integrity[i];

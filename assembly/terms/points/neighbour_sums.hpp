@@ -3,15 +3,18 @@
 #include <span>
 #include <vector>
 
+#include "assembly/convolutions/cut_lattice.hpp"
 #include "assembly/convolutions/lattice_springs.hpp"
-#include "src/geometry/lattice_box.hpp"
 #include "src/neighbourhood/bonds.hpp"
 
 namespace peristat {
 
 /// What is left to points of their neighbours, with integrities q of points:
 ///
-///   weight_i = q_i sum_j q_j w_ij [m6],   count_i = q_i sum_j q_j.
+///   weight_i = q_i sum_j q_j w_ij [m6],   count_i = q_i sum_j q_j,
+///
+/// of a body with images (see Images) half of w_ij where one of the two is one, and nothing where
+/// both are.
 struct NeighbourSums {
   std::vector<double> weight, count;
 };
@@ -20,9 +23,10 @@ struct NeighbourSums {
 
 /// Of a lattice, by convolutions.
 /// @param micromodulus c of the springs, w = k L / c
-[[nodiscard]] NeighbourSums neighbour_sums(const LatticeBox& box,
+/// @param own points that are no images, the first ones
+[[nodiscard]] NeighbourSums neighbour_sums(const CutLattice& box,
                                            std::span<const LatticeSpring> springs,
                                            double micromodulus, std::span<const double> integrity,
-                                           int threads);
+                                           std::size_t own, int threads);
 
 }  // namespace peristat

@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "assembly/convolutions/forces_with_images.hpp"
 #include "assembly/convolutions/linear_bonds.hpp"
 #include "assembly/terms/linear/linear_bond_sums.hpp"
 #include "assembly/terms/model.hpp"
@@ -23,6 +24,7 @@ class PointPasses : public TermPasses {
         workspace_(setting.workspace),
         places_(setting.pattern.places_of(term.couplings())),
         volume_(setting.points.volume),
+        points_(setting.points),
         dimension_(std::size_t(setting.points.dimension)),
         force_(setting.points.reference.size()),
         has_half_work_(term.balances().linear && term.balances().potential) {
@@ -155,12 +157,25 @@ class PointPasses : public TermPasses {
     return evaluation(at.displacement, gradient, how);
   }
 
+  /// Images go with their sources.
   void fail(History& history) {
     const std::span<double> remembered = history.change(slot_);
+    const std::span<const double> energy = whole_energies();
     for (std::size_t i = 0; i < energy_.size(); ++i) {
-      if (fails(i)) remembered[i] = 0.0;
+      const auto source = std::size_t(points_.source(Index(i)));
+      if (fails(source, energy)) remembered[i] = 0.0;
     }
     take_integrity(history);
+  }
+
+  /// With those that images have of their sources' bonds.
+  [[nodiscard]] std::span<const double> whole_energies() {
+    if (points_.own() == points_.count()) return energy_;
+    whole_energy_ = energy_;
+    for (Index image = points_.own(); image < points_.count(); ++image) {
+      whole_energy_[std::size_t(points_.source(image))] += energy_[std::size_t(image)];
+    }
+    return whole_energy_;
   }
 
   void take_integrity(const History& history) {
@@ -249,17 +264,18 @@ class PointPasses : public TermPasses {
     return found;
   }
 
-  [[nodiscard]] bool fails(std::size_t point) const {
-    return energy_[point] > term_.bearable()[point] && integrity_[point] > 0.0;
+  [[nodiscard]] bool fails(std::size_t point, std::span<const double> energy) const {
+    return energy[point] > term_.bearable()[point] && integrity_[point] > 0.0;
   }
 
   /// Energies go with the square of a load, as long as strains are small.
-  [[nodiscard]] DamageGrowth judge() const {
+  [[nodiscard]] DamageGrowth judge() {
     DamageGrowth found;
-    for (std::size_t i = 0; i < energy_.size(); ++i) {
+    const std::span<const double> energy = whole_energies();
+    for (std::size_t i = 0; i < std::size_t(points_.own()); ++i) {
       if (integrity_[i] == 0.0) continue;
-      found.utilisation = std::max(found.utilisation, energy_[i] / term_.bearable()[i]);
-      if (fails(i)) ++found.degrading;
+      found.utilisation = std::max(found.utilisation, energy[i] / term_.bearable()[i]);
+      if (fails(i, energy)) ++found.degrading;
     }
     found.breaking = found.degrading;
     found.utilisation = std::sqrt(std::max(found.utilisation, 0.0));
@@ -271,14 +287,21 @@ class PointPasses : public TermPasses {
   const Workspace& workspace_;
   std::vector<Offset> places_;
   std::span<const double> volume_;
+  const Points& points_;
   std::size_t dimension_;
   std::unique_ptr<LatticeForces> forces_;
   LinearBondSums* bonds_ = nullptr;  // the same, if it has rows
-  std::vector<double> integrity_, force_, energy_;
+  std::vector<double> integrity_, force_, energy_, whole_energy_;
   bool has_half_work_;
 };
 
 }  // namespace
+
+std::unique_ptr<LatticeForces> with_images(
+    const ConvolvedLattice& lattice, const std::function<std::unique_ptr<LatticeForces>()>& make) {
+  if (!lattice.has_images()) return make();
+  return std::make_unique<ForcesWithImages>(make(), make(), lattice.box.place.size(), lattice.own);
+}
 
 PointTerm::PointTerm(std::shared_ptr<const Bonds> bonds, double micromodulus,
                      std::vector<double> bearable, std::optional<ConvolvedLattice> lattice,
@@ -301,15 +324,8 @@ PointTerm::PointTerm(std::shared_ptr<const Bonds> bonds, double micromodulus,
 
 NeighbourSums PointTerm::neighbours(std::span<const double> integrity) const {
   if (!lattice_) return neighbour_sums(bonds(), integrity);
-  NeighbourSums sums =
-      neighbour_sums(lattice_->box, lattice_->springs, micromodulus_, integrity, threads_);
-  if (!lattice_->cut) return sums;
-  const NeighbourSums cut = neighbour_sums(*lattice_->cut, integrity);
-  for (std::size_t i = 0; i < integrity.size(); ++i) {
-    sums.weight[i] -= cut.weight[i];
-    sums.count[i] -= cut.count[i];
-  }
-  return sums;
+  return neighbour_sums(lattice_->box, lattice_->springs, micromodulus_, integrity, lattice_->own,
+                        threads_);
 }
 
 std::vector<InteractionCount> PointTerm::counts() const {

@@ -7,22 +7,28 @@
 #include <span>
 #include <vector>
 
+#include "assembly/convolutions/cut_lattice.hpp"
 #include "assembly/convolutions/lattice_forces.hpp"
 #include "assembly/convolutions/lattice_springs.hpp"
 #include "assembly/terms/bonds/bond_term.hpp"
 #include "assembly/terms/points/neighbour_sums.hpp"
-#include "src/geometry/lattice_box.hpp"
 
 namespace peristat {
 
 /// A lattice whose bonds are convolutions, which need no bond.
 struct ConvolvedLattice {
-  LatticeBox box;
+  CutLattice box;
+  std::size_t own = 0;  ///< points that are no images of others, the first ones
   /// Of a point, of two opposite ones one; of a solid as stiff as it is, to precondition it with.
   std::vector<LatticeSpring> springs;
-  std::shared_ptr<const Bonds> cut{};  ///< those of them that pre-cracks have cut; null: none
   std::function<Bonds()> all_bonds{};  ///< finds those that are left
+
+  [[nodiscard]] bool has_images() const { return own < box.place.size(); }
 };
+
+/// Forces of pairs of a lattice's points, which `make` makes of all of them.
+[[nodiscard]] std::unique_ptr<LatticeForces> with_images(
+    const ConvolvedLattice& lattice, const std::function<std::unique_ptr<LatticeForces>()>& make);
 
 /// An energy whose forces are found for all points at once (LatticeForces), each of which has an
 /// integrity q.

@@ -350,10 +350,59 @@ struct SimplexKernels {
   template <int arms>
   using HessianBlocks = std::array<std::array<Matrix<D, Lanes>, arms>, arms>;
 
-  /// Moves the Hessian of each active lane by a share towards its positive semidefinite part; only
-  /// blocks P <= Q are read and written.
+  static constexpr int none = -1;
+  using ArmOfLane = std::array<int, lane_count>;
+
+  /// Per lane the arm to the point that is the lowest one in the whole body; none: arms begin
+  /// there.
+  template <class Group>
+  static ArmOfLane arms_to_lowest(const LocalWorkspace<D>& w, const PointNumbers& number,
+                                  const Group& group, const InteractionBlock& block) {
+    ArmOfLane result;
+    result.fill(none);
+    if (number.empty()) return result;
+    const std::span<const Index> partner = w.local.upper.points();
+    const auto number_of = [&](int local) {
+      return number[std::size_t(partner[std::size_t(local)])];
+    };
+    GlobalIndex least = number[std::size_t(w.local.upper.own())];
+    int arm = none;
+    for (int p = 0; p < int(group.partners.size()); ++p) {
+      const GlobalIndex of_partner = number_of(group.partners[std::size_t(p)]);
+      if (of_partner < least) arm = p;
+      least = std::min(least, of_partner);
+    }
+    for (int l = 0; l < lane_count; ++l) {
+      if ((block.active >> l & 1U) == 0) continue;
+      const bool is_last = number_of(block.first + l) < least;
+      result[std::size_t(l)] = is_last ? int(group.partners.size()) : arm;
+    }
+    return result;
+  }
+
+  /// Makes all arms of a relative Hessian begin at the end of one, and that one end where they
+  /// began; done again it goes back.
   template <int arms>
-  static void project(HessianBlocks<arms>& blocks, std::uint32_t active, double share) {
+  static void begin_at(int arm, double* matrix) {
+    constexpr int size = arms * D;
+    for (const int row : {size, 1}) {
+      const int column = size + 1 - row;
+      for (int r = 0; r < size; ++r) {
+        for (int c = 0; c < D; ++c) {
+          double sum = 0.0;
+          for (int p = 0; p < arms; ++p) sum += matrix[r * row + (p * D + c) * column];
+          matrix[r * row + (arm * D + c) * column] = -sum;
+        }
+      }
+    }
+  }
+
+  /// Moves the Hessian of each active lane by a share towards its positive semidefinite part; only
+  /// blocks P <= Q are read and written. The part depends on where arms begin: on all ranks that is
+  /// the lowest point, as on one.
+  template <int arms>
+  static void project(HessianBlocks<arms>& blocks, std::uint32_t active, double share,
+                      const ArmOfLane& lowest) {
     constexpr int size = arms * D;
     for (int l = 0; l < lane_count; ++l) {
       if ((active >> l & 1U) == 0) continue;
@@ -369,7 +418,10 @@ struct SimplexKernels {
           }
         }
       }
+      const int arm = lowest[std::size_t(l)];
+      if (arm != none) begin_at<arms>(arm, matrix.data());
       project_to_semidefinite(matrix.data(), size, share);
+      if (arm != none) begin_at<arms>(arm, matrix.data());
       for (int p = 0; p < arms; ++p) {
         for (int q = p; q < arms; ++q) {
           for (int r = 0; r < D; ++r) {
@@ -385,7 +437,7 @@ struct SimplexKernels {
   /// Adds up the relative Hessian of a point's interactions of one kind.
   template <class Measure, class P>
   static void add_hessian(LocalWorkspace<D>& w, const Interactions<Measure>& interactions,
-                          const P& potential, double projection) {
+                          const P& potential, double projection, const PointNumbers& number) {
     constexpr int arms_count = Measure::arms, last = arms_count - 1;
     interactions.template for_each_group<D>(w.local, w.scratch, [&](const auto& group) {
       BatchArms<Measure, D> arms(w, group);
@@ -415,7 +467,8 @@ struct SimplexKernels {
           HessianBlocks<arms_count> blocks;
           for_each_pair_of_arms<arms_count>(
               [&](auto p, auto q) { blocks[p][q] = energy_hessian<p, q>(psi, measure); });
-          project<arms_count>(blocks, block.active, projection);
+          project<arms_count>(blocks, block.active, projection,
+                              arms_to_lowest(w, number, group, block));
           for_each_pair_of_arms<arms_count>([&](auto p, auto q) { add(p, q, blocks[p][q]); });
         }
       }
@@ -445,7 +498,7 @@ struct SimplexKernels {
         w.clear(half_entries);
         w.clear_hessian();
         for_each_kind(a.term, [&](auto kind, const auto& interactions, const auto& potential) {
-          add_hessian<decltype(kind)>(w, interactions, potential, projection);
+          add_hessian<decltype(kind)>(w, interactions, potential, projection, a.term.numbers());
         });
 
         // With H_ab the relative Hessian: K_ab += H_ab, K_ib -= sum_a H_ab, K_ii += sum_ab H_ab.

@@ -1,6 +1,7 @@
 #include "assembly/terms/simplices/simplex_term.hpp"
 
 #include <algorithm>
+#include <numeric>
 #include <stdexcept>
 #include <type_traits>
 
@@ -17,7 +18,7 @@ class SimplexPasses : public TermPasses {
  public:
   SimplexPasses(const SimplexTerm& term, const TermSetting& setting)
       : term_(term),
-        model_(setting.model),
+        setting_(setting),
         slot_(setting.model.slot_of(term)),
         workspace_(term, setting) {}
 
@@ -29,16 +30,18 @@ class SimplexPasses : public TermPasses {
   Evaluation commit(std::span<const double> displacement, const SharedEnvironment& environment,
                     History& history, std::span<double> gradient, Write how) override {
     const History before = history;
-    term_.follow(model_, history);
+    term_.follow(setting_.model, history);
     const auto after = [&](const History& past) {
       return StateView{displacement, past, Damage::grows, environment};
     };
     Evaluation found = this->gradient(after(history), gradient, how);
     found.moves_equilibrium = !std::ranges::equal(before.of(slot_), history.of(slot_));
     if (found.moves_equilibrium) {
-      const double energy = this->gradient(after(before), {}, how).energy;
+      const double left = setting_.points.owned ? owned_energy(after(history)) : found.energy;
+      const double energy = setting_.points.owned ? owned_energy(after(before))
+                                                  : this->gradient(after(before), {}, how).energy;
       // No integrity rises in a commit, but for the last digit of an exponential.
-      found.released = std::max(energy - found.energy, 0.0);
+      found.released = std::max(energy - left, 0.0);
     }
     return found;
   }
@@ -79,8 +82,16 @@ class SimplexPasses : public TermPasses {
     return {integrity.first(bonds), integrity.subspan(bonds), at.eigenstretch()};
   }
 
+  /// Of a part: what all have together counts each interaction once.
+  double owned_energy(const StateView& at) {
+    std::vector<double> energies(setting_.points.volume.size());
+    point_energies(at, energies, Write::over);
+    const auto first = energies.begin();
+    return std::accumulate(first, first + *setting_.points.owned, 0.0);
+  }
+
   const SimplexTerm& term_;
-  const Model& model_;
+  const TermSetting setting_;
   std::size_t slot_;
   SimplexWorkspace<D> workspace_;
 };
@@ -120,10 +131,11 @@ InteractionCount count_of(const Simplices<Measure>& kind) {
 
 SimplexTerm::SimplexTerm(std::shared_ptr<const BondTerm> bonds,
                          std::optional<Simplices<Area>> triangles,
-                         std::optional<Simplices<Volume>> tetrahedra)
+                         std::optional<Simplices<Volume>> tetrahedra, PointNumbers numbers)
     : bonds_(std::move(bonds)),
       triangles_(std::move(triangles)),
-      tetrahedra_(std::move(tetrahedra)) {
+      tetrahedra_(std::move(tetrahedra)),
+      numbers_(std::move(numbers)) {
   if (bonds_->can_fail() && (is_negative(triangles_) || is_negative(tetrahedra_))) {
     throw std::logic_error("what is lost with a bond must not hold negative energy");
   }

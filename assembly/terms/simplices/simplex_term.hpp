@@ -18,6 +18,9 @@ struct Simplices {
   HigherPotential potential;
 };
 
+/// Of the points of a part their numbers in the whole body; empty: these are those of the whole.
+using PointNumbers = std::vector<GlobalIndex>;
+
 /// The energies of triangles and tetrahedra, sums of w psi(a; A) and w psi(v; V) ([CPD] eq. 14, two
 /// and three neighbours). Both are passed over at once: they share the neighbourhoods of their
 /// points.
@@ -30,15 +33,18 @@ struct Simplices {
 class SimplexTerm : public Term {
  public:
   /// @param bonds that they stand on
+  /// @param numbers by which arms of projected tangents begin at the same point on all ranks
   /// @throws std::logic_error for a negative constant if these can be damaged: what is lost with
   ///         them would have to be paid with energy that nobody has put in
   SimplexTerm(std::shared_ptr<const BondTerm> bonds, std::optional<Simplices<Area>> triangles,
-              std::optional<Simplices<Volume>> tetrahedra);
+              std::optional<Simplices<Volume>> tetrahedra, PointNumbers numbers = {});
 
   [[nodiscard]] const BondTerm& bond_term() const { return *bonds_; }
   [[nodiscard]] const Bonds& bonds() const { return bonds_->bonds(); }
   [[nodiscard]] const std::optional<Simplices<Area>>& triangles() const { return triangles_; }
   [[nodiscard]] const std::optional<Simplices<Volume>>& tetrahedra() const { return tetrahedra_; }
+
+  [[nodiscard]] const PointNumbers& numbers() const { return numbers_; }
 
   /// Calls visit(simplices) for the triangles and for the tetrahedra, if there are any.
   template <class Visit>
@@ -60,6 +66,7 @@ class SimplexTerm : public Term {
   std::shared_ptr<const BondTerm> bonds_;
   std::optional<Simplices<Area>> triangles_;
   std::optional<Simplices<Volume>> tetrahedra_;
+  PointNumbers numbers_;
 };
 
 }  // namespace peristat

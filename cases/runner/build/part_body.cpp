@@ -12,6 +12,7 @@
 #include "cases/runner/build/recorded_points.hpp"
 #include "solvers/ranks/distribute.hpp"
 #include "solvers/ranks/part_bonds.hpp"
+#include "solvers/study/bonds_of_part.hpp"
 #include "src/core/input_error.hpp"
 #include "src/geometry/point_file.hpp"
 #include "src/geometry/point_set.hpp"
@@ -30,21 +31,24 @@ constexpr std::array keys_of_ranks{
     "lattice.angle", "lattice.volumes", "lattice.cell_perturbation", "lattice.points",
     "points.file", "points.thickness", "points.area", "points.horizon", "set.",
     // bonds
-    "quadrature.", "material.model", "material.plane", "material.youngs_modulus",
+    "quadrature.volume_correction", "quadrature.surface_correction", "quadrature.horizon_shape",
+    "crack.", "material.model", "material.plane", "material.youngs_modulus",
     "material.micromodulus", "material.density", "material.influence", "material.potential",
     "material.calibration", "material.fibre.", "material.scatter.", "region.", "interface.",
-
+    // triangles and tetrahedra, states
+    "quadrature.weights", "quadrature.form", "material.poisson_ratio", "material.c1", "material.c2",
+    "material.c3",
     // damage
-    "crack.", "material.damage.", "loading.max_broken_bonds", "loading.stop_below",
-    "solver.fragments", "solver.projection", "solver.elastic_horizon_ratio", "relaxation.",
+    "material.damage.", "loading.max_broken_bonds", "loading.stop_below", "solver.fragments",
+    "solver.projection", "solver.elastic_horizon_ratio", "relaxation.",
     // conditions
     "support.", "load.set", "load.side", "load.body_force", "load.total_force", "load.gravity",
     "load.traction", "load.depth", "eigenstrain.", "temperature.", "material.thermal_expansion",
     // search
     "loading.steps", "loading.table", "loading.table2", "loading.adaptive", "loading.smallest_step",
-    "loading.largest_step", "solver.mode", "solver.linear", "solver.preconditioner",
-    "solver.tangent", "solver.predictor", "solver.relative_tolerance", "solver.linear_tolerance",
-    "solver.max_iterations",
+    "loading.largest_step", "initial.", "absorbing.", "dynamics.", "solver.mode", "solver.operator",
+    "solver.linear", "solver.preconditioner", "solver.tangent", "solver.predictor",
+    "solver.relative_tolerance", "solver.linear_tolerance", "solver.max_iterations",
     // results
     "output.directory", "output.every", "output.stress", "output.count_cracks", "probe."};
 
@@ -74,15 +78,41 @@ bool has_ranks(const std::string& key) {
   throw InputError(key, value, "is not for more than one rank yet; " + instead);
 }
 
+/// Transforms go over the whole body, which no rank has.
+void refuse_convolutions(const Case& from) {
+  const std::string why = "is for one rank, since convolutions go over the whole body; ";
+  if (from.needs_convolutions()) {
+    throw InputError(from.has_states() ? "material.form" : "material.model", "",
+                     why + "models that have bonds go on several");
+  }
+  if (from.solver.force_operator != ForceOperator::fft) return;
+  throw InputError("solver.operator", "\"fft\"", why + "on several take \"bonds\" or \"auto\"");
+}
+
 /// Of keys whose values have ranks in part, those that have.
 void refuse_values_without_ranks(const Case& from) {
-  if (from.material.model != MaterialModel::bond) {
-    refuse("material.model", "", "take \"bond\"");
+  refuse_convolutions(from);
+  if (from.is_collocated()) {
+    refuse("quadrature.form", "", "take \"energy\" with model \"lps\"");
   }
+  const bool is_lattice = std::holds_alternative<Lattice>(from.body);
+  const bool has_shares = from.volume_correction != VolumeCorrection::none &&
+                          from.volume_correction != VolumeCorrection::linear;
   const Mode mode = from.solver.mode;
-  if (mode != Mode::newton && mode != Mode::adaptive && mode != Mode::relaxation) {
+  const bool moves = mode == Mode::dynamics;
+  if (from.material.model != MaterialModel::bond && (moves || tells_stress(from))) {
+    refuse(moves ? "solver.mode" : "output.stress", "", "it is for model \"bond\"");
+  }
+  if (from.material.model != MaterialModel::bond && (!is_lattice || has_shares)) {
+    refuse("material.model", "",
+           "models but \"bond\" are for a lattice, and volume_correction \"none\" or \"linear\"");
+  }
+  if (mode == Mode::path || mode == Mode::arc_length) {
     refuse("solver.mode", std::string(mode.name),
-           "take \"newton\", \"adaptive\" or \"relaxation\"");
+           "take \"newton\", \"adaptive\", \"relaxation\" or \"dynamics\"");
+  }
+  if (from.dynamics.is_asked_for && from.dynamics.is_implicit()) {
+    refuse("dynamics.scheme", "\"newmark\"", "take \"verlet\"");
   }
 }
 
@@ -163,7 +193,8 @@ std::unique_ptr<const Body> make_part_body(const Case& from, const Communicator&
       refuse("lattice.spacing", "", "results have numbers for fewer than 2^31 points");
     }
     const BondSetting setting = bond_setting(from, slab.points);
-    const double reach = reach_of_bonds(slab.points, from.surface_correction, setting, ranks);
+    const double reach =
+        reach_of_bonds(slab.points, from.surface_correction, setting, ranks, bonds_of_part(from));
     Part part = distribute(std::move(slab), setting.horizon, reach, ranks, threads);
     add_sets(from, ranks, part);
     BodySpecification of = from;

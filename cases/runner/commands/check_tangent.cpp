@@ -10,8 +10,8 @@
 
 #include <fmt/format.h>
 
+#include "assembly/operators/constrained_product.hpp"
 #include "assembly/operators/constrained_tangent.hpp"
-#include "assembly/operators/convolved_tangent.hpp"
 #include "assembly/operators/rows_of_energy.hpp"
 #include "cases/runner/build/body.hpp"
 #include "solvers/linear/vector_verbs.hpp"
@@ -299,7 +299,7 @@ double relative_moment_sum(const Points& points, const std::vector<double>& disp
 std::unique_ptr<TangentOperator> make_tangent(Assembler& assembler,
                                               const Constraints& constraints) {
   if (!assembler.has_potential()) return std::make_unique<RowsOfEnergy>(assembler);
-  if (!assembler.has_rows()) return std::make_unique<ConvolvedTangent>(assembler);
+  if (!assembler.has_rows()) return make_convolved_tangent(assembler, constraints);
   if (constraints.none()) return std::make_unique<Tangent>(assembler);
   return std::make_unique<ConstrainedTangent>(assembler, constraints);
 }

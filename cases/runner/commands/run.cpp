@@ -52,7 +52,10 @@ void count(const Body& body, const FreeDofs& free, const RunOptions& options,
   summary.points = body.part ? Index(body.part->whole()) : body.points.own();
   summary.free_dofs = ranks.count_all(free.count()).all;
   for (const auto& term : body.model.terms()) {
-    for (const InteractionCount& kind : term->counts()) summary.count(kind.name, kind.count);
+    for (const InteractionCount& kind : term->counts()) {
+      summary.count(kind.name,
+                    body.part ? count_interactions(body.part->owned(), kind, ranks) : kind.count);
+    }
   }
   if (body.part) {
     summary.count("bonds", count_bonds(body.points, body.model.bonds(), ranks));

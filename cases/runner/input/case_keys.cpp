@@ -633,7 +633,7 @@ Table<MaterialSpecification> material_keys(const std::string& name) {
        K("kinematics", &Spec::kinematics,
          choice<Kinematics>({{"finite", Kinematics::finite}, {"linear", Kinematics::linear}}),
          "`bond`: bonds stretch by their lengths, at any deformation; or by the displacements "
-         "along them, for small ones, which is linear: without eigenstrains and images, with "
+         "along them, for small ones, which is linear: without eigenstrains, with "
          "`potential = \"harmonic\"`, and damage by `energy_density` alone. `lps` is always linear")
            .then(make_linear_if_lps)
            .unless(of_cpd, "is for models \"bond\" and \"lps\""),

@@ -81,6 +81,7 @@ void Recorder::add_motion(std::span<const double> velocity, Fields& made) const 
 }
 
 void Recorder::accepted(StepRecord record, const AcceptedState& state) {
+  unwritten_.reset();  // before there are as many fields again
   const StateView at = state.trial.at();
   std::vector<double> force = state.trial.gradient;
   const Constraints& constraints = body_.conditions->constraints();
@@ -121,7 +122,6 @@ void Recorder::accepted(StepRecord record, const AcceptedState& state) {
   if (write_fields) written_histories_.tell(bond_stretches(body_.model, at.history));
   progress_.accepted(record, relative_residual_);
   last_ = std::move(record);
-  unwritten_.reset();
   if (!write_fields) unwritten_ = std::move(made);
 }
 

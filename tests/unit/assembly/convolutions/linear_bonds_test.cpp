@@ -6,12 +6,14 @@
 #include <string>
 #include <vector>
 
+#include <Eigen/Dense>
 #include <gtest/gtest.h>
 
 #include "assembly/assembler.hpp"
 #include "assembly/operators/tangent.hpp"
 #include "src/geometry/lattice.hpp"
 #include "tests/bodies.hpp"
+#include "tests/lattice_systems.hpp"
 
 namespace peristat {
 namespace {
@@ -19,7 +21,8 @@ namespace {
 using tests::BoxBody;
 using tests::BoxSetting;
 
-constexpr std::array<bool, 3> open{};
+using tests::HoledBody;
+using tests::open;
 
 /// A lattice's body with holes, and the operator of its bonds.
 struct System {
@@ -257,6 +260,97 @@ TEST(LinearBonds, OfPeriodicBodiesSeeTheirImages) {
   EXPECT_THROW(LinearBonds(System::box_of(points_of(2)), {false, true, false},
                            std::vector<LatticeSpring>{{{0, 10, 0}, {0.0, 1.0}, 1.0}}, 1),
                std::logic_error);
+}
+
+LinearBonds bonds_of(const HoledBody& body) {
+  return LinearBonds(
+      body.box, open,
+      lattice_springs(body.kernel, body.points.spacing, body.points.angle, 2.3, body.volume()), 1);
+}
+
+/// Bond by bond, none of which is cut.
+tests::ForcesAndEnergies direct(const HoledBody& body, const std::vector<double>& q,
+                                const std::vector<double>& u) {
+  const int d = body.dimension();
+  tests::ForcesAndEnergies sums{std::vector<double>(u.size()), std::vector<double>(q.size())};
+  for (const tests::Neighbour& of : tests::neighbours(body)) {
+    const double r2 = of.xi[0] * of.xi[0] + of.xi[1] * of.xi[1] + of.xi[2] * of.xi[2];
+    const double along = tests::along_difference(of.xi, of, u, d) / r2;
+    const double stiffness = q[of.i] * q[of.j] * 2.3 * of.share / std::sqrt(r2);
+    sums.energy[of.i] += 0.25 * stiffness * along * along * r2;
+    for (std::size_t c = 0; c < std::size_t(d); ++c) {
+      sums.force[of.i * std::size_t(d) + c] += stiffness * along * of.xi[c];
+    }
+  }
+  return sums;
+}
+
+TEST(LinearBonds, AreThoseThatNoCrackHasCut) {
+  for (const tests::HoledSetting& setting : tests::holed_settings()) {
+    const HoledBody body(setting);
+    SCOPED_TRACE(::testing::PrintToString(setting.counts));
+    EXPECT_EQ(body.box.cut.empty(), !setting.is_cut);
+    const std::vector<double> u = body.random(5), v = body.random(6);
+    LinearBonds bonds = bonds_of(body);
+    for (const std::vector<double>& q : {std::vector<double>(body.count(), 1.0), body.mask()}) {
+      bonds.set_integrity(q);
+      tests::expect_equal(tests::evaluate(bonds, u, body.count()), direct(body, q, u), 1e-13);
+      tests::expect_tangent_of_forces(bonds, u, v, body.count());
+    }
+  }
+}
+
+/// Steps of a body with a hole, a crack and points of every integrity, of mass 1, by velocity
+/// Verlet.
+struct Motion {
+  LinearBonds& bonds;
+  std::vector<double> u, v, force;
+
+  Motion(LinearBonds& of, const std::vector<double>& start)
+      : bonds(of), u(start), v(start.size(), 0.0), force(start.size()) {
+    bonds.find_forces(u, force);
+  }
+  void step(double dt) {
+    for (std::size_t k = 0; k < u.size(); ++k) {
+      v[k] += 0.5 * dt * force[k];
+      u[k] += dt * v[k];
+    }
+    bonds.find_forces(u, force);
+    for (std::size_t k = 0; k < u.size(); ++k) v[k] += 0.5 * dt * force[k];
+  }
+  /// What the scheme keeps of linear forces: kinetic and stored energy less dt^2 f^2 / 8.
+  [[nodiscard]] double shadow_energy(double dt) const {
+    return 0.5 * tests::dot(v, v) - 0.5 * tests::dot(u, force) -
+           0.125 * dt * dt * tests::dot(force, force);
+  }
+};
+
+TEST(LinearBonds, MoveWithAShadowEnergyUpToTheCriticalStepAndNotBeyond) {
+  const HoledBody body({{13, 10}, 3.015, VolumeCorrection::none, 0.0, 0.1, true});
+  LinearBonds bonds = bonds_of(body);
+  bonds.set_integrity(body.mask());
+  const std::vector<double> start = body.random(5);
+  Eigen::MatrixXd K(start.size(), start.size());
+  std::vector<double> unit(start.size(), 0.0), column(start.size());
+  for (std::size_t k = 0; k < unit.size(); ++k) {
+    unit[k] = 1.0;
+    bonds.multiply(unit, unit, column);
+    unit[k] = 0.0;
+    K.col(Eigen::Index(k)) = Eigen::Map<const Eigen::VectorXd>(column.data(), K.rows());
+  }
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(K, Eigen::EigenvaluesOnly);
+  const double critical = 2.0 / std::sqrt(solver.eigenvalues().maxCoeff());
+  Motion stable(bonds, start);
+  const double energy = stable.shadow_energy(0.99 * critical);
+  ASSERT_GT(energy, 0.0);
+  for (int step = 0; step < 2000; ++step) {
+    stable.step(0.99 * critical);
+    ASSERT_NEAR(stable.shadow_energy(0.99 * critical), energy, 1e-12 * energy) << step;
+  }
+  EXPECT_LT(tests::norm(stable.u), 20.0 * tests::norm(start));
+  Motion unstable(bonds, start);
+  for (int step = 0; step < 200; ++step) unstable.step(1.02 * critical);
+  EXPECT_GT(tests::norm(unstable.u), 1e6 * tests::norm(start));
 }
 
 }  // namespace

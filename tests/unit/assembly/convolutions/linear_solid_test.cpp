@@ -36,7 +36,9 @@ ForcesAndEnergies direct(const HoledBody& body, const std::vector<double>& q,
   const auto squared = [](const Neighbour& of) {
     return of.xi[0] * of.xi[0] + of.xi[1] * of.xi[1] + of.xi[2] * of.xi[2];
   };
-  for (const Neighbour& of : all) moment[of.i] += q[of.j] * of.share * squared(of);
+  for (const Neighbour& of : tests::neighbours(body, true)) {
+    moment[of.i] += q[of.j] * of.share * squared(of);
+  }
   for (const Neighbour& of : all) {
     if (moment[of.i] == 0.0) continue;
     const double along = tests::along_difference(of.xi, of, u, d);
@@ -257,6 +259,70 @@ TEST(LinearSolid, IsOneOfBondsWhereLambdaIsMuAndNeighbourhoodsAreWhole) {
   ForcesAndEnergies expected{std::vector<double>(u.size()), std::vector<double>(box.place.size())};
   bonds.find_forces_and_energies(u, expected.force, expected.energy);
   tests::expect_equal(tests::evaluate(solid, u, box.place.size()), expected, 1e-13);
+}
+
+/// nu = 1/4 in space, 1/3 in plane stress: nothing is left of the dilatation, whatever a
+/// neighbourhood lacks ([FCBM] 5.6).
+TEST(LinearSolid, IsBondsWithTheMomentsOfBothEndsWhereLambdaIsMu) {
+  for (const std::vector<int>& counts : both_dimensions()) {
+    const HoledBody body({counts, 2.015, VolumeCorrection::linear, 0.0, 0.1, true});
+    const auto d = std::size_t(body.dimension());
+    const double mu = 0.9, shear = double(d * (d + 2)) * mu * body.volume();
+    LinearSolid solid(body.box, open, body.arms(), {{mu, mu}, body.volume()}, 1);
+    const std::vector<double> u = body.random(5), q = body.mask();
+    solid.set_integrity(q);
+    const std::vector<Neighbour> all = tests::neighbours(body);
+    const auto squared = [](const Neighbour& of) {
+      return of.xi[0] * of.xi[0] + of.xi[1] * of.xi[1] + of.xi[2] * of.xi[2];
+    };
+    std::vector<double> moment(body.count());
+    for (const Neighbour& of : tests::neighbours(body, true)) {
+      moment[of.i] += q[of.j] * of.share * squared(of);
+    }
+    ForcesAndEnergies bonds{std::vector<double>(u.size()), std::vector<double>(body.count())};
+    for (const Neighbour& of : all) {
+      if (q[of.i] * q[of.j] == 0.0) continue;
+      const double weight = q[of.i] * q[of.j] * shear * of.share;
+      const double stiffness = weight * (1.0 / moment[of.i] + 1.0 / moment[of.j]);
+      const double along = tests::along_difference(of.xi, of, u, int(d)) / squared(of);
+      bonds.energy[of.i] += 0.5 * weight / moment[of.i] * along * along * squared(of);
+      for (std::size_t c = 0; c < d; ++c) {
+        bonds.force[of.i * d + c] += stiffness * along * of.xi[c];
+      }
+    }
+    tests::expect_equal(tests::evaluate(solid, u, body.count()), bonds, 1e-12);
+  }
+}
+
+/// Moments are renewed: what has failed might as well never have been there, which a bond that
+/// breaks by itself, of StateTerm, might not.
+TEST(LinearSolid, WithoutIntegrityIsTheBodyWithoutThePoint) {
+  for (const std::vector<int>& counts : both_dimensions()) {
+    const HoledBody body({counts, 2.015});
+    std::vector<double> q(body.count(), 1.0);
+    for (std::size_t i = 3; i < q.size(); i += 11) q[i] = 0.0;
+    LinearSolid damaged = solid_of(body);
+    damaged.set_integrity(q);
+    LatticeBox rest = body.box;
+    rest.place.clear();
+    const auto d = std::size_t(body.dimension());
+    const std::vector<double> u = body.random(5);
+    std::vector<double> u_of_rest;
+    for (std::size_t i = 0; i < q.size(); ++i) {
+      if (q[i] == 0.0) continue;
+      rest.place.push_back(body.box.place[i]);
+      u_of_rest.insert(u_of_rest.end(), &u[i * d], &u[i * d] + d);
+    }
+    LinearSolid without(rest, open, body.arms(), setting_of(body), 1);
+    const ForcesAndEnergies all = tests::evaluate(damaged, u, body.count());
+    ForcesAndEnergies of_rest;
+    for (std::size_t i = 0; i < q.size(); ++i) {
+      if (q[i] == 0.0) continue;
+      of_rest.energy.push_back(all.energy[i]);
+      of_rest.force.insert(of_rest.force.end(), &all.force[i * d], &all.force[i * d] + d);
+    }
+    tests::expect_equal(of_rest, tests::evaluate(without, u_of_rest, rest.place.size()), 1e-12);
+  }
 }
 
 TEST(LinearSolid, HasTheVirialsOfItsEnergies) {

@@ -1,0 +1,18 @@
+#pragma once
+
+#include "solvers/linear/sums.hpp"
+#include "solvers/motion/stable_step.hpp"
+
+namespace peristat {
+
+/// As bound_stiffness and find_stiffness, of a body that is whole or that ranks have parts of: then
+/// the tangent is that of a part, and all ranks make the call.
+/// @param sharing null: the body is whole
+[[nodiscard]] Stiffness bound_stiffness(const TangentOperator& tangent, const FreeDofs& free,
+                                        std::span<const double> mass, int most_points,
+                                        const Sharing* sharing);
+[[nodiscard]] Stiffness find_stiffness(const TangentOperator& tangent, const FreeDofs& free,
+                                       std::span<const double> mass, int most_points,
+                                       const Sharing* sharing);
+
+}  // namespace peristat

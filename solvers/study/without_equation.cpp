@@ -1,0 +1,13 @@
+#include "solvers/study/without_equation.hpp"
+
+#include "solvers/ranks/part_tangent.hpp"
+
+namespace peristat {
+
+std::vector<char> without_equation(const Body& body) {
+  const std::vector<char>& prescribed = body.conditions->prescribed();
+  if (!body.part) return prescribed;
+  return without_ghosts(*body.part, prescribed, body.points.dimension);
+}
+
+}  // namespace peristat

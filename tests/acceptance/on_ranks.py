@@ -1,0 +1,275 @@
+"""Small bodies, runs of them on ranks, and what their results have to share."""
+
+import csv
+import os
+import re
+import subprocess
+import tempfile
+import unittest
+from pathlib import Path
+
+import h5py
+import numpy
+
+ROOT = Path(__file__).parents[2]
+PROGRAM = os.environ["PERISTAT_PROGRAM"]
+# Root may run them, as in a container.
+ENVIRONMENT = os.environ | {
+    "OMPI_ALLOW_RUN_AS_ROOT": "1",
+    "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
+    "OMP_WAIT_POLICY": "passive",
+}
+SOLVER = """
+[solver]
+linear = "pcg"
+preconditioner = "block_jacobi"
+tangent = "matrix_free"
+linear_tolerance = 1e-9
+"""
+PLATE = """
+title = "plate with a hole"
+dimension = 2
+[lattice]
+spacing = 0.05
+thickness = 0.01
+shape = [{ add = "box", min = [0, 0], max = [1, 1.5] }, { subtract = "disk", centre = [0.5, 0.7], radius = 0.2 }]
+layer = [{ name = "bottom", side = "y-" }, { name = "top", side = "y+" }]
+[[set]]
+name = "corner"
+where = "x > 0.6 && y > 1"
+[material]
+model = "bond"
+youngs_modulus = 1e9
+[[support]]
+set = "bottom"
+displacement = [0, 0]
+[[support]]
+set = "top"
+displacement = [0, "0.05*load"]
+[[load]]
+set = "corner"
+body_force = ["1e6*load*y", 0]
+[loading]
+steps = 2
+"""
+BAR = """
+dimension = 1
+[lattice]
+spacing = 0.1
+area = 2.0
+shape = [{ add = "box", min = [0], max = [4] }]
+layer = [{ name = "left", side = "x-" }, { name = "right", side = "x+", thickness = 2 }]
+[material]
+model = "bond"
+micromodulus = 7.0
+[[support]]
+set = "left"
+displacement = [0]
+[[support]]
+set = "right"
+displacement = ["0.3*load"]
+"""
+BLOCK = """
+dimension = 3
+[lattice]
+spacing = 0.1
+horizon_ratio = 2.015
+perturbation = 0.1
+seed = 7
+shape = [{ add = "box", min = [0, 0, 0], max = [0.7, 0.6, 0.9] }, { subtract = "sphere", centre = [0.1, 0.1, 0.5], radius = 0.2 }]
+layer = [{ name = "foot", side = "z-", thickness = 2 }]
+[quadrature]
+volume_correction = "linear"
+surface_correction = "volume"
+[material]
+model = "bond"
+youngs_modulus = 1e6
+density = 2000
+[[support]]
+set = "foot"
+displacement = [0, 0, 0]
+[[load]]
+gravity = ["0", "load*30", "-load*9.81"]
+[loading]
+table = [0, 1, 0.5]
+"""
+# Triangles, in large steps; the hole is narrower than two horizons.
+SQUARE = """
+dimension = 2
+[lattice]
+spacing = 0.1
+horizon_ratio = 2.415
+shape = [{ add = "box", min = [0, 0], max = [1.2, 1] }, { subtract = "box", min = [0.5, 0.4], max = [0.8, 0.6] }]
+layer = [{ name = "held", side = "x-", thickness = 2 }, { name = "pulled", side = "x+", thickness = 2 }]
+[material]
+model = "cpd"
+c1 = 1.0
+c2 = 30.0
+[[support]]
+set = "held"
+displacement = [0, 0]
+[[support]]
+set = "pulled"
+displacement = ["0.4*load", "0.1*load"]
+[loading]
+steps = 2
+"""
+CUBE = """
+dimension = 3
+[lattice]
+spacing = 0.1
+horizon_ratio = 1.815
+perturbation = 0.05
+shape = [{ add = "box", min = [0, 0, 0], max = [0.6, 0.4, 0.5] }]
+layer = [{ name = "held", side = "x-" }, { name = "pulled", side = "x+" }]
+[material]
+model = "cpd"
+c1 = 1.0
+c2 = 100.0
+c3 = 1e6
+[[support]]
+set = "held"
+displacement = [0, 0, 0]
+[[support]]
+set = "pulled"
+displacement = ["0.2*load", 0, "0.05*load"]
+[loading]
+steps = 1
+"""
+# A dilatation per point, which neighbours of ghosts tell.
+STATES = PLATE.replace('model = "bond"', 'model = "lps"\nplane = "strain"\npoisson_ratio = 0.4') + """
+[quadrature]
+form = "energy"
+volume_correction = "linear"
+"""
+STORED = SOLVER.replace("matrix_free", "stored")
+# Thin and long, with a notch, under a load at its end.
+BEAM = """
+dimension = 3
+[lattice]
+spacing = 0.1
+shape = [{ add = "box", min = [0, 0, 0], max = [0.2, 0.3, 4] }, { subtract = "box", min = [-1, 0.1, 1.9], max = [1, 1, 2.1] }]
+layer = [{ name = "held", side = "z-" }, { name = "end", side = "z+", thickness = 1 }]
+[material]
+model = "bond"
+youngs_modulus = 1e6
+[[support]]
+set = "held"
+displacement = [0, 0, 0]
+[[load]]
+set = "end"
+total_force = ["1e-3*load", "1e-3*load", "load"]
+"""
+# Parts of it are thinner than the horizon.
+SHORT_BAR = BAR.replace("max = [4]", "max = [0.3]").replace(', thickness = 2', ", thickness = 1")
+
+
+class OnRanks(unittest.TestCase):
+    def setUp(self):
+        self.folder = Path(self.enterContext(tempfile.TemporaryDirectory()))
+
+    def case(self, text):
+        file = self.folder / "case.toml"
+        file.write_text(text)
+        return file
+
+    def start(self, ranks, text, *options, threads=1):
+        file = self.case(text)
+        output = self.folder / f"on_{ranks}"
+        words = [PROGRAM, "run", *(("--ranks", str(ranks)) if ranks > 1 else ()), str(file)]
+        words += ["--threads", str(threads), "--output", str(output), "--overwrite", *options]
+        run = subprocess.run(words, env=ENVIRONMENT, capture_output=True, text=True, timeout=100)
+        return run, output
+
+    def results(self, ranks, text, *options, **threads):
+        run, output = self.start(ranks, text, *options, **threads)
+        self.assertEqual(run.returncode, 0, run.stderr)
+        return output
+
+    def refusal(self, text, *options, ranks=2):
+        run, output = self.start(ranks, text, *options)
+        self.assertEqual(run.returncode, 2, run.stderr)
+        self.assertFalse(output.exists())
+        return run.stderr
+
+
+def children_of(process):
+    return [int(child) for child in Path(f"/proc/{process}/task/{process}/children").read_text().split()]
+
+
+def objects(file):
+    names = []
+    file.visit(names.append)
+    return sorted(names)
+
+
+def rows(output, table):
+    with open(output / table, newline="") as file:
+        return list(csv.DictReader(file))
+
+
+def nine_digits(text):
+    return re.sub(r"\d+\.\d+(e[-+]?\d+)?", lambda number: f"{float(number[0]):.9g}", text)
+
+
+class Comparison(OnRanks):
+    def expect_same(self, one, several):
+        with h5py.File(one / "results.h5") as expected, h5py.File(several / "results.h5") as found:
+            names = objects(expected)
+            self.assertEqual(names, objects(found))
+            for name in names:
+                if name == "checkpoint":
+                    continue  # of seconds, too
+                if not isinstance(expected[name], h5py.Dataset) or name.startswith("iterations/"):
+                    continue
+                if name == "case/as_resolved" or name.startswith("case/settings"):
+                    continue  # the folder
+                self.expect_same_data(name, expected[name], found[name])
+
+    def expect_same_data(self, name, expected, found):
+        self.assertEqual((expected.shape, expected.dtype), (found.shape, found.dtype), name)
+        self.assertEqual(dict(expected.attrs.items()).keys(), dict(found.attrs.items()).keys(), name)
+        if name == "decisions/reason":  # numbers in them have all their digits
+            self.assertEqual(*([nine_digits(text) for text in data.asstr()[()]] for data in (expected, found)))
+            return
+        if expected.dtype.kind != "f":
+            self.assertTrue(numpy.array_equal(expected[()], found[()]), name)
+            return
+        if name.endswith(("balance_error", "/reason", "pin_force")):
+            return  # differences of large numbers
+        scale = numpy.abs(expected[()]).max(initial=0)
+        if name.startswith("history/") and name[-2:] in ("_x", "_y", "_z"):  # of a vector
+            scale = max(numpy.abs(expected.parent[key][()]).max() for key in expected.parent if key[:-2] == name[8:-2])
+        if name.startswith(("history/reaction", "history/momentum")):
+            kind = name.split("_")[0].split("/")[1]
+            scale = max(numpy.abs(file[()]).max() for key, file in expected.parent.items() if kind in key)
+        difference = numpy.abs(expected[()] - found[()]).max(initial=0)
+        self.assertLessEqual(difference, 1e-9 * scale, name)
+
+    def expect_same_iterations(self, one, several):
+        expected, found = rows(one, "iterations.csv"), rows(several, "iterations.csv")
+        self.assertEqual(len(expected), len(found))
+        for before, after in zip(expected, found):
+            for key in ("step", "iteration", "rejected_trials", "step_length"):
+                self.assertEqual(before[key], after[key])
+            self.assertAlmostEqual(int(before["linear_iterations"]), int(after["linear_iterations"]), delta=1)
+
+    def compare(self, text, ranks=(2, 3), *options, solver=SOLVER):
+        one = self.results(1, text + solver, *options)
+        for count in ranks:
+            several = self.results(count, text + solver, *options)
+            with self.subTest(ranks=count):
+                self.expect_same(one, several)
+                self.expect_same_iterations(one, several)
+        return one
+
+
+def resume(ranks, output, *options):
+    words = [PROGRAM, "resume", str(output), *(("--ranks", str(ranks)) if ranks > 1 else ()), "--threads", "1", *options]
+    return subprocess.run(words, env=ENVIRONMENT, capture_output=True, text=True, timeout=100)
+
+
+def entries_of_checkpoint(file):
+    """Names and sizes of what it holds, as they stand at its begin."""
+    head, rest = file["checkpoint"][()].tobytes().split(b"\n", 1)
+    return head, rest[24 : 24 + int.from_bytes(rest[:8], "little")].decode()

@@ -1,0 +1,238 @@
+"""How runs on several MPI ranks end, and what they refuse."""
+
+import json
+import os
+import re
+import resource
+import signal
+import subprocess
+import time
+import unittest
+from pathlib import Path
+
+import h5py
+import numpy
+
+from tests.acceptance.on_ranks import (
+    BAR,
+    ENVIRONMENT,
+    PLATE,
+    PROGRAM,
+    SOLVER,
+    SQUARE,
+    STATES,
+    OnRanks,
+    children_of,
+    resume,
+    rows,
+)
+
+
+class Ends(OnRanks):
+    def test_a_search_that_does_not_converge(self):
+        options = ("--set", "solver.max_iterations=1", "--set", "loading.adaptive=false")
+        codes, statuses, dossiers, residuals = [], [], [], []
+        for ranks in (1, 3):
+            run, output = self.start(ranks, PLATE + SOLVER, *options)
+            codes.append(run.returncode)
+            self.assertIn('"not_converged"', (output / "summary.json").read_text())
+            dossiers.append((output / "dossier.txt").read_text())
+            self.assertFalse((output / "parts").exists())
+            with h5py.File(output / "results.h5") as file:
+                residuals.append(file["dossier/residual"][()])
+                self.assertEqual(file["dossier/displacement"].shape, residuals[-1].shape)
+            statuses.append([row["outcome"] for row in rows(output, "decisions.csv")])
+        self.assertEqual(codes, [3, 3])
+        self.assertEqual(statuses[0], statuses[1])
+        self.assertLess(numpy.abs(residuals[0] - residuals[1]).max(), 1e-9 * numpy.abs(residuals[0]).max())
+        worst = [re.findall(r"^  (\d+)  ", text, re.MULTILINE) for text in dossiers]
+        self.assertEqual(worst[0], worst[1])
+        self.assertEqual(len(worst[0]), 10)
+
+    def test_places_off_the_body(self):
+        for probe, what in (("at=[5, 5]", "within two spacings"), ("from=[5, 0], to=[5, 1]", "within half a spacing")):
+            said = [self.refusal(PLATE, "--set", f'probe=[{{name="p", {probe}}}]', ranks=ranks) for ranks in (1, 2)]
+            for text in said:
+                self.assertIn(what, text)
+
+    def test_what_one_rank_alone_meets_ends_all(self):
+        broken = PLATE.replace('"0.05*load"', '"0.05*load*(x > 0.96 ? 1/(1-load) : 1)"')
+        said = self.refusal(broken)
+        self.assertIn("it must be finite", said)
+        self.assertEqual(said.count("peristat:"), 1)
+
+    def test_a_value_that_one_rank_alone_misses_on_the_way(self):
+        missing = PLATE.replace('"0.05*load"', '"0.05*load*(x > 0.96 ? (load-0.25)/(load-0.25) : 1)"')
+        outcomes = []
+        for ranks in (1, 2):
+            output = self.results(ranks, missing.replace("steps = 2", "steps = 4") + SOLVER)
+            outcomes.append([(row["outcome"], row["reason"]) for row in rows(output, "decisions.csv")])
+        self.assertEqual(outcomes[0][0], outcomes[1][0])
+        self.assertIn("undefined_condition", outcomes[0][0])
+
+    def test_a_folder_that_can_not_be_written(self):
+        (self.folder / "on_2").write_text("in the way")
+        run, _ = self.start(2, PLATE)
+        self.assertEqual(run.returncode, 2, run.stderr)
+        self.assertIn("is a file", run.stderr)
+
+    def test_a_rank_that_is_killed_ends_all(self):
+        file = self.case(PLATE.replace("spacing = 0.05", "spacing = 0.025").replace("steps = 2", "steps = 5000") + SOLVER)
+        words = [PROGRAM, "run", "--ranks", "2", str(file), "--threads", "1", "--output", str(self.folder / "out")]
+        run = subprocess.Popen(words, env=ENVIRONMENT, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        try:
+            ranks = self.wait_for_ranks(run.pid, steps=2)
+            os.kill(ranks[-1], signal.SIGKILL)
+            self.assertNotEqual(run.wait(timeout=20), 0)
+            for rank in ranks:
+                self.assertFalse(Path(f"/proc/{rank}/exe").exists())
+        finally:
+            run.kill()
+            run.wait()
+        self.assertFalse((self.folder / "out/summary.json").exists())
+        self.expect_going_on(self.folder / "out", 1, 3)
+
+    def expect_going_on(self, output, *numbers_of_ranks):
+        """What a run has left is readable, and is gone on from."""
+        with h5py.File(output / "results.h5") as file:
+            steps = file["history/step"][()]
+            self.assertGreaterEqual(len(steps), 1)
+            self.assertEqual(list(file["steps"]), [f"{step:06}" for step in steps])
+        for ranks in numbers_of_ranks:
+            run = resume(ranks, output, "--stop-after", "2")
+            self.assertEqual(run.returncode, 130, run.stderr)
+            self.assertIn("going on after step", run.stdout)
+        with h5py.File(output / "results.h5") as file:
+            self.assertGreaterEqual(len(file["history/step"]), len(steps) + 2 * len(numbers_of_ranks) - 1)
+
+    def test_files_that_can_not_grow_end_all(self):
+        """Like a full disk, which faults_test.py has for one rank."""
+        file = self.case(PLATE.replace("spacing = 0.05", "spacing = 0.025").replace("steps = 2", "steps = 5000") + SOLVER)
+        words = [PROGRAM, "run", "--ranks", "2", str(file), "--threads", "1", "--output", str(self.folder / "out")]
+        run = subprocess.Popen(words, env=ENVIRONMENT, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+        try:
+            for rank in self.wait_for_ranks(run.pid, steps=2):
+                resource.prlimit(rank, resource.RLIMIT_FSIZE, (1 << 14, 1 << 14))
+            said = run.communicate(timeout=60)[1]
+        finally:
+            run.kill()
+            run.wait()
+        self.assertEqual(run.returncode, 5, said)
+        self.assertRegex(said, "accepted steps? (is|are) in")
+        summary = json.loads((self.folder / "out/summary.json").read_text())
+        self.assertEqual(summary["status"], "failed", said)
+        self.assertGreater(summary["steps"], 1)
+        self.expect_going_on(self.folder / "out", 3)
+
+    def test_an_interruption_ends_a_run_in_order(self):
+        file = self.case(PLATE.replace("spacing = 0.05", "spacing = 0.01").replace("steps = 2", "steps = 500") + SOLVER)
+        words = [PROGRAM, "run", "--ranks", "2", str(file), "--threads", "1", "--output", str(self.folder / "out")]
+        run = subprocess.Popen(words, env=ENVIRONMENT, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+        try:
+            self.wait_for_ranks(run.pid)
+            run.send_signal(signal.SIGINT)
+            said = run.communicate(timeout=60)[1]
+            self.assertEqual(run.returncode, 130, said)
+            self.assertIn("interrupted", said)
+            self.assertIn('"interrupted"', (self.folder / "out/summary.json").read_text())
+        finally:
+            run.kill()
+            run.wait()
+
+    def wait_for_ranks(self, launcher, steps=0):
+        """Process numbers, once results are there, or so many accepted steps."""
+        end = time.monotonic() + 60
+        while time.monotonic() < end:
+            time.sleep(0.05)
+            history = self.folder / "out/history.csv"
+            if not (self.folder / "out/results.h5").exists() or history.read_text().count("\n") <= steps:
+                continue
+            mpirun = children_of(launcher)
+            ranks = children_of(mpirun[0]) if mpirun else []
+            if len(ranks) == 2:
+                return ranks
+        self.fail("no ranks")
+
+
+class Refusals(OnRanks):
+    def test_keys_that_are_not_on_the_list(self):
+        for key in (
+            'solver.mode="adaptive"',
+            'solver.mode="arc_length"',
+            'solver.mode="path"',
+            'solver.linear="cholesky"',
+            'solver.linear="lu"',
+            'solver.preconditioner="sines"',
+            'solver.preconditioner="local_operator"',
+            'solver.fragments="stop"',
+            'material.kinematics="linear"',
+            'material.damage={law="critical_stretch", critical=0.1}',
+            'lattice.points="blue_noise"',
+            'rigid=[{set="corner"}]',
+            'symmetry=[{axis="x", at=0}]',
+            'foundation=[{name="f", set="corner", stiffness=[1, 1]}]',
+            'load=[{side="x+", pressure="1"}]',
+            'roller=[{set="corner", normal=[1, 0]}]',
+            'control=[{set="corner", weights=[1, 0]}]',
+            "relaxation.steps=2",
+        ):
+            with self.subTest(key=key):
+                said = self.refusal(PLATE, "--set", key)
+                self.assertIn(key.split("=")[0].split(".")[0], said)
+                self.assertEqual(said.count("peristat:"), 1)
+
+    def test_convolutions(self):
+        """Bonds stand in for them where the material has some."""
+        said = self.refusal(PLATE, "--set", 'solver.operator="fft"')
+        self.assertIn("solver.operator", said)
+        self.assertIn('take "bonds" or "auto"', said)
+        for operator in ("fft", "auto"):
+            said = self.refusal(PLATE, "--set", f'solver.operator="{operator}"', "--set", 'material.model="green_bond"')
+            self.assertIn("models that have bonds", said)
+
+    def test_what_one_rank_refuses_too(self):
+        for ranks in (1, 2):
+            for text, what in (
+                (PLATE.replace('set = "top"', 'set = "no"'), "no set"),
+                (PLATE.replace('where = "x > 0.6', 'where = "x > 6'), "selects no point"),
+                (PLATE.replace("displacement = [0, 0]", 'displacement = [0, "free"]')
+                 .replace('[0, "0.05*load"]', '[0, "free"]'), "move along y"),
+                (BAR + '[[support]]\nset = "left"\ndisplacement = [1]\n', "contradict"),
+                (SQUARE.replace("c1 = 1.0\nc2 = 30.0", "youngs_modulus = 1e6\npoisson_ratio = -0.6"), "unstable before"),
+                (SQUARE.replace("max = [1.2, 1]", "max = [1.2, 0.1]"), "no triangles"),
+            ):  # fmt: skip
+                with self.subTest(ranks=ranks, what=what):
+                    self.assertIn(what, self.refusal(text, ranks=ranks))
+
+    def test_forces_without_a_potential(self):
+        said = self.refusal(STATES.split("[quadrature]")[0])
+        self.assertIn("quadrature.form", said)
+        self.assertIn('take "energy"', said)
+
+    def test_bodies_of_two_pieces(self):
+        apart = PLATE.replace('{ subtract = "disk", centre = [0.5, 0.7], radius = 0.2 }',
+                              '{ subtract = "box", min = [-1, 0.5], max = [2, 0.8] }')  # fmt: skip
+        self.assertIn("2 of this one", self.refusal(apart))
+
+    def test_points_on_too_few_bonds(self):
+        chain = PLATE.replace("shape = [{", 'shape = [{ add = "box", min = [1, 1], max = [1.2, 1.04] }, {')
+        said = [self.refusal(chain, ranks=ranks) for ranks in (1, 2)]
+        for text in said:
+            self.assertIn("too few bonds", text)
+
+    def test_another_number_of_ranks_than_was_started(self):
+        words = ["mpirun", "--oversubscribe", "-np", "2", PROGRAM, "run", "--ranks", "3", str(self.case(PLATE))]
+        run = subprocess.run(words, env=ENVIRONMENT, capture_output=True, text=True, timeout=60)
+        self.assertEqual(run.returncode, 2)
+        self.assertIn("does not agree with the 2", run.stderr)
+
+    def test_other_commands(self):
+        file = self.case(PLATE)
+        words = ["mpirun", "--oversubscribe", "-np", "2", PROGRAM, "check", str(file)]
+        run = subprocess.run(words, env=ENVIRONMENT, capture_output=True, text=True, timeout=60)
+        self.assertEqual(run.returncode, 2)
+        self.assertIn("no command but run and resume", run.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()
