@@ -10,10 +10,14 @@
 namespace peristat {
 namespace {
 
+/// What ghosts and their images have is other ranks'.
 void clear_ghosts(const Sharing& sharing, int dimension, std::span<double> gradient) {
   if (gradient.empty()) return;
-  const std::size_t dofs = std::size_t(sharing.owned()) * std::size_t(dimension);
-  std::fill(gradient.begin() + std::ptrdiff_t(dofs), gradient.end(), 0.0);
+  const auto fill = [&](Index first, std::ptrdiff_t last) {
+    std::fill(gradient.begin() + std::ptrdiff_t(first) * dimension, gradient.begin() + last, 0.0);
+  };
+  fill(sharing.owned(), std::ptrdiff_t(sharing.first_image()) * dimension);
+  fill(sharing.first_image() + sharing.owned_images(), std::ptrdiff_t(gradient.size()));
 }
 
 /// What ranks have found together but for the energy.
@@ -47,7 +51,11 @@ Assembler::Assembler(const Points& points, const Model& model, int threads, cons
         "Assembler: convolutions and forces without a potential have no ranks yet");
   }
   // Triangles stand on bonds between ghosts, whose history is other ranks'.
-  if (model.has_history() && model.terms().size() > 1) {
+  const auto& first = model.terms().front();
+  const bool follows = std::any_of(
+      model.terms().begin(), model.terms().end(),
+      [&](const auto& term) { return term != first && !term->initial_history().empty(); });
+  if (follows) {
     throw std::logic_error("Assembler: damage has ranks of bonds alone");
   }
   of_points_.resize(points.volume.size());
@@ -95,9 +103,10 @@ Evaluation Assembler::of_all(const StateView& at, const Evaluation& mine,
                              std::span<double> gradient) {
   // Of a bond between two ranks each has the share of its own point.
   point_energies(at, of_points_);
-  const auto owned = std::size_t(sharing_->owned());
   double energy = 0.0;
-  for (std::size_t i = 0; i < owned; ++i) energy += of_points_[i];
+  for (Index i = 0; i < points_.count(); ++i) {
+    if (points_.owns(i)) energy += of_points_[std::size_t(i)];
+  }
   const std::vector<double> sums =
       sharing_->ranks().sum({energy, mine.round_off, mine.released, double(mine.degenerate),
                              double(mine.moves_equilibrium), double(mine.growth.degrading),
@@ -142,6 +151,7 @@ void Assembler::refuse_on_ranks(const char* what) const {
 void Assembler::follower_force(const StateView& at, std::span<double> force) {
   std::fill(force.begin(), force.end(), 0.0);
   for_each_term([&](TermPasses& term, Write) { term.follower_force(at, force); });
+  if (sharing_) clear_ghosts(*sharing_, points_.dimension, force);
 }
 
 DamageGrowth Assembler::growth(const StateView& at) {

@@ -3,22 +3,46 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdlib>
 #include <stdexcept>
 #include <utility>
 
 #include "assembly/operators/convolved_tangent.hpp"
 
 namespace peristat {
+namespace {
+
+Tensor tensor_of(const double* entries, std::size_t d) {
+  Tensor block{};
+  for (std::size_t k = 0; k < d * d; ++k) block[k / d][k % d] = entries[k];
+  return block;
+}
+
+Tensor transposed(const Tensor& block) {
+  Tensor result{};
+  for (std::size_t k = 0; k < 9; ++k) result[k / 3][k % 3] = block[k % 3][k / 3];
+  return result;
+}
+
+/// Absolute entries of a row of J, added up: of one component of a point.
+double row_sum(const std::vector<Dependence>& masters, std::size_t component, std::size_t d) {
+  double sum = 0.0;
+  for (const Dependence& on : masters) {
+    for (std::size_t c = 0; c < d; ++c) sum += std::abs(on.block[component][c]);
+  }
+  return sum;
+}
+
+}  // namespace
 
 ConstrainedProduct::ConstrainedProduct(std::unique_ptr<TangentOperator> whole, const Points& points,
-                                       const Constraints& constraints)
+                                       const Constraints& constraints, const Sharing* sharing)
     : TangentOperator(
           BlockPattern::of_rows(std::vector<Offset>(std::size_t(constraints.rows()) + 1, 0), {}),
           points.dimension, whole->threads()),
       whole_(std::move(whole)),
       points_(points),
       constraints_(constraints),
+      sharing_(sharing),
       reference_(points.reference),
       no_force_(constraints.dofs(), 0.0) {
   for (const Coordinates& handle : constraints.handles()) {
@@ -33,32 +57,106 @@ std::vector<double> ConstrainedProduct::positions() const {
   return at;
 }
 
-/// Blocks of a point and of its images add up; those between them, in bodies thinner than the
-/// horizon, are left out.
-void ConstrainedProduct::linearise(Energy& energy, const StateView& at, double projection) {
-  whole_->linearise(energy, at, projection);
-  displacement_.assign(at.displacement.begin(), at.displacement.end());
-  std::ranges::fill(diagonal, 0.0);
+void ConstrainedProduct::sum_handles(std::span<double> of_dofs) const {
+  const std::span<double> handles = of_dofs.subspan(points_.reference.size());
+  if (!sharing_ || handles.empty()) return;
+  const std::vector<double> all =
+      sharing_->ranks().sum(std::vector<double>(handles.begin(), handles.end()));
+  std::copy(all.begin(), all.end(), handles.begin());
+}
+
+void ConstrainedProduct::add_to_diagonal(const std::vector<Dependence>& of_i, const Tensor& block,
+                                         const std::vector<Dependence>& of_j) {
   const auto d = std::size_t(dimension);
-  for (Index i = 0; i < points_.count(); ++i) {
-    const double* const block = &whole_->diagonal[std::size_t(i) * d * d];
-    for (const Dependence& on : constraints_.dependences(i, at.displacement)) {
-      double* const to = &diagonal[std::size_t(on.master) * d * d];
-      for (std::size_t r = 0; r < d; ++r) {
-        for (std::size_t c = 0; c < d; ++c) {
-          // Images are mirrored and shifted, component by component.
-          to[r * d + c] += on.block[r][r] * block[r * d + c] * on.block[c][c];
+  for (const Dependence& left : of_i) {
+    for (const Dependence& right : of_j) {
+      if (left.master != right.master) continue;
+      double* const to = &diagonal[std::size_t(left.master) * d * d];
+      for (std::size_t m = 0; m < d; ++m) {
+        for (std::size_t n = 0; n < d; ++n) {
+          for (std::size_t k = 0; k < d * d; ++k) {
+            to[m * d + n] += left.block[k / d][m] * block[k / d][k % d] * right.block[k % d][n];
+          }
         }
       }
     }
   }
 }
 
+void ConstrainedProduct::add_blocks_between_followers() {
+  const auto d = std::size_t(dimension);
+  struct Pair {
+    Index i, j;
+    Tensor block;
+  };
+  std::vector<std::vector<Pair>> pairs(std::size_t(threads()));
+  const BlockPattern& of = whole_->pattern;
+  whole_->for_each_row([&](int thread, Index i, std::span<const double> blocks) {
+    const double* block = blocks.data();
+    for (Offset bond = of.offset[i]; bond < of.offset[i + 1]; ++bond, block += d * d) {
+      const Index j = of.partner[std::size_t(bond)];
+      const bool may_share = !constraints_.stands_alone(i) || !constraints_.stands_alone(j);
+      if (may_share) pairs[std::size_t(thread)].push_back({i, j, tensor_of(block, d)});
+    }
+  });
+  for (const std::vector<Pair>& of_thread : pairs) {
+    for (const auto& [i, j, block] : of_thread) {
+      const auto of_i = constraints_.dependences(i, displacement_),
+                 of_j = constraints_.dependences(j, displacement_);
+      // Each of two ranks has the row of its own end.
+      if (points_.owns(i)) add_to_diagonal(of_i, block, of_j);
+      if (points_.owns(j)) add_to_diagonal(of_j, transposed(block), of_i);
+    }
+  }
+}
+
+/// Where K has no rows, blocks between a point and its images, in bodies thinner than the horizon,
+/// are left out.
+void ConstrainedProduct::linearise(Energy& energy, const StateView& at, double projection) {
+  whole_->linearise(energy, at, projection);
+  displacement_.assign(at.displacement.begin(), at.displacement.end());
+  curvature_.assign(at.curvature.begin(), at.curvature.end());
+  std::ranges::fill(diagonal, 0.0);
+  const auto d = std::size_t(dimension);
+  for (Index i = 0; i < points_.count(); ++i) {
+    if (!points_.owns(i)) continue;
+    const std::vector<Dependence> masters = constraints_.dependences(i, at.displacement);
+    add_to_diagonal(masters, tensor_of(&whole_->diagonal[std::size_t(i) * d * d], d), masters);
+  }
+  if (whole_->has_rows()) add_blocks_between_followers();
+  const std::size_t handles = std::size_t(points_.count()) * d * d;
+  if (sharing_ && handles < diagonal.size()) {
+    const auto first = diagonal.begin() + std::ptrdiff_t(handles);
+    const std::vector<double> all =
+        sharing_->ranks().sum(std::vector<double>(first, diagonal.end()));
+    std::copy(all.begin(), all.end(), first);
+  }
+  const auto& sets = constraints_.rigid_sets();
+  for (std::size_t k = 0; k < curvature_.size(); ++k) {
+    double* const to = &diagonal[std::size_t(sets[k].rotation) * d * d];
+    for (std::size_t e = 0; e < d * d; ++e) to[e] += curvature_[k][e / d][e % d];
+  }
+}
+
 void ConstrainedProduct::multiply(std::span<const double> v, std::span<double> result) const {
   moved_.assign(v.begin(), v.end());
+  if (sharing_) sharing_->update_ghosts(moved_);
   constraints_.extend(displacement_, moved_);
-  whole_->multiply(moved_, result);
+  const std::size_t of_points = points_.reference.size();
+  whole_->multiply(std::span<const double>(moved_).first(of_points), result.first(of_points));
+  const auto d = std::size_t(dimension);
+  for (Index i = 0; sharing_ && i < points_.count(); ++i) {
+    if (!points_.owns(i)) std::fill_n(result.begin() + std::ptrdiff_t(i * dimension), d, 0.0);
+  }
   constraints_.fold(displacement_, no_force_, result);
+  sum_handles(result);
+  const auto& sets = constraints_.rigid_sets();
+  for (std::size_t k = 0; k < curvature_.size(); ++k) {
+    const std::size_t first = std::size_t(sets[k].rotation) * d;
+    for (std::size_t e = 0; e < d * d; ++e) {
+      result[first + e / d] += curvature_[k][e / d][e % d] * moved_[first + e % d];
+    }
+  }
   const std::vector<char>& follows = constraints_.dependent();
   for (std::size_t k = 0; k < follows.size(); ++k) {
     if (follows[k]) result[k] = 0.0;
@@ -66,36 +164,32 @@ void ConstrainedProduct::multiply(std::span<const double> v, std::span<double> r
 }
 
 void ConstrainedProduct::for_each_row(const RowVisitor&) const {
-  throw std::logic_error("a tangent by convolutions has no rows to visit");
+  throw std::logic_error("a tangent of products alone has no rows to visit");
 }
 
 void ConstrainedProduct::absolute_row_sums(std::span<double> sums) const {
   std::ranges::fill(sums, 0.0);
   whole_->absolute_row_sums(sums.first(points_.reference.size()));
   const auto d = std::size_t(dimension);
-  // An image moves by its source's share and by those of the jumps.
-  const auto jumps = [&](Index image) {
-    double sum = 0.0;
-    for (const int periods : points_.image_kind(image).periods) sum += std::abs(periods);
-    return sum;
-  };
   double most = 1.0;
-  for (Index image = points_.own(); image < points_.count(); ++image) {
-    most = std::max(most, 1.0 + jumps(image));
-  }
-  for (Index image = points_.own(); image < points_.count(); ++image) {
-    const auto source = std::size_t(points_.source(image));
-    const std::array<int, 3>& periods = points_.image_kind(image).periods;
+  for (Index i = 0; i < points_.count(); ++i) {
+    if (!points_.owns(i)) std::fill_n(sums.begin() + std::ptrdiff_t(i * dimension), d, 0.0);
+    if (constraints_.stands_alone(i)) continue;
+    const std::vector<Dependence> masters = constraints_.dependences(i, displacement_);
+    std::array<double, 3> of_point{};
     for (std::size_t c = 0; c < d; ++c) {
-      const double sum = std::exchange(sums[std::size_t(image) * d + c], 0.0);
-      sums[source * d + c] += sum;
-      for (int axis = 0; axis < dimension; ++axis) {
-        const int times = std::abs(periods[std::size_t(axis)]);
-        if (times == 0) continue;
-        sums[std::size_t(constraints_.period_handle(axis)) * d + c] += times * sum;
+      most = std::max(most, row_sum(masters, c, d));
+      of_point[c] = std::exchange(sums[std::size_t(i) * d + c], 0.0);
+    }
+    for (const Dependence& on : masters) {
+      for (std::size_t k = 0; k < d * d; ++k) {
+        sums[std::size_t(on.master) * d + k % d] +=
+            std::abs(on.block[k / d][k % d]) * of_point[k / d];
       }
     }
   }
+  if (sharing_) most = sharing_->ranks().max(most);
+  sum_handles(sums);
   for (double& sum : sums) sum *= most;
 }
 

@@ -43,6 +43,9 @@ Path::Path(const PathSetting& setting, PathState from)
     throw std::logic_error("a path that its stand-in carries goes on with the stand-in");
   }
   state_.accepted.environment = setting.conditions.environment(load_point(state_.accepted));
+  if (setting.body.assembler.sharing()) {  // of whose states images are no part
+    setting.conditions.constraints().move(state_.accepted.displacement);
+  }
   number_equations();
 }
 

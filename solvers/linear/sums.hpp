@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <span>
@@ -12,20 +13,32 @@
 namespace peristat {
 
 /// Sums over the vectors of a body that is whole, or that ranks have parts of: what ghosts have
-/// does not count, and all ranks get the same bits.
+/// does not count, nor their images, handles count at rank 0, and all ranks get the same bits.
 class Sums {
  public:
   /// @param sharing null: the body is whole
   Sums(const Sharing* sharing, int dimension)
       : ranks_(sharing ? &sharing->ranks() : nullptr),
-        own_(sharing ? std::size_t(sharing->owned()) * std::size_t(dimension) : 0) {}
+        own_(sharing ? std::size_t(sharing->owned()) * std::size_t(dimension) : 0) {
+    if (!sharing) return;
+    const auto d = std::size_t(dimension);
+    const auto first_image = std::size_t(sharing->first_image());
+    images_ = {first_image * d, (first_image + std::size_t(sharing->owned_images())) * d};
+    handles_ = std::size_t(sharing->points()) * d;
+  }
 
-  /// How many of the entries of a vector count here: the first ones.
+  /// How many of the entries of a vector are of this rank's points: the first ones.
   [[nodiscard]] std::size_t own(std::size_t entries) const {
     return ranks_ ? std::min(own_, entries) : entries;
   }
 
   [[nodiscard]] double of_all(double mine) const { return ranks_ ? ranks_->sum(mine) : mine; }
+  /// Replaces values of which each rank has a share.
+  void add_up(std::span<double> shares) const {
+    if (!ranks_ || shares.empty()) return;
+    const std::vector<double> all = ranks_->sum(std::vector<double>(shares.begin(), shares.end()));
+    std::copy(all.begin(), all.end(), shares.begin());
+  }
   [[nodiscard]] double largest_of_all(double mine) const {
     return ranks_ ? ranks_->max(mine) : mine;
   }
@@ -34,12 +47,16 @@ class Sums {
   }
 
   [[nodiscard]] double dot(std::span<const double> a, std::span<const double> b) const {
-    const std::size_t count = own(a.size());
-    return of_all(peristat::dot(a.first(count), b.first(count)));
+    if (!ranks_) return peristat::dot(a, b);
+    double mine = 0.0;
+    for (const auto& [first, last] : counted(a.size())) {
+      mine += peristat::dot(a.subspan(first, last - first), b.subspan(first, last - first));
+    }
+    return ranks_->sum(mine);
   }
 
   /// See vector_verbs.
-  /// @param count of entries that are this rank's
+  /// @param count of values that are this rank's
   template <class Entry>
   [[nodiscard]] double norm_of(std::size_t count, const Entry& entry) const {
     const double mine = peristat::norm_of(count, entry);
@@ -47,13 +64,52 @@ class Sums {
     const std::vector<double> norms = ranks_->all_of({mine});
     return peristat::norm(norms);
   }
+  /// Of what entry(k) is for those of the entries of a vector that count here.
+  template <class Entry>
+  [[nodiscard]] double norm_of_entries(std::size_t entries, const Entry& entry) const {
+    if (!ranks_) return peristat::norm_of(entries, entry);
+    const Ranges ranges = counted(entries);
+    std::size_t count = 0;
+    for (const auto& [first, last] : ranges) count += last - first;
+    return norm_of(count, [&](std::size_t k) {
+      auto range = ranges.begin();
+      for (; k >= range->last - range->first; ++range) k -= range->last - range->first;
+      return entry(range->first + k);
+    });
+  }
   [[nodiscard]] double norm(std::span<const double> a) const {
-    return norm_of(own(a.size()), [&](std::size_t k) { return a[k]; });
+    return norm_of_entries(a.size(), [&](std::size_t k) { return a[k]; });
+  }
+
+  /// Calls visit(k) for those of the entries of a vector that count here.
+  template <class Visit>
+  void for_each_entry(std::size_t entries, const Visit& visit) const {
+    for (const auto& [first, last] : counted(entries)) {
+      for (std::size_t k = first; k < last; ++k) visit(k);
+    }
   }
 
  private:
+  struct Range {
+    std::size_t first = 0, last = 0;
+  };
+  using Ranges = std::array<Range, 3>;
+
+  /// Of owned points, of their images, and of handles.
+  [[nodiscard]] Ranges counted(std::size_t entries) const {
+    if (!ranks_) return {Range{0, entries}, {}, {}};
+    const auto within = [&](std::size_t first, std::size_t last) {
+      return Range{std::min(first, entries), std::min(last, entries)};
+    };
+    const bool owns_handles = ranks_->rank() == 0;
+    return {within(0, own_), within(images_.first, images_.last),
+            owns_handles ? within(handles_, entries) : Range{}};
+  }
+
   const Communicator* ranks_;
   std::size_t own_;
+  Range images_{};
+  std::size_t handles_ = 0;
 };
 
 }  // namespace peristat

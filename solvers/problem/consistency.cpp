@@ -60,8 +60,8 @@ Resultants resultants_of(const EquilibriumProblem& problem, const Trial& trial) 
   const Coordinates centre = centre_of(points, of_body);
   const std::size_t d = std::size_t(points.dimension);
   Resultants sums;
-  const auto own = Index(of_body.own(points.reference.size()) / d);
-  for (Index i = 0; i < own; ++i) {
+  for (Index i = 0; i < points.count(); ++i) {
+    if (!points.owns(i)) continue;
     Coordinates arm{}, force{};
     for (std::size_t c = 0; c < d; ++c) {
       const std::size_t dof = std::size_t(i) * d + c;

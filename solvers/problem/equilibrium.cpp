@@ -130,16 +130,22 @@ void share_out_jump(const EquilibriumProblem& problem, std::span<const double> f
 
 void move_followers(const EquilibriumProblem& problem, Trial& trial) {
   const Constraints& constraints = problem.conditions.constraints();
-  if (!constraints.none()) constraints.move(trial.displacement);
   if (problem.assembler.sharing()) problem.assembler.sharing()->update_ghosts(trial.displacement);
+  if (!constraints.none()) constraints.move(trial.displacement);
 }
 
 void fold_followers(const EquilibriumProblem& problem, std::span<const double> external_force,
                     Trial& trial) {
   const Constraints& constraints = problem.conditions.constraints();
   if (constraints.none()) return;
+  const Sums sums = problem.sums();
   constraints.fold(trial.displacement, external_force, trial.gradient);
+  const std::size_t points = problem.assembler.points().reference.size();
+  sums.add_up(std::span(trial.gradient).subspan(points));  // handles have a share of each rank
   trial.curvature = constraints.curvature(trial.displacement, external_force, trial.gradient);
+  for (Tensor& block : trial.curvature) {
+    for (auto& row : block) sums.add_up(row);
+  }
 }
 
 double heating_work(Assembler& assembler, const StateView& from, const StateView& to) {
@@ -167,8 +173,8 @@ double environment_norm(const EquilibriumProblem& problem, const StateView& at,
   }
   static_cast<void>(problem.assembler.gradient({at.displacement, at.history, at.damage}, without));
   const Sums sums = problem.sums();
-  return sums.norm_of(sums.own(with.size()),
-                      [&](std::size_t dof) { return with[dof] - without[dof]; });
+  return sums.norm_of_entries(with.size(),
+                              [&](std::size_t dof) { return with[dof] - without[dof]; });
 }
 
 void evaluate(const EquilibriumProblem& problem, std::span<const double> external_force,
@@ -194,7 +200,7 @@ void evaluate(const EquilibriumProblem& problem, std::span<const double> externa
 double residual_scale(const EquilibriumProblem& problem, std::span<const double> external_force,
                       std::span<const double> old_gradient, const Trial& after_jump) {
   const Sums sums = problem.sums();
-  const double reactions = sums.norm_of(sums.own(external_force.size()), [&](std::size_t dof) {
+  const double reactions = sums.norm_of_entries(external_force.size(), [&](std::size_t dof) {
     const bool is_free = problem.free.equation[dof] != FreeDofs::none;
     return is_free ? 0.0 : old_gradient[dof] - external_force[dof];
   });
@@ -204,7 +210,7 @@ double residual_scale(const EquilibriumProblem& problem, std::span<const double>
 double load_norm(const EquilibriumProblem& problem, std::span<const double> external_force,
                  const Trial& state, Damage damage) {
   const Sums sums = problem.sums();
-  const double reactions = sums.norm_of(sums.own(external_force.size()), [&](std::size_t dof) {
+  const double reactions = sums.norm_of_entries(external_force.size(), [&](std::size_t dof) {
     const bool is_free = problem.free.equation[dof] != FreeDofs::none;
     return is_free ? 0.0 : state.gradient[dof] - external_force[dof];
   });

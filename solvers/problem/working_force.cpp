@@ -14,20 +14,13 @@ std::vector<double> working_force(const Conditions& conditions, const Trial& sta
   return force;
 }
 
-double trapezoidal_work(std::span<const double> force0, std::span<const double> force1,
-                        std::span<const double> u0, std::span<const double> u1) {
-  double work = 0.0;
-  for (std::size_t k = 0; k < u0.size(); ++k)
-    work += 0.5 * (force0[k] + force1[k]) * (u1[k] - u0[k]);
-  return work;
-}
-
 double trapezoidal_work(const Sums& sums, std::span<const double> force0,
                         std::span<const double> force1, std::span<const double> u0,
                         std::span<const double> u1) {
-  const std::size_t own = sums.own(u0.size());
-  return sums.of_all(
-      trapezoidal_work(force0.first(own), force1.first(own), u0.first(own), u1.first(own)));
+  double work = 0.0;
+  sums.for_each_entry(
+      u0.size(), [&](std::size_t k) { work += 0.5 * (force0[k] + force1[k]) * (u1[k] - u0[k]); });
+  return sums.of_all(work);
 }
 
 }  // namespace peristat

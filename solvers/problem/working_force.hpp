@@ -13,12 +13,7 @@ namespace peristat {
 [[nodiscard]] std::vector<double> working_force(const Conditions& conditions, const Trial& state,
                                                 std::span<const double> external_force);
 
-/// Work of forces on the straight way between two states [J].
-[[nodiscard]] double trapezoidal_work(std::span<const double> force0,
-                                      std::span<const double> force1, std::span<const double> u0,
-                                      std::span<const double> u1);
-
-/// Of all ranks, without their ghosts.
+/// Work of forces on the straight way between two states [J], of all ranks.
 [[nodiscard]] double trapezoidal_work(const Sums& sums, std::span<const double> force0,
                                       std::span<const double> force1, std::span<const double> u0,
                                       std::span<const double> u1);

@@ -116,7 +116,7 @@ void agree_on_kinds(Bonds& bonds, const Part& part, const Communicator& ranks) {
   Records told{2, 2, {}, {}};
   std::vector<int> to;
   for_each_bond(bonds, [&](Index i, Index j, Offset bond) {
-    if (!part.is_ghost(j) || !counts_bond(part.points, i, j)) return;
+    if (part.is_ghost(i) || !part.is_ghost(j) || !counts_bond(part.points, i, j)) return;
     const BondKind& kind = agreed[first + bond];
     told.values.insert(told.values.end(), {kind.inverse_length, kind.weight});
     told.numbers.push_back(part.number[std::size_t(i)]);

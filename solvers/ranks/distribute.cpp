@@ -113,6 +113,15 @@ class NearPoints {
   std::vector<std::pair<Cell, Index>> cells_;  // ascending
 };
 
+/// Whether is_near(place) holds for a point or for one of its images.
+template <class IsNear>
+bool is_any_near(const Coordinates& at, const std::vector<ImageKind>& images,
+                 const IsNear& is_near) {
+  return is_near(at.data()) || std::any_of(images.begin(), images.end(), [&](const auto& kind) {
+           return is_near(kind.place(at).data());
+         });
+}
+
 /// Points that may be ghosts of others go to them.
 Records offered_points(const Part& part, const PointRecords& format, double reach,
                        const Communicator& ranks) {
@@ -126,9 +135,11 @@ Records offered_points(const Part& part, const PointRecords& format, double reac
   for (int other = 0; other < ranks.count(); ++other) {
     const std::span<const double> of_other{&boxes[std::size_t(other) * width], width};
     const PointBox theirs(of_other);
-    if (other == ranks.rank() || !mine.is_near(theirs, reach)) continue;
+    const bool may_be_near = part.images.empty() ? mine.is_near(theirs, reach) : !theirs.is_empty();
+    if (other == ranks.rank() || !may_be_near) continue;
     for (Index i = 0; i < part.owned; ++i) {
-      if (!theirs.is_near(place_of(points, i), reach)) continue;
+      const auto is_near = [&](const double* at) { return theirs.is_near(at, reach); };
+      if (!is_any_near(points.position(i), part.images, is_near)) continue;
       offered.add(part, i, ranks.rank());
       to.push_back(other);
     }
@@ -143,7 +154,10 @@ Records wanted_of(const Part& part, const Records& offered, double reach) {
   Records wanted{offered.doubles, offered.integers, {}, {}};
   for (std::size_t record = 0; record * integers < offered.numbers.size(); ++record) {
     const double* const value = &offered.values[record * doubles];
-    if (!near.has_near(value)) continue;
+    Coordinates at{};
+    std::copy_n(value, part.points.dimension, at.begin());
+    const auto is_near = [&](const double* place) { return near.has_near(place); };
+    if (!is_any_near(at, part.images, is_near)) continue;
     const long long* const number = &offered.numbers[record * integers];
     wanted.values.insert(wanted.values.end(), value, value + doubles);
     wanted.numbers.insert(wanted.numbers.end(), number, number + integers);
@@ -153,9 +167,11 @@ Records wanted_of(const Part& part, const Records& offered, double reach) {
 
 }  // namespace
 
-Part with_ghosts(Part part, double reach, const Communicator& ranks) {
+Part with_ghosts(Part part, double reach, const Communicator& ranks,
+                 std::vector<ImageKind> images) {
   if (part.ghosts() > 0) throw std::logic_error("with_ghosts: the part has some already");
   part.reach = reach;
+  part.images = std::move(images);
   if (ranks.count() == 1) return part;
   const double distance = inclusive_radius(reach);
   const PointRecords format(part);
@@ -165,8 +181,9 @@ Part with_ghosts(Part part, double reach, const Communicator& ranks) {
   return part;
 }
 
-Part distribute(Part slab, double horizon, double reach, const Communicator& ranks, int threads) {
-  if (ranks.count() == 1) return with_ghosts(std::move(slab), reach, ranks);
+Part distribute(Part slab, double horizon, double reach, const Communicator& ranks, int threads,
+                std::vector<ImageKind> images) {
+  if (ranks.count() == 1) return with_ghosts(std::move(slab), reach, ranks, std::move(images));
   const Part seeing = with_ghosts(std::move(slab), horizon, ranks);
   const std::vector<std::int32_t> neighbours =
       count_neighbours(seeing.points, seeing.owned, horizon, threads);
@@ -186,7 +203,7 @@ Part distribute(Part slab, double horizon, double reach, const Communicator& ran
   for (Index i = 0; i < seeing.owned; ++i) leaving.add(seeing, i, to[std::size_t(i)]);
   Part part = empty_part(seeing);
   leaving.append_to(part, exchange(ranks, to, leaving.records()), false);
-  return with_ghosts(std::move(part), reach, ranks);
+  return with_ghosts(std::move(part), reach, ranks, std::move(images));
 }
 
 }  // namespace peristat

@@ -10,10 +10,11 @@ namespace peristat {
 /// @param horizon of the neighbours that are counted [m]
 /// @param reach   within which ghosts are wanted [m]
 [[nodiscard]] Part distribute(Part slab, double horizon, double reach, const Communicator& ranks,
-                              int threads);
+                              int threads, std::vector<ImageKind> images = {});
 
 /// The points of a part that its rank owns, and all others that stand within a distance of one of
 /// them. A rank asks those for ghosts whose points' boxes are within that distance of its own.
-[[nodiscard]] Part with_ghosts(Part part, double reach, const Communicator& ranks);
+[[nodiscard]] Part with_ghosts(Part part, double reach, const Communicator& ranks,
+                               std::vector<ImageKind> images = {});
 
 }  // namespace peristat

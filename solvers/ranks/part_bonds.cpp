@@ -43,12 +43,12 @@ Bonds make_bonds(const Part& part, SurfaceCorrection surface, const BondSetting&
   }
   Bonds bonds = make_bonds(part.points, surface, setting, threads);
   const std::vector<char> is_near = owned_and_neighbours(part, bonds);
-  // Ghosts come last, so that a lower point that is one has no other partners.
   bonds.remove_if([&](Index i, Offset bond) {
-    if (!part.is_ghost(i)) return false;
-    const char other = is_near[std::size_t(bonds.partner[std::size_t(bond)])];
-    if (which == PartBonds::among_neighbours) return !(is_near[std::size_t(i)] && other);
-    return which == PartBonds::of_owned || !(is_near[std::size_t(i)] || other);
+    const Index j = bonds.partner[std::size_t(bond)];
+    if (part.points.owns(i) || part.points.owns(j)) return false;
+    const bool near_i = is_near[std::size_t(i)] != 0, near_j = is_near[std::size_t(j)] != 0;
+    if (which == PartBonds::among_neighbours) return !(near_i && near_j);
+    return which == PartBonds::of_owned || !(near_i || near_j);
   });
   agree_on_kinds(bonds, part, ranks);
   return bonds;

@@ -3,14 +3,38 @@
 #include <algorithm>
 
 namespace peristat {
+namespace {
+
+/// They come first.
+Index count_images_of_owned(const Points& points) {
+  Index count = 0;
+  for (Index image = points.own(); image < points.count(); ++image) count += points.owns(image);
+  return count;
+}
+
+}  // namespace
 
 PartOfBody::PartOfBody(const Part& part, const Communicator& ranks)
     : ranks_(ranks),
       number_(part.number.begin(), part.number.begin() + std::ptrdiff_t(part.owned)),
       ghost_number_(part.number.begin() + std::ptrdiff_t(part.owned), part.number.end()),
       ghost_owner_(part.owner),
+      points_(part.points.count()),
+      owned_images_(count_images_of_owned(part.points)),
+      dimension_(std::size_t(part.points.dimension)),
       whole_(part.whole),
       ghosts_(make_ghost_exchange(ranks, number_, ghost_number_, part.points.dimension)) {}
+
+void PartOfBody::update_ghosts(std::span<double> values) const {
+  ghosts_->update(values.data());
+  const auto dofs = std::size_t(points_) * dimension_;
+  if (values.size() <= dofs) return;
+  const std::span<double> handles = values.subspan(dofs);
+  std::vector<double> told(handles.size(), 0.0);
+  if (ranks_.rank() == 0) std::copy(handles.begin(), handles.end(), told.begin());
+  told = ranks_.sum(told);
+  std::copy(told.begin(), told.end(), handles.begin());
+}
 
 std::optional<Index> PartOfBody::find(GlobalIndex number) const {
   Index before = 0;

@@ -20,7 +20,10 @@ class PartOfBody : public Sharing {
 
   [[nodiscard]] const Communicator& ranks() const override { return ranks_; }
   [[nodiscard]] Index owned() const override { return Index(number_.size()); }
-  void update_ghosts(std::span<double> values) const override { ghosts_->update(values.data()); }
+  [[nodiscard]] Index points() const override { return points_; }
+  [[nodiscard]] Index first_image() const override { return owned() + Index(ghost_number_.size()); }
+  [[nodiscard]] Index owned_images() const override { return owned_images_; }
+  void update_ghosts(std::span<double> values) const override;
 
   [[nodiscard]] const std::vector<GlobalIndex>& number() const override { return number_; }
   /// Of a point that is here, perhaps a ghost.
@@ -40,6 +43,8 @@ class PartOfBody : public Sharing {
   const Communicator& ranks_;
   std::vector<GlobalIndex> number_, ghost_number_;
   std::vector<int> ghost_owner_;
+  Index points_, owned_images_;
+  std::size_t dimension_;
   GlobalIndex whole_;
   std::unique_ptr<GhostExchange> ghosts_;
 };

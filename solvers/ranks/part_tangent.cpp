@@ -7,8 +7,11 @@ namespace peristat {
 
 std::vector<char> without_ghosts(const Sharing& sharing, std::vector<char> prescribed,
                                  int dimension) {
-  const std::size_t owned = std::size_t(sharing.owned()) * std::size_t(dimension);
-  std::fill(prescribed.begin() + std::ptrdiff_t(owned), prescribed.end(), char(1));
+  const auto d = std::ptrdiff_t(dimension);
+  const auto handles = std::min(prescribed.begin() + sharing.points() * d, prescribed.end());
+  const bool owns_handles = sharing.ranks().rank() == 0;
+  std::fill(prescribed.begin() + sharing.owned() * d, owns_handles ? handles : prescribed.end(),
+            char(1));
   return prescribed;
 }
 

@@ -35,8 +35,8 @@ struct PartTangent final : Operator {
   mutable std::vector<double> factor_;  // with the ghosts' values
 };
 
-/// Flags of degrees of freedom without an equation on this rank: all of ghosts, and those that are
-/// prescribed.
+/// Flags of degrees of freedom without an equation on this rank: all of ghosts, those of handles
+/// but for rank 0, and those that are prescribed.
 /// @param prescribed one flag per degree of freedom of all points here
 [[nodiscard]] std::vector<char> without_ghosts(const Sharing& sharing, std::vector<char> prescribed,
                                                int dimension);

@@ -17,13 +17,14 @@ double slope_along(const Sums& sums, std::span<const double> direction, const Tr
 
 /// Of forces that follow the deformation, which need not have a potential: by the trapezoidal rule,
 /// which is exact in a plane and errs by the cube of the step elsewhere [J].
-double follower_work(const Trial& from, const Trial& to) {
+double follower_work(const EquilibriumProblem& problem, const Trial& from, const Trial& to) {
+  if (!problem.conditions.has_pressures()) return 0.0;
   double work = 0.0;
   for (std::size_t k = 0; k < to.follower_force.size(); ++k) {
     work += 0.5 * (from.follower_force[k] + to.follower_force[k]) *
             (to.displacement[k] - from.displacement[k]);
   }
-  return work;
+  return problem.sums().of_all(work);
 }
 
 /// Where forces are linear in the displacements the whole step leads to where they balance. Without
@@ -76,7 +77,8 @@ LineSearchResult line_search(const EquilibriumProblem& problem,
       continue;
     }
     result.step_length = length;
-    const double change = trial.total_energy - from.total_energy - follower_work(from, trial);
+    const double change =
+        trial.total_energy - from.total_energy - follower_work(problem, from, trial);
     if (change <= options.sufficient_decrease * length * slope) return result;
     const bool flatter =
         std::abs(slope_along(sums, direction, trial, external_force)) <= std::abs(slope);

@@ -31,6 +31,7 @@
 #include "src/core/number_text.hpp"
 #include "src/core/stopwatch.hpp"
 #include "src/core/threads.hpp"
+#include "src/geometry/image_kinds.hpp"
 #include "src/neighbourhood/horizon.hpp"
 #include "src/neighbourhood/share_on_horizon.hpp"
 
@@ -163,6 +164,13 @@ void store_interactions(Body& body, int threads) {
   for (const auto& term : body.model.terms()) term->store(body.points, threads);
 }
 
+/// A partial volume reaches half a cell's diagonal beyond the horizon [m].
+double reach_of_images(const BodySpecification& of, const Points& points) {
+  const bool is_whole = of.volume_correction == VolumeCorrection::none;
+  return of.horizon * farthest_of(of.horizon_shape, points.dimension) +
+         (is_whole ? 0.0 : points.spacing.largest());
+}
+
 std::vector<double> at_rest(const Body& body) {
   return std::vector<double>(body.conditions->constraints().dofs(), 0.0);
 }
@@ -208,6 +216,13 @@ LoadSetting load_setting(const BodySpecification& of, const Points& points) {
 }
 
 }  // namespace
+
+std::vector<ImageKind> kinds_of_images(const BodySpecification& of, const Points& points,
+                                       const Communicator& ranks) {
+  const std::vector<Period> periods(of.constraints.periods.begin(), of.constraints.periods.end());
+  return image_kinds(points, extent_of(points, ranks), of.constraints.symmetries, periods,
+                     reach_of_images(of, points));
+}
 
 BondSetting bond_setting(const BodySpecification& of, const Points& points) {
   BondSetting setting;
@@ -270,12 +285,8 @@ std::unique_ptr<const Body> make_body(Points points, const BodySpecification& of
   auto owned = std::make_unique<Body>();
   Body& body = *owned;
   body.points = std::move(points);
-  const std::vector<Period> periods(of.constraints.periods.begin(), of.constraints.periods.end());
-  // A partial volume reaches half a cell's diagonal beyond the horizon.
-  const bool is_whole = of.volume_correction == VolumeCorrection::none;
-  const double reach = of.horizon * farthest_of(of.horizon_shape, body.points.dimension) +
-                       (is_whole ? 0.0 : body.points.spacing.largest());
-  add_images(body.points, of.constraints.symmetries, periods, reach);
+  add_images(body.points, kinds_of_images(of, body.points, SoleRank()),
+             reach_of_images(of, body.points));
   body.setting = bond_setting(of, body.points);
   body.specification = with_stretches(of, body.setting, body.points.spacing);
   require_resolved(body.points, body.setting.horizon);
@@ -318,32 +329,56 @@ std::unique_ptr<const Body> make_body(Points points, const BodySpecification& of
 
 namespace {
 
+bool has_damage(const BodySpecification& of) {
+  const auto fails = [](const MaterialSpecification& material) {
+    return material.damage.law != DamageLaw::none;
+  };
+  return fails(of.material) ||
+         std::ranges::any_of(of.regions,
+                             [&](const auto& region) { return fails(region.material); }) ||
+         std::ranges::any_of(of.interfaces, [&](const InterfaceSpecification& interface) {
+           return interface.material && fails(*interface.material);
+         });
+}
+
+/// Rollers have handles point by point, linear constraints followers of points of all ranks.
+template <class Refuse>
+void refuse_constraints_without_ranks(const BodySpecification& of, const Refuse& refuse) {
+  const ConstraintSpecification& constraints = of.constraints;
+  if (!constraints.rollers.empty()) refuse("rollers");
+  if (!constraints.linear.empty()) refuse("linear");
+  const bool has_images = !constraints.symmetries.empty() || !constraints.periods.empty();
+  if (!has_images && constraints.rigid_sets.empty()) return;
+  const std::string key = constraints.rigid_sets.empty()
+                              ? constraints.symmetries.empty() ? "periods" : "symmetries"
+                              : "rigid_sets";
+  const auto refuse_with = [&](const std::string& what) {
+    throw InputError(key, "", "is not for more than one rank yet together with " + what);
+  };
+  if (of.material.model != MaterialModel::bond) refuse_with("models but \"bond\"");
+  if (has_damage(of)) refuse_with("damage");
+  if (of.end_time) refuse_with("motions");
+  const bool has_pressure = std::ranges::any_of(of.loads, [](const LoadSpecification& load) {
+    return load.kind == LoadSpecification::Kind::pressure;
+  });
+  if (has_images && has_pressure) refuse_with("pressures");
+}
+
 /// What the assembler of a part is made for; tables of cases are refused before.
 void refuse_without_ranks(const BodySpecification& of) {
   const auto refuse = [](const std::string& key) {
     throw InputError(
         key, "",
         "is not for more than one rank yet: there are bodies with pre-cracks, supports, "
-        "eigenstrains, tractions, body forces, total forces and gravity, and damage of bonds of "
-        "one material");
+        "rigid sets, planes of symmetry, periods, foundations, eigenstrains, tractions, pressures, "
+        "body forces, total forces and gravity, and damage of bonds");
   };
   const MaterialSpecification& material = of.material;
   if (is_polynomial(material.model)) refuse("material.model");
   if (material.model == MaterialModel::lps && of.form != SolidForm::energy) refuse("form");
   if (of.is_linear()) refuse("material.kinematics");
-  // Laws that differ from bond to bond have no test on ranks.
-  const bool is_damaged = material.damage.law != DamageLaw::none;
-  if (is_damaged && (material.model != MaterialModel::bond || !of.is_uniform())) {
+  if (material.damage.law != DamageLaw::none && material.model != MaterialModel::bond) {
     refuse("material.damage");
-  }
-  for (std::size_t k = 0; k < of.regions.size(); ++k) {
-    const bool fails = of.regions[k].material.damage.law != DamageLaw::none;
-    if (fails) refuse("regions[" + std::to_string(k) + "].material.damage");
-  }
-  for (std::size_t k = 0; k < of.interfaces.size(); ++k) {
-    const auto& own = of.interfaces[k].material;
-    const bool fails = own && own->damage.law != DamageLaw::none;
-    if (fails) refuse("interfaces[" + std::to_string(k) + "].material.damage");
   }
   if (material.model != MaterialModel::bond) {
     if (!of.is_uniform()) refuse(of.regions.empty() ? "material" : "regions");
@@ -351,18 +386,12 @@ void refuse_without_ranks(const BodySpecification& of) {
     if (of.end_time) refuse("end_time");
   }
   if (of.force_operator != ForceOperator::bonds) refuse("force_operator");
-  if (!of.foundations.empty()) refuse("foundations");
   if (!of.controls.empty()) refuse("controls");
   if (of.has_inertia) refuse("has_inertia");
-  const ConstraintSpecification& constraints = of.constraints;
-  const bool is_constrained = !constraints.rigid_sets.empty() || !constraints.rollers.empty() ||
-                              !constraints.linear.empty() || !constraints.symmetries.empty() ||
-                              !constraints.periods.empty();
-  if (is_constrained) refuse("constraints");
-  using Kind = LoadSpecification::Kind;
+  refuse_constraints_without_ranks(of, refuse);
   for (std::size_t k = 0; k < of.loads.size(); ++k) {
-    const Kind kind = of.loads[k].kind;
-    if (kind == Kind::pressure || kind == Kind::stress) {
+    const LoadSpecification::Kind kind = of.loads[k].kind;
+    if (kind == LoadSpecification::Kind::stress) {
       refuse("loads[" + std::to_string(k) + "]." + load_key(kind));
     }
   }
@@ -392,6 +421,7 @@ std::unique_ptr<const Body> make_body(Part part, const BodySpecification& of,
   refuse_without_ranks(of);
   part.points.owned = part.owned;
   check_specification(of, part.points);
+  add_images(part.points, part.images, part.reach);
   auto made = std::make_unique<Body>();
   Body& body = *made;
   body.setting = bond_setting(of, part.points);
@@ -408,16 +438,21 @@ std::unique_ptr<const Body> make_body(Part part, const BodySpecification& of,
       threads);
   LoadSetting loads = load_setting(of, body.points);
   loads.ranks = &ranks;
-  body.conditions = std::make_unique<Conditions>(
-      body.points, of.supports, of.loads, programme_of(of), of.controls, loads, of.eigenstrains);
+  loads.number = body.part->number();
+  body.conditions = std::make_unique<Conditions>(body.points, of.supports, of.loads,
+                                                 programme_of(of), of.controls, loads,
+                                                 of.eigenstrains, of.constraints, of.foundations);
+  add_terms_of_conditions(body.model, body);
   const Stopwatch watch(body.seconds_neighbourhood);
   store_interactions(body, threads);
   return made;
 }
 
 void add_terms_of_conditions(Model& model, const Body& body) {
-  const PressedBoundary& boundary = body.conditions->pressed_boundary();
-  if (!boundary.face.empty()) model.add(std::make_shared<PressureTerm>(body.points, boundary));
+  if (body.conditions->has_pressures()) {
+    const PressedBoundary& boundary = body.conditions->pressed_boundary();
+    model.add(std::make_shared<PressureTerm>(body.points, boundary));
+  }
   const Foundations& foundations = body.conditions->foundations();
   if (!foundations.none()) model.add(std::make_shared<FoundationTerm>(body.points, foundations));
   if (body.specification.has_inertia) model.add(std::make_shared<InertiaTerm>(body.points));

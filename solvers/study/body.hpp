@@ -58,12 +58,18 @@ struct Body {
 /// The setting of a body's bonds, as far as it does not depend on which points are here.
 [[nodiscard]] BondSetting bond_setting(const BodySpecification& of, const Points& points);
 
-/// This rank's part of a body: elastic bonds of one material, under supports and loads of points. A
-/// call that all ranks make.
-/// @param part with ghosts as far as reach_of_bonds, and with all sets that are named
+/// The kinds of images that points of a body have beyond its planes of symmetry and periods.
+/// @param points of the body, or of this rank without ghosts, in a call that all make
+/// @throws InputError as image_kinds does
+[[nodiscard]] std::vector<ImageKind> kinds_of_images(const BodySpecification& of,
+                                                     const Points& points,
+                                                     const Communicator& ranks);
+
+/// This rank's part of a body. A call that all ranks make.
+/// @param part with ghosts as far as reach_of_bonds, of kinds_of_images too, and with all sets that
+///        are named
 /// @throws InputError, MemoryError as the other does, perhaps on one rank alone; and for what has
-/// no
-///         ranks yet
+///         no ranks yet
 [[nodiscard]] std::unique_ptr<const Body> make_body(Part part, const BodySpecification& of,
                                                     const Communicator& ranks, int threads);
 

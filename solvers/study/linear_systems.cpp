@@ -126,13 +126,25 @@ void refuse_solvers_without_ranks(const StudyOptions& options, const Body& body)
                             kind == PreconditionerKind::block_jacobi ||
                             kind == PreconditionerKind::jacobi;
   if (!body.model.visits_rows() && !is_of_points) {
-    refuse("linear.preconditioner", "\"block_jacobi\" or \"jacobi\" with models but \"bond\"");
+    refuse("linear.preconditioner",
+           "\"block_jacobi\" or \"jacobi\" with pressures, foundations and models but \"bond\"");
+  }
+  if (!body.conditions->constraints().none() && !is_of_points) {
+    refuse("linear.preconditioner",
+           "\"block_jacobi\" or \"jacobi\" with planes of symmetry, periods and rigid sets");
   }
   if (finds_loads(options, *body.conditions)) {
     refuse("loading.mode", "loads that are given: those that are found need pivots");
   }
   if (!body.model.has_rows()) refuse("force_operator", "\"bonds\"");
-  if (!body.conditions->constraints().none()) refuse("constraints", "none");
+}
+
+void refuse_products_with_constraints(const StudyOptions& options, const Body& body) {
+  const bool follows = !body.conditions->constraints().none() && body.model.has_rows();
+  if (!follows || options.tangent != TangentStorage::matrix_free) return;
+  throw InputError("tangent", "matrix_free",
+                   "is for bodies without rigid sets, rollers, linear constraints, planes of "
+                   "symmetry and periods");
 }
 
 /// Convolutions without a potential have neither rows to solve with nor an energy to search by.
@@ -271,12 +283,13 @@ LinearSystems choose_linear_systems(const StudyOptions& options, const Body& bod
   const bool is_explicit = options.loading.dynamics.scheme == MotionScheme::verlet;
   if (options.loading.mode == Mode::dynamics && is_explicit) return systems_of_motion(body);
   refuse_to_solve_for(body, options.loading);
+  refuse_products_with_constraints(options, body);
   if (body.part) {
     refuse_solvers_without_ranks(options, body);
     StudyOptions of_part = options;
     // Pieces of parts are tested on tangents of bonds alone.
-    if (!body.model.visits_rows() &&
-        options.linear.preconditioner == PreconditionerKind::automatic) {
+    const bool is_of_bonds = body.model.visits_rows() && body.conditions->constraints().none();
+    if (!is_of_bonds && options.linear.preconditioner == PreconditionerKind::automatic) {
       of_part.linear.preconditioner = PreconditionerKind::block_jacobi;
     }
     return choose_linear_systems(of_part, body.model, estimate_memory_of_part(body), {},
@@ -296,11 +309,6 @@ LinearSystems choose_linear_systems(const StudyOptions& options, const Body& bod
     }
   }
   if (!body.conditions->constraints().none() && body.model.has_rows()) {
-    if (options.tangent == TangentStorage::matrix_free) {
-      throw InputError("tangent", "matrix_free",
-                       "is for bodies without rigid sets, rollers, linear constraints, planes of "
-                       "symmetry and periods");
-    }
     chosen.tangent = TangentStorage::stored;
   }
   if (finds_loads(options, *body.conditions)) {
@@ -314,11 +322,15 @@ LinearSystems choose_linear_systems(const StudyOptions& options, const Body& bod
 
 namespace {
 
-/// Of a whole body or of a part.
-template <class Operator>
-std::unique_ptr<TangentOperator> make_operator(Assembler& assembler) {
-  if (assembler.sharing()) return std::make_unique<PartTangent<Operator>>(assembler);
-  return std::make_unique<Operator>(assembler);
+/// Of the points that are here.
+std::unique_ptr<TangentOperator> make_plain(Assembler& assembler, bool is_stored) {
+  if (!is_stored) return std::make_unique<MatrixFreeTangent>(assembler);
+  return std::make_unique<Tangent>(assembler);
+}
+
+std::unique_ptr<TangentOperator> make_shared_operator(Assembler& assembler, bool is_stored) {
+  if (!is_stored) return std::make_unique<PartTangent<MatrixFreeTangent>>(assembler);
+  return std::make_unique<PartTangent<Tangent>>(assembler);
 }
 
 }  // namespace
@@ -326,11 +338,18 @@ std::unique_ptr<TangentOperator> make_operator(Assembler& assembler) {
 std::unique_ptr<TangentOperator> LinearSystems::make_tangent(Assembler& assembler,
                                                              const Constraints& constraints) const {
   const bool is_convolved = !assembler.has_rows();
-  if (!is_convolved && !assembler.has_potential()) return make_operator<RowsOfEnergy>(assembler);
+  if (!is_convolved && !assembler.has_potential()) return std::make_unique<RowsOfEnergy>(assembler);
   if (is_convolved) return make_convolved_tangent(assembler, constraints);
-  if (!constraints.none()) return std::make_unique<ConstrainedTangent>(assembler, constraints);
-  if (!is_stored) return make_operator<MatrixFreeTangent>(assembler);
-  return make_operator<Tangent>(assembler);
+  const Sharing* const sharing = assembler.sharing();
+  if (!constraints.none() && !sharing) {
+    return std::make_unique<ConstrainedTangent>(assembler, constraints);
+  }
+  if (!constraints.none()) {
+    return std::make_unique<ConstrainedProduct>(make_plain(assembler, is_stored),
+                                                assembler.points(), constraints, sharing);
+  }
+  if (sharing) return make_shared_operator(assembler, is_stored);
+  return make_plain(assembler, is_stored);
 }
 
 }  // namespace peristat

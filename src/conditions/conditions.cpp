@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <exception>
 #include <limits>
 #include <numeric>
 #include <set>
@@ -13,6 +14,7 @@
 #include "src/core/input_error.hpp"
 #include "src/core/number_text.hpp"
 #include "src/geometry/body_cells.hpp"
+#include "src/geometry/nearest_point.hpp"
 #include "src/measures/small_algebra.hpp"
 
 namespace peristat {
@@ -64,6 +66,7 @@ Conditions::Conditions(const Points& points, const std::vector<SupportSpecificat
                        const Eigenstrains& eigenstrains, const ConstraintSpecification& constraints,
                        const std::vector<FoundationSpecification>& foundations)
     : points_(points),
+      ranks_(setting.ranks),
       programme_(std::move(programme)),
       prescribed_(points.reference.size(), 0),
       made_{Constraints(points)} {
@@ -91,7 +94,7 @@ Conditions::Conditions(const Points& points, const std::vector<SupportSpecificat
     }
     refuse_depth_of_surface(loads[k], table);
     if (loads[k].kind == LoadSpecification::Kind::pressure) {
-      add_pressure(loads[k], table);
+      add_pressure(loads[k], setting, table);
       continue;
     }
     const auto on = std::make_shared<const Loaded>(loaded(loads[k], setting, table));
@@ -105,10 +108,10 @@ Conditions::Conditions(const Points& points, const std::vector<SupportSpecificat
     }
   }
   add_eigenstrains(eigenstrains, setting);
-  foundations_ = Foundations(points, foundations, parameters);
-  made_ = make_constraints(points, constraints, prescribed_, parameters);
+  foundations_ = Foundations(points, foundations, parameters, setting.ranks);
+  made_ = make_constraints(points, constraints, prescribed_, parameters, setting.ranks);
   refuse_shared_names();
-  hold_periodic_cell(constraints);
+  hold_periodic_cell(constraints, setting);
   prescribe_handles();
   if (!control.empty()) {
     // What follows others answers where they do.
@@ -161,7 +164,8 @@ void Conditions::prescribe_handles() {
 
 /// A cell without supports may move as a whole, which changes nothing: it is held at the point next
 /// to its middle. In motion its inertia holds it.
-void Conditions::hold_periodic_cell(const ConstraintSpecification& constraints) {
+void Conditions::hold_periodic_cell(const ConstraintSpecification& constraints,
+                                    const LoadSetting& setting) {
   const bool is_held = !prescriptions_.empty() || !constraints.rigid_sets.empty() ||
                        !constraints.rollers.empty() || !constraints.linear.empty();
   if (constraints.periods.empty() || is_held || programme_.is_of_time()) return;
@@ -169,35 +173,49 @@ void Conditions::hold_periodic_cell(const ConstraintSpecification& constraints) 
   for (const SymmetryPlane& plane : constraints.symmetries) {
     floats_[std::size_t(plane.axis)] = false;
   }
-  Coordinates middle{};
-  for (Index i = 0; i < points_.own(); ++i) {
-    middle = plus<3>(middle, scaled<3>(1.0 / points_.own(), points_.position(i)));
-  }
-  Index nearest = 0;
-  double least = std::numeric_limits<double>::infinity();
-  for (Index i = 0; i < points_.own(); ++i) {
-    const Coordinates arm = minus<3>(points_.position(i), middle);
-    if (dot<3>(arm, arm) < least) least = dot<3>(arm, arm), nearest = i;
-  }
-  for (std::size_t c = 0; c < std::size_t(points_.dimension); ++c) {
-    const std::size_t dof = std::size_t(nearest) * std::size_t(points_.dimension) + c;
+  const std::optional<Index> nearest = point_of_middle(setting);
+  for (std::size_t c = 0; nearest && c < std::size_t(points_.dimension); ++c) {
+    const std::size_t dof = std::size_t(*nearest) * std::size_t(points_.dimension) + c;
     if (floats_[c]) made_.unused.push_back(dof);
   }
 }
 
+std::optional<Index> Conditions::point_of_middle(const LoadSetting& setting) const {
+  const Index own = points_.owned.value_or(points_.own());
+  std::vector<double> sum(4, 0.0);  // of places, and of points
+  for (Index i = 0; i < own; ++i) {
+    const Coordinates at = points_.position(i);
+    for (std::size_t c = 0; c < 3; ++c) sum[c] += at[c];
+    sum[3] += 1.0;
+  }
+  if (ranks_) sum = ranks_->sum(sum);
+  const Coordinates middle = scaled<3>(1.0 / sum[3], Coordinates{sum[0], sum[1], sum[2]});
+  const NearestPoint mine = nearest_point(points_, middle, own);
+  if (!ranks_) return mine.point;
+  // Of those as near but for round-off the one with the lowest number, as of a whole body.
+  const double least = ranks_->min(mine.distance);
+  const bool is_as_near = own > 0 && mine.distance <= least + round_off_of_distances(points_);
+  const double number = is_as_near ? double(setting.number[std::size_t(mine.point)])
+                                   : std::numeric_limits<double>::infinity();
+  if (ranks_->min(number) != number || !is_as_near) return std::nullopt;
+  return mine.point;
+}
+
 void Conditions::require_balance(std::span<const double> force, const std::string& key) const {
+  if (floats_ == std::array<bool, 3>{}) return;
   constexpr double round_off = 1e-9;
   const std::size_t d = std::size_t(points_.dimension);
+  std::vector<double> sums(6, 0.0);  // of forces, and of their magnitudes
+  for (std::size_t dof = 0; dof < force.size(); ++dof) {
+    sums[dof % d] += force[dof];
+    sums[3 + dof % d] += std::abs(force[dof]);
+  }
+  if (ranks_) sums = ranks_->sum(sums);
   for (std::size_t c = 0; c < d; ++c) {
-    double sum = 0.0, sum_of_magnitudes = 0.0;
-    for (std::size_t dof = c; floats_[c] && dof < force.size(); dof += d) {
-      sum += force[dof];
-      sum_of_magnitudes += std::abs(force[dof]);
-    }
-    if (std::abs(sum) <= round_off * sum_of_magnitudes) continue;
+    if (!floats_[c] || std::abs(sums[c]) <= round_off * sums[3 + c]) continue;
     throw InputError(
         key, "",
-        "the loads on a cell that nothing holds add up to " + number_text(sum) + " N along " +
+        "the loads on a cell that nothing holds add up to " + number_text(sums[c]) + " N along " +
             "xyz"[c] +
             ", for which a body that repeats has no equilibrium. Balance them, or hold "
             "the cell by a support");
@@ -236,9 +254,10 @@ Conditions::Loaded Conditions::loaded(const LoadSpecification& load, const LoadS
   return on;
 }
 
-void Conditions::add_pressure(const LoadSpecification& load, const std::string& table) {
+void Conditions::add_pressure(const LoadSpecification& load, const LoadSetting& setting,
+                              const std::string& table) {
   const std::size_t first = pressed_.face.size();
-  with_table(table, [&] { add_pressed_faces(points_, load, table, pressed_); });
+  with_table(table, [&] { add_pressed_faces(points_, load, table, pressed_, setting.ranks); });
   const std::string key = table + ".value";
   pressures_.push_back({key, first, pressed_.face.size(), with_key(key, [&] {
                           return Expression(load.value[0], points_.dimension, points_.spacing,
@@ -395,16 +414,35 @@ void Conditions::prescribe_handles_at(std::span<const double> loads,
 void Conditions::external_force(const LoadPoint& at, std::span<double> force) const {
   const std::vector<double> loads = parameters(at);
   std::fill(force.begin(), force.end(), 0.0);
-  for (const Load& load : loads_) {
-    with_key(load.key, [&] {
-      const auto& [points, amount, spread_over] = *load.on;
-      for (std::size_t k = 0; k < points.size(); ++k) {
-        force[std::size_t(points[k]) * points_.dimension + load.component] +=
-            load.value(points_.position(points[k]), loads) * amount[k] / spread_over;
-      }
-    });
+  const auto add_loads = [&] {
+    for (const Load& load : loads_) {
+      with_key(load.key, [&] {
+        const auto& [points, amount, spread_over] = *load.on;
+        for (std::size_t k = 0; k < points.size(); ++k) {
+          force[std::size_t(points[k]) * points_.dimension + load.component] +=
+              load.value(points_.position(points[k]), loads) * amount[k] / spread_over;
+        }
+      });
+    }
+  };
+  if (!ranks_ || loads_.empty() || floats_ == std::array<bool, 3>{}) {
+    add_loads();
+  } else {
+    add_loads_of_all(add_loads);
   }
   if (!loads_.empty()) require_balance(force, loads_.front().key);
+}
+
+void Conditions::add_loads_of_all(const std::function<void()>& add_loads) const {
+  std::exception_ptr mine;
+  try {
+    add_loads();
+  } catch (const InputError&) {
+    mine = std::current_exception();
+  }
+  const bool is_missing = ranks_->max(double(mine != nullptr)) > 0.0;
+  if (mine) std::rethrow_exception(mine);
+  if (is_missing) throw InputError(loads_.front().key, "", "has no value elsewhere in the body");
 }
 
 std::map<std::string, Coordinates> Conditions::reactions(
@@ -445,7 +483,10 @@ double follows_plane(const ImageKind& kind, const Restraint& plane) {
 Coordinates Conditions::reaction_of(const Restraint& restraint,
                                     std::span<const double> gradient) const {
   const std::size_t d = std::size_t(points_.dimension);
+  // All ranks know the forces on handles.
+  const bool is_told_elsewhere = ranks_ && ranks_->rank() > 0 && !restraint.handles.empty();
   Coordinates sum{};
+  if (is_told_elsewhere) return sum;
   switch (restraint.kind) {
     case Restraint::Kind::rigid_set:
     case Restraint::Kind::period:
@@ -567,6 +608,7 @@ Holding Conditions::holding(std::span<const double> displacement) const {
     holding.handles.push_back({slide.dof, motion, true});
   }
   for (const Constraints::RigidSet& set : constraints().rigid_sets()) {
+    if (set.members.empty()) continue;  // on this rank
     for (const Index member : set.members) {
       holding.links.push_back({set.members.front(), member});
     }

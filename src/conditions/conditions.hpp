@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -31,6 +32,8 @@ struct LoadSetting {
   /// Where tractions act on the surface; nothing: they are forces on points.
   std::optional<std::vector<SurfaceSite>> surface = std::nullopt;
   const Communicator* ranks = nullptr;  ///< that have parts of the body; null: it is whole
+  std::span<const GlobalIndex>
+      number{};  ///< of a part: those of its owned points in the whole body
 };
 
 /// What strains the points without forces.
@@ -96,6 +99,7 @@ class Conditions {
 
   [[nodiscard]] const Foundations& foundations() const { return foundations_; }
 
+  [[nodiscard]] bool has_pressures() const { return !pressures_.empty(); }
   /// Faces that pressures act on, in the order of Environment::pressure.
   [[nodiscard]] const PressedBoundary& pressed_boundary() const { return pressed_; }
 
@@ -103,13 +107,13 @@ class Conditions {
   /// supports add to hold them, dE/dx - external force. Points of two sets count in both. Likewise
   /// of the restraints: what rigid sets and rollers add, what the part of the body beyond a plane
   /// of symmetry or a period does, and, in its first component, the multiplier of a linear
-  /// constraint; and of the foundations.
+  /// constraint; and of the foundations. Of a part of a body this rank's share.
   /// @param gradient folded, see Constraints
   [[nodiscard]] std::map<std::string, Coordinates> reactions(
       std::span<const double> gradient, std::span<const double> external,
       std::span<const double> displacement, const SharedEnvironment& environment) const;
 
-  /// Moment about the present centre of each rigid set [N m] that it adds.
+  /// Moment about the present centre of each rigid set [N m] that it adds, or this rank's share.
   [[nodiscard]] std::map<std::string, Coordinates> moments(std::span<const double> displacement,
                                                            std::span<const double> gradient,
                                                            std::span<const double> external) const;
@@ -156,7 +160,8 @@ class Conditions {
     Expression value;         // [Pa]
   };
 
-  void add_pressure(const LoadSpecification& load, const std::string& table);
+  void add_pressure(const LoadSpecification& load, const LoadSetting& setting,
+                    const std::string& table);
   void add_eigenstrains(const Eigenstrains& eigenstrains, const LoadSetting& setting);
   [[nodiscard]] Loaded loaded(const LoadSpecification& load, const LoadSetting& setting,
                               const std::string& table) const;
@@ -164,7 +169,11 @@ class Conditions {
   [[nodiscard]] std::vector<double> parameters(const LoadPoint& at) const;
   void refuse_shared_names() const;
   void prescribe_handles();
-  void hold_periodic_cell(const ConstraintSpecification& constraints);
+  void hold_periodic_cell(const ConstraintSpecification& constraints, const LoadSetting& setting);
+  /// The owned point next to the middle of the body, on the rank that has it.
+  [[nodiscard]] std::optional<Index> point_of_middle(const LoadSetting& setting) const;
+  /// Before sums over all ranks: what one rank alone has no value of, all refuse.
+  void add_loads_of_all(const std::function<void()>& add_loads) const;
   /// Refuses forces that would have to be borne where a cell is held that nothing holds.
   void require_balance(std::span<const double> force, const std::string& key) const;
   void prescribe_handles_at(std::span<const double> loads, std::span<double> displacement) const;
@@ -181,6 +190,7 @@ class Conditions {
                                          double load_factor) const;
 
   const Points& points_;
+  const Communicator* ranks_;  // null: the body is whole
   LoadingProgramme programme_;
   std::vector<Prescription> prescriptions_;
   std::vector<Load> loads_;

@@ -28,14 +28,14 @@ Coordinates checked(const Coordinates& stiffness, int dimension, const std::stri
 }
 
 std::vector<Spring> on_boundary(const Points& points, const FoundationSpecification& of,
-                                const std::string& table) {
+                                const std::string& table, const Communicator* ranks) {
   const Coordinates modulus = checked(of.modulus, points.dimension, table + ".modulus");
   LoadSpecification place;
   place.kind = LoadSpecification::Kind::traction;
   place.set = of.set;
   place.side = of.side;
   const TractionAreas areas =
-      with_table(table, [&] { return traction_areas(points, place, 0.0, table); });
+      with_table(table, [&] { return traction_areas(points, place, 0.0, table, ranks); });
   std::vector<Spring> springs;
   for (std::size_t k = 0; k < areas.points.size(); ++k) {
     springs.push_back({areas.points[k], scaled<3>(areas.area[k], modulus)});
@@ -44,11 +44,15 @@ std::vector<Spring> on_boundary(const Points& points, const FoundationSpecificat
 }
 
 std::vector<Spring> on_set(const Points& points, const FoundationSpecification& of,
-                           const std::string& table) {
+                           const std::string& table, const Communicator* ranks) {
   const Coordinates stiffness = checked(of.stiffness, points.dimension, table + ".stiffness");
-  const std::vector<Index>& members = points_of_set(points, of.set, table + ".set");
+  std::vector<Index> members = points_of_set(points, of.set, table + ".set");
+  if (points.owned) {  // a ghost's spring is its owner's
+    std::erase_if(members, [&](Index point) { return point >= *points.owned; });
+  }
   double volume = 0.0;
   for (const Index point : members) volume += points.volume[point];
+  if (ranks) volume = ranks->sum(volume);
   std::vector<Spring> springs;
   for (const Index point : members) {
     springs.push_back({point, scaled<3>(points.volume[point] / volume, stiffness)});
@@ -60,7 +64,7 @@ std::vector<Spring> on_set(const Points& points, const FoundationSpecification& 
 
 Foundations::Foundations(const Points& points,
                          const std::vector<FoundationSpecification>& specifications,
-                         const std::vector<std::string>& parameters)
+                         const std::vector<std::string>& parameters, const Communicator* ranks)
     : dimension_(points.dimension) {
   for (std::size_t k = 0; k < specifications.size(); ++k) {
     const FoundationSpecification& of = specifications[k];
@@ -70,7 +74,10 @@ Foundations::Foundations(const Points& points,
       throw InputError(table, "", "needs either a modulus or a stiffness");
     }
     const std::vector<Spring> springs =
-        has_modulus ? on_boundary(points, of, table) : on_set(points, of, table);
+        has_modulus ? on_boundary(points, of, table, ranks) : on_set(points, of, table, ranks);
+    for (std::size_t c = 0; c < 3; ++c) {
+      holds_[c] = holds_[c] || of.modulus[c] > 0.0 || of.stiffness[c] > 0.0;
+    }
     Foundation made{of.name, table, springs_.size(), springs_.size() + springs.size(), {}};
     for (int c = 0; c < points.dimension; ++c) {
       const std::string key = indexed(table + ".displacement", std::size_t(c));
@@ -83,12 +90,6 @@ Foundations::Foundations(const Points& points,
     springs_.insert(springs_.end(), springs.begin(), springs.end());
     for (const Spring& spring : springs) place_.push_back(points.position(spring.point));
   }
-}
-
-bool Foundations::hold(int axis) const {
-  return std::any_of(springs_.begin(), springs_.end(), [axis](const Spring& spring) {
-    return spring.stiffness[std::size_t(axis)] > 0.0;
-  });
 }
 
 std::vector<Foundations::Summary> Foundations::summaries() const {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <map>
 #include <span>
 #include <string>
@@ -7,6 +8,7 @@
 
 #include "src/conditions/environment.hpp"
 #include "src/conditions/specification.hpp"
+#include "src/core/communicator.hpp"
 #include "src/core/expression.hpp"
 #include "src/geometry/points.hpp"
 
@@ -24,16 +26,19 @@ class Foundations {
  public:
   Foundations() = default;
 
+  /// @param ranks that have parts of the body, a call that all make: each has the springs of its
+  /// own
+  ///        points; null: it is whole
   /// @throws InputError ("foundations[k].…", k from 0) for a place that traction_areas or
   ///         points_of_set refuses, a stiffness that is negative, not finite or zero in all
   ///         components, and a bad expression
   Foundations(const Points& points, const std::vector<FoundationSpecification>& specifications,
-              const std::vector<std::string>& parameters);
+              const std::vector<std::string>& parameters, const Communicator* ranks = nullptr);
 
-  [[nodiscard]] bool none() const { return springs_.empty(); }
+  [[nodiscard]] bool none() const { return foundations_.empty(); }
   [[nodiscard]] const std::vector<Spring>& springs() const { return springs_; }
   /// Whether any spring acts along an axis.
-  [[nodiscard]] bool hold(int axis) const;
+  [[nodiscard]] bool hold(int axis) const { return holds_[std::size_t(axis)]; }
 
   /// A foundation as it is told.
   struct Summary {
@@ -85,6 +90,7 @@ class Foundations {
   }
 
   int dimension_ = 0;
+  std::array<bool, 3> holds_{};  // per axis
   std::vector<Spring> springs_;
   std::vector<Coordinates> place_;  // of the springs' points, in the reference [m]
   std::vector<Foundation> foundations_;

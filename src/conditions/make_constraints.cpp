@@ -34,8 +34,10 @@ std::array<Coordinates, 3> basis_of(const Coordinates& normal, int dimension) {
 class Maker {
  public:
   Maker(const Points& points, const ConstraintSpecification& of,
-        const std::vector<char>& prescribed, const std::vector<std::string>& parameters)
+        const std::vector<char>& prescribed, const std::vector<std::string>& parameters,
+        const Communicator* ranks)
       : points_(points),
+        ranks_(ranks),
         of_(of),
         prescribed_(prescribed),
         parameters_(parameters),
@@ -135,6 +137,10 @@ class Maker {
     });
   }
 
+  [[nodiscard]] bool is_cut_anywhere(bool is_cut_here) const {
+    return ranks_ ? ranks_->max(double(is_cut_here)) > 0.0 : is_cut_here;
+  }
+
   /// Refuses sets that a plane of symmetry cuts, and whose two halves might move apart.
   void refuse_cut_sets(const RigidSetSpecification& spec, const Constraints::RigidSet& set,
                        const std::string& table) const {
@@ -143,7 +149,7 @@ class Maker {
         const double away = points_.position(member)[std::size_t(plane.axis)] - plane.at;
         return std::abs(away) < points_.spacing.along(plane.axis);
       });
-      if (!is_cut) continue;
+      if (!is_cut_anywhere(is_cut)) continue;
       const std::string by = "the plane of symmetry across " + std::string(1, "xyz"[plane.axis]) +
                              " cuts the rigid set " + spec.set + ": ";
       if (!spec.displacement[std::size_t(plane.axis)]) {
@@ -196,9 +202,16 @@ class Maker {
     Coordinates centre{};
     double volume = 0.0;
     for (const Index member : members) {
+      if (!points_.owns(member)) continue;
       const double of_point = points_.volume[std::size_t(member)];
       centre = plus<3>(centre, scaled<3>(of_point, points_.position(member)));
       volume += of_point;
+    }
+    if (ranks_) {
+      const std::vector<double> all =
+          ranks_->sum(std::vector<double>{centre[0], centre[1], centre[2], volume});
+      centre = {all[0], all[1], all[2]};
+      volume = all[3];
     }
     return scaled<3>(1.0 / volume, centre);
   }
@@ -206,7 +219,10 @@ class Maker {
   /// Largest arm; refuses a set that can turn without moving its points.
   [[nodiscard]] double size_of(const Constraints::RigidSet& set, const std::string& key,
                                const std::string& name) const {
-    if (set.members.size() < 2) {
+    const auto is_own = [&](Index member) { return points_.owns(member); };
+    auto count = double(std::ranges::count_if(set.members, is_own));
+    if (ranks_) count = ranks_->sum(count);
+    if (count < 2.0) {
       throw InputError(key, '"' + name + '"',
                        "has one point, which can't turn: a rigid set needs two or more");
     }
@@ -214,13 +230,16 @@ class Maker {
     Coordinates longest{};
     for (const Index member : set.members) {
       const Coordinates arm = minus<3>(points_.position(member), set.centre);
-      if (length(arm) > size) size = length(arm), longest = arm;
+      if (is_own(member) && length(arm) > size) size = length(arm), longest = arm;
     }
+    if (ranks_) longest = longest_of_all(size, longest);
+    if (ranks_) size = length(longest);
     double across = 0.0;
     for (const Index member : set.members) {
       const Coordinates arm = minus<3>(points_.position(member), set.centre);
       across = std::max(across, length(cross(longest, arm)) / size);
     }
+    if (ranks_) across = ranks_->max(across);
     constexpr double on_a_line = 1e-6;
     if (dimension() == 3 && across <= on_a_line * size) {
       throw InputError(key, '"' + name + '"',
@@ -228,6 +247,16 @@ class Maker {
                        "without moving them");
     }
     return size;
+  }
+
+  /// Of the longest arms of all ranks the first.
+  [[nodiscard]] Coordinates longest_of_all(double size, const Coordinates& longest) const {
+    const std::vector<double> all = ranks_->all_of({size, longest[0], longest[1], longest[2]});
+    std::size_t first = 0;
+    for (std::size_t k = 0; k < all.size(); k += 4) {
+      if (all[k] > all[first]) first = k;
+    }
+    return {all[first + 1], all[first + 2], all[first + 3]};
   }
 
   [[nodiscard]] Coordinates unit_normal(const RollerSpecification& spec,
@@ -392,6 +421,7 @@ class Maker {
   }
 
   const Points& points_;
+  const Communicator* ranks_;  // null: the body is whole
   const ConstraintSpecification& of_;
   const std::vector<char>& prescribed_;
   const std::vector<std::string>& parameters_;
@@ -404,8 +434,9 @@ class Maker {
 
 MadeConstraints make_constraints(const Points& points, const ConstraintSpecification& of,
                                  const std::vector<char>& prescribed,
-                                 const std::vector<std::string>& parameters) {
-  return Maker(points, of, prescribed, parameters).make();
+                                 const std::vector<std::string>& parameters,
+                                 const Communicator* ranks) {
+  return Maker(points, of, prescribed, parameters, ranks).make();
 }
 
 }  // namespace peristat

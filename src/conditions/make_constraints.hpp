@@ -7,6 +7,7 @@
 
 #include "src/conditions/constraint_specification.hpp"
 #include "src/constraints/constraints.hpp"
+#include "src/core/communicator.hpp"
 #include "src/core/expression.hpp"
 
 namespace peristat {
@@ -58,6 +59,7 @@ struct MadeConstraints {
 /// @param points with their images
 /// @param prescribed by supports, per degree of freedom of the points
 /// @param parameters names of the load parameters
+/// @param ranks that have parts of the body, in a call that all make; null: it is whole
 /// @throws InputError ("rigid_sets[k].…", "rollers[k].…", "linear[k].…", "periods[k].…") for sets
 ///         that are unknown, points that two of them or a support hold, a rigid set that its points
 ///         do not span, expressions that can't be read, constraints that contradict or repeat
@@ -65,6 +67,7 @@ struct MadeConstraints {
 [[nodiscard]] MadeConstraints make_constraints(const Points& points,
                                                const ConstraintSpecification& of,
                                                const std::vector<char>& prescribed,
-                                               const std::vector<std::string>& parameters);
+                                               const std::vector<std::string>& parameters,
+                                               const Communicator* ranks = nullptr);
 
 }  // namespace peristat

@@ -56,6 +56,7 @@ class Faces {
     std::array<Index, 4> face{};
     Coordinates centre{};
     const auto offsets = corners_of(side, points_.dimension);
+    if (points_.owned && !moves_owned_points(cell, offsets)) return;
     for (std::size_t k = 0; k < offsets.size(); ++k) {
       face[k] = number_of(corner_of(cell, offsets[k], points_.dimension));
       for (int c = 0; c < points_.dimension; ++c) {
@@ -68,6 +69,15 @@ class Faces {
   }
 
  private:
+  [[nodiscard]] bool moves_owned_points(const LatticeCell& cell,
+                                        const std::vector<std::array<int, 3>>& offsets) const {
+    return std::ranges::any_of(offsets, [&](const std::array<int, 3>& offset) {
+      return std::ranges::any_of(
+          points_around(corner_of(cell, offset, points_.dimension)),
+          [&](Index point) { return points_.source(point) < *points_.owned; });
+    });
+  }
+
   Index number_of(const LatticeCell& corner) {
     const auto [entry, is_new] = numbers_.try_emplace(corner, Index(boundary_.corner.size()));
     if (!is_new) return entry->second;
@@ -125,15 +135,23 @@ std::vector<double> face_forces(const PressedBoundary& boundary, std::span<const
   return forces;
 }
 
+double reach_of_pressures(const Points& points) {
+  constexpr double spacings =
+      4.0;  // along each axis: 1.5 from a corner to its points, twice, and 1
+  return spacings * std::sqrt(double(points.dimension)) * points.spacing.largest();
+}
+
 void add_pressed_faces(const Points& points, const LoadSpecification& load, const std::string& key,
-                       PressedBoundary& boundary) {
+                       PressedBoundary& boundary, const Communicator* ranks) {
   if (load.side && load.side->axis >= points.dimension) {
     throw InputError(key + ".side", name(*load.side), "the body has no such side");
   }
   if (load.set.empty() && !load.side) throw InputError(key, "", "needs a side or a set");
-  const BodyCells cells(points);
-  boundary.cross_section =
-      points.volume.front() / std::pow(points.spacing, double(points.dimension));
+  const BodyCells cells(points, ranks);
+  if (points.count() > 0) {  // a part may have none
+    boundary.cross_section =
+        points.volume.front() / std::pow(points.spacing, double(points.dimension));
+  }
   Faces faces(points, cells, boundary);
   const std::vector<Index> members = load.set.empty()
                                          ? cells.outermost(*load.side)
@@ -150,7 +168,8 @@ void add_pressed_faces(const Points& points, const LoadSpecification& load, cons
       }
     }
   }
-  if (boundary.face.size() == before) {
+  const auto added = double(boundary.face.size() - before);
+  if ((ranks ? ranks->sum(added) : added) == 0.0) {
     throw InputError(
         key + ".set", '"' + load.set + '"',
         "has no point with nothing of the body beside it, so there is no boundary that "

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "src/conditions/specification.hpp"
+#include "src/core/communicator.hpp"
 #include "src/geometry/points.hpp"
 
 namespace peristat {
@@ -27,9 +28,17 @@ struct PressedBoundary {
 /// Adds the faces of a load's `side`, or the exposed faces of the points of its `set` (those on its
 /// side alone, if it has both), to a boundary.
 /// @param key of the load, for errors
+/// @param ranks that have parts of the body with ghosts as far as reach_of_pressures, in a call
+/// that
+///        all make: each gets the faces whose corners move with points of its own. Null: it is
+///        whole
 /// @throws InputError for points on no lattice, a side that is none, a set without exposed faces
 void add_pressed_faces(const Points& points, const LoadSpecification& load, const std::string& key,
-                       PressedBoundary& boundary);
+                       PressedBoundary& boundary, const Communicator* ranks = nullptr);
+
+/// How far the ghosts of a part reach for the faces that press on its points: over a face, as far
+/// as what moves with its corners, and to what covers it [m].
+[[nodiscard]] double reach_of_pressures(const Points& points);
 
 /// Forces on the faces in the reference, faces x dimension [N].
 [[nodiscard]] std::vector<double> face_forces(const PressedBoundary& boundary,

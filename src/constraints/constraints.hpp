@@ -34,8 +34,11 @@ class Constraints {
   /// over it [m].
   explicit Constraints(const Points& points);
 
+  /// Of parts of a body the same on all ranks.
   [[nodiscard]] bool none() const {
-    return followers_.empty() && rigid_.empty() && body_->images.source.empty();
+    const Images& images = body_->images;
+    const bool has_images = body_->owned ? !images.kinds.empty() : !images.source.empty();
+    return followers_.empty() && rigid_.empty() && !has_images;
   }
 
   /// Points and handles.

@@ -12,7 +12,9 @@
 namespace peristat {
 
 /// What a part of a body shares with the parts that other ranks have. Its points are those that the
-/// rank owns, and then ghosts, which follow their owners.
+/// rank owns, then ghosts, which follow their owners, then images of both, first those of owned
+/// points. Arrays per degree of freedom may have handles of constraints after them: all ranks have
+/// these, and rank 0 owns them.
 class Sharing {
  public:
   Sharing() = default;
@@ -22,11 +24,16 @@ class Sharing {
 
   [[nodiscard]] virtual const Communicator& ranks() const = 0;
   [[nodiscard]] virtual Index owned() const = 0;
+  /// That are here, ghosts and images too.
+  [[nodiscard]] virtual Index points() const = 0;
+  [[nodiscard]] virtual Index first_image() const = 0;
+  /// How many images of owned points there are, the first ones.
+  [[nodiscard]] virtual Index owned_images() const = 0;
   /// Of each owned point in the whole body, ascending.
   [[nodiscard]] virtual const std::vector<GlobalIndex>& number() const = 0;
 
-  /// Gives ghosts what their owners have; a call that all ranks make.
-  /// @param values points x dimension
+  /// Gives ghosts, and handles, what their owners have; a call that all ranks make.
+  /// @param values points x dimension, and handles where there are any
   virtual void update_ghosts(std::span<double> values) const = 0;
 };
 

@@ -11,7 +11,7 @@ namespace peristat {
 /// whole body, every bond.
 [[nodiscard]] inline bool counts_bond(const Points& points, Index i, Index j) {
   if (!points.owned) return true;
-  const bool owns_i = i < *points.owned, owns_j = j < *points.owned;
+  const bool owns_i = points.owns(i), owns_j = points.owns(j);
   if (owns_i == owns_j) return owns_i;
   const auto d = std::size_t(points.dimension);
   const double* const at_i = &points.reference[std::size_t(i) * d];

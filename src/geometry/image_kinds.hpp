@@ -31,7 +31,8 @@ struct BodyExtent {
                                                  const std::vector<SymmetryPlane>& planes,
                                                  const std::vector<Period>& periods, double reach);
 
-/// Adds the images of points that lie within a distance of the box around these.
+/// Adds the images of points that lie within a distance of the box around these; of a part of a
+/// body first those of the points that its rank owns.
 void add_images(Points& points, const std::vector<ImageKind>& kinds, double reach);
 
 /// Refuses planes that do not mirror a lattice onto itself, and periods that do not continue it.

@@ -21,22 +21,27 @@ void add_images(Points& points, const std::vector<ImageKind>& kinds, double reac
       most[c] = std::max(most[c], at[c]);
     }
   }
-  for (const ImageKind& kind : kinds) {
-    points.images.kinds.push_back(kind);
-    for (Index i = 0; i < own; ++i) {
-      const Coordinates at = kind.place(points.position(i));
-      double squared = 0.0;
-      for (std::size_t c = 0; c < std::size_t(points.dimension); ++c) {
-        const double beyond = std::max({0.0, least[c] - at[c], at[c] - most[c]});
-        squared += beyond * beyond;
+  points.images.kinds = kinds;
+  const auto add_of = [&](Index first, Index last) {
+    for (std::size_t kind = 0; kind < kinds.size(); ++kind) {
+      for (Index i = first; i < last; ++i) {
+        const Coordinates at = kinds[kind].place(points.position(i));
+        double squared = 0.0;
+        for (std::size_t c = 0; c < std::size_t(points.dimension); ++c) {
+          const double beyond = std::max({0.0, least[c] - at[c], at[c] - most[c]});
+          squared += beyond * beyond;
+        }
+        if (squared > reach * reach) continue;
+        points.images.source.push_back(i);
+        points.images.kind.push_back(kind);
+        points.reference.insert(points.reference.end(), at.begin(), at.begin() + points.dimension);
+        points.volume.push_back(points.volume[std::size_t(i)]);
       }
-      if (squared > reach * reach) continue;
-      points.images.source.push_back(i);
-      points.images.kind.push_back(points.images.kinds.size() - 1);
-      points.reference.insert(points.reference.end(), at.begin(), at.begin() + points.dimension);
-      points.volume.push_back(points.volume[std::size_t(i)]);
     }
-  }
+  };
+  const Index owned = points.owned.value_or(own);
+  add_of(0, owned);
+  add_of(owned, own);
 }
 
 void add_images(Points& points, const std::vector<SymmetryPlane>& planes,

@@ -19,9 +19,12 @@ struct Part {
   std::vector<int> owner{};           ///< rank that owns each ghost
   GlobalIndex whole = 0;              ///< points of the whole body
   double reach = 0.0;                 ///< distance within which ghosts are here [m]
+  std::vector<ImageKind> images{};  ///< kinds that points of the whole body have, all inverses too
 
-  [[nodiscard]] Index ghosts() const { return points.count() - owned; }
-  [[nodiscard]] bool is_ghost(Index point) const { return point >= owned; }
+  [[nodiscard]] Index ghosts() const { return points.own() - owned; }
+  [[nodiscard]] bool is_ghost(Index point) const {
+    return point >= owned && !points.is_image(point);
+  }
 };
 
 }  // namespace peristat

@@ -49,7 +49,8 @@ struct Points {
   Images images{};  ///< of the last points; sets name none of them
 
   /// Of a part of a body that ranks share: how many of its points, the first ones, this rank owns.
-  /// The others are ghosts, and sets may have no point here. Nothing: the body is whole.
+  /// The others are ghosts, and sets may have no point here. Images come last, first those of owned
+  /// points. Nothing: the body is whole.
   std::optional<Index> owned{};
 
   [[nodiscard]] Index count() const { return static_cast<Index>(volume.size()); }
@@ -60,6 +61,8 @@ struct Points {
   [[nodiscard]] Index source(Index point) const {
     return is_image(point) ? images.source[std::size_t(point - own())] : point;
   }
+  /// Whether a point, or what it is an image of, is this rank's.
+  [[nodiscard]] bool owns(Index point) const { return !owned || source(point) < *owned; }
   [[nodiscard]] const ImageKind& image_kind(Index image) const {
     return images.kinds[images.kind[std::size_t(image - own())]];
   }

@@ -4,7 +4,35 @@ import unittest
 
 import h5py
 
-from tests.acceptance.on_ranks import PLATE, ROOT, Comparison, objects, rows
+from tests.acceptance.on_ranks import PLATE, ROOT, STORED, Comparison, objects, resume, rows
+
+
+# A sheet with a hole that repeats; along y it is free to contract.
+CELL = """
+dimension = 2
+[lattice]
+spacing = 0.1
+thickness = 0.01
+volumes = "fractional"
+shape = [{ add = "box", min = [-0.6, -0.8], max = [0.6, 0.8] }, { subtract = "disk", centre = [0.05, 0.1], radius = 0.25 }]
+[quadrature]
+surface_correction = "energy"
+[material]
+model = "bond"
+youngs_modulus = 1e9
+[[period]]
+axis = "x"
+from = -0.6
+to = 0.6
+gradient = ["1e-2*load", "2e-3*load"]
+[[period]]
+axis = "y"
+from = -0.8
+to = 0.8
+gradient = [0, "free"]
+[loading]
+steps = 2
+"""
 
 
 class Bodies(Comparison):
@@ -68,6 +96,49 @@ class Bodies(Comparison):
         self.compare_settings(PLATE, side, ranks=(2, 3))
         self.compare_settings(PLATE, side.replace('"2e5"]', '"2e5"], depth="horizon"'))
         self.compare_settings(PLATE, 'set=[{name="corner", where="y > 1.45 && y < 1.5"}]', 'load=[{set="corner", traction=["1e5*load", "0"]}]')
+
+    def test_pressures_and_foundations(self):
+        self.compare(PLATE, (2, 3), "--set", 'set=[{name="hole", where="sqrt((x-0.5)^2 + (y-0.7)^2) < 0.28"}]',
+                     "--set", 'load=[{set="hole", pressure="4e7*load*(1+y)"}, {side="x+", pressure="1e6"}]', solver=STORED)  # fmt: skip
+        ground = ('foundation=[{name="soil", set="corner", stiffness=[1e7, 2e7], displacement=["0.01*load", 0]}, '
+                  '{name="side", side="x+", modulus=[1e8, 0]}]')  # fmt: skip
+        one = self.compare(PLATE, (2, 3), "--set", ground, solver=STORED)
+        self.assertNotEqual(float(rows(one, "history.csv")[-1]["reaction_x:soil"]), 0.0)
+
+    def test_planes_of_symmetry(self):
+        half = ("--set", 'symmetry=[{axis="x", at=1}]', "--set", "output.stress=true")
+        self.compare(PLATE, (2, 3), *half, "--set", 'quadrature.surface_correction="energy"', solver=STORED)
+        # Thinner than the horizon, between two planes, and a rank may own nothing.
+        thin = PLATE.replace("max = [1, 1.5]", "max = [0.1, 0.5]").replace(', { subtract = "disk", centre = [0.5, 0.7], radius = 0.2 }', "")
+        thin = thin.replace("x > 0.6 && y > 1", "y > 0.3")
+        one = self.compare(thin, (3,), "--set", 'symmetry=[{axis="x", at=0}, {axis="x", at=0.1}]', solver=STORED)
+        self.assertNotEqual(float(rows(one, "history.csv")[-1]["reaction_x:symmetry_x-"]), 0.0)
+
+    def test_periods(self):
+        one = self.compare(CELL, (2, 3), solver=STORED)
+        self.assertLess(float(rows(one, "history.csv")[-1]["gradient_y:period_y"]), 0.0)
+        self.compare(CELL.replace("0.6", "0.1").replace('"fractional"', '"cells"').replace("radius = 0.25", "radius = 0.04"), (3,), solver=STORED)
+
+    def test_a_cell_goes_on_with_another_number_of_ranks(self):
+        text = CELL.replace("steps = 2", "steps = 3") + STORED
+        one = self.results(1, text)
+        several, output = self.start(2, text, "--stop-after", "1")
+        self.assertEqual(several.returncode, 130, several.stderr)
+        on = resume(3, output)
+        self.assertEqual(on.returncode, 0, on.stderr)
+        self.expect_same(one, output)
+        # Its state has no images, which that of one rank has.
+        several, output = self.start(2, text, "--stop-after", "1")
+        refused = resume(1, output)
+        self.assertEqual(refused.returncode, 2, refused.stderr)
+
+    def test_rigid_sets(self):
+        turned = PLATE.replace('[[support]]\nset = "top"\ndisplacement = [0, "0.05*load"]',
+                               '[[rigid]]\nset = "top"\ndisplacement = [0, "0.05*load"]\nrotation = ["0.2*load"]')  # fmt: skip
+        self.compare(turned, (2, 3), solver=STORED)
+        one = self.compare(turned.replace('rotation = ["0.2*load"]', "").replace('displacement = [0, "0.05*load"]\n', "")
+                           + '[[rigid]]\nset = "corner"\n', (2, 3), solver=STORED)  # fmt: skip
+        self.assertNotEqual(float(rows(one, "history.csv")[-1]["rotation_z:corner"]), 0.0)
 
     def test_temperatures(self):
         case = (ROOT / "cases/thermal/bimetal.toml").read_text()

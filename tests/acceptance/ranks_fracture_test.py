@@ -80,6 +80,15 @@ class Fracture(Comparison):
         self.compare_torn((3,), 'solver.mode="adaptive"', "solver.elastic_horizon_ratio=2.015")
         self.assertGreater(len(rows(one, "broken_bonds.csv")), 50)
 
+    def test_several_materials(self):
+        two = ('set=[{name="upper", where="y > 0.9"}]',
+               'region=[{set="upper", material={youngs_modulus=2e9, damage={law="linear", onset=0.015, critical=0.04}, '
+               'scatter=[{of="strength", distribution="weibull", weibull_modulus=8, correlation_length=0.2, seed=3}]}}]',
+               'interface=[{between=["upper", "material"], material={youngs_modulus=1e9, '
+               'damage={law="critical_stretch", critical=0.02}}}]')  # fmt: skip
+        one = self.compare_torn((2, 3), *two, 'solver.mode="adaptive"')
+        self.assertGreater(len(rows(one, "broken_bonds.csv")), 20)
+
     def test_ends_of_fracture(self):
         for settings in (
             ('solver.mode="newton"', "loading.max_broken_bonds=3", 'material.damage={law="critical_stretch", critical=0.06}',

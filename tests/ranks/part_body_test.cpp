@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -8,9 +9,14 @@
 #include <gtest/gtest.h>
 
 #include "assembly/assembler.hpp"
+#include "assembly/operators/constrained_product.hpp"
+#include "assembly/operators/constrained_tangent.hpp"
+#include "solvers/problem/equilibrium.hpp"
 #include "solvers/ranks/distribute.hpp"
 #include "solvers/ranks/part_bonds.hpp"
 #include "solvers/study/body.hpp"
+#include "solvers/study/without_equation.hpp"
+#include "src/conditions/pressed_boundary.hpp"
 #include "src/core/input_error.hpp"
 #include "src/geometry/slab.hpp"
 #include "tests/bodies.hpp"
@@ -28,14 +34,17 @@ struct BodyOfTest {
   Lattice lattice;
   BodySpecification of;
   std::vector<SetRule> sets{};
+  bool has_pressures = false;
 };
 
 Part part_of(const BodyOfTest& body) {
   const Communicator& ranks = all_ranks();
   Part slab = make_slab(body.lattice, ranks);
-  const double reach = reach_of_bonds(slab.points, body.of.surface_correction,
-                                      bond_setting(body.of, slab.points), ranks);
-  Part part = distribute(std::move(slab), body.of.horizon, reach, ranks, 1);
+  double reach = reach_of_bonds(slab.points, body.of.surface_correction,
+                                bond_setting(body.of, slab.points), ranks);
+  if (body.has_pressures) reach = std::max(reach, reach_of_pressures(slab.points));
+  std::vector<ImageKind> images = kinds_of_images(body.of, slab.points, ranks);
+  Part part = distribute(std::move(slab), body.of.horizon, reach, ranks, 1, std::move(images));
   for (const SetRule& rule : body.sets) part.points.sets[rule.name] = select(part.points, rule);
   return part;
 }
@@ -103,8 +112,62 @@ std::vector<BodyOfTest> bodies_of_test() {
   traction.depth = Depth::horizon;
   loads.of.loads.push_back(traction);
   loads.of.eigenstrains.given = {{"inner", "0.01*load"}, {"", "0.002*y"}};
+  loads.of.foundations = {{"soil", "upper", {}, {}, {5.0, 7.0, 0.0}, {"0.01*load", "x", "0"}},
+                          {"side", "", Side{0, 1}, {3.0, 0.0, 0.0}, {}}};
   all.push_back(loads);
 
+  BodyOfTest pressed = plate("pressures");
+  LoadSpecification pressure{Kind::pressure, "inner", {"load*(1+x)", "0", "0"}};
+  pressed.of.loads = {pressure};
+  pressure.set.clear();
+  pressure.side = Side{1, 1};
+  pressed.of.loads.push_back(pressure);
+  pressed.has_pressures = true;
+  all.push_back(pressed);
+  return all;
+}
+
+/// With images of points beyond planes and periods, and with sets that turn.
+std::vector<BodyOfTest> constrained_bodies() {
+  std::vector<BodyOfTest> all;
+  BodyOfTest half = plate("a plane of symmetry");
+  half.of.surface_correction = SurfaceCorrection::energy;
+  half.lattice.layers = {{"below", {1, -1}, 3}};
+  half.of.constraints.symmetries = {{0, 2.0}};
+  half.of.eigenstrains.given = {{"", "0.002*y"}};
+  all.push_back(half);
+
+  BodyOfTest between = half;
+  between.name = "between two planes, thinner than the horizon";
+  between.lattice = lattice_box(2, {2, 26, 0}, {0.1, 0.1, 0.1});
+  between.lattice.layers = {{"below", {1, -1}, 3}};
+  between.of.surface_correction = SurfaceCorrection::volume;
+  between.sets = {};
+  between.of.constraints.symmetries = {{0, 0.3}, {0, 0.5}};
+  all.push_back(between);
+
+  BodyOfTest cell = plate("a periodic cell");
+  cell.of.surface_correction = SurfaceCorrection::volume;
+  cell.lattice.layers = {};
+  cell.lattice.volumes = CellVolumes::fractional;
+  cell.of.volume_correction = VolumeCorrection::linear;
+  cell.of.supports = {};
+  cell.of.constraints.periods = {{{0, 0.3, 2.0}, {"1e-3*load", "0", "0"}},
+                                 {{1, 0.3, 2.9}, {"0", "2e-3*load", "0"}}};
+  all.push_back(cell);
+
+  BodyOfTest few = cell;
+  few.name = "three points that repeat";
+  few.lattice = lattice_box(2, {1, 3, 0}, {0.1, 0.1, 0.1});
+  few.of.volume_correction = VolumeCorrection::none;
+  few.sets = {};
+  few.of.constraints.periods = {{{0, 0.3, 0.4}, {"1e-3*load", "0", "0"}},
+                                {{1, 0.3, 0.6}, {"0", {}, "0"}}};
+  all.push_back(few);
+
+  BodyOfTest turned = plate("rigid sets that turn");
+  turned.of.constraints.rigid_sets = {{"upper", {}, {"0.1*load", {}, "0"}, {"0.2*load", "0", "0"}}};
+  all.push_back(turned);
   return all;
 }
 
@@ -189,6 +252,127 @@ TEST(PartBody, is_that_of_the_whole_body) {
         EXPECT_EQ(mine->factors.stiffness[here], whole->factors.stiffness[there]);
       }
     }
+  }
+}
+
+/// A state, what is found in it, and the tangent there.
+struct InEquations {
+  InEquations(const Body& body, const std::function<GlobalIndex(Index)>& number,
+              std::size_t dofs_of_whole)
+      : free(without_equation(body), body.points.dimension),
+        assembler(body.points, body.model, 1, body.part.get()) {
+    const Constraints& constraints = body.conditions->constraints();
+    const auto d = std::size_t(body.points.dimension);
+    const std::size_t of_points = body.points.reference.size();
+    const auto random = [&](unsigned seed, double scale) {
+      const std::vector<double> points = Random(seed).vector(dofs_of_whole, scale),
+                                handles = Random(seed + 1).vector(12, scale);
+      std::vector<double> values(constraints.dofs(), 7e3);  // of ghosts and images
+      for (Index i = 0; i < body.points.own(); ++i) {
+        if (!body.points.owns(i)) continue;
+        for (std::size_t c = 0; c < d; ++c) {
+          values[std::size_t(i) * d + c] = points[std::size_t(number(i)) * d + c];
+        }
+      }
+      const bool owns_handles = !body.part || body.part->ranks().rank() == 0;
+      for (std::size_t k = of_points; owns_handles && k < values.size(); ++k) {
+        values[k] = handles[k - of_points];
+      }
+      return values;
+    };
+    trial.displacement = random(5, 0.05 * body.points.spacing);
+    trial.history = assembler.initial_history();
+    body.conditions->prescribe(1.0, trial.displacement);
+    trial.environment = body.conditions->environment(1.0);
+    std::vector<double> loads(constraints.dofs());
+    body.conditions->external_force(1.0, loads);
+    const EquilibriumProblem problem{assembler, *body.conditions, free};
+    evaluate(problem, loads, trial);
+    scale = load_norm(problem, loads, trial, Damage::grows);
+    const Sharing* const sharing = body.part.get();
+    std::unique_ptr<TangentOperator> tangent;
+    if (sharing) {
+      tangent = std::make_unique<ConstrainedProduct>(std::make_unique<Tangent>(assembler),
+                                                     body.points, constraints, sharing);
+    } else {
+      tangent = std::make_unique<ConstrainedTangent>(assembler, constraints);
+    }
+    tangent->linearise(assembler, trial.at(), 0.0);
+    std::vector<double> factor = random(9, 1.0);
+    for (std::size_t dof = 0; dof < factor.size(); ++dof) {
+      if (constraints.dependent()[dof]) factor[dof] = 0.0;
+    }
+    product.resize(factor.size());
+    tangent->multiply(factor, product);
+    diagonal = tangent->diagonal;
+    reactions =
+        body.conditions->reactions(trial.gradient, loads, trial.displacement, trial.environment);
+    moments = body.conditions->moments(trial.displacement, trial.gradient, loads);
+  }
+
+  FreeDofs free;
+  Assembler assembler;
+  Trial trial;
+  double scale = 0.0;
+  std::vector<double> product, diagonal;
+  std::map<std::string, Coordinates> reactions, moments;
+};
+
+void expect_same_sums(const std::map<std::string, Coordinates>& mine,
+                      const std::map<std::string, Coordinates>& whole, double scale) {
+  EXPECT_EQ(mine.size(), whole.size());
+  for (const auto& [name, expected] : whole) {
+    const auto found = mine.find(name);
+    EXPECT_NE(found, mine.end()) << name;
+    const Coordinates share = found == mine.end() ? Coordinates{} : found->second;
+    for (std::size_t c = 0; c < 3; ++c) {
+      EXPECT_NEAR(all_ranks().sum(share[c]), expected[c], 1e-9 * scale) << name;
+    }
+  }
+}
+
+TEST(PartBody, follows_as_the_whole_body_does) {
+  for (const BodyOfTest& of : constrained_bodies()) {
+    SCOPED_TRACE(of.name);
+    const auto whole = make_body(whole_of(of), of.of, 1);
+    const Part part = part_of(of);
+    const auto mine = make_body(part, of.of, all_ranks(), 1);
+    const auto d = std::size_t(whole->points.dimension);
+    const std::size_t dofs = std::size_t(whole->points.own()) * d;
+    const InEquations expected(
+        *whole, [](Index i) { return GlobalIndex(i); }, dofs);
+    const InEquations found(
+        *mine, [&](Index i) { return part.number[std::size_t(i)]; }, dofs);
+    EXPECT_EQ(count_bonds(mine->points, mine->model.bonds(), all_ranks()),
+              whole->model.bonds().count());
+    EXPECT_EQ(all_ranks().sum(double(found.free.count())), double(expected.free.count()));
+    EXPECT_GT(expected.trial.stored_energy, 0.0);
+    const auto expect_near = [](double one, double other) {
+      EXPECT_NEAR(one, other, round_off * std::abs(other));
+    };
+    expect_near(found.trial.stored_energy, expected.trial.stored_energy);
+    expect_near(found.trial.residual_norm, expected.trial.residual_norm);
+    expect_near(found.scale, expected.scale);
+    expect_same(part, found.trial.displacement, expected.trial.displacement, d, "displacement");
+    expect_same(part, found.trial.gradient, expected.trial.gradient, d, "gradient");
+    expect_same(part, found.product, expected.product, d, "product");
+    expect_same(part, found.diagonal, expected.diagonal, d * d, "diagonal");
+    const auto expect_same_handles = [&](const std::vector<double>& one,
+                                         const std::vector<double>& other, std::size_t width,
+                                         const std::string& what) {
+      const std::size_t here = mine->points.volume.size() * width,
+                        there = whole->points.volume.size() * width;
+      EXPECT_EQ(one.size() - here, other.size() - there);
+      for (std::size_t k = 0; k < other.size() - there; ++k) {
+        EXPECT_NEAR(one[here + k], other[there + k], round_off * largest(other)) << what;
+      }
+    };
+    expect_same_handles(found.trial.displacement, expected.trial.displacement, d, "displacement");
+    expect_same_handles(found.trial.gradient, expected.trial.gradient, d, "gradient");
+    expect_same_handles(found.product, expected.product, d, "product");
+    expect_same_handles(found.diagonal, expected.diagonal, d * d, "diagonal");
+    expect_same_sums(found.reactions, expected.reactions, largest(expected.trial.gradient));
+    expect_same_sums(found.moments, expected.moments, largest(expected.trial.gradient));
   }
 }
 

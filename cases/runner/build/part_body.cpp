@@ -13,7 +13,9 @@
 #include "solvers/ranks/distribute.hpp"
 #include "solvers/ranks/part_bonds.hpp"
 #include "solvers/study/bonds_of_part.hpp"
+#include "src/conditions/pressed_boundary.hpp"
 #include "src/core/input_error.hpp"
+#include "src/geometry/image_kinds.hpp"
 #include "src/geometry/point_file.hpp"
 #include "src/geometry/point_set.hpp"
 #include "src/geometry/points_on_line.hpp"
@@ -42,8 +44,9 @@ constexpr std::array keys_of_ranks{
     "material.damage.", "loading.max_broken_bonds", "loading.stop_below", "solver.fragments",
     "solver.projection", "solver.elastic_horizon_ratio", "relaxation.",
     // conditions
-    "support.", "load.set", "load.side", "load.body_force", "load.total_force", "load.gravity",
-    "load.traction", "load.depth", "eigenstrain.", "temperature.", "material.thermal_expansion",
+    "support.", "symmetry.", "period.", "rigid.", "load.set", "load.side", "load.body_force",
+    "load.total_force", "load.gravity", "load.traction", "load.depth", "load.pressure",
+    "foundation.", "eigenstrain.", "temperature.", "material.thermal_expansion",
     // search
     "loading.steps", "loading.table", "loading.table2", "loading.adaptive", "loading.smallest_step",
     "loading.largest_step", "initial.", "absorbing.", "dynamics.", "solver.mode", "solver.operator",
@@ -170,7 +173,19 @@ Part make_slab_of(const Case& from, const Communicator& ranks) {
     const auto& source = std::get<PointSource>(from.body);
     return read_slab(source.file, from.dimension, source.cross_section, ranks);
   }
-  return make_slab(*lattice, ranks);
+  Part slab = make_slab(*lattice, ranks);
+  if (slab.points.lattice && lattice->perturbation == 0.0 && lattice->cell_perturbation == 0.0) {
+    const auto& periods = from.constraints.periods;
+    require_lattice_goes_on(slab.points, from.constraints.symmetries,
+                            {periods.begin(), periods.end()}, ranks);
+  }
+  return slab;
+}
+
+bool has_pressures(const Case& from) {
+  return std::ranges::any_of(from.loads, [](const LoadSpecification& load) {
+    return load.kind == LoadSpecification::Kind::pressure;
+  });
 }
 
 }  // namespace
@@ -193,9 +208,12 @@ std::unique_ptr<const Body> make_part_body(const Case& from, const Communicator&
       refuse("lattice.spacing", "", "results have numbers for fewer than 2^31 points");
     }
     const BondSetting setting = bond_setting(from, slab.points);
-    const double reach =
+    double reach =
         reach_of_bonds(slab.points, from.surface_correction, setting, ranks, bonds_of_part(from));
-    Part part = distribute(std::move(slab), setting.horizon, reach, ranks, threads);
+    if (has_pressures(from)) reach = std::max(reach, reach_of_pressures(slab.points));
+    std::vector<ImageKind> images = kinds_of_images(from, slab.points, ranks);
+    Part part =
+        distribute(std::move(slab), setting.horizon, reach, ranks, threads, std::move(images));
     add_sets(from, ranks, part);
     BodySpecification of = from;
     if (tells_stress(from)) of.evaluation_bytes_per_point = stress_bytes_per_point(from.dimension);

@@ -28,12 +28,16 @@ class RecordedPoints {
 
   /// Number in the results of a point that is here; of an image its source's.
   [[nodiscard]] Index number(Index point) const {
-    return part_ ? static_cast<Index>(part_->number_of(point)) : points_.source(point);
+    const Index source = points_.source(point);
+    return part_ ? static_cast<Index>(part_->number_of(source)) : source;
   }
   /// Whether a bond is told here: one that is here and on another rank, too, is where the point is
-  /// owned that has the lower number in the whole body.
+  /// owned that has the lower number in the whole body, and one to an image where its other point
+  /// is.
   [[nodiscard]] bool tells(Index lower, Index upper) const {
-    return !part_ || (lower < part_->owned() && part_->number_of(lower) < part_->number_of(upper));
+    if (!part_) return true;
+    const bool comes_first = points_.is_image(upper) || number(lower) < number(upper);
+    return lower < part_->owned() && comes_first;
   }
 
   /// The points of a set that are recorded here, ascending.

@@ -1,5 +1,7 @@
 #include "cases/runner/results/constraint_columns.hpp"
 
+#include <algorithm>
+
 namespace peristat {
 namespace {
 
@@ -32,11 +34,13 @@ std::vector<ProbeColumns> constraint_columns(const Case& from) {
 }
 
 void add_constraint_values(const Conditions& conditions, const Trial& state,
-                           std::span<const double> external_force,
+                           std::span<const double> external_force, const Communicator& ranks,
                            std::map<std::string, std::vector<double>>& values) {
-  const auto moments = conditions.moments(state.displacement, state.gradient, external_force);
+  auto moments = conditions.moments(state.displacement, state.gradient, external_force);
   const auto rotations = conditions.rotations(state.displacement);
-  for (const auto& [set, moment] : moments) {
+  for (auto& [set, moment] : moments) {
+    const std::vector<double> all = ranks.sum(std::vector<double>(moment.begin(), moment.end()));
+    std::copy(all.begin(), all.end(), moment.begin());
     for (const int axis : axes_of(conditions.dimension())) {
       values[column("moment", axis, set)] = {moment[std::size_t(axis)]};
       values[column("rotation", axis, set)] = {rotations.at(set)[std::size_t(axis)]};

@@ -8,6 +8,7 @@
 #include "cases/runner/input/case.hpp"
 #include "cases/runner/results/probe_columns.hpp"
 #include "solvers/problem/equilibrium.hpp"
+#include "src/core/communicator.hpp"
 
 namespace peristat {
 
@@ -16,9 +17,9 @@ namespace peristat {
 /// every period.
 [[nodiscard]] std::vector<ProbeColumns> constraint_columns(const Case& from);
 
-/// Their values in a state.
+/// Their values in a state. A call that all ranks make.
 void add_constraint_values(const Conditions& conditions, const Trial& state,
-                           std::span<const double> external_force,
+                           std::span<const double> external_force, const Communicator& ranks,
                            std::map<std::string, std::vector<double>>& values);
 
 }  // namespace peristat

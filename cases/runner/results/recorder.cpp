@@ -112,7 +112,8 @@ void Recorder::accepted(StepRecord record, const AcceptedState& state) {
                       ": the body has no equilibrium with the cut ahead of " + without_release +
                       "; its energy release rates are told as 0");
   }
-  add_constraint_values(*body_.conditions, state.trial, state.external_force, record.probes);
+  add_constraint_values(*body_.conditions, state.trial, state.external_force, recorded_.ranks(),
+                        record.probes);
   add_motion_values(record, points_.dimension, record.probes);
   for (const LineProbe& line : lines_) {
     results_.add_line(line.table().name, line.rows(record, all));

@@ -78,6 +78,9 @@ std::optional<std::size_t> StateNumbering::size_here(Rows rows, std::int64_t who
   const std::int64_t beyond = whole - of.whole * of.width;
   constexpr std::int64_t most_beyond = 1 << 16;
   if (beyond < 0 || beyond > most_beyond) return std::nullopt;
+  // One rank has values of images, too, which parts of a body don't tell.
+  const auto handles = std::int64_t(prescribed_.size()) - of.here * of.width;
+  if (rows == Rows::dofs && beyond > 0 && beyond != handles) return std::nullopt;
   return std::size_t(of.here * of.width + beyond);
 }
 
