@@ -20,16 +20,19 @@ void clear_ghosts(const Sharing& sharing, int dimension, std::span<double> gradi
   fill(sharing.first_image() + sharing.owned_images(), std::ptrdiff_t(gradient.size()));
 }
 
-/// What ranks have found together but for the energy.
-Evaluation without_energy(const Communicator& ranks, const Evaluation& mine) {
+/// What ranks have found together. Without a utilisation, see Evaluation.
+Evaluation sum_of(const Communicator& ranks, const Evaluation& mine) {
   const std::vector<double> sums =
-      ranks.sum({mine.released, double(mine.degenerate), double(mine.moves_equilibrium),
-                 double(mine.growth.degrading), double(mine.growth.breaking)});
+      ranks.sum({mine.energy, mine.round_off, mine.released, double(mine.degenerate),
+                 double(mine.moves_equilibrium), double(mine.growth.degrading),
+                 double(mine.growth.breaking)});
   Evaluation all;
-  all.released = sums[0];
-  all.degenerate = sums[1] > 0.0;
-  all.moves_equilibrium = sums[2] > 0.0;
-  all.growth = {Index(sums[3]), Index(sums[4])};
+  all.energy = sums[0];
+  all.round_off = sums[1];
+  all.released = sums[2];
+  all.degenerate = sums[3] > 0.0 || !std::isfinite(all.energy);
+  all.moves_equilibrium = sums[4] > 0.0;
+  all.growth = {Index(sums[5]), Index(sums[6])};
   return all;
 }
 
@@ -95,41 +98,38 @@ Evaluation Assembler::energy(const StateView& at) { return gradient(at, {}); }
 
 Evaluation Assembler::gradient(const StateView& at, std::span<double> gradient) {
   Evaluation found;
-  for_each_term([&](TermPasses& term, Write how) { found += term.gradient(at, gradient, how); });
-  return sharing_ ? of_all(at, found, gradient) : found;
+  for_each_term([&](TermPasses& term, Write how) {
+    found += of_part(term, at, term.gradient(at, gradient, how));
+  });
+  return of_all(found, gradient);
 }
 
-Evaluation Assembler::of_all(const StateView& at, const Evaluation& mine,
-                             std::span<double> gradient) {
-  // Of a bond between two ranks each has the share of its own point.
-  point_energies(at, of_points_);
-  double energy = 0.0;
+Evaluation Assembler::of_part(TermPasses& term, const StateView& at, Evaluation found) {
+  // Half of a bond is its image's.
+  const bool has_images = !points_.images.kinds.empty();
+  if (!sharing_ || (term.shares_energy() && !has_images)) return found;
+  term.point_energies(at, of_points_, Write::over);
+  found.energy = 0.0;
   for (Index i = 0; i < points_.count(); ++i) {
-    if (points_.owns(i)) energy += of_points_[std::size_t(i)];
+    if (points_.owns(i)) found.energy += of_points_[std::size_t(i)];
   }
-  const std::vector<double> sums =
-      sharing_->ranks().sum({energy, mine.round_off, mine.released, double(mine.degenerate),
-                             double(mine.moves_equilibrium), double(mine.growth.degrading),
-                             double(mine.growth.breaking)});
-  Evaluation all;
-  all.energy = sums[0];
-  all.round_off = sums[1];
-  all.released = sums[2];
-  all.degenerate = sums[3] > 0.0 || !std::isfinite(all.energy);
-  all.moves_equilibrium = sums[4] > 0.0;
-  all.growth = {Index(sums[5]), Index(sums[6])};  // without a utilisation: see Evaluation
+  return found;
+}
+
+Evaluation Assembler::of_all(const Evaluation& mine, std::span<double> gradient) const {
+  if (!sharing_) return mine;
   clear_ghosts(*sharing_, points_.dimension, gradient);
-  return all;
+  return sum_of(sharing_->ranks(), mine);
 }
 
 Evaluation Assembler::commit(std::span<const double> displacement, History& history,
                              std::span<double> gradient, const SharedEnvironment& environment) {
   Evaluation found;
   for_each_term([&](TermPasses& term, Write how) {
-    found += term.commit(displacement, environment, history, gradient, how);
+    const Evaluation of_term = term.commit(displacement, environment, history, gradient, how);
+    found += of_part(term, {displacement, history, Damage::grows, environment}, of_term);
   });
-  if (!sharing_) return found;
-  return of_all({displacement, history, Damage::grows, environment}, found, gradient);
+  return of_all(found, gradient);
 }
 
 Evaluation Assembler::commit_forces(std::span<const double> displacement, History& history,
@@ -139,9 +139,7 @@ Evaluation Assembler::commit_forces(std::span<const double> displacement, Histor
   for_each_term([&](TermPasses& term, Write how) {
     found += term.commit_forces(displacement, environment, history, gradient, how);
   });
-  if (!sharing_) return found;
-  clear_ghosts(*sharing_, points_.dimension, gradient);
-  return without_energy(sharing_->ranks(), found);
+  return of_all(found, gradient);
 }
 
 void Assembler::refuse_on_ranks(const char* what) const {

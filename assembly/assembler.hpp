@@ -25,10 +25,10 @@ class Assembler : public Energy {
  public:
   /// Points and model must outlive the assembler.
   /// @param sharing null: the body is whole. Otherwise these are a part of it: energies are those
-  /// of
-  ///        all of it, and of dE/dx and products the rows of owned points are right, once ghosts
+  ///        of all of it, and of dE/dx and products the rows of owned points are right, once ghosts
   ///        have what their owners have. dE/dx of ghosts is zero. All ranks make the same calls.
-  /// @throws std::logic_error for a model without terms, and for a part with others than bonds
+  /// @throws std::logic_error for a model without terms, and for a part of what has no ranks: forces
+  ///         without a potential, convolutions, and damage of more than bonds
   Assembler(const Points& points, const Model& model, int threads,
             const Sharing* sharing = nullptr);
   ~Assembler() override;
@@ -101,9 +101,10 @@ class Assembler : public Energy {
 
  private:
   void refuse_on_ranks(const char* what) const;
-  /// Of the whole body, and of owned points, from what a pass over the part has found.
-  [[nodiscard]] Evaluation of_all(const StateView& at, const Evaluation& mine,
-                                  std::span<double> gradient);
+  /// What a pass of a term has found, of a part with the energy of owned points alone.
+  [[nodiscard]] Evaluation of_part(TermPasses& term, const StateView& at, Evaluation found);
+  /// Of the whole body, and forces of owned points, from what passes over the part have found.
+  [[nodiscard]] Evaluation of_all(const Evaluation& mine, std::span<double> gradient) const;
   [[nodiscard]] DamageGrowth of_all(const DamageGrowth& mine) const;
 
   /// Whether a term tells no more of its tangent than an outline.

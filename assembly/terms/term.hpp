@@ -77,6 +77,10 @@ class TermPasses {
   /// An equal share of its interactions' energy for each of their points [J].
   virtual void point_energies(const StateView& at, std::span<double> energies, Write how) = 0;
 
+  /// Whether the energies that its passes find of a part of a body are, of each interaction, the
+  /// share of the points that the rank owns; otherwise they are of all interactions that it has.
+  [[nodiscard]] virtual bool shares_energy() const { return false; }
+
   /// Adds to every point its equal share of the virials of its interactions, sum_a dE/dx_a (x) A_a
   /// with the reference arms A_a to their other points [J]: points x dimension x dimension, row
   /// major, the first index that of the force. Loads and supports have none.

@@ -229,11 +229,15 @@ class CommandLine(unittest.TestCase):
     def test_a_kill_at_any_moment_leaves_every_accepted_step(self):
         chance = random.Random(1)
         announced_in_all = 0
-        for _ in range(25):
+        for kill in range(25):
             process = self.start("run", self.case, "--output", "out", "--set", "loading.steps=100000")
-            time.sleep(0.05 + 0.3 * chance.random())
+            first = ""
+            while kill % 5 and not first.startswith("step "):  # the others may die before
+                first = process.stdout.readline()
+                self.assertIsNone(process.poll())
+            time.sleep(0.3 * chance.random())
             process.kill()
-            output, _ = process.communicate(timeout=60)
+            output = first + process.communicate(timeout=60)[0]
             announced = sum(line.startswith("step ") for line in output.splitlines(keepends=True)
                             if line.endswith("\n"))  # fmt: skip
             announced_in_all += announced
@@ -246,7 +250,7 @@ class CommandLine(unittest.TestCase):
             text = (self.folder / "out/history.csv").read_text()
             self.assertTrue(text.endswith("\n"))
             self.assertTrue(all(line.count(",") == len(HISTORY_COLUMNS) - 1 for line in text.splitlines()))
-        self.assertGreater(announced_in_all, 25)
+        self.assertGreaterEqual(announced_in_all, 20)  # of those that were waited for
 
     # ---- the other commands -----------------------------------------------------------------------
 

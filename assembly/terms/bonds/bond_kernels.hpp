@@ -272,6 +272,11 @@ inline void look_at(const Points& points, const P& potential, Index i, const Bat
   }
 }
 
+/// Of bonds of an owned point to these, what the rank has: of a ghost's another rank has half.
+inline Lanes share_of_owned(const std::array<Index, lane_count>& partner, Index owned) {
+  return Lanes([&](int l) { return partner[l] < owned ? 1.0 : 0.5; });
+}
+
 /// A bond's Hessian psi'' n n^T + psi'/l (I - n n^T) moved by a share towards its positive
 /// semidefinite part: its eigenvalues are psi'' and psi'/l.
 inline InteractionEnergy<Lanes> projected(const InteractionEnergy<Lanes>& psi, double share) {
@@ -304,6 +309,7 @@ struct BondKernels {
     std::vector<Evaluation>& parts = a.threads.evaluations;
     const Bonds& bonds = a.bonds;
     const bool energy_only = result.empty();
+    const Index owned = a.points.owned.value_or(a.points.count());
     constexpr int width = vector_width(D);
     const auto body = [&](int thread, RowRange range, double* sums) __attribute__((flatten)) {
       Lanes shortest = std::numeric_limits<double>::infinity();
@@ -327,7 +333,9 @@ struct BondKernels {
               if constexpr (with_energy) {
                 const auto psi = interaction_energy(
                     batch.weight, at_history(largest_stretch, potential, batch.first), measure);
-                row_energy += psi.value;
+                row_energy += batch.partner.back() < owned
+                                  ? psi.value
+                                  : psi.value * share_of_owned(batch.partner, owned);
                 if (energy_only) return;
                 force = energy_gradient(psi, measure)[0];
               } else {
@@ -338,7 +346,7 @@ struct BondKernels {
               for (int c = 0; c < D; ++c) own[c] -= force[c];
               add_to_partners<D>(sums, batch.partner, force);
             });
-        energy += sum(row_energy);
+        if (i < owned) energy += sum(row_energy);
         for (int c = 0; c < D; ++c) sums[std::ptrdiff_t(i) * width + c] += sum(own[c]);
       }
       parts[thread] = {energy, !(smallest(shortest) > 0.0), growth};

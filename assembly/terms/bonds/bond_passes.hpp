@@ -25,6 +25,7 @@ class BondPasses : public TermPasses {
   void product(const StateView& at, std::span<const double> v, double projection,
                std::span<double> product, Write how) override;
   void point_energies(const StateView& at, std::span<double> energies, Write how) override;
+  [[nodiscard]] bool shares_energy() const override { return true; }
   void add_virials(const StateView& at, std::span<double> virials) override;
 
  private:
