@@ -89,7 +89,7 @@ void ConstrainedProduct::add_blocks_between_followers() {
     Index i, j;
     Tensor block;
   };
-  std::vector<std::vector<Pair>> pairs(std::size_t(threads()));
+  std::vector<std::vector<Pair>> pairs(ranges.size());
   const BlockPattern& of = whole_->pattern;
   whole_->for_each_row([&](int thread, Index i, std::span<const double> blocks) {
     const double* block = blocks.data();

@@ -285,8 +285,8 @@ std::unique_ptr<const Body> make_body(Points points, const BodySpecification& of
   auto owned = std::make_unique<Body>();
   Body& body = *owned;
   body.points = std::move(points);
-  add_images(body.points, kinds_of_images(of, body.points, SoleRank()),
-             reach_of_images(of, body.points));
+  const std::vector<Period> periods(of.constraints.periods.begin(), of.constraints.periods.end());
+  add_images(body.points, of.constraints.symmetries, periods, reach_of_images(of, body.points));
   body.setting = bond_setting(of, body.points);
   body.specification = with_stretches(of, body.setting, body.points.spacing);
   require_resolved(body.points, body.setting.horizon);
@@ -341,17 +341,20 @@ bool has_damage(const BodySpecification& of) {
          });
 }
 
-/// Rollers have handles point by point, linear constraints followers of points of all ranks.
+/// Linear constraints, and rollers that touch at a place, have followers of points of all ranks.
 template <class Refuse>
 void refuse_constraints_without_ranks(const BodySpecification& of, const Refuse& refuse) {
   const ConstraintSpecification& constraints = of.constraints;
-  if (!constraints.rollers.empty()) refuse("rollers");
+  for (std::size_t k = 0; k < constraints.rollers.size(); ++k) {
+    if (constraints.rollers[k].at) refuse("rollers[" + std::to_string(k) + "].at");
+  }
   if (!constraints.linear.empty()) refuse("linear");
+  if (constraints.none()) return;
   const bool has_images = !constraints.symmetries.empty() || !constraints.periods.empty();
-  if (!has_images && constraints.rigid_sets.empty()) return;
-  const std::string key = constraints.rigid_sets.empty()
-                              ? constraints.symmetries.empty() ? "periods" : "symmetries"
-                              : "rigid_sets";
+  const std::string key = !constraints.rollers.empty()      ? "rollers"
+                          : !constraints.rigid_sets.empty() ? "rigid_sets"
+                          : !constraints.periods.empty()    ? "periods"
+                                                            : "symmetries";
   const auto refuse_with = [&](const std::string& what) {
     throw InputError(key, "", "is not for more than one rank yet together with " + what);
   };
@@ -370,7 +373,8 @@ void refuse_without_ranks(const BodySpecification& of) {
     throw InputError(
         key, "",
         "is not for more than one rank yet: there are bodies with pre-cracks, supports, "
-        "rigid sets, planes of symmetry, periods, foundations, eigenstrains, tractions, pressures, "
+        "rigid sets, rollers, planes of symmetry, periods, foundations, eigenstrains, tractions, "
+        "pressures, "
         "body forces, total forces and gravity, and damage of bonds");
   };
   const MaterialSpecification& material = of.material;

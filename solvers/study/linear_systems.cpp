@@ -130,8 +130,9 @@ void refuse_solvers_without_ranks(const StudyOptions& options, const Body& body)
            "\"block_jacobi\" or \"jacobi\" with pressures, foundations and models but \"bond\"");
   }
   if (!body.conditions->constraints().none() && !is_of_points) {
-    refuse("linear.preconditioner",
-           "\"block_jacobi\" or \"jacobi\" with planes of symmetry, periods and rigid sets");
+    refuse(
+        "linear.preconditioner",
+        "\"block_jacobi\" or \"jacobi\" with planes of symmetry, periods, rigid sets and rollers");
   }
   if (finds_loads(options, *body.conditions)) {
     refuse("loading.mode", "loads that are given: those that are found need pivots");

@@ -34,11 +34,11 @@ class Constraints {
   /// over it [m].
   explicit Constraints(const Points& points);
 
-  /// Of parts of a body the same on all ranks.
+  /// Of parts of a body the same on all ranks, which have all handles and kinds of images.
   [[nodiscard]] bool none() const {
     const Images& images = body_->images;
-    const bool has_images = body_->owned ? !images.kinds.empty() : !images.source.empty();
-    return followers_.empty() && rigid_.empty() && !has_images;
+    if (body_->owned) return handles_.empty() && images.kinds.empty();
+    return followers_.empty() && rigid_.empty() && images.source.empty();
   }
 
   /// Points and handles.
