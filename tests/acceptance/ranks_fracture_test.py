@@ -60,22 +60,17 @@ class Fracture(Comparison):
                 self.assertEqual(*decisions)
         return expected
 
-    def test_pre_cracks(self):
-        one = self.compare_torn((2, 3, 4), 'material.damage={law="none"}')
-        with h5py.File(one / "results.h5") as file:
-            self.assertGreater(file["steps/000004/damage"][()].max(), 0.2)
-
     def test_bonds_that_soften_in_implicit_steps(self):
         for law in ('"tanh", onset=0.03, critical=0.5, rate=3', '"linear", onset=0.03, critical=0.6',
-                    '"exponential", onset=0.05, critical=0.9', '"critical_stretch", critical=0.11'):  # fmt: skip
-            one = self.compare_torn((2, 3), f"material.damage={{law={law}}}", 'solver.mode="newton"')
+                    '"exponential", onset=0.05, critical=0.9', '"critical_stretch", critical=0.1'):  # fmt: skip
+            one = self.compare_torn((3,), f"material.damage={{law={law}}}", 'solver.mode="newton"')
             with h5py.File(one / "results.h5") as file:
                 self.assertGreater(file["history/dissipated_energy"][-1], 0.0)
 
     def test_a_plate_that_is_torn(self):
-        one = self.compare_torn((2, 3, 4), 'solver.mode="adaptive"')
+        one = self.compare_torn((2, 3), 'solver.mode="adaptive"')
         actions = [row["action"] for row in rows(one, "decisions.csv")]
-        self.assertIn("hand_over", actions)
+        self.assertIn("hand over to relaxation", actions)
         self.compare_torn((3,), 'solver.mode="adaptive"', "solver.elastic_horizon_ratio=2.015")
         self.assertGreater(len(rows(one, "broken_bonds.csv")), 50)
 
