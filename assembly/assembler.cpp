@@ -50,10 +50,6 @@ Assembler::Assembler(const Points& points, const Model& model, int threads, cons
     throw std::logic_error(
         "Assembler: convolutions and forces without a potential have no ranks yet");
   }
-  // Triangles stand on bonds between ghosts, whose history is other ranks'.
-  if (model.has_history() && model.terms().size() > 1) {
-    throw std::logic_error("Assembler: damage has ranks of bonds alone");
-  }
   of_points_.resize(points.volume.size());
 }
 Assembler::~Assembler() = default;

@@ -50,7 +50,7 @@ Bonds make_bonds(const Part& part, SurfaceCorrection surface, const BondSetting&
     if (which == PartBonds::among_neighbours) return !(is_near[std::size_t(i)] && other);
     return which == PartBonds::of_owned || !(is_near[std::size_t(i)] || other);
   });
-  agree_on_kinds(bonds, part, ranks);
+  agree_on_kinds(bonds, numbered_points(part), ranks);
   return bonds;
 }
 

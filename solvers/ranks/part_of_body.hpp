@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "solvers/ranks/ghost_exchange.hpp"
+#include "solvers/ranks/numbered_points.hpp"
 #include "src/core/sharing.hpp"
 #include "src/geometry/part.hpp"
 
@@ -24,15 +25,12 @@ class PartOfBody : public Sharing {
 
   [[nodiscard]] const std::vector<GlobalIndex>& number() const override { return number_; }
   /// Of a point that is here, perhaps a ghost.
-  [[nodiscard]] GlobalIndex number_of(Index point) const {
-    const auto at = std::size_t(point);
-    return at < number_.size() ? number_[at] : ghost_number_[at - number_.size()];
-  }
+  [[nodiscard]] GlobalIndex number_of(Index point) const { return points().number_of(point); }
   /// The point that has a number in the whole body, if it is here.
-  [[nodiscard]] std::optional<Index> find(GlobalIndex number) const;
-  [[nodiscard]] int owner_of_ghost(Index ghost) const {
-    return ghost_owner_[std::size_t(ghost) - number_.size()];
+  [[nodiscard]] std::optional<Index> find(GlobalIndex number) const {
+    return points().find(number);
   }
+  [[nodiscard]] NumberedPoints points() const { return {number_, ghost_number_, ghost_owner_}; }
   [[nodiscard]] GlobalIndex whole() const { return whole_; }  ///< points of the whole body
   [[nodiscard]] Traffic traffic() const { return ghosts_->traffic(); }
 

@@ -133,7 +133,7 @@ void make_model(Body& body, const MakeNetwork& make_network, int threads) {
                                    std::move(bonds), cut, threads);
   } else if (of.has_states()) {
     body.model = make_state_model(of, materials, body.factors, body.points, setting,
-                                  std::move(bonds), cut, threads);
+                                  std::move(bonds), cut, body.part.get(), threads);
   } else if (of.is_collocated()) {
     body.model = make_collocation_model(of, materials, body.factors, body.points, setting,
                                         std::move(bonds), cut, body.collocation, threads);
@@ -325,17 +325,16 @@ void refuse_without_ranks(const BodySpecification& of) {
         key, "",
         "is not for more than one rank yet: there are bodies with pre-cracks, supports, "
         "eigenstrains, tractions, body forces, total forces and gravity, and damage of bonds of "
-        "one material");
+        "one material, not of states");
   };
   const MaterialSpecification& material = of.material;
   if (is_polynomial(material.model)) refuse("material.model");
   if (material.model == MaterialModel::lps && of.form != SolidForm::energy) refuse("form");
   if (of.is_linear()) refuse("material.kinematics");
-  // Laws that differ from bond to bond have no test on ranks.
+  // Laws that differ from bond to bond have no test on ranks, and what states lose no sum over
+  // them.
   const bool is_damaged = material.damage.law != DamageLaw::none;
-  if (is_damaged && (material.model != MaterialModel::bond || !of.is_uniform())) {
-    refuse("material.damage");
-  }
+  if (is_damaged && (of.has_states() || !of.is_uniform())) refuse("material.damage");
   for (std::size_t k = 0; k < of.regions.size(); ++k) {
     const bool fails = of.regions[k].material.damage.law != DamageLaw::none;
     if (fails) refuse("regions[" + std::to_string(k) + "].material.damage");
@@ -345,15 +344,9 @@ void refuse_without_ranks(const BodySpecification& of) {
     const bool fails = own && own->damage.law != DamageLaw::none;
     if (fails) refuse("interfaces[" + std::to_string(k) + "].material.damage");
   }
-  if (material.model != MaterialModel::bond) {
-    if (!of.is_uniform()) refuse(of.regions.empty() ? "material" : "regions");
-    if (of.eigenstrains.are_there()) refuse("eigenstrains");
-    if (of.end_time) refuse("end_time");
-  }
   if (of.force_operator != ForceOperator::bonds) refuse("force_operator");
   if (!of.foundations.empty()) refuse("foundations");
   if (!of.controls.empty()) refuse("controls");
-  if (of.has_inertia) refuse("has_inertia");
   const ConstraintSpecification& constraints = of.constraints;
   const bool is_constrained = !constraints.rigid_sets.empty() || !constraints.rollers.empty() ||
                               !constraints.linear.empty() || !constraints.symmetries.empty() ||
@@ -410,6 +403,7 @@ std::unique_ptr<const Body> make_body(Part part, const BodySpecification& of,
   loads.ranks = &ranks;
   body.conditions = std::make_unique<Conditions>(
       body.points, of.supports, of.loads, programme_of(of), of.controls, loads, of.eigenstrains);
+  add_terms_of_conditions(body.model, body);
   const Stopwatch watch(body.seconds_neighbourhood);
   store_interactions(body, threads);
   return made;

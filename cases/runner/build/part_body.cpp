@@ -50,7 +50,8 @@ constexpr std::array keys_of_ranks{
     "solver.linear", "solver.preconditioner", "solver.tangent", "solver.predictor",
     "solver.relative_tolerance", "solver.linear_tolerance", "solver.max_iterations",
     // results
-    "output.directory", "output.every", "output.stress", "output.count_cracks", "probe."};
+    "output.directory", "output.every", "output.stress", "output.count_cracks", "probe.",
+    "crack_tip."};
 
 /// "load[2].body_force[0]" as "load.body_force".
 std::string without_numbers(const std::string& key) {
@@ -98,21 +99,14 @@ void refuse_values_without_ranks(const Case& from) {
   const bool is_lattice = std::holds_alternative<Lattice>(from.body);
   const bool has_shares = from.volume_correction != VolumeCorrection::none &&
                           from.volume_correction != VolumeCorrection::linear;
-  const Mode mode = from.solver.mode;
-  const bool moves = mode == Mode::dynamics;
-  if (from.material.model != MaterialModel::bond && (moves || tells_stress(from))) {
-    refuse(moves ? "solver.mode" : "output.stress", "", "it is for model \"bond\"");
-  }
   if (from.material.model != MaterialModel::bond && (!is_lattice || has_shares)) {
     refuse("material.model", "",
            "models but \"bond\" are for a lattice, and volume_correction \"none\" or \"linear\"");
   }
+  const Mode mode = from.solver.mode;
   if (mode == Mode::path || mode == Mode::arc_length) {
     refuse("solver.mode", std::string(mode.name),
            "take \"newton\", \"adaptive\", \"relaxation\" or \"dynamics\"");
-  }
-  if (from.dynamics.is_asked_for && from.dynamics.is_implicit()) {
-    refuse("dynamics.scheme", "\"newmark\"", "take \"verlet\"");
   }
 }
 
