@@ -53,13 +53,6 @@ Assembler::Assembler(const Points& points, const Model& model, int threads, cons
     throw std::logic_error(
         "Assembler: convolutions and forces without a potential have no ranks yet");
   }
-  // Triangles stand on bonds between ghosts, whose history is other ranks'; springs have none.
-  const auto& terms = model.terms();
-  const bool may_follow = std::any_of(terms.begin() + 1, terms.end(),
-                                      [](const auto& term) { return !term->counts().empty(); });
-  if (model.has_history() && may_follow) {
-    throw std::logic_error("Assembler: damage has ranks of bonds alone");
-  }
   of_points_.resize(points.volume.size());
 }
 Assembler::~Assembler() = default;

@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "assembly/operators/convolved_tangent.hpp"
-#include "assembly/terms/damage.hpp"
 #include "solvers/motion/newmark.hpp"
 #include "solvers/motion/shared_stiffness.hpp"
 #include "solvers/motion/velocity_verlet.hpp"
@@ -112,8 +111,7 @@ Advance Dynamics::begin() {
   Ledger& entries = state.ledger.entries;
   entries = {};
   std::vector<double> damage(std::size_t(path_.damaged().points().count()));
-  const DamageState damaged =
-      assess_damage(path_.damaged().model(), motion->at().history, {}, damage);
+  const DamageState damaged = path_.damaged().assess(motion->at().history, {}, damage);
   entries.external_work = motion->at().stored_energy + motion->kinetic_energy() +
                           damaged.dissipated_energy + motion->sums().released;
   state.dynamics.has_begun = true;
@@ -290,7 +288,7 @@ Advance Dynamics::accept(Motion& motion) {
   const double time = motion.time();
   Assembler& assembler = path_.damaged();
   std::vector<double> damage(std::size_t(assembler.points().count()));
-  const DamageState damaged = assess_damage(assembler.model(), motion.at().history, {}, damage);
+  const DamageState damaged = assembler.assess(motion.at().history, {}, damage);
   FoundStep found;
   found.record.mode = Mode::dynamics.name;
   found.record.settled = true;

@@ -25,12 +25,35 @@ bool are_sizes_of(const History& history, const Assembler& body) {
   // Terms that follow others have no history before these have changed.
   const History followed = body.history_of(bond_stretches(body.model(), history));
   for (std::size_t term = 0; term < terms; ++term) {
-    if (at_rest.of(term).empty() && !is_as_long(followed, term)) return false;
+    const bool is_told = !history.of(term).empty();
+    if (at_rest.of(term).empty() && is_told && !is_as_long(followed, term)) return false;
   }
   return history.terms() <= terms;
 }
 
 }  // namespace
+
+History own_history(const History& history, const Assembler& body) {
+  if (history.terms() < 2) return history;
+  const History at_rest = body.initial_history();
+  const auto follows = [&](std::size_t term) {
+    return at_rest.of(term).empty() && !history.of(term).empty();
+  };
+  bool any_follows = false;
+  for (std::size_t term = 0; term < history.terms(); ++term) any_follows |= follows(term);
+  if (!any_follows) return history;
+  History own;
+  for (std::size_t term = 0; term < history.terms(); ++term) {
+    if (at_rest.of(term).empty()) continue;
+    own.replace(term, {history.of(term).begin(), history.of(term).end()});
+  }
+  return own;
+}
+
+History with_followers(History history, const Assembler& body) {
+  for (const auto& term : body.model().terms()) term->follow(body.model(), history);
+  return history;
+}
 
 bool is_of_body(const PathState& state, const Assembler& body,
                 const std::vector<char>& prescribed) {

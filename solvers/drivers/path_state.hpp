@@ -89,7 +89,13 @@ struct PathState {
   } dynamics;
 };
 
-/// Whether the sizes of its arrays are those of a body's.
+/// A history without what terms remember that follow others, which is found anew from the rest.
+[[nodiscard]] History own_history(const History& history, const Assembler& body);
+
+/// The other way round.
+[[nodiscard]] History with_followers(History history, const Assembler& body);
+
+/// Whether the sizes of its arrays are those of a body's; terms that follow others may have none.
 /// @param prescribed per degree of freedom
 [[nodiscard]] bool is_of_body(const PathState& state, const Assembler& body,
                               const std::vector<char>& prescribed);

@@ -43,12 +43,6 @@ std::array<double, 2> fall(double t) {
   return {1.0 - t * t * (3.0 - 2.0 * t), -6.0 * t * (1.0 - t)};
 }
 
-double largest(std::span<const double> values) {
-  double most = 0.0;
-  for (const double value : values) most = std::max(most, std::abs(value));
-  return most;
-}
-
 }  // namespace
 
 CrackTipIntegrals::CrackTipIntegrals(const Points& points, const CrackTipSpecification& tip,
@@ -111,7 +105,7 @@ void CrackTipIntegrals::check_ring(const std::string& key) const {
   std::array<double, sectors> volume{};
   std::array<double, 4> extent{};  // ahead, behind, above, below
   double above = 0.0;              // the crack, where it lies in a plane of symmetry
-  for (Index i = 0; i < points_.count(); ++i) {
+  for (Index i = 0; i < counted(); ++i) {
     const Coordinates at = frame_.components(points_.position(i));
     if (!points_.is_image(i)) above += at[1];
     const std::array<double, 4> along{at[0], -at[0], at[1], -at[1]};
@@ -122,6 +116,9 @@ void CrackTipIntegrals::check_ring(const std::string& key) const {
     const auto sector = std::min(sectors - 1, std::size_t(turn * double(sectors)));
     volume[sector] += points_.volume[points_.source(i)];
   }
+  const std::vector<double> volumes = sums().of_all(std::vector(volume.begin(), volume.end()));
+  for (double& most : extent) most = sums().largest_of_all(most);
+  above = sums().of_all(above);
   const auto refuse = [&](const std::string& where) {
     throw InputError(key + ".outer", number_text(tip_.outer),
                      "the ring from " + number_text(tip_.inner) + " to " + number_text(tip_.outer) +
@@ -136,16 +133,16 @@ void CrackTipIntegrals::check_ring(const std::string& key) const {
     if (extent[k] + 0.51 * double(points_.spacing) < outer) refuse(names[k]);
   }
   const double ring = std::numbers::pi * (outer * outer - tip_.inner * tip_.inner);
-  const double length = front_length(points_.count());
+  const double length = front_length(counted());
   for (std::size_t k = 0; k < sectors; ++k) {
     const double angle = (2.0 * double(k) + 1.0) / double(sectors) - 1.0;  // of a half turn
     if (std::abs(angle) > slot || (is_on_plane_ && angle * above < 0.0)) continue;
-    if (volume[k] >= full * ring * length / double(sectors)) continue;
+    if (volumes[k] >= full * ring * length / double(sectors)) continue;
     refuse("at " + number_text(std::round(180.0 * angle)) + " degrees from the crack's direction");
   }
 }
 
-/// Of the body's points near the tip, or of images too [m].
+/// Of points near the tip, of the body or of images too [m].
 double CrackTipIntegrals::front_length(Index points) const {
   if (points_.dimension == 2) return setting_.cross_section;
   double least = std::numeric_limits<double>::infinity(), most = -least;
@@ -155,12 +152,14 @@ double CrackTipIntegrals::front_length(Index points) const {
     least = std::min(least, at[2]);
     most = std::max(most, at[2]);
   }
+  least = -sums().largest_of_all(-least);
+  most = sums().largest_of_all(most);
   return most - least + double(points_.spacing);
 }
 
 void CrackTipIntegrals::weigh() {
   const double width = tip_.outer - tip_.inner;
-  for (Index i = 0; i < points_.count(); ++i) {
+  for (Index i = 0; i < counted(); ++i) {
     const Coordinates at = frame_.components(points_.position(i));
     const double r = std::hypot(at[0], at[1]);
     if (r >= tip_.outer) continue;
@@ -174,7 +173,13 @@ void CrackTipIntegrals::weigh() {
     }
     weighted_.push_back(weighted);
   }
-  factor_ = (is_on_plane_ ? 2.0 : 1.0) / front_length(points_.own());
+  factor_ = (is_on_plane_ ? 2.0 : 1.0) / front_length(std::min(points_.own(), counted()));
+}
+
+double CrackTipIntegrals::largest(std::span<const double> values) const {
+  double most = 0.0;
+  for (const double value : values) most = std::max(most, std::abs(value));
+  return sums().largest_of_all(most);
 }
 
 std::vector<Index> CrackTipIntegrals::points() const {
@@ -204,6 +209,7 @@ std::vector<double> CrackTipIntegrals::translation_of(Assembler& assembler,
           kind.mirror[r] * translation[std::size_t(points_.source(image)) * d + r];
     }
   }
+  if (setting_.sharing) setting_.sharing->update_ghosts(translation);
   return translation;
 }
 
@@ -229,17 +235,19 @@ CrackTipIntegrals::Rings CrackTipIntegrals::fluxes(Assembler& assembler, const S
   };
   energies_after(step, ahead);
   energies_after(-step, behind);
-  Rings sums{};
+  Rings mine{};
   for (const Weighted& weighted : weighted_) {
     const auto i = std::size_t(weighted.point);
     double along = (behind[i] - ahead[i]) / (2.0 * step);
     for (std::size_t c = 0; c < d; ++c) along += gradient[i * d + c] * translation[i * d + c];
     for (std::size_t k = 0; k < rings; ++k) {
-      sums[k] += weighted.q[k] * along - weighted.slope[k] * energy[i];
+      mine[k] += weighted.q[k] * along - weighted.slope[k] * energy[i];
     }
   }
-  for (double& sum : sums) sum *= factor_;
-  return sums;
+  const std::vector<double> all = sums().of_all(std::vector(mine.begin(), mine.end()));
+  Rings fluxes{};
+  for (std::size_t k = 0; k < rings; ++k) fluxes[k] = factor_ * all[k];
+  return fluxes;
 }
 
 /// Auxiliary displacements of all points: Williams' of a mode, or (3) of a force on the tip.

@@ -9,6 +9,7 @@
 #include "assembly/assembler.hpp"
 #include "solvers/fracture/crack_tip.hpp"
 #include "solvers/fracture/williams_fields.hpp"
+#include "solvers/linear/sums.hpp"
 #include "src/geometry/points.hpp"
 
 namespace peristat {
@@ -17,6 +18,9 @@ namespace peristat {
 struct CrackTipSetting {
   double horizon = 0.0;        ///< [m]
   double cross_section = 1.0;  ///< 2D: thickness [m]
+  /// Null: the points are the whole body's. Otherwise those of a part: all ranks make the same
+  /// calls, and get the same.
+  const Sharing* sharing = nullptr;
 };
 
 /// J, stress intensity factors and T-stress of a crack's tip.
@@ -48,7 +52,7 @@ class CrackTipIntegrals {
   /// J per joule: 1/B, 2/B where a plane of symmetry halves the crack [1/m].
   [[nodiscard]] double share() const { return factor_; }
 
-  /// Within the ring; at least one.
+  /// Within the ring, and owned; of all ranks at least one.
   [[nodiscard]] std::vector<Index> points() const;
   [[nodiscard]] CrackTipValues values(Assembler& assembler, const StateView& at) const;
 
@@ -66,6 +70,12 @@ class CrackTipIntegrals {
   void check_ring(const std::string& key) const;
   void weigh();
   [[nodiscard]] double front_length(Index points) const;
+  [[nodiscard]] Sums sums() const { return {setting_.sharing, points_.dimension}; }
+  /// Points that are counted here, images too.
+  [[nodiscard]] Index counted() const {
+    return setting_.sharing ? setting_.sharing->owned() : points_.count();
+  }
+  [[nodiscard]] double largest(std::span<const double> values) const;
   [[nodiscard]] Rings fluxes(Assembler& assembler, const StateView& at,
                              std::span<const double> translation) const;
   [[nodiscard]] std::vector<double> translation_of(Assembler& assembler, const StateView& at) const;

@@ -24,7 +24,7 @@ class Sums {
     const auto d = std::size_t(dimension);
     const auto first_image = std::size_t(sharing->first_image());
     images_ = {first_image * d, (first_image + std::size_t(sharing->owned_images())) * d};
-    handles_ = std::size_t(sharing->points()) * d;
+    handles_ = std::size_t(sharing->count()) * d;
   }
 
   /// How many of the entries of a vector are of this rank's points: the first ones.

@@ -1,16 +1,12 @@
 #include "solvers/ranks/agree_on_kinds.hpp"
 
-#include <algorithm>
 #include <cstddef>
 #include <cstring>
-#include <stdexcept>
 #include <string>
 #include <unordered_set>
 #include <utility>
-#include <vector>
 
-#include "solvers/ranks/ranks.hpp"
-#include "src/geometry/counts_bond.hpp"
+#include "solvers/ranks/heard_of_bonds.hpp"
 
 namespace peristat {
 namespace {
@@ -71,65 +67,22 @@ BondKinds kinds_of_all(const BondKinds& mine, const Communicator& ranks) {
   return known;
 }
 
-template <class Visit>
-void for_each_bond(const Bonds& bonds, const Visit& visit) {
-  for (Index i = 0; i < bonds.points(); ++i) {
-    for (Offset bond = bonds.offset[i]; bond < bonds.offset[i + 1]; ++bond) {
-      visit(i, bonds.partner[std::size_t(bond)], bond);
-    }
-  }
-}
-
-/// Points of a part by their numbers in the whole body.
-Index point_of(const Part& part, GlobalIndex number, bool is_ghost) {
-  const auto middle = part.number.begin() + std::ptrdiff_t(part.owned);
-  const auto first = is_ghost ? middle : part.number.begin();
-  const auto last = is_ghost ? part.number.end() : middle;
-  const auto found = std::lower_bound(first, last, number);
-  if (found == last || *found != number) {
-    throw std::logic_error("a bond between two parts has a point that is not here");
-  }
-  return Index(found - part.number.begin());
-}
-
-/// Bond between a point of this rank's and a ghost.
-Offset bond_of(const Bonds& bonds, Index point, Index ghost) {
-  const auto first = bonds.partner.begin() + std::ptrdiff_t(bonds.offset[point]);
-  const auto last = bonds.partner.begin() + std::ptrdiff_t(bonds.offset[point + 1]);
-  const auto found = std::lower_bound(first, last, ghost);
-  if (found == last || *found != ghost) {
-    throw std::logic_error("a bond between two parts is on one rank alone");
-  }
-  return found - bonds.partner.begin();
-}
-
 }  // namespace
 
-void agree_on_kinds(Bonds& bonds, const Part& part, const Communicator& ranks) {
+void agree_on_kinds(Bonds& bonds, const NumberedPoints& points, const Communicator& ranks) {
   if (ranks.count() == 1) return;
   BondKinds agreed = kinds_of_all(bonds.kind, ranks);
   const auto first = Offset(agreed.size());
   agreed.reserve(agreed.size() + std::size_t(bonds.count()) + 1);
   for (Offset bond = 0; bond < bonds.count(); ++bond) agreed.push_back(bonds.kind[bond]);
-
-  // Who counts a bond tells the other rank of it what it is.
-  Records told{2, 2, {}, {}};
-  std::vector<int> to;
-  for_each_bond(bonds, [&](Index i, Index j, Offset bond) {
-    if (part.is_ghost(i) || !part.is_ghost(j) || !counts_bond(part.points, i, j)) return;
-    const BondKind& kind = agreed[first + bond];
-    told.values.insert(told.values.end(), {kind.inverse_length, kind.weight});
-    told.numbers.push_back(part.number[std::size_t(i)]);
-    told.numbers.push_back(part.number[std::size_t(j)]);
-    to.push_back(part.owner[std::size_t(j - part.owned)]);
+  const HeardOfBonds heard = heard_of_bonds(bonds, points, ranks, 2, [&](Offset bond, double* to) {
+    to[0] = agreed[first + bond].inverse_length;
+    to[1] = agreed[first + bond].weight;
   });
-  const Records heard = exchange(ranks, to, told);
   const Offset last = first + bonds.count();
-  for (std::size_t k = 0; k < heard.values.size(); k += 2) {
-    const Index ghost = point_of(part, heard.numbers[k], true);
-    const Index mine = point_of(part, heard.numbers[k + 1], false);
-    agreed.push_back({heard.values[k], heard.values[k + 1]});
-    agreed.copy(last, first + bond_of(bonds, mine, ghost));
+  for (std::size_t k = 0; k < heard.bond.size(); ++k) {
+    agreed.push_back({heard.values[2 * k], heard.values[2 * k + 1]});
+    agreed.copy(last, first + heard.bond[k]);
     agreed.truncate(last);
   }
   for (Offset bond = 0; bond < bonds.count(); ++bond) agreed.copy(first + bond, bond);

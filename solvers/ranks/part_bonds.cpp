@@ -50,7 +50,7 @@ Bonds make_bonds(const Part& part, SurfaceCorrection surface, const BondSetting&
     if (which == PartBonds::among_neighbours) return !(near_i && near_j);
     return which == PartBonds::of_owned || !(near_i || near_j);
   });
-  agree_on_kinds(bonds, part, ranks);
+  agree_on_kinds(bonds, numbered_points(part), ranks);
   return bonds;
 }
 

@@ -22,8 +22,8 @@ enum class PartBonds {
                                     const BondSetting& setting, const Communicator& ranks,
                                     PartBonds which = PartBonds::of_owned);
 
-/// The bonds of a body that a part has, with the weights of make_bonds; those that two ranks count
-/// energies of have the same bits on both (agree_on_kinds). A call that all make.
+/// The bonds of a body that a part has, with the weights of make_bonds; those that several ranks
+/// have are the same there to the last bit (agree_on_kinds). A call that all make.
 /// @throws std::logic_error if the part's ghosts don't reach as far as reach_of_bonds
 [[nodiscard]] Bonds make_bonds(const Part& part, SurfaceCorrection surface,
                                const BondSetting& setting, const Communicator& ranks, int threads,

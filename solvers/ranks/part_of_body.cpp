@@ -1,6 +1,7 @@
 #include "solvers/ranks/part_of_body.hpp"
 
 #include <algorithm>
+#include <cstddef>
 
 namespace peristat {
 namespace {
@@ -19,7 +20,7 @@ PartOfBody::PartOfBody(const Part& part, const Communicator& ranks)
       number_(part.number.begin(), part.number.begin() + std::ptrdiff_t(part.owned)),
       ghost_number_(part.number.begin() + std::ptrdiff_t(part.owned), part.number.end()),
       ghost_owner_(part.owner),
-      points_(part.points.count()),
+      count_(part.points.count()),
       owned_images_(count_images_of_owned(part.points)),
       dimension_(std::size_t(part.points.dimension)),
       whole_(part.whole),
@@ -27,25 +28,13 @@ PartOfBody::PartOfBody(const Part& part, const Communicator& ranks)
 
 void PartOfBody::update_ghosts(std::span<double> values) const {
   ghosts_->update(values.data());
-  const auto dofs = std::size_t(points_) * dimension_;
+  const auto dofs = std::size_t(count_) * dimension_;
   if (values.size() <= dofs) return;
   const std::span<double> handles = values.subspan(dofs);
   std::vector<double> told(handles.size(), 0.0);
   if (ranks_.rank() == 0) std::copy(handles.begin(), handles.end(), told.begin());
   told = ranks_.sum(told);
   std::copy(told.begin(), told.end(), handles.begin());
-}
-
-std::optional<Index> PartOfBody::find(GlobalIndex number) const {
-  Index before = 0;
-  for (const std::vector<GlobalIndex>* numbers : {&number_, &ghost_number_}) {
-    const auto found = std::lower_bound(numbers->begin(), numbers->end(), number);
-    if (found != numbers->end() && *found == number) {
-      return before + Index(found - numbers->begin());
-    }
-    before += Index(numbers->size());
-  }
-  return std::nullopt;
 }
 
 }  // namespace peristat

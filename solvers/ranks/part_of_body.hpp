@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "solvers/ranks/ghost_exchange.hpp"
+#include "solvers/ranks/numbered_points.hpp"
 #include "src/core/sharing.hpp"
 #include "src/geometry/part.hpp"
 
@@ -20,22 +21,19 @@ class PartOfBody : public Sharing {
 
   [[nodiscard]] const Communicator& ranks() const override { return ranks_; }
   [[nodiscard]] Index owned() const override { return Index(number_.size()); }
-  [[nodiscard]] Index points() const override { return points_; }
+  [[nodiscard]] Index count() const override { return count_; }
   [[nodiscard]] Index first_image() const override { return owned() + Index(ghost_number_.size()); }
   [[nodiscard]] Index owned_images() const override { return owned_images_; }
   void update_ghosts(std::span<double> values) const override;
 
   [[nodiscard]] const std::vector<GlobalIndex>& number() const override { return number_; }
   /// Of a point that is here, perhaps a ghost.
-  [[nodiscard]] GlobalIndex number_of(Index point) const {
-    const auto at = std::size_t(point);
-    return at < number_.size() ? number_[at] : ghost_number_[at - number_.size()];
-  }
+  [[nodiscard]] GlobalIndex number_of(Index point) const { return points().number_of(point); }
   /// The point that has a number in the whole body, if it is here.
-  [[nodiscard]] std::optional<Index> find(GlobalIndex number) const;
-  [[nodiscard]] int owner_of_ghost(Index ghost) const {
-    return ghost_owner_[std::size_t(ghost) - number_.size()];
+  [[nodiscard]] std::optional<Index> find(GlobalIndex number) const {
+    return points().find(number);
   }
+  [[nodiscard]] NumberedPoints points() const { return {number_, ghost_number_, ghost_owner_}; }
   [[nodiscard]] GlobalIndex whole() const { return whole_; }  ///< points of the whole body
   [[nodiscard]] Traffic traffic() const { return ghosts_->traffic(); }
 
@@ -43,7 +41,7 @@ class PartOfBody : public Sharing {
   const Communicator& ranks_;
   std::vector<GlobalIndex> number_, ghost_number_;
   std::vector<int> ghost_owner_;
-  Index points_, owned_images_;
+  Index count_, owned_images_;
   std::size_t dimension_;
   GlobalIndex whole_;
   std::unique_ptr<GhostExchange> ghosts_;

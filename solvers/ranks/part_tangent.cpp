@@ -8,7 +8,7 @@ namespace peristat {
 std::vector<char> without_ghosts(const Sharing& sharing, std::vector<char> prescribed,
                                  int dimension) {
   const auto d = std::ptrdiff_t(dimension);
-  const auto handles = std::min(prescribed.begin() + sharing.points() * d, prescribed.end());
+  const auto handles = std::min(prescribed.begin() + sharing.count() * d, prescribed.end());
   const bool owns_handles = sharing.ranks().rank() == 0;
   std::fill(prescribed.begin() + sharing.owned() * d, owns_handles ? handles : prescribed.end(),
             char(1));

@@ -134,7 +134,7 @@ void make_model(Body& body, const MakeNetwork& make_network, int threads) {
                                    std::move(bonds), cut, threads);
   } else if (of.has_states()) {
     body.model = make_state_model(of, materials, body.factors, body.points, setting,
-                                  std::move(bonds), cut, threads);
+                                  std::move(bonds), cut, body.part.get(), threads);
   } else if (of.is_collocated()) {
     body.model = make_collocation_model(of, materials, body.factors, body.points, setting,
                                         std::move(bonds), cut, body.collocation, threads);
@@ -341,6 +341,12 @@ bool has_damage(const BodySpecification& of) {
          });
 }
 
+bool has_pressure(const BodySpecification& of) {
+  return std::ranges::any_of(of.loads, [](const LoadSpecification& load) {
+    return load.kind == LoadSpecification::Kind::pressure;
+  });
+}
+
 /// Linear constraints, and rollers that touch at a place, have followers of points of all ranks.
 template <class Refuse>
 void refuse_constraints_without_ranks(const BodySpecification& of, const Refuse& refuse) {
@@ -361,10 +367,15 @@ void refuse_constraints_without_ranks(const BodySpecification& of, const Refuse&
   if (of.material.model != MaterialModel::bond) refuse_with("models but \"bond\"");
   if (has_damage(of)) refuse_with("damage");
   if (of.end_time) refuse_with("motions");
-  const bool has_pressure = std::ranges::any_of(of.loads, [](const LoadSpecification& load) {
-    return load.kind == LoadSpecification::Kind::pressure;
-  });
-  if (has_images && has_pressure) refuse_with("pressures");
+  if (has_images && has_pressure(of)) refuse_with("pressures");
+}
+
+/// Laws that differ from bond to bond are tested of bonds alone; what states lose has no sum over
+/// ranks.
+template <class Refuse>
+void refuse_damage_without_ranks(const BodySpecification& of, const Refuse& refuse) {
+  if (!has_damage(of) || of.material.model == MaterialModel::bond) return;
+  if (of.has_states() || !of.is_uniform()) refuse("material.damage");
 }
 
 /// What the assembler of a part is made for; tables of cases are refused before.
@@ -374,25 +385,21 @@ void refuse_without_ranks(const BodySpecification& of) {
         key, "",
         "is not for more than one rank yet: there are bodies with pre-cracks, supports, "
         "rigid sets, rollers, planes of symmetry, periods, foundations, eigenstrains, tractions, "
-        "pressures, "
-        "body forces, total forces and gravity, and damage of bonds");
+        "pressures, body forces, total forces and gravity, and damage of bonds and triangles");
   };
   const MaterialSpecification& material = of.material;
   if (is_polynomial(material.model)) refuse("material.model");
   if (material.model == MaterialModel::lps && of.form != SolidForm::energy) refuse("form");
   if (of.is_linear()) refuse("material.kinematics");
-  if (material.damage.law != DamageLaw::none && material.model != MaterialModel::bond) {
-    refuse("material.damage");
-  }
-  if (material.model != MaterialModel::bond) {
-    if (!of.is_uniform()) refuse(of.regions.empty() ? "material" : "regions");
-    if (of.eigenstrains.are_there()) refuse("eigenstrains");
-    if (of.end_time) refuse("end_time");
-  }
+  refuse_damage_without_ranks(of, refuse);
   if (of.force_operator != ForceOperator::bonds) refuse("force_operator");
   if (!of.controls.empty()) refuse("controls");
-  if (of.has_inertia) refuse("has_inertia");
   refuse_constraints_without_ranks(of, refuse);
+  // Their tests on ranks are of bonds at rest.
+  if (of.end_time || material.model != MaterialModel::bond) {
+    if (!of.foundations.empty()) refuse("foundations");
+    if (has_pressure(of)) refuse("loads");
+  }
   for (std::size_t k = 0; k < of.loads.size(); ++k) {
     const LoadSpecification::Kind kind = of.loads[k].kind;
     if (kind == LoadSpecification::Kind::stress) {

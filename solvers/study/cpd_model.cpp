@@ -6,7 +6,9 @@
 #include <utility>
 
 #include "assembly/terms/simplices/simplex_term.hpp"
+#include "solvers/ranks/agree_on_kinds.hpp"
 #include "solvers/study/bond_potential.hpp"
+#include "solvers/study/idle_interfaces.hpp"
 #include "src/core/input_error.hpp"
 #include "src/core/number_text.hpp"
 #include "src/neighbourhood/neighbour_counts.hpp"
@@ -232,7 +234,7 @@ Model make_cpd_model(const BodySpecification& from, const PointMaterials& materi
   set_one_neighbour_weights(bonds, points, bulk);
   const BondMaterials mixed(from, materials, factors, points, std::move(c1));
   if (!from.is_uniform()) {
-    refuse_idle_interfaces(from, materials, bonds);
+    refuse_idle_interfaces(from, materials, bonds, part ? &part->ranks() : nullptr);
     mixed.weigh(bonds);
   }
   Bonds left = bonds;
@@ -243,6 +245,7 @@ Model make_cpd_model(const BodySpecification& from, const PointMaterials& materi
     left.remove_if(
         [&](Index, Offset bond) { return setting.influence_at(left.length(bond)) == 0.0; });
   }
+  if (part) agree_on_kinds(left, part->points(), part->ranks());
   cut = cut_bonds(left, points, from.cracks);
   auto [potential, never_fails] = mixed.potential(left);
   Model model(std::move(left), std::move(potential), std::move(never_fails));

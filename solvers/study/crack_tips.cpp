@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 
+#include "solvers/linear/sums.hpp"
 #include "solvers/study/cpd_model.hpp"
 #include "solvers/study/point_materials.hpp"
 #include "src/conditions/points_of_set.hpp"
@@ -51,15 +53,33 @@ TipElasticity elasticity_of(const PointMaterials::Material& material, const Body
 /// The material of the points about a tip.
 std::size_t material_about(const Body& body, const PointMaterials& materials,
                            const CrackTipIntegrals& tip, const std::string& key) {
-  const std::vector<Index> points = tip.points();
-  for (const Index point : points) {
-    if (materials.of(body.points.source(point)) == materials.of(body.points.source(points[0])))
-      continue;
+  const Sums of_body(body.part.get(), body.points.dimension);
+  double first = std::numeric_limits<double>::infinity(), last = -first;
+  for (const Index point : tip.points()) {
+    const auto of = double(materials.of(body.points.source(point)));
+    first = std::min(first, of);
+    last = std::max(last, of);
+  }
+  first = -of_body.largest_of_all(-first);
+  if (of_body.largest_of_all(last) != first) {
     throw InputError(key + ".outer", "",
                      "the ring holds two materials; the flux of energy through it is not the tip's "
                      "alone");
   }
-  return materials.of(body.points.source(points.front()));
+  return std::size_t(first);
+}
+
+/// What of a tip has no sum over ranks.
+void refuse_without_ranks(const Body& body, const CrackTipSpecification& tip,
+                          const std::string& key) {
+  if (tip.cut > 0.0) {
+    throw InputError(key + ".cut", number_text(tip.cut),
+                     "is for one rank; on several take J, which has no cut");
+  }
+  const ConstraintSpecification& constraints = body.specification.constraints;
+  if (!constraints.symmetries.empty() || !constraints.periods.empty()) {
+    throw InputError(key, "", "does not go with planes of symmetry and periods on several ranks");
+  }
 }
 
 /// What a support does to a point within the ring would count as the tip's.
@@ -102,7 +122,11 @@ std::vector<CrackTip> make_crack_tips(const Body& body,
     if (body.specification.eigenstrains.are_there()) {
       throw InputError(key, "", "does not go with eigenstrains or a temperature");
     }
-    CrackTip tip{{body.points, tips[k], {body.setting.reach(), body.setting.cross_section}, key},
+    if (body.part) refuse_without_ranks(body, tips[k], key);
+    CrackTip tip{{body.points,
+                  tips[k],
+                  {body.setting.reach(), body.setting.cross_section, body.part.get()},
+                  key},
                  nullptr};
     refuse_held_rings(body, tip.integrals, key);
     const std::size_t material = material_about(body, materials, tip.integrals, key);

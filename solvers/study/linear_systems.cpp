@@ -105,6 +105,14 @@ LinearSystems systems_of_motion(const Body& body) {
   return systems;
 }
 
+/// Whether bonds alone couple points, on all ranks alike: one may have none.
+bool has_bonds_alone(const Body& body) {
+  const Conditions& conditions = *body.conditions;
+  return body.specification.material.model == MaterialModel::bond &&
+         conditions.constraints().none() && conditions.foundations().none() &&
+         !conditions.has_pressures();
+}
+
 /// No rank has the whole of a tangent, or of the box of a lattice.
 void refuse_solvers_without_ranks(const StudyOptions& options, const Body& body) {
   const auto refuse = [](const std::string& key, const std::string& what) {
@@ -125,14 +133,10 @@ void refuse_solvers_without_ranks(const StudyOptions& options, const Body& body)
   const bool is_of_points = kind == PreconditionerKind::automatic ||
                             kind == PreconditionerKind::block_jacobi ||
                             kind == PreconditionerKind::jacobi;
-  if (!body.model.visits_rows() && !is_of_points) {
+  if (!has_bonds_alone(body) && !is_of_points) {
     refuse("linear.preconditioner",
-           "\"block_jacobi\" or \"jacobi\" with pressures, foundations and models but \"bond\"");
-  }
-  if (!body.conditions->constraints().none() && !is_of_points) {
-    refuse(
-        "linear.preconditioner",
-        "\"block_jacobi\" or \"jacobi\" with planes of symmetry, periods, rigid sets and rollers");
+           "\"block_jacobi\" or \"jacobi\" with pressures, foundations, constraints and models but "
+           "\"bond\"");
   }
   if (finds_loads(options, *body.conditions)) {
     refuse("loading.mode", "loads that are given: those that are found need pivots");
@@ -289,8 +293,7 @@ LinearSystems choose_linear_systems(const StudyOptions& options, const Body& bod
     refuse_solvers_without_ranks(options, body);
     StudyOptions of_part = options;
     // Pieces of parts are tested on tangents of bonds alone.
-    const bool is_of_bonds = body.model.visits_rows() && body.conditions->constraints().none();
-    if (!is_of_bonds && options.linear.preconditioner == PreconditionerKind::automatic) {
+    if (!has_bonds_alone(body) && options.linear.preconditioner == PreconditionerKind::automatic) {
       of_part.linear.preconditioner = PreconditionerKind::block_jacobi;
     }
     return choose_linear_systems(of_part, body.model, estimate_memory_of_part(body), {},

@@ -57,6 +57,16 @@ void refuse_wild_start(const Body& body, const std::vector<double>& displacement
   }
 }
 
+/// See MotionSetting::most_points, of the states of the whole body.
+int most_points_of_states(const StateTerm& states, const Body& body) {
+  StateRatios ratios = state_ratios(states.shares().constants, body.points.dimension);
+  if (body.part) {
+    const Communicator& ranks = body.part->ranks();
+    ratios = {ranks.max(ratios.most), ranks.min(ratios.least)};
+  }
+  return int(std::ceil(ratios.bound_over_blocks()));
+}
+
 }  // namespace
 
 std::vector<double> densities_of(const Body& body) {
@@ -98,7 +108,7 @@ MotionSetting make_motion_setting(const Body& body) {
   setting.most_points =
       body.specification.material.model == MaterialModel::bond ? 2 : body.points.dimension + 1;
   if (const auto* states = dynamic_cast<const StateTerm*>(body.model.bond_term().get())) {
-    setting.most_points = int(std::ceil(states->bound_over_blocks(body.points.dimension)));
+    setting.most_points = most_points_of_states(*states, body);
   } else if (const auto* of_points = dynamic_cast<const PointTerm*>(body.model.bond_term().get())) {
     setting.most_points = int(std::ceil(of_points->bound_over_blocks(body.points.dimension)));
   }

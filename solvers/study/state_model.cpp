@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "assembly/terms/states/state_term.hpp"
+#include "solvers/study/idle_interfaces.hpp"
 #include "src/core/input_error.hpp"
 #include "src/materials/lame_constants.hpp"
 #include "src/neighbourhood/influence.hpp"
@@ -51,7 +52,8 @@ double state_critical_stretch(const MaterialSpecification& material, const BondS
 
 Model make_state_model(const BodySpecification& from, const PointMaterials& materials,
                        const PointFactors& factors, const Points& points,
-                       const BondSetting& setting, Bonds bonds, CutBonds& cut, int threads) {
+                       const BondSetting& setting, Bonds bonds, CutBonds& cut,
+                       const PartOfBody* part, int threads) {
   refuse_what_has_no_states(points);
   std::vector<DirectedConstant> moduli;
   std::vector<LamePair> of_material;
@@ -69,7 +71,7 @@ Model make_state_model(const BodySpecification& from, const PointMaterials& mate
   const BondMaterials mixed(from, materials, factors, points, std::move(moduli));
   if (!from.is_uniform()) {
     // The states' kernel knows no materials, what bonds dissipate does.
-    refuse_idle_interfaces(from, materials, bonds);
+    refuse_idle_interfaces(from, materials, bonds, part ? &part->ranks() : nullptr);
     Bonds plain = bonds;
     static_cast<void>(cut_bonds(plain, points, from.cracks));
     shares.kernel = kernel_of_weights(plain);

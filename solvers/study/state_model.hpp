@@ -1,6 +1,7 @@
 #pragma once
 
 #include "assembly/terms/model.hpp"
+#include "solvers/ranks/part_of_body.hpp"
 #include "solvers/study/bond_materials.hpp"
 #include "src/connectivity/crack.hpp"
 
@@ -19,10 +20,12 @@ namespace peristat {
 
 /// Model of a body of model "lps" with the form "energy", and what its pre-cracks have cut.
 /// @param setting see state_setting, with which the bonds were made
+/// @param part null: the body is whole. Otherwise of a part, with the bonds of_neighbours; a call
+///        that all ranks make
 /// @throws InputError ("material.model") for planes of symmetry, periods and given neighbours
 [[nodiscard]] Model make_state_model(const BodySpecification& from, const PointMaterials& materials,
                                      const PointFactors& factors, const Points& points,
                                      const BondSetting& setting, Bonds bonds, CutBonds& cut,
-                                     int threads);
+                                     const PartOfBody* part, int threads);
 
 }  // namespace peristat

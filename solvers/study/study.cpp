@@ -106,11 +106,6 @@ void check_study(const Body& body, const StudyOptions& options) {
                      is_implicit ? "must be set: implicit steps need a body with inertia"
                                  : "is for bodies that implicit steps follow");
   }
-  // Whose histories the driver looks at here alone, where all ranks are to decide alike.
-  if (body.part && moves && body.model.has_history()) {
-    throw InputError("material.damage", "",
-                     "is not for more than one rank in mode dynamics; take one");
-  }
   if (!moves) refuse_unheld_bodies(body);
   refuse_unstable_rest(body, options);
 }

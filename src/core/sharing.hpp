@@ -25,7 +25,7 @@ class Sharing {
   [[nodiscard]] virtual const Communicator& ranks() const = 0;
   [[nodiscard]] virtual Index owned() const = 0;
   /// That are here, ghosts and images too.
-  [[nodiscard]] virtual Index points() const = 0;
+  [[nodiscard]] virtual Index count() const = 0;
   [[nodiscard]] virtual Index first_image() const = 0;
   /// How many images of owned points there are, the first ones.
   [[nodiscard]] virtual Index owned_images() const = 0;

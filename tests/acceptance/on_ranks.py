@@ -137,6 +137,34 @@ displacement = ["0.2*load", 0, "0.05*load"]
 [loading]
 steps = 1
 """
+# Triangles that are lost with their bonds.
+SHEET = """
+dimension = 2
+[lattice]
+spacing = 0.1
+horizon_ratio = 2.415
+shape = [{ add = "box", min = [0, 0], max = [1.2, 1.1] }, { subtract = "disk", centre = [0.72, 0.63], radius = 0.15 }]
+layer = [{ name = "held", side = "x-", thickness = 2 }, { name = "pulled", side = "x+", thickness = 2 }]
+[[crack]]
+from = [0.52, 0]
+to = [0.55, 0.22]
+[material]
+model = "cpd"
+c1 = 1.0
+c2 = 30.0
+density = 0.002
+[material.damage]
+law = "tanh"
+onset = 0.05
+critical = 0.08
+rate = 3
+no_fail = ["held", "pulled"]
+[[support]]
+set = "held"
+displacement = [0, 0]
+[[support]]
+set = "pulled"
+"""
 # A dilatation per point, which neighbours of ghosts tell.
 STATES = PLATE.replace('model = "bond"', 'model = "lps"\nplane = "strain"\npoisson_ratio = 0.4') + """
 [quadrature]

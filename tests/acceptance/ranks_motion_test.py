@@ -2,7 +2,87 @@
 
 import unittest
 
-from tests.acceptance.on_ranks import BLOCK, PLATE, ROOT, Comparison, resume, rows
+import h5py
+import numpy
+
+from tests.acceptance.on_ranks import BLOCK, CUBE, PLATE, ROOT, SHEET, SQUARE, STATES, Comparison, resume, rows
+
+# Torn from a pre-crack and a hole by a load that sets in at once; what comes off flies away.
+TORN = """
+dimension = 2
+[lattice]
+spacing = 0.1
+thickness = 0.01
+shape = [{ add = "box", min = [0, 0], max = [1.2, 1.6] }, { subtract = "disk", centre = [0.72, 0.83], radius = 0.2 }]
+layer = [{ name = "bottom", side = "y-" }]
+[[crack]]
+from = [0, 0.9]
+to = [0.22, 0.93]
+[[set]]
+name = "upper"
+where = "y > 1.3 + 0.1*x"
+[material]
+youngs_modulus = 1e9
+density = 1000
+[material.damage]
+law = "critical_stretch"
+critical = 0.02
+no_fail = ["bottom"]
+[[support]]
+set = "bottom"
+displacement = [0, "1e-3*sin(4000*t)"]
+[[load]]
+set = "upper"
+body_force = ["2e7*t/1e-3", "4e7*(1 + x)"]
+[[initial]]
+velocity = ["6*(x - 0.5)*y", "22*y*y"]
+[solver]
+mode = "dynamics"
+[dynamics]
+end_time = 3e-3
+history_every = 3
+[output]
+every = 6
+count_cracks = true
+[[probe]]
+name = "length"
+set = "upper"
+field = "crack_length"
+axis = "x"
+[[probe]]
+name = "taken"
+set = "upper"
+field = "work_of_fracture"
+"""
+LAW = 'material.damage={law="tanh", onset=0.01, critical=0.03, rate=3, no_fail=["bottom"]}'
+NEWMARK = ('dynamics.scheme="newmark"', "dynamics.time_step=1e-4", 'solver.linear="pcg"',
+           'solver.preconditioner="block_jacobi"', "solver.linear_tolerance=1e-12",
+           "solver.relative_tolerance=1e-12")  # fmt: skip
+# Of other models; they are slow.
+SQUARE_IN_MOTION = SQUARE.replace('["0.4*load", "0.1*load"]', '["0.1*sin(2*t)", "free"]')
+CUBE_IN_MOTION = CUBE.replace('["0.2*load", 0, "0.05*load"]', '["0.05*t", "free", "free"]')
+STATES_IN_MOTION = STATES.replace('"0.05*load"', '"1e-4*sin(2000*t)"').replace("1e6*load*y", "1e3*y")
+SLOWLY = """
+[solver]
+mode = "dynamics"
+[dynamics]
+end_time = 1.0
+history_every = 4
+[output]
+every = 8
+stress = true
+[[initial]]
+velocity = ["0.2*x", "0.1*y*y"]
+"""
+
+
+def settings(*of):
+    return [word for setting in of for word in ("--set", setting)]
+
+
+def without_steps(text, density):
+    text = text.replace("[loading]\nsteps = 1\n", "").replace("[loading]\nsteps = 2\n", "")
+    return text.replace("[material]\n", f"[material]\ndensity = {density}\n")
 
 
 class Motions(Comparison):
@@ -124,6 +204,150 @@ class Motions(Comparison):
         again = resume(3, output)
         self.assertEqual(again.returncode, 0, again.stderr)
         self.expect_same(whole, output)
+
+
+class Torn(Comparison):
+    """The same bonds break in the same steps, wherever ranks have parts."""
+
+    def broken(self, output):
+        return [(row["step"], row["first_point"], row["second_point"]) for row in rows(output, "broken_bonds.csv")]
+
+    def compare_torn(self, text, ranks, *of):
+        one = self.compare(text, ranks, *settings(*of), solver="")
+        for count in ranks:
+            self.assertEqual(self.broken(one), self.broken(self.folder / f"on_{count}"))
+        self.assertGreater(len({step for step, _, _ in self.broken(one)}), 2)
+        return one
+
+    def test_a_plate_that_flies_apart(self):
+        one = self.compare_torn(TORN, (2, 3))
+        self.assertGreater(len(rows(one, "broken_bonds.csv")), 200)
+        self.assertIn("change time step", {row["action"] for row in rows(one, "decisions.csv")})
+        with h5py.File(one / "results.h5") as file:
+            self.assertGreater(file["history/max_damage"][-1], 0.8)
+            step = list(file["steps"])[-1]
+            moved = file[f"steps/{step}/displacement"][()]
+            self.assertGreater(numpy.ptp(moved[:, 1]), 0.2)
+
+    def test_bonds_that_soften_under_steps_that_are_given(self):
+        self.compare_torn(TORN, (3,), LAW, "dynamics.time_step=5e-5", "dynamics.history_every=1", "output.every=7")
+
+    def test_triangles_that_are_lost_with_their_bonds(self):
+        text = SHEET + 'displacement = ["0.5*t", "0.1*t"]' + SLOWLY
+        self.compare_torn(text, (2, 3), "dynamics.end_time=1.2", 'initial=[{velocity=["0.1*x*x", "0.1*y"]}]')
+
+    def test_a_bar_thinner_than_the_horizon_and_ranks_without_a_point(self):
+        bar = """
+            dimension = 1
+            [lattice]
+            spacing = 0.1
+            area = 2.0
+            shape = [{ add = "box", min = [0], max = [0.5] }]
+            [material]
+            micromodulus = 7.0
+            density = 3.0
+            damage = { law = "critical_stretch", critical = 0.02 }
+            [solver]
+            mode = "dynamics"
+            [dynamics]
+            end_time = 3.0
+            time_step = 0.1
+            history_every = 1
+            [[initial]]
+            velocity = ["0.12*x*x + 0.1"]
+        """
+        self.compare_torn(bar, (2, 7))
+        codes = set()
+        for ranks in (1, 3):  # all bonds break
+            run, output = self.start(ranks, bar.replace("0.12*x*x", "x*x").replace("time_step = 0.1", "step_share = 0.9"))
+            codes.add((run.returncode, rows(output, "history.csv")[-1]["broken_bonds"], rows(output, "decisions.csv")[-1]["reason"]))
+        self.assertEqual(len(codes), 1)
+        self.assertIn("nothing has a stiffness", codes.pop()[2])
+
+    def test_tears_that_go_on_with_other_numbers_of_ranks(self):
+        for of in ((LAW,), (LAW, *NEWMARK)):
+            with self.subTest(settings=of):
+                options = settings(*of, "dynamics.history_every=1")
+                whole = self.results(1, TORN, *options).rename(self.folder / f"whole_{len(of)}")
+                run, output = self.start(2, TORN, *options, "--stop-after", "7")
+                self.assertEqual(run.returncode, 130, run.stderr)
+                count = len(self.broken(output))
+                self.assertGreater(count, 20)
+                again = resume(3, output)
+                self.assertEqual(again.returncode, 0, again.stderr)
+                self.assertGreater(len(self.broken(output)), count)
+                self.assertEqual(self.broken(whole), self.broken(output))
+                self.expect_same(whole, output)
+
+
+class Implicit(Comparison):
+    """Newmark's steps, whose tangent has masses."""
+
+    def test_a_plate_whose_supports_and_loads_move(self):
+        one = self.compare(Motions.MOVING + Motions.STEPS, (2, 3), *settings(*NEWMARK, "dynamics.spectral_radius=0.8"), solver="")
+        self.assertGreater(float(rows(one, "history.csv")[-1]["newton_iterations"]), 0)
+
+    def test_a_plate_that_is_torn(self):
+        one = self.compare(TORN, (2, 3), *settings(*NEWMARK), solver="")
+        self.assertGreater(len(rows(one, "broken_bonds.csv")), 200)
+
+    def test_preconditioners(self):
+        for kind in ("jacobi", "rigid_pieces", "auto"):
+            self.compare(TORN, (3,), *settings(*NEWMARK, f'solver.preconditioner="{kind}"', "dynamics.end_time=3e-4"), solver="")
+
+    def test_ranks_without_a_point(self):
+        bar = """
+            dimension = 1
+            [lattice]
+            spacing = 0.1
+            area = 2.0
+            shape = [{ add = "box", min = [0], max = [0.5] }]
+            [material]
+            micromodulus = 7.0
+            density = 3.0
+            [[initial]]
+            velocity = ["0.01*x*x + 0.1"]
+            [solver]
+            mode = "dynamics"
+            [dynamics]
+            end_time = 3.0
+        """
+        self.compare(bar, (7,), *settings(*NEWMARK, "dynamics.time_step=0.2"), solver="")
+
+    def test_steps_that_are_refused(self):
+        for ranks in (1, 2):
+            run, _ = self.start(ranks, TORN, *settings(*NEWMARK, "dynamics.time_step=1e-9"))
+            self.assertEqual(run.returncode, 2)
+            self.assertIn("shorter than a thousandth of the stable explicit step", run.stderr)
+
+
+class OtherModels(Comparison):
+    """Triangles, tetrahedra and states in motion, with their stress."""
+
+    def compare_slow(self, text, ranks, density, *of):
+        text = without_steps(text, density)
+        one = self.compare(text + SLOWLY, ranks, *settings(*of), solver="")
+        self.assertGreater(len(rows(one, "history.csv")), 2)
+        with h5py.File(one / "results.h5") as file:
+            last = file["steps"][list(file["steps"])[-1]]
+            self.assertGreater(numpy.abs(last["cauchy_stress"][()]).max(), 0.0)
+
+    def test_triangles(self):
+        self.compare_slow(SQUARE_IN_MOTION, (2, 3), 0.002, 'set=[{name="corner", where="x > 0.7 && y > 0.3"}]',
+                          'region=[{set="corner", material={c1=2.0, c2=20.0, density=0.003}}]',
+                          'eigenstrain=[{set="corner", strain="0.01*t*x"}]')  # fmt: skip
+
+    def test_tetrahedra(self):
+        self.compare_slow(CUBE_IN_MOTION, (2,), 0.002, "dynamics.end_time=0.5", 'initial=[{velocity=["0.1*x","0.1*y*y","0.1*z"]}]')
+
+    def test_states(self):
+        """The second material has another ratio of moduli, so that ranks know other bounds of the stable step."""
+        self.compare_slow(STATES_IN_MOTION, (2, 3), 1000, "dynamics.end_time=1e-3",
+                          'region=[{set="corner", material={youngs_modulus=2e9, poisson_ratio=0.1, density=900}}]')  # fmt: skip
+
+    def test_implicit_steps(self):
+        self.compare_slow(SQUARE_IN_MOTION, (3,), 0.002, *NEWMARK, "dynamics.time_step=0.1", "dynamics.history_every=1")
+        self.compare_slow(STATES_IN_MOTION, (3,), 1000, *NEWMARK, "dynamics.end_time=1e-3", "dynamics.history_every=1")
 
 
 if __name__ == "__main__":

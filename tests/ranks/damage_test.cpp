@@ -110,7 +110,7 @@ TEST(DamageOfParts, grows_as_that_of_the_whole_body) {
     for (int pass = 0; pass < 4; ++pass) {
       const std::vector<double> u =
           Random(unsigned(5 + pass))
-              .vector(both.whole.reference.size(), (0.01 + 0.01 * pass) * both.whole.spacing);
+              .vector(both.whole.reference.size(), (0.02 + 0.02 * pass) * both.whole.spacing);
       const std::vector<double> mine = both.of_points_here(u);
       const DamageGrowth expected = all.growth({u, of_all}), found = here.growth({mine, of_part});
       EXPECT_EQ(found.degrading, expected.degrading);

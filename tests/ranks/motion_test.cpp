@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -10,6 +11,7 @@
 
 #include "solvers/ranks/distribute.hpp"
 #include "solvers/ranks/part_bonds.hpp"
+#include "solvers/study/bonds_of_part.hpp"
 #include "solvers/study/study.hpp"
 #include "src/geometry/lattice.hpp"
 #include "src/geometry/slab.hpp"
@@ -30,17 +32,22 @@ BodySpecification in_motion(const RanksBody& body) {
   return of;
 }
 
+std::unique_ptr<const Body> whole_body(const RanksBody& body, const BodySpecification& of) {
+  return make_body(make_points(body.lattice), of, 1);
+}
 std::unique_ptr<const Body> whole_body(const RanksBody& body) {
-  return make_body(make_points(body.lattice), in_motion(body), 1);
+  return whole_body(body, in_motion(body));
 }
 
-std::unique_ptr<const Body> part_of(const RanksBody& body) {
+std::unique_ptr<const Body> part_of(const RanksBody& body, const BodySpecification& of) {
   Part slab = make_slab(body.lattice, all_ranks());
-  const BodySpecification of = in_motion(body);
-  const double reach =
-      reach_of_bonds(slab.points, of.surface_correction, body.setting(), all_ranks());
+  const double reach = reach_of_bonds(slab.points, of.surface_correction, body.setting(),
+                                      all_ranks(), bonds_of_part(of));
   return make_body(distribute(std::move(slab), of.horizon, reach, all_ranks(), 1), of, all_ranks(),
                    1);
+}
+std::unique_ptr<const Body> part_of(const RanksBody& body) {
+  return part_of(body, in_motion(body));
 }
 
 StudyOptions explicit_steps() {
@@ -55,6 +62,7 @@ struct Moved {
   Outcome outcome = Outcome::inconsistent;
   std::vector<StepRecord> rows;
   std::vector<double> displacement, velocity;
+  History history{};
 };
 
 Moved move(const Body& body) {
@@ -64,6 +72,7 @@ Moved move(const Body& body) {
     moved.rows.push_back(record);
     moved.displacement = state.trial.displacement;
     moved.velocity.assign(state.velocity.begin(), state.velocity.end());
+    moved.history = state.trial.history;
   };
   moved.outcome = Study(body, explicit_steps()).follow(observer).outcome;
   return moved;
@@ -120,9 +129,74 @@ TEST(MotionOnRanks, has_the_stable_step_of_the_whole_body) {
   }
 }
 
+/// What the bonds of all ranks remember, by the numbers of their ends; expects ranks that have the
+/// same bond to have the same bits of it.
+void expect_agreement(const Body& part, const History& history) {
+  const std::span<const double> stretches = bond_stretches(part.model, history);
+  const Bonds& bonds = part.model.bonds();
+  std::vector<double> mine;
+  for (Index i = 0; i < bonds.points(); ++i) {
+    for (Offset bond = bonds.offset[i]; bond < bonds.offset[i + 1]; ++bond) {
+      const auto [low, high] = std::minmax(
+          {part.part->number_of(i), part.part->number_of(bonds.partner[std::size_t(bond)])});
+      mine.insert(mine.end(), {double(low), double(high), stretches[std::size_t(bond)]});
+    }
+  }
+  std::map<std::pair<double, double>, double> known;
+  const std::vector<double> all = all_together(all_ranks(), mine);
+  std::size_t different = 0;
+  for (std::size_t k = 0; k < all.size(); k += 3) {
+    const auto [at, is_new] = known.try_emplace({all[k], all[k + 1]}, all[k + 2]);
+    different += !is_new && at->second != all[k + 2];
+  }
+  EXPECT_EQ(different, 0u);
+}
+
+void expect_same_damage(const RanksBody& body, const BodySpecification& of) {
+  const auto whole = whole_body(body, of), part = part_of(body, of);
+  const Moved expected = move(*whole), found = move(*part);
+  EXPECT_EQ(expected.outcome, found.outcome);
+  EXPECT_EQ(found.rows.size(), expected.rows.size());
+  EXPECT_GT(expected.rows.back().broken_bonds, 0);
+  const double energy = expected.rows.front().external_work;
+  for (std::size_t k = 0; k < std::min(found.rows.size(), expected.rows.size()); ++k) {
+    const StepRecord &mine = found.rows[k], &of_whole = expected.rows[k];
+    EXPECT_EQ(mine.broken_bonds, of_whole.broken_bonds);
+    EXPECT_NEAR(mine.dissipated_energy, of_whole.dissipated_energy, 1e-10 * energy);
+    EXPECT_NEAR(mine.stored_energy, of_whole.stored_energy, 1e-10 * energy);
+    EXPECT_NEAR(mine.balance_error, of_whole.balance_error, 1e-10 * energy);
+  }
+  expect_near(*part, found.displacement, expected.displacement);
+  expect_agreement(*part, found.history);
+}
+
+TEST(MotionOnRanks, breaks_the_bonds_that_the_whole_body_breaks) {
+  for (const RanksBody& body : all_bodies()) {
+    SCOPED_TRACE(body.name);
+    BodySpecification of = in_motion(body);
+    of.material.damage.law = DamageLaw::critical_stretch;
+    of.material.damage.critical = 0.002;
+    expect_same_damage(body, of);
+  }
+}
+
+/// Bonds between ghosts are followed where nobody counts them.
+TEST(MotionOnRanks, loses_triangles_with_the_bonds_that_the_whole_body_loses) {
+  for (const RanksBody& body : {wide_layers(), plate_with_hole(), turned_plate()}) {
+    SCOPED_TRACE(body.name);
+    BodySpecification of = in_motion(body);
+    of.material = {.model = MaterialModel::cpd, .c1 = 1.0, .c2 = 30.0, .density = 0.02};
+    of.material.damage = {.law = DamageLaw::tanh, .onset = 0.01, .critical = 0.02};
+    expect_same_damage(body, of);
+  }
+}
+
 /// As many exchanges as time steps, but for those of looks at the stiffness and of rows.
 TEST(MotionOnRanks, exchanges_once_a_step) {
-  const auto part = part_of(plate_with_hole());
+  BodySpecification of = in_motion(plate_with_hole());
+  of.material.damage.law = DamageLaw::critical_stretch;
+  of.material.damage.critical = 0.05;
+  const auto part = part_of(plate_with_hole(), of);
   StudyOptions options = explicit_steps();
   options.loading.dynamics.time_step = 1e-3;  // safely below the stable one: no eigenvalue
   options.loading.dynamics.steps_per_row = 1000;

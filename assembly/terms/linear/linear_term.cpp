@@ -33,7 +33,8 @@ std::unique_ptr<LatticeForces> LinearTerm::forces(const Points& points, Workspac
 double LinearTerm::bound_over_blocks(int dimension) const {
   if (!solid_) return 2.0;
   if (is_printed()) return 0.0;
-  return states_bound_over_blocks(std::span(&solid_->setting.constants, 1), dimension);
+  const std::span constants(&solid_->setting.constants, 1);
+  return state_ratios(constants, dimension).bound_over_blocks();
 }
 
 Balances LinearTerm::balances() const {

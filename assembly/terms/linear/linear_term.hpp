@@ -34,8 +34,7 @@ class LinearTerm : public PointTerm {
 
   [[nodiscard]] std::unique_ptr<LatticeForces> forces(const Points& points,
                                                       Workspace& shared) const override;
-  /// 2 of pairs of points; of the solid see StateTerm::bound_over_blocks, of its form `printed`
-  /// none.
+  /// 2 of pairs of points; of the solid see StateRatios, of its form `printed` none.
   [[nodiscard]] double bound_over_blocks(int dimension) const override;
   [[nodiscard]] Balances balances() const override;
 

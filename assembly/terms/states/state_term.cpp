@@ -159,19 +159,19 @@ StateTerm::StateTerm(std::shared_ptr<const Bonds> bonds, BondPotential potential
   }
 }
 
-double states_bound_over_blocks(std::span<const LamePair> constants, int dimension) {
+StateRatios state_ratios(std::span<const LamePair> constants, int dimension) {
   const double d = dimension;
-  double most = 1.0, least = 1.0;
+  StateRatios of;
   for (const auto& [lambda, mu] : constants) {
     const double ratio = (d * lambda + 2.0 * mu) / ((d + 2.0) * mu);
-    most = std::max(most, ratio);
-    least = std::min(least, ratio);
+    of.most = std::max(of.most, ratio);
+    of.least = std::min(of.least, ratio);
   }
-  return 2.0 * most / least;
+  return of;
 }
 
 double StateTerm::bound_over_blocks(int dimension) const {
-  return states_bound_over_blocks(shares_.constants, dimension);
+  return state_ratios(shares_.constants, dimension).bound_over_blocks();
 }
 
 double StateTerm::stored_bytes() const {

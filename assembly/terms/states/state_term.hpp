@@ -41,10 +41,7 @@ class StateTerm : public BondTerm {
   [[nodiscard]] const StateShares& shares() const { return shares_; }
   [[nodiscard]] const StateNetwork& network() const { return network_; }
 
-  /// A number c so that no eigenvalue of M^-1 K, M the masses of points, exceeds c times the
-  /// largest of the diagonal blocks: Pi is at most R times the bonds' part, R the largest of 1 and
-  /// (d lambda + 2 mu) / ((d + 2) mu), at least R' times it, R' the smallest of these, and of pairs
-  /// of points the number is 2. So c = 2 R / R'.
+  /// See StateRatios.
   [[nodiscard]] double bound_over_blocks(int dimension) const;
 
   [[nodiscard]] Couplings couplings() const override {
@@ -61,7 +58,16 @@ class StateTerm : public BondTerm {
   StateNetwork network_;
 };
 
-/// See StateTerm::bound_over_blocks, of points with these constants.
-[[nodiscard]] double states_bound_over_blocks(std::span<const LamePair> constants, int dimension);
+/// How large Pi is over the bonds' part of it: at most R, the largest of 1 and (d lambda + 2 mu) /
+/// ((d + 2) mu) of the points, and at least R', the smallest of these.
+struct StateRatios {
+  double most = 1.0, least = 1.0;
+
+  /// A number c so that no eigenvalue of M^-1 K, M the masses of points, exceeds c times the
+  /// largest of the diagonal blocks: of pairs of points it is 2, so c = 2 R / R'.
+  [[nodiscard]] double bound_over_blocks() const { return 2.0 * most / least; }
+};
+
+[[nodiscard]] StateRatios state_ratios(std::span<const LamePair> constants, int dimension);
 
 }  // namespace peristat

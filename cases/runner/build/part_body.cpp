@@ -54,7 +54,8 @@ constexpr std::array keys_of_ranks{
     "solver.linear", "solver.preconditioner", "solver.tangent", "solver.predictor",
     "solver.relative_tolerance", "solver.linear_tolerance", "solver.max_iterations",
     // results
-    "output.directory", "output.every", "output.stress", "output.count_cracks", "probe."};
+    "output.directory", "output.every", "output.stress", "output.count_cracks", "probe.",
+    "crack_tip."};
 
 /// "load[2].body_force[0]" as "load.body_force".
 std::string without_numbers(const std::string& key) {
@@ -102,21 +103,17 @@ void refuse_values_without_ranks(const Case& from) {
   const bool is_lattice = std::holds_alternative<Lattice>(from.body);
   const bool has_shares = from.volume_correction != VolumeCorrection::none &&
                           from.volume_correction != VolumeCorrection::linear;
-  const Mode mode = from.solver.mode;
-  const bool moves = mode == Mode::dynamics;
-  if (from.material.model != MaterialModel::bond && (moves || tells_stress(from))) {
-    refuse(moves ? "solver.mode" : "output.stress", "", "it is for model \"bond\"");
-  }
   if (from.material.model != MaterialModel::bond && (!is_lattice || has_shares)) {
     refuse("material.model", "",
            "models but \"bond\" are for a lattice, and volume_correction \"none\" or \"linear\"");
   }
+  if (!from.crack_tips.empty() && !from.constraints.none()) {
+    refuse("crack_tip", "", "its integrals on ranks are of bodies without constraints");
+  }
+  const Mode mode = from.solver.mode;
   if (mode == Mode::path || mode == Mode::arc_length) {
     refuse("solver.mode", std::string(mode.name),
            "take \"newton\", \"adaptive\", \"relaxation\" or \"dynamics\"");
-  }
-  if (from.dynamics.is_asked_for && from.dynamics.is_implicit()) {
-    refuse("dynamics.scheme", "\"newmark\"", "take \"verlet\"");
   }
 }
 

@@ -158,6 +158,7 @@ class CaseRun {
       earlier_results_ = earlier_->results(support_sets_, probes_, further_.lines);
       earlier_->load(numbering());
       require_body_of(*earlier_);
+      earlier_->find_followers(study_->equations().assembler());
     }
     count(*body_, study_->free(), options_, ranks_, summary_);
     tell_size();

@@ -187,6 +187,11 @@ void EarlierRun::load(StateNumbering* numbering) {
   checkpoint_.path.rungs = rungs;
 }
 
+void EarlierRun::find_followers(const Assembler& body) {
+  History& history = checkpoint_.path.accepted.history;
+  history = with_followers(std::move(history), body);
+}
+
 bool EarlierRun::is_concluded() const { return is_gathered_ && fs::exists(folder_.summary()); }
 
 EarlierResults EarlierRun::results(const std::vector<std::string>& support_sets,

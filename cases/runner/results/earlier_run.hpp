@@ -48,6 +48,8 @@ class EarlierRun {
   /// Reads the arrays of the checkpoint's state; a call that all ranks make.
   /// @param numbering of this rank's part; null: the body is whole
   void load(StateNumbering* numbering);
+  /// Completes a state that is of this body with what terms remember that follow others.
+  void find_followers(const Assembler& body);
   /// Other solvers than before begin at the top of their ladders.
   void forget_solvers() { checkpoint_.path.rungs = {}; }
   /// Whether the run has gathered its results and said how it ended.

@@ -149,6 +149,7 @@ void Recorder::note_growth(const StepRecord& record) {
 
 Checkpoint Recorder::checkpoint(const PathState& path) const {
   Checkpoint made{path, {}, 0, {}, {}};
+  made.path.accepted.history = own_history(path.accepted.history, assembler_);
   if (!unwritten_) return made;
   made.unwritten.force = unwritten_->force;
   if (unwritten_->histories) {

@@ -5,7 +5,7 @@
 #include <tuple>
 #include <utility>
 
-#include "solvers/ranks/ranks.hpp"
+#include "solvers/ranks/heard_of_bonds.hpp"
 #include "src/core/concatenated.hpp"
 
 namespace peristat {
@@ -158,27 +158,11 @@ void StateNumbering::give_to_ghosts(std::vector<double>& values, std::size_t wid
 }
 
 void StateNumbering::give_bonds(std::vector<double>& values) const {
-  Records told{1, 2, {}, {}};
-  std::vector<int> to;
-  for (Index point = 0; point < part_.owned(); ++point) {
-    for (const Offset bond : told_bonds(point)) {
-      const Index other = bonds_.partner[bond];
-      if (other < part_.owned()) continue;
-      to.push_back(part_.owner_of_ghost(other));
-      told.values.push_back(values[std::size_t(bond)]);
-      told.numbers.insert(told.numbers.end(), {part_.number_of(point), part_.number_of(other)});
-    }
-  }
-  const Records received = exchange(part_.ranks(), to, told);
-  for (std::size_t k = 0; k < received.values.size(); ++k) {
-    // Here the point that another rank owns is a ghost, and the upper one.
-    const auto lower = part_.find(received.numbers[2 * k + 1]);
-    const auto upper = part_.find(received.numbers[2 * k]);
-    const auto begin = bonds_.partner.begin() + bonds_.offset[lower.value()];
-    const auto end = bonds_.partner.begin() + bonds_.offset[lower.value() + 1];
-    const auto bond = std::lower_bound(begin, end, upper.value());
-    if (bond == end || *bond != *upper) throw std::logic_error("a bond that one rank alone has");
-    values[std::size_t(bond - bonds_.partner.begin())] = received.values[k];
+  const HeardOfBonds heard =
+      heard_of_bonds(bonds_, part_.points(), part_.ranks(), 1,
+                     [&](Offset bond, double* to) { *to = values[std::size_t(bond)]; });
+  for (std::size_t k = 0; k < heard.bond.size(); ++k) {
+    values[std::size_t(heard.bond[k])] = heard.values[k];
   }
 }
 

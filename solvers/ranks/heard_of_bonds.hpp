@@ -1,0 +1,27 @@
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "solvers/ranks/numbered_points.hpp"
+#include "src/core/communicator.hpp"
+#include "src/neighbourhood/bonds.hpp"
+
+namespace peristat {
+
+/// What other ranks tell of bonds that a part has.
+struct HeardOfBonds {
+  std::vector<Offset> bond{};
+  std::vector<double> values{};  ///< as many of each bond
+};
+
+/// Of every bond the rank tells that owns its end with the lower number in the whole body: those
+/// that have it, too, ask for it, also for one between two of their ghosts. A call that all ranks
+/// make.
+/// @param width how many values tell(bond, to) writes of a bond
+/// @throws std::logic_error if a rank asks for a bond that the other one does not have
+[[nodiscard]] HeardOfBonds heard_of_bonds(const Bonds& bonds, const NumberedPoints& points,
+                                          const Communicator& ranks, int width,
+                                          const std::function<void(Offset, double*)>& tell);
+
+}  // namespace peristat

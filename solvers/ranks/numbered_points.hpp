@@ -1,0 +1,35 @@
+#pragma once
+
+#include <optional>
+#include <span>
+
+#include "src/core/types.hpp"
+#include "src/geometry/part.hpp"
+
+namespace peristat {
+
+/// The points of a part by their numbers in the whole body: those that its rank owns, then ghosts.
+struct NumberedPoints {
+  std::span<const GlobalIndex> owned, ghosts;  ///< numbers, ascending
+  std::span<const int> owner;                  ///< rank that owns each ghost
+
+  /// Images come after ghosts.
+  [[nodiscard]] bool is_ghost(Index point) const {
+    const auto at = std::size_t(point);
+    return at >= owned.size() && at < owned.size() + ghosts.size();
+  }
+  [[nodiscard]] GlobalIndex number_of(Index point) const {
+    const auto at = std::size_t(point);
+    return is_ghost(point) ? ghosts[at - owned.size()] : owned[at];
+  }
+  [[nodiscard]] int owner_of_ghost(Index point) const {
+    return owner[std::size_t(point) - owned.size()];
+  }
+  /// The point that has a number, if it is here.
+  [[nodiscard]] std::optional<Index> find(GlobalIndex number) const;
+};
+
+/// Those of a part, which outlives them.
+[[nodiscard]] NumberedPoints numbered_points(const Part& part);
+
+}  // namespace peristat
