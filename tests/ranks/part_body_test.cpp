@@ -264,9 +264,9 @@ struct InEquations {
     const Constraints& constraints = body.conditions->constraints();
     const auto d = std::size_t(body.points.dimension);
     const std::size_t of_points = body.points.reference.size();
-    const auto random = [&](unsigned seed, double scale) {
-      const std::vector<double> points = Random(seed).vector(dofs_of_whole, scale),
-                                handles = Random(seed + 1).vector(12, scale);
+    const auto random = [&](unsigned seed, double size) {
+      const std::vector<double> points = Random(seed).vector(dofs_of_whole, size),
+                                handles = Random(seed + 1).vector(12, size);
       std::vector<double> values(constraints.dofs(), 7e3);  // of ghosts and images
       for (Index i = 0; i < body.points.own(); ++i) {
         if (!body.points.owns(i)) continue;
