@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 """Bodies on MPI ranks: seconds, memory, messages and bytes beside the model of docs/cluster.md.
 
-    benchmarks/ranks.py [--side N] [--rounds N] [--program FILE]
+    benchmarks/ranks.py [--side N] [--rounds N] [--preconditioner NAME] [--most N] [--program FILE]
 
 A cube of N x N x N points (50) with layers of three that are held and moved, one static step. Each
-round takes all numbers of ranks in turns; seconds are the least of the rounds (3).
+round takes all numbers of ranks, up to --most (8), in turns; seconds are the least of the rounds (3).
 """
 
 import argparse
@@ -41,18 +41,19 @@ displacement = ["1e-3*load", 0, 0]
 steps = 1
 [solver]
 linear = "pcg"
-preconditioner = "block_jacobi"
+preconditioner = "{preconditioner}"
 tangent = "matrix_free"
 """
 # (ranks, threads of each); the first is what the model's constants come from.
 RUNS = [(1, 1), (1, 2), (2, 1), (3, 1), (4, 1), (8, 1)]
 
 
-def run(program, side, ranks, threads, folder):
+def run(wanted, side, ranks, threads, folder):
     """What a run tells of itself; every message of it, if it fails."""
     case = folder / "cube.toml"
-    case.write_text(CASE.format(spacing=1 / side, ratio=HORIZON_RATIO, layer=LAYER))
-    command = [program, "run", case, "--threads", str(threads), "--no-plots", "--overwrite",
+    case.write_text(CASE.format(spacing=1 / side, ratio=HORIZON_RATIO, layer=LAYER,
+                                preconditioner=wanted.preconditioner))
+    command = [wanted.program, "run", case, "--threads", str(threads), "--no-plots", "--overwrite",
                "--output", folder / "results"]
     if ranks > 1:
         command += ["--ranks", str(ranks)]
@@ -155,18 +156,23 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n\n", maxsplit=1)[0])
     parser.add_argument("--side", type=int, default=50, metavar="N")
     parser.add_argument("--rounds", type=int, default=3, metavar="N")
+    parser.add_argument("--preconditioner", default="block_jacobi", metavar="NAME")
+    parser.add_argument("--most", type=int, default=8, metavar="N")
     parser.add_argument("--program", type=pathlib.Path, default=PROGRAM, metavar="FILE")
     wanted = parser.parse_args()
     side = wanted.side
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
-        half = run(wanted.program, side // 2, 1, 1, folder)
-        rounds = [{to: run(wanted.program, side, *to, folder) for to in RUNS} for _ in range(wanted.rounds)]
-    told = {to: least([one[to] for one in rounds]) for to in RUNS}
-    one = told[RUNS[0]]
+        half = run(wanted, side // 2, 1, 1, folder)
+        half_on_two = run(wanted, side // 2, 2, 1, folder)
+        runs = [to for to in RUNS if to[0] <= wanted.most]
+        rounds = [{to: run(wanted, side, *to, folder) for to in runs} for _ in range(wanted.rounds)]
+    told = {to: least([one[to] for one in rounds]) for to in runs}
+    one = told[runs[0]]
     per_point = (one["peak_memory_bytes"] - half["peak_memory_bytes"]) / (one["points"]
                                                                          - half["points"])
-    program = one["peak_memory_bytes"] - per_point * one["points"]
+    program = half_on_two["peak_memory_bytes"] - per_point * (half_on_two["own"]
+                                                              + half_on_two["ghosts"] / 2)
     per_bond = one["seconds"]["linear"] / (one["linear_iterations"] * one["bonds"])
     growth = np.log(one["linear_iterations"] / half["linear_iterations"]) / np.log(side
                                                                                    / (side // 2))
@@ -176,8 +182,8 @@ def main():
 
     table_of_runs(told)
     table_of_counts(told, side, memory)
-    print(f"\n{per_bond * 1e9:.2f} ns a bond and product; {program / 1e6:.0f} MB + {per_point:.0f} B "
-          f"a point; iterations {half['linear_iterations']} at {side // 2}, "
+    print(f"\n{per_bond * 1e9:.2f} ns a bond and product; {program / 1e6:.0f} MB of a rank + "
+          f"{per_point:.0f} B a point; iterations {half['linear_iterations']} at {side // 2}, "
           f"{one['linear_iterations']} at {side}: exponent {growth:.2f}")
     for points, ranks in ((1e8, 1000), (1e9, 10000)):
         forecast(points, ranks, side, one["linear_iterations"], growth, per_bond, memory)
