@@ -13,14 +13,13 @@ struct NumberedPoints {
   std::span<const GlobalIndex> owned, ghosts;  ///< numbers, ascending
   std::span<const int> owner;                  ///< rank that owns each ghost
 
-  /// Images come after ghosts.
+  [[nodiscard]] bool is_owned(Index point) const { return std::size_t(point) < owned.size(); }
   [[nodiscard]] bool is_ghost(Index point) const {
-    const auto at = std::size_t(point);
-    return at >= owned.size() && at < owned.size() + ghosts.size();
+    return !is_owned(point) && std::size_t(point) < owned.size() + ghosts.size();
   }
   [[nodiscard]] GlobalIndex number_of(Index point) const {
     const auto at = std::size_t(point);
-    return is_ghost(point) ? ghosts[at - owned.size()] : owned[at];
+    return is_owned(point) ? owned[at] : ghosts[at - owned.size()];
   }
   [[nodiscard]] int owner_of_ghost(Index point) const {
     return owner[std::size_t(point) - owned.size()];

@@ -28,12 +28,12 @@ class PartOfBody : public Sharing {
 
   [[nodiscard]] const std::vector<GlobalIndex>& number() const override { return number_; }
   /// Of a point that is here, perhaps a ghost.
-  [[nodiscard]] GlobalIndex number_of(Index point) const { return points().number_of(point); }
+  [[nodiscard]] GlobalIndex number_of(Index point) const { return numbered().number_of(point); }
   /// The point that has a number in the whole body, if it is here.
   [[nodiscard]] std::optional<Index> find(GlobalIndex number) const {
-    return points().find(number);
+    return numbered().find(number);
   }
-  [[nodiscard]] NumberedPoints points() const { return {number_, ghost_number_, ghost_owner_}; }
+  [[nodiscard]] NumberedPoints numbered() const { return {number_, ghost_number_, ghost_owner_}; }
   [[nodiscard]] GlobalIndex whole() const { return whole_; }  ///< points of the whole body
   [[nodiscard]] Traffic traffic() const { return ghosts_->traffic(); }
 

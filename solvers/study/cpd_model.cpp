@@ -245,7 +245,7 @@ Model make_cpd_model(const BodySpecification& from, const PointMaterials& materi
     left.remove_if(
         [&](Index, Offset bond) { return setting.influence_at(left.length(bond)) == 0.0; });
   }
-  if (part) agree_on_kinds(left, part->points(), part->ranks());
+  if (part) agree_on_kinds(left, part->numbered(), part->ranks());
   cut = cut_bonds(left, points, from.cracks);
   auto [potential, never_fails] = mixed.potential(left);
   Model model(std::move(left), std::move(potential), std::move(never_fails));

@@ -369,8 +369,8 @@ class Refused(Resumed):
 
     def test_an_older_layout(self):
         version = peristat("--version").output.split()[1]
-        self.change_checkpoint(lambda data: data.replace(f"checkpoint 6 {version}".encode(), b"checkpoint 0 0.0.7"))
-        self.refuses(["layout 0 of peristat 0.0.7", f"this is peristat {version}, which goes on from layout 6"])
+        self.change_checkpoint(lambda data: data.replace(f"checkpoint 7 {version}".encode(), b"checkpoint 0 0.0.7"))
+        self.refuses(["layout 0 of peristat 0.0.7", f"this is peristat {version}, which goes on from layout 7"])
 
     def test_points_that_are_others(self):
         with h5py.File(self.out / "results.h5", "r+") as file:

@@ -159,7 +159,7 @@ void StateNumbering::give_to_ghosts(std::vector<double>& values, std::size_t wid
 
 void StateNumbering::give_bonds(std::vector<double>& values) const {
   const HeardOfBonds heard =
-      heard_of_bonds(bonds_, part_.points(), part_.ranks(), 1,
+      heard_of_bonds(bonds_, part_.numbered(), part_.ranks(), 1,
                      [&](Offset bond, double* to) { *to = values[std::size_t(bond)]; });
   for (std::size_t k = 0; k < heard.bond.size(); ++k) {
     values[std::size_t(heard.bond[k])] = heard.values[k];
