@@ -132,7 +132,7 @@ std::vector<Offset> StateNumbering::told_bonds(Index point) const {
   for (Offset bond = bonds_.offset[point]; bond < bonds_.offset[point + 1]; ++bond) {
     if (points_.tells(point, bonds_.partner[bond])) told.push_back(bond);
   }
-  std::ranges::sort(told, {}, [&](Offset bond) { return part_.number_of(bonds_.partner[bond]); });
+  std::ranges::sort(told, {}, [&](Offset bond) { return points_.number(bonds_.partner[bond]); });
   return told;
 }
 
