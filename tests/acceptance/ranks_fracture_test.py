@@ -75,13 +75,15 @@ class Fracture(Comparison):
         self.assertGreater(len(rows(one, "broken_bonds.csv")), 50)
 
     def test_several_materials(self):
-        two = ('set=[{name="upper", where="y > 0.9"}]',
-               'region=[{set="upper", material={youngs_modulus=2e9, damage={law="linear", onset=0.015, critical=0.04}, '
-               'scatter=[{of="strength", distribution="weibull", weibull_modulus=8, correlation_length=0.2, seed=3}]}}]',
-               'interface=[{between=["upper", "material"], material={youngs_modulus=1e9, '
-               'damage={law="critical_stretch", critical=0.02}}}]')  # fmt: skip
-        one = self.compare_torn((2, 3), *two, 'solver.mode="adaptive"')
-        self.assertGreater(len(rows(one, "broken_bonds.csv")), 20)
+        upper = ('damage={law="tanh", onset=0.03, critical=0.5, rate=3}, scatter=[{of="strength", distribution="weibull", '
+                 'weibull_modulus=8, correlation_length=0.2, seed=3}]')  # fmt: skip
+        one = self.compare_torn(
+            (2, 3), 'material.damage={law="linear", onset=0.03, critical=0.6}', 'solver.mode="newton"',
+            'set=[{name="upper", where="y > 0.9"}]', f'region=[{{set="upper", material={{youngs_modulus=2e9, {upper}}}}}]',
+            'interface=[{between=["upper", "material"], material={youngs_modulus=1e9, damage={law="critical_stretch", critical=0.11}}}]')  # fmt: skip
+        with h5py.File(one / "results.h5") as file:
+            self.assertGreater(file["history/dissipated_energy"][-1], 0.0)
+        self.assertGreater(len(rows(one, "broken_bonds.csv")), 0)
 
     def test_ends_of_fracture(self):
         for settings in (
