@@ -347,20 +347,17 @@ bool has_pressure(const BodySpecification& of) {
   });
 }
 
-/// Linear constraints, and rollers that touch at a place, have followers of points of all ranks.
+/// Rollers have handles point by point, linear constraints followers of points of all ranks.
 template <class Refuse>
 void refuse_constraints_without_ranks(const BodySpecification& of, const Refuse& refuse) {
   const ConstraintSpecification& constraints = of.constraints;
-  for (std::size_t k = 0; k < constraints.rollers.size(); ++k) {
-    if (constraints.rollers[k].at) refuse("rollers[" + std::to_string(k) + "].at");
-  }
+  if (!constraints.rollers.empty()) refuse("rollers");
   if (!constraints.linear.empty()) refuse("linear");
   if (constraints.none()) return;
   const bool has_images = !constraints.symmetries.empty() || !constraints.periods.empty();
-  const std::string key = !constraints.rollers.empty()      ? "rollers"
-                          : !constraints.rigid_sets.empty() ? "rigid_sets"
-                          : !constraints.periods.empty()    ? "periods"
-                                                            : "symmetries";
+  const std::string key = !constraints.rigid_sets.empty() ? "rigid_sets"
+                          : !constraints.periods.empty()  ? "periods"
+                                                          : "symmetries";
   const auto refuse_with = [&](const std::string& what) {
     throw InputError(key, "", "is not for more than one rank yet together with " + what);
   };
@@ -384,7 +381,7 @@ void refuse_without_ranks(const BodySpecification& of) {
     throw InputError(
         key, "",
         "is not for more than one rank yet: there are bodies with pre-cracks, supports, "
-        "rigid sets, rollers, planes of symmetry, periods, foundations, eigenstrains, tractions, "
+        "rigid sets, planes of symmetry, periods, foundations, eigenstrains, tractions, "
         "pressures, body forces, total forces and gravity, and damage of bonds and triangles");
   };
   const MaterialSpecification& material = of.material;

@@ -79,7 +79,7 @@ void refuse_modes_without_ranks(const Body& body, const StudyOptions& options) {
   if (mode == Mode::relaxation && !body.conditions->constraints().none()) {
     throw InputError("loading.mode", std::string(mode.name),
                      "is not for more than one rank together with planes of symmetry, periods, "
-                     "rigid sets and rollers; take newton");
+                     "rigid sets; take newton");
   }
   if (mode != Mode::path && mode != Mode::arc_length) return;
   throw InputError("loading.mode", std::string(mode.name),

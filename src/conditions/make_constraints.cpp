@@ -10,7 +10,6 @@
 #include "src/conditions/points_of_set.hpp"
 #include "src/core/input_error.hpp"
 #include "src/core/number_text.hpp"
-#include "src/core/sharing.hpp"
 #include "src/measures/small_algebra.hpp"
 
 namespace peristat {
@@ -270,36 +269,6 @@ class Maker {
     return scaled<3>(1.0 / size, spec.normal);
   }
 
-  struct Member {
-    Coordinates place{};
-    std::optional<Index> here{};  ///< the point, on ranks that have it
-  };
-
-  /// Points of a set that all ranks have parts of, alike on all of them: in the order of the set,
-  /// or of the places.
-  [[nodiscard]] std::vector<Member> members_of_all(const std::vector<Index>& members) const {
-    std::vector<Member> all;
-    if (!ranks_) {
-      for (const Index member : members) all.push_back({points_.position(member), member});
-      return all;
-    }
-    std::vector<double> places;
-    std::map<Coordinates, Index> here;
-    for (const Index member : members) {
-      const Coordinates at = points_.position(member);
-      here.emplace(at, member);
-      if (points_.owns(member)) places.insert(places.end(), at.begin(), at.end());
-    }
-    places = all_together(*ranks_, places);
-    for (std::size_t k = 0; k < places.size(); k += 3) {
-      const Coordinates at{places[k], places[k + 1], places[k + 2]};
-      const auto found = here.find(at);
-      all.push_back({at, found == here.end() ? std::nullopt : std::optional(found->second)});
-    }
-    std::ranges::sort(all, {}, &Member::place);
-    return all;
-  }
-
   void make_rollers(std::size_t k) {
     const RollerSpecification& spec = of_.rollers[k];
     const std::string table = indexed("rollers", k);
@@ -314,7 +283,9 @@ class Maker {
       leave_unused(common, 1);
       restraint.handles.push_back(common);
     }
-    for (const auto& [place, here] : members_of_all(members)) {
+    for (const Index member : members) {
+      hold(member, table + ".set", "the roller of set " + spec.set);
+      const Coordinates place = points_.position(member);
       const Index own = made_.constraints.add_handle(place);
       if (!is_free) {
         prescribe(table + ".displacement", spec.displacement, dof(own, 0), 1.0, &place);
@@ -322,9 +293,6 @@ class Maker {
       } else {
         made_.unused.push_back(dof(own, 0));
       }
-      if (!here) continue;
-      const Index member = *here;
-      hold(member, table + ".set", "the roller of set " + spec.set);
       for (int c = 1; c < dimension(); ++c) {
         made_.slides.push_back({dof(own, c), member, basis[std::size_t(c)]});
       }

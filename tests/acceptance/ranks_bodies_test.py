@@ -151,13 +151,6 @@ class Bodies(Comparison):
         one = self.compare(free, (2, 3), solver=STORED)
         self.assertNotEqual(float(rows(one, "history.csv")[-1]["moment_z:corner"]), 0.0)
 
-    def test_rollers(self):
-        sloped = PLATE.replace('[[support]]\nset = "top"\ndisplacement = [0, "0.05*load"]',
-                               '[[roller]]\nset = "top"\nnormal = [1, 3]\ndisplacement = "0.05*load*(1+x)"')  # fmt: skip
-        one = self.compare(sloped, (2, 3), solver=STORED)
-        self.assertNotEqual(float(rows(one, "history.csv")[-1]["reaction_y:top"]), 0.0)
-        self.compare(sloped.replace('"0.05*load*(1+x)"', '"free"'), (3,), solver=STORED)
-
     def test_temperatures(self):
         case = (ROOT / "cases/thermal/bimetal.toml").read_text()
         held = '[[support]]\nset = "steel"\ndisplacement = [0, "free"]\n[[support]]\nset = "middle"\ndisplacement = ["free", 0]\n[[support]]\nset = "tip"\ndisplacement = [0, "free"]\n'

@@ -165,7 +165,7 @@ class Refusals(OnRanks):
             'solver.preconditioner="local_operator"',
             'material.kinematics="linear"',
             'lattice.points="blue_noise"',
-            'roller=[{name="r", at=[0.5, 1.5], normal=[0, 1]}]',
+            'roller=[{set="corner", normal=[1, 0]}]',
             'constraint=[{name="c", term=[{set="corner", weights=[1, 0]}]}]',
             'control=[{set="corner", weights=[1, 0]}]',
         ):
