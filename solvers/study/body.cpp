@@ -365,6 +365,7 @@ void refuse_constraints_without_ranks(const BodySpecification& of, const Refuse&
   if (has_damage(of)) refuse_with("damage");
   if (of.end_time) refuse_with("motions");
   if (has_images && has_pressure(of)) refuse_with("pressures");
+  if (has_images && !of.cracks.empty()) refuse_with("pre-cracks");
 }
 
 /// Laws that differ from bond to bond are tested of bonds alone; what states lose has no sum over
