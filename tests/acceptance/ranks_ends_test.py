@@ -229,10 +229,10 @@ class Refusals(OnRanks):
         self.assertEqual(said[0], said[1])
         self.assertEqual(said[0], said[2])
 
-    def test_damage_of_several_materials_and_of_states(self):
+    def test_damage_of_several_materials_of_triangles_and_of_states(self):
         damage = 'material.damage={law="critical_stretch", critical=0.1}'
-        region = 'region=[{set="corner", material={youngs_modulus=1e8}}]'
-        self.assertIn("material.damage", self.refusal(PLATE, "--set", damage, "--set", region))
+        region = 'region=[{set="held", material={c1=2.0}}]'
+        self.assertIn("material.damage", self.refusal(SQUARE, "--set", damage, "--set", region))
         self.assertIn("material.damage", self.refusal(STATES, "--set", damage))
 
     def test_another_number_of_ranks_than_was_started(self):
