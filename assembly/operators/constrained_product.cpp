@@ -58,11 +58,7 @@ std::vector<double> ConstrainedProduct::positions() const {
 }
 
 void ConstrainedProduct::sum_handles(std::span<double> of_dofs) const {
-  const std::span<double> handles = of_dofs.subspan(points_.reference.size());
-  if (!sharing_ || handles.empty()) return;
-  const std::vector<double> all =
-      sharing_->ranks().sum(std::vector<double>(handles.begin(), handles.end()));
-  std::copy(all.begin(), all.end(), handles.begin());
+  if (sharing_) add_up(sharing_->ranks(), of_dofs.subspan(points_.reference.size()));
 }
 
 void ConstrainedProduct::add_to_diagonal(const std::vector<Dependence>& of_i, const Tensor& block,
@@ -124,13 +120,8 @@ void ConstrainedProduct::linearise(Energy& energy, const StateView& at, double p
     add_to_diagonal(masters, tensor_of(&whole_->diagonal[std::size_t(i) * d * d], d), masters);
   }
   if (whole_->has_rows()) add_blocks_between_followers();
-  const std::size_t handles = std::size_t(points_.count()) * d * d;
-  if (sharing_ && handles < diagonal.size()) {
-    const auto first = diagonal.begin() + std::ptrdiff_t(handles);
-    const std::vector<double> all =
-        sharing_->ranks().sum(std::vector<double>(first, diagonal.end()));
-    std::copy(all.begin(), all.end(), first);
-  }
+  const std::size_t of_points = std::size_t(points_.count()) * d * d;
+  if (sharing_) add_up(sharing_->ranks(), std::span(diagonal).subspan(of_points));
   const auto& sets = constraints_.rigid_sets();
   for (std::size_t k = 0; k < curvature_.size(); ++k) {
     double* const to = &diagonal[std::size_t(sets[k].rotation) * d * d];
@@ -146,7 +137,7 @@ void ConstrainedProduct::multiply(std::span<const double> v, std::span<double> r
   whole_->multiply(std::span<const double>(moved_).first(of_points), result.first(of_points));
   const auto d = std::size_t(dimension);
   for (Index i = 0; sharing_ && i < points_.count(); ++i) {
-    if (!points_.owns(i)) std::fill_n(result.begin() + std::ptrdiff_t(i * dimension), d, 0.0);
+    if (!points_.owns(i)) std::fill_n(result.begin() + std::ptrdiff_t(i) * dimension, d, 0.0);
   }
   constraints_.fold(displacement_, no_force_, result);
   sum_handles(result);
@@ -173,7 +164,7 @@ void ConstrainedProduct::absolute_row_sums(std::span<double> sums) const {
   const auto d = std::size_t(dimension);
   double most = 1.0;
   for (Index i = 0; i < points_.count(); ++i) {
-    if (!points_.owns(i)) std::fill_n(sums.begin() + std::ptrdiff_t(i * dimension), d, 0.0);
+    if (!points_.owns(i)) std::fill_n(sums.begin() + std::ptrdiff_t(i) * dimension, d, 0.0);
     if (constraints_.stands_alone(i)) continue;
     const std::vector<Dependence> masters = constraints_.dependences(i, displacement_);
     std::array<double, 3> of_point{};

@@ -35,9 +35,7 @@ class Sums {
   [[nodiscard]] double of_all(double mine) const { return ranks_ ? ranks_->sum(mine) : mine; }
   /// Replaces values of which each rank has a share.
   void add_up(std::span<double> shares) const {
-    if (!ranks_ || shares.empty()) return;
-    const std::vector<double> all = ranks_->sum(std::vector<double>(shares.begin(), shares.end()));
-    std::copy(all.begin(), all.end(), shares.begin());
+    if (ranks_) peristat::add_up(*ranks_, shares);
   }
   [[nodiscard]] double largest_of_all(double mine) const {
     return ranks_ ? ranks_->max(mine) : mine;

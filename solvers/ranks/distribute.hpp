@@ -9,6 +9,7 @@ namespace peristat {
 /// neighbours together, by `partition`, each with its ghosts. A rank may get no point.
 /// @param horizon of the neighbours that are counted [m]
 /// @param reach   within which ghosts are wanted [m]
+/// @param images  see Part::images: what an image of a point is near, the point is near
 [[nodiscard]] Part distribute(Part slab, double horizon, double reach, const Communicator& ranks,
                               int threads, std::vector<ImageKind> images = {});
 

@@ -31,10 +31,8 @@ void PartOfBody::update_ghosts(std::span<double> values) const {
   const auto dofs = std::size_t(count_) * dimension_;
   if (values.size() <= dofs) return;
   const std::span<double> handles = values.subspan(dofs);
-  std::vector<double> told(handles.size(), 0.0);
-  if (ranks_.rank() == 0) std::copy(handles.begin(), handles.end(), told.begin());
-  told = ranks_.sum(told);
-  std::copy(told.begin(), told.end(), handles.begin());
+  if (ranks_.rank() > 0) std::ranges::fill(handles, 0.0);
+  add_up(ranks_, handles);
 }
 
 }  // namespace peristat

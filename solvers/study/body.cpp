@@ -341,12 +341,6 @@ bool has_damage(const BodySpecification& of) {
          });
 }
 
-bool has_pressure(const BodySpecification& of) {
-  return std::ranges::any_of(of.loads, [](const LoadSpecification& load) {
-    return load.kind == LoadSpecification::Kind::pressure;
-  });
-}
-
 /// Rollers have handles point by point, linear constraints followers of points of all ranks.
 template <class Refuse>
 void refuse_constraints_without_ranks(const BodySpecification& of, const Refuse& refuse) {
@@ -364,7 +358,7 @@ void refuse_constraints_without_ranks(const BodySpecification& of, const Refuse&
   if (of.material.model != MaterialModel::bond) refuse_with("models but \"bond\"");
   if (has_damage(of)) refuse_with("damage");
   if (of.end_time) refuse_with("motions");
-  if (has_images && has_pressure(of)) refuse_with("pressures");
+  if (has_images && of.has_pressures()) refuse_with("pressures");
   if (has_images && !of.cracks.empty()) refuse_with("pre-cracks");
 }
 
@@ -396,7 +390,7 @@ void refuse_without_ranks(const BodySpecification& of) {
   // Their tests on ranks are of bonds at rest.
   if (of.end_time || material.model != MaterialModel::bond) {
     if (!of.foundations.empty()) refuse("foundations");
-    if (has_pressure(of)) refuse("loads");
+    if (of.has_pressures()) refuse("loads");
   }
   for (std::size_t k = 0; k < of.loads.size(); ++k) {
     const LoadSpecification::Kind kind = of.loads[k].kind;

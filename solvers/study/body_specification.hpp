@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <memory>
@@ -248,6 +249,11 @@ struct BodySpecification {
   }
   [[nodiscard]] bool is_convolved() const { return force_operator == ForceOperator::fft; }
 
+  [[nodiscard]] bool has_pressures() const {
+    return std::ranges::any_of(loads, [](const LoadSpecification& load) {
+      return load.kind == LoadSpecification::Kind::pressure;
+    });
+  }
   /// Whether all bonds follow from one micromodulus and one law.
   [[nodiscard]] bool is_uniform() const {
     return regions.empty() && !material.fibre && material.scatter.empty();

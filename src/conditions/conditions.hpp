@@ -32,8 +32,8 @@ struct LoadSetting {
   /// Where tractions act on the surface; nothing: they are forces on points.
   std::optional<std::vector<SurfaceSite>> surface = std::nullopt;
   const Communicator* ranks = nullptr;  ///< that have parts of the body; null: it is whole
-  std::span<const GlobalIndex>
-      number{};  ///< of a part: those of its owned points in the whole body
+  /// Of a part: those of its owned points in the whole body.
+  std::span<const GlobalIndex> number{};
 };
 
 /// What strains the points without forces.

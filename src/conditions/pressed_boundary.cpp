@@ -72,9 +72,8 @@ class Faces {
   [[nodiscard]] bool moves_owned_points(const LatticeCell& cell,
                                         const std::vector<std::array<int, 3>>& offsets) const {
     return std::ranges::any_of(offsets, [&](const std::array<int, 3>& offset) {
-      return std::ranges::any_of(
-          points_around(corner_of(cell, offset, points_.dimension)),
-          [&](Index point) { return points_.source(point) < *points_.owned; });
+      return std::ranges::any_of(points_around(corner_of(cell, offset, points_.dimension)),
+                                 [&](Index point) { return points_.owns(point); });
     });
   }
 

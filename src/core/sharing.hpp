@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstring>
 #include <span>
@@ -36,6 +37,13 @@ class Sharing {
   /// @param values points x dimension, and handles where there are any
   virtual void update_ghosts(std::span<double> values) const = 0;
 };
+
+/// Replaces values of which each rank has a share by their sums; a call that all ranks make.
+inline void add_up(const Communicator& ranks, std::span<double> shares) {
+  if (shares.empty()) return;
+  const std::vector<double> all = ranks.sum(std::vector<double>(shares.begin(), shares.end()));
+  std::copy(all.begin(), all.end(), shares.begin());
+}
 
 /// Gives ghosts the one value per point that their owners have; a call that all ranks make.
 inline void update_ghost_values(const Sharing& sharing, int dimension, std::span<double> values) {

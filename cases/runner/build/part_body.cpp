@@ -179,12 +179,6 @@ Part make_slab_of(const Case& from, const Communicator& ranks) {
   return slab;
 }
 
-bool has_pressures(const Case& from) {
-  return std::ranges::any_of(from.loads, [](const LoadSpecification& load) {
-    return load.kind == LoadSpecification::Kind::pressure;
-  });
-}
-
 }  // namespace
 
 void refuse_keys_without_ranks(const Case& from) {
@@ -207,7 +201,7 @@ std::unique_ptr<const Body> make_part_body(const Case& from, const Communicator&
     const BondSetting setting = bond_setting(from, slab.points);
     double reach =
         reach_of_bonds(slab.points, from.surface_correction, setting, ranks, bonds_of_part(from));
-    if (has_pressures(from)) reach = std::max(reach, reach_of_pressures(slab.points));
+    if (from.has_pressures()) reach = std::max(reach, reach_of_pressures(slab.points));
     std::vector<ImageKind> images = kinds_of_images(from, slab.points, ranks);
     Part part =
         distribute(std::move(slab), setting.horizon, reach, ranks, threads, std::move(images));
