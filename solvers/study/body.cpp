@@ -341,15 +341,13 @@ bool has_damage(const BodySpecification& of) {
          });
 }
 
-/// Rollers have handles point by point, linear constraints followers of points of all ranks.
-template <class Refuse>
-void refuse_constraints_without_ranks(const BodySpecification& of, const Refuse& refuse) {
+void refuse_constraints_without_ranks(const BodySpecification& of) {
   const ConstraintSpecification& constraints = of.constraints;
-  if (!constraints.rollers.empty()) refuse("rollers");
-  if (!constraints.linear.empty()) refuse("linear");
   if (constraints.none()) return;
   const bool has_images = !constraints.symmetries.empty() || !constraints.periods.empty();
   const std::string key = !constraints.rigid_sets.empty() ? "rigid_sets"
+                          : !constraints.rollers.empty()  ? "rollers"
+                          : !constraints.linear.empty()   ? "linear"
                           : !constraints.periods.empty()  ? "periods"
                                                           : "symmetries";
   const auto refuse_with = [&](const std::string& what) {
@@ -376,8 +374,9 @@ void refuse_without_ranks(const BodySpecification& of) {
     throw InputError(
         key, "",
         "is not for more than one rank yet: there are bodies with pre-cracks, supports, "
-        "rigid sets, planes of symmetry, periods, foundations, eigenstrains, tractions, "
-        "pressures, body forces, total forces and gravity, and damage of bonds and triangles");
+        "rigid sets, rollers, linear constraints, planes of symmetry, periods, foundations, "
+        "eigenstrains, tractions, pressures, body forces, total forces and gravity, and damage of "
+        "bonds and triangles");
   };
   const MaterialSpecification& material = of.material;
   if (is_polynomial(material.model)) refuse("material.model");
@@ -386,7 +385,7 @@ void refuse_without_ranks(const BodySpecification& of) {
   refuse_damage_without_ranks(of, refuse);
   if (of.force_operator != ForceOperator::bonds) refuse("force_operator");
   if (!of.controls.empty()) refuse("controls");
-  refuse_constraints_without_ranks(of, refuse);
+  refuse_constraints_without_ranks(of);
   // Their tests on ranks are of bonds at rest.
   if (of.end_time || material.model != MaterialModel::bond) {
     if (!of.foundations.empty()) refuse("foundations");
@@ -441,7 +440,7 @@ std::unique_ptr<const Body> make_body(Part part, const BodySpecification& of,
       threads);
   LoadSetting loads = load_setting(of, body.points);
   loads.ranks = &ranks;
-  loads.number = body.part->number();
+  loads.numbers = body.part->numbered();
   body.conditions = std::make_unique<Conditions>(body.points, of.supports, of.loads,
                                                  programme_of(of), of.controls, loads,
                                                  of.eigenstrains, of.constraints, of.foundations);
