@@ -345,15 +345,16 @@ void refuse_constraints_without_ranks(const BodySpecification& of) {
   const ConstraintSpecification& constraints = of.constraints;
   if (constraints.none()) return;
   const bool has_images = !constraints.symmetries.empty() || !constraints.periods.empty();
-  const std::string key = !constraints.rigid_sets.empty() ? "rigid_sets"
-                          : !constraints.rollers.empty()  ? "rollers"
-                          : !constraints.linear.empty()   ? "linear"
-                          : !constraints.periods.empty()  ? "periods"
-                                                          : "symmetries";
+  const std::string key = !constraints.periods.empty()      ? "periods"
+                          : !constraints.symmetries.empty() ? "symmetries"
+                          : !constraints.rigid_sets.empty() ? "rigid_sets"
+                          : !constraints.rollers.empty()    ? "rollers"
+                                                            : "linear";
   const auto refuse_with = [&](const std::string& what) {
     throw InputError(key, "", "is not for more than one rank yet together with " + what);
   };
-  if (of.material.model != MaterialModel::bond) refuse_with("models but \"bond\"");
+  const bool has_bonds_alone = of.material.model == MaterialModel::bond;
+  if (has_images && !has_bonds_alone) refuse_with("models but \"bond\"");
   if (has_damage(of)) refuse_with("damage");
   if (of.end_time) refuse_with("motions");
   if (has_images && of.has_pressures()) refuse_with("pressures");
