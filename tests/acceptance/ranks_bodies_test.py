@@ -81,6 +81,27 @@ displacement = "0.02*load"
 set = "pulled_too"
 weights = [0.2, 1]
 """
+# The means of two sets move alike, and one of them does not turn.
+BETWEEN = """
+[[set]]
+name = "low"
+where = "y > 0.3 && y < 0.5"
+[[set]]
+name = "high"
+where = "y > 0.8 && y < 1"
+[[set]]
+name = "right"
+where = "y > 0.8 && y < 1 && x > 0.8"
+[[constraint]]
+name = "along"
+term = [{ set = "high", weights = [1, 0] }, { set = "low", weights = [-1, 0] }]
+[[constraint]]
+name = "across"
+term = [{ set = "high", weights = [0, 1] }, { set = "low", weights = [0, -1] }]
+[[constraint]]
+name = "turn"
+term = [{ set = "right", weights = [0, 1] }]
+"""
 # Held at its foot, 378 points.
 CUBE_ON_ROLLERS = """
 dimension = 3
@@ -237,6 +258,15 @@ class Bodies(Comparison):
         self.compare(rollers + PULL.replace("RULE", "y > 0.7 && x < 1"), (2, 3), solver=STORED)
         turned = STATES.replace('[[support]]\nset = "top"\ndisplacement = [0, "0.05*load"]', '[[rigid]]\nset = "top"\nrotation = ["0.05*load"]')
         self.compare(turned + PULL.replace("RULE", "x > 0.5 && y < 1.3"), (3,), "--set", "lattice.spacing=0.1", solver=STORED)
+
+    def test_pieces_that_constraints_hold_together(self):
+        """The upper one has no bond to the lower one, and other ranks."""
+        pieces = PLATE.replace("spacing = 0.05", "spacing = 0.1").replace('{ subtract = "disk", centre = [0.5, 0.7], radius = 0.2 }',
+                                                                          '{ subtract = "box", min = [-1, 0.5], max = [2, 0.8] }')  # fmt: skip
+        pieces = pieces.replace('[[support]]\nset = "top"\ndisplacement = [0, "0.05*load"]', "")
+        both = '[[set]]\nname = "both"\nwhere = "y > 0.3 && y < 1"\n[[rigid]]\nset = "both"\nrotation = ["0.02*load"]\n'
+        self.compare(pieces + both, (3,), solver=STORED)
+        self.compare(pieces + BETWEEN, (2, 3), solver=STORED)
 
     def test_constraints_go_on_with_another_number_of_ranks(self):
         sloped = PLATE.replace('[[support]]\nset = "top"\ndisplacement = [0, "0.05*load"]',
