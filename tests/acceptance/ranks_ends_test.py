@@ -185,8 +185,6 @@ class Refusals(OnRanks):
             'solver.preconditioner="local_operator"',
             'material.kinematics="linear"',
             'lattice.points="blue_noise"',
-            'roller=[{set="corner", normal=[1, 0]}]',
-            'constraint=[{name="c", term=[{set="corner", weights=[1, 0]}]}]',
             'control=[{set="corner", weights=[1, 0]}]',
         ):
             with self.subTest(key=key):

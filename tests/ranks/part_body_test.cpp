@@ -168,6 +168,38 @@ std::vector<BodyOfTest> constrained_bodies() {
   BodyOfTest turned = plate("rigid sets that turn");
   turned.of.constraints.rigid_sets = {{"upper", {}, {"0.1*load", {}, "0"}, {"0.2*load", "0", "0"}}};
   all.push_back(turned);
+
+  BodyOfTest sliding = plate("rollers");
+  sliding.sets = {{"upper", "y > 2.3"}, {"flank", "x < 0.5 && y > 0.6 && y < 2"}};
+  sliding.of.constraints.rollers = {{"upper", "", {}, {}, {1.0, 3.0, 0.0}, "0.1*load*(1+x)"},
+                                    {"flank", "", {}, {}, {2.0, -1.0, 0.0}, "free"}};
+  all.push_back(sliding);
+
+  // Means of sets that overlap, and over points that a support holds; each over several ranks.
+  BodyOfTest means = plate("linear constraints");
+  means.sets = {{"upper", "y > 1.6"}, {"column", "x > 0.8 && x < 1"}, {"all", "y > 0"}};
+  means.of.constraints.linear = {{"one", {{"upper", {1.0, 0.5, 0.0}}}, "0.02*load"},
+                                 {"two", {{"upper", {0.0, 1.0, 0.0}}, {"all", {0.3, -0.2, 0.0}}}},
+                                 {"three", {{"column", {1.0, 1.0, 0.0}}}, "-0.01*load"}};
+  means.of.constraints.rollers = {{"", "slope", Coordinates{0.9, 2.9, 0.0}, {}, {1.0, 4.0, 0.0}}};
+  all.push_back(means);
+
+  BodyOfTest mirrored = half;
+  mirrored.name = "linear constraints beside a plane of symmetry";
+  mirrored.sets = {{"middle", "x > 1.8 && y > 1"}};
+  mirrored.of.constraints.linear = {{"height", {{"middle", {0.2, 1.0, 0.0}}}, "0.02*load"}};
+  all.push_back(mirrored);
+
+  BodyOfTest cube{"rollers along lines", lattice_box(3, {5, 6, 7}, {0.1, 0.1, 0.1}), {}, {}};
+  cube.lattice.layers = {{"below", {2, -1}, 2}};
+  cube.of.horizon = 0.2015;
+  cube.of.material.youngs_modulus = 3.0;
+  cube.of.supports = {{"below", {"0", "0", "0"}}};
+  cube.sets = {{"front", "x > 0.7"}};
+  const Coordinates from{0.3, 0.6, 1.0}, to{0.8, 0.6, 1.0};
+  cube.of.constraints.rollers = {{"", "edge", from, to, {0.0, 0.0, 1.0}, "-0.01*load"}};
+  cube.of.constraints.linear = {{"twist", {{"front", {0.0, 1.0, 0.2}}}, "0.01*load"}};
+  all.push_back(cube);
   return all;
 }
 
@@ -266,7 +298,8 @@ struct InEquations {
     const std::size_t of_points = body.points.reference.size();
     const auto random = [&](unsigned seed, double size) {
       const std::vector<double> points = Random(seed).vector(dofs_of_whole, size),
-                                handles = Random(seed + 1).vector(12, size);
+                                handles =
+                                    Random(seed + 1).vector(constraints.dofs() - of_points, size);
       std::vector<double> values(constraints.dofs(), 7e3);  // of ghosts and images
       for (Index i = 0; i < body.points.own(); ++i) {
         if (!body.points.owns(i)) continue;
