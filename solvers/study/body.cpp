@@ -413,7 +413,7 @@ double bytes_of_part(const Points& points, const BodySpecification& of) {
 /// @throws MemoryError for parts that can't fit into the machine that they share
 void require_memory_for(const Part& part, const BodySpecification& of, const Communicator& ranks) {
   require_memory(sum_on_machine(ranks, bytes_of_part(part.points, of)),
-                 fmt::format("the parts on a machine of the body with {} points", part.whole));
+                 fmt::format("what a machine has of the body with {} points", part.whole));
 }
 
 }  // namespace

@@ -4,7 +4,19 @@ import unittest
 
 import h5py
 
-from tests.acceptance.on_ranks import PLATE, ROOT, SQUARE, STATES, STORED, Comparison, objects, resume, rows
+from tests.acceptance.on_ranks import (
+    PIECES,
+    PLATE,
+    ROOT,
+    SQUARE,
+    STATES,
+    STORED,
+    Comparison,
+    linear_iterations,
+    objects,
+    resume,
+    rows,
+)
 
 
 # A sheet with a hole that repeats; along y it is free to contract.
@@ -190,6 +202,7 @@ class Bodies(Comparison):
                   '{name="side", side="x+", modulus=[1e8, 0]}]')  # fmt: skip
         one = self.compare(PLATE, (2, 3), "--set", ground, solver=STORED)
         self.assertNotEqual(float(rows(one, "history.csv")[-1]["reaction_x:soil"]), 0.0)
+        self.compare(PLATE, (4,), "--set", 'load=[{set="corner", pressure="4e7*load"}]', "--set", ground, solver=PIECES)
 
     def test_planes_of_symmetry(self):
         half = ("--set", 'symmetry=[{axis="x", at=1}]', "--set", "output.stress=true")
@@ -280,6 +293,33 @@ class Bodies(Comparison):
                 on = resume(then, output)
                 self.assertEqual(on.returncode, 0, on.stderr)
                 self.expect_same(one, output)
+
+    def test_rigid_pieces_with_constraints(self):
+        """Pieces are those of the whole body; jumps over periods and rigid sets, which all ranks share, are their own."""
+        turning = PLATE.replace("y > 1", "y > 1 && y < 1.4") + '[[rigid]]\nset = "corner"\nrotation = ["0.02*load"]\n'
+        thin = PLATE.replace("max = [1, 1.5]", "max = [0.1, 0.5]").replace("x > 0.6 && y > 1", "y > 0.3")
+        for text, ranks, planes, share in (  # of the iterations of block Jacobi, which has few in a small body
+            (PLATE, (3,), 'symmetry=[{axis="x", at=1}]', 0.5),
+            (thin, (8,), 'symmetry=[{axis="x", at=0}, {axis="x", at=0.1}]', 1.5),
+            (CELL, (2, 4), "title='cell'", 0.7),
+            (turning, (3,), 'symmetry=[{axis="x", at=0}]', 0.5),
+        ):
+            with self.subTest(planes=planes):
+                found = linear_iterations(self.compare(text, ranks, "--set", planes, solver=PIECES))
+                self.assertLess(found, share * linear_iterations(self.results(1, text + STORED, "--set", planes)))
+
+    def test_preconditioners_with_constraints(self):
+        half = ("--set", 'symmetry=[{axis="x", at=1}]')
+        one = self.results(1, PLATE + STORED, *half)
+        for kind in ("surrogate", "multigrid"):
+            with self.subTest(kind=kind):
+                taken = ("--set", f'solver.preconditioner="{kind}"')
+                self.expect_same(one, self.results(3, PLATE + STORED, *half, *taken))
+                refused = self.refusal(CELL + STORED, *taken)
+                self.assertIn('take "rigid_pieces", "block_jacobi" or "jacobi" with periods and rigid sets', refused.replace("\n", " "))
+        run, output = self.start(2, CELL)
+        self.assertEqual(run.returncode, 0, run.stderr)
+        self.assertIn("rigid pieces", run.stdout)
 
     def test_temperatures(self):
         case = (ROOT / "cases/thermal/bimetal.toml").read_text()
