@@ -205,7 +205,8 @@ std::vector<BodyOfTest> constrained_bodies() {
 
   BodyOfTest turning = plate("a free rigid set that repeats");
   turning.lattice.layers = {{"below", {1, -1}, 3}};
-  turning.of.constraints.periods = {{{0, 0.3, 2.0}, {{}, "1e-3*load", "0"}}};
+  turning.of.constraints.periods = cell.of.constraints.periods;
+  turning.of.constraints.periods.pop_back();
   turning.of.constraints.rigid_sets = {RigidSetSpecification{.set = "inner"}};
   all.push_back(turning);
   return all;
