@@ -31,7 +31,7 @@ struct ConstrainedProduct final : TangentOperator {
   [[nodiscard]] bool has_rows() const override { return whole_->has_rows(); }
   /// @throws std::logic_error
   void for_each_row(const RowVisitor& visit) const override;
-  /// Numbers that are not less: |J|^T |K| |J| of ones.
+  /// Of a K without rows numbers that are not less: |J|^T |K| |J| of ones.
   void absolute_row_sums(std::span<double> sums) const override;
   [[nodiscard]] bool is_symmetric() const override { return whole_->is_symmetric(); }
 
@@ -41,6 +41,21 @@ struct ConstrainedProduct final : TangentOperator {
                        const std::vector<Dependence>& of_j);
   /// Blocks of K between two points that follow the same.
   void add_blocks_between_followers();
+  /// A block of K_q, or a share of it.
+  struct Block {
+    Index row = 0, column = 0;
+    Tensor entries{};
+  };
+  /// Per point or handle, whether its row is a sum of blocks of what follows.
+  [[nodiscard]] std::vector<char> merged_rows() const;
+  /// Shares of the blocks of such rows that the rank owns, and of those between two handles.
+  [[nodiscard]] std::vector<Block> merged_blocks(const std::vector<char>& is_merged) const;
+  /// Shares of one block are added up; by rows and columns.
+  [[nodiscard]] static std::vector<Block> added_up(std::vector<Block> blocks);
+  /// Those between handles that all ranks have.
+  [[nodiscard]] std::vector<Block> of_all(const std::vector<Block>& mine) const;
+  /// Makes sums over rows of K those over rows of K_q.
+  void replace_merged_rows(std::span<double> sums) const;
   /// Replaces entries of handles, of which each rank has a share, by their sums.
   void sum_handles(std::span<double> of_dofs) const;
 

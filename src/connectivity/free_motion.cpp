@@ -132,7 +132,8 @@ std::vector<std::pair<FreeMotion, RigidMotions>> of_all_ranks(
 std::vector<FreeMotion> free_motions(const Points& points, const Bonds& bonds,
                                      const Holding& of_body, const Sharing* sharing) {
   const Holding holding = with_images(of_body, points, bonds, {}, points.reference);
-  const std::vector<Piece> pieces = pieces_of(points, bonds, {}, holding.links, sharing);
+  const std::vector<Piece> pieces =
+      pieces_of(points, bonds, {}, holding.links, holding.handles, sharing);
   const std::vector<RigidMotions> motions =
       FreePieces(points, points.reference, holding, sharing).motions(pieces);
   std::vector<std::pair<FreeMotion, RigidMotions>> found;
@@ -141,9 +142,7 @@ std::vector<FreeMotion> free_motions(const Points& points, const Bonds& bonds,
     if (motions[k].count == 0 || piece.members.empty()) continue;
     const Index first = piece.members.front();
     if (sharing != nullptr && sharing->number()[std::size_t(first)] != piece.lowest) continue;
-    const auto images = std::lower_bound(piece.members.begin(), piece.members.end(), points.own());
-    const GlobalIndex own = piece.points - (piece.members.end() - images);
-    found.push_back({{own, piece.lowest, points.position(first), {}}, motions[k]});
+    found.push_back({{piece.points, piece.lowest, points.position(first), {}}, motions[k]});
   }
   if (sharing != nullptr) found = of_all_ranks(found, points.dimension, sharing->ranks());
   std::sort(found.begin(), found.end(), [](const auto& a, const auto& b) {

@@ -38,6 +38,7 @@ std::map<double, double> join(const Communicator& ranks,
 /// Of each component here the number of the shared piece that it is a part of, or -1; and how many
 /// there are.
 std::pair<std::vector<Index>, std::size_t> shared_pieces(const Components& here, int dimension,
+                                                         std::span<const FreeHandle> handles,
                                                          const Sharing& sharing) {
   const auto own = std::size_t(sharing.owned());
   const double first = double(sharing.ranks().count_all(std::int64_t(here.size.size())).before);
@@ -50,6 +51,10 @@ std::pair<std::vector<Index>, std::size_t> shared_pieces(const Components& here,
   std::set<std::pair<double, double>> ties;
   for (std::size_t ghost = own; ghost < label.size(); ++ghost) {
     if (has_own[std::size_t(here.of_point[ghost])]) ties.emplace(label[ghost], of_owner[ghost]);
+  }
+  const auto of_points = std::size_t(sharing.count()) * std::size_t(dimension);
+  for (const FreeHandle& handle : handles) {  // each has a label below all
+    ties.emplace(-1.0 - double(handle.dof - of_points), label[std::size_t(handle.moved_by.member)]);
   }
   const std::map<double, double> joined = join(sharing.ranks(), ties);
   std::map<double, Index> number;  // by the lowest label
@@ -90,12 +95,15 @@ std::span<const Piece> shared_of(const std::vector<Piece>& pieces) {
 }  // namespace
 
 std::vector<Piece> pieces_of(const Points& points, const Bonds& bonds, std::span<const char> broken,
-                             std::span<const BondEnds> links, const Sharing* sharing) {
+                             std::span<const BondEnds> links, std::span<const FreeHandle> handles,
+                             const Sharing* sharing) {
   const Components here = connected_components(bonds, broken, links);
   std::vector<std::vector<Index>> members = here.members();
   std::vector<Index> shared(members.size(), -1);
   std::size_t count = 0;
-  if (sharing != nullptr) std::tie(shared, count) = shared_pieces(here, points.dimension, *sharing);
+  if (sharing != nullptr) {
+    std::tie(shared, count) = shared_pieces(here, points.dimension, handles, *sharing);
+  }
   std::vector<Piece> pieces(count);
   for (Piece& piece : pieces) piece.is_shared = true;
   for (std::size_t k = 0; k < members.size(); ++k) {
@@ -110,7 +118,8 @@ std::vector<Piece> pieces_of(const Points& points, const Bonds& bonds, std::span
   }
   for (Piece& piece : pieces) {
     std::sort(piece.members.begin(), piece.members.end());  // of several components here
-    piece.points = GlobalIndex(piece.members.size());
+    const auto images = std::ranges::lower_bound(piece.members, points.own());
+    piece.points = GlobalIndex(images - piece.members.begin());
     if (piece.members.empty()) continue;
     const Index first = piece.members.front();
     piece.lowest = sharing != nullptr ? sharing->number()[std::size_t(first)] : first;
@@ -201,6 +210,14 @@ void FreePieces::pin(const std::vector<Piece>& pieces, const std::vector<RigidMo
       pinned[dof] = 1;
     }
   }
+  if (sharing_ != nullptr) tell_pinned_handles(pinned);
+}
+
+void FreePieces::tell_pinned_handles(std::vector<char>& pinned) const {
+  const auto handles = pinned.begin() + std::ptrdiff_t(points_.reference.size());
+  if (handles == pinned.end()) return;
+  const std::vector<double> all = sharing_->ranks().max(std::vector<double>(handles, pinned.end()));
+  std::ranges::transform(all, handles, [](double pin) { return char(pin != 0.0); });
 }
 
 namespace {
@@ -242,9 +259,12 @@ struct MovedDofs {
 
 void FreePieces::pin_shared(std::span<const Piece> pieces, std::span<const RigidMotions> motions,
                             const std::vector<char>& held, std::vector<char>& pinned) const {
+  if (pieces.empty()) return;
   constexpr double nobody = std::numeric_limits<double>::infinity();
   const auto d = std::size_t(points_.dimension);
   const std::size_t modes = d * (d + 1) / 2;
+  const double first_handle =  // they come after all points
+      sharing_->ranks().sum(double(sharing_->owned())) - double(sharing_->count());
   int rounds = 0;
   std::vector<MovedDofs> moved(pieces.size());
   for (std::size_t k = 0; k < pieces.size(); ++k) {
@@ -259,6 +279,13 @@ void FreePieces::pin_shared(std::span<const Piece> pieces, std::span<const Rigid
                                   double(c));
         moved[k].row.push_back(moved_by(motions[k], place(i), int(c)));
       }
+    }
+    for (const FreeHandle& handle : holding_.handles) {
+      const auto& members = pieces[k].members;
+      if (!std::binary_search(members.begin(), members.end(), handle.moved_by.member)) continue;
+      moved[k].dof.push_back(handle.dof);
+      moved[k].number.push_back(first_handle * double(d) + double(handle.dof));
+      moved[k].row.push_back(moved_by(motions[k], handle));
     }
   }
   for (int round = 0; round < rounds; ++round) {
