@@ -171,10 +171,11 @@ class Bodies(Comparison):
         apart = PLATE.replace('{ subtract = "disk", centre = [0.5, 0.7], radius = 0.2 }',
                               '{ subtract = "box", min = [-1, 0.5], max = [2, 0.8] }')  # fmt: skip
         apart = apart.replace('[[support]]\nset = "top"\ndisplacement = [0, "0.05*load"]\n',
-                              '[[set]]\nname = "both"\nwhere = "y > 0.3 && y < 1"\n[[rigid]]\nset = "both"\n')  # fmt: skip
+                              '[[set]]\nname = "both"\nwhere = "y > 0.3 && y < 1"\n[[rigid]]\nset = "both"\nrotation = ["0.01*load"]\n')  # fmt: skip
         self.compare(apart, (2, 3, 4), solver=STORED)
         for text, pulled in ((SQUARE, "pulled"), (STATES, "top")):
-            self.compare(text.replace(f'[[support]]\nset = "{pulled}"', f'[[rigid]]\nset = "{pulled}"'), (3,), solver=STORED)
+            turned = f'[[rigid]]\nset = "{pulled}"\nrotation = ["0.01*load"]'
+            self.compare(text.replace(f'[[support]]\nset = "{pulled}"', turned), (3,), solver=STORED)
 
     def test_temperatures(self):
         case = (ROOT / "cases/thermal/bimetal.toml").read_text()
