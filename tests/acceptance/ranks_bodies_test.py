@@ -120,7 +120,7 @@ class Bodies(Comparison):
     def test_planes_of_symmetry(self):
         half = ("--set", 'symmetry=[{axis="x", at=1}]', "--set", "output.stress=true")
         self.compare(PLATE, (2, 3), *half, "--set", 'quadrature.surface_correction="energy"', solver=STORED)
-        self.compare(SQUARE, (2, 3), "--set", 'symmetry=[{axis="y", at=0}]', "--set", "output.stress=true", solver=STORED)
+        self.compare(SQUARE, (3,), "--set", 'symmetry=[{axis="y", at=0}]', "--set", "output.stress=true", solver=STORED)
         self.compare(CUBE, (3,), "--set", 'symmetry=[{axis="y", at=0}]', "--set", "loading.table=[0, 0.2]", solver=STORED)
         # Thinner than the horizon, between two planes, and a rank may own nothing.
         thin = PLATE.replace("max = [1, 1.5]", "max = [0.1, 0.5]").replace(', { subtract = "disk", centre = [0.5, 0.7], radius = 0.2 }', "")
@@ -134,11 +134,11 @@ class Bodies(Comparison):
         held = PLATE.replace(', { name = "top", side = "y+" }', "").replace('set = "top"', 'set = "corner"').replace('[[set]]\nname = "corner"\nwhere = "x > 0.6 && y > 1"\n', "")
         for beyond in ('symmetry=[{axis="x", at=0.5}]', 'period=[{axis="x", from=0, to=1, gradient=["1e-3*load", 0]}]'):
             shape = held.replace("min = [0, 0]", "min = [0.5, 0]") if "symmetry" in beyond else held
-            self.compare(shape, (2, 3), *(word for setting in (pressure, hole, beyond) for word in ("--set", setting)), solver=STORED)
+            self.compare(shape, (3,), *(word for setting in (pressure, hole, beyond) for word in ("--set", setting)), solver=STORED)
 
     def test_relaxation_of_what_follows(self):
         relaxed = ("--set", 'solver.mode="relaxation"')
-        self.compare(PLATE, (2, 3), *relaxed, "--set", 'symmetry=[{axis="x", at=1}]', solver=STORED)
+        self.compare(PLATE, (3,), *relaxed, "--set", 'symmetry=[{axis="x", at=1}]', solver=STORED)
         self.compare(CELL, (3,), *relaxed, solver=STORED)
         free = PLATE.replace("y > 1", "y > 1 && y < 1.4") + '[[rigid]]\nset = "corner"\nrotation = ["0.02*load"]\n'
         self.compare(free, (3,), *relaxed, solver=STORED)
@@ -172,7 +172,7 @@ class Bodies(Comparison):
                               '{ subtract = "box", min = [-1, 0.5], max = [2, 0.8] }')  # fmt: skip
         apart = apart.replace('[[support]]\nset = "top"\ndisplacement = [0, "0.05*load"]\n',
                               '[[set]]\nname = "both"\nwhere = "y > 0.3 && y < 1"\n[[rigid]]\nset = "both"\nrotation = ["0.01*load"]\n')  # fmt: skip
-        self.compare(apart, (2, 3, 4), solver=STORED)
+        self.compare(apart, (4,), solver=STORED)
         for text, pulled in ((SQUARE, "pulled"), (STATES, "top")):
             turned = f'[[rigid]]\nset = "{pulled}"\nrotation = ["0.01*load"]'
             self.compare(text.replace(f'[[support]]\nset = "{pulled}"', turned), (3,), solver=STORED)

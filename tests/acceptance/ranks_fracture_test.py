@@ -241,7 +241,7 @@ class CrackTips(Comparison):
     def test_of_a_half(self):
         half = TIP.replace("min = [0, 0]", "min = [0, 1.2]").replace('{ name = "bottom", side = "y-" }, ', "")
         half = half.replace('[[support]]\nset = "bottom"\ndisplacement = [0, 0]\n', '[[symmetry]]\naxis = "y"\nat = 1.2\n')
-        self.compare_tip(half, (2, 3), ("J", "J_spread", "K1", "T"), 'solver.tangent="stored"')
+        self.compare_tip(half, (3,), ("J", "J_spread", "K1", "T"), 'solver.tangent="stored"')
 
     def test_of_triangles(self):
         self.compare_tip(TIP, (3,), ("J", "K1", "K2"), 'material.model="cpd"', "material.poisson_ratio=0.4")

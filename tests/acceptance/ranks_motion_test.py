@@ -167,9 +167,9 @@ class Motions(Comparison):
         self.move(BAR_IN_FLIGHT, (2, 7))
 
     def test_planes_and_periods(self):
-        half = self.move(self.MOVING + self.STEPS, (2, 3), *settings('symmetry=[{axis="x", at=1}]'))
+        half = self.move(self.MOVING + self.STEPS, (3,), *settings('symmetry=[{axis="x", at=1}]'))
         self.assertNotEqual(float(rows(half, "history.csv")[-1]["reaction_x:symmetry_x"]), 0.0)
-        cell = self.move(CELL_IN_MOTION, (2, 3))
+        cell = self.move(CELL_IN_MOTION, (2,))
         self.assertNotEqual(float(rows(cell, "history.csv")[-1]["external_work"]), 0.0)
 
     def test_two_pieces(self):
@@ -257,7 +257,7 @@ class Torn(Comparison):
         return [row for row in rows(output, "broken_bonds.csv") if row["second_image"] != "0"]
 
     def test_half_a_plate_that_flies_apart(self):
-        one = self.compare_torn(TORN, (2, 3), HALF)
+        one = self.compare_torn(TORN, (3,), HALF)
         self.assertGreater(len(self.to_images(one)), 10)
 
     def test_a_cell_that_is_torn(self):
