@@ -97,9 +97,7 @@ Evaluation Assembler::gradient(const StateView& at, std::span<double> gradient) 
 }
 
 Evaluation Assembler::of_part(TermPasses& term, const StateView& at, Evaluation found) {
-  // Half of a bond is its image's.
-  const bool has_images = !points_.images.kinds.empty();
-  if (!sharing_ || (term.shares_energy() && !has_images)) return found;
+  if (!sharing_ || term.shares_energy()) return found;
   term.point_energies(at, of_points_, Write::over);
   found.energy = 0.0;
   for (Index i = 0; i < points_.count(); ++i) {

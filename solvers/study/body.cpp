@@ -343,22 +343,20 @@ bool has_damage(const BodySpecification& of) {
 
 void refuse_constraints_without_ranks(const BodySpecification& of) {
   const ConstraintSpecification& constraints = of.constraints;
-  if (constraints.none()) return;
-  const bool has_images = !constraints.symmetries.empty() || !constraints.periods.empty();
-  const std::string key = !constraints.periods.empty()      ? "periods"
-                          : !constraints.symmetries.empty() ? "symmetries"
-                          : !constraints.rigid_sets.empty() ? "rigid_sets"
-                          : !constraints.rollers.empty()    ? "rollers"
-                                                            : "linear";
-  const auto refuse_with = [&](const std::string& what) {
+  const auto refuse_with = [](const std::string& key, const std::string& what) {
     throw InputError(key, "", "is not for more than one rank yet together with " + what);
   };
+  if (!constraints.rollers.empty() || !constraints.linear.empty()) {
+    const std::string key = constraints.rollers.empty() ? "linear" : "rollers";
+    if (has_damage(of)) refuse_with(key, "damage");
+    if (of.end_time) refuse_with(key, "motions");
+  }
+  if (constraints.symmetries.empty() && constraints.periods.empty()) return;
+  const std::string key = constraints.periods.empty() ? "symmetries" : "periods";
+  if (of.has_states()) refuse_with(key, "model \"lps\"");
+  // Between two images there are bonds that triangles stand on, and whose history nobody tells.
   const bool has_bonds_alone = of.material.model == MaterialModel::bond;
-  if (has_images && !has_bonds_alone) refuse_with("models but \"bond\"");
-  if (has_damage(of)) refuse_with("damage");
-  if (of.end_time) refuse_with("motions");
-  if (has_images && of.has_pressures()) refuse_with("pressures");
-  if (has_images && !of.cracks.empty()) refuse_with("pre-cracks");
+  if (!has_bonds_alone && has_damage(of)) refuse_with(key, "damage of models but \"bond\"");
 }
 
 /// Laws that differ from bond to bond are tested of bonds alone; what states lose has no sum over

@@ -302,7 +302,7 @@ LinearSystems choose_linear_systems(const StudyOptions& options, const Body& bod
     const bool has_rows = has_rows_of_part(body);
     PreconditionerKind& kind = of_part.linear.preconditioner;
     if (!has_rows && kind == PreconditionerKind::automatic) kind = PreconditionerKind::block_jacobi;
-    if (!body.conditions->constraints().none() && !is_of_points(kind)) {
+    if (!body.conditions->constraints().none() && has_rows) {
       of_part.tangent = TangentStorage::stored;
     }
     LinearSystems systems = choose_linear_systems(

@@ -189,7 +189,7 @@ void expect_same_counts(const Both& both) {
     EXPECT_EQ(mine.size(), counts.size());
     for (std::size_t kind = 0; kind < counts.size(); ++kind) {
       EXPECT_EQ(mine[kind].name, counts[kind].name);
-      EXPECT_EQ(count_interactions(owned, mine[kind], ranks), counts[kind].count)
+      EXPECT_EQ(count_interactions(both.part->points, mine[kind], ranks), counts[kind].count)
           << mine[kind].name;
       for (std::size_t i = 0; i < std::size_t(owned); ++i) {
         EXPECT_EQ(mine[kind].per_point[i],

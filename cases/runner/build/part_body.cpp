@@ -106,9 +106,6 @@ void refuse_values_without_ranks(const Case& from) {
     refuse("material.model", "",
            "models but \"bond\" are for a lattice, and volume_correction \"none\" or \"linear\"");
   }
-  if (!from.crack_tips.empty() && !from.constraints.none()) {
-    refuse("crack_tip", "", "its integrals on ranks are of bodies without constraints");
-  }
   const Mode mode = from.solver.mode;
   if (mode == Mode::path || mode == Mode::arc_length) {
     refuse("solver.mode", std::string(mode.name),

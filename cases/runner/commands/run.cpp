@@ -54,7 +54,7 @@ void count(const Body& body, const FreeDofs& free, const RunOptions& options,
   for (const auto& term : body.model.terms()) {
     for (const InteractionCount& kind : term->counts()) {
       summary.count(kind.name,
-                    body.part ? count_interactions(body.part->owned(), kind, ranks) : kind.count);
+                    body.part ? count_interactions(body.points, kind, ranks) : kind.count);
     }
   }
   if (body.part) {

@@ -49,7 +49,7 @@ class StateNumbering {
 
  private:
   /// How many rows the whole body has, and this part, and values of a row. What an array has beyond
-  /// them is the same on all ranks, or means nothing.
+  /// them is the same on all ranks, or means nothing; rank 0 has the free handles.
   struct Extent {
     std::int64_t whole = 0, here = 0, width = 1;
   };
