@@ -293,7 +293,8 @@ LinearSystems choose_linear_systems(const StudyOptions& options, const Body& bod
     refuse_solvers_without_ranks(options, body);
     StudyOptions of_part = options;
     // Pieces of parts are tested on tangents of bonds alone.
-    if (!has_bonds_alone(body) && options.linear.preconditioner == PreconditionerKind::automatic) {
+    if (!has_bonds_alone(body) && body.model.balances().potential &&
+        options.linear.preconditioner == PreconditionerKind::automatic) {
       of_part.linear.preconditioner = PreconditionerKind::block_jacobi;
     }
     return choose_linear_systems(of_part, body.model, estimate_memory_of_part(body), {},
@@ -342,9 +343,12 @@ std::unique_ptr<TangentOperator> make_shared_operator(Assembler& assembler, bool
 std::unique_ptr<TangentOperator> LinearSystems::make_tangent(Assembler& assembler,
                                                              const Constraints& constraints) const {
   const bool is_convolved = !assembler.has_rows();
-  if (!is_convolved && !assembler.has_potential()) return std::make_unique<RowsOfEnergy>(assembler);
-  if (is_convolved) return make_convolved_tangent(assembler, constraints);
   const Sharing* const sharing = assembler.sharing();
+  if (!is_convolved && !assembler.has_potential()) {
+    if (sharing) return std::make_unique<PartTangent<RowsOfEnergy>>(assembler);
+    return std::make_unique<RowsOfEnergy>(assembler);
+  }
+  if (is_convolved) return make_convolved_tangent(assembler, constraints);
   if (!constraints.none() && !sharing) {
     return std::make_unique<ConstrainedTangent>(assembler, constraints);
   }
