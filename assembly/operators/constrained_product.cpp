@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "assembly/operators/convolved_tangent.hpp"
+#include "src/measures/small_algebra.hpp"
 
 namespace peristat {
 namespace {
@@ -30,6 +31,17 @@ double row_sum(const std::vector<Dependence>& masters, std::size_t component, st
     for (std::size_t c = 0; c < d; ++c) sum += std::abs(on.block[component][c]);
   }
   return sum;
+}
+
+/// Shares out the row sums of K that a point has among its masters by |J|.
+void add_row_sums(const std::vector<Dependence>& masters, std::span<const double> of_point,
+                  std::size_t d, std::span<double> sums) {
+  for (const Dependence& on : masters) {
+    for (std::size_t k = 0; k < d * d; ++k) {
+      sums[std::size_t(on.master) * d + k % d] +=
+          std::abs(on.block[k / d][k % d]) * of_point[k / d];
+    }
+  }
 }
 
 }  // namespace
@@ -79,7 +91,44 @@ void ConstrainedProduct::add_to_diagonal(const std::vector<Dependence>& of_i, co
   }
 }
 
-void ConstrainedProduct::add_blocks_between_followers() {
+void ConstrainedProduct::add_block(Index i, const Tensor& block, Index j,
+                                   std::vector<SharedBlock>& shared) {
+  const std::vector<Dependence> of_i = constraints_.dependences(i, displacement_);
+  add_to_diagonal(of_i, block, constraints_.dependences(j, displacement_));
+  const auto shared_j = constraints_.shared_dependence(j);
+  if (!shared_j) return;  // the row of j has the transposed block
+  std::vector<Dependence> masters = constraints_.shared_followers()[shared_j->follower].masters;
+  for (Dependence& on : masters) {
+    for (std::size_t r = 0; r < 3; ++r) on.block[r] = scaled<3>(shared_j->factor[r], on.block[r]);
+  }
+  add_to_diagonal(of_i, block, masters);
+  add_to_diagonal(masters, transposed(block), of_i);
+  const auto shared_i = constraints_.shared_dependence(i);
+  if (!shared_i) return;
+  SharedBlock between{shared_i->follower, shared_j->follower, block};
+  for (std::size_t k = 0; k < 9; ++k) {
+    between.block[k / 3][k % 3] *= shared_i->factor[k / 3] * shared_j->factor[k % 3];
+  }
+  shared.push_back(between);
+}
+
+void ConstrainedProduct::add_shared_blocks(const std::vector<SharedBlock>& mine) {
+  if (constraints_.shared_followers().empty()) return;
+  std::vector<double> flat;
+  for (const auto& [i, j, block] : mine) {
+    flat.insert(flat.end(), {double(i), double(j)});
+    for (const auto& row : block) flat.insert(flat.end(), row.begin(), row.end());
+  }
+  flat = all_together(sharing_->ranks(), flat);
+  for (std::size_t k = 0; k < flat.size(); k += 11) {
+    const auto masters_of = [&](double follower) -> const std::vector<Dependence>& {
+      return constraints_.shared_followers()[std::size_t(follower)].masters;
+    };
+    add_to_diagonal(masters_of(flat[k]), tensor_of(&flat[k + 2], 3), masters_of(flat[k + 1]));
+  }
+}
+
+void ConstrainedProduct::add_blocks_between_followers(std::vector<SharedBlock>& shared) {
   const auto d = std::size_t(dimension);
   struct Pair {
     Index i, j;
@@ -97,11 +146,9 @@ void ConstrainedProduct::add_blocks_between_followers() {
   });
   for (const std::vector<Pair>& of_thread : pairs) {
     for (const auto& [i, j, block] : of_thread) {
-      const auto of_i = constraints_.dependences(i, displacement_),
-                 of_j = constraints_.dependences(j, displacement_);
       // Each of two ranks has the row of its own end.
-      if (points_.owns(i)) add_to_diagonal(of_i, block, of_j);
-      if (points_.owns(j)) add_to_diagonal(of_j, transposed(block), of_i);
+      if (points_.owns(i)) add_block(i, block, j, shared);
+      if (points_.owns(j)) add_block(j, transposed(block), i, shared);
     }
   }
 }
@@ -114,12 +161,13 @@ void ConstrainedProduct::linearise(Energy& energy, const StateView& at, double p
   curvature_.assign(at.curvature.begin(), at.curvature.end());
   std::ranges::fill(diagonal, 0.0);
   const auto d = std::size_t(dimension);
+  std::vector<SharedBlock> shared;
   for (Index i = 0; i < points_.count(); ++i) {
     if (!points_.owns(i)) continue;
-    const std::vector<Dependence> masters = constraints_.dependences(i, at.displacement);
-    add_to_diagonal(masters, tensor_of(&whole_->diagonal[std::size_t(i) * d * d], d), masters);
+    add_block(i, tensor_of(&whole_->diagonal[std::size_t(i) * d * d], d), i, shared);
   }
-  if (whole_->has_rows()) add_blocks_between_followers();
+  if (whole_->has_rows()) add_blocks_between_followers(shared);
+  add_shared_blocks(shared);
   const std::size_t of_points = std::size_t(points_.count()) * d * d;
   if (sharing_) add_up(sharing_->ranks(), std::span(diagonal).subspan(of_points));
   const auto& sets = constraints_.rigid_sets();
@@ -158,27 +206,52 @@ void ConstrainedProduct::for_each_row(const RowVisitor&) const {
   throw std::logic_error("a tangent of products alone has no rows to visit");
 }
 
+std::vector<double> ConstrainedProduct::row_sums_of_shared() const {
+  std::vector<double> of_rows;
+  for (const auto& follower : constraints_.shared_followers()) {
+    for (std::size_t c = 0; c < 3; ++c) {
+      of_rows.push_back(row_sum(follower.masters, c, std::size_t(dimension)));
+    }
+  }
+  if (sharing_) add_up(sharing_->ranks(), of_rows);
+  return of_rows;
+}
+
+void ConstrainedProduct::fold_row_sums_of_shared(std::vector<double> of_shared,
+                                                 std::span<double> sums) const {
+  if (sharing_) add_up(sharing_->ranks(), of_shared);
+  for (std::size_t k = 0; k < constraints_.shared_followers().size(); ++k) {
+    add_row_sums(constraints_.shared_followers()[k].masters, std::span(of_shared).subspan(3 * k, 3),
+                 std::size_t(dimension), sums);
+  }
+}
+
 void ConstrainedProduct::absolute_row_sums(std::span<double> sums) const {
   std::ranges::fill(sums, 0.0);
   whole_->absolute_row_sums(sums.first(points_.reference.size()));
   const auto d = std::size_t(dimension);
+  const std::vector<double> rows_of_shared = row_sums_of_shared();
+  std::vector<double> of_shared(rows_of_shared.size(), 0.0);
   double most = 1.0;
   for (Index i = 0; i < points_.count(); ++i) {
     if (!points_.owns(i)) std::fill_n(sums.begin() + std::ptrdiff_t(i) * dimension, d, 0.0);
     if (constraints_.stands_alone(i)) continue;
     const std::vector<Dependence> masters = constraints_.dependences(i, displacement_);
+    const auto shared = constraints_.shared_dependence(i);
     std::array<double, 3> of_point{};
     for (std::size_t c = 0; c < d; ++c) {
-      most = std::max(most, row_sum(masters, c, d));
+      double row = row_sum(masters, c, d);
       of_point[c] = std::exchange(sums[std::size_t(i) * d + c], 0.0);
-    }
-    for (const Dependence& on : masters) {
-      for (std::size_t k = 0; k < d * d; ++k) {
-        sums[std::size_t(on.master) * d + k % d] +=
-            std::abs(on.block[k / d][k % d]) * of_point[k / d];
+      if (shared) {
+        const std::size_t at = 3 * shared->follower + c;
+        row += std::abs(shared->factor[c]) * rows_of_shared[at];
+        of_shared[at] += std::abs(shared->factor[c]) * of_point[c];
       }
+      most = std::max(most, row);
     }
+    add_row_sums(masters, of_point, d, sums);
   }
+  fold_row_sums_of_shared(std::move(of_shared), sums);
   if (sharing_) most = sharing_->ranks().max(most);
   sum_handles(sums);
   for (double& sum : sums) sum *= most;

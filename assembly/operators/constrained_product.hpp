@@ -36,11 +36,26 @@ struct ConstrainedProduct final : TangentOperator {
   [[nodiscard]] bool is_symmetric() const override { return whole_->is_symmetric(); }
 
  private:
+  /// A block of K between two points of which masters of several ranks follow: numbers of these
+  /// followers, and what they have of the points.
+  struct SharedBlock {
+    std::size_t i, j;
+    Tensor block;
+  };
+
   /// Adds J_i^T block J_j to the diagonal block of each point or handle that both follow.
   void add_to_diagonal(const std::vector<Dependence>& of_i, const Tensor& block,
                        const std::vector<Dependence>& of_j);
+  /// Adds what a row of K has: of a point that this rank owns, and perhaps of others.
+  void add_block(Index i, const Tensor& block, Index j, std::vector<SharedBlock>& shared);
+  /// Adds blocks between shared followers, those of all ranks.
+  void add_shared_blocks(const std::vector<SharedBlock>& mine);
   /// Blocks of K between two points that follow the same.
-  void add_blocks_between_followers();
+  void add_blocks_between_followers(std::vector<SharedBlock>& shared);
+  /// Of each component of the shared followers, sums of |J| over masters of all ranks.
+  [[nodiscard]] std::vector<double> row_sums_of_shared() const;
+  /// Shares out row sums of K that shared followers have, of which each rank has a share.
+  void fold_row_sums_of_shared(std::vector<double> of_shared, std::span<double> sums) const;
   /// Replaces entries of handles, of which each rank has a share, by their sums.
   void sum_handles(std::span<double> of_dofs) const;
 

@@ -28,13 +28,42 @@ Offset place_of(const BlockPattern& pattern, Index row, Index column) {
   return std::lower_bound(first, last, column) - pattern.partner.data();
 }
 
+void make_unique(std::vector<Index>& numbers) {
+  std::sort(numbers.begin(), numbers.end());
+  numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
+}
+
+/// Whether a row is this rank's: that of an owned point, or its share of a handle's.
+bool has_row(const Sharing* sharing, Index row) {
+  return !sharing || row < sharing->owned() || row >= sharing->count();
+}
+
+/// Couples the handles that points of any rank couple, so that their rows are laid out alike on all
+/// ranks.
+void agree_on_handles(const Sharing& sharing, std::vector<std::vector<Index>>& columns) {
+  const Index first = sharing.count();  // each rank has as many handles, after its points
+  std::vector<double> pairs;
+  for (auto row = std::size_t(first); row < columns.size(); ++row) {
+    for (const Index column : columns[row]) {
+      pairs.push_back(double(Index(row) - first));
+      pairs.push_back(double(column - first));
+    }
+  }
+  pairs = all_together(sharing.ranks(), pairs);
+  for (std::size_t k = 0; k < pairs.size(); k += 2) {
+    columns[std::size_t(first) + std::size_t(pairs[k])].push_back(first + Index(pairs[k + 1]));
+  }
+}
+
 }  // namespace
 
-BlockPattern constrained_pattern(const BlockPattern& whole, const Constraints& constraints) {
+BlockPattern constrained_pattern(const BlockPattern& whole, const Constraints& constraints,
+                                 const Sharing* sharing) {
   std::vector<std::vector<Index>> more(std::size_t(constraints.rows()));
   const std::vector<double> at_rest(constraints.dofs(), 0.0);
   const auto couple = [&](Index a, Index b) {
-    if (a != b) more[std::size_t(std::min(a, b))].push_back(std::max(a, b));
+    const Index row = std::min(a, b);
+    if (a != b && has_row(sharing, row)) more[std::size_t(row)].push_back(std::max(a, b));
   };
   std::vector<std::vector<Index>> masters(std::size_t(whole.points()));
   for (Index i = 0; i < whole.points(); ++i) {
@@ -54,17 +83,20 @@ BlockPattern constrained_pattern(const BlockPattern& whole, const Constraints& c
       for (const Index b : masters[whole.partner[bond]]) couple(a, b);
     }
   });
+  if (sharing) {
+    for (auto row = std::size_t(sharing->count()); row < more.size(); ++row) make_unique(more[row]);
+    agree_on_handles(*sharing, more);
+  }
   std::vector<Offset> offset{0};
   std::vector<Index> partner;
   for (Index i = 0; i < constraints.rows(); ++i) {
     std::vector<Index>& row = more[std::size_t(i)];
-    if (i < whole.points() && constraints.stands_alone(i)) {
+    if (i < whole.points() && constraints.stands_alone(i) && has_row(sharing, i)) {
       for (const Index j : whole.of(i)) {
         if (constraints.stands_alone(j)) row.push_back(j);
       }
     }
-    std::sort(row.begin(), row.end());
-    row.erase(std::unique(row.begin(), row.end()), row.end());
+    make_unique(row);
     partner.insert(partner.end(), row.begin(), row.end());
     offset.push_back(static_cast<Offset>(partner.size()));
     row = std::vector<Index>();
@@ -72,10 +104,13 @@ BlockPattern constrained_pattern(const BlockPattern& whole, const Constraints& c
   return BlockPattern::of_rows(std::move(offset), std::move(partner));
 }
 
-ConstrainedTangent::ConstrainedTangent(const Energy& energy, const Constraints& constraints)
-    : Tangent(constrained_pattern(energy.pattern(), constraints), energy.points().dimension,
-              energy.threads(), Blocks::whole),
+ConstrainedTangent::ConstrainedTangent(const Energy& energy, const Constraints& constraints,
+                                       const Sharing* sharing)
+    : Tangent(constrained_pattern(energy.pattern(), constraints, sharing),
+              energy.points().dimension, energy.threads(), Blocks::whole),
+      points_(energy.points()),
       constraints_(constraints),
+      sharing_(sharing),
       whole_(energy),
       place_(std::size_t(whole_.pattern.blocks()), nowhere),
       reference_(energy.points().reference) {
@@ -84,12 +119,17 @@ ConstrainedTangent::ConstrainedTangent(const Energy& energy, const Constraints& 
   }
   reference = reference_;
   for (Index i = 0; i < whole_.pattern.points(); ++i) {
-    if (!constraints.stands_alone(i)) continue;
+    if (!constraints.stands_alone(i) || !has_row(sharing, i)) continue;
     for (Offset bond = whole_.pattern.offset[i]; bond < whole_.pattern.offset[i + 1]; ++bond) {
       const Index j = whole_.pattern.partner[bond];
       if (constraints.stands_alone(j)) place_[std::size_t(bond)] = place_of(pattern, i, j);
     }
   }
+}
+
+Couplings ConstrainedTangent::in_place() const {
+  const auto own = std::size_t(points_.own());
+  return {whole_.pattern.offset.first(own + 1), whole_.pattern.partner};
 }
 
 void ConstrainedTangent::linearise(Energy& energy, const StateView& at, double projection) {
@@ -100,7 +140,38 @@ void ConstrainedTangent::linearise(Energy& energy, const StateView& at, double p
   clear();
   add_blocks_between_free_points();
   add_blocks_of_followers(at.displacement);
+  gather_handles();
   add_curvature(at);
+}
+
+void ConstrainedTangent::gather_handles() {
+  if (!sharing_) return;
+  const std::size_t entries = std::size_t(dimension) * std::size_t(dimension);
+  const auto first = std::size_t(sharing_->count());
+  const bool has_them = sharing_->ranks().rank() == 0;
+  for (const std::span<double> shares :
+       {std::span(diagonal).subspan(first * entries),
+        std::span(off_diagonal).subspan(std::size_t(pattern.offset[first]) * entries)}) {
+    add_up(sharing_->ranks(), shares);
+    if (!has_them) std::ranges::fill(shares, 0.0);
+  }
+}
+
+/// Rows of handles are shares: each rank has the columns of its own points.
+void ConstrainedTangent::multiply(std::span<const double> v, std::span<double> result) const {
+  if (!sharing_) {
+    Tangent::multiply(v, result);
+    return;
+  }
+  factor_.assign(v.begin(), v.end());
+  sharing_->update_ghosts(factor_);
+  Tangent::multiply(factor_, result);
+  add_up(sharing_->ranks(), result.subspan(points_.reference.size()));
+}
+
+void ConstrainedTangent::absolute_row_sums(std::span<double> sums) const {
+  Tangent::absolute_row_sums(sums);
+  if (sharing_) add_up(sharing_->ranks(), sums.subspan(points_.reference.size()));
 }
 
 void ConstrainedTangent::add_blocks_between_free_points() {
@@ -108,7 +179,7 @@ void ConstrainedTangent::add_blocks_between_free_points() {
   run_on_threads(threads(), [&](int thread) {
     const RowRange range = whole_.ranges[std::size_t(thread)];
     for (Index i = range.first; i < range.last; ++i) {
-      if (!constraints_.stands_alone(i)) continue;
+      if (!constraints_.stands_alone(i) || !has_row(sharing_, i)) continue;
       std::copy_n(&whole_.diagonal[std::size_t(i) * entries], entries,
                   &diagonal[std::size_t(i) * entries]);
       for (Offset bond = whole_.pattern.offset[i]; bond < whole_.pattern.offset[i + 1]; ++bond) {
@@ -132,29 +203,31 @@ void ConstrainedTangent::add_blocks_of_followers(std::span<const double> displac
   };
   Tensor block{};
   for (Index i = 0; i < whole_.pattern.points(); ++i) {
-    if (constraints_.stands_alone(i)) continue;
+    if (constraints_.stands_alone(i) || !points_.owns(i)) continue;
     for (int k = 0; k < dimension * dimension; ++k) {
       block[std::size_t(k / dimension)][std::size_t(k % dimension)] =
           whole_.diagonal[std::size_t(i) * std::size_t(dimension * dimension) + std::size_t(k)];
     }
-    add_reduced(dependences(i), dependences(i), block, true);
+    const End end{dependences(i), true};
+    add_reduced(end, end, block, true);
   }
   for_each_of_followers(whole_.pattern, constraints_, [&](Index i, Offset bond) {
+    const Index j = whole_.pattern.partner[bond];
+    if (!points_.owns(i) && !points_.owns(j)) return;
     for (int r = 0; r < dimension; ++r) {
       for (int c = 0; c < dimension; ++c) {
         block[std::size_t(r)][std::size_t(c)] = whole_.entry(bond, r, c);
       }
     }
-    add_reduced(dependences(i), dependences(whole_.pattern.partner[bond]), block, false);
+    add_reduced({dependences(i), points_.owns(i)}, {dependences(j), points_.owns(j)}, block, false);
   });
 }
 
-void ConstrainedTangent::add_reduced(const std::vector<Dependence>& a,
-                                     const std::vector<Dependence>& b, const Tensor& block,
+void ConstrainedTangent::add_reduced(const End& a, const End& b, const Tensor& block,
                                      bool is_diagonal) {
   const std::size_t d = std::size_t(dimension);
-  for (const Dependence& left : a) {
-    for (const Dependence& right : b) {
+  for (const Dependence& left : a.masters) {
+    for (const Dependence& right : b.masters) {
       Tensor reduced{};
       for (std::size_t r = 0; r < d; ++r) {
         for (std::size_t c = 0; c < d; ++c) {
@@ -167,9 +240,13 @@ void ConstrainedTangent::add_reduced(const std::vector<Dependence>& a,
         }
       }
       // The diagonal block of a point has both orders of its dependences; a block beside it stands
-      // for its transpose, too.
-      if (left.master <= right.master || !is_diagonal) add(left.master, right.master, reduced);
-      if (left.master == right.master && !is_diagonal) {
+      // for its transpose, too. What is kept is the row of the lower one of both masters, which is
+      // that of the point whose master it is.
+      const bool is_ascending = left.master <= right.master;
+      if (is_ascending ? a.is_owned : b.is_owned && !is_diagonal) {
+        add(left.master, right.master, reduced);
+      }
+      if (left.master == right.master && !is_diagonal && b.is_owned) {
         Tensor transposed{};
         for (std::size_t m = 0; m < d; ++m) {
           for (std::size_t n = 0; n < d; ++n) transposed[m][n] = reduced[n][m];
@@ -194,10 +271,17 @@ void ConstrainedTangent::add(Index row, Index column, const Tensor& block) {
 }
 
 void ConstrainedTangent::add_curvature(const StateView& at) {
+  if (sharing_ && sharing_->ranks().rank() > 0) return;
   const auto& sets = constraints_.rigid_sets();
   for (std::size_t k = 0; k < at.curvature.size(); ++k) {
     add(sets[k].rotation, sets[k].rotation, at.curvature[k]);
   }
+}
+
+Couplings couplings_in_place(const TangentOperator& tangent) {
+  const auto* const constrained = dynamic_cast<const ConstrainedTangent*>(&tangent);
+  if (constrained == nullptr) return tangent.pattern;
+  return constrained->in_place();
 }
 
 }  // namespace peristat

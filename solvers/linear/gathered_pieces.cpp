@@ -103,11 +103,16 @@ std::vector<std::int64_t> labels_over_ranks(const Sharing& sharing, int dimensio
                                             std::span<const Index> joined) {
   const Communicator& ranks = sharing.ranks();
   const auto owned = std::size_t(sharing.owned());
-  const double first = double(ranks.count_all(std::int64_t(owned)).before);
+  const auto [before, all] = ranks.count_all(std::int64_t(owned));
+  const double first = double(before);
   constexpr double none = std::numeric_limits<double>::max();
   // The least number of those that are joined here; ghosts then tell of lower ones elsewhere.
   std::vector<double> least(joined.size(), none), of_points(joined.size(), none);
   for (std::size_t i = owned; i-- > 0;) least[std::size_t(joined[i])] = first + double(i);
+  const auto handles = std::size_t(sharing.count());  // after all points that are here
+  for (std::size_t i = handles; i < joined.size(); ++i) {
+    least[std::size_t(joined[i])] = double(all) + double(i - handles);
+  }
   for (bool changed = true; changed;) {
     for (std::size_t i = 0; i < joined.size(); ++i) of_points[i] = least[std::size_t(joined[i])];
     update_ghost_values(sharing, dimension, of_points);

@@ -16,6 +16,7 @@
 #include <fmt/format.h>
 #include <omp.h>
 
+#include "assembly/operators/constrained_tangent.hpp"
 #include "solvers/linear/block_jacobi.hpp"
 #include "solvers/linear/gathered_pieces.hpp"
 #include "solvers/linear/worst_outcome.hpp"
@@ -102,8 +103,8 @@ struct RigidPieces::Levels {
   GatheredPieces gathered_pieces;
   BlockJacobi fine{BlockJacobi::Blocks::points};
   Eigen::CholmodSupernodalLLT<Matrix, Eigen::Lower> coarse;
-  std::vector<Index> box;    // per point
-  std::vector<Index> piece;  // per point; none: a ghost that no bond here reaches
+  std::vector<Index> box;    // per point and handle
+  std::vector<Index> piece;  // likewise; none: a ghost or a handle that no bond here reaches
   /// Points x dimension, from the centre of their piece: Q is made of them whenever it is needed.
   /// Single precision is enough for what is a choice of subspace.
   std::vector<float> arm;
@@ -111,7 +112,7 @@ struct RigidPieces::Levels {
   /// make its k-th orthonormal one. This, `first` and the factor are where pieces are gathered.
   std::vector<double> to_basis;
   std::vector<Index> first;   // coarse equation of each piece, and their number
-  std::vector<Index> member;  // points of this rank, grouped by its pieces
+  std::vector<Index> member;  // points and handles of this rank, grouped by its pieces
   std::vector<Index> offset;  // of each piece here in member
   Eigen::VectorXd coarse_residual, coarse_correction;
   bool has_boxes = false;     // of the present pattern
@@ -121,6 +122,15 @@ struct RigidPieces::Levels {
 
   [[nodiscard]] const Communicator* ranks() const { return sharing ? &sharing->ranks() : nullptr; }
   [[nodiscard]] Index owned(Index points) const { return sharing ? sharing->owned() : points; }
+  /// Of a part, whether a point is a ghost: its rank has what it is coupled with, too.
+  [[nodiscard]] bool is_ghost(Index i) const {
+    return sharing && i >= sharing->owned() && i < sharing->count();
+  }
+  /// Whether equations of a point, or of a handle of constraints, are this rank's.
+  [[nodiscard]] bool has_row(Index i) const {
+    if (!sharing || i < sharing->owned()) return true;
+    return i >= sharing->count() && sharing->ranks().rank() == 0;
+  }
   [[nodiscard]] Index pieces_here() const { return static_cast<Index>(offset.size()) - 1; }
 
   /// Of a part of a body, which degrees of freedom of ghosts have equations there.
@@ -133,9 +143,8 @@ struct RigidPieces::Levels {
     }
     sharing->update_ghosts(is_free);
     with_ghosts = free->equation;
-    const auto own = std::size_t(sharing->owned()) * std::size_t(dimension);
-    for (std::size_t k = own; k < is_free.size(); ++k) {
-      with_ghosts[k] = is_free[k] > 0.0 ? 0 : FreeDofs::none;
+    for (std::size_t k = 0; k < is_free.size(); ++k) {
+      if (with_ghosts[k] == FreeDofs::none && is_free[k] > 0.0) with_ghosts[k] = 0;
     }
     equation = with_ghosts.data();
   }
@@ -144,11 +153,12 @@ struct RigidPieces::Levels {
   /// ranks.
   void find_boxes(const TangentOperator& tangent, std::span<const double> position) {
     const int d = dimension;
-    const Index points = tangent.pattern.points(), own = owned(points);
+    const Couplings in_place = couplings_in_place(tangent);
+    const Index own = owned(in_place.points());
     double longest = 0.0, shortest = std::numeric_limits<double>::infinity();
     for (Index i = 0; i < own; ++i) {
-      for (Offset bond = tangent.pattern.offset[i]; bond < tangent.pattern.offset[i + 1]; ++bond) {
-        const double squared = squared_distance(position, d, i, tangent.pattern.partner[bond]);
+      for (const Index j : in_place.of(i)) {
+        const double squared = squared_distance(position, d, i, j);
         longest = std::max(longest, squared);
         shortest = std::min(shortest, squared);
       }
@@ -160,7 +170,7 @@ struct RigidPieces::Levels {
       least[k % d] = std::min(least[k % d], position[k]);
       most[k % d] = std::max(most[k % d], position[k]);
     }
-    double all = points;
+    double all = own;
     if (const Communicator* const with = ranks()) {
       const std::vector<double> ends = with->max(
           {longest, -shortest, most[0], most[1], most[2], -least[0], -least[1], -least[2]});
@@ -184,8 +194,12 @@ struct RigidPieces::Levels {
       width *= 1.1;
     } while (is_too_fine(d, count, all, ranks() ? ranks()->count() : 1));
     has_boxes = true;
-    box.resize(points);
-    for (Index i = 0; i < points; ++i) {
+    box.resize(std::size_t(tangent.pattern.points()));
+    for (Index i = 0; i < tangent.pattern.points(); ++i) {
+      if (i >= in_place.points()) {  // handles are pieces by themselves
+        box[i] = -1 - i;
+        continue;
+      }
       double number = 0.0;
       for (int c = 0; c < d; ++c) {
         const double extent = most[c] - least[c];
@@ -229,7 +243,7 @@ struct RigidPieces::Levels {
     // Bonds to later threads' points are left to the end.
     std::vector<std::vector<std::pair<Index, Index>>> across(std::size_t(tangent.threads()));
     tangent.for_each_row([&](int thread, Index i, std::span<const double> blocks) {
-      if (i >= own) return;
+      if (!has_row(i)) return;
       for (Offset bond = pattern.offset[i]; bond < pattern.offset[i + 1]; ++bond) {
         const Index j = pattern.partner[bond];
         if (box[i] != box[j]) continue;
@@ -258,7 +272,7 @@ struct RigidPieces::Levels {
     const BlockPattern& pattern = tangent.pattern;
     const Index points = pattern.points(), own = sharing->owned();
     std::vector<char> is_reached(std::size_t(points), 0);
-    std::fill_n(is_reached.begin(), own, char(1));
+    for (Index i = 0; i < points; ++i) is_reached[std::size_t(i)] = char(has_row(i));
     for (Offset bond = 0; bond < pattern.offset[own]; ++bond) {
       is_reached[std::size_t(pattern.partner[bond])] = 1;
     }
@@ -278,7 +292,7 @@ struct RigidPieces::Levels {
 
   /// Parts of the boxes that unbroken bonds join.
   void find_pieces(const TangentOperator& tangent) {
-    const Index points = tangent.pattern.points(), own = owned(points);
+    const Index points = tangent.pattern.points();
     const std::vector<Index> joined = join_in_boxes(tangent);
     Index pieces = 0;
     if (sharing) {
@@ -294,11 +308,15 @@ struct RigidPieces::Levels {
       gathered_pieces = GatheredPieces(pieces);
     }
     offset.assign(std::size_t(pieces) + 1, 0);
-    for (Index i = 0; i < own; ++i) ++offset[piece[i] + 1];
+    for (Index i = 0; i < points; ++i) {
+      if (has_row(i)) ++offset[piece[i] + 1];
+    }
     std::partial_sum(offset.begin(), offset.end(), offset.begin());
-    member.resize(own);
+    member.resize(std::size_t(offset.back()));
     std::vector<Index> place(offset.begin(), offset.end() - 1);
-    for (Index i = 0; i < own; ++i) member[place[piece[i]]++] = i;
+    for (Index i = 0; i < points; ++i) {
+      if (has_row(i)) member[place[piece[i]]++] = i;
+    }
   }
 
   /// Vector of a point's degrees of freedom, 0 where one is prescribed.
@@ -452,10 +470,9 @@ struct RigidPieces::Levels {
     using Motions = Eigen::Matrix<double, motions, D>;
     using Entries = Eigen::Map<const Eigen::Matrix<double, D, D, Eigen::RowMajor>>;
     const BlockPattern& pattern = tangent.pattern;
-    const Index points_here = owned(pattern.points());
     std::vector<CoarseBlocks<D>> parts(std::size_t(tangent.threads()));
     tangent.for_each_row([&](int thread, Index i, std::span<const double> blocks) {
-      if (i >= points_here) return;
+      if (!has_row(i)) return;
       CoarseBlocks<D>& part = parts[std::size_t(thread)];
       const Index own = piece[i];
       const Motions at_i = motions_at<D>(i);
@@ -481,10 +498,10 @@ struct RigidPieces::Levels {
       };
       for (Offset bond = pattern.offset[i]; bond < pattern.offset[i + 1]; ++bond) {
         const Index j = pattern.partner[bond];
-        if (piece[j] != run || (j >= points_here) != is_shared) {
+        if (piece[j] != run || is_ghost(j) != is_shared) {
           end_run();
           run = piece[j];
-          is_shared = j >= points_here;
+          is_shared = is_ghost(j);
         }
         const double* block = &blocks[std::size_t(bond - pattern.offset[i]) * D * D];
         for (int r = 0; r < D; ++r) {

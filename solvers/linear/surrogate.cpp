@@ -195,6 +195,8 @@ void Surrogate::analyze(const BlockPattern& pattern, const FreeDofs& free) {
 LinearOutcome Surrogate::build(const TangentOperator& tangent) {
   StandIn& s = *stand_in_;
   const Sharing* const sharing = s.sharing;
+  // No rank has all of the rows of handles.
+  if (sharing && tangent.pattern.points() > sharing->count()) return LinearOutcome::inaccurate;
   const LinearOutcome outcome =
       worst_outcome(sharing ? &sharing->ranks() : nullptr, s.fine.build(tangent));
   if (outcome != LinearOutcome::solved) return outcome;

@@ -111,10 +111,9 @@ std::string check_resultants(const EquilibriumProblem& problem, const TangentOpe
   const Balances owed = problem.assembler.model().balances();
   const std::size_t d = std::size_t(tangent.dimension);
   double trace = 0.0;
-  const std::size_t own = problem.sums().own(tangent.diagonal.size() / d);
-  for (std::size_t i = 0; i < own * d; i += d * d) {
-    for (std::size_t c = 0; c < d; ++c) trace += std::abs(tangent.diagonal[i + c * (d + 1)]);
-  }
+  problem.sums().for_each_entry(tangent.diagonal.size() / d, [&](std::size_t dof) {
+    trace += std::abs(tangent.diagonal[dof / d * d * d + dof % d * (d + 1)]);
+  });
   trace = problem.sums().of_all(trace);
   // Where all has come apart forces may vanish, and the energy, their square, before them.
   const double energy = std::max(std::abs(found.after.stored), std::numeric_limits<double>::min());

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "solvers/ranks/numbered_points.hpp"
 #include "src/core/communicator.hpp"
+#include "src/geometry/numbered_points.hpp"
 #include "src/neighbourhood/bonds.hpp"
 
 namespace peristat {

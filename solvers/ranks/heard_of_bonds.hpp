@@ -3,8 +3,8 @@
 #include <functional>
 #include <vector>
 
-#include "solvers/ranks/numbered_points.hpp"
 #include "src/core/communicator.hpp"
+#include "src/geometry/numbered_points.hpp"
 #include "src/neighbourhood/bonds.hpp"
 
 namespace peristat {

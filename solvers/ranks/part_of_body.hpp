@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "solvers/ranks/ghost_exchange.hpp"
-#include "solvers/ranks/numbered_points.hpp"
 #include "src/core/sharing.hpp"
+#include "src/geometry/numbered_points.hpp"
 #include "src/geometry/part.hpp"
 
 namespace peristat {

@@ -347,21 +347,20 @@ bool has_damage(const BodySpecification& of) {
          });
 }
 
-/// Rollers have handles point by point, linear constraints followers of points of all ranks.
-template <class Refuse>
-void refuse_constraints_without_ranks(const BodySpecification& of, const Refuse& refuse) {
+void refuse_constraints_without_ranks(const BodySpecification& of) {
   const ConstraintSpecification& constraints = of.constraints;
-  if (!constraints.rollers.empty()) refuse("rollers");
-  if (!constraints.linear.empty()) refuse("linear");
   if (constraints.none()) return;
   const bool has_images = !constraints.symmetries.empty() || !constraints.periods.empty();
-  const std::string key = !constraints.rigid_sets.empty() ? "rigid_sets"
-                          : !constraints.periods.empty()  ? "periods"
-                                                          : "symmetries";
+  const std::string key = !constraints.periods.empty()      ? "periods"
+                          : !constraints.symmetries.empty() ? "symmetries"
+                          : !constraints.rigid_sets.empty() ? "rigid_sets"
+                          : !constraints.rollers.empty()    ? "rollers"
+                                                            : "linear";
   const auto refuse_with = [&](const std::string& what) {
     throw InputError(key, "", "is not for more than one rank yet together with " + what);
   };
-  if (of.material.model != MaterialModel::bond) refuse_with("models but \"bond\"");
+  const bool has_bonds_alone = of.material.model == MaterialModel::bond;
+  if (has_images && !has_bonds_alone) refuse_with("models but \"bond\"");
   if (has_damage(of)) refuse_with("damage");
   if (of.end_time) refuse_with("motions");
   if (has_images && of.has_pressures()) refuse_with("pressures");
@@ -381,9 +380,9 @@ void refuse_without_ranks(const BodySpecification& of) {
     throw InputError(
         key, "",
         "is not for more than one rank yet: there are bodies with pre-cracks, supports, "
-        "rigid sets, planes of symmetry, periods, foundations, eigenstrains, tractions, "
-        "pressures, body forces, total forces and gravity, and damage of bonds, points, states "
-        "and triangles");
+        "rigid sets, rollers, linear constraints, planes of symmetry, periods, foundations, "
+        "eigenstrains, tractions, pressures, body forces, total forces and gravity, and damage of "
+        "bonds, points, states and triangles");
   };
   const MaterialSpecification& material = of.material;
   if (is_polynomial(material.model)) refuse("material.model");
@@ -391,7 +390,7 @@ void refuse_without_ranks(const BodySpecification& of) {
   refuse_damage_without_ranks(of, refuse);
   if (of.force_operator != ForceOperator::bonds) refuse("force_operator");
   if (!of.controls.empty()) refuse("controls");
-  refuse_constraints_without_ranks(of, refuse);
+  refuse_constraints_without_ranks(of);
   for (std::size_t k = 0; k < of.loads.size(); ++k) {
     const LoadSpecification::Kind kind = of.loads[k].kind;
     if (kind == LoadSpecification::Kind::stress && !of.is_collocated()) {
@@ -413,7 +412,7 @@ double bytes_of_part(const Points& points, const BodySpecification& of) {
 /// @throws MemoryError for parts that can't fit into the machine that they share
 void require_memory_for(const Part& part, const BodySpecification& of, const Communicator& ranks) {
   require_memory(sum_on_machine(ranks, bytes_of_part(part.points, of)),
-                 fmt::format("the parts on a machine of the body with {} points", part.whole));
+                 fmt::format("what a machine has of the body with {} points", part.whole));
 }
 
 }  // namespace
@@ -441,7 +440,7 @@ std::unique_ptr<const Body> make_body(Part part, const BodySpecification& of,
       threads);
   LoadSetting loads = load_setting(of, body.points);
   loads.ranks = &ranks;
-  loads.number = body.part->number();
+  loads.numbers = body.part->numbered();
   take_surface(body, loads, threads);
   body.conditions = std::make_unique<Conditions>(body.points, of.supports, of.loads,
                                                  programme_of(of), of.controls, loads,

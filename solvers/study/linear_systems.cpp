@@ -91,6 +91,18 @@ MemoryEstimate estimate_memory_of_part(const Body& body) {
   return nothing;
 }
 
+/// Whether whatever follows a rank's points is there, or follows handles: what images are of is,
+/// and rigid sets follow handles alone.
+bool has_rows_of_part(const Body& body) {
+  const ConstraintSpecification& constraints = body.specification.constraints;
+  return constraints.rollers.empty() && constraints.linear.empty();
+}
+
+/// Whether a preconditioner takes the diagonal blocks of a tangent alone.
+bool is_of_points(PreconditionerKind kind) {
+  return kind == PreconditionerKind::block_jacobi || kind == PreconditionerKind::jacobi;
+}
+
 /// Explicit steps solve nothing; they need products of the tangent now and then.
 LinearSystems systems_of_motion(const Body& body) {
   const MemoryEstimate estimate = estimate_memory_of_part(body);
@@ -100,17 +112,10 @@ LinearSystems systems_of_motion(const Body& body) {
   systems.chosen.reason = "explicit time steps solve no equations";
   const bool is_followed = !body.conditions->constraints().none();
   systems.is_stored = body.model.has_rows() && (!body.model.visits_rows() || is_followed);
+  systems.has_rows = has_rows_of_part(body);
   systems.bytes = estimate.body_bytes + (systems.is_stored ? estimate.tangent_bytes : 0.0) +
                   8.0 * vectors_of_motion * estimate.size.points * estimate.size.dimension;
   return systems;
-}
-
-/// Whether bonds alone couple points, on all ranks alike: one may have none.
-bool has_bonds_alone(const Body& body) {
-  const Conditions& conditions = *body.conditions;
-  return body.specification.material.model == MaterialModel::bond &&
-         conditions.constraints().none() && conditions.foundations().none() &&
-         !conditions.has_pressures();
 }
 
 /// No rank has the whole of a tangent, or of the box of a lattice.
@@ -130,13 +135,15 @@ void refuse_solvers_without_ranks(const StudyOptions& options, const Body& body)
   if (kind == PreconditionerKind::local_operator) {
     refuse("linear.preconditioner", "\"block_jacobi\" or \"jacobi\"");
   }
-  const bool is_of_points = kind == PreconditionerKind::automatic ||
-                            kind == PreconditionerKind::block_jacobi ||
-                            kind == PreconditionerKind::jacobi;
-  if (!has_bonds_alone(body) && !is_of_points) {
+  const bool is_simple = kind == PreconditionerKind::automatic || is_of_points(kind);
+  if (!has_rows_of_part(body) && !is_simple) {
     refuse("linear.preconditioner",
-           "\"block_jacobi\" or \"jacobi\" with pressures, foundations, constraints and models but "
-           "\"bond\"");
+           "\"block_jacobi\" or \"jacobi\" with rollers and linear constraints");
+  }
+  const bool has_handles = !body.conditions->constraints().handles().empty();
+  if (has_handles && !is_simple && kind != PreconditionerKind::rigid_pieces) {
+    refuse("linear.preconditioner",
+           "\"rigid_pieces\", \"block_jacobi\" or \"jacobi\" with periods and rigid sets");
   }
   if (finds_loads(options, *body.conditions)) {
     refuse("loading.mode", "loads that are given: those that are found need pivots");
@@ -292,13 +299,16 @@ LinearSystems choose_linear_systems(const StudyOptions& options, const Body& bod
   if (body.part) {
     refuse_solvers_without_ranks(options, body);
     StudyOptions of_part = options;
-    // Pieces of parts are tested on tangents of bonds alone.
-    if (!has_bonds_alone(body) && body.model.balances().potential &&
-        options.linear.preconditioner == PreconditionerKind::automatic) {
-      of_part.linear.preconditioner = PreconditionerKind::block_jacobi;
+    const bool has_rows = has_rows_of_part(body);
+    PreconditionerKind& kind = of_part.linear.preconditioner;
+    if (!has_rows && kind == PreconditionerKind::automatic) kind = PreconditionerKind::block_jacobi;
+    if (!body.conditions->constraints().none() && !is_of_points(kind)) {
+      of_part.tangent = TangentStorage::stored;
     }
-    return choose_linear_systems(of_part, body.model, estimate_memory_of_part(body), {},
-                                 std::move(tell), body.part.get());
+    LinearSystems systems = choose_linear_systems(
+        of_part, body.model, estimate_memory_of_part(body), {}, std::move(tell), body.part.get());
+    systems.has_rows = has_rows;
+    return systems;
   }
   StudyOptions chosen = options;
   if (!body.model.has_rows()) {
@@ -349,8 +359,8 @@ std::unique_ptr<TangentOperator> LinearSystems::make_tangent(Assembler& assemble
     return std::make_unique<RowsOfEnergy>(assembler);
   }
   if (is_convolved) return make_convolved_tangent(assembler, constraints);
-  if (!constraints.none() && !sharing) {
-    return std::make_unique<ConstrainedTangent>(assembler, constraints);
+  if (!constraints.none() && (!sharing || (is_stored && has_rows))) {
+    return std::make_unique<ConstrainedTangent>(assembler, constraints, sharing);
   }
   if (!constraints.none()) {
     return std::make_unique<ConstrainedProduct>(make_plain(assembler, is_stored),

@@ -13,7 +13,9 @@ namespace peristat {
 struct LinearSystems {
   ChosenSolver chosen;
   bool is_stored = true;  ///< the tangent
-  double bytes = 0.0;     ///< estimated for the whole run
+  /// Of a part of a body: its tangent has rows for preconditioners to look at, as well as products.
+  bool has_rows = true;
+  double bytes = 0.0;  ///< estimated for the whole run
 
   [[nodiscard]] std::unique_ptr<TangentOperator> make_tangent(Assembler& assembler,
                                                               const Constraints& constraints) const;

@@ -15,7 +15,7 @@ void require_memory_for(const Body& body, double bytes) {
   }
   require_memory(
       sum_on_machine(body.part->ranks(), bytes),
-      fmt::format("the parts on a machine of the body with {} points", body.part->whole()));
+      fmt::format("what a machine has of the body with {} points", body.part->whole()));
 }
 
 }  // namespace peristat

@@ -86,8 +86,10 @@ void refuse_unstable_rest(const Body& body, const StudyOptions& options) {
   if (systems.chosen.is_direct) {
     solver = std::make_unique<Cholesky>(FactorReuse{0});
   } else {
-    std::unique_ptr<Preconditioner> preconditioner = std::make_unique<RigidPieces>();
-    if (ranks) preconditioner = std::make_unique<BlockJacobi>(BlockJacobi::Blocks::points);
+    std::unique_ptr<Preconditioner> preconditioner = std::make_unique<RigidPieces>(body.part.get());
+    if (!systems.has_rows) {
+      preconditioner = std::make_unique<BlockJacobi>(BlockJacobi::Blocks::points);
+    }
     solver = std::make_unique<IterativeSolver>(KrylovMethod::conjugate_gradients,
                                                std::move(preconditioner), most_iterations,
                                                KrylovOptions{}.restart, ranks);

@@ -78,8 +78,7 @@ void refuse_modes_without_ranks(const Body& body, const StudyOptions& options) {
   const Mode mode = options.loading.mode;
   if (mode == Mode::relaxation && !body.conditions->constraints().none()) {
     throw InputError("loading.mode", std::string(mode.name),
-                     "is not for more than one rank together with planes of symmetry, periods, "
-                     "rigid sets; take newton");
+                     "is not for more than one rank together with constraints; take newton");
   }
   if (mode != Mode::path && mode != Mode::arc_length) return;
   throw InputError("loading.mode", std::string(mode.name),

@@ -109,7 +109,8 @@ Conditions::Conditions(const Points& points, const std::vector<SupportSpecificat
   }
   add_eigenstrains(eigenstrains, setting);
   foundations_ = Foundations(points, foundations, parameters, setting.ranks);
-  made_ = make_constraints(points, constraints, prescribed_, parameters, setting.ranks);
+  made_ = make_constraints(points, constraints, prescribed_, parameters, setting.ranks,
+                           setting.numbers);
   refuse_shared_names();
   hold_periodic_cell(constraints, setting);
   prescribe_handles();
@@ -195,7 +196,7 @@ std::optional<Index> Conditions::point_of_middle(const LoadSetting& setting) con
   // Of those as near but for round-off the one with the lowest number, as of a whole body.
   const double least = ranks_->min(mine.distance);
   const bool is_as_near = own > 0 && mine.distance <= least + round_off_of_distances(points_);
-  const double number = is_as_near ? double(setting.number[std::size_t(mine.point)])
+  const double number = is_as_near ? double(setting.numbers.number_of(mine.point))
                                    : std::numeric_limits<double>::infinity();
   if (ranks_->min(number) != number || !is_as_near) return std::nullopt;
   return mine.point;
@@ -567,6 +568,50 @@ std::map<std::string, Coordinates> Conditions::moments(std::span<const double> d
   return moments;
 }
 
+Coordinates Conditions::moved(Index row, Coordinates at,
+                              std::span<const double> displacement) const {
+  const auto d = std::size_t(points_.dimension);
+  for (std::size_t c = 0; c < d; ++c) at[c] += displacement[std::size_t(row) * d + c];
+  return at;
+}
+
+void Conditions::add_held_sums(std::span<const double> displacement, Holding& holding) const {
+  std::vector<HeldMotion> held;
+  for (const HeldSum& sum : made_.held_sums) {
+    HeldMotion& motion =
+        held.emplace_back(HeldMotion{sum.empty() ? -1 : sum.front().first, {}, {}});
+    for (const auto& [point, weight] : sum) {
+      const Coordinates at = moved(point, points_.position(point), displacement);
+      motion.along = plus<3>(motion.along, weight);
+      motion.about = plus<3>(motion.about, cross(at, weight));
+      holding.links.push_back({motion.member, point});
+    }
+  }
+  if (!ranks_) {
+    holding.motions.insert(holding.motions.end(), held.begin(), held.end());
+    return;
+  }
+  // Ranks have shares of a sum, and the first of them tells it.
+  std::vector<double> shares, first;
+  for (const HeldMotion& motion : held) {
+    shares.insert(shares.end(), motion.along.begin(), motion.along.end());
+    shares.insert(shares.end(), motion.about.begin(), motion.about.end());
+    shares.push_back(motion.member >= 0 ? 1.0 : 0.0);
+    first.push_back(motion.member >= 0 ? double(ranks_->rank()) : double(ranks_->count()));
+  }
+  if (held.empty()) return;
+  shares = ranks_->sum(shares);
+  first = ranks_->min(first);
+  for (std::size_t k = 0; k < held.size(); ++k) {
+    const auto of_all = shares.begin() + std::ptrdiff_t(7 * k);
+    HeldMotion& motion = held[k];
+    std::copy_n(of_all, 3, motion.along.begin());
+    std::copy_n(of_all + 3, 3, motion.about.begin());
+    if (of_all[6] > 1.0) holding.ties.push_back(motion.member);
+    if (first[k] == double(ranks_->rank())) holding.motions.push_back(motion);
+  }
+}
+
 Holding Conditions::holding(std::span<const double> displacement) const {
   const std::size_t d = std::size_t(points_.dimension);
   Holding holding;
@@ -575,10 +620,7 @@ Holding Conditions::holding(std::span<const double> displacement) const {
   for (std::size_t dof = 0; dof < holding.prescribed.size(); ++dof) {
     if (constraints().dependent()[dof]) holding.prescribed[dof] = 0;
   }
-  const auto place = [&](Index row, Coordinates at) {
-    for (std::size_t c = 0; c < d; ++c) at[c] += displacement[std::size_t(row) * d + c];
-    return at;
-  };
+  const auto place = [&](Index row, const Coordinates& at) { return moved(row, at, displacement); };
   for (const Spring& spring : foundations_.springs()) {
     for (std::size_t c = 0; c < d; ++c) {
       const std::size_t dof = std::size_t(spring.point) * d + c;
@@ -593,21 +635,15 @@ Holding Conditions::holding(std::span<const double> displacement) const {
           {spring.point, axis, cross(place(spring.point, points_.position(spring.point)), axis)});
     }
   }
-  for (const HeldSum& sum : made_.held_sums) {
-    HeldMotion motion{sum.front().first, {}, {}};
-    for (const auto& [point, weight] : sum) {
-      motion.along = plus<3>(motion.along, weight);
-      motion.about = plus<3>(motion.about, cross(place(point, points_.position(point)), weight));
-      holding.links.push_back({motion.member, point});
-    }
-    holding.motions.push_back(motion);
-  }
+  add_held_sums(displacement, holding);
   for (const Slide& slide : made_.slides) {
     const Coordinates at = place(slide.member, points_.position(slide.member));
     const HeldMotion motion{slide.member, slide.direction, cross(at, slide.direction)};
     holding.handles.push_back({slide.dof, motion, true});
   }
   for (const Constraints::RigidSet& set : constraints().rigid_sets()) {
+    const bool is_here = !set.members.empty() && points_.owns(set.members.front());
+    if (ranks_) holding.ties.push_back(is_here ? set.members.front() : -1);
     if (set.members.empty()) continue;  // on this rank
     for (const Index member : set.members) {
       holding.links.push_back({set.members.front(), member});

@@ -20,6 +20,7 @@
 #include "src/connectivity/holding.hpp"
 #include "src/core/communicator.hpp"
 #include "src/core/expression.hpp"
+#include "src/geometry/numbered_points.hpp"
 #include "src/geometry/points.hpp"
 
 namespace peristat {
@@ -32,8 +33,7 @@ struct LoadSetting {
   /// Where tractions act on the surface; nothing: they are forces on points.
   std::optional<std::vector<SurfaceSite>> surface = std::nullopt;
   const Communicator* ranks = nullptr;  ///< that have parts of the body; null: it is whole
-  /// Of a part: those of its owned points in the whole body.
-  std::span<const GlobalIndex> number{};
+  NumberedPoints numbers{};             ///< of a part
 };
 
 /// What strains the points without forces.
@@ -76,7 +76,8 @@ class Conditions {
   /// Whether a degree of freedom has no equation: it is prescribed, or follows others.
   [[nodiscard]] const std::vector<char>& prescribed() const { return prescribed_; }
 
-  /// What holds pieces of the body, at a displacement.
+  /// What holds pieces of the body, at a displacement. Of a part of a body a call that all ranks
+  /// make.
   [[nodiscard]] Holding holding(std::span<const double> displacement) const;
 
   /// Overwrites the prescribed entries with their displacement [m] at a point of the programme.
@@ -179,9 +180,13 @@ class Conditions {
   void prescribe_handles_at(std::span<const double> loads, std::span<double> displacement) const;
   [[nodiscard]] Coordinates reaction_of(const Restraint& restraint,
                                         std::span<const double> gradient) const;
+  void add_held_sums(std::span<const double> displacement, Holding& holding) const;
   void find_shared();
   void find_changes();
   void try_stages();
+  /// Where a point, or a handle that stands at a place, has gone.
+  [[nodiscard]] Coordinates moved(Index row, Coordinates at,
+                                  std::span<const double> displacement) const;
   [[nodiscard]] std::size_t dof_of(const Prescription& prescription, Index point) const {
     return std::size_t(point) * points_.dimension + prescription.component;
   }

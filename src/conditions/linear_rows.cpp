@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "src/core/input_error.hpp"
+#include "src/core/sharing.hpp"
 
 namespace peristat {
 namespace {
@@ -16,26 +17,57 @@ constexpr double vanished = 1e-10;
 /// Most coefficients of a row: each becomes a dense row of the tangent.
 constexpr std::size_t most_coefficients = 20'000;
 
-/// A row solved for its pivot, of coefficient 1; also of the handles' components.
-using Solved = std::map<std::size_t, double>;
+using Row = std::map<std::size_t, double>;
 
-void add_multiple(Solved& to, const Solved& row, double factor) {
+void add_multiple(Row& to, const Row& row, double factor) {
   for (const auto& [dof, coefficient] : row) to[dof] += factor * coefficient;
 }
 
 }  // namespace
 
+void LinearRows::note_held_dofs() {
+  first_handle_ = prescribed_.size();
+  for (const LinearRow& row : rows_) {
+    for (const auto& [dof, coefficient] : row.coefficient) {
+      if (prescribed_[dof]) held_.insert(dof);
+    }
+  }
+}
+
+void LinearRows::gather() {
+  const auto d = std::size_t(points_.dimension);
+  std::vector<double> coefficients;  // and where they stand
+  for (std::size_t k = 0; k < rows_.size(); ++k) {
+    for (const auto& [dof, coefficient] : rows_[k].coefficient) {
+      const auto point = Index(dof / d);
+      const double of_body = double(numbers_.number_of(point)) * double(d) + double(dof % d);
+      coefficients.insert(coefficients.end(),
+                          {double(k), of_body, coefficient, double(prescribed_[dof])});
+    }
+    rows_[k].coefficient.clear();
+  }
+  coefficients = all_together(*ranks_, coefficients);
+  const std::size_t handles_here = prescribed_.size();
+  first_handle_ = d << 50;  // above those of points
+  for (LinearRow& row : rows_) row.value += first_handle_ - handles_here;
+  for (std::size_t k = 0; k < coefficients.size(); k += 4) {
+    const auto dof = std::size_t(coefficients[k + 1]);
+    rows_[std::size_t(coefficients[k])].add(dof, coefficients[k + 2]);
+    if (coefficients[k + 3] != 0.0) held_.insert(dof);
+  }
+}
+
 std::size_t LinearRows::pivot_of(const LinearRow& row, double size) const {
-  std::size_t pivot = prescribed_.size();
+  std::size_t pivot = first_handle_;
   double largest = vanished * size;
   for (const auto& [dof, coefficient] : row.coefficient) {
-    if (dof >= prescribed_.size() || prescribed_[dof]) continue;
+    if (dof >= first_handle_ || held_.contains(dof)) continue;
     if (std::abs(coefficient) > largest * (1.0 + 1e-9)) {
       pivot = dof;
       largest = std::abs(coefficient);
     }
   }
-  if (pivot < prescribed_.size()) return pivot;
+  if (pivot < first_handle_) return pivot;
   throw InputError(row.key, "",
                    row.who +
                        " holds nothing that is free: supports prescribe all displacements in it, "
@@ -43,6 +75,12 @@ std::size_t LinearRows::pivot_of(const LinearRow& row, double size) const {
 }
 
 void LinearRows::eliminate(Constraints& constraints) {
+  if (rows_.empty()) return;
+  ranks_ ? gather() : note_held_dofs();
+  follow(solve(), constraints);
+}
+
+std::map<std::size_t, LinearRows::Solved> LinearRows::solve() {
   std::map<std::size_t, Solved> solved;  // by pivot
   for (LinearRow& row : rows_) {
     if (row.coefficient.size() > most_coefficients) {
@@ -79,23 +117,43 @@ void LinearRows::eliminate(Constraints& constraints) {
     }
     solved.emplace(pivot, std::move(of_pivot));
   }
+  return solved;
+}
 
-  const std::size_t d = std::size_t(dimension_);
-  std::map<Index, std::pair<std::array<bool, 3>, std::map<Index, Dependence>>> of_point;
+std::optional<Index> LinearRows::own_row(std::size_t dof) const {
+  const auto d = std::size_t(points_.dimension);
+  if (!ranks_) return static_cast<Index>(dof / d);
+  if (dof < first_handle_) {
+    const std::optional<Index> point = numbers_.find(GlobalIndex(dof / d));
+    return point && numbers_.is_owned(*point) ? point : std::nullopt;
+  }
+  if (ranks_->rank() > 0) return std::nullopt;
+  return points_.count() + static_cast<Index>((dof - first_handle_) / d);
+}
+
+void LinearRows::follow(const std::map<std::size_t, Solved>& solved,
+                        Constraints& constraints) const {
+  const auto d = std::size_t(points_.dimension);
+  std::map<std::size_t, std::pair<std::array<bool, 3>, std::map<Index, Dependence>>> of_point;
   for (const auto& [pivot, row] : solved) {
-    auto& [follows, masters] = of_point[static_cast<Index>(pivot / d)];
+    auto& [follows, masters] = of_point[pivot / d];
     follows[pivot % d] = true;
     for (const auto& [dof, coefficient] : row) {
-      const Index master = static_cast<Index>(dof / d);
-      Dependence& on = masters[master];
-      on.master = master;
+      const std::optional<Index> master = own_row(dof);
+      if (!master) continue;
+      Dependence& on = masters[*master];
+      on.master = *master;
       on.block[pivot % d][dof % d] += coefficient;
     }
   }
   for (auto& [point, follower] : of_point) {
     std::vector<Dependence> masters;
     for (auto& [master, on] : follower.second) masters.push_back(on);
-    constraints.follow(point, follower.first, std::move(masters));
+    if (ranks_) {
+      constraints.follow({numbers_.find(GlobalIndex(point)), follower.first, std::move(masters)});
+    } else {
+      constraints.follow(static_cast<Index>(point), follower.first, std::move(masters));
+    }
   }
 }
 

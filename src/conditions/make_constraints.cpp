@@ -4,12 +4,14 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <optional>
 #include <utility>
 
 #include "src/conditions/linear_rows.hpp"
 #include "src/conditions/points_of_set.hpp"
 #include "src/core/input_error.hpp"
 #include "src/core/number_text.hpp"
+#include "src/core/sharing.hpp"
 #include "src/measures/small_algebra.hpp"
 
 namespace peristat {
@@ -35,15 +37,16 @@ class Maker {
  public:
   Maker(const Points& points, const ConstraintSpecification& of,
         const std::vector<char>& prescribed, const std::vector<std::string>& parameters,
-        const Communicator* ranks)
+        const Communicator* ranks, const NumberedPoints& numbers)
       : points_(points),
         ranks_(ranks),
+        numbers_(numbers),
         of_(of),
         prescribed_(prescribed),
         parameters_(parameters),
-        made_{Constraints(points)},
+        made_{Constraints(points, ranks)},
         holder_(std::size_t(points.count())),
-        rows_(points.dimension, prescribed) {}
+        rows_(points, prescribed, ranks, numbers) {}
 
   [[nodiscard]] MadeConstraints make() {
     for (std::size_t k = 0; k < of_.symmetries.size(); ++k) {
@@ -220,9 +223,7 @@ class Maker {
   [[nodiscard]] double size_of(const Constraints::RigidSet& set, const std::string& key,
                                const std::string& name) const {
     const auto is_own = [&](Index member) { return points_.owns(member); };
-    auto count = double(std::ranges::count_if(set.members, is_own));
-    if (ranks_) count = ranks_->sum(count);
-    if (count < 2.0) {
+    if (count_of(set.members) < 2.0) {
       throw InputError(key, '"' + name + '"',
                        "has one point, which can't turn: a rigid set needs two or more");
     }
@@ -269,6 +270,42 @@ class Maker {
     return scaled<3>(1.0 / size, spec.normal);
   }
 
+  [[nodiscard]] double of_all(double mine) const { return ranks_ ? ranks_->sum(mine) : mine; }
+
+  /// Points of a set of the whole body.
+  [[nodiscard]] double count_of(const std::vector<Index>& members) const {
+    return of_all(
+        double(std::ranges::count_if(members, [&](Index member) { return points_.owns(member); })));
+  }
+
+  struct Member {
+    Coordinates place{};
+    std::optional<Index> here{};  ///< the point, on ranks that have it
+  };
+
+  /// Points of a set of the whole body, alike on all ranks and in the order of one.
+  [[nodiscard]] std::vector<Member> members_of_all(const std::vector<Index>& members) const {
+    std::vector<Member> all;
+    if (!ranks_) {
+      for (const Index member : members) all.push_back({points_.position(member), member});
+      return all;
+    }
+    std::vector<double> told;  // numbers and places
+    for (const Index member : members) {
+      if (!points_.owns(member)) continue;
+      const Coordinates at = points_.position(member);
+      told.push_back(double(numbers_.number_of(member)));
+      told.insert(told.end(), at.begin(), at.end());
+    }
+    told = all_together(*ranks_, told);
+    std::map<GlobalIndex, Coordinates> place;
+    for (std::size_t k = 0; k < told.size(); k += 4) {
+      place[GlobalIndex(told[k])] = {told[k + 1], told[k + 2], told[k + 3]};
+    }
+    for (const auto& [number, at] : place) all.push_back({at, numbers_.find(number)});
+    return all;
+  }
+
   void make_rollers(std::size_t k) {
     const RollerSpecification& spec = of_.rollers[k];
     const std::string table = indexed("rollers", k);
@@ -276,6 +313,9 @@ class Maker {
     Restraint restraint{
         Restraint::Kind::rollers, table + ".set", spec.name(), {}, basis[0], 0, 0.0};
     const std::vector<Index>& members = points_of_set(points_, spec.set, table + ".set");
+    for (const Index member : members) {
+      hold(member, table + ".set", "the roller of set " + spec.set);
+    }
     Index common = -1;
     const bool is_free = spec.displacement == "free";
     if (is_free) {
@@ -283,36 +323,47 @@ class Maker {
       leave_unused(common, 1);
       restraint.handles.push_back(common);
     }
-    for (const Index member : members) {
-      hold(member, table + ".set", "the roller of set " + spec.set);
-      const Coordinates place = points_.position(member);
-      const Index own = made_.constraints.add_handle(place);
+    const std::vector<Member> all = members_of_all(members);
+    for (const Member& member : all) {
+      const Index own = made_.constraints.add_handle(member.place);
       if (!is_free) {
-        prescribe(table + ".displacement", spec.displacement, dof(own, 0), 1.0, &place);
+        prescribe(table + ".displacement", spec.displacement, dof(own, 0), 1.0, &member.place);
         restraint.handles.push_back(own);
       } else {
         made_.unused.push_back(dof(own, 0));
       }
-      for (int c = 1; c < dimension(); ++c) {
-        made_.slides.push_back({dof(own, c), member, basis[std::size_t(c)]});
-      }
-      if (!is_free) {
-        made_.held_sums.push_back({{member, basis[0]}});
-      } else if (member != members.front()) {
-        made_.held_sums.push_back(
-            {{member, basis[0]}, {members.front(), scaled<3>(-1.0, basis[0])}});
-      }
-      std::vector<Dependence> masters{{own, {}}};
-      if (common >= 0) masters.push_back({common, {}});
-      for (std::size_t r = 0; r < std::size_t(dimension()); ++r) {
-        for (std::size_t c = 0; c < std::size_t(dimension()); ++c) {
-          masters.front().block[r][c] = basis[c][r];
-        }
-        if (common >= 0) masters.back().block[r][0] = basis[0][r];
-      }
-      made_.constraints.follow(member, {true, true, true}, std::move(masters));
+      hold_along(basis[0], member, is_free ? &all.front() : nullptr);
+      if (member.here) slide(*member.here, basis, own, common);
     }
     made_.restraints.push_back(std::move(restraint));
+  }
+
+  /// Notes that a point is held along a normal, against another one if there is one.
+  void hold_along(const Coordinates& normal, const Member& member, const Member* against) {
+    if (&member == against) return;
+    HeldSum held;
+    const auto add = [&](const Member& of, double weight) {
+      if (of.here && points_.owns(*of.here)) held.emplace_back(*of.here, scaled<3>(weight, normal));
+    };
+    add(member, 1.0);
+    if (against) add(*against, -1.0);
+    made_.held_sums.push_back(std::move(held));
+  }
+
+  /// Lets a point follow its handle, and along the normal a common one.
+  void slide(Index member, const std::array<Coordinates, 3>& basis, Index own, Index common) {
+    for (int c = 1; c < dimension(); ++c) {
+      made_.slides.push_back({dof(own, c), member, basis[std::size_t(c)]});
+    }
+    std::vector<Dependence> masters{{own, {}}};
+    if (common >= 0) masters.push_back({common, {}});
+    for (std::size_t r = 0; r < std::size_t(dimension()); ++r) {
+      for (std::size_t c = 0; c < std::size_t(dimension()); ++c) {
+        masters.front().block[r][c] = basis[c][r];
+      }
+      if (common >= 0) masters.back().block[r][0] = basis[0][r];
+    }
+    made_.constraints.follow(member, {true, true, true}, std::move(masters));
   }
 
   /// A roller that touches the body at a place or along a line: the mean of the nearest points'
@@ -348,7 +399,8 @@ class Maker {
     made_.restraints.push_back(std::move(restraint));
   }
 
-  /// Points of the row at a place, with hat functions as weights: they reproduce linear fields.
+  /// Points of the row at a place, with hat functions as weights: they reproduce linear fields. Of
+  /// a part of a body those that this rank owns.
   [[nodiscard]] std::vector<std::pair<Index, double>> nearest(
       const Coordinates& place, const std::array<Coordinates, 3>& basis,
       const std::string& table) const {
@@ -356,7 +408,7 @@ class Maker {
     std::vector<std::pair<Index, double>> found;
     std::vector<double> depth;
     double least = std::numeric_limits<double>::infinity(), sum = 0.0;
-    for (Index i = 0; i < points_.own(); ++i) {
+    for (Index i = 0; i < points_.owned.value_or(points_.own()); ++i) {
       const Coordinates arm = minus<3>(points_.position(i), place);
       double weight = 1.0;
       for (int c = 1; c < dimension(); ++c) {
@@ -369,13 +421,15 @@ class Maker {
       depth.push_back(across);
       least = std::min(least, across);
     }
+    if (ranks_) least = ranks_->min(least);
     std::vector<std::pair<Index, double>> row;
     for (std::size_t k = 0; k < found.size(); ++k) {
       if (depth[k] > least + 0.5 * reach) continue;
       row.push_back(found[k]);
       sum += found[k].second;
     }
-    if (row.empty()) {
+    sum = of_all(sum);
+    if (sum == 0.0) {
       throw InputError(table + ".at", place_text(place, dimension()),
                        "no points of the body are within two spacings of this place");
     }
@@ -407,12 +461,14 @@ class Maker {
       const ControlTerm& term = spec.terms[t];
       const std::string key = indexed(table + ".term", t);
       const std::vector<Index>& members = points_of_set(points_, term.set, key + ".set");
+      const double count = count_of(members);
       for (const Index member : members) {
         refuse_follower(member, key + ".set", "the linear constraint " + spec.name);
+        if (!points_.owns(member)) continue;
         for (int c = 0; c < dimension(); ++c) {
-          row.add(dof(member, c), term.weights[std::size_t(c)] / double(members.size()));
+          row.add(dof(member, c), term.weights[std::size_t(c)] / count);
         }
-        held.emplace_back(member, scaled<3>(1.0 / double(members.size()), term.weights));
+        held.emplace_back(member, scaled<3>(1.0 / count, term.weights));
       }
     }
     made_.held_sums.push_back(std::move(held));
@@ -422,6 +478,7 @@ class Maker {
 
   const Points& points_;
   const Communicator* ranks_;  // null: the body is whole
+  const NumberedPoints& numbers_;
   const ConstraintSpecification& of_;
   const std::vector<char>& prescribed_;
   const std::vector<std::string>& parameters_;
@@ -435,8 +492,8 @@ class Maker {
 MadeConstraints make_constraints(const Points& points, const ConstraintSpecification& of,
                                  const std::vector<char>& prescribed,
                                  const std::vector<std::string>& parameters,
-                                 const Communicator* ranks) {
-  return Maker(points, of, prescribed, parameters, ranks).make();
+                                 const Communicator* ranks, const NumberedPoints& numbers) {
+  return Maker(points, of, prescribed, parameters, ranks, numbers).make();
 }
 
 }  // namespace peristat

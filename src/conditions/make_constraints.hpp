@@ -9,6 +9,7 @@
 #include "src/constraints/constraints.hpp"
 #include "src/core/communicator.hpp"
 #include "src/core/expression.hpp"
+#include "src/geometry/numbered_points.hpp"
 
 namespace peristat {
 
@@ -36,7 +37,8 @@ struct Restraint {
       is_mirrored{};  ///< period: components of which beyond a plane is the opposite
 };
 
-/// A sum of displacements, weighted by vectors, that a roller or linear constraint holds.
+/// A sum of displacements, weighted by vectors, that a roller or linear constraint holds. Of a part
+/// of a body all ranks have the same sums, each with the points that it owns.
 using HeldSum = std::vector<std::pair<Index, Coordinates>>;
 
 /// The component of a handle by which one point slides alone.
@@ -60,6 +62,7 @@ struct MadeConstraints {
 /// @param prescribed by supports, per degree of freedom of the points
 /// @param parameters names of the load parameters
 /// @param ranks that have parts of the body, in a call that all make; null: it is whole
+/// @param numbers of the points of a part
 /// @throws InputError ("rigid_sets[k].…", "rollers[k].…", "linear[k].…", "periods[k].…") for sets
 ///         that are unknown, points that two of them or a support hold, a rigid set that its points
 ///         do not span, expressions that can't be read, constraints that contradict or repeat
@@ -68,6 +71,7 @@ struct MadeConstraints {
                                                const ConstraintSpecification& of,
                                                const std::vector<char>& prescribed,
                                                const std::vector<std::string>& parameters,
-                                               const Communicator* ranks = nullptr);
+                                               const Communicator* ranks = nullptr,
+                                               const NumberedPoints& numbers = {});
 
 }  // namespace peristat

@@ -45,16 +45,20 @@ void number_pieces(const std::vector<Piece>& pieces, const std::vector<RigidMoti
 
 /// Pieces of the points that are not loose.
 std::vector<Piece> cores_of(const Web& web, const Points& points, const Bonds& bonds,
-                            const std::vector<char>& is_loose, const std::vector<BondEnds>& links,
+                            const std::vector<char>& is_loose, const Holding& holding,
                             const Sharing* sharing) {
   std::vector<char> apart(std::size_t(bonds.count()), 1);
   web.for_each_bond(
       [&](Index i, Index j, Offset bond) { apart[bond] = is_loose[i] || is_loose[j]; });
   std::vector<BondEnds> of_cores;
-  for (const auto& [i, j] : links) {
+  for (const auto& [i, j] : holding.links) {
     if (!is_loose[i] && !is_loose[j]) of_cores.push_back({i, j});
   }
-  std::vector<Piece> cores = pieces_of(points, bonds, apart, of_cores, sharing);
+  std::vector<Index> ties = holding.ties;
+  for (Index& point : ties) {
+    if (point >= 0 && is_loose[std::size_t(point)]) point = -1;
+  }
+  std::vector<Piece> cores = pieces_of(points, bonds, apart, of_cores, ties, sharing);
   // A loose point is a piece of its own, which no other rank knows.
   std::erase_if(
       cores, [&](const Piece& core) { return !core.is_shared && is_loose[core.members.front()]; });
@@ -79,7 +83,7 @@ Fragments find_fragments(const Points& points, const Bonds& bonds, std::span<con
   Fragments fragments;
   fragments.pinned.assign(prescribed.size(), 0);
   const FreePieces free(points, web.positions(), holding, sharing);
-  std::vector<Piece> cores = pieces_of(points, bonds, broken, holding.links, sharing);
+  std::vector<Piece> cores = pieces_of(points, bonds, broken, holding.links, holding.ties, sharing);
   std::vector<RigidMotions> motions = free.motions(cores);
   number_pieces(cores, motions, points, sharing, fragments);
 
@@ -94,7 +98,7 @@ Fragments find_fragments(const Points& points, const Bonds& bonds, std::span<con
   if (has_loose) {
     pin_loose_points(web, fragments.loose, holding.handles, std::move(support), sharing,
                      fragments.pinned);
-    cores = cores_of(web, points, bonds, is_loose, holding.links, sharing);
+    cores = cores_of(web, points, bonds, is_loose, holding, sharing);
     motions = free.motions(cores);
   }
   free.pin(cores, motions, held, fragments.pinned);

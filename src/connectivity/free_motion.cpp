@@ -132,7 +132,8 @@ std::vector<std::pair<FreeMotion, RigidMotions>> of_all_ranks(
 std::vector<FreeMotion> free_motions(const Points& points, const Bonds& bonds,
                                      const Holding& of_body, const Sharing* sharing) {
   const Holding holding = with_images(of_body, points, bonds, {}, points.reference);
-  const std::vector<Piece> pieces = pieces_of(points, bonds, {}, holding.links, sharing);
+  const std::vector<Piece> pieces =
+      pieces_of(points, bonds, {}, holding.links, holding.ties, sharing);
   const std::vector<RigidMotions> motions =
       FreePieces(points, points.reference, holding, sharing).motions(pieces);
   std::vector<std::pair<FreeMotion, RigidMotions>> found;

@@ -30,6 +30,9 @@ struct Holding {
   std::vector<char> prescribed;
   std::vector<HeldMotion> motions{};  ///< of which there may be none
   std::vector<BondEnds> links{};      ///< points that move together, bonded or not
+  /// Of a part of a body: of each set of points of several ranks that move together, one that this
+  /// rank owns; -1: it owns none. All ranks have as many.
+  std::vector<Index> ties{};
   std::vector<FreeHandle> handles{};
   /// Whether component [c] of the jump over the period across an axis [a] is free.
   std::array<std::array<bool, 3>, 3> free_jump{};

@@ -35,9 +35,25 @@ std::map<double, double> join(const Communicator& ranks,
   return parent;
 }
 
+/// Ties the components of points of several ranks that are joined, see Holding, to the lowest.
+void add_ties(const Communicator& ranks, const std::vector<double>& label,
+              std::span<const Index> tied, std::set<std::pair<double, double>>& ties) {
+  std::vector<double> mine;
+  for (const Index point : tied) {
+    mine.push_back(point >= 0 ? label[std::size_t(point)]
+                              : std::numeric_limits<double>::infinity());
+  }
+  if (mine.empty()) return;
+  const std::vector<double> lowest = ranks.min(mine);
+  for (std::size_t k = 0; k < mine.size(); ++k) {
+    if (std::isfinite(mine[k]) && mine[k] != lowest[k]) ties.emplace(mine[k], lowest[k]);
+  }
+}
+
 /// Of each component here the number of the shared piece that it is a part of, or -1; and how many
 /// there are.
 std::pair<std::vector<Index>, std::size_t> shared_pieces(const Components& here, int dimension,
+                                                         std::span<const Index> tied,
                                                          const Sharing& sharing) {
   const auto own = std::size_t(sharing.owned());
   const double first = double(sharing.ranks().count_all(std::int64_t(here.size.size())).before);
@@ -51,6 +67,7 @@ std::pair<std::vector<Index>, std::size_t> shared_pieces(const Components& here,
   for (std::size_t ghost = own; ghost < label.size(); ++ghost) {
     if (has_own[std::size_t(here.of_point[ghost])]) ties.emplace(label[ghost], of_owner[ghost]);
   }
+  add_ties(sharing.ranks(), label, tied, ties);
   const std::map<double, double> joined = join(sharing.ranks(), ties);
   std::map<double, Index> number;  // by the lowest label
   for (const auto& [of, lowest] : joined) {
@@ -90,12 +107,15 @@ std::span<const Piece> shared_of(const std::vector<Piece>& pieces) {
 }  // namespace
 
 std::vector<Piece> pieces_of(const Points& points, const Bonds& bonds, std::span<const char> broken,
-                             std::span<const BondEnds> links, const Sharing* sharing) {
+                             std::span<const BondEnds> links, std::span<const Index> ties,
+                             const Sharing* sharing) {
   const Components here = connected_components(bonds, broken, links);
   std::vector<std::vector<Index>> members = here.members();
   std::vector<Index> shared(members.size(), -1);
   std::size_t count = 0;
-  if (sharing != nullptr) std::tie(shared, count) = shared_pieces(here, points.dimension, *sharing);
+  if (sharing != nullptr) {
+    std::tie(shared, count) = shared_pieces(here, points.dimension, ties, *sharing);
+  }
   std::vector<Piece> pieces(count);
   for (Piece& piece : pieces) piece.is_shared = true;
   for (std::size_t k = 0; k < members.size(); ++k) {

@@ -26,10 +26,12 @@ struct Piece {
 /// images alone, beyond reach of the body, are none.
 /// @param broken one flag per bond; empty: none is
 /// @param links pairs of points here that are joined, too
+/// @param ties of a shared body points of several ranks that are joined, see Holding
 /// @param sharing null: the body is whole. Otherwise a call that all ranks make
 [[nodiscard]] std::vector<Piece> pieces_of(const Points& points, const Bonds& bonds,
                                            std::span<const char> broken,
-                                           std::span<const BondEnds> links, const Sharing* sharing);
+                                           std::span<const BondEnds> links,
+                                           std::span<const Index> ties, const Sharing* sharing);
 
 /// What moves freely of some pieces, and how to pin it. Of a shared body calls that all ranks make.
 class FreePieces {

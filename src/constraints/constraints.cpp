@@ -3,6 +3,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "src/core/sharing.hpp"
 #include "src/measures/small_algebra.hpp"
 
 namespace peristat {
@@ -18,8 +19,9 @@ Tensor scaled_unit(double factor) {
 
 }  // namespace
 
-Constraints::Constraints(const Points& points)
+Constraints::Constraints(const Points& points, const Communicator* ranks)
     : body_(&points),
+      ranks_(ranks),
       dimension_(points.dimension),
       points_(points.count()),
       dependent_(points.reference.size(), 0),
@@ -53,6 +55,14 @@ void Constraints::follow(Index point, const std::array<bool, 3>& follows,
                          std::vector<Dependence> masters) {
   give_role(point, {Role::Kind::follower, static_cast<Index>(followers_.size())}, follows);
   followers_.push_back({point, follows, std::move(masters)});
+}
+
+void Constraints::follow(SharedFollower follower) {
+  if (follower.point) {
+    give_role(*follower.point, {Role::Kind::shared, static_cast<Index>(shared_.size())},
+              follower.follows);
+  }
+  shared_.push_back(std::move(follower));
 }
 
 void Constraints::follow(RigidSet set) {
@@ -98,6 +108,23 @@ void Constraints::move_followers(std::span<double> displacement) const {
       }
     }
   }
+  if (!shared_.empty()) move_shared_followers(displacement);
+}
+
+void Constraints::move_shared_followers(std::span<double> displacement) const {
+  std::vector<double> moved;
+  for (const SharedFollower& follower : shared_) {
+    const Coordinates mine = moved_by(follower.masters, displacement);
+    moved.insert(moved.end(), mine.begin(), mine.end());
+  }
+  add_up(*ranks_, moved);
+  for (std::size_t k = 0; k < shared_.size(); ++k) {
+    const auto& [point, follows, masters] = shared_[k];
+    for (int c = 0; point && c < dimension_; ++c) {
+      const auto component = std::size_t(c);
+      if (follows[component]) displacement[dof(*point, c)] = moved[3 * k + component];
+    }
+  }
 }
 
 void Constraints::move(std::span<double> displacement) const {
@@ -141,6 +168,38 @@ void Constraints::share_out_jump(std::span<const double> from, std::span<const c
       });
     }
   }
+  if (!shared_.empty()) share_out_among_ranks(from, stays, displacement);
+}
+
+void Constraints::share_out_among_ranks(std::span<const double> from, std::span<const char> stays,
+                                        std::span<double> displacement) const {
+  const auto for_each = [&](const auto& visit) {
+    for (std::size_t k = 0; k < shared_.size(); ++k) {
+      for (const Dependence& on : shared_[k].masters) {
+        for (int r = 0; r < dimension_; ++r) {
+          for (int c = 0; c < dimension_; ++c) {
+            visit(3 * k + std::size_t(r), on.master, dof(on.master, c),
+                  on.block[std::size_t(r)][std::size_t(c)]);
+          }
+        }
+      }
+    }
+  };
+  std::vector<double> jump(3 * shared_.size(), 0.0), squares = jump;
+  for_each([&](std::size_t row, Index master, std::size_t at, double coefficient) {
+    if (master >= points_) {
+      jump[row] += coefficient * (displacement[at] - from[at]);
+    } else if (!stays[at]) {
+      squares[row] += coefficient * coefficient;
+    }
+  });
+  add_up(*ranks_, jump);
+  add_up(*ranks_, squares);
+  for_each([&](std::size_t row, Index master, std::size_t at, double coefficient) {
+    if (master < points_ && !stays[at]) {
+      displacement[at] -= coefficient * jump[row] / (1.0 + squares[row]);
+    }
+  });
 }
 
 void Constraints::extend(std::span<const double> displacement, std::span<double> rate) const {
@@ -185,25 +244,51 @@ void Constraints::fold_images(std::span<double> force) const {
   }
 }
 
-void Constraints::fold_point(Index point, const std::vector<Dependence>& masters, double sign,
-                             std::span<const double> external_force,
-                             std::span<double> gradient) const {
+Coordinates Constraints::unbalanced(Index point, std::span<const double> external_force,
+                                    std::span<const double> gradient) const {
+  Coordinates force{};
+  for (int c = 0; c < dimension_; ++c) {
+    force[std::size_t(c)] = gradient[dof(point, c)] - external_force[dof(point, c)];
+  }
+  return force;
+}
+
+void Constraints::fold_point(const Coordinates& force, const std::vector<Dependence>& masters,
+                             double sign, std::span<double> gradient) const {
   for (const Dependence& on : masters) {
     for (int c = 0; c < dimension_; ++c) {
       double sum = 0.0;
       for (int r = 0; r < dimension_; ++r) {
-        sum += on.block[std::size_t(r)][std::size_t(c)] *
-               (gradient[dof(point, r)] - external_force[dof(point, r)]);
+        sum += on.block[std::size_t(r)][std::size_t(c)] * force[std::size_t(r)];
       }
       gradient[dof(on.master, c)] += sign * sum;
     }
   }
 }
 
+void Constraints::fold_shared_followers(double sign, std::span<const double> external_force,
+                                        std::span<double> gradient) const {
+  std::vector<double> forces;
+  for (const SharedFollower& follower : shared_) {
+    Coordinates force{};
+    if (follower.point && body_->owns(*follower.point)) {
+      force = unbalanced(*follower.point, external_force, gradient);
+    }
+    forces.insert(forces.end(), force.begin(), force.end());
+  }
+  add_up(*ranks_, forces);
+  for (std::size_t k = 0; k < shared_.size(); ++k) {
+    fold_point({forces[3 * k], forces[3 * k + 1], forces[3 * k + 2]}, shared_[k].masters, sign,
+               gradient);
+  }
+}
+
 void Constraints::unfold(std::span<const double> external_force, std::span<double> gradient) const {
   for (const Follower& follower : followers_) {
-    fold_point(follower.point, follower.masters, -1.0, external_force, gradient);
+    fold_point(unbalanced(follower.point, external_force, gradient), follower.masters, -1.0,
+               gradient);
   }
+  if (!shared_.empty()) fold_shared_followers(-1.0, external_force, gradient);
 }
 
 void Constraints::fold(std::span<const double> displacement, std::span<const double> external_force,
@@ -211,12 +296,16 @@ void Constraints::fold(std::span<const double> displacement, std::span<const dou
   for (std::size_t k = dof(points_); k < dofs(); ++k) gradient[k] = 0.0;
   fold_images(gradient);
   for (const Follower& follower : followers_) {
-    fold_point(follower.point, follower.masters, 1.0, external_force, gradient);
+    fold_point(unbalanced(follower.point, external_force, gradient), follower.masters, 1.0,
+               gradient);
   }
+  if (!shared_.empty()) fold_shared_followers(1.0, external_force, gradient);
   for (const RigidSet& set : rigid_) {
     const Rotation turned(rotation(set, displacement));
-    for (const Index member : set.members)
-      fold_point(member, of_rigid(set, turned, member), 1.0, external_force, gradient);
+    for (const Index member : set.members) {
+      fold_point(unbalanced(member, external_force, gradient), of_rigid(set, turned, member), 1.0,
+                 gradient);
+    }
   }
 }
 
@@ -233,6 +322,30 @@ std::vector<Dependence> Constraints::of_rigid(const RigidSet& set, const Rotatio
   return {{set.translation, scaled_unit(1.0)}, on_rotation};
 }
 
+void Constraints::add_own_components(Index point, const std::array<bool, 3>& follows,
+                                     std::vector<Dependence>& dependences) const {
+  Dependence own{point, {}};
+  bool is_own = false;
+  for (std::size_t c = 0; c < std::size_t(dimension_); ++c) {
+    if (follows[c]) continue;
+    own.block[c][c] = 1.0;
+    is_own = true;
+  }
+  if (is_own) dependences.push_back(own);
+}
+
+std::optional<Constraints::SharedDependence> Constraints::shared_dependence(Index point) const {
+  const Role role = role_[std::size_t(body_->source(point))];
+  if (role.kind != Role::Kind::shared) return std::nullopt;
+  const auto number = std::size_t(role.number);
+  SharedDependence on{number, {}};
+  for (std::size_t c = 0; c < std::size_t(dimension_); ++c) {
+    const double mirror = body_->is_image(point) ? body_->image_kind(point).mirror[c] : 1.0;
+    if (shared_[number].follows[c]) on.factor[c] = mirror;
+  }
+  return on;
+}
+
 std::vector<Dependence> Constraints::dependences(Index point,
                                                  std::span<const double> displacement) const {
   if (stands_alone(point)) return {{point, scaled_unit(1.0)}};
@@ -244,14 +357,12 @@ std::vector<Dependence> Constraints::dependences(Index point,
   if (role.kind == Role::Kind::follower) {
     const Follower& follower = followers_[std::size_t(role.number)];
     std::vector<Dependence> result = follower.masters;
-    Dependence own{point, {}};
-    bool is_own = false;
-    for (std::size_t c = 0; c < std::size_t(dimension_); ++c) {
-      if (follower.follows[c]) continue;
-      own.block[c][c] = 1.0;
-      is_own = true;
-    }
-    if (is_own) result.push_back(own);
+    add_own_components(point, follower.follows, result);
+    return result;
+  }
+  if (role.kind == Role::Kind::shared) {
+    std::vector<Dependence> result;
+    add_own_components(point, shared_[std::size_t(role.number)].follows, result);
     return result;
   }
   const ImageKind& kind = body_->image_kind(point);

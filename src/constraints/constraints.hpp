@@ -1,11 +1,13 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "src/constraints/rotation.hpp"
+#include "src/core/communicator.hpp"
 #include "src/core/types.hpp"
 #include "src/geometry/points.hpp"
 
@@ -28,11 +30,16 @@ struct Dependence {
 ///
 /// A dependent component is a function of others that depend on nothing, with one exception: images
 /// follow sources that may themselves follow.
+///
+/// Of a part of a body handles are the same on all ranks, and rank 0's. Where points follow others
+/// of several ranks, what moves, extends, folds, unfolds or shares out is a call that all ranks
+/// make.
 class Constraints {
  public:
   /// With what the points' images follow. Each period has a handle, the jump of the displacement
   /// over it [m].
-  explicit Constraints(const Points& points);
+  /// @param ranks that have parts of the body; they outlive it. Null: it is whole
+  explicit Constraints(const Points& points, const Communicator* ranks = nullptr);
 
   /// Of parts of a body the same on all ranks, which have all handles and kinds of images.
   [[nodiscard]] bool none() const {
@@ -58,6 +65,26 @@ class Constraints {
   /// @param masters rows of other components are zero
   /// @throws std::logic_error if one of them follows already
   void follow(Index point, const std::array<bool, 3>& follows, std::vector<Dependence> masters);
+
+  /// A point that follows masters of several ranks, as each of them knows it.
+  struct SharedFollower {
+    std::optional<Index> point;  ///< nothing: it is not here
+    std::array<bool, 3> follows;
+    std::vector<Dependence> masters;  ///< that this rank owns
+  };
+  /// Lets components of a point follow masters of several ranks; a call that all of them make, in
+  /// the same order.
+  /// @throws std::logic_error if one of them follows already
+  void follow(SharedFollower follower);
+
+  [[nodiscard]] const std::vector<SharedFollower>& shared_followers() const { return shared_; }
+
+  /// The share of a shared follower in a point that is one, or in an image of it.
+  struct SharedDependence {
+    std::size_t follower;  ///< its number
+    Coordinates factor;    ///< of each component; 0: the point's own
+  };
+  [[nodiscard]] std::optional<SharedDependence> shared_dependence(Index point) const;
 
   /// Lets points follow a rigid motion about a centre: u = c + (R(theta) - I)(X - centre), c the
   /// components of one handle and theta those of another, divided by `size` [m] (2D: its first
@@ -102,7 +129,8 @@ class Constraints {
   /// Adds forces on images to their sources and the jumps over periods.
   void fold_images(std::span<double> force) const;
 
-  /// The rows of J of a point: itself as far as it does not follow, and its masters.
+  /// The rows of J of a point: itself as far as it does not follow, and its masters but those that
+  /// shared_dependence tells.
   [[nodiscard]] std::vector<Dependence> dependences(Index point,
                                                     std::span<const double> displacement) const;
   /// Whether a point or handle follows nothing.
@@ -118,8 +146,8 @@ class Constraints {
 
  private:
   struct Role {
-    enum class Kind : char { alone, follower, rigid, image } kind = Kind::alone;
-    Index number = 0;  ///< in followers_ or rigid_
+    enum class Kind : char { alone, follower, shared, rigid, image } kind = Kind::alone;
+    Index number = 0;  ///< in followers_, shared_ or rigid_
   };
   struct Follower {
     Index point;
@@ -136,17 +164,29 @@ class Constraints {
   [[nodiscard]] Coordinates moved_by(const std::vector<Dependence>& masters,
                                      std::span<const double> displacement) const;
   void move_followers(std::span<double> displacement) const;
-  void fold_point(Index point, const std::vector<Dependence>& masters, double sign,
-                  std::span<const double> external_force, std::span<double> gradient) const;
+  void move_shared_followers(std::span<double> displacement) const;
+  void share_out_among_ranks(std::span<const double> from, std::span<const char> stays,
+                             std::span<double> displacement) const;
+  /// dE/du - f of a point.
+  [[nodiscard]] Coordinates unbalanced(Index point, std::span<const double> external_force,
+                                       std::span<const double> gradient) const;
+  void fold_point(const Coordinates& force, const std::vector<Dependence>& masters, double sign,
+                  std::span<double> gradient) const;
+  void fold_shared_followers(double sign, std::span<const double> external_force,
+                             std::span<double> gradient) const;
+  void add_own_components(Index point, const std::array<bool, 3>& follows,
+                          std::vector<Dependence>& dependences) const;
   void move_images(std::span<double> displacement) const;
 
   const Points* body_;
+  const Communicator* ranks_;
   int dimension_;
   Index points_;
   std::vector<Coordinates> handles_;
   std::array<Index, 3> period_{-1, -1, -1};
   std::vector<char> dependent_;
   std::vector<Follower> followers_;
+  std::vector<SharedFollower> shared_;
   std::vector<RigidSet> rigid_;
   std::vector<Role> role_;  ///< per point
 };

@@ -7,7 +7,7 @@ import unittest
 from tests.fuzz.fuzz import CORPUS, fuzz
 from tests.reference.program import peristat
 
-INPUTS = 250  # about a minute of processor time
+INPUTS = 160  # about 40 seconds of processor time
 
 
 class Fuzz(unittest.TestCase):

@@ -1,6 +1,7 @@
 """Small bodies, runs of them on ranks, and what their results have to share."""
 
 import csv
+import json
 import os
 import re
 import subprocess
@@ -172,6 +173,7 @@ form = "energy"
 volume_correction = "linear"
 """
 STORED = SOLVER.replace("matrix_free", "stored")
+PIECES = STORED.replace("block_jacobi", "rigid_pieces")
 # Thin and long, with a notch, under a load at its end.
 BEAM = """
 dimension = 3
@@ -235,6 +237,10 @@ def objects(file):
 def rows(output, table):
     with open(output / table, newline="") as file:
         return list(csv.DictReader(file))
+
+
+def linear_iterations(output):
+    return json.loads((output / "summary.json").read_text())["linear_iterations"]
 
 
 def nine_digits(text):

@@ -4,7 +4,19 @@ import unittest
 
 import h5py
 
-from tests.acceptance.on_ranks import PLATE, ROOT, STORED, Comparison, objects, resume, rows
+from tests.acceptance.on_ranks import (
+    PIECES,
+    PLATE,
+    ROOT,
+    SQUARE,
+    STATES,
+    STORED,
+    Comparison,
+    linear_iterations,
+    objects,
+    resume,
+    rows,
+)
 
 
 # A sheet with a hole that repeats; along y it is free to contract.
@@ -44,6 +56,59 @@ set = "right"
 total_force = ["-2e4*load", 0]
 [loading]
 steps = 2
+"""
+
+
+# Their sets reach over all ranks, overlap, and have points of the support.
+MEANS = """
+[[set]]
+name = "upper"
+where = "y > 1.2 && y < 1.5"
+[[set]]
+name = "column"
+where = "x < 0.2 && y < 1.1"
+[[constraint]]
+name = "pull"
+displacement = "0.03*load"
+[[constraint.term]]
+set = "upper"
+weights = [0.5, 1]
+[[constraint]]
+name = "tie"
+[[constraint.term]]
+set = "upper"
+weights = [1, 0]
+[[constraint.term]]
+set = "column"
+weights = [-0.4, 0.2]
+"""
+PULL = """
+[[set]]
+name = "pulled_too"
+where = "RULE"
+[[constraint]]
+name = "pull"
+displacement = "0.02*load"
+[[constraint.term]]
+set = "pulled_too"
+weights = [0.2, 1]
+"""
+# Held at its foot, 378 points.
+CUBE_ON_ROLLERS = """
+dimension = 3
+[lattice]
+spacing = 0.1
+horizon_ratio = 2.015
+shape = [{ add = "box", min = [0, 0, 0], max = [0.7, 0.6, 0.9] }]
+layer = [{ name = "foot", side = "z-", thickness = 2 }]
+[material]
+model = "bond"
+youngs_modulus = 1e6
+[[support]]
+set = "foot"
+displacement = [0, 0, 0]
+[loading]
+steps = 1
 """
 
 
@@ -116,6 +181,7 @@ class Bodies(Comparison):
                   '{name="side", side="x+", modulus=[1e8, 0]}]')  # fmt: skip
         one = self.compare(PLATE, (2, 3), "--set", ground, solver=STORED)
         self.assertNotEqual(float(rows(one, "history.csv")[-1]["reaction_x:soil"]), 0.0)
+        self.compare(PLATE, (4,), "--set", 'load=[{set="corner", pressure="4e7*load"}]', "--set", ground, solver=PIECES)
 
     def test_planes_of_symmetry(self):
         half = ("--set", 'symmetry=[{axis="x", at=1}]', "--set", "output.stress=true")
@@ -150,6 +216,80 @@ class Bodies(Comparison):
         free = PLATE.replace("y > 1", "y > 1 && y < 1.4") + '[[rigid]]\nset = "corner"\nrotation = ["0.02*load"]\n'
         one = self.compare(free, (2, 3), solver=STORED)
         self.assertNotEqual(float(rows(one, "history.csv")[-1]["moment_z:corner"]), 0.0)
+
+    def test_rollers(self):
+        """Of all points of a set, on several ranks and not on all of them."""
+        sloped = PLATE.replace('[[support]]\nset = "top"\ndisplacement = [0, "0.05*load"]',
+                               '[[roller]]\nset = "top"\nnormal = [1, 3]\ndisplacement = "0.05*load*(1+x)"')  # fmt: skip
+        one = self.compare(sloped, (2, 4), solver=STORED)
+        self.assertNotEqual(float(rows(one, "history.csv")[-1]["reaction_y:top"]), 0.0)
+        free = sloped.replace('"0.05*load*(1+x)"', '"free"')
+        one = self.compare(free + '[[load]]\nset = "top"\ntotal_force = [0, "2e5*load"]\n', (3,), solver=STORED)
+        self.assertLess(abs(float(rows(one, "history.csv")[-1]["reaction_y:top"])), 1.0)
+
+    def test_rollers_that_touch(self):
+        """Nothing else holds the beam: the points that a roller holds in the mean are on two ranks."""
+        case = (ROOT / "cases/three_point_bending/rollers.toml").read_text()
+        self.compare(case.replace("5e-4", "1.5e-3"), (2, 3), solver=STORED)
+        line = CUBE_ON_ROLLERS + '[[roller]]\nname = "edge"\nat = [0.0, 0.4, 0.9]\nto = [0.7, 0.4, 0.9]\nnormal = [0, 0, 1]\ndisplacement = "-0.02*load"\n'
+        one = self.compare(line, (3,), solver=STORED)
+        self.assertLess(float(rows(one, "history.csv")[-1]["reaction_z:edge"]), 0.0)
+
+    def test_linear_constraints(self):
+        """Over points of all ranks, of supports and of other constraints."""
+        means = PLATE.replace('[[support]]\nset = "top"\ndisplacement = [0, "0.05*load"]', MEANS)
+        one = self.compare(means, (2, 4), "--set", "output.stress=true", "--set", "lattice.spacing=0.1", solver=STORED)
+        self.assertNotEqual(float(rows(one, "history.csv")[-1]["reaction_x:pull"]), 0.0)
+        case = (ROOT / "cases/thermal/bimetal.toml").read_text()
+        case = case.replace("0.04", "0.02").replace("spacing = 1e-4", "spacing = 5e-4")
+        self.compare(case + '[[load]]\nset = "tip"\ntotal_force = [0, "0.1*load"]\n', (3,), solver=STORED)
+
+    def test_constraints_of_triangles_and_states(self):
+        pulled = '[[support]]\nset = "pulled"\ndisplacement = ["0.4*load", "0.1*load"]'
+        rollers = SQUARE.replace(pulled, '[[roller]]\nset = "pulled"\nnormal = [3, 1]\ndisplacement = "0.1*load"')
+        self.compare(rollers + PULL.replace("RULE", "y > 0.7 && x < 1"), (2, 3), solver=STORED)
+        turned = STATES.replace('[[support]]\nset = "top"\ndisplacement = [0, "0.05*load"]', '[[rigid]]\nset = "top"\nrotation = ["0.05*load"]')
+        self.compare(turned + PULL.replace("RULE", "x > 0.5 && y < 1.3"), (3,), "--set", "lattice.spacing=0.1", solver=STORED)
+
+    def test_constraints_go_on_with_another_number_of_ranks(self):
+        sloped = PLATE.replace('[[support]]\nset = "top"\ndisplacement = [0, "0.05*load"]',
+                               '[[roller]]\nset = "top"\nnormal = [1, 3]\ndisplacement = "0.05*load*(1+x)"')  # fmt: skip
+        text = sloped.replace("steps = 2", "steps = 3") + MEANS + STORED
+        one = self.results(1, text)
+        for first, then in ((1, 3), (3, 2)):
+            with self.subTest(first=first, then=then):
+                stopped, output = self.start(first, text, "--stop-after", "1")
+                self.assertEqual(stopped.returncode, 130, stopped.stderr)
+                on = resume(then, output)
+                self.assertEqual(on.returncode, 0, on.stderr)
+                self.expect_same(one, output)
+
+    def test_rigid_pieces_with_constraints(self):
+        """Pieces are those of the whole body; jumps over periods and rigid sets, which all ranks share, are their own."""
+        turning = PLATE.replace("y > 1", "y > 1 && y < 1.4") + '[[rigid]]\nset = "corner"\nrotation = ["0.02*load"]\n'
+        thin = PLATE.replace("max = [1, 1.5]", "max = [0.1, 0.5]").replace("x > 0.6 && y > 1", "y > 0.3")
+        for text, ranks, planes, share in (  # of the iterations of block Jacobi, which has few in a small body
+            (PLATE, (3,), 'symmetry=[{axis="x", at=1}]', 0.5),
+            (thin, (8,), 'symmetry=[{axis="x", at=0}, {axis="x", at=0.1}]', 1.5),
+            (CELL, (2, 4), "title='cell'", 0.7),
+            (turning, (3,), 'symmetry=[{axis="x", at=0}]', 0.5),
+        ):
+            with self.subTest(planes=planes):
+                found = linear_iterations(self.compare(text, ranks, "--set", planes, solver=PIECES))
+                self.assertLess(found, share * linear_iterations(self.results(1, text + STORED, "--set", planes)))
+
+    def test_preconditioners_with_constraints(self):
+        half = ("--set", 'symmetry=[{axis="x", at=1}]')
+        one = self.results(1, PLATE + STORED, *half)
+        for kind in ("surrogate", "multigrid"):
+            with self.subTest(kind=kind):
+                taken = ("--set", f'solver.preconditioner="{kind}"')
+                self.expect_same(one, self.results(3, PLATE + STORED, *half, *taken))
+                refused = self.refusal(CELL + STORED, *taken)
+                self.assertIn('take "rigid_pieces", "block_jacobi" or "jacobi" with periods and rigid sets', refused.replace("\n", " "))
+        run, output = self.start(2, CELL)
+        self.assertEqual(run.returncode, 0, run.stderr)
+        self.assertIn("rigid pieces", run.stdout)
 
     def test_temperatures(self):
         case = (ROOT / "cases/thermal/bimetal.toml").read_text()

@@ -124,6 +124,26 @@ class Ends(OnRanks):
         self.assertGreater(summary["steps"], 1)
         self.expect_going_on(self.folder / "out", 3)
 
+    def test_a_rank_that_gets_no_more_memory_ends_all(self):
+        """While the parts are made, and while they are searched with."""
+        file = self.case(PLATE.replace("spacing = 0.05", "spacing = 0.006").replace("steps = 2", "steps = 1") + SOLVER)
+        output = self.folder / "out"
+        words = [PROGRAM, "run", str(file), "--threads", "1", "--output", str(output), "--overwrite"]
+        words += ["--set", "solver.max_iterations=1", "--set", "loading.adaptive=false"]
+        codes = []
+        for kilobytes in range(740000, 1500000, 60000):
+            limited = ["bash", "-c", f'ulimit -v {kilobytes}; exec "$@"', "bash", *words]
+            run = subprocess.run(["mpirun", "--oversubscribe", "--bind-to", "none", "-np", "1", *words, ":", "-np", "1", *limited],
+                                 env=ENVIRONMENT, capture_output=True, text=True, timeout=60)  # fmt: skip
+            codes.append(run.returncode)
+            if run.returncode == 4:
+                self.assertRegex(run.stderr, "peristat: (out of memory|.* are available)")
+            else:
+                self.assertEqual(run.returncode, 3, run.stderr)
+                break
+        self.assertIn(4, codes)
+        self.assertEqual(codes[-1], 3)
+
     def test_an_interruption_ends_a_run_in_order(self):
         file = self.case(PLATE.replace("spacing = 0.05", "spacing = 0.01").replace("steps = 2", "steps = 500") + SOLVER)
         words = [PROGRAM, "run", "--ranks", "2", str(file), "--threads", "1", "--output", str(self.folder / "out")]
@@ -164,8 +184,6 @@ class Refusals(OnRanks):
             'solver.preconditioner="sines"',
             'solver.preconditioner="local_operator"',
             'lattice.points="blue_noise"',
-            'roller=[{set="corner", normal=[1, 0]}]',
-            'constraint=[{name="c", term=[{set="corner", weights=[1, 0]}]}]',
             'control=[{set="corner", weights=[1, 0]}]',
         ):
             with self.subTest(key=key):

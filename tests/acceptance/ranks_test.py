@@ -14,6 +14,7 @@ from tests.acceptance.on_ranks import (
     BLOCK,
     CUBE,
     ENVIRONMENT,
+    PIECES,
     PLATE,
     PROGRAM,
     ROOT,
@@ -24,6 +25,7 @@ from tests.acceptance.on_ranks import (
     STORED,
     Comparison,
     OnRanks,
+    linear_iterations,
     rows,
 )
 
@@ -220,6 +222,11 @@ class SameResults(Comparison):
         for text in (BLOCK, BEAM):
             self.compare(text, (2, 3, 4), "--set", 'solver.preconditioner="rigid_pieces"')
 
+    def test_rigid_pieces_of_triangles_tetrahedra_and_states(self):
+        for text, ranks in ((SQUARE, (2, 8)), (CUBE, (3,)), (STATES, (3,))):
+            found = linear_iterations(self.compare(text, ranks, solver=PIECES))
+            self.assertLess(found, 0.7 * linear_iterations(self.results(1, text + STORED)))
+
     def test_other_linear_solvers(self):
         one = self.results(1, PLATE + SOLVER)
         for solver, preconditioner in (
@@ -230,6 +237,10 @@ class SameResults(Comparison):
                 settings = f'solver.linear="{solver}"', f'solver.preconditioner="{preconditioner}"', 'solver.tangent="auto"'
                 several = self.results(3, PLATE + SOLVER, *(word for text in settings for word in ("--set", text)))
                 self.expect_same(one, several)
+        one = self.results(1, SQUARE + STORED)
+        for preconditioner in ("surrogate", "multigrid"):
+            with self.subTest(preconditioner=preconditioner):
+                self.expect_same(one, self.results(2, SQUARE + STORED, "--set", f'solver.preconditioner="{preconditioner}"'))
 
     def expect_same_displacements(self, one, several):
         with h5py.File(one / "results.h5") as expected, h5py.File(several / "results.h5") as found:

@@ -9,7 +9,7 @@ import unittest
 import h5py
 import numpy
 
-from tests.acceptance.reference_test import ROUND_OFF, mechanics_of
+from tests.verification.reference_test import ROUND_OFF, mechanics_of
 from tests.reference.case import evaluate
 from tests.reference.clouds import LAWS, random_cloud, random_deformation, toml_value
 from tests.reference.program import peristat

@@ -163,21 +163,14 @@ class Split(Resumed):
                 self.run_case("--overwrite", text=text, settings=settings, out=whole, expected=code)
                 self.assertGreater(self.steps(whole), 4)
                 self.run_case("--stop-after", 2, text=text, settings=settings, expected=130)
-                sessions = 1
-                while self.resume_once(3) == 130:
-                    sessions += 1
-                self.assertGreaterEqual(sessions, -(-(self.steps(whole) - 2) // 3))
+                self.resume("--stop-after", self.steps(whole) // 2 - 1, expected=130)
+                self.resume(expected=code)
                 self.is_as(whole)
 
-    def resume_once(self, steps):
-        ended = peristat("resume", self.out, "--threads", 1, "--stop-after", steps)
-        self.assertIn(ended.code, (0, 3, 130), ended.said)
-        return ended.code
-
-    def test_from_every_accepted_step(self):
+    def test_from_every_other_accepted_step(self):
         whole = self.folder / "whole"
         self.run_case(out=whole)
-        for steps in range(1, self.steps(whole)):
+        for steps in range(1, self.steps(whole), 2):
             with self.subTest(steps):
                 shutil.rmtree(self.out, ignore_errors=True)
                 self.run_case("--stop-after", steps, expected=130)
@@ -207,6 +200,8 @@ class Split(Resumed):
             kills += 1
             if (self.out / "parts/checkpoint.0").exists() or "checkpoint" in self.members():
                 command = [PROGRAM, "resume", self.out, "--threads", "1", "--quiet"]
+            else:
+                duration *= 1.1  # the machine has become slower
         self.assertGreater(kills, 2)
         if ended is None:
             self.resume()
@@ -221,12 +216,12 @@ class Split(Resumed):
 
     def test_signals_leave_a_checkpoint(self):
         whole = self.folder / "whole"
-        self.run_case("--set", "loading.steps=400", text=PULLED, out=whole)
+        self.run_case("--set", "loading.steps=150", text=PULLED, out=whole)
         for code in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
             with self.subTest(code):
                 shutil.rmtree(self.out, ignore_errors=True)
                 process = subprocess.Popen([PROGRAM, "run", self.case(PULLED), "--output", self.out, "--threads", "1",
-                                            "--set", "loading.steps=400"], stdout=subprocess.PIPE,
+                                            "--set", "loading.steps=150"], stdout=subprocess.PIPE,
                                            stderr=subprocess.STDOUT)  # fmt: skip
                 while not (self.out / "parts/checkpoint.0").exists():
                     self.assertIsNone(process.poll())

@@ -11,6 +11,8 @@
 #include "assembly/assembler.hpp"
 #include "assembly/operators/constrained_product.hpp"
 #include "assembly/operators/constrained_tangent.hpp"
+#include "solvers/linear/iterative_solver.hpp"
+#include "solvers/linear/rigid_pieces.hpp"
 #include "solvers/problem/equilibrium.hpp"
 #include "solvers/ranks/distribute.hpp"
 #include "solvers/ranks/part_bonds.hpp"
@@ -168,17 +170,56 @@ std::vector<BodyOfTest> constrained_bodies() {
   BodyOfTest turned = plate("rigid sets that turn");
   turned.of.constraints.rigid_sets = {{"upper", {}, {"0.1*load", {}, "0"}, {"0.2*load", "0", "0"}}};
   all.push_back(turned);
+
+  BodyOfTest sliding = plate("rollers");
+  sliding.sets = {{"upper", "y > 2.3"}, {"flank", "x < 0.5 && y > 0.6 && y < 2"}};
+  sliding.of.constraints.rollers = {{"upper", "", {}, {}, {1.0, 3.0, 0.0}, "0.1*load*(1+x)"},
+                                    {"flank", "", {}, {}, {2.0, -1.0, 0.0}, "free"}};
+  all.push_back(sliding);
+
+  // Means of sets that overlap, and over points that a support holds; each over several ranks.
+  BodyOfTest means = plate("linear constraints");
+  means.sets = {{"upper", "y > 1.6"}, {"column", "x > 0.8 && x < 1"}, {"all", "y > 0"}};
+  means.of.constraints.linear = {{"one", {{"upper", {1.0, 0.5, 0.0}}}, "0.02*load"},
+                                 {"two", {{"upper", {0.0, 1.0, 0.0}}, {"all", {0.3, -0.2, 0.0}}}},
+                                 {"three", {{"column", {1.0, 1.0, 0.0}}}, "-0.01*load"}};
+  means.of.constraints.rollers = {{"", "slope", Coordinates{0.9, 2.9, 0.0}, {}, {1.0, 4.0, 0.0}}};
+  all.push_back(means);
+
+  BodyOfTest mirrored = half;
+  mirrored.name = "linear constraints beside a plane of symmetry";
+  mirrored.sets = {{"middle", "x > 1.8 && y > 1"}};
+  mirrored.of.constraints.linear = {{"height", {{"middle", {0.2, 1.0, 0.0}}}, "0.02*load"}};
+  all.push_back(mirrored);
+
+  BodyOfTest cube{"rollers along lines", lattice_box(3, {5, 6, 7}, {0.1, 0.1, 0.1}), {}, {}};
+  cube.lattice.layers = {{"below", {2, -1}, 2}};
+  cube.of.horizon = 0.2015;
+  cube.of.material.youngs_modulus = 3.0;
+  cube.of.supports = {{"below", {"0", "0", "0"}}};
+  cube.sets = {{"front", "x > 0.7"}};
+  const Coordinates from{0.3, 0.6, 1.0}, to{0.8, 0.6, 1.0};
+  cube.of.constraints.rollers = {{"", "edge", from, to, {0.0, 0.0, 1.0}, "-0.01*load"}};
+  cube.of.constraints.linear = {{"twist", {{"front", {0.0, 1.0, 0.2}}}, "0.01*load"}};
+  all.push_back(cube);
+
+  BodyOfTest turning = plate("a free rigid set that repeats");
+  turning.lattice.layers = {{"below", {1, -1}, 3}};
+  turning.of.constraints.periods = {{{0, 0.3, 2.0}, {{}, "1e-3*load", "0"}}};
+  turning.of.constraints.rigid_sets = {RigidSetSpecification{.set = "inner"}};
+  all.push_back(turning);
   return all;
 }
 
 /// Expects per point what the whole body has.
 void expect_same(const Part& part, const std::vector<double>& mine,
-                 const std::vector<double>& whole, std::size_t width, const std::string& what) {
+                 const std::vector<double>& whole, std::size_t width, const std::string& what,
+                 double tolerance = round_off) {
   const double scale = largest(whole);
   for (Index i = 0; i < part.owned; ++i) {
     for (std::size_t c = 0; c < width; ++c) {
       const double expected = whole[std::size_t(part.number[std::size_t(i)]) * width + c];
-      EXPECT_NEAR(mine[std::size_t(i) * width + c], expected, round_off * scale) << what;
+      EXPECT_NEAR(mine[std::size_t(i) * width + c], expected, tolerance * scale) << what;
     }
   }
 }
@@ -266,7 +307,8 @@ struct InEquations {
     const std::size_t of_points = body.points.reference.size();
     const auto random = [&](unsigned seed, double size) {
       const std::vector<double> points = Random(seed).vector(dofs_of_whole, size),
-                                handles = Random(seed + 1).vector(12, size);
+                                handles =
+                                    Random(seed + 1).vector(constraints.dofs() - of_points, size);
       std::vector<double> values(constraints.dofs(), 7e3);  // of ghosts and images
       for (Index i = 0; i < body.points.own(); ++i) {
         if (!body.points.owns(i)) continue;
@@ -290,31 +332,50 @@ struct InEquations {
     evaluate(problem, loads, trial);
     scale = load_norm(problem, loads, trial, Damage::grows);
     const Sharing* const sharing = body.part.get();
-    std::unique_ptr<TangentOperator> tangent;
-    if (sharing) {
-      tangent = std::make_unique<ConstrainedProduct>(std::make_unique<Tangent>(assembler),
-                                                     body.points, constraints, sharing);
-    } else {
-      tangent = std::make_unique<ConstrainedTangent>(assembler, constraints);
-    }
-    tangent->linearise(assembler, trial.at(), 0.0);
     std::vector<double> factor = random(9, 1.0);
     for (std::size_t dof = 0; dof < factor.size(); ++dof) {
       if (constraints.dependent()[dof]) factor[dof] = 0.0;
     }
+    ConstrainedProduct of_products(std::make_unique<Tangent>(assembler), body.points, constraints,
+                                   sharing);
+    of_products.linearise(assembler, trial.at(), 0.0);
+    product_alone.resize(factor.size());
+    of_products.multiply(factor, product_alone);
+    diagonal_of_product = of_products.diagonal;
+    ConstrainedTangent tangent(assembler, constraints, sharing);
+    tangent.linearise(assembler, trial.at(), 0.0);
     product.resize(factor.size());
-    tangent->multiply(factor, product);
-    diagonal = tangent->diagonal;
+    tangent.multiply(factor, product);
+    diagonal = tangent.diagonal;
+    row_sums.resize(factor.size());
+    tangent.absolute_row_sums(row_sums);
+    solve(tangent, body.part.get());
     reactions =
         body.conditions->reactions(trial.gradient, loads, trial.displacement, trial.environment);
     moments = body.conditions->moments(trial.displacement, trial.gradient, loads);
+  }
+
+  /// For what has that product, preconditioned by rigid pieces.
+  void solve(const TangentOperator& tangent, const Sharing* sharing) {
+    IterativeSolver solver(KrylovMethod::conjugate_gradients,
+                           std::make_unique<RigidPieces>(sharing), 1000, KrylovOptions{}.restart,
+                           sharing ? &sharing->ranks() : nullptr);
+    EXPECT_EQ(solver.analyze(tangent.pattern, free), LinearOutcome::solved);
+    EXPECT_EQ(solver.factorize(tangent, FactorUse::factorize_now), LinearOutcome::solved);
+    std::vector<double> b(std::size_t(free.count())), x(b.size());
+    free.restrict_to_free(product, b);
+    EXPECT_EQ(solver.solve(b, x, 1e-12), LinearOutcome::solved);
+    iterations = solver.last_iterations();
+    solution.resize(product.size());
+    free.extend_by_zero(x, solution);
   }
 
   FreeDofs free;
   Assembler assembler;
   Trial trial;
   double scale = 0.0;
-  std::vector<double> product, diagonal;
+  std::vector<double> product, product_alone, diagonal, diagonal_of_product, row_sums, solution;
+  int iterations = 0;
   std::map<std::string, Coordinates> reactions, moments;
 };
 
@@ -356,7 +417,10 @@ TEST(PartBody, follows_as_the_whole_body_does) {
     expect_same(part, found.trial.displacement, expected.trial.displacement, d, "displacement");
     expect_same(part, found.trial.gradient, expected.trial.gradient, d, "gradient");
     expect_same(part, found.product, expected.product, d, "product");
+    expect_same(part, found.product_alone, expected.product, d, "product alone");
     expect_same(part, found.diagonal, expected.diagonal, d * d, "diagonal");
+    expect_same(part, found.diagonal_of_product, expected.diagonal, d * d, "its diagonal");
+    expect_same(part, found.row_sums, expected.row_sums, d, "sums of rows");
     const auto expect_same_handles = [&](const std::vector<double>& one,
                                          const std::vector<double>& other, std::size_t width,
                                          const std::string& what) {
@@ -370,7 +434,16 @@ TEST(PartBody, follows_as_the_whole_body_does) {
     expect_same_handles(found.trial.displacement, expected.trial.displacement, d, "displacement");
     expect_same_handles(found.trial.gradient, expected.trial.gradient, d, "gradient");
     expect_same_handles(found.product, expected.product, d, "product");
-    expect_same_handles(found.diagonal, expected.diagonal, d * d, "diagonal");
+    expect_same_handles(found.product_alone, expected.product, d, "product alone");
+    expect_same_handles(found.diagonal_of_product, expected.diagonal, d * d, "its diagonal");
+    if (all_ranks().rank() == 0) {
+      expect_same_handles(found.diagonal, expected.diagonal, d * d, "diagonal");
+    }
+    expect_same_handles(found.row_sums, expected.row_sums, d, "sums of rows");
+    // The same pieces on any number of ranks.
+    EXPECT_NEAR(found.iterations, expected.iterations, 1);
+    EXPECT_LE(found.iterations, 80);
+    expect_same(part, found.solution, expected.solution, d, "solution", 1e-8);
     expect_same_sums(found.reactions, expected.reactions, largest(expected.trial.gradient));
     expect_same_sums(found.moments, expected.moments, largest(expected.trial.gradient));
   }

@@ -29,6 +29,13 @@ RanksBody notched_plate() {
   return body;
 }
 
+/// That no bond joins, held at one end each.
+RanksBody two_plates() {
+  RanksBody body{"two plates", lattice_box(2, {24, 40, 0}, {0.1, 0.1, 0.1})};
+  body.lattice.shapes.push_back({ShapeStep::Action::subtract, Box{{0.0, 2.1}, {3.0, 2.5}}});
+  return body;
+}
+
 struct Kind {
   std::string name;
   std::function<std::unique_ptr<Preconditioner>(const Sharing*)> make;
@@ -106,6 +113,10 @@ TEST(PreconditionersOnRanks, solve_for_the_displacements_of_the_whole_body) {
        {bar(), plate_with_hole(), block(), slender_bar(), sheet(), notched_plate()}) {
     for (const Kind& kind : all_kinds()) expect_same_solution(body, kind, 3.0);
   }
+}
+
+TEST(PreconditionersOnRanks, take_a_body_in_two) {
+  expect_same_solution(two_plates(), all_kinds().front(), 3.0);
 }
 
 TEST(PreconditionersOnRanks, do_with_ranks_without_an_equation_and_without_a_point) {

@@ -46,9 +46,9 @@ constexpr std::array keys_of_ranks{
     "material.damage.", "loading.max_broken_bonds", "loading.stop_below", "solver.fragments",
     "solver.projection", "solver.elastic_horizon_ratio", "relaxation.",
     // conditions
-    "support.", "symmetry.", "period.", "rigid.", "load.set", "load.side", "load.body_force",
-    "load.total_force", "load.gravity", "load.traction", "load.depth", "load.pressure",
-    "load.boundary", "load.stress", "foundation.", "eigenstrain.", "temperature.",
+    "support.", "symmetry.", "period.", "rigid.", "roller.", "constraint.", "load.set", "load.side",
+    "load.body_force", "load.total_force", "load.gravity", "load.traction", "load.depth",
+    "load.pressure", "load.boundary", "load.stress", "foundation.", "eigenstrain.", "temperature.",
     "material.thermal_expansion",
     // search
     "loading.steps", "loading.table", "loading.table2", "loading.adaptive", "loading.smallest_step",

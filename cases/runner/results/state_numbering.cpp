@@ -78,11 +78,12 @@ std::optional<std::size_t> StateNumbering::size_here(Rows rows, std::int64_t who
   if (rows == Rows::free_dofs) number_free_dofs();
   const Extent of = extent(rows);
   const std::int64_t beyond = whole - of.whole * of.width;
-  constexpr std::int64_t most_beyond = 1 << 16;
-  if (beyond < 0 || beyond > most_beyond) return std::nullopt;
   // One rank has values of images, too, which parts of a body don't tell.
   const auto handles = std::int64_t(prescribed_.size()) - of.here * of.width;
-  if (rows == Rows::dofs && beyond > 0 && beyond != handles) return std::nullopt;
+  constexpr std::int64_t most_beyond = 1 << 16;
+  const bool is_known =
+      rows == Rows::dofs ? beyond == 0 || beyond == handles : beyond <= most_beyond;
+  if (beyond < 0 || !is_known) return std::nullopt;
   return std::size_t(of.here * of.width + beyond);
 }
 

@@ -362,7 +362,7 @@ RCP<Operator> make_multigrid(const CompressedRows& from, const RCP<Matrix>& matr
   Teuchos::ParameterList& smoother = parameters.sublist("smoother: params");
   if (from.ranks) {  // whose number makes no difference to a polynomial
     parameters.set("smoother: type", "CHEBYSHEV");
-    smoother.set("chebyshev: degree", 3);
+    smoother.set("chebyshev: degree", 5);
     smoother.set("chebyshev: ratio eigenvalue", 20.0);
     smoother.set("chebyshev: zero starting solution", true);
   } else {

@@ -1,4 +1,4 @@
-#include "solvers/ranks/numbered_points.hpp"
+#include "src/geometry/numbered_points.hpp"
 
 #include <algorithm>
 
