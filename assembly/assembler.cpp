@@ -46,13 +46,10 @@ Assembler::Assembler(const Points& points, const Model& model, int threads, cons
       sharing_(sharing) {
   if (model.terms().empty()) throw std::logic_error("a model without terms has no energy");
   for (const auto& term : model.terms()) {
-    terms_.push_back(term->passes({points_, model_, pattern_, workspace_}));
+    terms_.push_back(term->passes({points_, model_, pattern_, workspace_, sharing_}));
   }
   if (!sharing_) return;
-  if (!model.balances().potential || !model.has_rows()) {
-    throw std::logic_error(
-        "Assembler: convolutions and forces without a potential have no ranks yet");
-  }
+  if (!model.has_rows()) throw std::logic_error("Assembler: convolutions have no ranks");
   of_points_.resize(points.volume.size());
 }
 Assembler::~Assembler() = default;
@@ -163,6 +160,8 @@ DamageState Assembler::assess(const History& history, std::span<const double> cu
   DamageState state = assess_damage(model_, history, cut_weight, damage, &points_);
   if (!sharing_) return state;
   const Communicator& ranks = sharing_->ranks();
+  // What points that fail have dissipated all ranks know.
+  if (model_.fails_in_avalanches() && ranks.rank() > 0) state.dissipated_energy = 0.0;
   const std::vector<double> sums = ranks.sum({state.dissipated_energy, double(state.broken_bonds)});
   return {sums[0], Index(sums[1]), ranks.max(state.max_damage)};
 }

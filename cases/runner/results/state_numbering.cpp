@@ -12,11 +12,12 @@
 namespace peristat {
 
 StateNumbering::StateNumbering(const RecordedPoints& points, const RowGathering& gathering,
-                               const Bonds& bonds, const std::vector<char>& prescribed)
+                               const Model& model, const std::vector<char>& prescribed)
     : points_(points),
       part_(gathering.part()),
       gathering_(gathering),
-      bonds_(bonds),
+      bonds_(model.bonds()),
+      rows_of_histories_(model.fails_in_avalanches() ? Rows::points : Rows::bonds),
       prescribed_(prescribed) {
   std::vector<std::int64_t> counts;
   for (Index point = 0; point < part_.owned(); ++point) {
@@ -45,7 +46,7 @@ void StateNumbering::number_free_dofs() {
 
 StateNumbering::Extent StateNumbering::extent(Rows rows) const {
   const std::int64_t points = points_.points().count();
-  switch (rows) {
+  switch (named(rows)) {
     case Rows::points:
       return {part_.whole(), points, 1};
     case Rows::dofs:
@@ -56,6 +57,7 @@ StateNumbering::Extent StateNumbering::extent(Rows rows) const {
       return {whole_free_, free_here_, 1};
     case Rows::bonds:
       return {whole_bonds_, bonds_.count(), 1};
+    case Rows::histories:
     case Rows::list_of_points:
     case Rows::whole:
       break;
@@ -102,7 +104,7 @@ std::vector<StateNumbering::Place> StateNumbering::places(Rows rows, std::size_t
 
 void StateNumbering::visit_rows(Rows rows,
                                 const std::function<void(std::int64_t, std::size_t)>& visit) const {
-  if (rows == Rows::bonds) return visit_bonds(visit);
+  if (named(rows) == Rows::bonds) return visit_bonds(visit);
   if (rows == Rows::free_dofs) {
     const auto d = std::size_t(points_.dimension());
     std::size_t here = 0;
@@ -144,9 +146,10 @@ std::vector<Offset> StateNumbering::told_bonds(Index point) const {
 }
 
 void StateNumbering::give_to_others(Rows rows, std::vector<double>& values) const {
-  if (rows == Rows::points) give_to_ghosts(values, 1);
+  if (named(rows) == Rows::points) give_to_ghosts(values, 1);
+  if (rows == Rows::histories && named(rows) == Rows::points) give_to_images(values);
   if (rows == Rows::dofs) give_to_ghosts(values, std::size_t(points_.dimension()));
-  if (rows == Rows::bonds) give_bonds(values);
+  if (named(rows) == Rows::bonds) give_bonds(values);
   if (rows == Rows::free_dofs) return;
   const Extent of = extent(rows);
   const auto first = values.begin() + std::ptrdiff_t(of.here * of.width);
@@ -163,6 +166,13 @@ void StateNumbering::give_to_ghosts(std::vector<double>& values, std::size_t wid
   for (std::size_t i = 0; i < points * width; ++i) exchanged[i / width * d + i % width] = values[i];
   part_.update_ghosts(exchanged);
   for (std::size_t i = 0; i < points * width; ++i) values[i] = exchanged[i / width * d + i % width];
+}
+
+void StateNumbering::give_to_images(std::vector<double>& values) const {
+  const Points& points = points_.points();
+  for (Index image = points.own(); image < points.count(); ++image) {
+    values[std::size_t(image)] = values[std::size_t(points.source(image))];
+  }
 }
 
 void StateNumbering::give_bonds(std::vector<double>& values) const {
