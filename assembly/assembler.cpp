@@ -46,13 +46,10 @@ Assembler::Assembler(const Points& points, const Model& model, int threads, cons
       sharing_(sharing) {
   if (model.terms().empty()) throw std::logic_error("a model without terms has no energy");
   for (const auto& term : model.terms()) {
-    terms_.push_back(term->passes({points_, model_, pattern_, workspace_}));
+    terms_.push_back(term->passes({points_, model_, pattern_, workspace_, sharing_}));
   }
   if (!sharing_) return;
-  if (!model.balances().potential || !model.has_rows()) {
-    throw std::logic_error(
-        "Assembler: convolutions and forces without a potential have no ranks yet");
-  }
+  if (!model.has_rows()) throw std::logic_error("Assembler: convolutions have no ranks");
   of_points_.resize(points.volume.size());
 }
 Assembler::~Assembler() = default;
@@ -97,9 +94,7 @@ Evaluation Assembler::gradient(const StateView& at, std::span<double> gradient) 
 }
 
 Evaluation Assembler::of_part(TermPasses& term, const StateView& at, Evaluation found) {
-  // Half of a bond is its image's.
-  const bool has_images = !points_.images.kinds.empty();
-  if (!sharing_ || (term.shares_energy() && !has_images)) return found;
+  if (!sharing_ || term.shares_energy()) return found;
   term.point_energies(at, of_points_, Write::over);
   found.energy = 0.0;
   for (Index i = 0; i < points_.count(); ++i) {
@@ -165,6 +160,8 @@ DamageState Assembler::assess(const History& history, std::span<const double> cu
   DamageState state = assess_damage(model_, history, cut_weight, damage, &points_);
   if (!sharing_) return state;
   const Communicator& ranks = sharing_->ranks();
+  // What points that fail have dissipated all ranks know.
+  if (model_.fails_in_avalanches() && ranks.rank() > 0) state.dissipated_energy = 0.0;
   const std::vector<double> sums = ranks.sum({state.dissipated_energy, double(state.broken_bonds)});
   return {sums[0], Index(sums[1]), ranks.max(state.max_damage)};
 }

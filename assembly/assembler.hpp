@@ -28,7 +28,7 @@ class Assembler : public Energy {
   ///        of all of it, and of dE/dx and products the rows of owned points are right, once ghosts
   ///        have what their owners have. dE/dx of ghosts is zero. All ranks make the same calls.
   /// @throws std::logic_error for a model without terms, and for a part of what has no ranks:
-  ///         forces without a potential, and convolutions
+  ///         convolutions
   Assembler(const Points& points, const Model& model, int threads,
             const Sharing* sharing = nullptr);
   ~Assembler() override;

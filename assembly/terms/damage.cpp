@@ -24,34 +24,15 @@ void gather_images(std::span<const Index> sources, std::vector<double>& sums) {
   for (std::size_t k = 0; k < sources.size(); ++k) sums[own + k] = sums[std::size_t(sources[k])];
 }
 
-/// Of points that have lost their integrity: with every point its bonds are broken.
-DamageState assess_points(const PointTerm& term, std::span<const double> history,
-                          std::span<const double> cut_weight, std::span<double> damage,
-                          std::span<const Index> image_sources) {
-  DamageState state;
-  std::ranges::fill(damage, 0.0);
-  if (history.empty() && cut_weight.empty()) return state;
-  const std::vector<double> whole(damage.size(), 1.0);
-  NeighbourSums left = term.neighbours(history.empty() ? whole : history.first(damage.size()));
-  state.dissipated_energy = history.empty() ? 0.0 : history.back();
-  const double count = 0.5 * std::accumulate(left.count.begin(), left.count.end(), 0.0);
-  state.broken_bonds = static_cast<Index>(std::round(double(term.count()) - count));
-  std::vector<double> all = term.whole_weight();
-  for (std::size_t i = 0; i < cut_weight.size(); ++i) all[i] += cut_weight[i];
-  gather_images(image_sources, all);
-  gather_images(image_sources, left.weight);
-  for (std::size_t i = 0; i < damage.size(); ++i) {
-    const double of_point = all[i];
-    if (!history.empty() && history[i] == 0.0) {
-      damage[i] = 1.0;
-    } else if (of_point > 0.0) {
-      constexpr double round_off = 1e-12;  // of convolutions
-      const double lost = 1.0 - left.weight[i] / of_point;
-      damage[i] = lost > round_off ? std::min(lost, 1.0) : 0.0;
-    }
-    state.max_damage = std::max(state.max_damage, damage[i]);
-  }
-  return state;
+std::span<const Index> sources_of_images(const Points* points) {
+  return points != nullptr ? std::span<const Index>(points->images.source)
+                           : std::span<const Index>();
+}
+
+/// How many of the damages of a body's points are told, the first ones: of a part those of points
+/// that its rank owns.
+std::size_t told_points(const Points* points, std::span<const double> damage) {
+  return points != nullptr && points->owned ? std::size_t(*points->owned) : damage.size();
 }
 
 /// Bonds of points that have lost their integrity.
@@ -67,6 +48,54 @@ std::vector<char> without_points(const Bonds& bonds, std::span<const double> int
   return broken;
 }
 
+/// Of these, those that a part of a body counts.
+Index count_without_points(const Bonds& bonds, std::span<const double> integrity,
+                           const Points& points) {
+  const std::vector<char> broken = without_points(bonds, integrity);
+  Index count = 0;
+  for (Index i = 0; i < bonds.points() && !broken.empty(); ++i) {
+    for (Offset bond = bonds.offset[i]; bond < bonds.offset[i + 1]; ++bond) {
+      count += broken[std::size_t(bond)] && counts_bond(points, i, bonds.partner[bond]);
+    }
+  }
+  return count;
+}
+
+/// Of points that have lost their integrity: with every point its bonds are broken.
+DamageState assess_points(const PointTerm& term, std::span<const double> history,
+                          std::span<const double> cut_weight, std::span<double> damage,
+                          const Points* points) {
+  const std::span<const Index> image_sources = sources_of_images(points);
+  DamageState state;
+  std::ranges::fill(damage, 0.0);
+  if (history.empty() && cut_weight.empty()) return state;
+  const std::vector<double> whole(damage.size(), 1.0);
+  NeighbourSums left = term.neighbours(history.empty() ? whole : history.first(damage.size()));
+  state.dissipated_energy = history.empty() ? 0.0 : history.back();
+  if (points != nullptr && points->owned) {
+    state.broken_bonds = count_without_points(term.bonds(), history, *points);
+  } else {
+    const double count = 0.5 * std::accumulate(left.count.begin(), left.count.end(), 0.0);
+    state.broken_bonds = static_cast<Index>(std::round(double(term.count()) - count));
+  }
+  std::vector<double> all = term.whole_weight();
+  for (std::size_t i = 0; i < cut_weight.size(); ++i) all[i] += cut_weight[i];
+  gather_images(image_sources, all);
+  gather_images(image_sources, left.weight);
+  for (std::size_t i = 0; i < damage.size(); ++i) {
+    const double of_point = all[i];
+    if (!history.empty() && history[i] == 0.0) {
+      damage[i] = 1.0;
+    } else if (of_point > 0.0) {
+      constexpr double round_off = 1e-12;  // of convolutions
+      const double lost = 1.0 - left.weight[i] / of_point;
+      damage[i] = lost > round_off ? std::min(lost, 1.0) : 0.0;
+    }
+    if (i < told_points(points, damage)) state.max_damage = std::max(state.max_damage, damage[i]);
+  }
+  return state;
+}
+
 const PointTerm* failing_points(const Model& model) {
   return dynamic_cast<const PointTerm*>(model.bond_term().get());
 }
@@ -76,12 +105,11 @@ const PointTerm* failing_points(const Model& model) {
 DamageState assess_damage(const Model& model, const History& history,
                           std::span<const double> cut_weight, std::span<double> damage,
                           const Points* points) {
-  const std::span<const Index> image_sources =
-      points != nullptr ? std::span<const Index>(points->images.source) : std::span<const Index>();
   if (const PointTerm* const of_points = failing_points(model)) {
     return assess_points(*of_points, history.of(model.slot_of(*of_points)), cut_weight, damage,
-                         image_sources);
+                         points);
   }
+  const std::span<const Index> image_sources = sources_of_images(points);
   const Bonds& bonds = model.bonds();
   DamageState state;
   std::vector<double> whole(cut_weight.begin(), cut_weight.end());
@@ -115,8 +143,7 @@ DamageState assess_damage(const Model& model, const History& history,
       return law.integrity_after(largest);
     });
   });
-  const bool is_part = points != nullptr && points->owned;
-  const std::size_t told = is_part ? std::size_t(*points->owned) : damage.size();
+  const std::size_t told = told_points(points, damage);
   for (std::vector<double>* sums : {&whole, &left}) gather_images(image_sources, *sums);
   for (std::size_t i = 0; i < damage.size(); ++i) {
     damage[i] = whole[i] > 0.0 ? std::clamp(1.0 - left[i] / whole[i], 0.0, 1.0) : 0.0;

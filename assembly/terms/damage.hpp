@@ -27,8 +27,9 @@ struct DamageState {
 /// bonds has the damage 0, or 1 if a crack has cut them.
 /// @param cut_weight per point [m6], or empty
 /// @param points those of the body: a bond across a plane of symmetry counts half, and its twin for
-///        the other half; of a part of a body sums are over the bonds that it counts, and damage is
-///        that of the points that its rank owns. Null: the body is whole and has no images
+///        the other half; of a part of a body sums are over the bonds that it counts, but what
+///        points that fail have dissipated is of all of it, and damage is that of the points that
+///        its rank owns. Null: the body is whole and has no images
 [[nodiscard]] DamageState assess_damage(const Model& model, const History& history,
                                         std::span<const double> cut_weight,
                                         std::span<double> damage, const Points* points = nullptr);

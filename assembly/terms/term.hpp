@@ -16,6 +16,7 @@
 namespace peristat {
 
 class Model;
+class Sharing;
 struct Workspace;
 
 /// Whether a pass overwrites what its result held or adds to it.
@@ -93,6 +94,9 @@ struct TermSetting {
   const Model& model;
   const BlockPattern& pattern;
   Workspace& workspace;
+  /// Null: the body is whole. Otherwise the points are a part of it, and a commit, which all ranks
+  /// make, may ask the others what history is to come of it. No other pass does.
+  const Sharing* sharing = nullptr;
 };
 
 /// How many interactions of a kind there are.

@@ -58,7 +58,7 @@ FreeDofs FragmentPins::free_dofs(const std::vector<char>& prescribed, int dimens
 
 double FragmentPins::force(const Sums& sums, const Trial& state,
                            std::span<const double> external_force) const {
-  return sums.norm_of(sums.own(pinned.size()), [&](std::size_t dof) {
+  return sums.norm_of_entries(pinned.size(), [&](std::size_t dof) {
     return pinned[dof] ? state.gradient[dof] - external_force[dof] : 0.0;
   });
 }

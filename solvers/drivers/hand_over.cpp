@@ -25,11 +25,11 @@ double fall_of_force(const Path& path, const Attempt& attempt) {
   const std::vector<double>& from = path.state().accepted.displacement;
   const Sums sums = path.problem().sums();
   double work_before = 0.0, work_after = 0.0;
-  for (std::size_t dof = 0; dof < sums.own(from.size()); ++dof) {
+  sums.for_each_entry(from.size(), [&](std::size_t dof) {
     const double moved = attempt.state.displacement[dof] - from[dof];
     work_before += before[dof] * moved;
     work_after += after[dof] * moved;
-  }
+  });
   work_before = sums.of_all(work_before);
   work_after = sums.of_all(work_after);
   return work_before > 0.0 ? 1.0 - work_after / work_before : 0.0;

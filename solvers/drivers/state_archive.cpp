@@ -21,7 +21,7 @@ void transfer_history(StateArchive& archive, const std::string& name, History& h
   for (int k = 0; k < terms; ++k) {
     const auto term = static_cast<std::size_t>(k);
     std::vector<double> values(history.of(term).begin(), history.of(term).end());
-    archive.transfer(name + "/history_" + std::to_string(k), values, Rows::bonds);
+    archive.transfer(name + "/history_" + std::to_string(k), values, Rows::histories);
     history.replace(term, std::move(values));
   }
 }

@@ -17,6 +17,7 @@ enum class Rows {
   recorded_dofs,   ///< likewise of points that stand for themselves and are owned
   free_dofs,       ///< one per degree of freedom that is solved for
   bonds,           ///< one per bond
+  histories,       ///< one per bond or, where points fail, per point
   list_of_points,  ///< numbers of points, ascending
 };
 

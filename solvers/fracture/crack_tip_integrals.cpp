@@ -67,17 +67,26 @@ CrackTipIntegrals::CrackTipIntegrals(const Points& points, const CrackTipSpecifi
   weigh();
 }
 
+std::vector<ImageKind> CrackTipIntegrals::kinds_of_images() const {
+  const Images& images = points_.images;
+  std::vector<double> is_there(images.kinds.size(), 0.0);
+  for (const std::size_t kind : images.kind) is_there[kind] = 1.0;
+  if (setting_.sharing) is_there = setting_.sharing->ranks().max(is_there);
+  std::vector<ImageKind> kinds;
+  for (std::size_t kind = 0; kind < is_there.size(); ++kind) {
+    if (is_there[kind] > 0.0) kinds.push_back(images.kinds[kind]);
+  }
+  return kinds;
+}
+
 void CrackTipIntegrals::check_planes(const std::string& key) {
   const double reach = tip_.outer + setting_.horizon;
-  for (Index image = points_.own(); image < points_.count(); ++image) {
-    const ImageKind& kind = points_.image_kind(image);
-    const Coordinates here = points_.position(image),
-                      there = points_.position(points_.source(image));
+  for (const ImageKind& kind : kinds_of_images()) {
     for (std::size_t axis = 0; axis < std::size_t(points_.dimension); ++axis) {
       if (kind.mirror[axis] > 0.0) continue;
       Coordinates normal{};
       normal[axis] = 1.0;
-      const double plane = 0.5 * (here[axis] + there[axis]);
+      const double plane = 0.5 * kind.shift[axis];
       const double distance = std::abs(plane - tip_.at[axis]);
       constexpr double parallel = 1.0 - 1e-9;
       if (std::abs(dot<3>(normal, frame_.e3)) > parallel) {
@@ -105,7 +114,8 @@ void CrackTipIntegrals::check_ring(const std::string& key) const {
   std::array<double, sectors> volume{};
   std::array<double, 4> extent{};  // ahead, behind, above, below
   double above = 0.0;              // the crack, where it lies in a plane of symmetry
-  for (Index i = 0; i < counted(); ++i) {
+  for (Index i = 0; i < points_.count(); ++i) {
+    if (!points_.owns(i)) continue;
     const Coordinates at = frame_.components(points_.position(i));
     if (!points_.is_image(i)) above += at[1];
     const std::array<double, 4> along{at[0], -at[0], at[1], -at[1]};
@@ -133,7 +143,7 @@ void CrackTipIntegrals::check_ring(const std::string& key) const {
     if (extent[k] + 0.51 * double(points_.spacing) < outer) refuse(names[k]);
   }
   const double ring = std::numbers::pi * (outer * outer - tip_.inner * tip_.inner);
-  const double length = front_length(counted());
+  const double length = front_length(points_.count());
   for (std::size_t k = 0; k < sectors; ++k) {
     const double angle = (2.0 * double(k) + 1.0) / double(sectors) - 1.0;  // of a half turn
     if (std::abs(angle) > slot || (is_on_plane_ && angle * above < 0.0)) continue;
@@ -148,7 +158,7 @@ double CrackTipIntegrals::front_length(Index points) const {
   double least = std::numeric_limits<double>::infinity(), most = -least;
   for (Index i = 0; i < points; ++i) {
     const Coordinates at = frame_.components(points_.position(i));
-    if (std::hypot(at[0], at[1]) > tip_.outer) continue;
+    if (!points_.owns(i) || std::hypot(at[0], at[1]) > tip_.outer) continue;
     least = std::min(least, at[2]);
     most = std::max(most, at[2]);
   }
@@ -159,7 +169,8 @@ double CrackTipIntegrals::front_length(Index points) const {
 
 void CrackTipIntegrals::weigh() {
   const double width = tip_.outer - tip_.inner;
-  for (Index i = 0; i < counted(); ++i) {
+  for (Index i = 0; i < points_.count(); ++i) {
+    if (!points_.owns(i)) continue;
     const Coordinates at = frame_.components(points_.position(i));
     const double r = std::hypot(at[0], at[1]);
     if (r >= tip_.outer) continue;
@@ -173,7 +184,7 @@ void CrackTipIntegrals::weigh() {
     }
     weighted_.push_back(weighted);
   }
-  factor_ = (is_on_plane_ ? 2.0 : 1.0) / front_length(std::min(points_.own(), counted()));
+  factor_ = (is_on_plane_ ? 2.0 : 1.0) / front_length(points_.own());
 }
 
 double CrackTipIntegrals::largest(std::span<const double> values) const {
@@ -202,6 +213,7 @@ std::vector<double> CrackTipIntegrals::translation_of(Assembler& assembler,
       }
     }
   }
+  if (setting_.sharing) setting_.sharing->update_ghosts(translation);
   for (Index image = points_.own(); image < points_.count(); ++image) {
     const ImageKind& kind = points_.image_kind(image);
     for (std::size_t r = 0; r < d; ++r) {
@@ -209,7 +221,6 @@ std::vector<double> CrackTipIntegrals::translation_of(Assembler& assembler,
           kind.mirror[r] * translation[std::size_t(points_.source(image)) * d + r];
     }
   }
-  if (setting_.sharing) setting_.sharing->update_ghosts(translation);
   return translation;
 }
 

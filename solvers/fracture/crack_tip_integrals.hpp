@@ -66,15 +66,13 @@ class CrackTipIntegrals {
     Rings q{}, slope{};  // dq/dX1
   };
 
+  /// Of all images that there are, on any rank.
+  [[nodiscard]] std::vector<ImageKind> kinds_of_images() const;
   void check_planes(const std::string& key);
   void check_ring(const std::string& key) const;
   void weigh();
   [[nodiscard]] double front_length(Index points) const;
   [[nodiscard]] Sums sums() const { return {setting_.sharing, points_.dimension}; }
-  /// Points that are counted here, images too.
-  [[nodiscard]] Index counted() const {
-    return setting_.sharing ? setting_.sharing->owned() : points_.count();
-  }
   [[nodiscard]] double largest(std::span<const double> values) const;
   [[nodiscard]] Rings fluxes(Assembler& assembler, const StateView& at,
                              std::span<const double> translation) const;

@@ -26,9 +26,9 @@ Motion::Motion(const EquilibriumProblem& problem, const MotionSetting& setting, 
   if (conditions.supports_move()) {
     const auto &prescribed = conditions.prescribed(),
                &dependent = conditions.constraints().dependent();
-    for (std::size_t dof = 0; dof < problem.sums().own(prescribed.size()); ++dof) {
+    problem.sums().for_each_entry(prescribed.size(), [&](std::size_t dof) {
       if (prescribed[dof] && !dependent[dof]) moved_.push_back(Index(dof));
-    }
+    });
   }
   move_followers(problem, at_);
   if (!find_forces()) at_.degenerate = true;
@@ -117,10 +117,10 @@ void Motion::add_work_of_supports() {
     sums_.work += 0.5 * (last_reaction_[k] + at_.gradient[moved_[k]]) *
                   (at_.displacement[moved_[k]] - last_place_[k]);
   }
-  for (std::size_t k = 0; k < problem_.sums().own(at_.follower_force.size()); ++k) {
+  problem_.sums().for_each_entry(at_.follower_force.size(), [&](std::size_t k) {
     sums_.work += 0.5 * (last_follower_force_[k] + at_.follower_force[k]) *
                   (at_.displacement[k] - last_displacement_[k]);
-  }
+  });
 }
 
 void Motion::absorb(double half_step) {

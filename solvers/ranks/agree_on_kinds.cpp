@@ -69,16 +69,18 @@ BondKinds kinds_of_all(const BondKinds& mine, const Communicator& ranks) {
 
 }  // namespace
 
-void agree_on_kinds(Bonds& bonds, const NumberedPoints& points, const Communicator& ranks) {
+void agree_on_kinds(Bonds& bonds, const Points& points, const NumberedPoints& numbered,
+                    const Communicator& ranks) {
   if (ranks.count() == 1) return;
   BondKinds agreed = kinds_of_all(bonds.kind, ranks);
   const auto first = Offset(agreed.size());
   agreed.reserve(agreed.size() + std::size_t(bonds.count()) + 1);
   for (Offset bond = 0; bond < bonds.count(); ++bond) agreed.push_back(bonds.kind[bond]);
-  const HeardOfBonds heard = heard_of_bonds(bonds, points, ranks, 2, [&](Offset bond, double* to) {
-    to[0] = agreed[first + bond].inverse_length;
-    to[1] = agreed[first + bond].weight;
-  });
+  const HeardOfBonds heard =
+      heard_of_bonds(bonds, points, numbered, ranks, 2, [&](Offset bond, double* to) {
+        to[0] = agreed[first + bond].inverse_length;
+        to[1] = agreed[first + bond].weight;
+      });
   const Offset last = first + bonds.count();
   for (std::size_t k = 0; k < heard.bond.size(); ++k) {
     agreed.push_back({heard.values[2 * k], heard.values[2 * k + 1]});

@@ -11,6 +11,7 @@ namespace peristat {
 /// and in whatever order a surface correction has summed. All ranks then have one table of kinds,
 /// or none of them has one. A call that all make.
 /// @param bonds of the part that these points are of
-void agree_on_kinds(Bonds& bonds, const NumberedPoints& points, const Communicator& ranks);
+void agree_on_kinds(Bonds& bonds, const Points& points, const NumberedPoints& numbered,
+                    const Communicator& ranks);
 
 }  // namespace peristat

@@ -5,36 +5,55 @@
 #include <stdexcept>
 
 #include "solvers/ranks/ranks.hpp"
+#include "src/geometry/image_number.hpp"
 
 namespace peristat {
 namespace {
 
-/// Bond between two points that are here.
-Offset bond_between(const Bonds& bonds, std::optional<Index> one, std::optional<Index> other) {
+/// A bond as all ranks know it: by the numbers of its ends, and which image of the second one it
+/// ends at (image_number).
+struct EndsOfBond {
+  GlobalIndex first = 0, second = 0, image = 0;
+};
+
+/// The bond here that has these ends.
+Offset bond_of(const Bonds& bonds, const Points& points, const NumberedPoints& numbered,
+               const EndsOfBond& ends) {
+  const std::optional<Index> one = numbered.find(ends.first), other = numbered.find(ends.second);
   if (!one || !other) throw std::logic_error("a bond of two parts has a point that is not here");
-  const auto [lower, upper] = std::minmax(*one, *other);
-  const auto first = bonds.partner.begin() + std::ptrdiff_t(bonds.offset[lower]);
+  const bool is_between = ends.image == 0;
+  const Index lower = is_between ? std::min(*one, *other) : *one;
+  const Index upper = is_between ? std::max(*one, *other) : points.own();
   const auto last = bonds.partner.begin() + std::ptrdiff_t(bonds.offset[lower + 1]);
-  const auto found = std::lower_bound(first, last, upper);
-  if (found == last || *found != upper) {
+  auto found =
+      std::lower_bound(bonds.partner.begin() + std::ptrdiff_t(bonds.offset[lower]), last, upper);
+  if (!is_between) {
+    found = std::find_if(found, last, [&](Index image) {
+      return points.source(image) == *other && image_number(points, image) == ends.image;
+    });
+  }
+  if (found == last || (is_between && *found != upper)) {
     throw std::logic_error("a bond between two parts is on one rank alone");
   }
   return found - bonds.partner.begin();
 }
 
-/// Asks for the bonds that are told by others: who asks, numbers of the ends, the bond there.
-Records questions(const Bonds& bonds, const NumberedPoints& points, const Communicator& ranks) {
-  Records asked{1, 3, {}, {}};
+/// Asks for the bonds that are told by others: who asks, the ends, the bond there.
+Records questions(const Bonds& bonds, const Points& points, const NumberedPoints& numbered,
+                  const Communicator& ranks) {
+  Records asked{1, 4, {}, {}};
   std::vector<int> to;
   for (Index i = 0; i < bonds.points(); ++i) {
+    if (points.is_image(i)) continue;
     for (Offset bond = bonds.offset[i]; bond < bonds.offset[i + 1]; ++bond) {
-      const Index j = bonds.partner[std::size_t(bond)];
-      if (!points.is_ghost(j)) continue;  // nor to images, which no history is of
-      const Index lower = points.number_of(i) < points.number_of(j) ? i : j;
-      if (!points.is_ghost(lower)) continue;
-      to.push_back(points.owner_of_ghost(lower));
+      const Index j = bonds.partner[std::size_t(bond)], other = points.source(j);
+      const EndsOfBond ends{numbered.number_of(i), numbered.number_of(other),
+                            image_number(points, j)};
+      const Index teller = ends.image > 0 || ends.first < ends.second ? i : other;
+      if (!numbered.is_ghost(teller)) continue;
+      to.push_back(numbered.owner_of_ghost(teller));
       asked.values.push_back(double(ranks.rank()));
-      asked.numbers.insert(asked.numbers.end(), {points.number_of(i), points.number_of(j), bond});
+      asked.numbers.insert(asked.numbers.end(), {ends.first, ends.second, ends.image, bond});
     }
   }
   return exchange(ranks, to, asked);
@@ -42,18 +61,18 @@ Records questions(const Bonds& bonds, const NumberedPoints& points, const Commun
 
 }  // namespace
 
-HeardOfBonds heard_of_bonds(const Bonds& bonds, const NumberedPoints& points,
-                            const Communicator& ranks, int width,
+HeardOfBonds heard_of_bonds(const Bonds& bonds, const Points& points,
+                            const NumberedPoints& numbered, const Communicator& ranks, int width,
                             const std::function<void(Offset, double*)>& tell) {
-  const Records asked = questions(bonds, points, ranks);
+  const Records asked = questions(bonds, points, numbered, ranks);
   const auto each = std::size_t(width);
   Records told{width, 1, std::vector<double>(asked.values.size() * each), {}};
   std::vector<int> to;
   for (std::size_t k = 0; k < asked.values.size(); ++k) {
-    const auto* const numbers = &asked.numbers[3 * k];
-    tell(bond_between(bonds, points.find(numbers[0]), points.find(numbers[1])),
+    const auto* const numbers = &asked.numbers[4 * k];
+    tell(bond_of(bonds, points, numbered, {numbers[0], numbers[1], numbers[2]}),
          &told.values[k * each]);
-    told.numbers.push_back(numbers[2]);
+    told.numbers.push_back(numbers[3]);
     to.push_back(int(asked.values[k]));
   }
   Records heard = exchange(ranks, to, told);

@@ -5,6 +5,7 @@
 
 #include "src/core/communicator.hpp"
 #include "src/geometry/numbered_points.hpp"
+#include "src/geometry/points.hpp"
 #include "src/neighbourhood/bonds.hpp"
 
 namespace peristat {
@@ -15,13 +16,16 @@ struct HeardOfBonds {
   std::vector<double> values{};  ///< as many of each bond
 };
 
-/// Of every bond the rank tells that owns its end with the lower number in the whole body: those
-/// that have it, too, ask for it, also for one between two of their ghosts. A call that all ranks
-/// make.
+/// Of every bond the rank tells that owns its end with the lower number in the whole body, and of
+/// one to an image that owns the other end: those that have it, too, ask for it, also for one
+/// between two of their ghosts. Those between two images, which weigh nothing, nobody tells. A call
+/// that all ranks make.
+/// @param numbered the points that stand for themselves
 /// @param width how many values tell(bond, to) writes of a bond
 /// @throws std::logic_error if a rank asks for a bond that the other one does not have
-[[nodiscard]] HeardOfBonds heard_of_bonds(const Bonds& bonds, const NumberedPoints& points,
-                                          const Communicator& ranks, int width,
+[[nodiscard]] HeardOfBonds heard_of_bonds(const Bonds& bonds, const Points& points,
+                                          const NumberedPoints& numbered, const Communicator& ranks,
+                                          int width,
                                           const std::function<void(Offset, double*)>& tell);
 
 }  // namespace peristat

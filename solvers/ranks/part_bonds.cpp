@@ -1,7 +1,6 @@
 #include "solvers/ranks/part_bonds.hpp"
 
 #include <algorithm>
-#include <numeric>
 #include <stdexcept>
 #include <vector>
 
@@ -17,13 +16,16 @@ double reach_here(const Points& points, SurfaceCorrection surface, const BondSet
   return (1 + more) * search_radius(points, setting);
 }
 
-/// Per point, whether it is this rank's or has a bond with one that is.
+/// Per point or image, whether it is this rank's or has a bond with one that is.
 std::vector<char> owned_and_neighbours(const Part& part, const Bonds& bonds) {
-  std::vector<char> is_near(part.points.volume.size(), 0);
-  std::fill_n(is_near.begin(), part.owned, char(1));
-  for (Index i = 0; i < part.owned; ++i) {
+  const Points& points = part.points;
+  std::vector<char> is_near(points.volume.size(), 0);
+  for (Index i = 0; i < points.count(); ++i) {
+    if (points.owns(i)) is_near[std::size_t(i)] = 1;
     for (Offset bond = bonds.offset[i]; bond < bonds.offset[i + 1]; ++bond) {
-      is_near[std::size_t(bonds.partner[std::size_t(bond)])] = 1;
+      const Index j = bonds.partner[std::size_t(bond)];
+      if (points.owns(i)) is_near[std::size_t(j)] = 1;
+      if (points.owns(j)) is_near[std::size_t(i)] = 1;
     }
   }
   return is_near;
@@ -50,7 +52,7 @@ Bonds make_bonds(const Part& part, SurfaceCorrection surface, const BondSetting&
     if (which == PartBonds::among_neighbours) return !(near_i && near_j);
     return which == PartBonds::of_owned || !(near_i || near_j);
   });
-  agree_on_kinds(bonds, numbered_points(part), ranks);
+  agree_on_kinds(bonds, part.points, numbered_points(part), ranks);
   return bonds;
 }
 
@@ -65,12 +67,14 @@ GlobalIndex count_bonds(const Points& points, const Bonds& bonds, const Communic
   return ranks.count_all(mine).all;
 }
 
-GlobalIndex count_interactions(Index owned, const InteractionCount& here,
+GlobalIndex count_interactions(const Points& points, const InteractionCount& here,
                                const Communicator& ranks) {
-  const auto first = here.per_point.begin();
-  const GlobalIndex corners = std::accumulate(first, first + owned, GlobalIndex(0));
-  const int points = here.orders == 1 ? 2 : here.orders == 2 ? 3 : 4;  // the factorial of one less
-  return ranks.count_all(corners).all / points;
+  GlobalIndex corners = 0;
+  for (Index i = 0; i < points.count(); ++i) {
+    if (points.owns(i)) corners += here.per_point[std::size_t(i)];
+  }
+  const int of_each = here.orders == 1 ? 2 : here.orders == 2 ? 3 : 4;  // factorial of one less
+  return ranks.count_all(corners).all / of_each;
 }
 
 }  // namespace peristat

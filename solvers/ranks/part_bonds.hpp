@@ -35,8 +35,8 @@ enum class PartBonds {
                                       const Communicator& ranks);
 
 /// Interactions of the whole body of a kind, each counted once.
-/// @param here all that owned points take part in
-[[nodiscard]] GlobalIndex count_interactions(Index owned, const InteractionCount& here,
+/// @param here all that owned points and their images take part in
+[[nodiscard]] GlobalIndex count_interactions(const Points& points, const InteractionCount& here,
                                              const Communicator& ranks);
 
 }  // namespace peristat

@@ -43,7 +43,13 @@ class Relaxation {
         inverse_density_(dofs_.size()),
         residual_(dofs_.size()),
         last_residual_(dofs_.size()) {
-    for (const Index dof : way.prescribed()) last_reaction_.push_back(at_.gradient[dof]);
+    std::vector<char> counts_here(at_.displacement.size(), 0);
+    of_body_.for_each_entry(counts_here.size(), [&](std::size_t dof) { counts_here[dof] = 1; });
+    for (const Index dof : way.prescribed()) {
+      if (!counts_here[std::size_t(dof)]) continue;
+      held_.push_back(dof);
+      last_reaction_.push_back(at_.gradient[dof]);
+    }
   }
 
   void find_density(TangentOperator& tangent) {
@@ -166,16 +172,16 @@ class Relaxation {
   }
 
   void complete_work() {
-    for (std::size_t k = 0; k < at_.follower_force.size(); ++k) {
+    of_body_.for_each_entry(at_.follower_force.size(), [&](std::size_t k) {
       result_.external_work += 0.5 * (last_follower_force_[k] + at_.follower_force[k]) *
                                (at_.displacement[k] - last_displacement_[k]);
-    }
+    });
     if (last_environment_ != at_.environment) {
       add_work_of_body(0.5 * (at_.stored_energy - energy_under(last_environment_)));
       last_environment_ = at_.environment;
     }
-    for (std::size_t k = 0; k < last_reaction_.size(); ++k) {
-      const Index dof = way_.prescribed()[k];
+    for (std::size_t k = 0; k < held_.size(); ++k) {
+      const Index dof = held_[k];
       const double now = at_.gradient[dof];
       if (share_change_ != 0.0) {
         const double moved =
@@ -293,7 +299,8 @@ class Relaxation {
   std::vector<FourSums> partial_;                 // per thread
   std::vector<double> inverse_density_;           // 1/lambda; 0 where nothing resists
   std::vector<double> residual_, last_residual_;  // F^n, F^(n-1)
-  std::vector<double> last_reaction_;             // dE/dx on prescribed degrees of freedom
+  std::vector<Index> held_;                       // what is prescribed and counts on this rank
+  std::vector<double> last_reaction_;             // dE/dx there
   SharedEnvironment last_environment_;
   std::vector<double> last_follower_force_, last_displacement_;  // before the last move
   std::vector<double> last_load_on_followers_;

@@ -69,6 +69,7 @@ class Flow {
         options_(options),
         observer_(observer),
         sums_(problem.sums()),
+        points_of_body_(GlobalIndex(sums_.of_all(double(own_points())))),
         way_(problem, from, stage),
         force_(from.displacement.size()),
         linearisation_(problem, solver, tangent, force_) {
@@ -136,12 +137,21 @@ class Flow {
     return outcome_of(linear);
   }
 
-  /// Number of one of the degrees of freedom here in the whole body.
+  /// Of the points that stand for themselves those that are this rank's.
+  [[nodiscard]] Index own_points() const {
+    const Points& points = problem_.assembler.points();
+    return points.owned.value_or(points.own());
+  }
+
+  /// Number of one of the degrees of freedom here in the whole body: of its points, then of
+  /// handles.
   [[nodiscard]] GlobalIndex dof_of_body(Index dof) const {
     const Sharing* const sharing = problem_.assembler.sharing();
+    const Points& points = problem_.assembler.points();
+    const Index d = points.dimension, point = dof / d;
+    if (point >= points.count()) return (points_of_body_ + point - points.count()) * d + dof % d;
     if (sharing == nullptr) return dof;
-    const int d = problem_.assembler.points().dimension;
-    return sharing->number()[std::size_t(dof / d)] * d + dof % d;
+    return sharing->number()[std::size_t(point)] * d + dof % d;
   }
 
   /// Zero on degrees of freedom that are not free.
@@ -319,6 +329,7 @@ class Flow {
   const RelaxationOptions& options_;
   const RelaxationObserver& observer_;
   const Sums sums_;
+  const GlobalIndex points_of_body_;
   WayOfLoad way_;
   double share_ = 0.0;  // of the way of supports and loads
   std::vector<double> force_;

@@ -131,13 +131,14 @@ void make_model(Body& body, const MakeNetwork& make_network, int threads) {
   CutBonds cut;
   if (is_linear) {
     body.model = make_linear_model(of, materials, body.factors, body.points, body.setting,
-                                   std::move(bonds), cut, threads);
+                                   std::move(bonds), cut, body.part.get(), threads);
   } else if (of.has_states()) {
     body.model = make_state_model(of, materials, body.factors, body.points, setting,
                                   std::move(bonds), cut, body.part.get(), threads);
   } else if (of.is_collocated()) {
-    body.model = make_collocation_model(of, materials, body.factors, body.points, setting,
-                                        std::move(bonds), cut, body.collocation, threads);
+    body.model =
+        make_collocation_model(of, materials, body.factors, body.points, setting, std::move(bonds),
+                               cut, body.collocation, body.part.get(), threads);
   } else if (is_cpd) {
     body.model = make_cpd_model(of, materials, body.factors, body.points, body.setting,
                                 std::move(bonds), cut, body.part.get(), threads);
@@ -194,6 +195,15 @@ std::vector<double> of_materials(const PointMaterials& materials, const Points& 
     values.push_back(*(all[materials.of(i)].of->*quantity));
   }
   return values;
+}
+
+/// What tractions of a body by collocation act on.
+void take_surface(Body& body, LoadSetting& loads, int threads) {
+  const BodySpecification& of = body.specification;
+  if (!of.is_collocated()) return;
+  loads.surface = surface_sites(body.points, body.model, of.boundary.get(), of.boundary_names,
+                                body.setting.horizon, threads);
+  body.specification.boundary.reset();
 }
 
 LoadingProgramme programme_of(const BodySpecification& of) {
@@ -310,11 +320,7 @@ std::unique_ptr<const Body> make_body(Points points, const BodySpecification& of
       },
       threads);
   LoadSetting loads = load_setting(of, body.points);
-  if (of.is_collocated()) {
-    loads.surface = surface_sites(body.points, body.model, of.boundary.get(), of.boundary_names,
-                                  body.setting.horizon, threads);
-    body.specification.boundary.reset();
-  }
+  take_surface(body, loads, threads);
   body.conditions = std::make_unique<Conditions>(body.points, of.supports, of.loads,
                                                  programme_of(of), of.controls, loads,
                                                  of.eigenstrains, of.constraints, of.foundations);
@@ -343,30 +349,27 @@ bool has_damage(const BodySpecification& of) {
 
 void refuse_constraints_without_ranks(const BodySpecification& of) {
   const ConstraintSpecification& constraints = of.constraints;
-  if (constraints.none()) return;
-  const bool has_images = !constraints.symmetries.empty() || !constraints.periods.empty();
-  const std::string key = !constraints.periods.empty()      ? "periods"
-                          : !constraints.symmetries.empty() ? "symmetries"
-                          : !constraints.rigid_sets.empty() ? "rigid_sets"
-                          : !constraints.rollers.empty()    ? "rollers"
-                                                            : "linear";
-  const auto refuse_with = [&](const std::string& what) {
+  const auto refuse_with = [](const std::string& key, const std::string& what) {
     throw InputError(key, "", "is not for more than one rank yet together with " + what);
   };
+  if (!constraints.rollers.empty() || !constraints.linear.empty()) {
+    const std::string key = constraints.rollers.empty() ? "linear" : "rollers";
+    if (has_damage(of)) refuse_with(key, "damage");
+    if (of.end_time) refuse_with(key, "motions");
+  }
+  if (constraints.symmetries.empty() && constraints.periods.empty()) return;
+  const std::string key = constraints.periods.empty() ? "symmetries" : "periods";
+  if (of.has_states()) refuse_with(key, "model \"lps\"");
+  // Between two images there are bonds that triangles stand on, and whose history nobody tells.
   const bool has_bonds_alone = of.material.model == MaterialModel::bond;
-  if (has_images && !has_bonds_alone) refuse_with("models but \"bond\"");
-  if (has_damage(of)) refuse_with("damage");
-  if (of.end_time) refuse_with("motions");
-  if (has_images && of.has_pressures()) refuse_with("pressures");
-  if (has_images && !of.cracks.empty()) refuse_with("pre-cracks");
+  if (!has_bonds_alone && has_damage(of)) refuse_with(key, "damage of models but \"bond\"");
 }
 
-/// Laws that differ from bond to bond are tested of bonds alone; what states lose has no sum over
-/// ranks.
+/// What triangles of several materials lose is not tested.
 template <class Refuse>
 void refuse_damage_without_ranks(const BodySpecification& of, const Refuse& refuse) {
-  if (!has_damage(of) || of.material.model == MaterialModel::bond) return;
-  if (of.has_states() || !of.is_uniform()) refuse("material.damage");
+  if (!has_damage(of) || of.material.model != MaterialModel::cpd) return;
+  if (!of.is_uniform()) refuse("material.damage");
 }
 
 /// What the assembler of a part is made for; tables of cases are refused before.
@@ -377,24 +380,18 @@ void refuse_without_ranks(const BodySpecification& of) {
         "is not for more than one rank yet: there are bodies with pre-cracks, supports, "
         "rigid sets, rollers, linear constraints, planes of symmetry, periods, foundations, "
         "eigenstrains, tractions, pressures, body forces, total forces and gravity, and damage of "
-        "bonds and triangles");
+        "bonds, points, states and triangles");
   };
   const MaterialSpecification& material = of.material;
   if (is_polynomial(material.model)) refuse("material.model");
-  if (material.model == MaterialModel::lps && of.form != SolidForm::energy) refuse("form");
-  if (of.is_linear()) refuse("material.kinematics");
+  if (of.form == SolidForm::printed) refuse("form");
   refuse_damage_without_ranks(of, refuse);
   if (of.force_operator != ForceOperator::bonds) refuse("force_operator");
   if (!of.controls.empty()) refuse("controls");
   refuse_constraints_without_ranks(of);
-  // Their tests on ranks are of bonds at rest.
-  if (of.end_time || material.model != MaterialModel::bond) {
-    if (!of.foundations.empty()) refuse("foundations");
-    if (of.has_pressures()) refuse("loads");
-  }
   for (std::size_t k = 0; k < of.loads.size(); ++k) {
     const LoadSpecification::Kind kind = of.loads[k].kind;
-    if (kind == LoadSpecification::Kind::stress) {
+    if (kind == LoadSpecification::Kind::stress && !of.is_collocated()) {
       refuse("loads[" + std::to_string(k) + "]." + load_key(kind));
     }
   }
@@ -442,9 +439,13 @@ std::unique_ptr<const Body> make_body(Part part, const BodySpecification& of,
   LoadSetting loads = load_setting(of, body.points);
   loads.ranks = &ranks;
   loads.numbers = body.part->numbered();
+  take_surface(body, loads, threads);
   body.conditions = std::make_unique<Conditions>(body.points, of.supports, of.loads,
                                                  programme_of(of), of.controls, loads,
                                                  of.eigenstrains, of.constraints, of.foundations);
+  if (loads.surface) {
+    refuse_points_on_faces(body.points, *loads.surface, body.conditions->prescribed());
+  }
   add_terms_of_conditions(body.model, body);
   const Stopwatch watch(body.seconds_neighbourhood);
   store_interactions(body, threads);

@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <optional>
 #include <utility>
 
 #include "assembly/terms/collocation/collocation_term.hpp"
 #include "assembly/terms/collocation/make_collocation_network.hpp"
+#include "solvers/study/idle_interfaces.hpp"
 #include "src/core/input_error.hpp"
 #include "src/core/number_text.hpp"
 
@@ -39,26 +41,45 @@ void require_lattice(const Points& points) {
 /// A square corner has a whole ball two bonds away, an angle of 30 degrees one that is four away.
 constexpr int farthest_whole_ball = 4;
 
+/// Place of the first point of the whole body that has none of something.
+std::optional<Coordinates> first_without(const std::vector<double>& has, const Points& points,
+                                         const PartOfBody* part) {
+  constexpr double nowhere = 1e300;
+  const Index own = points.owned.value_or(points.count());
+  const Index here = Index(std::find(has.begin(), has.begin() + own, 0.0) - has.begin());
+  if (!part) return here < own ? std::optional(points.position(here)) : std::nullopt;
+  const double number = here < own ? double(part->number()[std::size_t(here)]) : nowhere;
+  const double first = part->ranks().min(number);
+  if (first == nowhere) return std::nullopt;
+  Coordinates place{};
+  if (number == first) place = points.position(here);
+  add_up(part->ranks(), place);
+  return place;
+}
+
 /// Between faces less than two horizons apart no ball is whole, and what surfaces there lack is
 /// made up from points that lack as much: the operator has eigenvalues of the other sign, so that
 /// a strip bends against its load.
-void refuse_thin_bodies(const Points& points, const CollocationNetwork& network) {
-  std::vector<char> is_near = network.is_whole;
+void refuse_thin_bodies(const Points& points, const CollocationNetwork& network,
+                        const PartOfBody* part) {
+  const Index own = points.owned.value_or(points.count());
+  std::vector<double> near(network.is_whole.begin(), network.is_whole.end());
+  if (part) update_ghost_values(*part, points.dimension, near);
   for (int bonds = 0; bonds < farthest_whole_ball; ++bonds) {
-    const std::vector<char> before = is_near;
-    for (Index i = 0; i < network.points(); ++i) {
-      for (Offset e = network.offset[i]; e < network.offset[i + 1] && is_near[i] == 0; ++e) {
-        is_near[i] = before[std::size_t(network.neighbour[std::size_t(e)])];
+    const std::vector<double> before = near;
+    for (Index i = 0; i < own; ++i) {
+      for (Offset e = network.offset[i]; e < network.offset[i + 1] && near[i] == 0.0; ++e) {
+        near[i] = before[std::size_t(network.neighbour[std::size_t(e)])];
       }
     }
+    if (part) update_ghost_values(*part, points.dimension, near);
   }
-  const auto thin = std::find(is_near.begin(), is_near.end(), 0);
-  if (thin == is_near.end()) return;
-  const auto at = static_cast<Index>(thin - is_near.begin());
+  const std::optional<Coordinates> at = first_without(near, points, part);
+  if (!at) return;
   throw InputError("material.model", "lps",
                    "needs bodies thicker than two horizons: no point within four bonds of the one "
                    "at " +
-                       place_text(points.position(at), points.dimension) +
+                       place_text(*at, points.dimension) +
                        " m has a whole ball; take a smaller spacing or horizon_ratio, or "
                        "quadrature.form = \"energy\"");
 }
@@ -73,7 +94,7 @@ std::vector<double> normals_of_faces(const BodySpecification& from, const Points
   }
   const auto d = std::size_t(points.dimension);
   std::vector<double> normals(points.reference.size(), 0.0);
-  for (Index i = 0; i < points.count(); ++i) {
+  for (Index i = 0; i < points.owned.value_or(points.count()); ++i) {
     const auto at = std::size_t(i);
     if (network.is_whole[at] != 0 || (!cut.weight.empty() && cut.weight[at] != 0.0)) continue;
     const std::vector<Foot> feet = from.boundary->above(points.position(i), horizon);
@@ -100,7 +121,7 @@ double lps_critical_stretch(const MaterialSpecification& material, const BondSet
 Model make_collocation_model(const BodySpecification& from, const PointMaterials& materials,
                              const PointFactors& factors, const Points& points,
                              const BondSetting& setting, Bonds bonds, CutBonds& cut,
-                             CollocationSummary& summary, int threads) {
+                             CollocationSummary& summary, const PartOfBody* part, int threads) {
   require_lattice(points);
   std::vector<DirectedConstant> moduli;
   auto constants = std::make_shared<LameConstants>();
@@ -117,14 +138,14 @@ Model make_collocation_model(const BodySpecification& from, const PointMaterials
   }
   const BondMaterials mixed(from, materials, factors, points, std::move(moduli));
   if (!from.is_uniform()) {
-    refuse_idle_interfaces(from, materials, bonds);
+    refuse_idle_interfaces(from, materials, bonds, part ? &part->ranks() : nullptr);
     mixed.weigh(bonds);
   }
   cut = cut_bonds(bonds, points, from.cracks);
   MadeCollocationNetwork made =
       make_collocation_network(points, bonds, setting.horizon, from.collocation.degree, threads);
   summary = {made.negative, made.lowered, made.solves, made.lowest};
-  refuse_thin_bodies(points, made.network);
+  refuse_thin_bodies(points, made.network, part);
   if (from.collocation.normals == NormalSource::exact) {
     made.network.normals = normals_of_faces(from, points, setting.horizon, made.network, cut);
   }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "assembly/terms/model.hpp"
+#include "solvers/ranks/part_of_body.hpp"
 #include "solvers/study/bond_materials.hpp"
 #include "src/connectivity/crack.hpp"
 #include "src/materials/lame_constants.hpp"
@@ -23,12 +24,14 @@ struct CollocationSummary {
 
 /// Model of a body of model "lps", and what its pre-cracks have cut. Its bonds are those of a bond
 /// model that dissipates as much.
+/// @param part of a body that these are; null: it is whole
 /// @throws InputError ("material.model") for points on no lattice of squares or cubes, and as
 ///         optimised_weights does
 [[nodiscard]] Model make_collocation_model(const BodySpecification& from,
                                            const PointMaterials& materials,
                                            const PointFactors& factors, const Points& points,
                                            const BondSetting& setting, Bonds bonds, CutBonds& cut,
-                                           CollocationSummary& summary, int threads);
+                                           CollocationSummary& summary, const PartOfBody* part,
+                                           int threads);
 
 }  // namespace peristat

@@ -11,6 +11,7 @@
 #include "solvers/study/idle_interfaces.hpp"
 #include "src/core/input_error.hpp"
 #include "src/core/number_text.hpp"
+#include "src/geometry/image_number.hpp"
 #include "src/neighbourhood/neighbour_counts.hpp"
 
 namespace peristat {
@@ -31,12 +32,14 @@ void update_ghosts(const PartOfBody& part, int dimension, std::vector<double>& v
   for (std::size_t i = 0; i < values.size(); ++i) values[i] = first[i * d];
 }
 
-/// Of the points of a part in the whole body, which are few enough for a double.
+/// Of the points of a part in the whole body, images behind them as they are there.
 PointNumbers numbers_of(const PartOfBody& part, const Points& points) {
-  std::vector<double> numbers(points.volume.size(), 0.0);
-  std::copy(part.number().begin(), part.number().end(), numbers.begin());
-  update_ghosts(part, points.dimension, numbers);
-  return {numbers.begin(), numbers.end()};
+  PointNumbers numbers;
+  for (Index point = 0; point < points.count(); ++point) {
+    numbers.push_back(image_number(points, point) * part.whole() +
+                      part.number_of(points.source(point)));
+  }
+  return numbers;
 }
 
 /// @param bonds of the whole body, which the effective volumes belong to: a crack is no surface
@@ -245,7 +248,7 @@ Model make_cpd_model(const BodySpecification& from, const PointMaterials& materi
     left.remove_if(
         [&](Index, Offset bond) { return setting.influence_at(left.length(bond)) == 0.0; });
   }
-  if (part) agree_on_kinds(left, part->numbered(), part->ranks());
+  if (part) agree_on_kinds(left, points, part->numbered(), part->ranks());
   cut = cut_bonds(left, points, from.cracks);
   auto [potential, never_fails] = mixed.potential(left);
   Model model(std::move(left), std::move(potential), std::move(never_fails));

@@ -70,15 +70,10 @@ std::size_t material_about(const Body& body, const PointMaterials& materials,
 }
 
 /// What of a tip has no sum over ranks.
-void refuse_without_ranks(const Body& body, const CrackTipSpecification& tip,
-                          const std::string& key) {
+void refuse_without_ranks(const CrackTipSpecification& tip, const std::string& key) {
   if (tip.cut > 0.0) {
     throw InputError(key + ".cut", number_text(tip.cut),
                      "is for one rank; on several take J, which has no cut");
-  }
-  const ConstraintSpecification& constraints = body.specification.constraints;
-  if (!constraints.symmetries.empty() || !constraints.periods.empty()) {
-    throw InputError(key, "", "does not go with planes of symmetry and periods on several ranks");
   }
 }
 
@@ -122,7 +117,7 @@ std::vector<CrackTip> make_crack_tips(const Body& body,
     if (body.specification.eigenstrains.are_there()) {
       throw InputError(key, "", "does not go with eigenstrains or a temperature");
     }
-    if (body.part) refuse_without_ranks(body, tips[k], key);
+    if (body.part) refuse_without_ranks(tips[k], key);
     CrackTip tip{{body.points,
                   tips[k],
                   {body.setting.reach(), body.setting.cross_section, body.part.get()},

@@ -14,6 +14,7 @@
 #include "assembly/terms/linear/linear_term.hpp"
 #include "assembly/terms/points/convolved_term.hpp"
 #include "solvers/study/fracture_data.hpp"
+#include "solvers/study/idle_interfaces.hpp"
 #include "solvers/study/state_model.hpp"
 #include "src/core/input_error.hpp"
 #include "src/geometry/lattice_box.hpp"
@@ -179,10 +180,9 @@ CutBonds told(const Bonds& bonds) {
   return cut;
 }
 
-/// W_c of a point's material, times its volume; infinite for those that never
-/// fail; empty if none does.
-std::vector<double> bearable_energies(const PointMaterials& materials, const Points& points,
-                                      double horizon) {
+/// W_c of a point's material, times its volume.
+BearableEnergies bearable_energies(const PointMaterials& materials, const Points& points,
+                                   double horizon) {
   const auto& all = materials.all();
   if (std::ranges::none_of(all, [](const auto& material) {
         return material.of->damage.law == DamageLaw::energy_density;
@@ -350,7 +350,8 @@ Model make_correspondence(const BodySpecification& from, const PointMaterials& m
 
 Model make_linear_model(const BodySpecification& from, const PointMaterials& materials,
                         const PointFactors& factors, const Points& points,
-                        const BondSetting& setting, Bonds bonds, CutBonds& cut, int threads) {
+                        const BondSetting& setting, Bonds bonds, CutBonds& cut,
+                        const PartOfBody* part, int threads) {
   if (points.own() < points.count()) drop_weightless(bonds);
   if (from.force_operator == ForceOperator::fft) {
     static_cast<void>(cut_bonds(bonds, points, from.cracks));
@@ -374,7 +375,7 @@ Model make_linear_model(const BodySpecification& from, const PointMaterials& mat
     lattice = lattice_of(from, points, setting, mixed.modulus(), cut, threads);
   } else {
     if (!from.is_uniform()) {
-      refuse_idle_interfaces(from, materials, bonds);
+      refuse_idle_interfaces(from, materials, bonds, part ? &part->ranks() : nullptr);
       mixed.weigh(bonds);
     }
     cut = cut_bonds(bonds, points, from.cracks);

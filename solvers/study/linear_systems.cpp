@@ -302,7 +302,7 @@ LinearSystems choose_linear_systems(const StudyOptions& options, const Body& bod
     const bool has_rows = has_rows_of_part(body);
     PreconditionerKind& kind = of_part.linear.preconditioner;
     if (!has_rows && kind == PreconditionerKind::automatic) kind = PreconditionerKind::block_jacobi;
-    if (!body.conditions->constraints().none() && !is_of_points(kind)) {
+    if (!body.conditions->constraints().none() && has_rows) {
       of_part.tangent = TangentStorage::stored;
     }
     LinearSystems systems = choose_linear_systems(
@@ -353,9 +353,12 @@ std::unique_ptr<TangentOperator> make_shared_operator(Assembler& assembler, bool
 std::unique_ptr<TangentOperator> LinearSystems::make_tangent(Assembler& assembler,
                                                              const Constraints& constraints) const {
   const bool is_convolved = !assembler.has_rows();
-  if (!is_convolved && !assembler.has_potential()) return std::make_unique<RowsOfEnergy>(assembler);
-  if (is_convolved) return make_convolved_tangent(assembler, constraints);
   const Sharing* const sharing = assembler.sharing();
+  if (!is_convolved && !assembler.has_potential()) {
+    if (sharing) return std::make_unique<PartTangent<RowsOfEnergy>>(assembler);
+    return std::make_unique<RowsOfEnergy>(assembler);
+  }
+  if (is_convolved) return make_convolved_tangent(assembler, constraints);
   if (!constraints.none() && (!sharing || (is_stored && has_rows))) {
     return std::make_unique<ConstrainedTangent>(assembler, constraints, sharing);
   }

@@ -76,9 +76,12 @@ void refuse_modes_of_failing_points(const Body& body, const StudyOptions& option
 /// Of the modes some sum over ranks.
 void refuse_modes_without_ranks(const Body& body, const StudyOptions& options) {
   const Mode mode = options.loading.mode;
-  if (mode == Mode::relaxation && !body.conditions->constraints().none()) {
+  const ConstraintSpecification& constraints = body.specification.constraints;
+  const bool slides = !constraints.rollers.empty() || !constraints.linear.empty();
+  if (mode == Mode::relaxation && slides) {
     throw InputError("loading.mode", std::string(mode.name),
-                     "is not for more than one rank together with constraints; take newton");
+                     "is not for more than one rank together with rollers and linear constraints; "
+                     "take newton");
   }
   if (mode != Mode::path && mode != Mode::arc_length) return;
   throw InputError("loading.mode", std::string(mode.name),

@@ -45,7 +45,7 @@ std::vector<SurfaceSite> surface_sites(const Points& points, const Model& model,
   CollocationOperator operator_at_rest(points, term->whole(), threads);
   const std::span<const double> normals = operator_at_rest.normals();
   const auto d = std::size_t(points.dimension);
-  for (Index i = 0; i < points.count(); ++i) {
+  for (Index i = 0; i < points.owned.value_or(points.count()); ++i) {
     Coordinates normal{};
     bool has_normal = false;
     for (std::size_t c = 0; c < d; ++c) {

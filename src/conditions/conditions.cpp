@@ -89,7 +89,7 @@ Conditions::Conditions(const Points& points, const std::vector<SupportSpecificat
   for (std::size_t k = 0; k < loads.size(); ++k) {
     const std::string table = indexed("loads", k);
     if (setting.surface && acts_on_surface(loads[k])) {
-      surface_.add(points, loads[k], parameters, table, prescribed_);
+      surface_.add(points, loads[k], parameters, table, prescribed_, ranks_);
       continue;
     }
     refuse_depth_of_surface(loads[k], table);

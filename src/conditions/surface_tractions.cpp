@@ -45,7 +45,7 @@ std::vector<std::string> texts_of(const LoadSpecification& load, int dimension) 
 
 void SurfaceTractions::add(const Points& points, const LoadSpecification& load,
                            const std::vector<std::string>& parameters, const std::string& table,
-                           const std::vector<char>& prescribed) {
+                           const std::vector<char>& prescribed, const Communicator* ranks) {
   Load made{load.kind, table + key_of(load.kind), {}, {}};
   std::vector<Index> members;
   if (!load.set.empty()) members = points_of_set(points, load.set, table + ".set");
@@ -57,7 +57,8 @@ void SurfaceTractions::add(const Points& points, const LoadSpecification& load,
   for (std::size_t k = 0; k < sites_.size(); ++k) {
     if (acts_at(sites_[k])) made.sites.push_back(k);
   }
-  if (made.sites.empty()) {
+  const double sites = double(made.sites.size());
+  if ((ranks ? ranks->sum(sites) : sites) == 0.0) {
     const std::string key = table + (load.side                ? ".side"
                                      : !load.boundary.empty() ? ".boundary"
                                      : !load.set.empty()      ? ".set"

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "src/conditions/specification.hpp"
+#include "src/core/communicator.hpp"
 #include "src/core/expression.hpp"
 #include "src/geometry/points.hpp"
 
@@ -37,13 +38,14 @@ class SurfaceTractions {
   /// Takes up a traction, a pressure or a stress.
   /// @param table of the load, for errors
   /// @param prescribed per degree of freedom: forces on held points move nothing
+  /// @param ranks that have parts of the body, in a call that all make; null: it is whole
   /// @throws InputError ("TABLE.side", "TABLE.boundary", …) for a part of the boundary that no
   /// point
   ///         is at, for expressions that can't be read, and for a traction on one of two faces that
   ///         are less than two horizons apart: a point between them knows but one traction
   void add(const Points& points, const LoadSpecification& load,
            const std::vector<std::string>& parameters, const std::string& table,
-           const std::vector<char>& prescribed);
+           const std::vector<char>& prescribed, const Communicator* ranks = nullptr);
 
   [[nodiscard]] bool none() const { return loads_.empty(); }
   [[nodiscard]] bool changes_with_parameters() const;

@@ -142,9 +142,7 @@ std::vector<FreeMotion> free_motions(const Points& points, const Bonds& bonds,
     if (motions[k].count == 0 || piece.members.empty()) continue;
     const Index first = piece.members.front();
     if (sharing != nullptr && sharing->number()[std::size_t(first)] != piece.lowest) continue;
-    const auto images = std::lower_bound(piece.members.begin(), piece.members.end(), points.own());
-    const GlobalIndex own = piece.points - (piece.members.end() - images);
-    found.push_back({{own, piece.lowest, points.position(first), {}}, motions[k]});
+    found.push_back({{piece.points, piece.lowest, points.position(first), {}}, motions[k]});
   }
   if (sharing != nullptr) found = of_all_ranks(found, points.dimension, sharing->ranks());
   std::sort(found.begin(), found.end(), [](const auto& a, const auto& b) {

@@ -148,6 +148,7 @@ LooseWeb gather_loose_points(const Web& web, const std::vector<Index>& loose,
     for (const auto& row : support[std::size_t(i)])
       points.insert(points.end(), row.begin(), row.end());
     web.for_each_partner(i, [&](Index j) {
+      if (j >= sharing.first_image()) return;  // which are never loose
       ends.push_back(number[std::size_t(i)]);
       ends.push_back(number[std::size_t(j)]);
     });

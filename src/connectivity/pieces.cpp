@@ -130,7 +130,8 @@ std::vector<Piece> pieces_of(const Points& points, const Bonds& bonds, std::span
   }
   for (Piece& piece : pieces) {
     std::sort(piece.members.begin(), piece.members.end());  // of several components here
-    piece.points = GlobalIndex(piece.members.size());
+    const auto images = std::ranges::lower_bound(piece.members, points.own());
+    piece.points = GlobalIndex(images - piece.members.begin());
     if (piece.members.empty()) continue;
     const Index first = piece.members.front();
     piece.lowest = sharing != nullptr ? sharing->number()[std::size_t(first)] : first;
@@ -221,6 +222,14 @@ void FreePieces::pin(const std::vector<Piece>& pieces, const std::vector<RigidMo
       pinned[dof] = 1;
     }
   }
+  if (sharing_ != nullptr) tell_pinned_handles(pinned);
+}
+
+void FreePieces::tell_pinned_handles(std::vector<char>& pinned) const {
+  const auto handles = pinned.begin() + std::ptrdiff_t(points_.reference.size());
+  if (handles == pinned.end()) return;
+  const std::vector<double> all = sharing_->ranks().max(std::vector<double>(handles, pinned.end()));
+  std::ranges::transform(all, handles, [](double pin) { return char(pin != 0.0); });
 }
 
 namespace {
@@ -262,9 +271,12 @@ struct MovedDofs {
 
 void FreePieces::pin_shared(std::span<const Piece> pieces, std::span<const RigidMotions> motions,
                             const std::vector<char>& held, std::vector<char>& pinned) const {
+  if (pieces.empty()) return;
   constexpr double nobody = std::numeric_limits<double>::infinity();
   const auto d = std::size_t(points_.dimension);
   const std::size_t modes = d * (d + 1) / 2;
+  const double first_handle =  // they come after all points
+      sharing_->ranks().sum(double(sharing_->owned())) - double(sharing_->count());
   int rounds = 0;
   std::vector<MovedDofs> moved(pieces.size());
   for (std::size_t k = 0; k < pieces.size(); ++k) {
@@ -279,6 +291,13 @@ void FreePieces::pin_shared(std::span<const Piece> pieces, std::span<const Rigid
                                   double(c));
         moved[k].row.push_back(moved_by(motions[k], place(i), int(c)));
       }
+    }
+    for (const FreeHandle& handle : holding_.handles) {
+      const auto& members = pieces[k].members;
+      if (!std::binary_search(members.begin(), members.end(), handle.moved_by.member)) continue;
+      moved[k].dof.push_back(handle.dof);
+      moved[k].number.push_back(first_handle * double(d) + double(handle.dof));
+      moved[k].row.push_back(moved_by(motions[k], handle));
     }
   }
   for (int round = 0; round < rounds; ++round) {

@@ -14,7 +14,7 @@ namespace peristat {
 /// What hangs together of a body, as far as it is here.
 struct Piece {
   std::vector<Index> members;  ///< that are this rank's, ascending
-  GlobalIndex points = 0;      ///< of the whole piece
+  GlobalIndex points = 0;      ///< of the whole piece, without images
   GlobalIndex lowest = 0;      ///< its lowest point's number in the whole body
   /// Several ranks have points of it, or bonds to them: all ranks list it, in the same order.
   bool is_shared = false;
@@ -57,6 +57,8 @@ class FreePieces {
   [[nodiscard]] std::vector<RigidMotions> shared_motions(std::span<const Piece> pieces) const;
   void pin_shared(std::span<const Piece> pieces, std::span<const RigidMotions> motions,
                   const std::vector<char>& held, std::vector<char>& pinned) const;
+  /// Those that one rank has pinned all have.
+  void tell_pinned_handles(std::vector<char>& pinned) const;
 
   const Points& points_;
   std::span<const double> positions_;

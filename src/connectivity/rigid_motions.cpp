@@ -166,6 +166,13 @@ std::vector<double> moved_by(const RigidMotions& motions, const Coordinates& pla
   return {row.begin(), row.end()};
 }
 
+std::vector<double> moved_by(const RigidMotions& motions, const FreeHandle& handle) {
+  const Eigen::Vector3d centre(motions.centre[0], motions.centre[1], motions.centre[2]);
+  const Eigen::RowVectorXd row =
+      row_of(handle.moved_by, centre, motions.dimension, motions.size) * basis_of(motions);
+  return {row.begin(), row.end()};
+}
+
 std::vector<std::string> motion_names(const RigidMotions& motions) {
   const int dimension = motions.dimension;
   const Eigen::MatrixXd free = basis_of(motions);

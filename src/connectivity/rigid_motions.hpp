@@ -65,6 +65,9 @@ void add_held(const RigidMotions& about, const HeldMotion& motion, MotionSums& s
 [[nodiscard]] std::vector<double> moved_by(const RigidMotions& motions, const Coordinates& place,
                                            int axis);
 
+/// How they move a handle, each of them.
+[[nodiscard]] std::vector<double> moved_by(const RigidMotions& motions, const FreeHandle& handle);
+
 /// Displacements that differ by less than this fraction are alike: round-off must not choose pins.
 inline constexpr double alike_displacements = 1e-9;
 /// Of motions, whose displacements are of order one: a degree of freedom that moves less can't

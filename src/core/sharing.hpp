@@ -45,6 +45,16 @@ inline void add_up(const Communicator& ranks, std::span<double> shares) {
   std::copy(all.begin(), all.end(), shares.begin());
 }
 
+/// The sum of what ranks have a share of; of a whole body (null) what is given.
+[[nodiscard]] inline double sum_of_all(const Sharing* sharing, double share) {
+  return sharing ? sharing->ranks().sum(share) : share;
+}
+
+/// Whether it is so on any rank; of a whole body (null) what is given.
+[[nodiscard]] inline bool any_of_all(const Sharing* sharing, bool is_here) {
+  return sharing ? sharing->ranks().max(is_here ? 1.0 : 0.0) > 0.0 : is_here;
+}
+
 /// Gives ghosts the one value per point that their owners have; a call that all ranks make.
 inline void update_ghost_values(const Sharing& sharing, int dimension, std::span<double> values) {
   const auto d = std::size_t(dimension);

@@ -7,6 +7,7 @@
 
 #include "src/core/expression.hpp"
 #include "src/core/input_error.hpp"
+#include "src/geometry/outermost_face.hpp"
 
 namespace peristat {
 namespace {
@@ -38,12 +39,13 @@ std::function<bool(const Coordinates&)> where_of(const Lattice& lattice, std::si
 
 }  // namespace
 
-std::vector<Cover> covers_of(const Lattice& lattice, const std::vector<Coordinates>& places) {
+std::vector<Cover> covers_of(const Lattice& lattice, const std::vector<Coordinates>& places,
+                             const Communicator& ranks) {
   const Solid solid(lattice.dimension, lattice.shapes);
   std::vector<Cover> covers;
   for (std::size_t k = 0; k < lattice.layers.size(); ++k) {
     const Layer& layer = lattice.layers[k];
-    const auto face = outermost_face(solid, layer.side, places, lattice.spacing);
+    const auto face = outermost_face(solid, layer.side, places, lattice.spacing, ranks);
     if (!face) {
       throw InputError(key_of(k, "side"), name(layer.side),
                        "the body has no flat side out there that the layer could cover");

@@ -32,12 +32,18 @@ struct PointCount {
 };
 using Counts = std::vector<PointCount>;
 
+/// Points that are no images, the lowest ones; of a part those that are owned, as long as no
+/// interaction of an owned point's image is lowest at a ghost.
+Index visited(const Points& points) {
+  return points.images.kinds.empty() ? points.owned.value_or(points.own()) : points.own();
+}
+
 }  // namespace
 
 template <class Measure>
 Interactions<Measure>::Interactions(const Points& points, const Bonds& bonds, double cross_section,
                                     int threads)
-    : own_(points.owned.value_or(points.own())),
+    : own_(visited(points)),
       per_point_(std::size_t(points.count()), 0),
       effective_counts_(std::size_t(points.count()), 0.0),
       shares_(std::size_t(points.count()), 1.0 / (Measure::arms + 1)),

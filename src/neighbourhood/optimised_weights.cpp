@@ -350,6 +350,7 @@ class Batch {
       : ordered_(dimension, horizon, lists),
         solver_(dimension, degree),
         offset_(lists.offset),
+        is_asked_(lists.is_asked),
         volume_(std::pow(horizon, dimension)),
         weight_(weight) {}
 
@@ -357,6 +358,7 @@ class Batch {
   Part run(std::size_t first, std::size_t last, std::vector<KnownArms>& known) {
     Part part;
     for (std::size_t point = first; point < last; ++point) {
+      if (!is_asked_.empty() && !is_asked_[point]) continue;
       ordered_.take(point);
       const auto found = std::find_if(known.begin(), known.end(),
                                       [&](const KnownArms& one) { return ordered_.are(one); });
@@ -401,6 +403,7 @@ class Batch {
   OrderedArms ordered_;
   LoweringSolver solver_;
   std::span<const Offset> offset_;
+  std::span<const char> is_asked_;
   double volume_;
   std::vector<double>& weight_;
   KnownArms own_;

@@ -20,6 +20,7 @@ struct NeighbourLists {
   std::span<const Offset> offset;     ///< points + 1
   std::span<const Index> neighbour;   ///< of each point, in any order; never the point itself
   std::span<const double> reference;  ///< positions, all x dimension, row major [m]
+  std::span<const char> is_asked{};   ///< per point, whether its weights are; empty: all are
 };
 
 /// Weights of neighbours that integrate over the ball around a point.

@@ -5,6 +5,7 @@ import unittest
 import h5py
 
 from tests.acceptance.on_ranks import (
+    CUBE,
     PIECES,
     PLATE,
     ROOT,
@@ -207,11 +208,28 @@ class Bodies(Comparison):
     def test_planes_of_symmetry(self):
         half = ("--set", 'symmetry=[{axis="x", at=1}]', "--set", "output.stress=true")
         self.compare(PLATE, (2, 3), *half, "--set", 'quadrature.surface_correction="energy"', solver=STORED)
+        self.compare(SQUARE, (3,), "--set", 'symmetry=[{axis="y", at=0}]', "--set", "output.stress=true", solver=STORED)
+        self.compare(CUBE, (3,), "--set", 'symmetry=[{axis="y", at=0}]', "--set", "loading.table=[0, 0.2]", solver=STORED)
         # Thinner than the horizon, between two planes, and a rank may own nothing.
         thin = PLATE.replace("max = [1, 1.5]", "max = [0.1, 0.5]").replace(', { subtract = "disk", centre = [0.5, 0.7], radius = 0.2 }', "")
         thin = thin.replace("x > 0.6 && y > 1", "y > 0.3")
         one = self.compare(thin, (3,), "--set", 'symmetry=[{axis="x", at=0}, {axis="x", at=0.1}]', solver=STORED)
         self.assertNotEqual(float(rows(one, "history.csv")[-1]["reaction_x:symmetry_x-"]), 0.0)
+
+    def test_pressures_beyond_planes_and_periods(self):
+        pressure = 'load=[{set="hole", pressure="4e7*load*(1+y)"}, {side="y+", pressure="1e6*load"}]'
+        hole = 'set=[{name="hole", where="sqrt((x-0.5)^2 + (y-0.7)^2) < 0.28"}, {name="corner", where="x > 0.6 && y > 1"}]'
+        held = PLATE.replace(', { name = "top", side = "y+" }', "").replace('set = "top"', 'set = "corner"').replace('[[set]]\nname = "corner"\nwhere = "x > 0.6 && y > 1"\n', "")
+        for beyond in ('symmetry=[{axis="x", at=0.5}]', 'period=[{axis="x", from=0, to=1, gradient=["1e-3*load", 0]}]'):
+            shape = held.replace("min = [0, 0]", "min = [0.5, 0]") if "symmetry" in beyond else held
+            self.compare(shape, (3,), *(word for setting in (pressure, hole, beyond) for word in ("--set", setting)), solver=STORED)
+
+    def test_relaxation_of_what_follows(self):
+        relaxed = ("--set", 'solver.mode="relaxation"')
+        self.compare(PLATE, (3,), *relaxed, "--set", 'symmetry=[{axis="x", at=1}]', solver=STORED)
+        self.compare(CELL, (3,), *relaxed, solver=STORED)
+        free = PLATE.replace("y > 1", "y > 1 && y < 1.4") + '[[rigid]]\nset = "corner"\nrotation = ["0.02*load"]\n'
+        self.compare(free, (3,), *relaxed, solver=STORED)
 
     def test_periods(self):
         one = self.compare(CELL, (2, 3), solver=STORED.replace('tangent = "stored"\n', ""))
@@ -237,6 +255,15 @@ class Bodies(Comparison):
         free = PLATE.replace("y > 1", "y > 1 && y < 1.4") + '[[rigid]]\nset = "corner"\nrotation = ["0.02*load"]\n'
         one = self.compare(free, (2, 3), solver=STORED)
         self.assertNotEqual(float(rows(one, "history.csv")[-1]["moment_z:corner"]), 0.0)
+        # Two pieces that nothing else ties to one another.
+        apart = PLATE.replace('{ subtract = "disk", centre = [0.5, 0.7], radius = 0.2 }',
+                              '{ subtract = "box", min = [-1, 0.5], max = [2, 0.8] }')  # fmt: skip
+        apart = apart.replace('[[support]]\nset = "top"\ndisplacement = [0, "0.05*load"]\n',
+                              '[[set]]\nname = "both"\nwhere = "y > 0.3 && y < 1"\n[[rigid]]\nset = "both"\nrotation = ["0.01*load"]\n')  # fmt: skip
+        self.compare(apart, (4,), solver=STORED)
+        for text, pulled in ((SQUARE, "pulled"), (STATES, "top")):
+            turned = f'[[rigid]]\nset = "{pulled}"\nrotation = ["0.01*load"]'
+            self.compare(text.replace(f'[[support]]\nset = "{pulled}"', turned), (3,), solver=STORED)
 
     def test_rollers(self):
         """Of all points of a set, on several ranks and not on all of them."""

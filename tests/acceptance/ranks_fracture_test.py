@@ -3,6 +3,7 @@
 import unittest
 
 import h5py
+import numpy
 
 from tests.acceptance.on_ranks import CUBE, SHEET, SOLVER, STORED, Comparison, resume, rows
 
@@ -103,6 +104,56 @@ class Fracture(Comparison):
         ):
             self.compare_torn((3,), *settings)
 
+    HALF = 'symmetry=[{axis="x", at=1.2}]'
+
+    def broken_to_images(self, output):
+        return sum(row["second_image"] != "0" for row in rows(output, "broken_bonds.csv"))
+
+    def test_half_a_plate_that_is_torn(self):
+        one = self.compare_torn((3,), 'solver.mode="adaptive"', self.HALF, text=TORN + STORED)
+        self.assertGreater(self.broken_to_images(one), 5)
+        for settings in (
+            ('solver.mode="relaxation"', 'relaxation.breaking="transient"'),
+            ('solver.mode="adaptive"', 'relaxation.method="flow"'),
+            ('solver.mode="newton"', 'material.damage={law="tanh", onset=0.03, critical=0.5, rate=3}'),
+        ):
+            self.compare_torn((3,), *settings, self.HALF, text=TORN + STORED)
+
+    def test_a_cell_that_is_torn(self):
+        one = self.compare_torn((2,), 'solver.mode="adaptive"', text=TORN + STORED + """
+            [[period]]
+            axis = "x"
+            from = 0
+            to = 1.2
+            gradient = ["0.01*load", "free"]
+        """)  # fmt: skip
+        self.assertGreater(self.broken_to_images(one), 5)
+
+    def test_a_plate_that_a_rigid_set_tears(self):
+        text = TORN.replace('[[support]]\nset = "top"', '[[rigid]]\nset = "top"\nrotation = ["0.01*load"]')
+        text = text.replace('"0.01*load", "0.08*load"', '"free", "0.08*load"')
+        for mode in ("adaptive", "relaxation"):
+            one = self.compare_torn((3,), f'solver.mode="{mode}"', text=text + STORED)
+            self.assertGreater(len(rows(one, "broken_bonds.csv")), 50)
+            self.assertNotEqual(float(rows(one, "history.csv")[0]["moment_z:top"]), 0.0)
+
+    def test_half_a_plate_that_goes_on(self):
+        text, options = TORN + STORED, ("--set", 'solver.mode="relaxation"', "--set", self.HALF)
+        whole = self.results(1, text, *options).rename(self.folder / "whole")
+        on_two = self.results(2, text, *options).rename(self.folder / "on_two")
+        for ranks in (3, 2):
+            run, output = self.start(2, text, *options, "--stop-after", "6")
+            self.assertEqual(run.returncode, 130, run.stderr)
+            self.assertGreater(self.broken_to_images(output), 0)
+            again = resume(ranks, output)
+            self.assertEqual(again.returncode, 0, again.stderr)
+            self.assertEqual(self.broken(whole), self.broken(output))
+            self.expect_same(whole, output)
+        with h5py.File(on_two / "results.h5") as expected, h5py.File(output / "results.h5") as found:
+            last = list(expected["steps"])[-1]
+            for name in (f"steps/{last}/displacement", "history/external_work", "history/dissipated_energy"):
+                self.assertTrue(numpy.array_equal(expected[name], found[name]), name)
+
     SHEET_UNDER_LOAD = SHEET + """displacement = ["0.18*load", "0.03*load"]
         [loading]
         steps = 4
@@ -182,6 +233,15 @@ class CrackTips(Comparison):
 
     def test_of_a_plate(self):
         self.compare_tip(TIP, (2, 3), ("J", "J_spread", "K1", "K2", "T"))
+
+    def test_beside_a_rigid_set(self):
+        pulled = TIP.replace('[[support]]\nset = "top"', '[[rigid]]\nset = "top"\nrotation = ["0.001*load"]')
+        self.compare_tip(pulled, (3,), ("J", "K1", "K2", "T"), 'solver.tangent="stored"')
+
+    def test_of_a_half(self):
+        half = TIP.replace("min = [0, 0]", "min = [0, 1.2]").replace('{ name = "bottom", side = "y-" }, ', "")
+        half = half.replace('[[support]]\nset = "bottom"\ndisplacement = [0, 0]\n', '[[symmetry]]\naxis = "y"\nat = 1.2\n')
+        self.compare_tip(half, (3,), ("J", "J_spread", "K1", "T"), 'solver.tangent="stored"')
 
     def test_of_triangles(self):
         self.compare_tip(TIP, (3,), ("J", "K1", "K2"), 'material.model="cpd"', "material.poisson_ratio=0.4")

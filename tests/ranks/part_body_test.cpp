@@ -1,9 +1,12 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <map>
 #include <memory>
+#include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -11,6 +14,7 @@
 #include "assembly/assembler.hpp"
 #include "assembly/operators/constrained_product.hpp"
 #include "assembly/operators/constrained_tangent.hpp"
+#include "assembly/terms/damage.hpp"
 #include "solvers/linear/iterative_solver.hpp"
 #include "solvers/linear/rigid_pieces.hpp"
 #include "solvers/problem/equilibrium.hpp"
@@ -20,6 +24,8 @@
 #include "solvers/study/without_equation.hpp"
 #include "src/conditions/pressed_boundary.hpp"
 #include "src/core/input_error.hpp"
+#include "src/core/sharing.hpp"
+#include "src/geometry/image_number.hpp"
 #include "src/geometry/slab.hpp"
 #include "tests/bodies.hpp"
 #include "tests/ranks/bodies_on_ranks.hpp"
@@ -205,7 +211,8 @@ std::vector<BodyOfTest> constrained_bodies() {
 
   BodyOfTest turning = plate("a free rigid set that repeats");
   turning.lattice.layers = {{"below", {1, -1}, 3}};
-  turning.of.constraints.periods = {{{0, 0.3, 2.0}, {{}, "1e-3*load", "0"}}};
+  turning.of.constraints.periods = cell.of.constraints.periods;
+  turning.of.constraints.periods.pop_back();
   turning.of.constraints.rigid_sets = {RigidSetSpecification{.set = "inner"}};
   all.push_back(turning);
   return all;
@@ -224,31 +231,79 @@ void expect_same(const Part& part, const std::vector<double>& mine,
   }
 }
 
+/// One of both bodies, and its points' numbers in the whole one.
+struct NumberedBody {
+  const Body& body;
+  std::function<GlobalIndex(Index)> number;
+  std::size_t dofs_of_whole;
+
+  /// The same of all points and handles, as their owners have it: what ghosts and images have means
+  /// nothing.
+  [[nodiscard]] std::vector<double> random(unsigned seed, double size) const {
+    const Points& points = body.points;
+    const auto d = std::size_t(points.dimension);
+    const std::size_t dofs = body.conditions->constraints().dofs();
+    const std::vector<double> of_points = Random(seed).vector(dofs_of_whole, size),
+                              handles =
+                                  Random(seed + 1).vector(dofs - points.reference.size(), size);
+    std::vector<double> values(dofs, 7e3);
+    for (Index i = 0; i < points.own(); ++i) {
+      if (!points.owns(i)) continue;
+      for (std::size_t c = 0; c < d; ++c) {
+        values[std::size_t(i) * d + c] = of_points[std::size_t(number(i)) * d + c];
+      }
+    }
+    const bool owns_handles = !body.part || body.part->ranks().rank() == 0;
+    const std::size_t first = points.reference.size();
+    for (std::size_t k = first; owns_handles && k < values.size(); ++k) {
+      values[k] = handles[k - first];
+    }
+    return values;
+  }
+
+  /// A random state at an end of the programme, all that follows in its place.
+  [[nodiscard]] std::vector<double> displacement(unsigned seed, double share_of_spacing) const {
+    std::vector<double> u = random(seed, share_of_spacing * body.points.spacing);
+    body.conditions->prescribe(1.0, u);
+    if (body.part) body.part->update_ghosts(u);
+    body.conditions->constraints().move(u);
+    return u;
+  }
+};
+
+/// A body as one rank makes it, and as all do.
+struct Both {
+  explicit Both(const BodyOfTest& of)
+      : whole(make_body(whole_of(of), of.of, 1)),
+        part(part_of(of)),
+        mine(make_body(part, of.of, all_ranks(), 1)),
+        d(std::size_t(whole->points.dimension)) {}
+
+  [[nodiscard]] NumberedBody of_whole() const {
+    return {*whole, [](Index i) { return GlobalIndex(i); }, dofs()};
+  }
+  [[nodiscard]] NumberedBody of_mine() const {
+    return {*mine, [this](Index i) { return part.number[std::size_t(i)]; }, dofs()};
+  }
+  [[nodiscard]] std::size_t dofs() const { return std::size_t(whole->points.own()) * d; }
+
+  std::unique_ptr<const Body> whole;
+  Part part;
+  std::unique_ptr<const Body> mine;
+  std::size_t d;
+};
+
 /// Energy, and forces folded onto what is followed, in a random state at an end of the programme.
 struct Evaluated {
   double energy = 0.0;
   std::vector<double> forces, loads, strain;
 };
 
-Evaluated evaluate(const Body& body, const std::function<GlobalIndex(Index)>& number,
-                   std::size_t dofs_of_whole) {
-  const auto d = std::size_t(body.points.dimension);
-  const std::vector<double> random = Random(5).vector(dofs_of_whole, 0.05 * body.points.spacing);
+Evaluated evaluate(const NumberedBody& of) {
+  const Body& body = of.body;
   const Conditions& conditions = *body.conditions;
   const Constraints& constraints = conditions.constraints();
-  std::vector<double> u(constraints.dofs());
-  for (Index i = 0; i < body.points.own(); ++i) {
-    for (std::size_t c = 0; c < d; ++c) {
-      u[std::size_t(i) * d + c] = random[std::size_t(number(i)) * d + c];
-    }
-  }
-  conditions.prescribe(1.0, u);
-  constraints.move(u);
-  if (body.part) {
-    const auto first = u.begin() + std::ptrdiff_t(std::size_t(body.part->owned()) * d);
-    std::fill(first, u.begin() + std::ptrdiff_t(std::size_t(body.points.own()) * d), 1e3);
-    body.part->update_ghosts(u);
-  }
+  const std::vector<double> u = of.displacement(5, 0.05);
   Assembler assembler(body.points, body.model, 1, body.part.get());
   Evaluated found;
   found.forces.resize(u.size());
@@ -265,15 +320,9 @@ Evaluated evaluate(const Body& body, const std::function<GlobalIndex(Index)>& nu
 TEST(PartBody, is_that_of_the_whole_body) {
   for (const BodyOfTest& of : bodies_of_test()) {
     SCOPED_TRACE(of.name);
-    const auto whole = make_body(whole_of(of), of.of, 1);
-    const Part part = part_of(of);
-    const auto mine = make_body(part, of.of, all_ranks(), 1);
-    const auto d = std::size_t(whole->points.dimension);
-    const std::size_t dofs = std::size_t(whole->points.own()) * d;
-    const Evaluated expected = evaluate(
-        *whole, [](Index i) { return GlobalIndex(i); }, dofs);
-    const Evaluated found = evaluate(
-        *mine, [&](Index i) { return part.number[std::size_t(i)]; }, dofs);
+    const Both both(of);
+    const auto& [whole, part, mine, d] = both;
+    const Evaluated expected = evaluate(both.of_whole()), found = evaluate(both.of_mine());
     EXPECT_GT(expected.energy, 0.0);
     EXPECT_NEAR(found.energy, expected.energy, round_off * expected.energy);
     expect_same(part, found.forces, expected.forces, d, "forces");
@@ -298,31 +347,12 @@ TEST(PartBody, is_that_of_the_whole_body) {
 
 /// A state, what is found in it, and the tangent there.
 struct InEquations {
-  InEquations(const Body& body, const std::function<GlobalIndex(Index)>& number,
-              std::size_t dofs_of_whole)
-      : free(without_equation(body), body.points.dimension),
-        assembler(body.points, body.model, 1, body.part.get()) {
+  explicit InEquations(const NumberedBody& of)
+      : free(without_equation(of.body), of.body.points.dimension),
+        assembler(of.body.points, of.body.model, 1, of.body.part.get()) {
+    const Body& body = of.body;
     const Constraints& constraints = body.conditions->constraints();
-    const auto d = std::size_t(body.points.dimension);
-    const std::size_t of_points = body.points.reference.size();
-    const auto random = [&](unsigned seed, double size) {
-      const std::vector<double> points = Random(seed).vector(dofs_of_whole, size),
-                                handles =
-                                    Random(seed + 1).vector(constraints.dofs() - of_points, size);
-      std::vector<double> values(constraints.dofs(), 7e3);  // of ghosts and images
-      for (Index i = 0; i < body.points.own(); ++i) {
-        if (!body.points.owns(i)) continue;
-        for (std::size_t c = 0; c < d; ++c) {
-          values[std::size_t(i) * d + c] = points[std::size_t(number(i)) * d + c];
-        }
-      }
-      const bool owns_handles = !body.part || body.part->ranks().rank() == 0;
-      for (std::size_t k = of_points; owns_handles && k < values.size(); ++k) {
-        values[k] = handles[k - of_points];
-      }
-      return values;
-    };
-    trial.displacement = random(5, 0.05 * body.points.spacing);
+    trial.displacement = of.random(5, 0.05 * body.points.spacing);
     trial.history = assembler.initial_history();
     body.conditions->prescribe(1.0, trial.displacement);
     trial.environment = body.conditions->environment(1.0);
@@ -332,7 +362,7 @@ struct InEquations {
     evaluate(problem, loads, trial);
     scale = load_norm(problem, loads, trial, Damage::grows);
     const Sharing* const sharing = body.part.get();
-    std::vector<double> factor = random(9, 1.0);
+    std::vector<double> factor = of.random(9, 1.0);
     for (std::size_t dof = 0; dof < factor.size(); ++dof) {
       if (constraints.dependent()[dof]) factor[dof] = 0.0;
     }
@@ -395,15 +425,9 @@ void expect_same_sums(const std::map<std::string, Coordinates>& mine,
 TEST(PartBody, follows_as_the_whole_body_does) {
   for (const BodyOfTest& of : constrained_bodies()) {
     SCOPED_TRACE(of.name);
-    const auto whole = make_body(whole_of(of), of.of, 1);
-    const Part part = part_of(of);
-    const auto mine = make_body(part, of.of, all_ranks(), 1);
-    const auto d = std::size_t(whole->points.dimension);
-    const std::size_t dofs = std::size_t(whole->points.own()) * d;
-    const InEquations expected(
-        *whole, [](Index i) { return GlobalIndex(i); }, dofs);
-    const InEquations found(
-        *mine, [&](Index i) { return part.number[std::size_t(i)]; }, dofs);
+    const Both both(of);
+    const auto& [whole, part, mine, d] = both;
+    const InEquations expected(both.of_whole()), found(both.of_mine());
     EXPECT_EQ(count_bonds(mine->points, mine->model.bonds(), all_ranks()),
               whole->model.bonds().count());
     EXPECT_EQ(all_ranks().sum(double(found.free.count())), double(expected.free.count()));
@@ -421,11 +445,11 @@ TEST(PartBody, follows_as_the_whole_body_does) {
     expect_same(part, found.diagonal, expected.diagonal, d * d, "diagonal");
     expect_same(part, found.diagonal_of_product, expected.diagonal, d * d, "its diagonal");
     expect_same(part, found.row_sums, expected.row_sums, d, "sums of rows");
-    const auto expect_same_handles = [&](const std::vector<double>& one,
-                                         const std::vector<double>& other, std::size_t width,
-                                         const std::string& what) {
-      const std::size_t here = mine->points.volume.size() * width,
-                        there = whole->points.volume.size() * width;
+    const auto expect_same_handles = [&both](const std::vector<double>& one,
+                                             const std::vector<double>& other, std::size_t width,
+                                             const std::string& what) {
+      const std::size_t here = both.mine->points.volume.size() * width,
+                        there = both.whole->points.volume.size() * width;
       EXPECT_EQ(one.size() - here, other.size() - there);
       for (std::size_t k = 0; k < other.size() - there; ++k) {
         EXPECT_NEAR(one[here + k], other[there + k], round_off * largest(other)) << what;
@@ -447,6 +471,98 @@ TEST(PartBody, follows_as_the_whole_body_does) {
     expect_same_sums(found.reactions, expected.reactions, largest(expected.trial.gradient));
     expect_same_sums(found.moments, expected.moments, largest(expected.trial.gradient));
   }
+}
+
+/// What a rank knows of a bond between two of them: the ends as all know them, and some numbers.
+struct SharedBond {
+  std::array<GlobalIndex, 3> ends{};  // numbers, and which image of the second it ends at
+  std::array<double, 3> known{};
+};
+
+/// Of all ranks, as all know them.
+std::map<std::array<GlobalIndex, 3>, std::vector<std::array<double, 3>>> told_of(
+    const std::vector<SharedBond>& mine) {
+  std::vector<double> flat;
+  for (const auto& [ends, known] : mine) {
+    flat.insert(flat.end(), ends.begin(), ends.end());
+    flat.insert(flat.end(), known.begin(), known.end());
+  }
+  flat = all_together(all_ranks(), flat);
+  std::map<std::array<GlobalIndex, 3>, std::vector<std::array<double, 3>>> told;
+  for (auto next = flat.begin(); next != flat.end(); next += 6) {
+    told[{GlobalIndex(next[0]), GlobalIndex(next[1]), GlobalIndex(next[2])}].push_back(
+        {next[3], next[4], next[5]});
+  }
+  return told;
+}
+
+/// Expects both ranks of each bond between two to know the same of it, to the last bit.
+/// @return how many of these go to images
+int expect_agreement(const Both& both, const History& history) {
+  const Body& body = *both.mine;
+  const Points& points = body.points;
+  const Bonds& bonds = body.model.bonds();
+  const std::span<const double> stretches = bond_stretches(body.model, history);
+  std::vector<SharedBond> shared;
+  for_each_bond(bonds, [&](Index i, Index j, Offset bond) {
+    if (points.owns(i) == points.owns(j)) return;
+    GlobalIndex first = both.part.number[std::size_t(i)],
+                second = both.part.number[std::size_t(points.source(j))];
+    if (!points.is_image(j) && second < first) std::swap(first, second);
+    shared.push_back(
+        {{first, second, image_number(points, j)},
+         {bonds.inverse_length(bond), bonds.weight(bond), stretches[std::size_t(bond)]}});
+  });
+  int to_images = 0;
+  for (const auto& [ends, told] : told_of(shared)) {
+    EXPECT_EQ(told.size(), 2u) << ends[0] << " " << ends[1] << " " << ends[2];
+    EXPECT_EQ(told.front(), told.back()) << ends[0] << " " << ends[1] << " " << ends[2];
+    to_images += ends[2] > 0;
+  }
+  return to_images;
+}
+
+TEST(PartBody, breaks_as_the_whole_body_does) {
+  int to_images = 0;
+  for (BodyOfTest of : constrained_bodies()) {
+    SCOPED_TRACE(of.name);
+    of.of.material.damage.law = DamageLaw::tanh;
+    of.of.material.damage.onset = 0.01;
+    of.of.material.damage.critical = 0.05;
+    of.of.material.damage.rate = 3.0;
+    of.of.cracks = {CrackSegment{{0.35, 1.93, 0.0}, {5.0, 1.55, 0.0}}};  // through the plane
+    const Both both(of);
+    const auto& [whole, part, mine, d] = both;
+    Assembler all(whole->points, whole->model, 1),
+        here(mine->points, mine->model, 1, mine->part.get());
+    History of_all = all.initial_history(), of_part = here.initial_history();
+    Index breaking = 0;
+    for (unsigned pass = 0; pass < 3; ++pass) {
+      const std::vector<double> u = both.of_whole().displacement(5 + pass, 0.03 + 0.03 * pass),
+                                mine_u = both.of_mine().displacement(5 + pass, 0.03 + 0.03 * pass);
+      std::vector<double> forces(u.size()), forces_here(mine_u.size());
+      const Evaluation expected = all.commit(u, of_all, forces),
+                       found = here.commit(mine_u, of_part, forces_here);
+      EXPECT_EQ(found.growth.degrading, expected.growth.degrading);
+      EXPECT_EQ(found.growth.breaking, expected.growth.breaking);
+      EXPECT_NEAR(found.energy, expected.energy, round_off * expected.energy);
+      whole->conditions->constraints().fold_images(forces);
+      mine->conditions->constraints().fold_images(forces_here);
+      expect_same(part, forces_here, forces, d, "forces");
+      breaking += expected.growth.breaking;
+      std::vector<double> damage(whole->points.volume.size()),
+          damage_here(mine->points.volume.size());
+      const DamageState state = all.assess(of_all, whole->cut_weight, damage),
+                        state_here = here.assess(of_part, mine->cut_weight, damage_here);
+      EXPECT_EQ(state_here.broken_bonds, state.broken_bonds);
+      EXPECT_NEAR(state_here.dissipated_energy, state.dissipated_energy,
+                  round_off * state.dissipated_energy);
+      expect_same(part, damage_here, damage, 1, "damage");
+      to_images += expect_agreement(both, of_part);
+    }
+    EXPECT_GT(breaking, 0);
+  }
+  EXPECT_EQ(to_images > 0, all_ranks().count() > 1);
 }
 
 TEST(PartBody, refuses_an_interface_that_no_rank_crosses) {

@@ -77,7 +77,7 @@ TEST(RowGathering, gives_back_the_values_of_owned_points_and_counts_before_them)
 
 TEST(RowGathering, brings_what_is_told_of_bonds_in_their_order_and_in_parts) {
   struct Item {
-    Index first_point, second_point;
+    Index first_point, second_point, second_image;
     double value;
   };
   const Communicator& ranks = all_ranks();
@@ -89,7 +89,7 @@ TEST(RowGathering, brings_what_is_told_of_bonds_in_their_order_and_in_parts) {
     std::vector<Item> mine;  // up to three of each point, the largest one first
     for (const GlobalIndex number : part.number()) {
       for (Index k = Index(number % 4); k-- > 0;) {
-        mine.push_back({Index(number), Index(number) + k, double(number) + 0.25 * k});
+        mine.push_back({Index(number), Index(number) + k, 0, double(number) + 0.25 * k});
       }
     }
     const std::int64_t all = ranks.count_all(std::int64_t(mine.size())).all;

@@ -2,18 +2,22 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
 
 #include "assembly/assembler.hpp"
+#include "assembly/operators/rows_of_energy.hpp"
 #include "assembly/operators/tangent.hpp"
 #include "solvers/ranks/distribute.hpp"
 #include "solvers/ranks/part_bonds.hpp"
+#include "solvers/ranks/part_tangent.hpp"
 #include "solvers/study/body.hpp"
 #include "solvers/study/bonds_of_part.hpp"
 #include "src/core/input_error.hpp"
 #include "src/geometry/slab.hpp"
+#include "src/neighbourhood/ghost_sites.hpp"
 #include "tests/bodies.hpp"
 #include "tests/ranks/bodies_on_ranks.hpp"
 #include "tests/ranks/on_ranks.hpp"
@@ -89,8 +93,10 @@ std::unique_ptr<const Body> part_of_body(const RanksBody& body, const BodySpecif
 /// A body as one rank has it, and this rank's part of it.
 struct Both {
   Both(const RanksBody& body, const BodySpecification& of)
-      : whole(whole_body(body, of)),
-        part(part_of_body(body, of)),
+      : Both(whole_body(body, of), part_of_body(body, of)) {}
+  Both(std::unique_ptr<const Body> all, std::unique_ptr<const Body> here)
+      : whole(std::move(all)),
+        part(std::move(here)),
         energy(whole->points, whole->model, 1),
         mine(part->points, part->model, 1, part->part.get()) {}
 
@@ -107,7 +113,7 @@ struct Both {
   }
 
   void expect_near(std::span<const double> found, const std::vector<double>& field,
-                   const std::string& what) const {
+                   const std::string& what, double tolerance = round_off) const {
     const std::vector<double> expected = of_part(field);
     const std::size_t width = field.size() / whole->points.volume.size();
     const double scale = largest(field);
@@ -116,7 +122,7 @@ struct Both {
     for (std::size_t k = 0; k < width * part->part->number().size(); ++k) {
       difference = std::max(difference, std::abs(found[k] - expected[k]));
     }
-    EXPECT_LE(difference, round_off * scale) << what;
+    EXPECT_LE(difference, tolerance * scale) << what;
   }
 
   std::unique_ptr<const Body> whole, part;
@@ -189,7 +195,7 @@ void expect_same_counts(const Both& both) {
     EXPECT_EQ(mine.size(), counts.size());
     for (std::size_t kind = 0; kind < counts.size(); ++kind) {
       EXPECT_EQ(mine[kind].name, counts[kind].name);
-      EXPECT_EQ(count_interactions(owned, mine[kind], ranks), counts[kind].count)
+      EXPECT_EQ(count_interactions(both.part->points, mine[kind], ranks), counts[kind].count)
           << mine[kind].name;
       for (std::size_t i = 0; i < std::size_t(owned); ++i) {
         EXPECT_EQ(mine[kind].per_point[i],
@@ -261,6 +267,190 @@ TEST(TermsOfPart, without_triangles_are_refused_by_all_ranks) {
     return std::string("none");
   };
   EXPECT_EQ(key_of(), "material.c2");
+}
+
+BodySpecification linear(const RanksBody& body) {
+  BodySpecification of = specification(body, MaterialModel::bond);
+  of.material.kinematics = Kinematics::linear;
+  of.material.youngs_modulus = 3.0;
+  return of;
+}
+
+TEST(TermsOfPart, linear_bonds_are_those_of_the_whole_body) {
+  for (const RanksBody& body : {bar(), three_points(), short_bar(), strip(), plate_with_hole(),
+                                wide_layers(), cube(), block()}) {
+    SCOPED_TRACE(body.name);
+    Both both(body, linear(body));
+    expect_same_energies(both, 0.05);
+    expect_same_counts(both);
+  }
+}
+
+/// Commits states that damage more and more.
+/// @return bonds that break
+Index expect_same_damage(Both& both) {
+  const std::size_t dofs = both.whole->points.reference.size();
+  History of_whole = both.energy.initial_history(), of_part = both.mine.initial_history();
+  Index broken = 0;
+  for (int pass = 0; pass < 4; ++pass) {
+    SCOPED_TRACE("pass " + std::to_string(pass));
+    const std::vector<double> u =
+        Random(unsigned(5 + pass)).vector(dofs, (0.02 + 0.02 * pass) * both.whole->points.spacing);
+    std::vector<double> here = both.of_part(u);
+    both.part->part->update_ghosts(here);
+    const DamageGrowth expected = both.energy.growth({u, of_whole});
+    const DamageGrowth growth = both.mine.growth({here, of_part});
+    EXPECT_EQ(growth.degrading, expected.degrading);
+    EXPECT_EQ(growth.breaking, expected.breaking);
+    EXPECT_NEAR(growth.utilisation, expected.utilisation, round_off * expected.utilisation);
+
+    std::vector<double> forces(dofs), mine(here.size());
+    const bool in_steps = pass % 2 == 1;
+    const Evaluation committed = in_steps ? both.energy.commit_forces(u, of_whole, forces)
+                                          : both.energy.commit(u, of_whole, forces);
+    const Evaluation found = in_steps ? both.mine.commit_forces(here, of_part, mine)
+                                      : both.mine.commit(here, of_part, mine);
+    EXPECT_EQ(found.growth.degrading, committed.growth.degrading);
+    EXPECT_EQ(found.growth.breaking, committed.growth.breaking);
+    EXPECT_EQ(found.moves_equilibrium, committed.moves_equilibrium);
+    EXPECT_NEAR(found.released, committed.released, round_off * std::abs(committed.released));
+    both.expect_near(mine, forces, "forces");
+    if (!in_steps) {
+      EXPECT_NEAR(found.energy, committed.energy, round_off * committed.energy);
+    }
+    std::vector<double> damage(both.whole->points.volume.size());
+    std::vector<double> damage_here(both.part->points.volume.size());
+    const DamageState state = both.energy.assess(of_whole, both.whole->cut_weight, damage);
+    const DamageState state_here = both.mine.assess(of_part, both.part->cut_weight, damage_here);
+    EXPECT_EQ(state_here.broken_bonds, state.broken_bonds);
+    EXPECT_NEAR(state_here.dissipated_energy, state.dissipated_energy,
+                round_off * state.dissipated_energy);
+    EXPECT_NEAR(state_here.max_damage, state.max_damage, round_off);
+    if (state.max_damage > 0.0) both.expect_near(damage_here, damage, "damage");
+    broken = state.broken_bonds;
+  }
+  return broken;
+}
+
+TEST(TermsOfPart, points_fail_as_those_of_the_whole_body) {
+  for (const RanksBody& body :
+       {bar(), three_points(), short_bar(), strip(), plate_with_hole(), block()}) {
+    SCOPED_TRACE(body.name);
+    BodySpecification of = linear(body);
+    of.material.damage.law = DamageLaw::energy_density;
+    of.material.damage.fracture_energy = 2e-3 * of.horizon;
+    Both both(body, of);
+    EXPECT_GT(expect_same_damage(both), 0);
+  }
+}
+
+TEST(TermsOfPart, states_lose_what_those_of_the_whole_body_do) {
+  for (const RanksBody& body :
+       {strip(), plate_with_hole(), perturbed(square_with_hole()), wide_layers(), cube()}) {
+    SCOPED_TRACE(body.name);
+    BodySpecification of = states(body, VolumeCorrection::none);
+    of.material.damage.law = DamageLaw::critical_stretch;
+    of.material.damage.critical = 0.06;
+    Both both(body, of);
+    EXPECT_GT(expect_same_damage(both), 0);
+  }
+}
+
+/// Two balls of bonds thick.
+RanksBody thick_plate() {
+  RanksBody body{"thick plate", lattice_box(2, {17, 15, 0}, {0.1, 0.1, 0.1}), 2.515};
+  body.lattice.layers = {{"below", {1, -1}, 3}};
+  return body;
+}
+
+BodySpecification collocated(const RanksBody& body) {
+  BodySpecification of = specification(body, MaterialModel::lps);
+  of.material.youngs_modulus = 3.0;
+  of.material.poisson_ratio = 0.3;
+  return of;
+}
+
+/// With the places that hold no point, which fill the balls of points.
+struct BothCollocated : Both {
+  static Points whole_points(const RanksBody& body, const BodySpecification& of) {
+    Points points = make_points(body.lattice);
+    points.ghosts = ghost_sites(body.lattice, points, of.horizon).reference;
+    return points;
+  }
+  static std::unique_ptr<const Body> part_of(const RanksBody& body, const BodySpecification& of) {
+    const Communicator& ranks = all_ranks();
+    Part slab = make_slab(body.lattice, ranks);
+    const BondSetting setting = bond_setting(of, slab.points);
+    const double reach =
+        reach_of_bonds(slab.points, of.surface_correction, setting, ranks, bonds_of_part(of));
+    Part part = distribute(std::move(slab), of.horizon, reach, ranks, 1);
+    part.points.ghosts = ghost_sites(body.lattice, part.points, of.horizon).reference;
+    return make_body(std::move(part), of, ranks, 1);
+  }
+  BothCollocated(const RanksBody& body, const BodySpecification& of)
+      : Both(make_body(whole_points(body, of), of, 1), part_of(body, of)) {}
+};
+
+TEST(TermsOfPart, collocation_is_that_of_the_whole_body) {
+  for (const double perturbation : {0.0, 0.1}) {
+    SCOPED_TRACE("perturbation " + std::to_string(perturbation));
+    RanksBody body = thick_plate();
+    body.lattice.perturbation = perturbation;
+    BodySpecification of = collocated(body);
+    of.cracks = {CrackSegment{{0.2, 1.31}, {0.7, 1.33}}};
+    BothCollocated both(body, of);
+    const std::size_t dofs = both.whole->points.reference.size();
+    const std::size_t points = both.whole->points.volume.size();
+    const std::vector<double> u = Random(3).vector(dofs, 0.05 * both.whole->points.spacing);
+    std::vector<double> here = both.of_part(u);
+    both.part->part->update_ghosts(here);
+
+    std::vector<double> forces(dofs), mine(here.size());
+    const Evaluation expected = both.energy.gradient(u, forces);
+    const Evaluation found = both.mine.gradient(here, mine);
+    EXPECT_NEAR(found.energy, expected.energy, 1e-11 * std::abs(expected.energy));
+    both.expect_near(mine, forces, "forces", 1e-11);
+
+    std::vector<double> energies(points), my_energies(both.part->points.volume.size());
+    both.energy.point_energies(u, energies);
+    both.mine.point_energies(here, my_energies);
+    both.expect_near(my_energies, energies, "energies of points", 1e-11);
+
+    std::vector<double> virials(points * 4), my_virials(my_energies.size() * 4);
+    both.energy.virials(u, virials);
+    both.mine.virials(here, my_virials);
+    both.expect_near(my_virials, virials, "virials", 1e-11);
+
+    RowsOfEnergy rows(both.energy);
+    PartTangent<RowsOfEnergy> my_rows(both.mine);
+    const History none;
+    rows.linearise(both.energy, {u, none}, 0.0);
+    my_rows.linearise(both.mine, {here, none}, 0.0);
+    const std::vector<double> v = Random(4).vector(dofs);
+    std::vector<double> product(dofs), my_product(here.size());
+    rows.multiply(v, product);
+    my_rows.multiply(both.of_part(v), my_product);
+    both.expect_near(my_product, product, "product", 1e-11);
+    both.expect_near(my_rows.diagonal, rows.diagonal, "diagonal blocks", 1e-11);
+  }
+}
+
+TEST(TermsOfPart, thin_bodies_are_refused_by_all_ranks_at_one_place) {
+  RanksBody body = thick_plate();
+  body.lattice.shapes.push_back({ShapeStep::Action::add, Box{{2.0, 1.0, 0.0}, {4.0, 1.2, 0.0}}});
+  const BodySpecification of = collocated(body);
+  const auto said = [](const auto& make) {
+    try {
+      static_cast<void>(make());
+    } catch (const InputError& error) {
+      return error.allowed();
+    }
+    return std::string("nothing");
+  };
+  const std::string whole =
+      said([&] { return make_body(BothCollocated::whole_points(body, of), of, 1); });
+  EXPECT_NE(whole.find("thicker than two horizons"), std::string::npos);
+  EXPECT_EQ(said([&] { return BothCollocated::part_of(body, of); }), whole);
 }
 
 }  // namespace

@@ -272,9 +272,11 @@ inline void look_at(const Points& points, const P& potential, Index i, const Bat
   }
 }
 
-/// Of bonds of an owned point to these, what the rank has: of a ghost's another rank has half.
-inline Lanes share_of_owned(const std::array<Index, lane_count>& partner, Index owned) {
-  return Lanes([&](int l) { return partner[l] < owned ? 1.0 : 0.5; });
+/// Of the bonds of a point to these, what the rank has: of a ghost's another rank has half.
+inline Lanes share_of_owned(const Points& points, Index i,
+                            const std::array<Index, lane_count>& partner) {
+  const double own = points.owns(i) ? 0.5 : 0.0;
+  return Lanes([&](int l) { return own + (points.owns(partner[l]) ? 0.5 : 0.0); });
 }
 
 /// A bond's Hessian psi'' n n^T + psi'/l (I - n n^T) moved by a share towards its positive
@@ -316,6 +318,7 @@ struct BondKernels {
       double energy = 0.0;
       DamageGrowth growth;
       for (Index i = range.first; i < range.last; ++i) {
+        const Index whole_below = i < owned ? owned : 0;
         Lanes row_energy = 0.0;
         Vector<D, Lanes> own;
         own.fill(Lanes(0.0));
@@ -333,9 +336,9 @@ struct BondKernels {
               if constexpr (with_energy) {
                 const auto psi = interaction_energy(
                     batch.weight, at_history(largest_stretch, potential, batch.first), measure);
-                row_energy += batch.partner.back() < owned
+                row_energy += batch.partner.back() < whole_below
                                   ? psi.value
-                                  : psi.value * share_of_owned(batch.partner, owned);
+                                  : psi.value * share_of_owned(a.points, i, batch.partner);
                 if (energy_only) return;
                 force = energy_gradient(psi, measure)[0];
               } else {
@@ -346,7 +349,7 @@ struct BondKernels {
               for (int c = 0; c < D; ++c) own[c] -= force[c];
               add_to_partners<D>(sums, batch.partner, force);
             });
-        if (i < owned) energy += sum(row_energy);
+        energy += sum(row_energy);
         for (int c = 0; c < D; ++c) sums[std::ptrdiff_t(i) * width + c] += sum(own[c]);
       }
       parts[thread] = {energy, !(smallest(shortest) > 0.0), growth};

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <stdexcept>
 #include <utility>
 
 #include <Eigen/Eigenvalues>
@@ -96,7 +97,15 @@ struct CollocationOperator::Kernels {
 
   template <class Body>
   void for_points(const Body& body) const {
-    const Index count = net.points();
+    for_first(net.points(), body);
+  }
+  /// Of a part of a body those that its rank owns: what others have is not all here.
+  template <class Body>
+  void for_owned(const Body& body) const {
+    for_first(op.owned(), body);
+  }
+  template <class Body>
+  void for_first(Index count, const Body& body) const {
     run_on_threads(op.threads_, [&](int thread) {
       const Index first = Index(std::int64_t(count) * thread / op.threads_);
       const Index last = Index(std::int64_t(count) * (thread + 1) / op.threads_);
@@ -326,14 +335,15 @@ struct CollocationOperator::Kernels {
               std::span<double> force) const {
     op.theta_.resize(std::size_t(net.points()));
     for_points([&](Index i) { op.theta_[i] = theta_at(u, i); });
-    for_points([&](Index i) {
+    for_owned([&](Index i) {
       const V at = force_at(u, traction, i);
       for (int c = 0; c < D; ++c) force[std::size_t(i) * D + c] = op.points_.volume[i] * at[c];
     });
+    std::ranges::fill(force.subspan(std::size_t(op.owned()) * D), 0.0);
   }
 
   void add_traction_forces(std::span<const double> traction, std::span<double> force) const {
-    for_points([&](Index i) {
+    for_owned([&](Index i) {
       const V at = missing_force(i, 0.0, of(traction, i));
       for (int c = 0; c < D; ++c) force[std::size_t(i) * D + c] -= op.points_.volume[i] * at[c];
     });
@@ -477,6 +487,7 @@ struct CollocationOperator::Kernels {
   }
 
   [[nodiscard]] SparseRows rows() const {
+    if (op.points_.owned) throw std::logic_error("a part of a body has no matrix of its own");
     const auto count = std::size_t(net.points());
     std::vector<Offset> blocks(count);
     SparseRows result;
@@ -519,7 +530,7 @@ struct CollocationOperator::Kernels {
 
   [[nodiscard]] std::vector<double> diagonal() const {
     std::vector<double> blocks(std::size_t(net.points()) * D * D);
-    for_points([&](Index i) {
+    for_owned([&](Index i) {
       M block{};
       const V own = for_couplings(i, [&](Offset, Index j, const V& g, double factor, const V& xi) {
         add_outer<D>(-factor, xi, xi, block);
@@ -547,7 +558,7 @@ struct CollocationOperator::Kernels {
       of_dilatation[i] = sum;
     });
     std::vector<double> bounds(std::size_t(net.points()) * D);
-    for_points([&](Index i) {
+    for_owned([&](Index i) {
       V sum{};
       const V own = for_couplings(i, [&](Offset, Index j, const V& g, double factor, const V& xi) {
         for (int r = 0; r < D; ++r) {
@@ -645,7 +656,7 @@ void CollocationOperator::add_traction_forces(std::span<const double> traction,
 void CollocationOperator::displacement_gradients(std::span<const double> displacement,
                                                  std::span<double> gradients) {
   dispatch([&](const auto& kernels) {
-    kernels.for_points([&](Index i) {
+    kernels.for_owned([&](Index i) {
       const auto gradient = kernels.gradient_at(displacement, i);
       const std::size_t d = gradient.size();
       for (std::size_t r = 0; r < d; ++r) {
@@ -657,9 +668,10 @@ void CollocationOperator::displacement_gradients(std::span<const double> displac
 
 void CollocationOperator::energies(std::span<const double> displacement, std::span<double> energy) {
   dispatch([&](const auto& kernels) {
-    kernels.for_points(
+    kernels.for_owned(
         [&](Index i) { energy[i] = points_.volume[i] * kernels.energy_density(displacement, i); });
   });
+  std::ranges::fill(energy.subspan(std::size_t(owned())), 0.0);
 }
 
 SparseRows CollocationOperator::rows() {

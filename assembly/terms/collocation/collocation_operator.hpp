@@ -40,6 +40,8 @@ struct CollocationSetting {
 /// of which nothing is continued. There M_i = 1 and B_i = B_i(0, T_i), with which the operator
 /// stays positive however few bonds are left; the inverse of a tensor of few bonds would not.
 ///
+/// Of a part of a body it finds what belongs to the points that its rank owns; of others that is 0.
+///
 /// The rows have no common energy, and the operator is not symmetric: where neighbourhoods are
 /// alike and whole it is.
 class CollocationOperator {
@@ -89,6 +91,8 @@ class CollocationOperator {
     std::vector<double> diagonal, row_sums;
   };
   const Outline& outline();
+  /// Points that what is found belongs to: the first ones.
+  [[nodiscard]] Index owned() const { return points_.owned.value_or(setting_.network->points()); }
   /// Takes up which bonds are broken.
   /// @return per point, whether one of its own has changed
   std::vector<char> take_up(std::span<const char> broken);

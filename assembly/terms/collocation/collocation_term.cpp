@@ -77,6 +77,8 @@ class CollocationPasses : public TermPasses {
     std::copy(bounds.begin(), bounds.end(), row_sums.begin());
   }
 
+  [[nodiscard]] bool shares_energy() const override { return true; }
+
   void point_energies(const StateView& at, std::span<double> energies, Write how) override {
     update(at);
     write(how, energies, [&](std::span<double> to) { whole_.energies(at.displacement, to); });

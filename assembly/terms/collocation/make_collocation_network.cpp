@@ -51,6 +51,20 @@ Neighbourhoods find_neighbourhoods(const Points& points, double horizon, int thr
   return found;
 }
 
+/// Per point, whether its states are to be right: of a whole body all, of a part those that its
+/// rank owns and their neighbours.
+std::vector<char> points_with_states(const Points& points, const Bonds& bonds) {
+  std::vector<char> have(points.volume.size(), char(points.owned ? 0 : 1));
+  if (!points.owned) return have;
+  for (Index i = 0; i < *points.owned; ++i) {
+    have[std::size_t(i)] = 1;
+    for (Offset bond = bonds.offset[i]; bond < bonds.offset[i + 1]; ++bond) {
+      have[std::size_t(bonds.partner[bond])] = 1;
+    }
+  }
+  return have;
+}
+
 /// Number of the bond between two points; -1: there is none.
 Offset bond_between(const Bonds& bonds, Index a, Index b) {
   const Index low = std::min(a, b), high = std::max(a, b);
@@ -105,13 +119,16 @@ double weighted_volume(int dimension, double horizon) {
 MadeCollocationNetwork make_collocation_network(const Points& points, const Bonds& bonds,
                                                 double horizon, int degree, int threads) {
   const Neighbourhoods near = find_neighbourhoods(points, horizon, threads);
-  const OptimisedWeights weights = optimised_weights(
-      points.dimension, horizon, degree, {near.offset, near.neighbour, near.reference}, threads);
+  const std::vector<char> has_states = points_with_states(points, bonds);
+  const OptimisedWeights weights =
+      optimised_weights(points.dimension, horizon, degree,
+                        {near.offset, near.neighbour, near.reference, has_states}, threads);
   const double m = weighted_volume(points.dimension, horizon);
   const auto d = std::size_t(points.dimension);
   Builder builder(points);
   for (Index i = 0; i < points.count(); ++i) {
-    for (Offset e = near.offset[i]; e < near.offset[i + 1]; ++e) {
+    const Offset last = has_states[std::size_t(i)] ? near.offset[i + 1] : near.offset[i];
+    for (Offset e = near.offset[i]; e < last; ++e) {
       const Index j = near.neighbour[std::size_t(e)];
       Coordinates xi{};
       double squared = 0.0;

@@ -16,7 +16,8 @@ struct MadeCollocationNetwork {
 };
 
 /// Neighbourhoods with optimised weights (see optimised_weights) of balls that the points and their
-/// ghosts fill. What is no bond of the body is missing: ghosts, and what cracks have cut off.
+/// ghosts fill. What is no bond of the body is missing: ghosts, and what cracks have cut off. In a
+/// part of a body points that its rank owns and their neighbours have one, others none.
 /// @param bonds that are left
 /// @throws InputError as optimised_weights does
 [[nodiscard]] MadeCollocationNetwork make_collocation_network(const Points& points,

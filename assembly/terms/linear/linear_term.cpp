@@ -10,7 +10,7 @@
 namespace peristat {
 
 LinearTerm::LinearTerm(std::shared_ptr<const Bonds> bonds, double micromodulus,
-                       std::vector<double> bearable, std::optional<ConvolvedLattice> lattice,
+                       BearableEnergies bearable, std::optional<ConvolvedLattice> lattice,
                        int threads, std::optional<ConvolvedSolid> solid)
     : PointTerm(std::move(bonds), micromodulus, std::move(bearable), std::move(lattice), threads),
       solid_(std::move(solid)) {}

@@ -28,7 +28,7 @@ class LinearTerm : public PointTerm {
  public:
   /// See PointTerm.
   /// @param solid by convolutions, whose springs are those of the lattice
-  LinearTerm(std::shared_ptr<const Bonds> bonds, double micromodulus, std::vector<double> bearable,
+  LinearTerm(std::shared_ptr<const Bonds> bonds, double micromodulus, BearableEnergies bearable,
              std::optional<ConvolvedLattice> lattice, int threads,
              std::optional<ConvolvedSolid> solid = {});
 

@@ -9,8 +9,8 @@
 namespace peristat {
 
 ConvolvedTerm::ConvolvedTerm(std::shared_ptr<const Bonds> bonds, double micromodulus,
-                             std::vector<double> bearable, ConvolvedLattice lattice,
-                             ConvolvedLaw law, int threads)
+                             BearableEnergies bearable, ConvolvedLattice lattice, ConvolvedLaw law,
+                             int threads)
     : PointTerm(std::move(bonds), micromodulus, std::move(bearable), std::move(lattice), threads),
       law_(std::move(law)) {}
 

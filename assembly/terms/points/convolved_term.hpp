@@ -29,9 +29,8 @@ using ConvolvedLaw = std::variant<ConvolvedGreenBonds, ConvolvedCorrespondence>;
 class ConvolvedTerm : public PointTerm {
  public:
   /// See PointTerm.
-  ConvolvedTerm(std::shared_ptr<const Bonds> bonds, double micromodulus,
-                std::vector<double> bearable, ConvolvedLattice lattice, ConvolvedLaw law,
-                int threads);
+  ConvolvedTerm(std::shared_ptr<const Bonds> bonds, double micromodulus, BearableEnergies bearable,
+                ConvolvedLattice lattice, ConvolvedLaw law, int threads);
 
   [[nodiscard]] std::unique_ptr<LatticeForces> forces(const Points& points,
                                                       Workspace& shared) const override;

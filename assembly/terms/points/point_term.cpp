@@ -12,6 +12,7 @@
 #include "assembly/convolutions/linear_bonds.hpp"
 #include "assembly/terms/linear/linear_bond_sums.hpp"
 #include "assembly/terms/model.hpp"
+#include "src/core/sharing.hpp"
 
 namespace peristat {
 namespace {
@@ -25,9 +26,10 @@ class PointPasses : public TermPasses {
         places_(setting.pattern.places_of(term.couplings())),
         volume_(setting.points.volume),
         points_(setting.points),
+        sharing_(setting.sharing),
         dimension_(std::size_t(setting.points.dimension)),
         force_(setting.points.reference.size()),
-        has_half_work_(term.balances().linear && term.balances().potential) {
+        has_half_work_(!sharing_ && term.balances().linear && term.balances().potential) {
     forces_ = term.forces(setting.points, setting.workspace);
     bonds_ = dynamic_cast<LinearBondSums*>(forces_.get());
   }
@@ -39,7 +41,7 @@ class PointPasses : public TermPasses {
   /// All that exceed what they bear fail together; an equilibrium is found before others do.
   Evaluation commit(std::span<const double> displacement, const SharedEnvironment& environment,
                     History& history, std::span<double> gradient, Write how) override {
-    return commit(displacement, environment, history, gradient, how, 1);
+    return commit(displacement, environment, history, gradient, how, Failing::once);
   }
 
   /// In motion nothing is found anew: where points beside failed ones are stiffer than before, as
@@ -47,8 +49,15 @@ class PointPasses : public TermPasses {
   Evaluation commit_forces(std::span<const double> displacement,
                            const SharedEnvironment& environment, History& history,
                            std::span<double> gradient, Write how) override {
-    return commit(displacement, environment, history, gradient, how, volume_.size());
+    if (term_.can_be_damaged() || term_.is_convolved()) {
+      return commit(displacement, environment, history, gradient, how, Failing::until_none_does);
+    }
+    forces_->find_forces(own(displacement), force_);
+    write(force_, -1.0, gradient, how);
+    return {};
   }
+
+  [[nodiscard]] bool shares_energy() const override { return true; }
 
   DamageGrowth growth(const StateView& at) override {
     if (!term_.can_be_damaged()) return {};
@@ -125,9 +134,10 @@ class PointPasses : public TermPasses {
   }
 
  private:
+  enum class Failing { once, until_none_does };
+
   Evaluation commit(std::span<const double> displacement, const SharedEnvironment& environment,
-                    History& history, std::span<double> gradient, Write how,
-                    std::size_t most_passes) {
+                    History& history, std::span<double> gradient, Write how, Failing failing) {
     if (!term_.can_be_damaged()) {
       return gradient_at({displacement, history, Damage::grows, environment}, gradient, how);
     }
@@ -135,17 +145,19 @@ class PointPasses : public TermPasses {
     find_energies(displacement);
     const double before = stored(displacement);
     DamageGrowth grown;
-    for (std::size_t pass = 0; pass < most_passes; ++pass) {
+    bool any_has_failed = false;
+    do {
       const DamageGrowth more = judge();
-      if (more.degrading == 0) break;
+      if (!any_of_all(sharing_, more.degrading > 0)) break;
+      any_has_failed = true;
       grown.degrading += more.degrading;
       grown.breaking += more.breaking;
       fail(history);
       find_energies(displacement);
-    }
+    } while (failing == Failing::until_none_does);
     Evaluation found = evaluation(displacement, gradient, how);
-    if (grown.degrading == 0) return found;
-    history.change(slot_).back() += before - found.energy;
+    if (!any_has_failed) return found;
+    history.change(slot_).back() += sum_of_all(sharing_, before - found.energy);
     found.growth = grown;
     found.moves_equilibrium = true;
     return found;
@@ -157,15 +169,23 @@ class PointPasses : public TermPasses {
     return evaluation(at.displacement, gradient, how);
   }
 
-  /// Images go with their sources.
+  /// Ghosts go with their owners, images with their sources.
   void fail(History& history) {
-    const std::span<double> remembered = history.change(slot_);
+    const std::span<double> remembered = history.change(slot_).first(volume_.size());
     const std::span<const double> energy = whole_energies();
-    for (std::size_t i = 0; i < energy_.size(); ++i) {
-      const auto source = std::size_t(points_.source(Index(i)));
-      if (fails(source, energy)) remembered[i] = 0.0;
+    for (std::size_t i = 0; i < judged(); ++i) {
+      if (fails(i, energy)) remembered[i] = 0.0;
+    }
+    if (sharing_) update_ghost_values(*sharing_, int(dimension_), remembered);
+    for (Index image = points_.own(); image < points_.count(); ++image) {
+      remembered[std::size_t(image)] = remembered[std::size_t(points_.source(image))];
     }
     take_integrity(history);
+  }
+
+  /// Points whose energies are whole: the first ones.
+  [[nodiscard]] std::size_t judged() const {
+    return std::size_t(points_.owned.value_or(points_.own()));
   }
 
   /// With those that images have of their sources' bonds.
@@ -244,6 +264,7 @@ class PointPasses : public TermPasses {
   /// Of linear forces with a potential -u.f/2, u without its mean: forces add up to zero, but for
   /// round-off.
   [[nodiscard]] double stored(std::span<const double> displacement) const {
+    if (sharing_) return energy_of_part();
     if (!has_half_work_) return std::accumulate(energy_.begin(), energy_.end(), 0.0);
     const Coordinates mean = mean_of(displacement);
     double work = 0.0;
@@ -253,28 +274,36 @@ class PointPasses : public TermPasses {
     return -0.5 * work;
   }
 
+  [[nodiscard]] double energy_of_part() const {
+    double sum = 0.0;
+    for (Index i = 0; i < points_.count(); ++i) {
+      if (points_.owns(i)) sum += energy_[std::size_t(i)];
+    }
+    return sum;
+  }
+
   /// From the forces that were found.
   [[nodiscard]] Evaluation evaluation(std::span<const double> displacement,
                                       std::span<double> gradient, Write how) const {
     if (!gradient.empty()) write(force_, -1.0, gradient, how);
     Evaluation found;
     found.energy = stored(displacement);
-    if (!has_half_work_) found.round_off = round_off_at(displacement);
+    if (!has_half_work_ && term_.is_convolved()) found.round_off = round_off_at(displacement);
     found.degenerate = !std::isfinite(found.energy);
     return found;
   }
 
   [[nodiscard]] bool fails(std::size_t point, std::span<const double> energy) const {
-    return energy[point] > term_.bearable()[point] && integrity_[point] > 0.0;
+    return energy[point] > (*term_.bearable())[point] && integrity_[point] > 0.0;
   }
 
   /// Energies go with the square of a load, as long as strains are small.
   [[nodiscard]] DamageGrowth judge() {
     DamageGrowth found;
     const std::span<const double> energy = whole_energies();
-    for (std::size_t i = 0; i < std::size_t(points_.own()); ++i) {
+    for (std::size_t i = 0; i < judged(); ++i) {
       if (integrity_[i] == 0.0) continue;
-      found.utilisation = std::max(found.utilisation, energy[i] / term_.bearable()[i]);
+      found.utilisation = std::max(found.utilisation, energy[i] / (*term_.bearable())[i]);
       if (fails(i, energy)) ++found.degrading;
     }
     found.breaking = found.degrading;
@@ -288,6 +317,7 @@ class PointPasses : public TermPasses {
   std::vector<Offset> places_;
   std::span<const double> volume_;
   const Points& points_;
+  const Sharing* sharing_;
   std::size_t dimension_;
   std::unique_ptr<LatticeForces> forces_;
   LinearBondSums* bonds_ = nullptr;  // the same, if it has rows
@@ -304,7 +334,7 @@ std::unique_ptr<LatticeForces> with_images(
 }
 
 PointTerm::PointTerm(std::shared_ptr<const Bonds> bonds, double micromodulus,
-                     std::vector<double> bearable, std::optional<ConvolvedLattice> lattice,
+                     BearableEnergies bearable, std::optional<ConvolvedLattice> lattice,
                      int threads)
     : BondTerm(std::move(bonds), Harmonic{micromodulus}),
       micromodulus_(micromodulus),
@@ -312,7 +342,7 @@ PointTerm::PointTerm(std::shared_ptr<const Bonds> bonds, double micromodulus,
       lattice_(std::move(lattice)),
       threads_(threads) {
   const auto points = std::size_t(this->bonds().points());
-  if (!bearable_.empty() && bearable_.size() != points) {
+  if (bearable_ && bearable_->size() != points) {
     throw std::logic_error("every point bears an energy of its own");
   }
   if (lattice_) no_couplings_.assign(points + 1, 0);
@@ -340,7 +370,7 @@ Couplings PointTerm::couplings() const {
 
 std::vector<double> PointTerm::initial_history() const {
   if (!can_be_damaged()) return {};
-  std::vector<double> history(bearable_.size() + 1, 1.0);
+  std::vector<double> history(bearable_->size() + 1, 1.0);
   history.back() = 0.0;
   return history;
 }

@@ -30,6 +30,10 @@ struct ConvolvedLattice {
 [[nodiscard]] std::unique_ptr<LatticeForces> with_images(
     const ConvolvedLattice& lattice, const std::function<std::unique_ptr<LatticeForces>()>& make);
 
+/// Energy of each point that it bears, infinite if it never fails [J]; nothing: no point fails. A
+/// part of a body may have no point, of one that fails.
+using BearableEnergies = std::optional<std::vector<double>>;
+
 /// An energy whose forces are found for all points at once (LatticeForces), each of which has an
 /// integrity q.
 ///
@@ -41,9 +45,7 @@ class PointTerm : public BondTerm {
   /// @param bonds of the body; of a lattice that is convolved some short ones, which tell what
   ///              hangs together
   /// @param micromodulus c [N/m6]
-  /// @param bearable energy of each point that it bears, infinite if it never fails [J]; empty: no
-  ///                 point fails
-  PointTerm(std::shared_ptr<const Bonds> bonds, double micromodulus, std::vector<double> bearable,
+  PointTerm(std::shared_ptr<const Bonds> bonds, double micromodulus, BearableEnergies bearable,
             std::optional<ConvolvedLattice> lattice, int threads);
 
   /// @param shared outlives them, as the points do
@@ -51,7 +53,7 @@ class PointTerm : public BondTerm {
                                                               Workspace& shared) const = 0;
 
   [[nodiscard]] double micromodulus() const { return micromodulus_; }
-  [[nodiscard]] const std::vector<double>& bearable() const { return bearable_; }
+  [[nodiscard]] const BearableEnergies& bearable() const { return bearable_; }
   [[nodiscard]] bool is_convolved() const { return lattice_.has_value(); }
   [[nodiscard]] const std::optional<ConvolvedLattice>& lattice() const { return lattice_; }
 
@@ -68,7 +70,7 @@ class PointTerm : public BondTerm {
   [[nodiscard]] bool visits_rows() const override { return !is_convolved(); }
   [[nodiscard]] bool has_rows() const override { return !is_convolved(); }
   [[nodiscard]] Balances balances() const override = 0;
-  [[nodiscard]] bool can_be_damaged() const override { return !bearable_.empty(); }
+  [[nodiscard]] bool can_be_damaged() const override { return bearable_.has_value(); }
   [[nodiscard]] std::vector<double> initial_history() const override;
   [[nodiscard]] double stored_bytes() const override;
   [[nodiscard]] std::unique_ptr<TermPasses> passes(const TermSetting& setting) const override;
@@ -79,7 +81,7 @@ class PointTerm : public BondTerm {
 
  private:
   double micromodulus_;
-  std::vector<double> bearable_;
+  BearableEnergies bearable_;
   std::optional<ConvolvedLattice> lattice_;
   int threads_;
   std::vector<Offset> no_couplings_;      // of a lattice that is convolved

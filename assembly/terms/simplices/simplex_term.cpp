@@ -1,7 +1,6 @@
 #include "assembly/terms/simplices/simplex_term.hpp"
 
 #include <algorithm>
-#include <numeric>
 #include <stdexcept>
 #include <type_traits>
 
@@ -86,8 +85,11 @@ class SimplexPasses : public TermPasses {
   double owned_energy(const StateView& at) {
     std::vector<double> energies(setting_.points.volume.size());
     point_energies(at, energies, Write::over);
-    const auto first = energies.begin();
-    return std::accumulate(first, first + *setting_.points.owned, 0.0);
+    double energy = 0.0;
+    for (Index i = 0; i < setting_.points.count(); ++i) {
+      if (setting_.points.owns(i)) energy += energies[std::size_t(i)];
+    }
+    return energy;
   }
 
   const SimplexTerm& term_;

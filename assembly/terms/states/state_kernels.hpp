@@ -82,8 +82,8 @@ class StateKernels {
   [[nodiscard]] Before remembered() const { return {{kernel_.begin(), kernel_.end()}, pressure_}; }
 
   /// Pi loses the sum of delta kappa [(b_i + b_j) (xi . eta)^2 / (2 r^2) + (p_i + p_j) xi . eta], b
-  /// V d (d + 2) mu / M and p the mean of the pressures before and after; of the parts share(bond,
-  /// stretch) counts. After find_states of the same field.
+  /// V d (d + 2) mu / M and p the mean of the pressures before and after; of the parts share(i,
+  /// bond, stretch) counts. After find_states of the same field.
   template <class Share>
   [[nodiscard]] double losses(std::span<const double> u, const Before& before,
                               const Share& share) const {
@@ -99,7 +99,7 @@ class StateKernels {
                                        before.pressure[std::size_t(j)] + pressure_[j]);
         const double density = 0.5 * (deviatoric_[i] + deviatoric_[j]) * along * along / squared;
         const double stretch = std::sqrt(dot<D>(now, now) / squared) - 1.0;
-        sum += lost * (density + pressure * along) * share(bond, stretch);
+        sum += lost * (density + pressure * along) * share(i, bond, stretch);
       }
     }
     return sum;

@@ -9,6 +9,8 @@
 #include "assembly/terms/model.hpp"
 #include "assembly/terms/states/state_kernels.hpp"
 #include "assembly/terms/workspace.hpp"
+#include "src/core/sharing.hpp"
+#include "src/geometry/counts_bond.hpp"
 
 namespace peristat {
 namespace {
@@ -20,6 +22,8 @@ class StatePasses : public TermPasses {
       : term_(term),
         slot_(setting.model.slot_of(term)),
         stretches_(term, setting),
+        points_(setting.points),
+        sharing_(setting.sharing),
         pattern_(setting.pattern),
         kernels_(setting.points, term.bonds(), term.shares(), term.network(),
                  setting.workspace.threads()) {}
@@ -36,9 +40,10 @@ class StatePasses : public TermPasses {
 
   Evaluation commit(std::span<const double> displacement, const SharedEnvironment& environment,
                     History& history, std::span<double> gradient, Write how) override {
-    const DamageGrowth grown = growth({displacement, history, Damage::grows, environment});
-    if (grown.degrading == 0) {
-      return this->gradient({displacement, history, Damage::grows, environment}, gradient, how);
+    const StateView now{displacement, history, Damage::grows, environment};
+    // Bonds that others count are followed, too.
+    if (!term_.can_fail() || !any_of_all(sharing_, growth(now).degrading > 0)) {
+      return this->gradient(now, gradient, how);
     }
     const History before = history;
     static_cast<void>(this->gradient({displacement, before, Damage::grows, environment}, {}, how));
@@ -51,7 +56,8 @@ class StatePasses : public TermPasses {
     found.moves_equilibrium = true;
     // Where a bond was stretched against the dilatation the energy may rise as it breaks; that is
     // no dissipation, and has to come from somewhere else.
-    const double dissipated = std::max(dissipated_of(displacement, remembered, before), 0.0);
+    const double mine = dissipated_of(displacement, remembered, before);
+    const double dissipated = sum_of_all(sharing_, mine) > 0.0 ? mine : 0.0;
     found.released = dissipated - (dissipated_by_law(history) - dissipated_by_law(before));
     return found;
   }
@@ -106,15 +112,17 @@ class StatePasses : public TermPasses {
     });
   }
 
-  /// Bonds that have broken beyond the stretch that they bear did so when they passed it, when they
-  /// held the square of the ratio less; the rest is not dissipated, but overshoot.
+  /// Of the bonds that are counted here. Those that have broken beyond the stretch that they bear
+  /// did so when they passed it, when they held the square of the ratio less; the rest is not
+  /// dissipated, but overshoot.
   [[nodiscard]] double dissipated_of(std::span<const double> displacement,
                                      const typename StateKernels<D>::Before& remembered,
                                      const History& before) const {
     const std::span<const double> history = before.of(slot_);
     double sum = 0.0;
     term_.with_damage_law([&](const auto& law) {
-      sum = kernels_.losses(displacement, remembered, [&](Offset bond, double stretch) {
+      sum = kernels_.losses(displacement, remembered, [&](Index i, Offset bond, double stretch) {
+        if (!counts_bond(points_, i, term_.bonds().partner[bond])) return 0.0;
         const double ratio = law.of_bond(bond).borne(history[std::size_t(bond)]) / stretch;
         return std::min(ratio * ratio, 1.0);
       });
@@ -127,9 +135,12 @@ class StatePasses : public TermPasses {
     const Bonds& bonds = term_.bonds();
     double sum = 0.0;
     term_.with_damage_law([&](const auto& law) {
-      for (Offset bond = 0; bond < bonds.count(); ++bond) {
-        sum += bonds.weight(bond) * bonds.length(bond) *
-               law.of_bond(bond).dissipated(stretch[std::size_t(bond)]);
+      for (Index i = 0; i < bonds.points(); ++i) {
+        for (Offset bond = bonds.offset[i]; bond < bonds.offset[i + 1]; ++bond) {
+          if (!counts_bond(points_, i, bonds.partner[bond])) continue;
+          sum += bonds.weight(bond) * bonds.length(bond) *
+                 law.of_bond(bond).dissipated(stretch[std::size_t(bond)]);
+        }
       }
     });
     return sum;
@@ -138,6 +149,8 @@ class StatePasses : public TermPasses {
   const StateTerm& term_;
   std::size_t slot_;
   BondPasses stretches_;  // of its bonds, whose own forces count for nothing
+  const Points& points_;
+  const Sharing* sharing_;
   const BlockPattern& pattern_;
   StateKernels<D> kernels_;
 };

@@ -6,13 +6,13 @@
 
 #include <fmt/format.h>
 
+#include "cases/runner/build/find_boundary.hpp"
 #include "solvers/linear/available_memory.hpp"
 #include "solvers/study/bond_materials.hpp"
 #include "solvers/study/linear_model.hpp"
 #include "src/connectivity/free_motion.hpp"
 #include "src/core/input_error.hpp"
 #include "src/core/number_text.hpp"
-#include "src/geometry/covers.hpp"
 #include "src/geometry/nearest_point.hpp"
 #include "src/geometry/point_file.hpp"
 #include "src/geometry/points_on_line.hpp"
@@ -114,26 +114,11 @@ Points make_points_of(const Case& from) {
   });
 }
 
-namespace {
-
-/// The faces of the body, for tractions.
-void find_boundary(const Case& from, const Points& points, BodySpecification& of) {
-  const Lattice* lattice = lattice_of(from);
-  if (!from.is_collocated() || lattice == nullptr) return;
-  std::vector<Coordinates> places;
-  for (Index i = 0; i < points.own(); ++i) places.push_back(points.position(i));
-  of.boundary = std::make_shared<const BodyBoundary>(from.dimension, lattice->shapes,
-                                                     covers_of(*lattice, places), points.spacing);
-  for (const ShapeStep& step : lattice->shapes) of.boundary_names.push_back(step.name);
-}
-
-}  // namespace
-
 std::unique_ptr<const Body> make_body(const Case& from, int threads) {
   Points points = make_points_of(from);
   BodySpecification of = from;
   of.force_operator = from.solver.force_operator;
-  located_errors(from, [&] { find_boundary(from, points, of); });
+  located_errors(from, [&] { find_boundary(from, points, SoleRank(), of); });
   if (of.force_operator == ForceOperator::automatic) {
     of.force_operator = faster_operator(
         of, points,

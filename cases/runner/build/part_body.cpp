@@ -9,6 +9,7 @@
 #include <variant>
 
 #include "cases/runner/build/body.hpp"
+#include "cases/runner/build/find_boundary.hpp"
 #include "cases/runner/build/recorded_points.hpp"
 #include "solvers/ranks/distribute.hpp"
 #include "solvers/ranks/part_bonds.hpp"
@@ -20,6 +21,7 @@
 #include "src/geometry/point_set.hpp"
 #include "src/geometry/points_on_line.hpp"
 #include "src/geometry/slab.hpp"
+#include "src/neighbourhood/ghost_sites.hpp"
 
 namespace peristat {
 namespace {
@@ -34,19 +36,20 @@ constexpr std::array keys_of_ranks{
     "points.file", "points.thickness", "points.area", "points.horizon", "set.",
     // bonds
     "quadrature.volume_correction", "quadrature.surface_correction", "quadrature.horizon_shape",
-    "crack.", "material.model", "material.plane", "material.youngs_modulus",
+    "crack.", "material.model", "material.kinematics", "material.plane", "material.youngs_modulus",
     "material.micromodulus", "material.density", "material.influence", "material.potential",
     "material.calibration", "material.fibre.", "material.scatter.", "region.", "interface.",
     // triangles and tetrahedra, states
-    "quadrature.weights", "quadrature.form", "material.poisson_ratio", "material.c1", "material.c2",
-    "material.c3",
+    "quadrature.weights", "quadrature.form", "quadrature.degree", "quadrature.traction_form",
+    "quadrature.normals", "material.poisson_ratio", "material.c1", "material.c2", "material.c3",
     // damage
     "material.damage.", "loading.max_broken_bonds", "loading.stop_below", "solver.fragments",
     "solver.projection", "solver.elastic_horizon_ratio", "relaxation.",
     // conditions
     "support.", "symmetry.", "period.", "rigid.", "roller.", "constraint.", "load.set", "load.side",
     "load.body_force", "load.total_force", "load.gravity", "load.traction", "load.depth",
-    "load.pressure", "foundation.", "eigenstrain.", "temperature.", "material.thermal_expansion",
+    "load.pressure", "load.boundary", "load.stress", "foundation.", "eigenstrain.", "temperature.",
+    "material.thermal_expansion",
     // search
     "loading.steps", "loading.table", "loading.table2", "loading.adaptive", "loading.smallest_step",
     "loading.largest_step", "initial.", "absorbing.", "dynamics.", "solver.mode", "solver.operator",
@@ -96,18 +99,12 @@ void refuse_convolutions(const Case& from) {
 /// Of keys whose values have ranks in part, those that have.
 void refuse_values_without_ranks(const Case& from) {
   refuse_convolutions(from);
-  if (from.is_collocated()) {
-    refuse("quadrature.form", "", "take \"energy\" with model \"lps\"");
-  }
   const bool is_lattice = std::holds_alternative<Lattice>(from.body);
   const bool has_shares = from.volume_correction != VolumeCorrection::none &&
                           from.volume_correction != VolumeCorrection::linear;
   if (from.material.model != MaterialModel::bond && (!is_lattice || has_shares)) {
     refuse("material.model", "",
            "models but \"bond\" are for a lattice, and volume_correction \"none\" or \"linear\"");
-  }
-  if (!from.crack_tips.empty() && !from.constraints.none()) {
-    refuse("crack_tip", "", "its integrals on ranks are of bodies without constraints");
   }
   const Mode mode = from.solver.mode;
   if (mode == Mode::path || mode == Mode::arc_length) {
@@ -206,7 +203,13 @@ std::unique_ptr<const Body> make_part_body(const Case& from, const Communicator&
     Part part =
         distribute(std::move(slab), setting.horizon, reach, ranks, threads, std::move(images));
     add_sets(from, ranks, part);
+    const auto* const lattice = std::get_if<Lattice>(&from.body);
+    if (lattice != nullptr && from.is_collocated()) {
+      // Those that neighbours of ghosts have are wrong, and nobody asks for them.
+      part.points.ghosts = ghost_sites(*lattice, part.points, from.horizon).reference;
+    }
     BodySpecification of = from;
+    find_boundary(from, part.points, ranks, of);
     if (tells_stress(from)) of.evaluation_bytes_per_point = stress_bytes_per_point(from.dimension);
     std::unique_ptr<const Body> body = make_body(std::move(part), of, ranks, threads);
     require_places_of_probes(from, {body->points, body->part.get()});

@@ -54,7 +54,7 @@ void count(const Body& body, const FreeDofs& free, const RunOptions& options,
   for (const auto& term : body.model.terms()) {
     for (const InteractionCount& kind : term->counts()) {
       summary.count(kind.name,
-                    body.part ? count_interactions(body.part->owned(), kind, ranks) : kind.count);
+                    body.part ? count_interactions(body.points, kind, ranks) : kind.count);
     }
   }
   if (body.part) {
@@ -151,8 +151,7 @@ class CaseRun {
                    [this](const std::string& reason) { recorder_->changed_solver(reason); });
     if (gathering_) {
       recorded_.emplace(body_->points, body_->part.get());
-      numbering_.emplace(*recorded_, *gathering_, body_->model.bonds(),
-                         body_->conditions->prescribed());
+      numbering_.emplace(*recorded_, *gathering_, body_->model, body_->conditions->prescribed());
     }
     if (earlier_) {
       earlier_results_ = earlier_->results(support_sets_, probes_, further_.lines);

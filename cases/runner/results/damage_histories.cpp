@@ -1,16 +1,13 @@
 #include "cases/runner/results/damage_histories.hpp"
 
-namespace peristat {
+#include "src/geometry/image_number.hpp"
 
-Index image_number(const Points& points, Index point) {
-  if (!points.is_image(point)) return 0;
-  return static_cast<Index>(points.images.kind[std::size_t(point - points.own())]) + 1;
-}
+namespace peristat {
 
 BondHistories DamageHistories::changes(const RecordedPoints& recorded, const Bonds& bonds,
                                        std::span<const double> history) const {
   const Points& points = recorded.points();
-  const bool has_images = points.own() < points.count();
+  const bool has_images = !points.images.kinds.empty();  // which all ranks know
   BondHistories changed;
   auto known = known_.begin();
   for (Index i = 0; i < bonds.points(); ++i) {

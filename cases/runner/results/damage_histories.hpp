@@ -11,9 +11,6 @@
 
 namespace peristat {
 
-/// Which kind of images a point is of, from 1; 0: it stands for itself.
-[[nodiscard]] Index image_number(const Points& points, Index point);
-
 /// The histories of the bonds (bond_stretches) as a reader of the results knows them. Only
 /// those that differ from 0 are kept: nearly all bonds of a body are never damaged.
 class DamageHistories {

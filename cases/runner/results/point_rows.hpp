@@ -96,12 +96,17 @@ class RowGathering {
     }
   }
 
-  /// What is told of bonds, ascending by their numbers `first_point` and `second_point`.
+  /// What is told of bonds, as they come on one rank: ascending by their `first_point`, and then
+  /// those to points before those to each kind of images (`second_image`), by `second_point`.
   template <class Item, class Put>
   void gather_of_bonds(std::vector<Item> mine, const Put& put) const {
     gather_in_order(
         std::move(mine), std::int64_t(part_.whole()),
-        [](const Item& item) { return std::pair(item.first_point, item.second_point); }, put);
+        [&](const Item& item) {
+          return std::pair(item.first_point,
+                           item.second_image * std::int64_t(part_.whole()) + item.second_point);
+        },
+        put);
   }
 
   /// Adds up a count per owned point over the points of the whole body in their order.
@@ -252,24 +257,27 @@ class RowSink {
     }
   }
 
-  /// Values of bonds, ascending by their points.
-  /// @param first_point, second_point, values of the bonds that are told here
+  /// Values of bonds, see RowGathering::gather_of_bonds.
+  /// @param first_point, second_point, second_image, values of the bonds that are told here; a body
+  ///        without images has no `second_image`
   /// @param count of all
   template <class Value>
   void write_of_bonds(const std::string& path, const std::vector<Index>& first_point,
-                      const std::vector<Index>& second_point, const std::vector<Value>& values,
+                      const std::vector<Index>& second_point,
+                      const std::vector<Index>& second_image, const std::vector<Value>& values,
                       std::uint64_t count, const DatasetLabel& label) const {
     if (!gathering_ || count == 0) {
       if (file_) file_->write(path, values, {count}, label);
       return;
     }
     struct Item {
-      Index first_point, second_point;
+      Index first_point, second_point, second_image;
       Value value;
     };
     std::vector<Item> mine;
     for (std::size_t k = 0; k < values.size(); ++k) {
-      mine.push_back({first_point[k], second_point[k], values[k]});
+      const Index image = second_image.empty() ? 0 : second_image[k];
+      mine.push_back({first_point[k], second_point[k], image, values[k]});
     }
     if (!file_) return gathering_->gather_of_bonds(std::move(mine), [](const auto&) {});
     file_->write_rows<Value>(path, {count}, label, [&](const Hdf5File::PutRows<Value>& put) {

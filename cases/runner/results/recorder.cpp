@@ -11,6 +11,7 @@
 #include "cases/runner/results/crack_tip_columns.hpp"
 #include "cases/runner/results/motion_columns.hpp"
 #include "cases/runner/results/record_tables.hpp"
+#include "src/geometry/image_number.hpp"
 
 namespace peristat {
 

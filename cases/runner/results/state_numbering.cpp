@@ -7,15 +7,17 @@
 
 #include "solvers/ranks/heard_of_bonds.hpp"
 #include "src/core/concatenated.hpp"
+#include "src/geometry/image_number.hpp"
 
 namespace peristat {
 
 StateNumbering::StateNumbering(const RecordedPoints& points, const RowGathering& gathering,
-                               const Bonds& bonds, const std::vector<char>& prescribed)
+                               const Model& model, const std::vector<char>& prescribed)
     : points_(points),
       part_(gathering.part()),
       gathering_(gathering),
-      bonds_(bonds),
+      bonds_(model.bonds()),
+      rows_of_histories_(model.fails_in_avalanches() ? Rows::points : Rows::bonds),
       prescribed_(prescribed) {
   std::vector<std::int64_t> counts;
   for (Index point = 0; point < part_.owned(); ++point) {
@@ -44,7 +46,7 @@ void StateNumbering::number_free_dofs() {
 
 StateNumbering::Extent StateNumbering::extent(Rows rows) const {
   const std::int64_t points = points_.points().count();
-  switch (rows) {
+  switch (named(rows)) {
     case Rows::points:
       return {part_.whole(), points, 1};
     case Rows::dofs:
@@ -55,6 +57,7 @@ StateNumbering::Extent StateNumbering::extent(Rows rows) const {
       return {whole_free_, free_here_, 1};
     case Rows::bonds:
       return {whole_bonds_, bonds_.count(), 1};
+    case Rows::histories:
     case Rows::list_of_points:
     case Rows::whole:
       break;
@@ -66,8 +69,9 @@ std::int64_t StateNumbering::whole_size(Rows rows, std::size_t here) {
   if (part_.ranks().max(double(here)) == 0.0) return 0;
   if (rows == Rows::free_dofs) number_free_dofs();
   const Extent of = extent(rows);
-  const std::int64_t beyond = std::int64_t(here) - of.here * of.width;
-  if (beyond < 0) throw std::logic_error("an array of a path's state is too short");
+  const std::int64_t mine = std::int64_t(here) - of.here * of.width;
+  if (mine < 0) throw std::logic_error("an array of a path's state is too short");
+  const auto beyond = std::int64_t(part_.ranks().max(double(mine)));  // rank 0 may have more
   return of.whole * of.width + beyond;
 }
 
@@ -82,7 +86,8 @@ std::optional<std::size_t> StateNumbering::size_here(Rows rows, std::int64_t who
   const bool is_known =
       rows == Rows::dofs ? beyond == 0 || beyond == handles : beyond <= most_beyond;
   if (beyond < 0 || !is_known) return std::nullopt;
-  return std::size_t(of.here * of.width + beyond);
+  const bool has_beyond = rows != Rows::free_dofs || part_.ranks().rank() == 0;
+  return std::size_t(of.here * of.width + (has_beyond ? beyond : 0));
 }
 
 std::vector<StateNumbering::Place> StateNumbering::places(Rows rows, std::size_t size_here) const {
@@ -99,7 +104,7 @@ std::vector<StateNumbering::Place> StateNumbering::places(Rows rows, std::size_t
 
 void StateNumbering::visit_rows(Rows rows,
                                 const std::function<void(std::int64_t, std::size_t)>& visit) const {
-  if (rows == Rows::bonds) return visit_bonds(visit);
+  if (named(rows) == Rows::bonds) return visit_bonds(visit);
   if (rows == Rows::free_dofs) {
     const auto d = std::size_t(points_.dimension());
     std::size_t here = 0;
@@ -133,14 +138,19 @@ std::vector<Offset> StateNumbering::told_bonds(Index point) const {
   for (Offset bond = bonds_.offset[point]; bond < bonds_.offset[point + 1]; ++bond) {
     if (points_.tells(point, bonds_.partner[bond])) told.push_back(bond);
   }
-  std::ranges::sort(told, {}, [&](Offset bond) { return points_.number(bonds_.partner[bond]); });
+  std::ranges::sort(told, {}, [&](Offset bond) {
+    const Index other = bonds_.partner[bond];
+    return std::pair(image_number(points_.points(), other), points_.number(other));
+  });
   return told;
 }
 
 void StateNumbering::give_to_others(Rows rows, std::vector<double>& values) const {
-  if (rows == Rows::points) give_to_ghosts(values, 1);
+  if (named(rows) == Rows::points) give_to_ghosts(values, 1);
+  if (rows == Rows::histories && named(rows) == Rows::points) give_to_images(values);
   if (rows == Rows::dofs) give_to_ghosts(values, std::size_t(points_.dimension()));
-  if (rows == Rows::bonds) give_bonds(values);
+  if (named(rows) == Rows::bonds) give_bonds(values);
+  if (rows == Rows::free_dofs) return;
   const Extent of = extent(rows);
   const auto first = values.begin() + std::ptrdiff_t(of.here * of.width);
   const bool tells = part_.ranks().rank() == 0;
@@ -158,9 +168,16 @@ void StateNumbering::give_to_ghosts(std::vector<double>& values, std::size_t wid
   for (std::size_t i = 0; i < points * width; ++i) values[i] = exchanged[i / width * d + i % width];
 }
 
+void StateNumbering::give_to_images(std::vector<double>& values) const {
+  const Points& points = points_.points();
+  for (Index image = points.own(); image < points.count(); ++image) {
+    values[std::size_t(image)] = values[std::size_t(points.source(image))];
+  }
+}
+
 void StateNumbering::give_bonds(std::vector<double>& values) const {
   const HeardOfBonds heard =
-      heard_of_bonds(bonds_, part_.numbered(), part_.ranks(), 1,
+      heard_of_bonds(bonds_, points_.points(), part_.numbered(), part_.ranks(), 1,
                      [&](Offset bond, double* to) { *to = values[std::size_t(bond)]; });
   for (std::size_t k = 0; k < heard.bond.size(); ++k) {
     values[std::size_t(heard.bond[k])] = heard.values[k];

@@ -5,10 +5,10 @@
 #include <optional>
 #include <vector>
 
+#include "assembly/terms/model.hpp"
 #include "cases/runner/build/recorded_points.hpp"
 #include "cases/runner/results/point_rows.hpp"
 #include "solvers/drivers/state_archive.hpp"
-#include "src/neighbourhood/bonds.hpp"
 
 namespace peristat {
 
@@ -19,7 +19,7 @@ namespace peristat {
 class StateNumbering {
  public:
   /// What arrays are of outlives it.
-  StateNumbering(const RecordedPoints& points, const RowGathering& gathering, const Bonds& bonds,
+  StateNumbering(const RecordedPoints& points, const RowGathering& gathering, const Model& model,
                  const std::vector<char>& prescribed);
 
   [[nodiscard]] const RowGathering& gathering() const { return gathering_; }
@@ -49,11 +49,15 @@ class StateNumbering {
 
  private:
   /// How many rows the whole body has, and this part, and values of a row. What an array has beyond
-  /// them is the same on all ranks, or means nothing.
+  /// them is the same on all ranks, or means nothing; rank 0 has the free handles.
   struct Extent {
     std::int64_t whole = 0, here = 0, width = 1;
   };
   [[nodiscard]] Extent extent(Rows rows) const;
+  /// Histories are of points or of bonds.
+  [[nodiscard]] Rows named(Rows rows) const {
+    return rows == Rows::histories ? rows_of_histories_ : rows;
+  }
   /// Finds the numbers of free degrees of freedom, once for these pins.
   void number_free_dofs();
   void visit_rows(Rows rows, const std::function<void(std::int64_t, std::size_t)>& visit) const;
@@ -61,12 +65,14 @@ class StateNumbering {
   /// The bonds of an owned point that are told here, ascending by their other points.
   [[nodiscard]] std::vector<Offset> told_bonds(Index point) const;
   void give_to_ghosts(std::vector<double>& values, std::size_t width) const;
+  void give_to_images(std::vector<double>& values) const;
   void give_bonds(std::vector<double>& values) const;
 
   const RecordedPoints& points_;
   const PartOfBody& part_;
   const RowGathering& gathering_;
   const Bonds& bonds_;
+  Rows rows_of_histories_;
   const std::vector<char>& prescribed_;
   std::vector<std::int64_t> first_bond_;  // of each owned point, in the whole body
   std::int64_t whole_bonds_ = 0;

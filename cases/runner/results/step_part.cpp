@@ -123,17 +123,18 @@ void check(const FieldKind& kind, const std::vector<double>& values, StepShape s
 
 /// The histories of bonds that have changed, in the group `path`.
 /// @param count of all ranks
+/// @param has_images whether one of them has any of a body with images
 void write_histories(const RowSink& sink, const std::string& path, const BondHistories& changed,
-                     std::uint64_t count) {
+                     std::uint64_t count, bool has_images) {
   const auto write = [&](const std::string& name, const auto& values, const DatasetLabel& label) {
-    sink.write_of_bonds(path + name, changed.first_point, changed.second_point, values, count,
-                        label);
+    sink.write_of_bonds(path + name, changed.first_point, changed.second_point,
+                        changed.second_image, values, count, label);
   };
   write("/first_point", changed.first_point,
         {"1", "lower point of each bond whose history has changed since the step before"});
   write("/second_point", changed.second_point,
         {"1", "other point of each bond whose history has changed since the step before"});
-  if (!changed.second_image.empty()) {
+  if (has_images) {
     write("/second_image", changed.second_image,
           {"1", "image of that point it ends at, row of /points/images from 1; 0: itself"});
   }
@@ -161,9 +162,11 @@ StepPart::StepPart(StepShape shape, const StepFields& fields, const RowGathering
   if (!fields.histories) return;
   const std::size_t changed = fields.histories->largest_stretch.size();
   changed_bonds_ = changed;
+  have_images_ = !fields.histories->second_image.empty();
   if (gathering) {
     const Communicator& ranks = gathering->part().ranks();
     changed_bonds_ = std::uint64_t(ranks.count_all(std::int64_t(changed)).all);
+    have_images_ = ranks.max(double(have_images_)) > 0.0;
   }
 }
 
@@ -200,7 +203,7 @@ void StepPart::write_rows(const RowSink& sink, const std::string& group) const {
     sink.write(group + "/" + name, *(fields_.*kind.values), row, kind.label);
   }
   if (fields_.histories) {
-    write_histories(sink, group + "/history", *fields_.histories, changed_bonds_);
+    write_histories(sink, group + "/history", *fields_.histories, changed_bonds_, have_images_);
   }
 }
 

@@ -61,6 +61,7 @@ class StepPart {
   const RowGathering* gathering_;
   std::vector<std::string> names_;
   std::uint64_t changed_bonds_ = 0;  // whose histories are told, of all ranks
+  bool have_images_ = false;         // whether they tell of images
 };
 
 /// Names of the fields that a step's group holds.

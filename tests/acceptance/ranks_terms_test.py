@@ -1,0 +1,307 @@
+"""Terms beyond those of bonds at rest on ranks: linear kinematics with points that fail, states that lose their bonds,
+pressures and foundations of every model, at rest and in motion."""
+
+import unittest
+
+import h5py
+import numpy
+
+from tests.acceptance.on_ranks import CUBE, PLATE, SOLVER, SQUARE, STATES, STORED, Comparison, resume, rows
+
+LINEAR = PLATE.replace('model = "bond"', 'kinematics = "linear"')
+# A notched strip without any symmetry, whose points fail in a row before the notch.
+STRIP = """
+dimension = 2
+[lattice]
+spacing = 0.05
+thickness = 0.01
+shape = [{ add = "box", min = [0, 0], max = [1.2, 1] }, { subtract = "box", min = [-1, 0.5], max = [0.4, 0.6] }]
+layer = [{ name = "bottom", side = "y-" }, { name = "top", side = "y+" }]
+[material]
+kinematics = "linear"
+youngs_modulus = 1e9
+density = 1000
+[material.damage]
+law = "energy_density"
+fracture_energy = 100
+no_fail = ["bottom", "top"]
+[[support]]
+set = "bottom"
+displacement = [0, 0]
+[[support]]
+set = "top"
+"""
+PULLED = STRIP + 'displacement = ["1e-4*load", "1e-3*load"]\n[loading]\nsteps = 4\n'
+IN_MOTION = STRIP + """displacement = ["0", "2*t"]
+[[initial]]
+velocity = ["0", "2*y + 0.2*x"]
+[solver]
+mode = "dynamics"
+[dynamics]
+end_time = 1e-3
+history_every = 4
+[output]
+every = 8
+"""
+NEWMARK = ('dynamics.scheme="newmark"', "dynamics.time_step=2e-5", 'solver.linear="pcg"',
+           'solver.preconditioner="block_jacobi"', "solver.linear_tolerance=1e-12",
+           "solver.relative_tolerance=1e-12")  # fmt: skip
+
+
+def settings(*of):
+    return [word for setting in of for word in ("--set", setting)]
+
+
+class Terms(Comparison):
+    def compare_settings(self, text, *of, ranks=(3,), solver=SOLVER):
+        with self.subTest(settings=of):
+            return self.compare(text, ranks, *settings(*of), solver=solver)
+
+    def broken(self, output):
+        return [(row["step"], row["first_point"], row["second_point"]) for row in rows(output, "broken_bonds.csv")]
+
+    def failed(self, output):
+        with h5py.File(output / "results.h5") as file:
+            return [int((file[f"steps/{step}/damage"][()] == 1.0).sum()) for step in file["steps"]]
+
+    def goes_on(self, text, *of, first=2, then=3, after=2, share=1e-9):
+        """A run that is stopped on some ranks goes on with others."""
+        options = settings(*of)
+        whole = self.results(1, text, *options).rename(self.folder / f"whole_{first}")
+        run, output = self.start(first, text, *options, "--stop-after", str(after))
+        self.assertEqual(run.returncode, 130, run.stderr)
+        again = resume(then, output)
+        self.assertEqual(again.returncode, 0, again.stderr)
+        self.expect_same(whole, output)
+        return output
+
+
+class LinearKinematics(Terms):
+    def test_a_plate_with_a_hole(self):
+        self.compare_settings(LINEAR, "output.stress=true", ranks=(2, 3, 4))
+        self.compare_settings(LINEAR, 'quadrature.surface_correction="energy"', "crack=[{from=[0.7, 0.3], to=[1, 0.3]}]",
+                              'solver.preconditioner="rigid_pieces"',
+                              'region=[{set="corner", material={youngs_modulus=3e9}}]')  # fmt: skip
+
+    def test_planes_of_symmetry_and_periods(self):
+        self.compare_settings(LINEAR, 'symmetry=[{axis="x", at=1}]', ranks=(2, 3), solver=STORED)
+
+    def test_ranks_without_a_point(self):
+        bar = """
+            dimension = 1
+            [lattice]
+            spacing = 0.1
+            area = 2.0
+            shape = [{ add = "box", min = [0], max = [0.5] }]
+            [material]
+            kinematics = "linear"
+            youngs_modulus = 7.0
+            density = 3.0
+            [material.damage]
+            law = "energy_density"
+            fracture_energy = 4e-4
+            [[initial]]
+            velocity = ["0.12*x*x + 0.1"]
+            [solver]
+            mode = "dynamics"
+            [dynamics]
+            end_time = 3.0
+            history_every = 1
+        """
+        one = self.compare(bar, (2, 7), solver="")
+        self.assertGreater(self.failed(one)[-1], 0)
+
+    def test_points_that_fail_at_rest(self):
+        one = self.compare_settings(PULLED, ranks=(2, 3, 4))
+        count = self.failed(one)
+        self.assertEqual(count[0], 0)
+        self.assertGreater(count[-1], 10)
+        self.assertGreater(len({step for step, _, _ in self.broken(one)}), 0)
+
+    def test_points_of_several_materials_that_fail(self):
+        one = self.compare_settings(
+            PULLED, 'set=[{name="right", where="x > 0.8"}]',
+            'region=[{set="right", material={youngs_modulus=2e9, damage={law="energy_density", fracture_energy=150}}}]')  # fmt: skip
+        self.assertGreater(self.failed(one)[-1], 10)
+
+    def test_points_that_fail_in_relaxation(self):
+        one = self.compare_settings(PULLED, 'solver.mode="relaxation"')
+        self.assertGreater(self.failed(one)[-1], 10)
+
+    def test_points_that_fail_in_motion(self):
+        one = self.compare_settings(IN_MOTION, ranks=(2, 3), solver="")
+        self.assertGreater(self.failed(one)[-1], 10)
+        one = self.compare_settings(IN_MOTION, *NEWMARK, solver="")
+        self.assertGreater(self.failed(one)[-1], 10)
+
+    def test_failures_that_go_on_with_another_number_of_ranks(self):
+        for first, then in ((2, 3), (3, 1), (1, 2)):
+            output = self.goes_on(PULLED + SOLVER, first=first, then=then, after=3)
+            self.assertGreater(self.failed(output)[-1], 10)
+        self.goes_on(IN_MOTION, "dynamics.history_every=1", after=12)
+
+
+# Torn from a pre-crack and a hole; the dilatation of a point goes with its bonds.
+TORN = """
+dimension = 2
+[lattice]
+spacing = 0.1
+horizon_ratio = 2.515
+thickness = 0.01
+shape = [{ add = "box", min = [0, 0], max = [1.2, 1.6] }, { subtract = "disk", centre = [0.72, 0.83], radius = 0.2 }]
+layer = [{ name = "bottom", side = "y-" }, { name = "top", side = "y+" }]
+[[crack]]
+from = [0, 0.9]
+to = [0.22, 0.93]
+[quadrature]
+form = "energy"
+[material]
+model = "lps"
+plane = "stress"
+youngs_modulus = 1e9
+poisson_ratio = 0.2
+density = 1000
+[material.damage]
+law = "critical_stretch"
+critical = 0.03
+no_fail = ["bottom", "top"]
+[[support]]
+set = "bottom"
+displacement = [0, 0]
+[[support]]
+set = "top"
+"""
+TORN_AT_REST = TORN + 'displacement = ["0.01*load", "0.06*load"]\n[loading]\nsteps = 4\n[relaxation]\nsteps = 8\n' + STORED
+TORN_IN_MOTION = TORN + """displacement = ["0", "20*t"]
+[[initial]]
+velocity = ["0", "12*y + x"]
+[solver]
+mode = "dynamics"
+[dynamics]
+end_time = 3e-3
+history_every = 4
+[output]
+every = 8
+"""
+
+
+class States(Terms):
+    """Bonds of states break as those of bonds do, and the energy that goes with each is counted once."""
+
+    def compare_torn(self, text, *of, ranks=(3,)):
+        options = settings(*of)
+        one_run, one = self.start(1, text, *options)
+        for count in ranks:
+            several, found = self.start(count, text, *options)
+            with self.subTest(ranks=count, settings=of):
+                self.assertEqual(several.returncode, one_run.returncode, several.stderr)
+                self.assertEqual(self.broken(one), self.broken(found))
+                self.expect_same(one, found)
+        self.assertGreater(len(self.broken(one)), 20)
+        with h5py.File(one / "results.h5") as file:
+            self.assertGreater(file["history/dissipated_energy"][-1], 0.0)
+        return one
+
+    def test_a_plate_that_is_torn(self):
+        self.compare_torn(TORN_AT_REST, 'solver.mode="adaptive"', ranks=(2, 3))
+        self.compare_torn(TORN_AT_REST, 'solver.mode="relaxation"', ranks=(4,))
+
+    def test_implicit_steps(self):
+        self.compare_torn(TORN_AT_REST, 'solver.mode="newton"')
+
+    def test_in_motion(self):
+        self.compare_torn(TORN_IN_MOTION, ranks=(2, 3))
+        self.compare_torn(TORN_IN_MOTION, *NEWMARK)
+
+    def test_several_materials(self):
+        upper = 'damage={law="critical_stretch", critical=0.04}, scatter=[{of="strength", distribution="weibull", ' \
+                'weibull_modulus=8, correlation_length=0.2, seed=3}]'  # fmt: skip
+        self.compare_torn(TORN_AT_REST, 'solver.mode="adaptive"', 'set=[{name="upper", where="y > 0.9"}]',
+                          f'region=[{{set="upper", material={{youngs_modulus=2e9, poisson_ratio=0.3, {upper}}}}}]')  # fmt: skip
+
+    def test_tears_that_go_on_with_another_number_of_ranks(self):
+        for first, then in ((2, 3), (3, 1), (1, 2)):
+            output = self.goes_on(TORN_AT_REST, 'solver.mode="relaxation"', first=first, then=then, after=4)
+            self.assertGreater(len(self.broken(output)), 20)
+        self.goes_on(TORN_IN_MOTION, "dynamics.history_every=1", after=20)
+
+
+# Pressures in a hole and on a side, springs to ground that moves; of the load at rest, of the time in motion.
+HOLE = 'set=[{name="hole", where="sqrt((x-0.5)^2 + (y-0.7)^2) < 0.28"}, {name="corner", where="x > 0.6 && y > 1"}]'
+PRESSURES = 'load=[{set="hole", pressure="PRESSURE*RISE*(1+y)"}, {side="x+", pressure="PRESSURE*0.1"}]'
+GROUND = ('foundation=[{name="soil", set="corner", stiffness=[MODULUS, MODULUS], displacement=["0.01*RISE", 0]}, '
+          '{name="side", side="x+", modulus=[MODULUS, 0]}]')  # fmt: skip
+MOVING = """
+[solver]
+mode = "dynamics"
+[dynamics]
+end_time = END
+history_every = 3
+[output]
+every = 6
+[[initial]]
+velocity = ["0.1", "0.2*x"]
+"""
+TRIANGLES = SQUARE.replace('["0.4*load", "0.1*load"]', '["0.2*load", "0.1*load"]')
+TRIANGLES_IN_MOTION = SQUARE.replace('["0.4*load", "0.1*load"]', '["0.1*sin(2*t)", "free"]').replace("[loading]\nsteps = 2\n", "")
+
+
+def in_motion(plate):
+    moved = plate.replace('"0.05*load"', '"1e-4*sin(2000*t)"').replace("1e6*load*y", "1e3*y")
+    return moved.replace("[loading]\nsteps = 2\n", "").replace("[material]\n", "[material]\ndensity = 1000\n") + MOVING.replace("END", "1e-3")
+
+
+def under(load, pressure, stiffness, with_pressures=True):
+    found = (GROUND, PRESSURES) if with_pressures else (GROUND,)
+    return [text.replace("RISE", load).replace("PRESSURE", pressure).replace("MODULUS", stiffness) for text in found]
+
+
+class PressuresAndFoundations(Terms):
+    def test_of_states_and_triangles_at_rest(self):
+        one = self.compare_settings(STATES, HOLE, *under("load", "2e7", "1e7"), ranks=(2, 3), solver=STORED)
+        self.assertNotEqual(float(rows(one, "history.csv")[-1]["reaction_x:soil"]), 0.0)
+        sides = ('load=[{side="y+", pressure="0.1*load"}]', 'set=[{name="corner", where="x > 0.7 && y > 0.3"}]', *under("load", "", "0.1", False))
+        self.compare_settings(TRIANGLES, *sides, ranks=(2, 3), solver=STORED)
+        self.compare_settings(CUBE, 'load=[{side="y+", pressure="0.1*load"}, {side="z-", pressure="0.2*load"}]',
+                              'foundation=[{name="soil", side="y-", modulus=[1, 1, 1]}]', solver=STORED)  # fmt: skip
+
+    def test_of_bonds_and_states_in_motion(self):
+        for plate in (PLATE, STATES):
+            moving = in_motion(plate)
+            one = self.compare_settings(moving, HOLE, *under("(t/1e-3)", "2e5", "1e7"), ranks=(2, 3), solver="")
+            self.assertNotEqual(float(rows(one, "history.csv")[-1]["reaction_x:soil"]), 0.0)
+            self.compare_settings(moving, HOLE, *under("(t/1e-3)", "2e5", "1e7"), *NEWMARK, solver="")
+
+    def test_of_triangles_in_motion(self):
+        sides = ('load=[{side="y+", pressure="0.1*t"}]', 'set=[{name="corner", where="x > 0.7 && y > 0.3"}]', *under("t", "", "0.1", False))
+        moving = TRIANGLES_IN_MOTION.replace("[material]\n", "[material]\ndensity = 0.002\n") + MOVING.replace("END", "1.0")
+        self.compare_settings(moving, *sides, ranks=(2, 3), solver="")
+        self.compare_settings(moving, *sides, *NEWMARK, "dynamics.time_step=0.05", solver="")
+
+    def test_bonds_that_break_under_a_pressure(self):
+        breaking = in_motion(PLATE), HOLE, *under("(t/1e-3)", "4e7", "1e7"), 'material.damage={law="critical_stretch", critical=0.02}'
+        one = self.compare_settings(*breaking, solver="")
+        self.assertGreater(len(self.broken(one)), 20)
+        self.goes_on(*breaking, "dynamics.history_every=1", "output.every=7", after=20)
+
+
+GMRES = SOLVER.replace('"pcg"', '"gmres"').replace('tangent = "matrix_free"\n', "").replace("1e-9", "1e-12")
+COLLOCATED = STATES.split("[quadrature]")[0].replace("radius = 0.2 }", 'radius = 0.2, name = "hole" }')
+TRACTIONS = ('load=[{side="x+", traction=["2e6*load*y", "1e6"]}, {boundary="hole", stress=["1e6*load", "2e6", "1e6*x"]}, '
+             '{set="corner", body_force=["1e6*load", "0"]}]')  # fmt: skip
+
+
+class Collocation(Terms):
+    """Forces without a potential, with the weights of balls that reach over parts and surfaces."""
+
+    def test_a_plate_under_tractions(self):
+        one = self.compare_settings(COLLOCATED, TRACTIONS, "output.stress=true", ranks=(2, 3, 4), solver=GMRES)
+        self.assertGreater(float(rows(one, "history.csv")[-1]["stored_energy"]), 0.0)
+        self.compare_settings(COLLOCATED, TRACTIONS.replace("stress", "pressure").replace('["1e6*load", "2e6", "1e6*x"]', '"1e6*load"'),
+                              "lattice.perturbation=0.1", 'quadrature.normals="exact"', 'quadrature.traction_form="paper"',
+                              "crack=[{from=[0.7, 0.3], to=[1, 0.3]}]",
+                              'region=[{set="corner", material={youngs_modulus=2e9, poisson_ratio=0.3}}]', solver=GMRES)  # fmt: skip
+
+
+if __name__ == "__main__":
+    unittest.main()
