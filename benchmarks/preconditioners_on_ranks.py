@@ -7,7 +7,7 @@
 A cube of N x N x N points (24), a bar of 8 x 8 x 240 points and a plate of 120 x 120 with a slot half
 through that no bond crosses; each with three layers that are held at one end and three that are drawn
 away at the other, one static step to 1e-8. Or shipped cases, some of them coarser or shorter: triangles,
-tetrahedra, states, pressures, planes of symmetry, periods and rigid sets.
+tetrahedra, pressures, planes of symmetry, periods and rigid sets.
 """
 
 import argparse
@@ -57,7 +57,6 @@ def bodies(side):
 SHIPPED = {
     "cpd/square_hole": ("loading.steps=10",),
     "cpd/cube": ("loading.steps=5", "lattice.spacing=0.1", "material.c3=4e4"),
-    "lps/hole": ("lattice.spacing=0.03125",),
     "pressure/ring": (),
     "plate_with_hole/quarter": ("loading.steps=1",),
     "periodic/holes": ("loading.steps=1",),
