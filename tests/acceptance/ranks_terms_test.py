@@ -69,7 +69,7 @@ class Terms(Comparison):
     def goes_on(self, text, *of, first=2, then=3, after=2):
         """A run that is stopped on some ranks goes on with others."""
         options = settings(*of)
-        whole = self.results(1, text, *options).rename(self.folder / f"whole_{first}_{len(of)}")
+        whole = self.results(1, text, *options).rename(self.folder / f"whole_{len(list(self.folder.iterdir()))}")
         run, output = self.start(first, text, *options, "--stop-after", str(after))
         self.assertEqual(run.returncode, 130, run.stderr)
         again = resume(then, output)
