@@ -4,9 +4,8 @@ pressures and foundations of every model, at rest and in motion."""
 import unittest
 
 import h5py
-import numpy
 
-from tests.acceptance.on_ranks import CUBE, PLATE, SOLVER, SQUARE, STATES, STORED, Comparison, resume, rows
+from tests.acceptance.on_ranks import PLATE, SOLVER, STATES, STORED, Comparison, resume, rows
 
 LINEAR = PLATE.replace('model = "bond"', 'kinematics = "linear"')
 # A notched strip without any symmetry, whose points fail in a row before the notch.
@@ -17,6 +16,9 @@ spacing = 0.05
 thickness = 0.01
 shape = [{ add = "box", min = [0, 0], max = [1.2, 1] }, { subtract = "box", min = [-1, 0.5], max = [0.4, 0.6] }]
 layer = [{ name = "bottom", side = "y-" }, { name = "top", side = "y+" }]
+[[set]]                    # what were torn through would bear round-off alone
+name = "whole"
+where = "x > 0.9"
 [material]
 kinematics = "linear"
 youngs_modulus = 1e9
@@ -24,7 +26,7 @@ density = 1000
 [material.damage]
 law = "energy_density"
 fracture_energy = 100
-no_fail = ["bottom", "top"]
+no_fail = ["bottom", "top", "whole"]
 [[support]]
 set = "bottom"
 displacement = [0, 0]
@@ -64,10 +66,10 @@ class Terms(Comparison):
         with h5py.File(output / "results.h5") as file:
             return [int((file[f"steps/{step}/damage"][()] == 1.0).sum()) for step in file["steps"]]
 
-    def goes_on(self, text, *of, first=2, then=3, after=2, share=1e-9):
+    def goes_on(self, text, *of, first=2, then=3, after=2):
         """A run that is stopped on some ranks goes on with others."""
         options = settings(*of)
-        whole = self.results(1, text, *options).rename(self.folder / f"whole_{first}")
+        whole = self.results(1, text, *options).rename(self.folder / f"whole_{len(list(self.folder.iterdir()))}")
         run, output = self.start(first, text, *options, "--stop-after", str(after))
         self.assertEqual(run.returncode, 130, run.stderr)
         again = resume(then, output)
@@ -83,9 +85,6 @@ class LinearKinematics(Terms):
                               'solver.preconditioner="rigid_pieces"',
                               'region=[{set="corner", material={youngs_modulus=3e9}}]')  # fmt: skip
 
-    def test_planes_of_symmetry_and_periods(self):
-        self.compare_settings(LINEAR, 'symmetry=[{axis="x", at=1}]', ranks=(2, 3), solver=STORED)
-
     def test_ranks_without_a_point(self):
         bar = """
             dimension = 1
@@ -99,7 +98,7 @@ class LinearKinematics(Terms):
             density = 3.0
             [material.damage]
             law = "energy_density"
-            fracture_energy = 4e-4
+            fracture_energy = 4e-5
             [[initial]]
             velocity = ["0.12*x*x + 0.1"]
             [solver]
@@ -117,12 +116,6 @@ class LinearKinematics(Terms):
         self.assertEqual(count[0], 0)
         self.assertGreater(count[-1], 10)
         self.assertGreater(len({step for step, _, _ in self.broken(one)}), 0)
-
-    def test_points_of_several_materials_that_fail(self):
-        one = self.compare_settings(
-            PULLED, 'set=[{name="right", where="x > 0.8"}]',
-            'region=[{set="right", material={youngs_modulus=2e9, damage={law="energy_density", fracture_energy=150}}}]')  # fmt: skip
-        self.assertGreater(self.failed(one)[-1], 10)
 
     def test_points_that_fail_in_relaxation(self):
         one = self.compare_settings(PULLED, 'solver.mode="relaxation"')
@@ -153,6 +146,9 @@ layer = [{ name = "bottom", side = "y-" }, { name = "top", side = "y+" }]
 [[crack]]
 from = [0, 0.9]
 to = [0.22, 0.93]
+[[set]]
+name = "whole"
+where = "x > 0.9"
 [quadrature]
 form = "energy"
 [material]
@@ -164,7 +160,7 @@ density = 1000
 [material.damage]
 law = "critical_stretch"
 critical = 0.03
-no_fail = ["bottom", "top"]
+no_fail = ["bottom", "top", "whole"]
 [[support]]
 set = "bottom"
 displacement = [0, 0]
@@ -213,12 +209,6 @@ class States(Terms):
         self.compare_torn(TORN_IN_MOTION, ranks=(2, 3))
         self.compare_torn(TORN_IN_MOTION, *NEWMARK)
 
-    def test_several_materials(self):
-        upper = 'damage={law="critical_stretch", critical=0.04}, scatter=[{of="strength", distribution="weibull", ' \
-                'weibull_modulus=8, correlation_length=0.2, seed=3}]'  # fmt: skip
-        self.compare_torn(TORN_AT_REST, 'solver.mode="adaptive"', 'set=[{name="upper", where="y > 0.9"}]',
-                          f'region=[{{set="upper", material={{youngs_modulus=2e9, poisson_ratio=0.3, {upper}}}}}]')  # fmt: skip
-
     def test_tears_that_go_on_with_another_number_of_ranks(self):
         for first, then in ((2, 3), (3, 1), (1, 2)):
             output = self.goes_on(TORN_AT_REST, 'solver.mode="relaxation"', first=first, then=then, after=4)
@@ -242,8 +232,6 @@ every = 6
 [[initial]]
 velocity = ["0.1", "0.2*x"]
 """
-TRIANGLES = SQUARE.replace('["0.4*load", "0.1*load"]', '["0.2*load", "0.1*load"]')
-TRIANGLES_IN_MOTION = SQUARE.replace('["0.4*load", "0.1*load"]', '["0.1*sin(2*t)", "free"]').replace("[loading]\nsteps = 2\n", "")
 
 
 def in_motion(plate):
@@ -257,13 +245,9 @@ def under(load, pressure, stiffness, with_pressures=True):
 
 
 class PressuresAndFoundations(Terms):
-    def test_of_states_and_triangles_at_rest(self):
+    def test_of_states_at_rest(self):
         one = self.compare_settings(STATES, HOLE, *under("load", "2e7", "1e7"), ranks=(2, 3), solver=STORED)
         self.assertNotEqual(float(rows(one, "history.csv")[-1]["reaction_x:soil"]), 0.0)
-        sides = ('load=[{side="y+", pressure="0.1*load"}]', 'set=[{name="corner", where="x > 0.7 && y > 0.3"}]', *under("load", "", "0.1", False))
-        self.compare_settings(TRIANGLES, *sides, ranks=(2, 3), solver=STORED)
-        self.compare_settings(CUBE, 'load=[{side="y+", pressure="0.1*load"}, {side="z-", pressure="0.2*load"}]',
-                              'foundation=[{name="soil", side="y-", modulus=[1, 1, 1]}]', solver=STORED)  # fmt: skip
 
     def test_of_bonds_and_states_in_motion(self):
         for plate in (PLATE, STATES):
@@ -272,17 +256,11 @@ class PressuresAndFoundations(Terms):
             self.assertNotEqual(float(rows(one, "history.csv")[-1]["reaction_x:soil"]), 0.0)
             self.compare_settings(moving, HOLE, *under("(t/1e-3)", "2e5", "1e7"), *NEWMARK, solver="")
 
-    def test_of_triangles_in_motion(self):
-        sides = ('load=[{side="y+", pressure="0.1*t"}]', 'set=[{name="corner", where="x > 0.7 && y > 0.3"}]', *under("t", "", "0.1", False))
-        moving = TRIANGLES_IN_MOTION.replace("[material]\n", "[material]\ndensity = 0.002\n") + MOVING.replace("END", "1.0")
-        self.compare_settings(moving, *sides, ranks=(2, 3), solver="")
-        self.compare_settings(moving, *sides, *NEWMARK, "dynamics.time_step=0.05", solver="")
-
     def test_bonds_that_break_under_a_pressure(self):
         breaking = in_motion(PLATE), HOLE, *under("(t/1e-3)", "4e7", "1e7"), 'material.damage={law="critical_stretch", critical=0.02}'
         one = self.compare_settings(*breaking, solver="")
         self.assertGreater(len(self.broken(one)), 20)
-        self.goes_on(*breaking, "dynamics.history_every=1", "output.every=7", after=20)
+        self.goes_on(*breaking, "dynamics.history_every=1", "output.every=7", after=5)
 
 
 GMRES = SOLVER.replace('"pcg"', '"gmres"').replace('tangent = "matrix_free"\n', "").replace("1e-9", "1e-12")
