@@ -176,7 +176,9 @@ class States(Folder):
                 self.assertGreaterEqual(len(self.judge(folder, text, spared)), least)
                 rows = columns(folder)
                 self.assertGreater(rows["dissipated_energy"][-1], 0)
-                self.assertTrue((numpy.diff(rows["dissipated_energy"]) >= 0).all())
+                # Where a bond breaks against the dilatation nothing is dissipated, but for the round-off of two sums.
+                round_off = 1e-15 * rows["dissipated_energy"][-1]
+                self.assertTrue((numpy.diff(rows["dissipated_energy"]) >= -round_off).all())
                 total = rows["stored_energy"] + rows["dissipated_energy"] + rows["drained_energy"] + rows["balance_error"]
                 work = rows["external_work"] + rows["numerical_work"]
                 numpy.testing.assert_allclose(total, work, rtol=1e-9, atol=1e-12)
