@@ -129,10 +129,6 @@ Evaluation Assembler::commit_forces(std::span<const double> displacement, Histor
   return of_all(found, gradient);
 }
 
-void Assembler::refuse_on_ranks(const char* what) const {
-  if (sharing_) throw std::logic_error(std::string("Assembler has no ranks yet in ") + what);
-}
-
 void Assembler::follower_force(const StateView& at, std::span<double> force) {
   std::fill(force.begin(), force.end(), 0.0);
   for_each_term([&](TermPasses& term, Write) { term.follower_force(at, force); });

@@ -100,7 +100,6 @@ class Assembler : public Energy {
   [[nodiscard]] double seconds_spent() const { return seconds_; }  ///< wall time of all calls [s]
 
  private:
-  void refuse_on_ranks(const char* what) const;
   /// What a pass of a term has found, of a part with the energy of owned points alone.
   [[nodiscard]] Evaluation of_part(TermPasses& term, const StateView& at, Evaluation found);
   /// Of the whole body, and forces of owned points, from what passes over the part have found.

@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <cstring>
 #include <exception>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -71,9 +72,12 @@ void add_settings(CLI::App& command, CommandLine& line) {
       ->allow_extra_args(false);
 }
 
+/// Of whole numbers; CLI11's own PositiveNumber prints the largest double as what is allowed.
+CLI::Range at_least_one() { return {1, std::numeric_limits<int>::max()}; }
+
 void add_threads(CLI::App& command, CommandLine& line) {
   command.add_option("--threads", line.threads, "number of threads (default: all processors)")
-      ->check(CLI::PositiveNumber);
+      ->check(at_least_one());
 }
 
 void add_case_options(CLI::App& command, CommandLine& line) {
@@ -88,11 +92,11 @@ void add_run_options(CLI::App& command, CommandLine& line) {
       .add_option("--stop-after", line.steps,
                   "stop after so many accepted steps as if interrupted; resume goes on")
       ->type_name("STEPS")
-      ->check(CLI::PositiveNumber);
+      ->check(at_least_one());
   command
       .add_option("--ranks", line.ranks,
                   "run on so many ranks, which mpirun starts (docs/cluster.md)")
-      ->check(CLI::PositiveNumber);
+      ->check(at_least_one());
   command.add_flag("--no-plots", line.no_plots,
                    "draw no pictures at the end (./peristat draws them)");
   command.add_flag("--quiet", line.quiet, "print nothing but problems");

@@ -127,7 +127,8 @@ std::vector<std::int64_t> labels_over_ranks(const Sharing& sharing, int dimensio
   }
   std::vector<std::int64_t> labels(joined.size());
   for (std::size_t i = 0; i < joined.size(); ++i) {
-    labels[i] = std::int64_t(least[std::size_t(joined[i])]);
+    const double label = least[std::size_t(joined[i])];
+    labels[i] = label == none ? -1 : std::int64_t(label);
   }
   return labels;
 }

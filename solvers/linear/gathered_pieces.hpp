@@ -49,7 +49,8 @@ class GatheredPieces {
 };
 
 /// A number for each point here that all points have which links join, on whichever rank, and no
-/// others; a handle, which nothing joins, has one of its own. All ranks make the same call.
+/// others; a handle, which nothing joins, has one of its own, and what no point here stands for -1.
+/// All ranks make the same call.
 /// @param joined of each point and handle here, the one that stands for all that links join with it
 ///        here
 [[nodiscard]] std::vector<std::int64_t> labels_over_ranks(const Sharing& sharing, int dimension,

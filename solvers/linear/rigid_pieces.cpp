@@ -97,9 +97,11 @@ Index root(std::vector<Index>& parent, Index i) {
 
 struct RigidPieces::Levels {
   const FreeDofs* free = nullptr;
-  const Sharing* sharing = nullptr;  // of a part of a body
-  std::vector<Index> with_ghosts;    // of a part: equations, with those of ghosts on their ranks
-  const Index* equation = nullptr;   // per degree of freedom: none, or one of this rank's
+  const Sharing* sharing = nullptr;         // of a part of a body
+  Index first_ghost = 0, first_handle = 0;  // of a part
+  bool has_handles = false;                 // of a part, on this rank
+  std::vector<Index> with_ghosts;   // of a part: equations, with those of ghosts on their ranks
+  const Index* equation = nullptr;  // per degree of freedom: none, or one of this rank's
   GatheredPieces gathered_pieces;
   BlockJacobi fine{BlockJacobi::Blocks::points};
   Eigen::CholmodSupernodalLLT<Matrix, Eigen::Lower> coarse;
@@ -124,12 +126,12 @@ struct RigidPieces::Levels {
   [[nodiscard]] Index owned(Index points) const { return sharing ? sharing->owned() : points; }
   /// Of a part, whether a point is a ghost: its rank has what it is coupled with, too.
   [[nodiscard]] bool is_ghost(Index i) const {
-    return sharing && i >= sharing->owned() && i < sharing->count();
+    return sharing && i >= first_ghost && i < first_handle;
   }
   /// Whether equations of a point, or of a handle of constraints, are this rank's.
   [[nodiscard]] bool has_row(Index i) const {
-    if (!sharing || i < sharing->owned()) return true;
-    return i >= sharing->count() && sharing->ranks().rank() == 0;
+    if (!sharing || i < first_ghost) return true;
+    return has_handles && i >= first_handle;
   }
   [[nodiscard]] Index pieces_here() const { return static_cast<Index>(offset.size()) - 1; }
 
@@ -137,6 +139,9 @@ struct RigidPieces::Levels {
   void take_part() {
     equation = free->equation.data();
     if (!sharing) return;
+    first_ghost = sharing->owned();
+    first_handle = sharing->count();
+    has_handles = sharing->ranks().rank() == 0;
     std::vector<double> is_free(free->equation.size());
     for (std::size_t k = 0; k < is_free.size(); ++k) {
       is_free[k] = free->equation[k] == FreeDofs::none ? 0.0 : 1.0;

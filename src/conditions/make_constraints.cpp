@@ -33,6 +33,13 @@ std::array<Coordinates, 3> basis_of(const Coordinates& normal, int dimension) {
   return {normal, first, cross(normal, first)};
 }
 
+/// Point of a set of the whole body.
+struct Member {
+  Coordinates place{};
+  double volume = 0.0;
+  std::optional<Index> here{};  ///< the point, on ranks that have it
+};
+
 class Maker {
  public:
   Maker(const Points& points, const ConstraintSpecification& of,
@@ -179,7 +186,7 @@ class Maker {
     for (const Index member : set.members) {
       hold(member, table + ".set", "the rigid set " + spec.set);
     }
-    set.centre = spec.centre ? *spec.centre : centre_of(set.members);
+    set.centre = spec.centre ? *spec.centre : centre_of(members_of_all(set.members));
     set.size = size_of(set, table + ".set", spec.set);
     refuse_cut_sets(spec, set, table);
     set.translation = made_.constraints.add_handle(set.centre);
@@ -201,20 +208,13 @@ class Maker {
     made_.constraints.follow(std::move(set));
   }
 
-  [[nodiscard]] Coordinates centre_of(const std::vector<Index>& members) const {
+  /// To the last bit that of one rank, so that a run may go on with other numbers of them.
+  [[nodiscard]] static Coordinates centre_of(const std::vector<Member>& members) {
     Coordinates centre{};
     double volume = 0.0;
-    for (const Index member : members) {
-      if (!points_.owns(member)) continue;
-      const double of_point = points_.volume[std::size_t(member)];
-      centre = plus<3>(centre, scaled<3>(of_point, points_.position(member)));
-      volume += of_point;
-    }
-    if (ranks_) {
-      const std::vector<double> all =
-          ranks_->sum(std::vector<double>{centre[0], centre[1], centre[2], volume});
-      centre = {all[0], all[1], all[2]};
-      volume = all[3];
+    for (const Member& member : members) {
+      centre = plus<3>(centre, scaled<3>(member.volume, member.place));
+      volume += member.volume;
     }
     return scaled<3>(1.0 / volume, centre);
   }
@@ -278,31 +278,31 @@ class Maker {
         double(std::ranges::count_if(members, [&](Index member) { return points_.owns(member); })));
   }
 
-  struct Member {
-    Coordinates place{};
-    std::optional<Index> here{};  ///< the point, on ranks that have it
-  };
-
   /// Points of a set of the whole body, alike on all ranks and in the order of one.
   [[nodiscard]] std::vector<Member> members_of_all(const std::vector<Index>& members) const {
     std::vector<Member> all;
     if (!ranks_) {
-      for (const Index member : members) all.push_back({points_.position(member), member});
+      for (const Index member : members) {
+        all.push_back({points_.position(member), points_.volume[std::size_t(member)], member});
+      }
       return all;
     }
-    std::vector<double> told;  // numbers and places
+    std::vector<double> told;  // numbers, places and volumes
     for (const Index member : members) {
       if (!points_.owns(member)) continue;
       const Coordinates at = points_.position(member);
       told.push_back(double(numbers_.number_of(member)));
       told.insert(told.end(), at.begin(), at.end());
+      told.push_back(points_.volume[std::size_t(member)]);
     }
     told = all_together(*ranks_, told);
-    std::map<GlobalIndex, Coordinates> place;
-    for (std::size_t k = 0; k < told.size(); k += 4) {
-      place[GlobalIndex(told[k])] = {told[k + 1], told[k + 2], told[k + 3]};
+    std::map<GlobalIndex, Member> by_number;
+    for (std::size_t k = 0; k < told.size(); k += 5) {
+      const auto number = GlobalIndex(told[k]);
+      by_number[number] = {
+          {told[k + 1], told[k + 2], told[k + 3]}, told[k + 4], numbers_.find(number)};
     }
-    for (const auto& [number, at] : place) all.push_back({at, numbers_.find(number)});
+    for (const auto& [number, member] : by_number) all.push_back(member);
     return all;
   }
 
@@ -316,14 +316,14 @@ class Maker {
     for (const Index member : members) {
       hold(member, table + ".set", "the roller of set " + spec.set);
     }
+    const std::vector<Member> all = members_of_all(members);
     Index common = -1;
     const bool is_free = spec.displacement == "free";
     if (is_free) {
-      common = made_.constraints.add_handle(centre_of(members));
+      common = made_.constraints.add_handle(centre_of(all));
       leave_unused(common, 1);
       restraint.handles.push_back(common);
     }
-    const std::vector<Member> all = members_of_all(members);
     for (const Member& member : all) {
       const Index own = made_.constraints.add_handle(member.place);
       if (!is_free) {

@@ -193,7 +193,20 @@ Coordinates shift_of(const Lattice& lattice, const LatticeFrame& frame, const Ce
   throw InputError("radius", number_text(radius), allowed);
 }
 
+/// Largest distances of points and ghosts from their places, added up [m]; 0 where all stand on
+/// them, and the lattice tells exactly who is within a radius.
+double off_places(const Lattice& lattice, const LatticeFrame& frame, const Occupation& occupation) {
+  const double largest_shift = 2.0 * lattice.perturbation * frame.half_diagonal();
+  const double off = occupation.farthest_off() + largest_shift;
+  return off > grid_tolerance * frame.half_diagonal() ? off : 0.0;
+}
+
 }  // namespace
+
+double reach_beyond_balls(const Lattice& lattice, const Points& points) {
+  const LatticeFrame frame = frame_of(lattice);
+  return off_places(lattice, frame, {frame, points});
+}
 
 GhostSites ghost_sites(const Lattice& lattice, const Points& points, double radius) {
   // A ball of so many spacings has more places than points can be numbered.
@@ -202,11 +215,8 @@ GhostSites ghost_sites(const Lattice& lattice, const Points& points, double radi
     refuse(radius, "must be positive, and at most 10000 spacings");
   const LatticeFrame frame = frame_of(lattice);
   const Occupation occupation(frame, points);
-  const double largest_shift = 2.0 * lattice.perturbation * frame.half_diagonal();
-  const double off = occupation.farthest_off() + largest_shift;
-  // Of points on their places the lattice tells exactly who is within the radius.
-  const bool are_off = off > grid_tolerance * frame.half_diagonal();
-  const double reach = radius + (are_off ? off : 0.0);
+  const double off = off_places(lattice, frame, occupation);
+  const double reach = radius + off;
   const std::vector<RowOfBall> ball = occupation.rows_of_ball(reach);
   const std::int64_t most = std::numeric_limits<Index>::max() - std::int64_t(points.count());
   GhostSites ghosts;
@@ -216,7 +226,7 @@ GhostSites ghost_sites(const Lattice& lattice, const Points& points, double radi
       const Coordinates shift = shift_of(lattice, frame, cell);
       for (std::size_t c = 0; c < 3; ++c) place[c] += shift[c];
     }
-    if (are_off && !occupation.has_point_near(cell, place, radius, ball)) return;
+    if (off > 0.0 && !occupation.has_point_near(cell, place, radius, ball)) return;
     if (std::int64_t(ghosts.cell.size()) == most)
       refuse(radius, "there are more points and places around them than can be numbered");
     ghosts.cell.push_back(cell);

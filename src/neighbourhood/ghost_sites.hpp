@@ -28,4 +28,10 @@ struct GhostSites {
 /// @throws InputError ("radius") if it can't be used or if points and ghosts can't be numbered
 [[nodiscard]] GhostSites ghost_sites(const Lattice& lattice, const Points& points, double radius);
 
+/// How much farther than the balls whose ghost sites are wanted the points of a part of a body must
+/// reach, so that no place beyond them that holds a point can have a ghost in such a ball: the
+/// largest distances of points and of ghosts from their places, added up [m].
+/// @param points of the body, or of one of its parts: then the largest of all parts counts
+[[nodiscard]] double reach_beyond_balls(const Lattice& lattice, const Points& points);
+
 }  // namespace peristat

@@ -386,7 +386,8 @@ struct BothCollocated : Both {
     Part slab = make_slab(body.lattice, ranks);
     const BondSetting setting = bond_setting(of, slab.points);
     const double reach =
-        reach_of_bonds(slab.points, of.surface_correction, setting, ranks, bonds_of_part(of));
+        reach_of_bonds(slab.points, of.surface_correction, setting, ranks, bonds_of_part(of)) +
+        ranks.max(reach_beyond_balls(body.lattice, slab.points));
     Part part = distribute(std::move(slab), of.horizon, reach, ranks, 1);
     part.points.ghosts = ghost_sites(body.lattice, part.points, of.horizon).reference;
     return make_body(std::move(part), of, ranks, 1);
@@ -396,7 +397,7 @@ struct BothCollocated : Both {
 };
 
 TEST(TermsOfPart, collocation_is_that_of_the_whole_body) {
-  for (const double perturbation : {0.0, 0.1}) {
+  for (const double perturbation : {0.0, 0.1, 0.3}) {
     SCOPED_TRACE("perturbation " + std::to_string(perturbation));
     RanksBody body = thick_plate();
     body.lattice.perturbation = perturbation;

@@ -54,7 +54,9 @@ class PointPasses : public TermPasses {
     }
     forces_->find_forces(own(displacement), force_);
     write(force_, -1.0, gradient, how);
-    return {};
+    Evaluation found;
+    found.degenerate = !std::isfinite(std::reduce(force_.begin(), force_.end()));
+    return found;
   }
 
   [[nodiscard]] bool shares_energy() const override { return true; }

@@ -57,7 +57,7 @@ class StatePasses : public TermPasses {
     // Where a bond was stretched against the dilatation the energy may rise as it breaks; that is
     // no dissipation, and has to come from somewhere else.
     const double mine = dissipated_of(displacement, remembered, before);
-    const double dissipated = sum_of_all(sharing_, mine) > 0.0 ? mine : 0.0;
+    const double dissipated = sum_of_all(sharing_, mine) < 0.0 ? 0.0 : mine;  // keeps NaN
     found.released = dissipated - (dissipated_by_law(history) - dissipated_by_law(before));
     return found;
   }

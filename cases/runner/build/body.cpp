@@ -8,6 +8,7 @@
 
 #include "cases/runner/build/find_boundary.hpp"
 #include "solvers/linear/available_memory.hpp"
+#include "solvers/ranks/agree_on_kinds.hpp"
 #include "solvers/study/bond_materials.hpp"
 #include "solvers/study/linear_model.hpp"
 #include "src/connectivity/free_motion.hpp"
@@ -173,8 +174,11 @@ std::optional<Model> make_elastic_stand_in(const Case& from, const Body& body, i
     BondSetting setting = body.setting;
     setting.horizon = from.solver.elastic_horizon_ratio * body.points.spacing;
     Bonds bonds = make_bonds(body.points, from.surface_correction, setting, threads);
-    if (const auto& owned = body.points.owned) {
-      bonds.remove_if([&](Index i, Offset) { return i >= *owned; });  // between ghosts
+    if (body.part) {
+      bonds.remove_if([&](Index i, Offset bond) {  // between ghosts
+        return !body.points.owns(i) && !body.points.owns(bonds.partner[std::size_t(bond)]);
+      });
+      agree_on_kinds(bonds, body.points, body.part->numbered(), body.part->ranks());
     }
     static_cast<void>(cut_bonds(bonds, body.points, from.cracks));
     const Holding holding =

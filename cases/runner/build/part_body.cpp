@@ -198,13 +198,15 @@ std::unique_ptr<const Body> make_part_body(const Case& from, const Communicator&
     const BondSetting setting = bond_setting(from, slab.points);
     double reach =
         reach_of_bonds(slab.points, from.surface_correction, setting, ranks, bonds_of_part(from));
+    const auto* const lattice = std::get_if<Lattice>(&from.body);
+    const bool has_ghost_sites = lattice != nullptr && from.is_collocated();
+    if (has_ghost_sites) reach += ranks.max(reach_beyond_balls(*lattice, slab.points));
     if (from.has_pressures()) reach = std::max(reach, reach_of_pressures(slab.points));
     std::vector<ImageKind> images = kinds_of_images(from, slab.points, ranks);
     Part part =
         distribute(std::move(slab), setting.horizon, reach, ranks, threads, std::move(images));
     add_sets(from, ranks, part);
-    const auto* const lattice = std::get_if<Lattice>(&from.body);
-    if (lattice != nullptr && from.is_collocated()) {
+    if (has_ghost_sites) {
       // Those that neighbours of ghosts have are wrong, and nobody asks for them.
       part.points.ghosts = ghost_sites(*lattice, part.points, from.horizon).reference;
     }

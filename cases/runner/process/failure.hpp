@@ -17,7 +17,8 @@ struct Failure {
 /// and a bug where it is none of these.
 [[nodiscard]] Failure current_failure();
 
-/// Gives rank 0 the time to tell what all ranks have met: it ends the others while they wait here.
+/// Lets the first of the ranks that have met a failure tell it: it ends the others while they wait
+/// here, rank after rank.
 void give_way_to_first(const Communicator& ranks);
 
 }  // namespace peristat
