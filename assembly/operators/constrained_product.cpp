@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "assembly/operators/constrained_row_sums.hpp"
 #include "assembly/operators/convolved_tangent.hpp"
 #include "src/measures/small_algebra.hpp"
 
@@ -22,26 +23,6 @@ Tensor transposed(const Tensor& block) {
   Tensor result{};
   for (std::size_t k = 0; k < 9; ++k) result[k / 3][k % 3] = block[k % 3][k / 3];
   return result;
-}
-
-/// Absolute entries of a row of J, added up: of one component of a point.
-double row_sum(const std::vector<Dependence>& masters, std::size_t component, std::size_t d) {
-  double sum = 0.0;
-  for (const Dependence& on : masters) {
-    for (std::size_t c = 0; c < d; ++c) sum += std::abs(on.block[component][c]);
-  }
-  return sum;
-}
-
-/// Shares out the row sums of K that a point has among its masters by |J|.
-void add_row_sums(const std::vector<Dependence>& masters, std::span<const double> of_point,
-                  std::size_t d, std::span<double> sums) {
-  for (const Dependence& on : masters) {
-    for (std::size_t k = 0; k < d * d; ++k) {
-      sums[std::size_t(on.master) * d + k % d] +=
-          std::abs(on.block[k / d][k % d]) * of_point[k / d];
-    }
-  }
 }
 
 }  // namespace
@@ -206,55 +187,8 @@ void ConstrainedProduct::for_each_row(const RowVisitor&) const {
   throw std::logic_error("a tangent of products alone has no rows to visit");
 }
 
-std::vector<double> ConstrainedProduct::row_sums_of_shared() const {
-  std::vector<double> of_rows;
-  for (const auto& follower : constraints_.shared_followers()) {
-    for (std::size_t c = 0; c < 3; ++c) {
-      of_rows.push_back(row_sum(follower.masters, c, std::size_t(dimension)));
-    }
-  }
-  if (sharing_) add_up(sharing_->ranks(), of_rows);
-  return of_rows;
-}
-
-void ConstrainedProduct::fold_row_sums_of_shared(std::vector<double> of_shared,
-                                                 std::span<double> sums) const {
-  if (sharing_) add_up(sharing_->ranks(), of_shared);
-  for (std::size_t k = 0; k < constraints_.shared_followers().size(); ++k) {
-    add_row_sums(constraints_.shared_followers()[k].masters, std::span(of_shared).subspan(3 * k, 3),
-                 std::size_t(dimension), sums);
-  }
-}
-
 void ConstrainedProduct::absolute_row_sums(std::span<double> sums) const {
-  std::ranges::fill(sums, 0.0);
-  whole_->absolute_row_sums(sums.first(points_.reference.size()));
-  const auto d = std::size_t(dimension);
-  const std::vector<double> rows_of_shared = row_sums_of_shared();
-  std::vector<double> of_shared(rows_of_shared.size(), 0.0);
-  double most = 1.0;
-  for (Index i = 0; i < points_.count(); ++i) {
-    if (!points_.owns(i)) std::fill_n(sums.begin() + std::ptrdiff_t(i) * dimension, d, 0.0);
-    if (constraints_.stands_alone(i)) continue;
-    const std::vector<Dependence> masters = constraints_.dependences(i, displacement_);
-    const auto shared = constraints_.shared_dependence(i);
-    std::array<double, 3> of_point{};
-    for (std::size_t c = 0; c < d; ++c) {
-      double row = row_sum(masters, c, d);
-      of_point[c] = std::exchange(sums[std::size_t(i) * d + c], 0.0);
-      if (shared) {
-        const std::size_t at = 3 * shared->follower + c;
-        row += std::abs(shared->factor[c]) * rows_of_shared[at];
-        of_shared[at] += std::abs(shared->factor[c]) * of_point[c];
-      }
-      most = std::max(most, row);
-    }
-    add_row_sums(masters, of_point, d, sums);
-  }
-  fold_row_sums_of_shared(std::move(of_shared), sums);
-  if (sharing_) most = sharing_->ranks().max(most);
-  sum_handles(sums);
-  for (double& sum : sums) sum *= most;
+  bound_constrained_row_sums(*whole_, points_, constraints_, displacement_, sharing_, sums);
 }
 
 std::unique_ptr<TangentOperator> make_convolved_tangent(Energy& energy,

@@ -31,7 +31,7 @@ struct ConstrainedProduct final : TangentOperator {
   [[nodiscard]] bool has_rows() const override { return whole_->has_rows(); }
   /// @throws std::logic_error
   void for_each_row(const RowVisitor& visit) const override;
-  /// Numbers that are not less: |J|^T |K| |J| of ones.
+  /// Numbers that are not less: see bound_constrained_row_sums.
   void absolute_row_sums(std::span<double> sums) const override;
   [[nodiscard]] bool is_symmetric() const override { return whole_->is_symmetric(); }
 
@@ -52,10 +52,6 @@ struct ConstrainedProduct final : TangentOperator {
   void add_shared_blocks(const std::vector<SharedBlock>& mine);
   /// Blocks of K between two points that follow the same.
   void add_blocks_between_followers(std::vector<SharedBlock>& shared);
-  /// Of each component of the shared followers, sums of |J| over masters of all ranks.
-  [[nodiscard]] std::vector<double> row_sums_of_shared() const;
-  /// Shares out row sums of K that shared followers have, of which each rank has a share.
-  void fold_row_sums_of_shared(std::vector<double> of_shared, std::span<double> sums) const;
   /// Replaces entries of handles, of which each rank has a share, by their sums.
   void sum_handles(std::span<double> of_dofs) const;
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "assembly/operators/constrained_row_sums.hpp"
 #include "src/core/threads.hpp"
 
 namespace peristat {
@@ -170,6 +171,12 @@ void ConstrainedTangent::multiply(std::span<const double> v, std::span<double> r
 }
 
 void ConstrainedTangent::absolute_row_sums(std::span<double> sums) const {
+  if (constraints_.couples_points()) {  // as of a part, whose rows are not all here
+    std::vector<double> displacement(position);
+    for (std::size_t dof = 0; dof < position.size(); ++dof) displacement[dof] -= reference_[dof];
+    bound_constrained_row_sums(whole_, points_, constraints_, displacement, sharing_, sums);
+    return;
+  }
   Tangent::absolute_row_sums(sums);
   if (sharing_) add_up(sharing_->ranks(), sums.subspan(points_.reference.size()));
 }

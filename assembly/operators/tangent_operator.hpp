@@ -49,6 +49,9 @@ struct TangentOperator {
   /// largest eigenvalue, per degree of freedom.
   virtual void absolute_row_sums(std::span<double> sums) const;
 
+  /// result_i = sum_j |K_ij| weight_j, of a tangent with rows to visit.
+  void multiply_absolute(std::span<const double> weight, std::span<double> result) const;
+
   /// On a lattice, of a tangent that has no rows to visit; empty for others.
   [[nodiscard]] virtual LatticeStencil stencil() const { return {}; }
 

@@ -352,26 +352,12 @@ void refuse_constraints_without_ranks(const BodySpecification& of) {
   const auto refuse_with = [](const std::string& key, const std::string& what) {
     throw InputError(key, "", "is not for more than one rank yet together with " + what);
   };
-  if (!constraints.rollers.empty() || !constraints.linear.empty()) {
-    const std::string key = constraints.rollers.empty() ? "linear" : "rollers";
-    if (has_damage(of)) refuse_with(key, "damage");
-    if (of.end_time) refuse_with(key, "motions");
-  }
   if (constraints.symmetries.empty() && constraints.periods.empty()) return;
   const std::string key = constraints.periods.empty() ? "symmetries" : "periods";
   if (of.has_states()) refuse_with(key, "model \"lps\"");
   // Between two images there are bonds that triangles stand on, and whose history nobody tells.
   const bool has_bonds_alone = of.material.model == MaterialModel::bond;
   if (!has_bonds_alone && has_damage(of)) refuse_with(key, "damage of models but \"bond\"");
-}
-
-/// Laws that differ from point to point are tested of bonds at finite deformation alone, and what
-/// is collocated without damage.
-template <class Refuse>
-void refuse_damage_without_ranks(const BodySpecification& of, const Refuse& refuse) {
-  if (!has_damage(of)) return;
-  const bool are_bonds = of.material.model == MaterialModel::bond && !of.is_linear();
-  if (of.is_collocated() || (!are_bonds && !of.is_uniform())) refuse("material.damage");
 }
 
 /// What the assembler of a part is made for; tables of cases are refused before.
@@ -386,17 +372,10 @@ void refuse_without_ranks(const BodySpecification& of) {
   };
   const MaterialSpecification& material = of.material;
   if (is_polynomial(material.model)) refuse("material.model");
-  const bool rests_free = !of.end_time && of.constraints.none();
-  if (of.form == SolidForm::printed || (of.is_collocated() && !rests_free)) refuse("form");
-  if (of.is_linear() && !of.constraints.none()) refuse("material.kinematics");
-  refuse_damage_without_ranks(of, refuse);
+  if (of.form == SolidForm::printed) refuse("form");
   if (of.force_operator != ForceOperator::bonds) refuse("force_operator");
   if (!of.controls.empty()) refuse("controls");
   refuse_constraints_without_ranks(of);
-  if (material.model == MaterialModel::cpd) {
-    if (!of.foundations.empty()) refuse("foundations");
-    if (of.has_pressures()) refuse("loads");
-  }
   for (std::size_t k = 0; k < of.loads.size(); ++k) {
     const LoadSpecification::Kind kind = of.loads[k].kind;
     if (kind == LoadSpecification::Kind::stress && !of.is_collocated()) {

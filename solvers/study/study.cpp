@@ -74,15 +74,8 @@ void refuse_modes_of_failing_points(const Body& body, const StudyOptions& option
 }
 
 /// Of the modes some sum over ranks.
-void refuse_modes_without_ranks(const Body& body, const StudyOptions& options) {
+void refuse_modes_without_ranks(const StudyOptions& options) {
   const Mode mode = options.loading.mode;
-  const ConstraintSpecification& constraints = body.specification.constraints;
-  const bool slides = !constraints.rollers.empty() || !constraints.linear.empty();
-  if (mode == Mode::relaxation && slides) {
-    throw InputError("loading.mode", std::string(mode.name),
-                     "is not for more than one rank together with rollers and linear constraints; "
-                     "take newton");
-  }
   if (mode != Mode::path && mode != Mode::arc_length) return;
   throw InputError("loading.mode", std::string(mode.name),
                    "is not for more than one rank; take newton, adaptive, relaxation or dynamics");
@@ -92,7 +85,7 @@ void refuse_modes_without_ranks(const Body& body, const StudyOptions& options) {
 
 void check_study(const Body& body, const StudyOptions& options) {
   check_options(options);
-  if (body.part) refuse_modes_without_ranks(body, options);
+  if (body.part) refuse_modes_without_ranks(options);
   const bool moves = options.loading.mode == Mode::dynamics;
   if (moves != body.conditions->programme().is_of_time()) {
     throw InputError(

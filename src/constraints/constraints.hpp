@@ -48,6 +48,10 @@ class Constraints {
     return followers_.empty() && rigid_.empty() && images.source.empty();
   }
 
+  /// Whether points follow others directly, as of rollers and linear constraints: not as images or
+  /// in rigid sets.
+  [[nodiscard]] bool couples_points() const { return !followers_.empty() || !shared_.empty(); }
+
   /// Points and handles.
   [[nodiscard]] Index rows() const { return points_ + static_cast<Index>(handles_.size()); }
   [[nodiscard]] std::size_t dofs() const { return std::size_t(rows()) * std::size_t(dimension_); }
