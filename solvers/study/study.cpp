@@ -74,8 +74,14 @@ void refuse_modes_of_failing_points(const Body& body, const StudyOptions& option
 }
 
 /// Of the modes some sum over ranks.
-void refuse_modes_without_ranks(const StudyOptions& options) {
+void refuse_modes_without_ranks(const Body& body, const StudyOptions& options) {
   const Mode mode = options.loading.mode;
+  const RelaxationMethod method = options.loading.relaxation.method;
+  if (body.conditions->constraints().couples_points() && method == RelaxationMethod::flow) {
+    throw InputError("loading.relaxation.method", "flow",
+                     "is not for more than one rank together with rollers and linear constraints; "
+                     "take \"dynamic\"");
+  }
   if (mode != Mode::path && mode != Mode::arc_length) return;
   throw InputError("loading.mode", std::string(mode.name),
                    "is not for more than one rank; take newton, adaptive, relaxation or dynamics");
@@ -85,7 +91,7 @@ void refuse_modes_without_ranks(const StudyOptions& options) {
 
 void check_study(const Body& body, const StudyOptions& options) {
   check_options(options);
-  if (body.part) refuse_modes_without_ranks(options);
+  if (body.part) refuse_modes_without_ranks(body, options);
   const bool moves = options.loading.mode == Mode::dynamics;
   if (moves != body.conditions->programme().is_of_time()) {
     throw InputError(

@@ -9,6 +9,7 @@ from tests.acceptance.on_ranks import (
     PIECES,
     PLATE,
     ROOT,
+    SOLVER,
     SQUARE,
     STATES,
     STORED,
@@ -134,6 +135,11 @@ steps = 1
 """
 
 
+TOP = '[[support]]\nset = "top"\ndisplacement = [0, "0.05*load"]'
+SLOPED = PLATE.replace(TOP, '[[roller]]\nset = "top"\nnormal = [1, 3]\ndisplacement = "0.05*load*(1+x)"')
+FREE = SLOPED.replace('"0.05*load*(1+x)"', '"free"') + '[[load]]\nset = "top"\ntotal_force = [0, "2e5*load"]\n'
+
+
 class Bodies(Comparison):
     """Shipped cases, coarser, and small bodies: what they are made of is the same on all ranks."""
 
@@ -149,9 +155,9 @@ class Bodies(Comparison):
                 self.expect_same_iterations(one, several)
         return one
 
-    def compare_settings(self, text, *settings, ranks=(3,)):
+    def compare_settings(self, text, *settings, ranks=(3,), solver=SOLVER):
         with self.subTest(settings=settings):
-            return self.compare(text, ranks, *(word for setting in settings for word in ("--set", setting)))
+            return self.compare(text, ranks, *(word for setting in settings for word in ("--set", setting)), solver=solver)
 
     def test_several_materials(self):
         self.compare_shipped("regions/bimaterial", "lattice.spacing=0.01")
@@ -267,13 +273,29 @@ class Bodies(Comparison):
 
     def test_rollers(self):
         """Of all points of a set, on several ranks and not on all of them."""
-        sloped = PLATE.replace('[[support]]\nset = "top"\ndisplacement = [0, "0.05*load"]',
-                               '[[roller]]\nset = "top"\nnormal = [1, 3]\ndisplacement = "0.05*load*(1+x)"')  # fmt: skip
-        one = self.compare(sloped, (2, 4), solver=STORED)
+        one = self.compare(SLOPED, (2, 4), solver=STORED)
         self.assertNotEqual(float(rows(one, "history.csv")[-1]["reaction_y:top"]), 0.0)
-        free = sloped.replace('"0.05*load*(1+x)"', '"free"')
-        one = self.compare(free + '[[load]]\nset = "top"\ntotal_force = [0, "2e5*load"]\n', (3,), solver=STORED)
+        one = self.compare(FREE, (3,), solver=STORED)
         self.assertLess(abs(float(rows(one, "history.csv")[-1]["reaction_y:top"])), 1.0)
+
+    def test_relaxation_and_damage_under_rollers_and_linear_constraints(self):
+        """Pseudo masses are those of one rank."""
+        means = PLATE.replace(TOP, MEANS)
+        for text in (FREE, means):
+            self.compare_settings(text, 'solver.mode="relaxation"', ranks=(2,), solver=STORED)
+        breaking = 'material.damage={law="critical_stretch", critical=0.02, no_fail=["bottom", "top"]}'
+        for mode, ranks in (("adaptive", 2), ("relaxation", 3)):
+            one = self.compare_settings(SLOPED, breaking, f'solver.mode="{mode}"', ranks=(ranks,), solver=STORED)
+            self.assertGreater(len(rows(one, "broken_bonds.csv")), 10)
+        # Iterations of block Jacobi with a mean of many points differ by two of seventy, as round-off wants.
+        options = ("--set", breaking, "--set", 'solver.mode="adaptive"', "--set", "lattice.spacing=0.1")
+        one = self.results(1, means + STORED, *options)
+        self.expect_same(one, self.results(3, means + STORED, *options))
+        self.assertGreater(len(rows(one, "broken_bonds.csv")), 10)
+        softening = breaking.replace('"critical_stretch", critical=0.02', '"tanh", onset=0.02, critical=0.4, rate=2')
+        self.compare_settings(SLOPED, softening, 'solver.mode="newton"', solver=STORED)
+        refused = self.refusal(SLOPED + STORED, "--set", breaking, "--set", 'solver.mode="relaxation"', "--set", 'relaxation.method="flow"', ranks=4)
+        self.assertIn('take "dynamic"', " ".join(refused.split()))
 
     def test_rollers_that_touch(self):
         """Nothing else holds the beam: the points that a roller holds in the mean are on two ranks."""
@@ -285,7 +307,7 @@ class Bodies(Comparison):
 
     def test_linear_constraints(self):
         """Over points of all ranks, of supports and of other constraints."""
-        means = PLATE.replace('[[support]]\nset = "top"\ndisplacement = [0, "0.05*load"]', MEANS)
+        means = PLATE.replace(TOP, MEANS)
         one = self.compare(means, (2, 4), "--set", "output.stress=true", "--set", "lattice.spacing=0.1", solver=STORED)
         self.assertNotEqual(float(rows(one, "history.csv")[-1]["reaction_x:pull"]), 0.0)
         case = (ROOT / "cases/thermal/bimetal.toml").read_text()
@@ -309,9 +331,7 @@ class Bodies(Comparison):
         self.compare(pieces + BETWEEN, (2, 3), solver=STORED)
 
     def test_constraints_go_on_with_another_number_of_ranks(self):
-        sloped = PLATE.replace('[[support]]\nset = "top"\ndisplacement = [0, "0.05*load"]',
-                               '[[roller]]\nset = "top"\nnormal = [1, 3]\ndisplacement = "0.05*load*(1+x)"')  # fmt: skip
-        text = sloped.replace("steps = 2", "steps = 3") + MEANS + STORED
+        text = SLOPED.replace("steps = 2", "steps = 3") + MEANS + STORED
         one = self.results(1, text)
         for first, then in ((1, 3), (3, 2)):
             with self.subTest(first=first, then=then):

@@ -5,7 +5,8 @@ import unittest
 
 import h5py
 
-from tests.acceptance.on_ranks import PLATE, SOLVER, STATES, STORED, Comparison, resume, rows
+from tests.acceptance.on_ranks import PLATE, SHEET, SOLVER, SQUARE, STATES, STORED, Comparison, resume, rows
+from tests.acceptance.ranks_bodies_test import CELL, SLOPED, TOP
 
 LINEAR = PLATE.replace('model = "bond"', 'kinematics = "linear"')
 # A notched strip without any symmetry, whose points fail in a row before the notch.
@@ -84,6 +85,23 @@ class LinearKinematics(Terms):
         self.compare_settings(LINEAR, 'quadrature.surface_correction="energy"', "crack=[{from=[0.7, 0.3], to=[1, 0.3]}]",
                               'solver.preconditioner="rigid_pieces"',
                               'region=[{set="corner", material={youngs_modulus=3e9}}]')  # fmt: skip
+
+    def test_constraints(self):
+        linear = SLOPED.replace('model = "bond"', 'kinematics = "linear"')
+        self.compare_settings(linear, "solver.linear_tolerance=1e-12", solver=STORED)
+        turned = LINEAR.replace(TOP, '[[rigid]]\nset = "top"\nrotation = ["0.02*load"]')
+        self.compare_settings(turned, solver=STORED)
+        self.compare_settings(CELL.replace('model = "bond"', 'kinematics = "linear"'), ranks=(2,), solver=STORED)
+        whole = 'symmetry=[{axis="x", at=1.2}]'
+        for text, options in ((PULLED, ["solver.relative_tolerance=1e-8"]), (IN_MOTION, [])):
+            one = self.compare_settings(text, whole, *options, solver="" if text is IN_MOTION else STORED)
+            self.assertGreater(self.failed(one)[-1], 10)
+
+    def test_several_materials_that_fail(self):
+        one = self.compare_settings(PULLED, 'set=[{name="right", where="x > 0.7"}, {name="whole", where="x > 0.9"}]',
+                                    'region=[{set="right", material={youngs_modulus=2e9, damage={law="energy_density", fracture_energy=50}}}]',
+                                    "solver.relative_tolerance=1e-8", "solver.linear_tolerance=1e-11", ranks=(2, 3))  # fmt: skip
+        self.assertGreater(self.failed(one)[-1], 5)
 
     def test_ranks_without_a_point(self):
         bar = """
@@ -203,6 +221,11 @@ class States(Terms):
         self.compare_torn(TORN_AT_REST, 'solver.mode="adaptive"', ranks=(2, 3))
         self.compare_torn(TORN_AT_REST, 'solver.mode="relaxation"', ranks=(4,))
 
+    def test_several_materials_that_are_torn(self):
+        two = ('set=[{name="upper", where="y > 1"}, {name="whole", where="x > 0.9"}]',
+               'region=[{set="upper", material={youngs_modulus=2e9, poisson_ratio=0.2, density=1000, damage={law="critical_stretch", critical=0.02}}}]')
+        self.compare_torn(TORN_AT_REST, 'solver.mode="adaptive"', *two, ranks=(2,))
+
     def test_in_motion(self):
         self.compare_torn(TORN_IN_MOTION, ranks=(2, 3))
         self.compare_torn(TORN_IN_MOTION, *NEWMARK)
@@ -212,6 +235,15 @@ class States(Terms):
             output = self.goes_on(TORN_AT_REST, 'solver.mode="relaxation"', first=first, then=then, after=4)
             self.assertGreater(len(self.broken(output)), 20)
         self.goes_on(TORN_IN_MOTION, "dynamics.history_every=1", after=20)
+
+
+class Triangles(Terms):
+    def test_several_materials_that_soften(self):
+        two = ('set=[{name="right", where="x > 0.7"}]',
+               'region=[{set="right", material={c1=2.0, c2=60.0, damage={law="tanh", onset=0.06, critical=0.09, rate=3}}}]')
+        one = self.compare_settings(SHEET + 'displacement = ["0.038*load", 0]\n', *two, ranks=(2, 3), solver=STORED)
+        with h5py.File(one / "results.h5") as file:
+            self.assertGreater(file["history/dissipated_energy"][-1], 0.0)
 
 
 # Pressures in a hole and on a side, springs to ground that moves; of the load at rest, of the time in motion.
@@ -254,6 +286,16 @@ class PressuresAndFoundations(Terms):
             self.assertNotEqual(float(rows(one, "history.csv")[-1]["reaction_x:soil"]), 0.0)
             self.compare_settings(moving, HOLE, *under("(t/1e-3)", "2e5", "1e7"), *NEWMARK, solver="")
 
+    def test_of_triangles(self):
+        sides = ('foundation=[{name="side", side="y+", modulus=[1e-3, 1e-3], displacement=["0.01*TIME", 0]}]',
+                 'load=[{side="y-", pressure="1e-3*TIME"}]')  # fmt: skip
+        at_rest = [text.replace("TIME", "load") for text in sides]
+        one = self.compare_settings(SQUARE, *at_rest, ranks=(2, 3), solver=STORED)
+        self.assertNotEqual(float(rows(one, "history.csv")[-1]["reaction_x:side"]), 0.0)
+        moving = [text.replace("TIME", "t") for text in sides]
+        self.compare_settings(SHEET + 'displacement = ["0.02*t", 0]\n', *moving, 'solver.mode="dynamics"',
+                              "dynamics={end_time=1, history_every=4}", solver="")  # fmt: skip
+
     def test_bonds_that_break_under_a_pressure(self):
         breaking = in_motion(PLATE), HOLE, *under("(t/1e-3)", "4e7", "1e7"), 'material.damage={law="critical_stretch", critical=0.02}'
         one = self.compare_settings(*breaking, solver="")
@@ -277,6 +319,16 @@ class Collocation(Terms):
                               "lattice.perturbation=0.1", 'quadrature.normals="exact"', 'quadrature.traction_form="paper"',
                               "crack=[{from=[0.7, 0.3], to=[1, 0.3]}]",
                               'region=[{set="corner", material={youngs_modulus=2e9, poisson_ratio=0.3}}]', ranks=(2, 3, 4), solver=GMRES)  # fmt: skip
+
+    def test_in_motion(self):
+        """By steps that solve equations, with bonds that break."""
+        steps = [word for word in NEWMARK if "solver.linear=" not in word] + ['solver.linear="bicgstab"']
+        for perturbation, ranks in ((0.0, (2, 3)), (0.1, (4,))):
+            self.compare_settings(in_motion(COLLOCATED), f"lattice.perturbation={perturbation}", *steps, ranks=ranks, solver="")
+        torn = in_motion(COLLOCATED).replace('"1e-4*sin(2000*t)"', '"20*t"')
+        one = self.compare_settings(torn, "dynamics.end_time=8e-4", 'material.damage={law="critical_stretch", critical=0.01, no_fail=["bottom", "top"]}', *steps,
+                                    ranks=(2, 3), solver="")  # fmt: skip
+        self.assertGreater(len(self.broken(one)), 5)
 
 
 if __name__ == "__main__":
