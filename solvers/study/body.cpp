@@ -354,7 +354,6 @@ void refuse_constraints_without_ranks(const BodySpecification& of) {
   };
   if (constraints.symmetries.empty() && constraints.periods.empty()) return;
   const std::string key = constraints.periods.empty() ? "symmetries" : "periods";
-  if (of.has_states()) refuse_with(key, "model \"lps\"");
   // Between two images there are bonds that triangles stand on, and whose history nobody tells.
   const bool has_bonds_alone = of.material.model == MaterialModel::bond;
   if (!has_bonds_alone && has_damage(of)) refuse_with(key, "damage of models but \"bond\"");
