@@ -15,6 +15,7 @@ import pathlib
 import re
 import subprocess
 import tempfile
+import time
 
 import numpy as np
 
@@ -48,8 +49,20 @@ tangent = "matrix_free"
 RUNS = [(1, 1), (1, 2), (2, 1), (3, 1), (4, 1), (8, 1)]
 
 
-def run(wanted, side, ranks, threads, folder):
-    """What a run tells of itself; every message of it, if it fails."""
+def proportional_bytes(program):
+    """Of all processes of a program: pages that they share, as libraries, count once."""
+    held = 0
+    for process in pathlib.Path("/proc").glob("[0-9]*"):
+        try:
+            if os.readlink(process / "exe") == str(program):
+                rollup = (process / "smaps_rollup").read_text()
+                held += 1024 * int(re.search(r"^Pss: +(\d+) kB", rollup, re.MULTILINE)[1])
+        except (OSError, TypeError):  # it has ended
+            pass
+    return held
+
+
+def command_of(wanted, side, ranks, threads, folder):
     case = folder / "cube.toml"
     case.write_text(CASE.format(spacing=1 / side, ratio=HORIZON_RATIO, layer=LAYER,
                                 preconditioner=wanted.preconditioner))
@@ -57,8 +70,28 @@ def run(wanted, side, ranks, threads, folder):
                "--output", folder / "results"]
     if ranks > 1:
         command += ["--ranks", str(ranks)]
-    done = subprocess.run([str(word) for word in command], capture_output=True, text=True,
-                          check=False, env=os.environ | {"OMP_WAIT_POLICY": "passive"})
+    return [str(word) for word in command]
+
+
+ENVIRONMENT = os.environ | {"OMP_WAIT_POLICY": "passive"}
+
+
+def most_memory(wanted, side, ranks, threads, folder):
+    """Of all processes of a run at one time, looked at ten times a second [bytes]."""
+    program = wanted.program.resolve()
+    most = 0
+    with subprocess.Popen(command_of(wanted, side, ranks, threads, folder), env=ENVIRONMENT,
+                          stdout=subprocess.DEVNULL) as running:
+        while running.poll() is None:
+            most = max(most, proportional_bytes(program))
+            time.sleep(0.1)
+    return most
+
+
+def run(wanted, side, ranks, threads, folder):
+    """What a run tells of itself; every message of it, if it fails."""
+    done = subprocess.run(command_of(wanted, side, ranks, threads, folder), capture_output=True,
+                          text=True, check=False, env=ENVIRONMENT)
     if done.returncode != 0:
         raise SystemExit(done.stdout + done.stderr)
     told = json.loads((folder / "results/summary.json").read_text())
@@ -112,13 +145,15 @@ def row(name, values):
     print("|", name, "|", " | ".join(values), "|")
 
 
-def table_of_runs(told):
+def table_of_runs(told, memory_of_all):
     row("", [f"{ranks} rank{'s' * (ranks > 1)} of {threads} thread{'s' * (threads > 1)}"
              for ranks, threads in told])
     print("|---" * (len(told) + 1) + "|")
     for part in ("total", "neighbourhood", "assembly", "linear", "output"):
         row(f"seconds, {part}", [f"{one['seconds'][part]:.2f}" for one in told.values()])
     row("MB of the largest rank", [f"{one['peak_memory_bytes'] / 1e6:.0f}" for one in told.values()])
+    row("MB of all ranks, what they share once",
+        [f"{memory_of_all[to] / 1e6:.0f}" for to in told])
     row("iterations", [str(one["linear_iterations"]) for one in told.values()])
 
 
@@ -166,6 +201,7 @@ def main():
         half = run(wanted, side // 2, 1, 1, folder)
         half_on_two = run(wanted, side // 2, 2, 1, folder)
         runs = [to for to in RUNS if to[0] <= wanted.most]
+        memory_of_all = {to: most_memory(wanted, side, *to, folder) for to in runs}
         rounds = [{to: run(wanted, side, *to, folder) for to in runs} for _ in range(wanted.rounds)]
     told = {to: least([one[to] for one in rounds]) for to in runs}
     one = told[runs[0]]
@@ -180,7 +216,7 @@ def main():
     def memory(points):
         return program + per_point * points
 
-    table_of_runs(told)
+    table_of_runs(told, memory_of_all)
     table_of_counts(told, side, memory)
     print(f"\n{per_bond * 1e9:.2f} ns a bond and product; {program / 1e6:.0f} MB of a rank + "
           f"{per_point:.0f} B a point; iterations {half['linear_iterations']} at {side // 2}, "

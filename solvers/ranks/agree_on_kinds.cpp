@@ -76,11 +76,11 @@ void agree_on_kinds(Bonds& bonds, const Points& points, const NumberedPoints& nu
   const auto first = Offset(agreed.size());
   agreed.reserve(agreed.size() + std::size_t(bonds.count()) + 1);
   for (Offset bond = 0; bond < bonds.count(); ++bond) agreed.push_back(bonds.kind[bond]);
-  const HeardOfBonds heard =
-      heard_of_bonds(bonds, points, numbered, ranks, 2, [&](Offset bond, double* to) {
-        to[0] = agreed[first + bond].inverse_length;
-        to[1] = agreed[first + bond].weight;
-      });
+  const HeardOfBonds heard = heard_of_bonds(bonds, points, numbered, ranks, BetweenImages::nothing,
+                                            2, [&](Offset bond, double* to) {
+                                              to[0] = agreed[first + bond].inverse_length;
+                                              to[1] = agreed[first + bond].weight;
+                                            });
   const Offset last = first + bonds.count();
   for (std::size_t k = 0; k < heard.bond.size(); ++k) {
     agreed.push_back({heard.values[2 * k], heard.values[2 * k + 1]});

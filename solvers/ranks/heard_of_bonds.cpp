@@ -16,6 +16,36 @@ struct EndsOfBond {
   GlobalIndex first = 0, second = 0, image = 0;
 };
 
+/// Of a source and the image of another one by what leads from the first image to the second.
+std::optional<EndsOfBond> ends_of_source(const Points& points, const NumberedPoints& numbered,
+                                         Index image, Index other) {
+  const std::vector<ImageKind>& kinds = points.images.kinds;
+  const auto kind_of = [&](Index point) {
+    return kinds[std::size_t(image_number(points, point) - 1)];
+  };
+  const ImageKind between = relative(kind_of(image), kind_of(other));
+  EndsOfBond ends{numbered.number_of(points.source(image)),
+                  numbered.number_of(points.source(other)), 0};
+  const double tolerance = 1e-6 * points.spacing.largest();  // far above round-off of the planes
+  if (is_same(between, ImageKind{}, tolerance)) return ends;
+  const auto found = std::ranges::find_if(
+      kinds, [&](const ImageKind& kind) { return is_same(kind, between, tolerance); });
+  if (found == kinds.end()) return std::nullopt;
+  ends.image = (found - kinds.begin()) + 1;
+  return ends;
+}
+
+/// What others know a bond by.
+EndsOfBond ends_of(const Points& points, const NumberedPoints& numbered, Index i, Index j) {
+  if (!points.is_image(i)) {
+    return {numbered.number_of(i), numbered.number_of(points.source(j)), image_number(points, j)};
+  }
+  auto ends = ends_of_source(points, numbered, i, j);
+  if (!ends) ends = ends_of_source(points, numbered, j, i);
+  if (!ends) throw std::logic_error("a bond between two images is one of no point");
+  return *ends;
+}
+
 /// The bond here that has these ends.
 Offset bond_of(const Bonds& bonds, const Points& points, const NumberedPoints& numbered,
                const EndsOfBond& ends) {
@@ -38,20 +68,20 @@ Offset bond_of(const Bonds& bonds, const Points& points, const NumberedPoints& n
   return found - bonds.partner.begin();
 }
 
-/// Asks for the bonds that are told by others: who asks, the ends, the bond there.
+/// Asks for the bonds that are told by others: who asks, the ends, the bond there. A rank asks
+/// itself for what images show.
 Records questions(const Bonds& bonds, const Points& points, const NumberedPoints& numbered,
-                  const Communicator& ranks) {
+                  const Communicator& ranks, BetweenImages between_images) {
   Records asked{1, 4, {}, {}};
   std::vector<int> to;
   for (Index i = 0; i < bonds.points(); ++i) {
-    if (points.is_image(i)) continue;
+    if (points.is_image(i) && between_images == BetweenImages::nothing) continue;
     for (Offset bond = bonds.offset[i]; bond < bonds.offset[i + 1]; ++bond) {
-      const Index j = bonds.partner[std::size_t(bond)], other = points.source(j);
-      const EndsOfBond ends{numbered.number_of(i), numbered.number_of(other),
-                            image_number(points, j)};
-      const Index teller = ends.image > 0 || ends.first < ends.second ? i : other;
-      if (!numbered.is_ghost(teller)) continue;
-      to.push_back(numbered.owner_of_ghost(teller));
+      const EndsOfBond ends = ends_of(points, numbered, i, bonds.partner[std::size_t(bond)]);
+      const Index teller =
+          *numbered.find(ends.image > 0 ? ends.first : std::min(ends.first, ends.second));
+      if (!numbered.is_ghost(teller) && !points.is_image(i)) continue;
+      to.push_back(numbered.is_ghost(teller) ? numbered.owner_of_ghost(teller) : ranks.rank());
       asked.values.push_back(double(ranks.rank()));
       asked.numbers.insert(asked.numbers.end(), {ends.first, ends.second, ends.image, bond});
     }
@@ -62,9 +92,10 @@ Records questions(const Bonds& bonds, const Points& points, const NumberedPoints
 }  // namespace
 
 HeardOfBonds heard_of_bonds(const Bonds& bonds, const Points& points,
-                            const NumberedPoints& numbered, const Communicator& ranks, int width,
+                            const NumberedPoints& numbered, const Communicator& ranks,
+                            BetweenImages between_images, int width,
                             const std::function<void(Offset, double*)>& tell) {
-  const Records asked = questions(bonds, points, numbered, ranks);
+  const Records asked = questions(bonds, points, numbered, ranks, between_images);
   const auto each = std::size_t(width);
   Records told{width, 1, std::vector<double>(asked.values.size() * each), {}};
   std::vector<int> to;

@@ -335,30 +335,6 @@ std::unique_ptr<const Body> make_body(Points points, const BodySpecification& of
 
 namespace {
 
-bool has_damage(const BodySpecification& of) {
-  const auto fails = [](const MaterialSpecification& material) {
-    return material.damage.law != DamageLaw::none;
-  };
-  return fails(of.material) ||
-         std::ranges::any_of(of.regions,
-                             [&](const auto& region) { return fails(region.material); }) ||
-         std::ranges::any_of(of.interfaces, [&](const InterfaceSpecification& interface) {
-           return interface.material && fails(*interface.material);
-         });
-}
-
-void refuse_constraints_without_ranks(const BodySpecification& of) {
-  const ConstraintSpecification& constraints = of.constraints;
-  const auto refuse_with = [](const std::string& key, const std::string& what) {
-    throw InputError(key, "", "is not for more than one rank yet together with " + what);
-  };
-  if (constraints.symmetries.empty() && constraints.periods.empty()) return;
-  const std::string key = constraints.periods.empty() ? "symmetries" : "periods";
-  // Between two images there are bonds that triangles stand on, and whose history nobody tells.
-  const bool has_bonds_alone = of.material.model == MaterialModel::bond;
-  if (!has_bonds_alone && has_damage(of)) refuse_with(key, "damage of models but \"bond\"");
-}
-
 /// What the assembler of a part is made for; tables of cases are refused before.
 void refuse_without_ranks(const BodySpecification& of) {
   const auto refuse = [](const std::string& key) {
@@ -374,7 +350,6 @@ void refuse_without_ranks(const BodySpecification& of) {
   if (of.form == SolidForm::printed) refuse("form");
   if (of.force_operator != ForceOperator::bonds) refuse("force_operator");
   if (!of.controls.empty()) refuse("controls");
-  refuse_constraints_without_ranks(of);
   for (std::size_t k = 0; k < of.loads.size(); ++k) {
     const LoadSpecification::Kind kind = of.loads[k].kind;
     if (kind == LoadSpecification::Kind::stress && !of.is_collocated()) {

@@ -1,11 +1,30 @@
 #include "src/geometry/images.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "src/geometry/image_kinds.hpp"
 
 namespace peristat {
+
+ImageKind relative(const ImageKind& from, const ImageKind& to) {
+  ImageKind kind;
+  for (std::size_t c = 0; c < 3; ++c) {
+    kind.mirror[c] = from.mirror[c] * to.mirror[c];
+    kind.shift[c] = from.mirror[c] * (to.shift[c] - from.shift[c]);
+    kind.periods[c] = to.periods[c] - from.periods[c];
+  }
+  return kind;
+}
+
+bool is_same(const ImageKind& one, const ImageKind& other, double tolerance) {
+  for (std::size_t c = 0; c < 3; ++c) {
+    if (one.mirror[c] != other.mirror[c]) return false;
+    if (std::abs(one.shift[c] - other.shift[c]) > tolerance) return false;
+  }
+  return true;
+}
 
 void add_images(Points& points, const std::vector<ImageKind>& kinds, double reach_of_body) {
   const Index own = points.count();

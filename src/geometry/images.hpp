@@ -34,6 +34,13 @@ struct ImageKind {
   }
 };
 
+/// The kind of image that an image of kind `to` is of one of kind `from`: of their sources the
+/// image of the second one that lies to the first one as they to each other.
+[[nodiscard]] ImageKind relative(const ImageKind& from, const ImageKind& to);
+
+/// Whether they place images alike, within a distance.
+[[nodiscard]] bool is_same(const ImageKind& one, const ImageKind& other, double tolerance);
+
 /// The last points of a body, which stand for others beyond planes of symmetry and periodic sides.
 struct Images {
   std::vector<ImageKind> kinds;

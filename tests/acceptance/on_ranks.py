@@ -281,21 +281,21 @@ class Comparison(OnRanks):
         difference = numpy.abs(expected[()] - found[()]).max(initial=0)
         self.assertLessEqual(difference, 1e-9 * scale, name)
 
-    def expect_same_iterations(self, one, several):
+    def expect_same_iterations(self, one, several, within):
         expected, found = rows(one, "iterations.csv"), rows(several, "iterations.csv")
         self.assertEqual(len(expected), len(found))
         for before, after in zip(expected, found):
             for key in ("step", "iteration", "rejected_trials", "step_length"):
                 self.assertEqual(before[key], after[key])
-            self.assertAlmostEqual(int(before["linear_iterations"]), int(after["linear_iterations"]), delta=1)
+            self.assertAlmostEqual(int(before["linear_iterations"]), int(after["linear_iterations"]), delta=within)
 
-    def compare(self, text, ranks=(2, 3), *options, solver=SOLVER):
+    def compare(self, text, ranks=(2, 3), *options, solver=SOLVER, iterations_within=1):
         one = self.results(1, text + solver, *options)
         for count in ranks:
             several = self.results(count, text + solver, *options)
             with self.subTest(ranks=count):
                 self.expect_same(one, several)
-                self.expect_same_iterations(one, several)
+                self.expect_same_iterations(one, several, iterations_within)
         return one
 
 

@@ -214,11 +214,6 @@ class Refusals(OnRanks):
                 with self.subTest(ranks=ranks, what=what):
                     self.assertIn(what, self.refusal(text, ranks=ranks))
 
-    def test_what_planes_do_not_go_with(self):
-        damage = 'material.damage={law="critical_stretch", critical=0.1}'
-        said = self.refusal(SQUARE, "--set", 'symmetry=[{axis="y", at=0}]', "--set", damage)
-        self.assertIn('together with damage of models but "bond"', said)
-
     def test_the_printed_form(self):
         """Convolutions alone sum it."""
         said = self.refusal(STATES, "--set", 'quadrature.form="printed"', "--set", 'quadrature.volume_correction="none"')
@@ -240,11 +235,6 @@ class Refusals(OnRanks):
         self.assertIn("too few bonds", said[0])
         self.assertEqual(said[0], said[1])
         self.assertEqual(said[0], said[2])
-
-    def test_damage_of_several_materials_of_triangles(self):
-        damage = 'material.damage={law="critical_stretch", critical=0.1}'
-        region = 'region=[{set="held", material={c1=2.0}}]'
-        self.assertIn("material.damage", self.refusal(SQUARE, "--set", damage, "--set", region))
 
     def test_another_number_of_ranks_than_was_started(self):
         words = ["mpirun", "--oversubscribe", "-np", "2", PROGRAM, "run", "--ranks", "3", str(self.case(PLATE))]

@@ -245,6 +245,23 @@ class Triangles(Terms):
         with h5py.File(one / "results.h5") as file:
             self.assertGreater(file["history/dissipated_energy"][-1], 0.0)
 
+    def test_softening_at_planes_and_periods(self):
+        """Triangles stand on bonds between images, too, which soften as those that they show."""
+        pulled = 'displacement = ["0.038*load", 0]\n[loading]\nsteps = 4\n'
+        half = SHEET.replace("max = [1.2, 1.1]", "max = [1.2, 0.6]").replace("centre = [0.72, 0.63]", "centre = [0.72, 0.6]")
+        for text, beyond in ((half, 'symmetry=[{axis="y", at=0.6}]'), (SHEET, 'period=[{axis="y", from=0, to=1.1}]')):
+            one = self.compare_settings(text + pulled, beyond, ranks=(2, 3), solver=STORED)
+            with h5py.File(one / "results.h5") as file:
+                self.assertGreater(file["history/dissipated_energy"][-1], 0.0)
+            there_and_back = pulled.replace("steps = 4", "table = [0, 0.25, 0.5, 0.75, 1, 0.7, 0.3]")
+            self.goes_on(text + there_and_back + STORED, beyond, after=4)
+        # When it is found that all has come to rest, round-off of what is torn off decides.
+        tearing = half + pulled.replace("0.038", "0.2") + STORED
+        options = settings('symmetry=[{axis="y", at=0.6}]', 'solver.mode="relaxation"')
+        one, several = (self.broken(self.results(ranks, tearing, *options)) for ranks in (1, 3))
+        self.assertEqual(one, several)
+        self.assertGreater(len(one), 10)
+
 
 # Pressures in a hole and on a side, springs to ground that moves; of the load at rest, of the time in motion.
 HOLE = 'set=[{name="hole", where="sqrt((x-0.5)^2 + (y-0.7)^2) < 0.28"}, {name="corner", where="x > 0.6 && y > 1"}]'

@@ -176,9 +176,9 @@ void StateNumbering::give_to_images(std::vector<double>& values) const {
 }
 
 void StateNumbering::give_bonds(std::vector<double>& values) const {
-  const HeardOfBonds heard =
-      heard_of_bonds(bonds_, points_.points(), part_.numbered(), part_.ranks(), 1,
-                     [&](Offset bond, double* to) { *to = values[std::size_t(bond)]; });
+  const HeardOfBonds heard = heard_of_bonds(
+      bonds_, points_.points(), part_.numbered(), part_.ranks(), BetweenImages::what_they_show, 1,
+      [&](Offset bond, double* to) { *to = values[std::size_t(bond)]; });
   for (std::size_t k = 0; k < heard.bond.size(); ++k) {
     values[std::size_t(heard.bond[k])] = heard.values[k];
   }
