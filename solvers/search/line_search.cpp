@@ -62,7 +62,9 @@ LineSearchResult line_search(const EquilibriumProblem& problem,
   if (result.outcome != Outcome::converged) return result;
 
   const double work = sums.dot(external_force, from.displacement);
-  const double round_off = 64.0 * std::numeric_limits<double>::epsilon() *
+  // Errors of a sum grow as those of a random walk.
+  const double of_sums = std::sqrt(sums.of_all(double(problem.free.dof.size())));
+  const double round_off = std::max(64.0, of_sums) * std::numeric_limits<double>::epsilon() *
                                std::max(std::abs(from.stored_energy), std::abs(work)) +
                            from.energy_round_off;
   trial.history = from.history;
