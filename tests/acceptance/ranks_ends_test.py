@@ -214,6 +214,12 @@ class Refusals(OnRanks):
                 with self.subTest(ranks=ranks, what=what):
                     self.assertIn(what, self.refusal(text, ranks=ranks))
 
+    def test_what_all_ranks_meet_is_told_once(self):
+        """Each of them has points of both supports."""
+        twice = '[[set]]\nname = "all"\nwhere = "y > -1"\n' + 2 * '[[support]]\nset = "all"\ndisplacement = [VALUE, 0]\n'
+        said = self.refusal(PLATE.split("[[support]]")[0] + twice.replace("VALUE", "0", 1).replace("VALUE", "1"), ranks=4)
+        self.assertEqual(said.count("contradict"), 1, said)
+
     def test_the_printed_form(self):
         """Convolutions alone sum it."""
         said = self.refusal(STATES, "--set", 'quadrature.form="printed"', "--set", 'quadrature.volume_correction="none"')

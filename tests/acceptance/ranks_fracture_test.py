@@ -74,6 +74,19 @@ class Fracture(Comparison):
         self.assertIn("hand over to relaxation", actions)
         self.compare_torn((3,), 'solver.mode="adaptive"', "solver.elastic_horizon_ratio=2.015")
         self.assertGreater(len(rows(one, "broken_bonds.csv")), 50)
+        self.compare_torn((3,), 'solver.mode="adaptive"', "solver.elastic_horizon_ratio=2.015", "loading.steps=12",
+                          'symmetry=[{axis="x", at=1.2}]')  # fmt: skip
+
+    def test_a_rigid_set_goes_on_with_another_number_of_ranks(self):
+        """The centre that it turns about is the same, to the last bit."""
+        text = TORN.replace('[[support]]\nset = "top"', '[[rigid]]\nset = "top"\nrotation = ["0.01*load"]') + STORED
+        options = ("--set", 'solver.mode="adaptive"', "--set", "loading.steps=8")
+        one = self.results(1, text, *options)
+        run, output = self.start(2, text, *options, "--stop-after", "6")
+        self.assertEqual(run.returncode, 130, run.stderr)
+        on = resume(3, output)
+        self.assertEqual(on.returncode, 0, on.stderr)
+        self.expect_same(one, output)
 
     def test_several_materials(self):
         upper = ('damage={law="tanh", onset=0.03, critical=0.5, rate=3}, scatter=[{of="strength", distribution="weibull", '
