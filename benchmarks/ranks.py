@@ -85,6 +85,8 @@ def most_memory(wanted, side, ranks, threads, folder):
         while running.poll() is None:
             most = max(most, proportional_bytes(program))
             time.sleep(0.1)
+    if running.returncode != 0:
+        raise SystemExit(f"the run on {ranks} ranks ended with exit code {running.returncode}")
     return most
 
 

@@ -76,8 +76,11 @@ void refuse_modes_of_failing_points(const Body& body, const StudyOptions& option
 /// Of the modes some sum over ranks.
 void refuse_modes_without_ranks(const Body& body, const StudyOptions& options) {
   const Mode mode = options.loading.mode;
-  const RelaxationMethod method = options.loading.relaxation.method;
-  if (body.conditions->constraints().couples_points() && method == RelaxationMethod::flow) {
+  const ConstraintSpecification& constraints = body.specification.constraints;
+  const bool slides = !constraints.rollers.empty() || !constraints.linear.empty();
+  const bool flows = (mode == Mode::relaxation || mode == Mode::adaptive) &&
+                     options.loading.relaxation.method == RelaxationMethod::flow;
+  if (slides && flows) {
     throw InputError("loading.relaxation.method", "flow",
                      "is not for more than one rank together with rollers and linear constraints; "
                      "take \"dynamic\"");

@@ -49,7 +49,7 @@ class Constraints {
   }
 
   /// Whether points follow others directly, as of rollers and linear constraints: not as images or
-  /// in rigid sets.
+  /// in rigid sets. Of a part of a body those that are here count.
   [[nodiscard]] bool couples_points() const { return !followers_.empty() || !shared_.empty(); }
 
   /// Points and handles.
