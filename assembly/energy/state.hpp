@@ -20,6 +20,7 @@ struct State {
   /// First load parameter, where a control has found it; nothing: the loading programme's.
   std::optional<double> load = std::nullopt;
   SharedEnvironment environment = nullptr;  ///< that of its load point
+  double preload = 1.0;                     ///< see LoadPoint
 };
 
 /// Bonds that are stretched beyond their histories: they soften, or follow their secants as if they

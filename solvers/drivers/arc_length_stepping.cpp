@@ -29,6 +29,9 @@ constexpr int most_steps = 10'000;
 /// to the bifurcation the two paths can hardly be told from one another.
 constexpr double share_of_branch = 1e-3;
 
+constexpr const char* follows_no_damage =
+    "solver.mode = \"arc_length\" follows none; a [[control]] does";
+
 double extent(const Points& points) {
   double largest = 0.0;
   for (int c = 0; c < points.dimension; ++c) {
@@ -63,12 +66,14 @@ NewtonOptions held(NewtonOptions options) {
 
 ArcLengthStepping::ArcLengthStepping(Path& path)
     : Driver(path),
+      implicit_(path),
       increment_(path.options().steps, path.options().arc_length.largest_step,
                  {path.options().adaptive, path.options().smallest_step, path.options().growth},
                  path.state().arc.increment) {}
 
 Advance ArcLengthStepping::next() {
   if (const auto ended = end()) return *ended;
+  if (path_.is_preloading()) return put_on_preload();
   if (path_.state().arc.direction.empty() && begin() == Advance::ended) return Advance::ended;
   Step step = search(increment_.value());
   if (!step.attempt.has_converged()) return fail(std::move(step));
@@ -87,6 +92,17 @@ std::optional<Advance> ArcLengthStepping::end() const {
   attempt.outcome = Outcome::step_limit;
   attempt.at = load_point(path_.state().accepted);
   return path_.stop(std::move(attempt), increment_.value(), explanation(Outcome::step_limit));
+}
+
+Advance ArcLengthStepping::put_on_preload() {
+  ImplicitStep step = implicit_.search(Damage::held);
+  if (step.attempt.has_converged() && step.growth.utilisation > 1.0) {
+    step.attempt.outcome = Outcome::damage_begins;
+    step.fault = follows_no_damage;
+  }
+  if (step.attempt.has_converged()) implicit_.establish(step);
+  return step.attempt.has_converged() ? implicit_.accept(std::move(step))
+                                      : implicit_.fail(std::move(step));
 }
 
 Advance ArcLengthStepping::begin() {
@@ -196,6 +212,7 @@ void ArcLengthStepping::judge(Step& step) const {
   }
   if (path_.damaged().growth(attempt.state.at()).utilisation > 1.0) {
     attempt.outcome = Outcome::damage_begins;
+    step.fault = follows_no_damage;
   }
 }
 

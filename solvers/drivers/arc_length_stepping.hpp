@@ -7,6 +7,7 @@
 
 #include "solvers/drivers/driver.hpp"
 #include "solvers/drivers/found_step.hpp"
+#include "solvers/drivers/implicit_stepping.hpp"
 #include "solvers/drivers/increment.hpp"
 
 namespace peristat {
@@ -50,6 +51,8 @@ class ArcLengthStepping : public Driver {
   };
 
   [[nodiscard]] std::optional<Advance> end() const;
+  /// A step of what acts at load 0, by steps of it.
+  [[nodiscard]] Advance put_on_preload();
   [[nodiscard]] Advance begin();
   /// Equilibrium at a length along the path, and the path's direction there.
   [[nodiscard]] Step search(double length);
@@ -71,6 +74,7 @@ class ArcLengthStepping : public Driver {
   [[nodiscard]] double product(std::span<const double> du, double dl, std::span<const double> dv,
                                double dm) const;
 
+  ImplicitStepping implicit_;
   Increment increment_;
 };
 

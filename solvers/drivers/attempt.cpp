@@ -55,8 +55,8 @@ Attempt undefined_attempt(const State& from, const LoadPoint& at) {
 }
 
 State state_of(const Attempt& attempt) {
-  return {attempt.state.displacement, attempt.at.stage, attempt.state.history, attempt.at.load,
-          attempt.state.environment};
+  return {attempt.state.displacement, attempt.at.stage,  attempt.state.history, attempt.at.load,
+          attempt.state.environment,  attempt.at.preload};
 }
 
 bool worth_cutting(const Attempt& attempt) {

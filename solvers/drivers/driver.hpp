@@ -14,13 +14,9 @@ class Driver {
   Driver(const Driver&) = delete;
   Driver& operator=(const Driver&) = delete;
 
-  /// Takes the next step, or the decision that stands in its way.
-  [[nodiscard]] Advance advance() {
-    path_.forget_last_attempt();
-    const Advance result = next();
-    path_.note_rungs();
-    return result;
-  }
+  /// Takes the next step, or the decision that stands in its way. The first is step 0, the state at
+  /// load 0: the body at rest where nothing acts there.
+  [[nodiscard]] Advance advance();
 
  protected:
   /// @return ended where nothing is left to do, or whatever Path::stop or accept return

@@ -5,11 +5,13 @@
 #include <limits>
 #include <utility>
 
+#include "assembly/terms/bonds/bond_term.hpp"
 #include "assembly/terms/damage.hpp"
 #include "solvers/drivers/implicit_stepping.hpp"
 #include "solvers/linear/vector_verbs.hpp"
 #include "src/core/input_error.hpp"
 #include "src/core/number_text.hpp"
+#include "src/potentials/make_saw_tooth.hpp"
 
 namespace peristat {
 namespace {
@@ -41,12 +43,30 @@ constexpr int most_passes = 1'000'000;
 /// End of the segment of the programme that a stage is in.
 double segment_begin(double stage) { return LoadingProgramme::next_entry(stage) - 1.0; }
 
+/// Whether its bonds have softened along a law that this mode follows a saw-tooth of.
+bool has_softened_smoothly(Path& path) {
+  const PathState& state = path.state();
+  const BondTerm* const bonds = path.damaged().model().failing_bonds();
+  if (state.events.count > 0 || !bonds || toothed_strength(bonds->potential()).teeth == 0) {
+    return false;
+  }
+  const std::span<const double> stretches =
+      bond_stretches(path.damaged().model(), state.accepted.history);
+  return std::any_of(stretches.begin(), stretches.end(), [](double at) { return at > 0.0; });
+}
+
 }  // namespace
 
 EventStepping::EventStepping(Path& path) : Driver(path) {
   if (!fails_by_steps(path.damaged().model())) {
     throw InputError("mode", "path",
                      "needs bonds that break, by laws that fall in steps: give the body teeth");
+  }
+  if (has_softened_smoothly(path)) {
+    throw InputError("mode", "path",
+                     "can't go on where bonds have softened in another mode: this one follows a "
+                     "saw-tooth of their law, in which they would bear other forces; begin it from "
+                     "rest");
   }
 }
 
@@ -72,8 +92,7 @@ Advance EventStepping::next() {
     }
     take_up(std::move(settled));
   }
-  Step step = path_.state().steps == 0 ? begin() : Step{};
-  if (path_.state().steps > 0 || step.attempt.has_converged()) step = search();
+  Step step = path_.is_preloading() ? put_on_preload() : search();
   while (step.attempt.has_converged() && is_above_strength(step)) {
     pass_over(step);
     if (step.attempt.has_converged()) step = search();
@@ -297,11 +316,18 @@ StrengthStep EventStepping::strength_step() const {
   return step;
 }
 
-EventStepping::Step EventStepping::begin() {
+EventStepping::Step EventStepping::put_on_preload() {
   Step step;
-  const State& rest = path_.state().accepted;
-  step.attempt = settle_anywhere(rest, borne_, held().relative_tolerance);
-  if (step.attempt.has_converged()) pass_over(step);
+  step.end = StrengthEnd::at_stop;
+  step.attempt = settle_anywhere(path_.state().accepted, borne_, held().relative_tolerance);
+  if (!step.attempt.has_converged()) return step;
+  const double most = utilisation(state_of(step.attempt), borne_);
+  if (most > share_at_strength) {
+    step.attempt.outcome = Outcome::damage_begins;
+    step.fault = "what acts at load 0 stretches bonds to " + number_text(most) +
+                 " of what they bear; the path follows how they break if a parameter of its own "
+                 "puts it on (load2)";
+  }
   return step;
 }
 

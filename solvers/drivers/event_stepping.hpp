@@ -97,8 +97,8 @@ class EventStepping : public Driver {
   /// Pins what has come off, in the equations.
   [[nodiscard]] bool pin(Settled& settled);
 
-  /// Equilibrium under what supports and loads are at the beginning of the programme.
-  [[nodiscard]] Step begin();
+  /// Step 0: the equilibrium at load 0, before any bond is at its strength.
+  [[nodiscard]] Step put_on_preload();
   [[nodiscard]] Step search();
   /// Holds the load until nothing is above its strength.
   [[nodiscard]] Step run_avalanche();

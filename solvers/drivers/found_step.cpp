@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "solvers/drivers/step_zero.hpp"
 #include "solvers/linear/vector_verbs.hpp"
 #include "src/core/number_text.hpp"
 
@@ -37,6 +38,7 @@ void note_force(Path& path, const StepRecord& record) {
     force.present = std::max(force.present, std::hypot(reaction[0], reaction[1], reaction[2]));
   }
   force.largest = std::max(force.largest, force.present);
+  force.top = std::max(force.top, record.stage);
   if (!path.has_fallen()) return;
   path.tell(load_point(path.state().accepted),
             {.outcome = name(Outcome::converged),
@@ -44,6 +46,18 @@ void note_force(Path& path, const StepRecord& record) {
              .reason = "the largest reaction, " + number_text(force.present) + " N, is below " +
                        number_text(path.options().stop_below) + " of its peak, " +
                        number_text(force.largest) + " N"});
+}
+
+/// Tells the accepted state as a row of the history.
+void report(Path& path, const Attempt& attempt, FoundStep& found) {
+  complete_record(path, attempt, found);
+  if (!path.body().assembler.has_potential()) {
+    found.record.unbalanced_force = sum_of_internal_forces(path.problem(), attempt.state);
+  }
+  note_force(path, found.record);
+  if (const auto& tell = path.setting().observer.accepted) {
+    tell(found.record, {attempt.state, attempt.external_force, path.state().pins.found.piece});
+  }
 }
 
 }  // namespace
@@ -54,7 +68,7 @@ void complete_record(const Path& path, const Attempt& attempt, FoundStep& found)
   record.stage = attempt.at.stage;
   record.load_factor = path.setting().conditions.load_factor(attempt.at);
   if (const DisplacementControl* control = path.setting().conditions.control()) {
-    record.control = control->value(attempt.state.displacement);
+    record.control = control->value(attempt.state.displacement) - path.state().control_at_load_zero;
     if (attempt.inertia) record.negative_pivots = attempt.inertia->negative;
   }
   record.stored_energy = found.ledger.stored;
@@ -104,6 +118,8 @@ std::string complete(Path& path, Attempt& attempt, FoundStep& found) {
   std::vector<double> damage(std::size_t(assembler.points().count()));
   const DamageState damaged = assembler.assess(attempt.state.history, {}, damage);
   found.record.broken_bonds = damaged.broken_bonds;
+  found.energies.is_elastic_preload = path.is_preloading() && found.growth.degrading == 0 &&
+                                      assembler.has_potential() && attempt.largest_residual >= 0.0;
   if (!found.energies.intact) {
     found.energies.heating = heating_work(assembler, path.state().accepted, attempt.state.at());
   }
@@ -170,22 +186,17 @@ bool cut(Path& path, Increment& increment, const Attempt& attempt, double attemp
 
 Advance accept(Path& path, Attempt attempt, FoundStep found, double next) {
   PathState& state = path.state();
+  const bool is_step_zero = path.is_preloading() && attempt.at.preload == 1.0;
+  if (is_step_zero) begin_programme(path, attempt, found);
+  if (!path.is_preloading()) ++state.steps;
   state.accepted = state_of(attempt);
-  ++state.steps;
   state.ledger.accept(found.ledger, path.working_force(attempt.state, attempt.external_force),
                       found.energies);
   if (found.growth.breaking > 0) {
     state.pins.find(path.body().assembler, state.accepted, path.setting().conditions,
                     path.options().fragments);
   }
-  complete_record(path, attempt, found);
-  if (!path.body().assembler.has_potential()) {
-    found.record.unbalanced_force = sum_of_internal_forces(path.problem(), attempt.state);
-  }
-  note_force(path, found.record);
-  if (const auto& tell = path.setting().observer.accepted) {
-    tell(found.record, {attempt.state, attempt.external_force, state.pins.found.piece});
-  }
+  if (!path.is_preloading()) report(path, attempt, found);
   path.last_attempt() = std::move(attempt);
   return resolve_fragments(path, next);
 }

@@ -108,6 +108,7 @@ Advance HandOver::hand_over(const ImplicitStep& step, std::string reason) {
         "load reactions change by " +
         number_text(100.0 * jump) + " %";
   }
+  if (path_.is_preloading()) relaxed_.increment().cut_to(relaxed_.increment().value());
   state.hand_over = {.relaxes = true, .is_near_onset = false};
   state.relaxed.motion = {};
   path_.tell(step.attempt.at, {.increment = step.attempted,
@@ -134,7 +135,7 @@ Advance HandOver::take_up_body(double& jump) {
     return Advance::ended;
   }
   Attempt attempt =
-      path_.search(state.accepted, state.accepted.stage, path_.setting().newton_options);
+      path_.search(state.accepted, load_point(state.accepted), path_.setting().newton_options);
   if (!attempt.has_converged()) {
     const std::string reason = explanation(attempt.outcome);
     return path_.stop(std::move(attempt), 0.0, reason);
@@ -155,7 +156,8 @@ Advance HandOver::relaxed_step() {
   const Attempt& attempt = found.step.attempt;
   if (!attempt.has_converged()) return relaxed_.fail(std::move(found));
   const bool was_damaged = found.step.found.growth.degrading > 0;
-  const double fall = path_.options().peak_tolerance > 0.0 ? fall_of_force(path_, attempt) : 0.0;
+  const bool looks_for_peak = path_.options().peak_tolerance > 0.0 && !path_.is_preloading();
+  const double fall = looks_for_peak ? fall_of_force(path_, attempt) : 0.0;
   const bool falls = was_damaged && fall > smallest_fall;
   if (cuts_to_peak(found, falls)) return Advance::goes_on;
   std::string peak;

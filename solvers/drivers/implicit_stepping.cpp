@@ -41,6 +41,7 @@ Advance ImplicitStepping::next() {
   if (!path_.goes_on()) return Advance::ended;
   FragmentPins pins = path_.state().pins;
   ImplicitStep step = search(path_.setting().newton_options.damage);
+  if (step.attempt.has_converged() && refines_preload(step)) return Advance::goes_on;
   if (step.attempt.has_converged() && approach_failure(step)) return Advance::goes_on;
   if (step.attempt.has_converged()) establish(step);
   if (may_be_avalanche(step)) run_avalanche(step);
@@ -53,10 +54,10 @@ Advance ImplicitStepping::next() {
 
 ImplicitStep ImplicitStepping::search(Damage damage) {
   const State& from = path_.state().accepted;
-  const double target = increment_.target(from.stage);
+  const LoadPoint target = increment_.next_point(load_point(from));
   ImplicitStep step;
   step.target = target;
-  step.attempted = target - from.stage;
+  step.attempted = Increment::length(load_point(from), target);
   if (const auto refusal = path_.refusal_of_conditions(target)) {
     step.attempt = undefined_attempt(from, target);
     step.fault = *refusal;
@@ -96,7 +97,7 @@ void ImplicitStepping::establish(ImplicitStep& step) {
       again.scale = attempt.scale;
       const int before = attempt.iterations;
       const bool unstable_start = attempt.unstable_start;  // of the step, which decides about cuts
-      attempt = path_.search(from, from.stage, again);
+      attempt = path_.search(from, load_point(from), again);
       attempt.iterations += before;
       attempt.unstable_start = unstable_start;
       return attempt.outcome;
@@ -104,6 +105,17 @@ void ImplicitStepping::establish(ImplicitStep& step) {
   }
   step.found.record.newton_iterations = attempt.iterations;
   step.fault = complete(path_, attempt, step.found);
+}
+
+bool ImplicitStepping::refines_preload(const ImplicitStep& step) {
+  const bool damages = path_.is_preloading() && step.growth.degrading > 0;
+  if (!damages || !increment_.refine_preload(step.attempted)) return false;
+  path_.tell(step.attempt.at, {.increment = step.attempted,
+                               .outcome = name(Outcome::converged),
+                               .action = Decision::cut,
+                               .next_increment = increment_.value(),
+                               .reason = "what acts at load 0 would damage the body"});
+  return true;
 }
 
 bool ImplicitStepping::approach_failure(const ImplicitStep& step) {

@@ -10,8 +10,8 @@ namespace peristat {
 
 /// An implicit step on its way.
 struct ImplicitStep {
-  double target = 0.0;     ///< stage
-  double attempted = 0.0;  ///< increment of the stage
+  LoadPoint target = 0.0;
+  double attempted = 0.0;  ///< see Increment::length
   Attempt attempt;
   DamageGrowth growth;  ///< that committing what the first search has found would bring
   FoundStep found;
@@ -44,6 +44,8 @@ class ImplicitStepping : public Driver {
   [[nodiscard]] Advance next() override;
 
  private:
+  /// Cuts a step of the preload that damages the body: its work is found in steps.
+  [[nodiscard]] bool refines_preload(const ImplicitStep& step);
   /// Cuts a step beyond the load that points bear: all that are overloaded fail together, so that
   /// coarse steps would take down what fine ones never load.
   [[nodiscard]] bool approach_failure(const ImplicitStep& step);

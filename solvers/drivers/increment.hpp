@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "src/conditions/load_point.hpp"
 #include "src/conditions/loading_programme.hpp"
 
 namespace peristat {
@@ -14,7 +15,8 @@ struct IncrementOptions {
 };
 
 /// How large a step of the stage is taken next. A step ends at the next entry of the programme's
-/// tables at the latest: every entry is reached.
+/// tables at the latest: every entry is reached. On the way to step 0 it is a step of the preload,
+/// of which all is tried first.
 class Increment {
  public:
   /// @param steps equal ones from one entry to the next, of which the first is tried
@@ -25,6 +27,19 @@ class Increment {
         largest_(largest > 0.0 ? largest : 1.0 / steps),
         first_(std::min(1.0 / steps, largest_)),
         next_(next) {}
+
+  /// Where the next step from a load point goes.
+  [[nodiscard]] LoadPoint next_point(const LoadPoint& from) const {
+    if (from.preload == 1.0) return target(from.stage);
+    const double rest = 1.0 - from.preload, step = next_ > 0.0 ? next_ : rest;
+    return LoadPoint::of_preload(rest - step > LoadingProgramme::tolerance ? from.preload + step
+                                                                           : 1.0);
+  }
+
+  /// Length of a step, of the stage or of the preload.
+  [[nodiscard]] static double length(const LoadPoint& from, const LoadPoint& to) {
+    return from.preload == 1.0 ? to.stage - from.stage : to.preload - from.preload;
+  }
 
   /// A path may go on with a smaller limit than it had.
   [[nodiscard]] double value() const { return next_ > 0.0 ? std::min(next_, largest_) : first_; }
@@ -39,6 +54,15 @@ class Increment {
     return options_.adaptive && increment >= options_.smallest_step;
   }
   void cut_to(double increment) { next_ = increment; }
+  /// Makes steps of the preload as short as those of the programme, where a longer one would damage
+  /// the body.
+  /// @return whether this one was longer
+  bool refine_preload(double attempted) {
+    const bool is_longer = attempted > first_ + LoadingProgramme::tolerance;
+    if (!can_cut_to(first_) || !is_longer) return false;
+    cut_to(first_);
+    return true;
+  }
   void enlarge_to(double increment) { next_ = std::max(value(), increment); }
   /// @return whether it grew
   bool grow() {

@@ -11,11 +11,11 @@ void follow_to_end(Path& path) {
   const std::unique_ptr<Driver> driver = make_driver(path.options().mode, path);
   const auto& reached = path.setting().observer.reached;
   for (Advance advance = Advance::goes_on; advance == Advance::goes_on;) {
-    const int before = path.state().steps;
+    const int before = path.next_step();
     advance = driver->advance();
     // What ended the path right after an accepted step is found again from the step before.
     const bool can_go_on = advance == Advance::goes_on || path.outcome() == Outcome::converged;
-    if (reached && can_go_on && path.state().steps > before) reached(path.state());
+    if (reached && can_go_on && path.next_step() > before) reached(path.state());
   }
 }
 

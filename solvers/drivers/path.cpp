@@ -28,12 +28,15 @@ Path::Path(const PathSetting& setting) : setting_(setting) {
   Trial reference;
   reference.displacement.assign(conditions.prescribed().size(), 0.0);
   reference.history = damaged().initial_history();
-  reference.environment = conditions.environment(0.0);
+  const double preload = conditions.programme().is_of_time() ? 1.0 : 0.0;
+  const LoadPoint begin = LoadPoint::of_preload(preload);
+  reference.environment = conditions.environment(begin);
   std::vector<double> external_force(reference.displacement.size());
-  conditions.external_force(0.0, external_force);
+  conditions.external_force(begin, external_force);
   evaluate(problem(), external_force, reference);
   state_.ledger.begin(reference, working_force(reference, external_force));
-  state_.accepted = {reference.displacement, 0.0, reference.history, {}, reference.environment};
+  state_.accepted = {reference.displacement, 0.0,    reference.history, {},
+                     reference.environment,  preload};
   note_rungs();
 }
 
@@ -70,7 +73,9 @@ bool Path::goes_on() const {
 }
 
 bool Path::has_fallen() const {
-  return state_.force.present < options().stop_below * state_.force.largest;
+  const auto& [present, largest, top] = state_.force;
+  return present < options().stop_below * largest &&
+         setting_.conditions.programme().is_at_new_load(top);
 }
 
 const SolvedBody& Path::body() const {
@@ -86,14 +91,14 @@ std::vector<double> Path::working_force(const Trial& state,
   return peristat::working_force(setting_.conditions, state, external_force);
 }
 
-std::optional<std::string> Path::refusal_of_conditions(double stage) const {
+std::optional<std::string> Path::refusal_of_conditions(const LoadPoint& at) const {
   if (setting_.conditions.control()) return std::nullopt;  // the load is not known yet
   std::vector<double> values(setting_.conditions.prescribed().size());
   std::optional<std::string> refusal;
   try {
-    setting_.conditions.prescribe(stage, values);
-    setting_.conditions.external_force(stage, values);
-    static_cast<void>(setting_.conditions.environment(stage));
+    setting_.conditions.prescribe(at, values);
+    setting_.conditions.external_force(at, values);
+    static_cast<void>(setting_.conditions.environment(at));
   } catch (const InputError& error) {
     refusal = description(error);
   }
@@ -105,8 +110,9 @@ std::string Path::description(const InputError& error) const {
   return setting_.observer.describe ? setting_.observer.describe(error) : error.what();
 }
 
-Attempt Path::search(const State& from, double target, const NewtonOptions& options) {
-  if (setting_.conditions.control()) return search_by_control(from, target, options);
+Attempt Path::search(const State& from, const LoadPoint& target, const NewtonOptions& options) {
+  const bool is_controlled = setting_.conditions.control() && !is_preloading();
+  if (is_controlled) return search_by_control(from, target.stage, options);
   return to_attempt(newton(problem(), body().solver, body().tangent, from, target, options,
                            [this](const IterationRecord& row) { return iterated(row); }),
                     target);
@@ -116,7 +122,8 @@ Attempt Path::search_by_control(const State& from, double target, const NewtonOp
   const Conditions& conditions = setting_.conditions;
   BorderedStep step;
   step.loads = [target](double load) { return LoadPoint(target, load); };
-  step.border = {conditions.control()->weights(), 0.0, conditions.programme().at(target).front()};
+  step.border = {conditions.control()->weights(), 0.0,
+                 state_.control_at_load_zero + conditions.programme().at(target).front()};
   step.unknown = from.load.value_or(0.0);
   if (state_.control_sign == 0) find_control_sign();
   return search(from, step, options);
@@ -124,13 +131,11 @@ Attempt Path::search_by_control(const State& from, double target, const NewtonOp
 
 void Path::find_control_sign() {
   const SolvedBody& solved = body();
-  const State rest{std::vector<double>(state_.accepted.displacement.size(), 0.0), 0.0,
-                   solved.assembler.initial_history(), 0.0,
-                   setting_.conditions.environment({0.0, 0.0})};
+  const State& from = state_.accepted;  // step 0, unless the rate could not be found there
   std::vector<double> rate;
-  const auto loads = [](double load) { return LoadPoint(0.0, load); };
-  if (find_rate(problem(), solved.solver, solved.tangent, {rest}, loads, 0.0, rate) !=
-      LinearOutcome::solved) {
+  const auto loads = [&](double load) { return LoadPoint(from.stage, load); };
+  if (find_rate(problem(), solved.solver, solved.tangent, {from}, loads, from.load.value_or(0.0),
+                rate) != LinearOutcome::solved) {
     return;  // the search names it
   }
   const double answer = setting_.conditions.control()->value(rate);

@@ -38,7 +38,7 @@ enum class Advance { goes_on, ended };
 /// A path and its state, with what all drivers share: searches, and telling what happens.
 class Path {
  public:
-  /// From rest, which need not be free of stress.
+  /// From rest, before what acts at load 0 is put on.
   explicit Path(const PathSetting& setting);
 
   /// From a state that a path with the same setting has reached. Its solvers have to be prepared
@@ -58,9 +58,12 @@ class Path {
 
   /// Whether it goes on: there is load left, and the force has not fallen to where it is to end.
   [[nodiscard]] bool goes_on() const;
-  /// Whether the supports' force has fallen below the share of its peak that ends the path.
+  /// Whether the supports' force has fallen below the share of its peak that ends the path, at a
+  /// load that the body has not borne before: what falls with a planned unloading has not failed.
   [[nodiscard]] bool has_fallen() const;
-  [[nodiscard]] int next_step() const { return state_.steps + 1; }
+  /// Whether step 0, the state at load 0, is still to be found.
+  [[nodiscard]] bool is_preloading() const { return state_.accepted.preload < 1.0; }
+  [[nodiscard]] int next_step() const { return is_preloading() ? 0 : state_.steps + 1; }
 
   /// The body in force: the stand-in until damage begins.
   [[nodiscard]] const SolvedBody& body() const;
@@ -73,10 +76,12 @@ class Path {
                                                   std::span<const double> external_force) const;
 
   /// Why supports and loads have no value at a stage, if that is so.
-  [[nodiscard]] std::optional<std::string> refusal_of_conditions(double stage) const;
+  [[nodiscard]] std::optional<std::string> refusal_of_conditions(const LoadPoint& at) const;
 
-  /// By Newton's method, under the conditions' control if they have one.
-  [[nodiscard]] Attempt search(const State& from, double target, const NewtonOptions& options);
+  /// By Newton's method, under the conditions' control if they have one. What acts at load 0 is put
+  /// on before the control begins.
+  [[nodiscard]] Attempt search(const State& from, const LoadPoint& target,
+                               const NewtonOptions& options);
   /// By Newton's method with a load that is found, too.
   [[nodiscard]] Attempt search(const State& from, const BorderedStep& step,
                                const NewtonOptions& options);

@@ -26,12 +26,16 @@ Ledger PathLedger::with_step(const Sums& sums, std::span<const double> displacem
                            std::span<const double> u0, std::span<const double> u1) {
     return trapezoidal_work(sums, force0, force1, u0, u1);
   };
-  const double work =
-      step.heating +
-      (step.intact
-           ? work_of(force, step.intact->force, displacement_before, step.intact->displacement) +
-                 work_of(step.intact->force, working, step.intact->displacement, state.displacement)
-           : work_of(force, working, displacement_before, state.displacement));
+  const auto work_on_the_way = [&] {
+    if (step.is_elastic_preload) return state.stored_energy - entries.stored;
+    if (!step.intact) {
+      return step.heating + work_of(force, working, displacement_before, state.displacement);
+    }
+    const auto& [intact_force, intact] = *step.intact;
+    return step.heating + work_of(force, intact_force, displacement_before, intact) +
+           work_of(intact_force, working, intact, state.displacement);
+  };
+  const double work = work_on_the_way();
   Ledger after = entries;
   after.stored = state.stored_energy;
   after.dissipated = dissipated + released + step.released;

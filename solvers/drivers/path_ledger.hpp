@@ -19,6 +19,9 @@ struct StepEnergies {
     double drained = 0.0;  ///< see RelaxationResult
   };
   std::optional<Relaxed> relaxed;  ///< summed over the iterations of relaxation
+  /// On the way to step 0 without damage. A slow way from rest works as much as the body stores,
+  /// however nonlinear it is, so that this is the work, not the trapezoidal rule's.
+  bool is_elastic_preload = false;
   /// Bonds broke one after the other under a control that stood still: what the work is more than
   /// what is stored and dissipated counts as drained.
   bool is_avalanche = false;
@@ -34,7 +37,8 @@ struct StepEnergies {
 ///
 /// External work is summed with the trapezoidal rule over each step, of the loads on the free and
 /// of the reactions on the prescribed degrees of freedom, and of heating. Relaxation sums the work
-/// over each of its iterations, too: what that is more is the numerical work.
+/// over each of its iterations, too: what that is more is the numerical work. What acts at load 0
+/// is put on slowly, see StepEnergies::is_elastic_preload.
 struct PathLedger {
   Ledger entries;
   double released = 0.0;      ///< by triangles and tetrahedra whose bonds were damaged [J]

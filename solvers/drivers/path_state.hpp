@@ -20,12 +20,13 @@ namespace peristat {
 /// hand.
 struct PathState {
   State accepted;  ///< the last one: displacement, stage, histories
-  int steps = 0;   ///< accepted
+  int steps = 0;   ///< accepted after step 0
   PathLedger ledger;
   FragmentPins pins;
   /// 2-norm of the largest reaction of a support, in the accepted state and so far [N].
   struct SupportForce {
     double present = 0.0, largest = 0.0;
+    double top = 0.0;  ///< highest stage so far
   } force;
   bool stands_in = false;  ///< the stand-in is in the place of the body
   struct Rungs {
@@ -40,8 +41,10 @@ struct PathState {
     double increment = 0.0;  ///< likewise
     RelaxationMotion motion;
   } relaxed;
-  /// Under a control: +1 or -1 as the control answers to the load at rest; 0: not known yet.
+  /// Under a control: +1 or -1 as the control answers to the load at load 0; 0: not known yet.
   int control_sign = 0;
+  /// The controlled displacement in step 0, from which the programme's values count [m].
+  double control_at_load_zero = 0.0;
   struct Arc {
     double increment = 0.0;  ///< of the arc length in the next step; 0: as in the first
     /// Of the path in the accepted state, per unit of the arc length: of the displacement [m], and

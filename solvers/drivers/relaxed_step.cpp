@@ -26,7 +26,7 @@ NewtonOptions finishing_options(NewtonOptions options, bool has_factor) {
 bool finish(Path& path, RelaxedStep& step, NewtonOptions options) {
   options.scale = step.scale;
   const State near = state_of(step.attempt);
-  Attempt finished = path.search(near, near.stage, options);
+  Attempt finished = path.search(near, load_point(near), options);
   step.has_factor |= finished.iterations > 0;
   if (!finished.has_converged() && worth_relaxing(finished)) return false;
   step.found.record.newton_iterations += finished.iterations;
@@ -54,9 +54,10 @@ RelaxedStep::RelaxedStep(const State& accepted) {
   attempt.at = load_point(accepted);
 }
 
-void relax_towards(Path& path, RelaxedStep& step, double target, RelaxationOptions options) {
+void relax_towards(Path& path, RelaxedStep& step, const LoadPoint& target,
+                   RelaxationOptions options) {
   const State from = state_of(step.attempt);
-  if (from.stage == target && options.holds) options.ramp = 1;
+  if (load_point(from) == target && options.holds) options.ramp = 1;
   options.scale = step.scale;
   const Stopwatch watch(path.state().relaxation_seconds);
   const auto tell = [&](const IterationRecord& row) { return path.iterated(row); };
@@ -77,7 +78,7 @@ void relax_towards(Path& path, RelaxedStep& step, double target, RelaxationOptio
   step.attempt = to_attempt(std::move(relaxed), target);
 }
 
-void relax_and_finish(Path& path, RelaxedStep& step, double target) {
+void relax_and_finish(Path& path, RelaxedStep& step, const LoadPoint& target) {
   const NewtonOptions& newton_options = path.setting().newton_options;
   RelaxationOptions options = path.options().relaxation;
   const double last = options.relative_tolerance;

@@ -16,9 +16,10 @@ struct RelaxedStep {
 };
 
 /// By dynamic relaxation.
-void relax_towards(Path& path, RelaxedStep& step, double target, RelaxationOptions options);
+void relax_towards(Path& path, RelaxedStep& step, const LoadPoint& target,
+                   RelaxationOptions options);
 
 /// By dynamic relaxation until Newton's method is able to finish.
-void relax_and_finish(Path& path, RelaxedStep& step, double target);
+void relax_and_finish(Path& path, RelaxedStep& step, const LoadPoint& target);
 
 }  // namespace peristat

@@ -28,8 +28,8 @@ Advance RelaxedStepping::next() {
 
 RelaxedStepping::Found RelaxedStepping::search() {
   const State& from = path_.state().accepted;
-  const double target = increment_.target(from.stage);
-  Found found{RelaxedStep(from), target - from.stage, {}};
+  const LoadPoint target = increment_.next_point(load_point(from));
+  Found found{RelaxedStep(from), Increment::length(load_point(from), target), {}};
   RelaxedStep& step = found.step;
   if (const auto refusal = path_.refusal_of_conditions(target)) {
     step.attempt = undefined_attempt(from, target);
@@ -47,6 +47,11 @@ RelaxedStepping::Found RelaxedStepping::search() {
   };
   if (equilibrate() == Outcome::converged && path_.options().relaxation.holds) {
     commit(path_, step.attempt, step.found, equilibrate);
+  }
+  const bool damages = path_.is_preloading() && step.found.growth.degrading > 0;
+  if (damages && increment_.refine_preload(found.attempted)) {
+    path_.state().relaxed.motion = motion;
+    return search();
   }
   if (step.attempt.has_converged()) found.fault = complete(path_, step.attempt, step.found);
   if (!step.attempt.has_converged()) path_.state().relaxed.motion = motion;

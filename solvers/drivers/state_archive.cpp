@@ -51,7 +51,7 @@ void transfer_pins(StateArchive& archive, FragmentPins& pins) {
 
 void transfer_tangent(StateArchive& archive, TangentReference& tangent) {
   auto& [at, lost] = tangent;
-  [[maybe_unused]] auto& [displacement, stage, history, load, environment] = at;
+  [[maybe_unused]] auto& [displacement, stage, history, load, environment, preload] = at;
   const std::string name = "events/tangent";
   archive.transfer(name + "/displacement", displacement, Rows::dofs);
   archive.transfer(name + "/stage", stage);
@@ -84,19 +84,21 @@ void transfer_tangent(StateArchive& archive, TangentReference& tangent) {
 // The bindings name every member, so that none can be forgotten.
 void transfer(StateArchive& archive, PathState& state) {
   auto& [accepted, steps, ledger, pins, force, stands_in, rungs, relaxation_seconds, implicit,
-         relaxed, control_sign, arc, hand_over, events, dynamics] = state;
-  // Made anew from the stage, see Path.
-  [[maybe_unused]] auto& [displacement, stage, history, load, environment] = accepted;
+         relaxed, control_sign, control_at_load_zero, arc, hand_over, events, dynamics] = state;
+  // The environment is made anew from the load point, see Path.
+  [[maybe_unused]] auto& [displacement, stage, history, load, environment, preload] = accepted;
   archive.transfer("accepted/displacement", displacement, Rows::dofs);
   archive.transfer("accepted/stage", stage);
   transfer_optional(archive, "accepted/load", load);
+  archive.transfer("accepted/preload", preload);
   transfer_history(archive, "accepted", history);
   archive.transfer("steps", steps);
   transfer_ledger(archive, ledger);
   transfer_pins(archive, pins);
-  auto& [present_force, largest_force] = force;
+  auto& [present_force, largest_force, top_stage] = force;
   archive.transfer("force/present", present_force);
   archive.transfer("force/largest", largest_force);
+  archive.transfer("force/top", top_stage);
   archive.transfer("stands_in", stands_in);
   auto& [body_rung, stand_in_rung] = rungs;
   archive.transfer("rungs/body", body_rung);
@@ -110,6 +112,7 @@ void transfer(StateArchive& archive, PathState& state) {
   archive.number_free_dofs(pins);
   archive.transfer("relaxed/velocity", velocity, Rows::free_dofs);
   archive.transfer("control_sign", control_sign);
+  archive.transfer("control_at_load_zero", control_at_load_zero);
   auto& [arc_increment, direction, stage_direction, displacement_scale, negative_pivots,
          passes_critical_point] = arc;
   archive.transfer("arc/increment", arc_increment);

@@ -96,8 +96,7 @@ std::string explanation(Outcome outcome) {
       return "the load has not come to its end after the largest number of steps; arc_length.steps "
              "ends the path after as many as it says";
     case Outcome::damage_begins:
-      return "bonds would be damaged; solver.mode = \"arc_length\" keeps their integrities as they "
-             "are (a [[control]] follows damage)";
+      return "bonds would be damaged where their integrities are to stay as they are";
     case Outcome::inconsistent:
       return "the state that was found contradicts a balance that it owes";
     case Outcome::unstable_step:

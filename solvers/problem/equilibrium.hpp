@@ -78,7 +78,11 @@ struct Trial {
 };
 
 /// Where its supports and loads are.
-[[nodiscard]] inline LoadPoint load_point(const State& state) { return {state.stage, state.load}; }
+[[nodiscard]] inline LoadPoint load_point(const State& state) {
+  LoadPoint at(state.stage, state.load);
+  at.preload = state.preload;
+  return at;
+}
 
 /// Takes a displacement to the state right after a jump of the prescribed ones, which are in it
 /// already.

@@ -20,6 +20,7 @@ const std::map<Decision, std::string>& decision_names() {
       {Decision::change_linear_solver, "change linear solver"},
       {Decision::locate, "locate critical point"},
       {Decision::change_time_step, "change time step"},
+      {Decision::preload, "preload"},
       {Decision::branch_off, "branch off"}};
   return names;
 }

@@ -103,6 +103,7 @@ enum class Decision {
   change_linear_solver,
   locate,  ///< a critical point between two states
   change_time_step,
+  preload,     ///< step 0: what acts at load 0 was put on
   branch_off,  ///< to the path that leaves at a bifurcation
 };
 

@@ -313,19 +313,18 @@ class Relaxation {
 }  // namespace
 
 RelaxationResult relax(const EquilibriumProblem& problem, TangentOperator& tangent,
-                       const State& from, double stage, const RelaxationOptions& options,
+                       const State& from, const LoadPoint& to, const RelaxationOptions& options,
                        RelaxationMotion& motion, const RelaxationObserver& observer) {
   RelaxationResult result;
   result.state.displacement = from.displacement;
   result.state.history = from.history;
   result.state.environment = from.environment;
   result.external_force.resize(from.displacement.size());
-  const WayOfLoad way(problem, from, stage);
+  const WayOfLoad way(problem, from, to);
   way.load(0.0, result.external_force);
   evaluate(problem, result.external_force, result.state);
-  result.scale = options.scale > 0.0
-                     ? options.scale
-                     : relaxation_scale(problem, result.state, stage, options.holds);
+  result.scale = options.scale > 0.0 ? options.scale
+                                     : relaxation_scale(problem, result.state, to, options.holds);
 
   const double taken_up_at_start = taken_up(problem, options.breaking, result.state);
 

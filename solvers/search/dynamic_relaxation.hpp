@@ -13,7 +13,7 @@ struct RelaxationMotion {
   std::vector<double> velocity;  ///< V^(n+1/2) per equation; empty: at rest
 };
 
-/// Moves supports and loads from a state's stage to the given one and relaxes, by explicit
+/// Moves supports and loads from where a state has them to a load point and relaxes, by explicit
 /// adaptive dynamic relaxation (Kilic and Madenci 2010, as [ADAPT] uses it) with the
 /// pseudo time step 1:
 ///
@@ -37,7 +37,7 @@ struct RelaxationMotion {
 /// @param tangent room for the tangent that the density is made from
 /// @param motion at the start, and at the end if the relaxation does not hold
 [[nodiscard]] RelaxationResult relax(const EquilibriumProblem& problem, TangentOperator& tangent,
-                                     const State& from, double stage,
+                                     const State& from, const LoadPoint& to,
                                      const RelaxationOptions& options, RelaxationMotion& motion,
                                      const RelaxationObserver& observer);
 

@@ -62,7 +62,7 @@ double lengthened(double theta, double factor) {
 class Flow {
  public:
   Flow(const EquilibriumProblem& problem, LinearSolver& solver, TangentOperator& tangent,
-       const State& from, double stage, const RelaxationOptions& options,
+       const State& from, const LoadPoint& to, const RelaxationOptions& options,
        const RelaxationObserver& observer)
       : problem_(problem),
         solver_(solver),
@@ -70,7 +70,7 @@ class Flow {
         observer_(observer),
         sums_(problem.sums()),
         points_of_body_(GlobalIndex(sums_.of_all(double(own_points())))),
-        way_(problem, from, stage),
+        way_(problem, from, to),
         force_(from.displacement.size()),
         linearisation_(problem, solver, tangent, force_) {
     way_.load(0.0, force_);
@@ -79,9 +79,9 @@ class Flow {
     current_.environment = from.environment;
     evaluate(problem, force_, current_);
     result_.scale =
-        options.scale > 0.0 ? options.scale : relaxation_scale(problem, current_, stage, true);
+        options.scale > 0.0 ? options.scale : relaxation_scale(problem, current_, to, true);
     result_.largest_residual = options.relative_tolerance * result_.scale;
-    share_ = stage == from.stage ? 1.0 : 0.0;
+    share_ = to == load_point(from) ? 1.0 : 0.0;
     way_.load(share_, force_);
   }
 
@@ -346,9 +346,9 @@ class Flow {
 }  // namespace
 
 RelaxationResult flow(const EquilibriumProblem& problem, LinearSolver& solver,
-                      TangentOperator& tangent, const State& from, double stage,
+                      TangentOperator& tangent, const State& from, const LoadPoint& to,
                       const RelaxationOptions& options, const RelaxationObserver& observer) {
-  return Flow(problem, solver, tangent, from, stage, options, observer).run();
+  return Flow(problem, solver, tangent, from, to, options, observer).run();
 }
 
 }  // namespace peristat

@@ -5,7 +5,8 @@
 
 namespace peristat {
 
-/// Moves supports and loads from a state's stage to the given one and relaxes without inertia:
+/// Moves supports and loads from where a state has them to a load point and relaxes without
+/// inertia:
 ///
 ///   du/dt = d(u),   K0 d = F(u) = f_ext - dE/dx     on the free degrees of freedom,
 ///
@@ -33,8 +34,8 @@ namespace peristat {
 /// @param solver analyzed for the tangent's pattern and the free degrees of freedom
 /// @param tangent room for K0
 [[nodiscard]] RelaxationResult flow(const EquilibriumProblem& problem, LinearSolver& solver,
-                                    TangentOperator& tangent, const State& from, double stage,
-                                    const RelaxationOptions& options,
+                                    TangentOperator& tangent, const State& from,
+                                    const LoadPoint& to, const RelaxationOptions& options,
                                     const RelaxationObserver& observer);
 
 }  // namespace peristat

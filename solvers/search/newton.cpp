@@ -28,7 +28,7 @@ bool projection_may_help(Outcome outcome) {
 class NewtonSearch {
  public:
   NewtonSearch(const EquilibriumProblem& problem, LinearSolver& solver, TangentOperator& tangent,
-               const State& from, double stage, const NewtonOptions& options,
+               const State& from, const LoadPoint& at, const NewtonOptions& options,
                const IterationObserver& observer)
       : problem_(problem),
         solver_(solver),
@@ -36,21 +36,21 @@ class NewtonSearch {
         from_(from),
         options_(options),
         observer_(observer),
-        damage_(stage == from.stage ? options.damage : Damage::held),
+        damage_(at == load_point(from) ? options.damage : Damage::held),
         external_force_(from.displacement.size()),
         linearisation_(problem, solver, tangent, external_force_) {
-    problem.conditions.external_force(stage, external_force_);
+    problem.conditions.external_force(at, external_force_);
     current_.displacement = from.displacement;
     current_.history = from.history;
     current_.environment = from.environment;
     evaluate(problem, external_force_, current_, options.damage);
     start_gradient_ = current_.gradient;
     start_curvature_ = current_.curvature;
-    current_.environment = problem.environment(stage);
+    current_.environment = problem.environment(at);
     // Right after the jump bonds beside the supports are stretched as no equilibrium will ask for.
     // Where they may break, nothing would be left to measure the residual against, and the search
     // would begin in a torn body: damage is held until the predictor has spread the jump.
-    problem.conditions.prescribe(stage, current_.displacement);
+    problem.conditions.prescribe(at, current_.displacement);
     share_out_jump(problem, from.displacement, current_.displacement);
     evaluate(problem, external_force_, current_, damage_);
     result_.scale = options.scale > 0.0
@@ -223,9 +223,9 @@ class NewtonSearch {
 }  // namespace
 
 NewtonResult newton(const EquilibriumProblem& problem, LinearSolver& solver,
-                    TangentOperator& tangent, const State& from, double stage,
+                    TangentOperator& tangent, const State& from, const LoadPoint& at,
                     const NewtonOptions& options, const IterationObserver& observer) {
-  return NewtonSearch(problem, solver, tangent, from, stage, options, observer).run();
+  return NewtonSearch(problem, solver, tangent, from, at, options, observer).run();
 }
 
 }  // namespace peristat

@@ -58,7 +58,7 @@ struct NewtonResult {
 /// Told of every iteration as it ends; returns true to interrupt.
 using IterationObserver = std::function<bool(const IterationRecord&)>;
 
-/// Newton-Raphson from an equilibrium state to the equilibrium at `stage` ([ADAPT] eqs.
+/// Newton-Raphson from an equilibrium state to the equilibrium at a load point ([ADAPT] eqs.
 /// 5-11).
 ///
 /// Iteration 0 is the state right after the jump: prescribed displacements and loads have their new
@@ -87,7 +87,7 @@ using IterationObserver = std::function<bool(const IterationRecord&)>;
 /// Damage is held up to the end of the first iteration: iteration 0 and the predictor are those of
 /// the body as it was.
 [[nodiscard]] NewtonResult newton(const EquilibriumProblem& problem, LinearSolver& solver,
-                                  TangentOperator& tangent, const State& from, double stage,
+                                  TangentOperator& tangent, const State& from, const LoadPoint& at,
                                   const NewtonOptions& options, const IterationObserver& observer);
 
 }  // namespace peristat

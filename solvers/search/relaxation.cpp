@@ -4,14 +4,14 @@
 
 namespace peristat {
 
-double relaxation_scale(const EquilibriumProblem& problem, const Trial& start, double stage,
+double relaxation_scale(const EquilibriumProblem& problem, const Trial& start, const LoadPoint& to,
                         bool jumps) {
   std::vector<double> force(start.displacement.size());
-  problem.conditions.external_force(stage, force);
-  const SharedEnvironment environment = problem.conditions.environment(stage);
+  problem.conditions.external_force(to, force);
+  const SharedEnvironment environment = problem.conditions.environment(to);
   Trial after_jump = start;
   if (jumps) {
-    problem.conditions.prescribe(stage, after_jump.displacement);
+    problem.conditions.prescribe(to, after_jump.displacement);
     share_out_jump(problem, start.displacement, after_jump.displacement);
     after_jump.environment = environment;
     // A jump that tears bonds would leave no residual to measure against.

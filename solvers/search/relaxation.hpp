@@ -70,11 +70,11 @@ struct RelaxationResult {
 using RelaxationObserver = std::function<bool(const IterationRecord&)>;
 
 /// Norm that the residual of a relaxation is measured against [N]: residual_scale after the jump of
-/// supports and loads to a stage, or what heating adds if that is larger.
+/// supports and loads to a load point, or what heating adds if that is larger.
 /// @param start where it begins, evaluated
-/// @param jumps otherwise that of the start, under the loads of the stage
+/// @param jumps otherwise that of the start, under the loads of that point
 [[nodiscard]] double relaxation_scale(const EquilibriumProblem& problem, const Trial& start,
-                                      double stage, bool jumps);
+                                      const LoadPoint& to, bool jumps);
 
 /// Energy that the bonds have taken up, stored or dissipated, since the history they began with
 /// [J].

@@ -6,10 +6,10 @@
 
 namespace peristat {
 
-/// Supports and loads on the straight way from one load factor to another.
+/// Supports and loads on the straight way from one load point to another.
 class WayOfLoad {
  public:
-  WayOfLoad(const EquilibriumProblem& problem, const State& from, double stage);
+  WayOfLoad(const EquilibriumProblem& problem, const State& from, const LoadPoint& to);
 
   [[nodiscard]] const std::vector<Index>& prescribed() const { return prescribed_; }
   /// Degrees of freedom that are loaded, and follow others.

@@ -298,10 +298,13 @@ SharedEnvironment Conditions::environment(const LoadPoint& at) const {
   auto made = std::make_shared<Environment>();
   if (ground_moves) made->ground = foundations_.ground(loads);
   if (!surface_.none()) made->traction = surface_.at(points_, loads);
+  for (auto* const values : {&made->ground, &made->traction}) {
+    for (double& value : *values) value *= at.preload;
+  }
   for (const auto& [key, first, last, value] : pressures_) {
     with_key(key, [&] {
       for (std::size_t face = first; face < last; ++face) {
-        made->pressure.push_back(value(pressed_.centre[face], loads));
+        made->pressure.push_back(at.preload * value(pressed_.centre[face], loads));
       }
     });
   }
@@ -309,7 +312,7 @@ SharedEnvironment Conditions::environment(const LoadPoint& at) const {
   for (const auto& [key, points, factor, value] : eigenstretches_) {
     with_key(key, [&] {
       for (std::size_t k = 0; k < points.size(); ++k) {
-        const double stretch = factor[k] * value(points_.position(points[k]), loads);
+        const double stretch = at.preload * factor[k] * value(points_.position(points[k]), loads);
         double& sum = made->eigenstretch[std::size_t(points[k])];
         sum += stretch;
         if (!(sum > -1.0)) {
@@ -390,7 +393,7 @@ void Conditions::prescribe(const LoadPoint& at, std::span<double> displacement) 
   for (const Prescription& prescription : prescriptions_) {
     with_key(prescription.key, [&] {
       for (Index point : *prescription.points) {
-        const double value = prescription.displacement(points_.position(point), loads);
+        const double value = at.preload * prescription.displacement(points_.position(point), loads);
         double& first = displacement[dof_of(prescription, point)];
         if (first_.empty() || first_[dof_of(prescription, point)] == &prescription) {
           first = value;
@@ -401,14 +404,15 @@ void Conditions::prescribe(const LoadPoint& at, std::span<double> displacement) 
       }
     });
   }
-  prescribe_handles_at(loads, displacement);
+  prescribe_handles_at(loads, at.preload, displacement);
 }
 
-void Conditions::prescribe_handles_at(std::span<const double> loads,
+void Conditions::prescribe_handles_at(std::span<const double> loads, double preload,
                                       std::span<double> displacement) const {
   for (const HandlePrescription& handle : made_.prescriptions) {
-    with_key(handle.key,
-             [&] { displacement[handle.dof] = handle.factor * handle.value(handle.place, loads); });
+    with_key(handle.key, [&] {
+      displacement[handle.dof] = preload * handle.factor * handle.value(handle.place, loads);
+    });
   }
 }
 
@@ -421,7 +425,7 @@ void Conditions::external_force(const LoadPoint& at, std::span<double> force) co
         const auto& [points, amount, spread_over] = *load.on;
         for (std::size_t k = 0; k < points.size(); ++k) {
           force[std::size_t(points[k]) * points_.dimension + load.component] +=
-              load.value(points_.position(points[k]), loads) * amount[k] / spread_over;
+              at.preload * load.value(points_.position(points[k]), loads) * amount[k] / spread_over;
         }
       });
     }

@@ -177,7 +177,8 @@ class Conditions {
   void add_loads_of_all(const std::function<void()>& add_loads) const;
   /// Refuses forces that would have to be borne where a cell is held that nothing holds.
   void require_balance(std::span<const double> force, const std::string& key) const;
-  void prescribe_handles_at(std::span<const double> loads, std::span<double> displacement) const;
+  void prescribe_handles_at(std::span<const double> loads, double preload,
+                            std::span<double> displacement) const;
   [[nodiscard]] Coordinates reaction_of(const Restraint& restraint,
                                         std::span<const double> gradient) const;
   void add_held_sums(std::span<const double> displacement, Holding& holding) const;

@@ -74,6 +74,20 @@ std::vector<double> LoadingProgramme::at(double stage) const {
   return values;
 }
 
+bool LoadingProgramme::is_at_new_load(double stage) const {
+  if (is_of_time()) return true;
+  const std::vector<double> values = at(stage);
+  for (std::size_t k = 0; k < tables_.size(); ++k) {
+    // Between two entries a parameter is no larger than at one of them.
+    double largest_before = 0.0;
+    for (std::size_t entry = 0; double(entry) < stage - tolerance; ++entry) {
+      largest_before = std::max(largest_before, std::abs(tables_[k][entry]));
+    }
+    if (std::abs(values[k]) > largest_before) return true;
+  }
+  return false;
+}
+
 double LoadingProgramme::next_entry(double stage) { return std::floor(stage + tolerance) + 1.0; }
 
 }  // namespace peristat

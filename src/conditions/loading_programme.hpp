@@ -45,6 +45,8 @@ class LoadingProgramme {
   [[nodiscard]] bool has_rest(double stage) const {
     return is_of_time() ? stage < end_time_ : end() - stage > tolerance;
   }
+  /// Whether a parameter is larger in size than at any stage before.
+  [[nodiscard]] bool is_at_new_load(double stage) const;
   /// Stage of the first entry that lies beyond.
   [[nodiscard]] static double next_entry(double stage);
 

@@ -80,7 +80,7 @@ class CommandLine(unittest.TestCase):
 
     def history(self, folder):
         with open(self.folder / folder / "history.csv", newline="") as file:
-            return list(csv.DictReader(file))
+            return [row for row in csv.DictReader(file) if row["step"] != "0"]
 
     # ---- bad input --------------------------------------------------------------------------------
 
@@ -178,7 +178,7 @@ class CommandLine(unittest.TestCase):
             self.assertEqual(sorted(file["steps"]), ["000003", "000004"])
             self.assertLessEqual({"reference", "volume", "set_ids"}, set(file["points"]))
             self.assertLessEqual({"as_read", "as_resolved"}, set(file["case"]))
-            self.assertEqual(len(file["history/load_factor"]), 4)
+            self.assertEqual(list(file["history/step"]), [0, 1, 2, 3, 4])
             last = file["steps/000004"]
             self.assertEqual((last.attrs["load_factor"], last["displacement"].shape), (1.0, (260, 2)))
             for name in ("displacement", "damage", "force", "energy_density"):
@@ -244,7 +244,7 @@ class CommandLine(unittest.TestCase):
             if announced == 0:
                 continue
             with h5py.File(self.folder / "out/results.h5") as file:
-                self.assertGreaterEqual(len(file["history/step"]), announced)
+                self.assertGreater(len(file["history/step"]), announced)
                 for step in range(1, announced + 1):
                     self.assertTrue(numpy.isfinite(file[f"steps/{step:06d}/displacement"]).all())
             text = (self.folder / "out/history.csv").read_text()

@@ -107,8 +107,9 @@ class Ended:
 
     @functools.cached_property
     def history(self):
+        """Without step 0: nothing acts at load 0."""
         return [{key: value if key == "mode" else float(value) for key, value in row.items()}
-                for row in self.table("history")]  # fmt: skip
+                for row in self.table("history") if row["step"] != "0"]  # fmt: skip
 
     @functools.cached_property
     def summary(self):

@@ -60,11 +60,6 @@ def crack(*ends):
 
 
 class Paths(Programmes):
-    def history(self, name="out"):
-        with open(self.folder / name / "history.csv", newline="") as table:
-            return [{key: value if key == "mode" else float(value) for key, value in row.items()}
-                    for row in csv.DictReader(table)]  # fmt: skip
-
     def broken(self, name="out"):
         """Ends of the bonds in the order in which they broke, and the load factors."""
         with open(self.folder / name / "broken_bonds.csv", newline="") as table:

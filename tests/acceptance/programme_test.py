@@ -49,6 +49,8 @@ ROUND_OFF = 1e-12
 
 
 class Programmes(unittest.TestCase):
+    first_step = 1  # that `history` gives: step 0 has a test of its own
+
     def setUp(self):
         self.folder = pathlib.Path(self.enterContext(tempfile.TemporaryDirectory(prefix="peristat_programme_"))).resolve()
 
@@ -66,7 +68,7 @@ class Programmes(unittest.TestCase):
     def history(self, name="out"):
         with open(self.folder / name / "history.csv", newline="") as table:
             return [{key: value if key == "mode" else float(value) for key, value in row.items()}
-                    for row in csv.DictReader(table)]  # fmt: skip
+                    for row in csv.DictReader(table) if int(row["step"]) >= self.first_step]  # fmt: skip
 
     def displacements(self, name="out"):
         with h5py.File(self.folder / name / "results.h5") as file:

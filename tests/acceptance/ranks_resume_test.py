@@ -17,7 +17,7 @@ class GoesOn(Comparison):
     def stopped(self, ranks, text, *options):
         run, output = self.start(ranks, text, "--stop-after", "2", *options)
         self.assertEqual(run.returncode, 130, run.stderr)
-        self.assertEqual(len(rows(output, "history.csv")), 2)
+        self.assertEqual(len(rows(output, "history.csv")), 3)
         self.assertIn("peristat resume", run.stderr)
         return output
 

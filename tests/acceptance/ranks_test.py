@@ -36,7 +36,7 @@ class SameResults(Comparison):
 
     def test_a_plate_with_a_hole(self):
         one = self.compare(PLATE, (2, 3, 4))
-        self.assertEqual(len(rows(one, "history.csv")), 2)
+        self.assertEqual(len(rows(one, "history.csv")), 3)
 
     def test_a_perturbed_block_with_corrections_under_its_weight(self):
         self.compare(BLOCK)

@@ -22,7 +22,7 @@ CLOSE = 1e-8
 
 def rows_of(folder, table="history.csv"):
     with open(folder / table, newline="") as file:
-        return list(csv.DictReader(file))
+        return [row for row in csv.DictReader(file) if table != "history.csv" or row["step"] != "0"]
 
 
 def numbers(folder, *columns):

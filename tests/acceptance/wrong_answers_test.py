@@ -130,8 +130,8 @@ class Damage(WrongAnswers):
     def test_a_step_that_its_jump_completes_has_its_damage(self):
         # All points are prescribed: the jump alone is the step. Bonds that it breaks bear nothing.
         ended = self.completed(self.write(ROW.replace("1e-5*load", "2e-5*load") + ALL_PRESCRIBED), "solver.mode=newton")
-        torn = [row for row in ended.table("history") if float(row["stored_energy"]) == 0.0]
-        self.assertGreater(float(ended.table("history")[0]["reaction_x:right"]), 0.0)
+        torn = [row for row in ended.table("history")[1:] if float(row["stored_energy"]) == 0.0]
+        self.assertGreater(float(ended.table("history")[1]["reaction_x:right"]), 0.0)
         self.assertGreater(len(torn), 0)
         for row in torn:
             self.assertEqual(float(row["reaction_x:right"]), 0.0)

@@ -30,7 +30,7 @@ class Run:
         self.folder = folder
         self.output = output
         self.summary = json.loads((folder / "summary.json").read_text())
-        self.history = rows(folder / "history.csv")
+        self.history = [row for row in rows(folder / "history.csv") if row["step"] > 0 or "time" in row]
         self.iterations = rows(folder / "iterations.csv")
         self.decisions = rows(folder / "decisions.csv")
         self.convergence = rows(folder / "convergence.csv")

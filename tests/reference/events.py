@@ -106,7 +106,7 @@ class Events:
             self.of.complain(step, f"{len(batch)} bonds should drop, {len(changed)} do; {len(wrong)} are another's")
 
     def utilisation_of_old(self, old):
-        kept, self.mechanics.eigenstretch = self.mechanics.eigenstretch, self.of.conditions.eigenstretch(old.loads)
+        kept, self.mechanics.eigenstretch = self.mechanics.eigenstretch, self.of.eigenstretch(old.loads)
         utilisation = self.utilisation(old.everywhere, old.history)
         self.mechanics.eigenstretch = kept
         return utilisation
@@ -218,7 +218,7 @@ class Events:
 
     def judge_settling(self, step, row, old, history):
         u, past, drained, batch_work, dead_work, events = old.displacement, old.history, 0.0, 0.0, 0.0, 0
-        external = self.of.conditions.force(old.loads)
+        external = self.of.loads(old.loads, old.displacement)
         is_held = row["stage"] == self.stage and old.number > 0
         utilisation = self.utilisation(u, past)
         while utilisation.max() >= 1 - TIE and (events == 0 or utilisation.max() > AT_STRENGTH + 0.25e-9):

@@ -28,6 +28,8 @@ SHARE_OF_SCALE = 1e-5  # of the largest forces so far: what has come apart along
 OF_TEETH, OF_INTEGRITY = 1e-9, 1e-10
 NEVER_FAILS = -1  # history of a bond of a no-fail set, as it is written
 
+UNLOADED = None  # loads before what acts at load 0 is put on
+
 
 class Verification:
     """Complaints about a run, and the largest numbers seen (`worst`)."""
@@ -50,6 +52,7 @@ class Verification:
         self.ties = Ties(self.case, reference, volume, sets, self.conditions.prescribed)
         self.jump_is_free = self.mechanics.body.beyond.given_jump(0.0)[1]
         self.first_real_step = 0
+        self.control_at_load_zero = 0.0
         self.events = None
         if self.case["solver"]["mode"] == "path":
             self.mechanics.law = SawTooth(self.mechanics.law, self.case["loading"].get("teeth", 10))
@@ -155,7 +158,7 @@ class Verification:
         """Judges every written step; returns the complaints."""
         if not self.histories_are_known:
             raise ValueError("the histories of the bonds are not known")
-        old = Old(self.results.reference.shape, self.mechanics)
+        old = Old(self.results.reference.shape, self.mechanics, self.results.steps)
         for step in self.results.steps:
             mechanics = self.mechanics if step.number >= self.first_real_step else self.stand_in
             step.loads = self.case.loads(self.rows[step.number]["stage"], step.load)
@@ -169,7 +172,7 @@ class Verification:
 
     def judge(self, mechanics, step, old, history):
         row, prescribed = self.rows[step.number], self.conditions.prescribed
-        mechanics.eigenstretch = self.conditions.eigenstretch(step.loads)
+        mechanics.eigenstretch = self.eigenstretch(step.loads)
         gradient = mechanics.gradient(step.everywhere, history)
         magnitude = mechanics.gradient(step.everywhere, history, absolute=True)
         largest = magnitude.max() + 1e-4 * self.whole_forces(mechanics, step)
@@ -201,20 +204,27 @@ class Verification:
 
     def gradient_before(self, mechanics, step, old):
         """Of the old state, under its own eigenstretch."""
-        mechanics.eigenstretch = self.conditions.eigenstretch(old.loads)
+        mechanics.eigenstretch = self.eigenstretch(old.loads)
         gradient = mechanics.gradient(old.everywhere, self.past(mechanics, old))
-        mechanics.eigenstretch = self.conditions.eigenstretch(step.loads)
+        mechanics.eigenstretch = self.eigenstretch(step.loads)
         return gradient
+
+    def eigenstretch(self, load):
+        return None if load is UNLOADED else self.conditions.eigenstretch(load)
 
     def past(self, mechanics, old):
         return old.history if mechanics is self.mechanics else mechanics.no_history()
 
     def loads(self, load, displacement):
         """Dead loads, and those that follow the deformation [N]."""
+        if load is UNLOADED:
+            return numpy.zeros(displacement.shape)
         return self.conditions.force(load) + self.conditions.follower_force(load, displacement)
 
     def external(self, load, displacement):
         """Loads, and the springs of foundations, whose energy is stored [N]."""
+        if load is UNLOADED:  # nothing has moved
+            return numpy.zeros(displacement.shape)
         return self.loads(load, displacement) + self.foundations.force(displacement, load)
 
     def whole_force(self, mechanics, step):
@@ -263,10 +273,10 @@ class Verification:
         jumped = self.ties.after_jump(jumped, step.loads)
         past = self.past(mechanics, old)
         external = self.external(step.loads, jumped)
-        mechanics.eigenstretch = self.conditions.eigenstretch(old.loads)
+        mechanics.eigenstretch = self.eigenstretch(old.loads)
         reactions = before - self.external(old.loads, old.displacement)
         beyond = self.forces_beyond(mechanics, old, past)
-        mechanics.eigenstretch = self.conditions.eigenstretch(step.loads)
+        mechanics.eigenstretch = self.eigenstretch(step.loads)
         # Reactions of both states: Newton's method that finishes a relaxed step starts from the latter.
         held = prescribed | self.ties.follows
         of_ties = self.norm_of_ties(old, reactions)
@@ -468,6 +478,8 @@ class Verification:
 
     def judge_work(self, mechanics, step, row, old, history, before, gradient, external, loads):
         """External work by the trapezoidal rule over the accepted steps; implicit ones add no other."""
+        if step.number == 0:
+            return self.judge_work_of_preload(mechanics, step, row)
         if old.mechanics not in (None, mechanics) or old.number + 1 != step.number or self.events:
             return  # between two events of a path: see Events
         if step.mode == "newton" and row["numerical_work"] != old.numerical_work:
@@ -490,13 +502,19 @@ class Verification:
         scale += 1e-5 * self.whole_forces(mechanics, step) * numpy.abs(step.everywhere).max()
         self.compare(step, "work", row["external_work"] - old.external_work, work, scale)
 
+    def judge_work_of_preload(self, mechanics, step, row):
+        """What acts at load 0 was put on slowly: an elastic body takes up all of its work."""
+        if row["dissipated_energy"] == 0 and row["drained_energy"] == 0 and not row["settled"]:
+            scale = row["stored_energy"] + 1e-5 * self.whole_forces(mechanics, step) * numpy.abs(step.everywhere).max()
+            self.compare(step, "work", row["external_work"], row["stored_energy"], scale)
+
     def judge_summary(self, old):
         summary, rows = self.results.summary, self.rows
         if summary is None:
             self.complaints.append("there is no summary")
             return
-        if summary["steps"] != len(rows):
-            self.complaints.append(f"the summary counts {summary['steps']} steps, the history {len(rows)}")
+        if summary["steps"] != len(rows) - 1 or 0 not in rows:
+            self.complaints.append(f"the summary counts {summary['steps']} steps, the history {len(rows)} rows with step 0")
         if summary["status"] == "completed" and not self.is_at_its_end(rows):
             self.complaints.append("completed, but not at its end")
         if summary["bonds"] != len(self.mechanics.body.bonds):
@@ -515,7 +533,7 @@ class Verification:
         table = self.case.get("loading", {}).get("table", [0, 1])
         if self.case.get("control"):
             return isinstance(table, str) or abs(last["control"] - table[-1]) <= 1e-9 * max(numpy.abs(table))
-        if self.case["solver"]["mode"] == "arc_length" and len(rows) == self.case.get("arc_length", {}).get("steps", 0):
+        if self.case["solver"]["mode"] == "arc_length" and len(rows) - 1 == self.case.get("arc_length", {}).get("steps", 0):
             return True
         return isinstance(table, str) or abs(last["load_factor"] - table[-1]) <= 1e-12
 
@@ -524,16 +542,20 @@ class Verification:
         terms, sets = self.case.get("control"), self.results.sets
         parts = [float(numpy.dot(step.displacement[sets[term["set"]]].mean(axis=0), term["weights"])) for term in terms]
         size = sum(abs(part) for part in parts) + max(abs(step.displacement).max(), 1e-300)
-        self.compare(step, "control", row["control"], sum(parts), size)
+        if step.number == 0:
+            self.control_at_load_zero = sum(parts)
+        self.compare(step, "control", row["control"], sum(parts) - self.control_at_load_zero, size)
 
 
 class Old:
     """The last accepted state."""
 
-    def __init__(self, shape, mechanics):
-        self.number, self.load, self.mechanics = 0, 0.0, None
+    def __init__(self, shape, mechanics, steps):
+        """At rest: without loads if they act at load 0, so that step 0 is written; else it is step 0 itself."""
+        is_written = bool(steps) and steps[0].number == 0
+        self.number, self.load, self.mechanics = -1 if is_written else 0, 0.0, None
         self.displacement, self.history = numpy.zeros(shape), mechanics.no_history()
-        self.loads = {f"load{k}": 0.0 for k in ("", 2, 3, 4)}
+        self.loads = UNLOADED if is_written else {f"load{k}": 0.0 for k in ("", 2, 3, 4)}
         self.everywhere, self.jump = numpy.zeros(mechanics.body.reference.shape), numpy.zeros((shape[1],) * 2)
         self.dissipated = self.external_work = self.numerical_work = 0.0
 

@@ -50,7 +50,7 @@ inline SolvedCase solve_case(const std::string& name,
   LoadSteppingObserver observer;
   observer.iteration = [&](const IterationRecord& row) { solved.iterations.push_back(row); };
   observer.accepted = [&](const StepRecord& row, const AcceptedState&) {
-    solved.steps.push_back(row);
+    if (row.step > 0) solved.steps.push_back(row);
   };
   solved.result = follow_loading({{assembler, solver, tangent, free},
                                   *solved.body->conditions,

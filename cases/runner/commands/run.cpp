@@ -270,7 +270,7 @@ class CaseRun {
     told.accepted = [this](const StepRecord& record, const AcceptedState& state) {
       recorder_->accepted(record, state);
       summary_.max_displacement = largest_of_all(state.trial.displacement);
-      ++steps_here_;
+      if (record.step > 0) ++steps_here_;
     };
     told.reached = [this](const PathState& state) {
       const Stopwatch watch(seconds_of_checkpoints_);
@@ -317,6 +317,9 @@ class CaseRun {
     if (result.outcome != Outcome::converged) {
       const double reached = body_->conditions->load_factor(load_point(result.state));
       summary_.reason = failure_reason(result, reached);
+    } else if (!recorder_->decisions().empty() &&
+               recorder_->decisions().back().action == Decision::stop) {
+      summary_.reason = recorder_->decisions().back().reason;  // it ended before its load
     }
     summary_.max_displacement = largest_of_all(result.state.displacement);
     recorder_->finish();
@@ -350,7 +353,7 @@ class CaseRun {
     progress_.problem(summary_.reason);
     progress_.problem(fmt::format("{} accepted steps are in {}", result.steps, folder));
     if (result.outcome == Outcome::interrupted) {
-      if (result.steps > 0) progress_.problem("to go on: peristat resume " + folder);
+      if (recorder_->last()) progress_.problem("to go on: peristat resume " + folder);
       return Exit::interrupted;
     }
     progress_.problem("dossier.txt there tells where it failed and what to do");

@@ -121,6 +121,7 @@ void Progress::iteration(const IterationRecord& record) {
 
 void Progress::decision(const DecisionRecord& record) {
   if (record.action == Decision::accept) return;
+  if (record.action == Decision::preload) return say("  " + record.reason);
   if (record.action == Decision::accept_and_grow) {
     say(fmt::format("  next step grows to {:.4g}", record.next_increment));
     return;

@@ -15,7 +15,7 @@ namespace peristat {
 
 /// Layout of checkpoints, which other programs can't read: a number that grows with every change of
 /// what they are made of, or of how they are written.
-inline constexpr std::int64_t checkpoint_layout = 7;
+inline constexpr std::int64_t checkpoint_layout = 8;
 
 /// How many rows the tables of results.h5 have.
 struct TableRows {

@@ -119,12 +119,19 @@ void Recorder::accepted(StepRecord record, const AcceptedState& state) {
   for (const LineProbe& line : lines_) {
     results_.add_line(line.table().name, line.rows(record, all));
   }
-  const bool write_fields = record.step % case_.output.every == 0;
+  const bool is_at_rest = record.step == 0 && !record.motion && !moves(made.displacement);
+  const bool write_fields = record.step % case_.output.every == 0 && !is_at_rest;
   results_.add(record, write_fields ? std::optional(view) : std::nullopt);
   if (write_fields) written_histories_.tell(bond_stretches(body_.model, at.history));
-  progress_.accepted(record, relative_residual_);
+  if (!is_at_rest) progress_.accepted(record, relative_residual_);
   last_ = std::move(record);
   if (!write_fields) unwritten_ = std::move(made);
+}
+
+bool Recorder::moves(std::span<const double> displacement) const {
+  double largest = 0.0;
+  for (const double component : displacement) largest = std::max(largest, std::abs(component));
+  return recorded_.ranks().max(largest) > 0.0;
 }
 
 CrackState Recorder::crack_state(const StepRecord& record, const std::string& probe) const {

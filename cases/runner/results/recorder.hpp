@@ -89,6 +89,8 @@ class Recorder {
   /// Adds the bonds that have broken since the last step to the results.
   void record_broken_bonds(const StepRecord& record, const History& history);
   /// What a probe is told of the cracks.
+  /// Whether any point has, on any rank.
+  [[nodiscard]] bool moves(std::span<const double> displacement) const;
   [[nodiscard]] CrackState crack_state(const StepRecord& record, const std::string& probe) const;
   /// Keeps in growth_ what an accepted step has grown.
   void note_growth(const StepRecord& record);

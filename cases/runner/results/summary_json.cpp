@@ -82,7 +82,7 @@ std::string json_string(const std::string& text) {
 }
 
 void StepTotals::add(const StepRecord& record) {
-  ++steps;
+  if (record.step > 0 || record.motion) ++steps;
   newton_iterations += record.newton_iterations;
   relaxation_iterations += record.relaxation_iterations;
   last = record;

@@ -71,6 +71,7 @@ Path follow(const Truss& truss, const StudyOptions& options) {
   Path path;
   LoadSteppingObserver observer;
   observer.accepted = [&](const StepRecord& record, const AcceptedState& state) {
+    if (record.step == 0) return;
     const std::vector<double>& u = state.trial.displacement;
     path.passed.push_back({u[2], truss.height + u[3], record.load_factor, record.negative_pivots});
   };

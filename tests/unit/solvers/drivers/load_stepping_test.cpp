@@ -24,7 +24,8 @@ using tests::support;
 
 struct Followed {
   LoadSteppingResult result;
-  std::vector<StepRecord> steps;
+  std::vector<StepRecord> at_load_zero;  // step 0, once
+  std::vector<StepRecord> steps;         // after it
   std::vector<IterationRecord> iterations;
   std::vector<DecisionRecord> decisions;
   std::vector<std::vector<double>> displacements;
@@ -43,6 +44,7 @@ Followed follow(AnyProblem& problem, const LoadSteppingOptions& options,
   observer.iteration = [&](const IterationRecord& row) { followed.iterations.push_back(row); };
   observer.decision = [&](const DecisionRecord& row) { followed.decisions.push_back(row); };
   observer.accepted = [&](const StepRecord& row, const AcceptedState& state) {
+    if (row.step == 0) return followed.at_load_zero.push_back(row);
     followed.steps.push_back(row);
     followed.displacements.push_back(state.trial.displacement);
     const std::span<const double> stretches =
@@ -82,6 +84,7 @@ bool is_accepted(const DecisionRecord& decision) {
 
 /// What every run must satisfy: accepted load factors rise, each decision continues the last.
 void expect_consistent(const Followed& followed) {
+  ASSERT_EQ(followed.at_load_zero.size(), 1u);
   ASSERT_EQ(followed.result.steps, int(followed.steps.size()));
   double reached = 0.0;
   std::size_t accepted = 0;

@@ -243,7 +243,7 @@ TEST(Study, TheObserverIsToldAndMayInterrupt) {
   const auto body = make_body(make_points(strip_lattice()), strip(), 1);
   int steps = 0, iterations = 0;
   LoadSteppingObserver observer;
-  observer.accepted = [&](const StepRecord&, const AcceptedState&) { ++steps; };
+  observer.accepted = [&](const StepRecord& row, const AcceptedState&) { steps = row.step; };
   observer.iteration = [&](const IterationRecord&) { ++iterations; };
   observer.interrupted = [&] { return steps == 2; };
   const StudyResult result =
@@ -251,7 +251,7 @@ TEST(Study, TheObserverIsToldAndMayInterrupt) {
   EXPECT_EQ(result.outcome, Outcome::interrupted);
   EXPECT_EQ(steps, 2);
   EXPECT_GT(iterations, 2);
-  EXPECT_EQ(result.steps.size(), 2u);
+  EXPECT_EQ(result.steps.size(), 3u);  // step 0 is one
   EXPECT_EQ(result.state.stage, 0.5);
 }
 

@@ -1,0 +1,63 @@
+#include "solvers/drivers/step_zero.hpp"
+
+#include <utility>
+
+#include "src/conditions/preload.hpp"
+#include "src/core/number_text.hpp"
+
+namespace peristat {
+namespace {
+
+Preload preload_of(const Path& path) {
+  const Sharing* const parts = path.body().assembler.sharing();
+  return find_preload(path.setting().conditions, parts ? &parts->ranks() : nullptr);
+}
+
+std::string_view mode_at_rest(const Mode& mode) {
+  return mode == Mode::adaptive ? Mode::newton.name : mode.name;
+}
+
+}  // namespace
+
+bool rests_at_load_zero(const Path& path) {
+  return path.state().accepted.preload == 0.0 && !preload_of(path).acts();
+}
+
+Advance accept_rest(Path& path) {
+  const State& rest = path.state().accepted;
+  const LoadPoint at = LoadPoint::of_preload(1.0);
+  Attempt attempt;
+  attempt.at = at;
+  attempt.state.displacement = rest.displacement;
+  attempt.state.history = rest.history;
+  attempt.state.environment = path.setting().conditions.environment(at);
+  attempt.external_force.resize(rest.displacement.size());
+  evaluate(path.problem(), attempt.external_force, attempt.state);
+  FoundStep found;
+  found.record.mode = mode_at_rest(path.options().mode);
+  found.ledger = path.state().ledger.entries;
+  return accept(path, std::move(attempt), std::move(found), 0.0);
+}
+
+void begin_programme(Path& path, const Attempt& step_zero, const FoundStep& found) {
+  PathState& state = path.state();
+  state.implicit.increment = state.relaxed.increment = 0.0;
+  if (const DisplacementControl* control = path.setting().conditions.control()) {
+    state.control_at_load_zero = control->value(step_zero.state.displacement);
+  }
+  const Preload preload = preload_of(path);
+  if (!preload.acts()) return;
+  std::string reason = "at load 0 there act " + preload.description() +
+                       ", put on slowly from rest: work " +
+                       number_text(found.ledger.external_work) + " J";
+  const double dissipated = found.ledger.dissipated;
+  if (dissipated > 0.0 || found.record.broken_bonds > 0) {
+    reason += "; they damage the body: " + std::to_string(found.record.broken_bonds) +
+              " bonds broken, " + number_text(dissipated) + " J dissipated";
+  }
+  path.tell(step_zero.at, {.outcome = name(Outcome::converged),
+                           .action = Decision::preload,
+                           .reason = std::move(reason)});
+}
+
+}  // namespace peristat

@@ -1,0 +1,67 @@
+#include "src/conditions/preload.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "src/core/number_text.hpp"
+
+namespace peristat {
+namespace {
+
+double largest_size(const std::vector<double>& values) {
+  double largest = 0.0;
+  for (const double value : values) largest = std::max(largest, std::abs(value));
+  return largest;
+}
+
+}  // namespace
+
+bool Preload::acts() const {
+  return std::max({displacement, force_size, eigenstretch, pressure, traction, ground}) > 0.0;
+}
+
+std::string Preload::description() const {
+  std::string text;
+  const auto add = [&](double size, const std::string& part) {
+    if (size > 0.0) text += (text.empty() ? "" : ", ") + part;
+  };
+  add(force_size, "loads of " + number_text(force_size) + " N (in sum " + number_text(force[0]) +
+                      ", " + number_text(force[1]) + ", " + number_text(force[2]) + " N)");
+  add(displacement, "prescribed displacements up to " + number_text(displacement) + " m");
+  add(eigenstretch, "eigenstrains up to " + number_text(eigenstretch));
+  add(pressure, "pressures up to " + number_text(pressure) + " Pa");
+  add(traction, "tractions up to " + number_text(traction) + " Pa");
+  add(ground, "a ground displaced by up to " + number_text(ground) + " m");
+  return text;
+}
+
+Preload find_preload(const Conditions& conditions, const Communicator* ranks) {
+  const auto d = std::size_t(conditions.dimension());
+  const std::size_t dofs = conditions.prescribed().size();
+  Preload preload;
+  std::vector<double> values(dofs, 0.0);
+  conditions.prescribe(0.0, values);
+  preload.displacement = largest_size(values);
+  conditions.external_force(0.0, values);
+  for (std::size_t dof = 0; dof < dofs; ++dof) {
+    preload.force[dof % d] += values[dof];
+    preload.force_size += std::abs(values[dof]);
+  }
+  if (const SharedEnvironment environment = conditions.environment(0.0)) {
+    preload.eigenstretch = largest_size(environment->eigenstretch);
+    preload.pressure = largest_size(environment->pressure);
+    preload.traction = largest_size(environment->traction);
+    preload.ground = largest_size(environment->ground);
+  }
+  if (!ranks) return preload;
+  for (double& component : preload.force) component = ranks->sum(component);
+  preload.force_size = ranks->sum(preload.force_size);
+  for (double* const size : {&preload.displacement, &preload.eigenstretch, &preload.pressure,
+                             &preload.traction, &preload.ground}) {
+    *size = ranks->max(*size);
+  }
+  return preload;
+}
+
+}  // namespace peristat

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <string>
+
+#include "src/conditions/conditions.hpp"
+#include "src/core/communicator.hpp"
+#include "src/core/types.hpp"
+
+namespace peristat {
+
+/// What acts on a body at load 0, before its loading programme begins. Sizes are the largest over
+/// the body.
+struct Preload {
+  double displacement = 0.0;  ///< of supports and handles [m]
+  Coordinates force{};        ///< sum of the loads [N]
+  double force_size = 0.0;    ///< sum of their absolute components [N]
+  double eigenstretch = 0.0;  ///< of temperatures and eigenstrains [1]
+  double pressure = 0.0;      ///< on faces [Pa]
+  double traction = 0.0;      ///< on the surface [Pa]
+  double ground = 0.0;        ///< displacement below foundations [m]
+
+  [[nodiscard]] bool acts() const;
+  /// "loads of 12 N (sum (0, -12, 0) N), prescribed displacements up to 1e-3 m"; empty if nothing
+  /// acts.
+  [[nodiscard]] std::string description() const;
+};
+
+/// @param ranks that have parts of the body, which all call; null: it is whole
+[[nodiscard]] Preload find_preload(const Conditions& conditions, const Communicator* ranks);
+
+}  // namespace peristat
