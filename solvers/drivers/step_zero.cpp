@@ -2,8 +2,10 @@
 
 #include <utility>
 
+#include <fmt/format.h>
+
+#include "solvers/drivers/implicit_stepping.hpp"
 #include "src/conditions/preload.hpp"
-#include "src/core/number_text.hpp"
 
 namespace peristat {
 namespace {
@@ -47,13 +49,12 @@ void begin_programme(Path& path, const Attempt& step_zero, const FoundStep& foun
   }
   const Preload preload = preload_of(path);
   if (!preload.acts()) return;
-  std::string reason = "at load 0 there act " + preload.description() +
-                       ", put on slowly from rest: work " +
-                       number_text(found.ledger.external_work) + " J";
+  std::string reason = fmt::format("at load 0 there act {}, put on slowly from rest: work {:.6g} J",
+                                   preload.description(), found.ledger.external_work);
   const double dissipated = found.ledger.dissipated;
   if (dissipated > 0.0 || found.record.broken_bonds > 0) {
-    reason += "; they damage the body: " + std::to_string(found.record.broken_bonds) +
-              " bonds broken, " + number_text(dissipated) + " J dissipated";
+    reason += fmt::format("; they damage the body: {} broken, {:.6g} J dissipated",
+                          bonds_text(found.record.broken_bonds), dissipated);
   }
   path.tell(step_zero.at, {.outcome = name(Outcome::converged),
                            .action = Decision::preload,

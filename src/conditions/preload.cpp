@@ -1,10 +1,9 @@
 #include "src/conditions/preload.hpp"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <vector>
-
-#include "src/core/number_text.hpp"
 
 namespace peristat {
 namespace {
@@ -13,6 +12,13 @@ double largest_size(const std::vector<double>& values) {
   double largest = 0.0;
   for (const double value : values) largest = std::max(largest, std::abs(value));
   return largest;
+}
+
+/// With six digits: to be read, not to be computed with.
+std::string short_text(double value) {
+  char text[32];
+  const auto end = std::to_chars(text, text + sizeof text, value, std::chars_format::general, 6);
+  return {text, end.ptr};
 }
 
 }  // namespace
@@ -26,13 +32,13 @@ std::string Preload::description() const {
   const auto add = [&](double size, const std::string& part) {
     if (size > 0.0) text += (text.empty() ? "" : ", ") + part;
   };
-  add(force_size, "loads of " + number_text(force_size) + " N (in sum " + number_text(force[0]) +
-                      ", " + number_text(force[1]) + ", " + number_text(force[2]) + " N)");
-  add(displacement, "prescribed displacements up to " + number_text(displacement) + " m");
-  add(eigenstretch, "eigenstrains up to " + number_text(eigenstretch));
-  add(pressure, "pressures up to " + number_text(pressure) + " Pa");
-  add(traction, "tractions up to " + number_text(traction) + " Pa");
-  add(ground, "a ground displaced by up to " + number_text(ground) + " m");
+  add(force_size, "loads of " + short_text(force_size) + " N (in sum " + short_text(force[0]) +
+                      ", " + short_text(force[1]) + ", " + short_text(force[2]) + " N)");
+  add(displacement, "prescribed displacements up to " + short_text(displacement) + " m");
+  add(eigenstretch, "eigenstrains up to " + short_text(eigenstretch));
+  add(pressure, "pressures up to " + short_text(pressure) + " Pa");
+  add(traction, "tractions up to " + short_text(traction) + " Pa");
+  add(ground, "a ground displaced by up to " + short_text(ground) + " m");
   return text;
 }
 

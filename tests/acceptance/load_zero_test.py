@@ -150,10 +150,10 @@ class LoadZero(Programmes):
                 with self.subTest(mode=mode, steps=steps):
                     text = HANGING.replace("WEIGHT", "9.81").replace("MODE", mode)
                     if mode == "arc_length":  # something has to grow
-                        text += '[[load]]\nset = "end"\ntotal_force = ["1e-9*load"]\n'
+                        text += '[[load]]\nset = "end"\ntotal_force = ["1000*load"]\n'
                     rows = self.run_case(text, f"loading.steps={steps}", name=f"{mode}{steps}")
                     self.assertEqual([rows[0]["step"], rows[0]["load_factor"]], [0, 0])
-                    for row in (rows[0], rows[-1]):
+                    for row in rows[:1] if mode == "arc_length" else rows:
                         self.assertAlmostEqual(row["external_work"] / stored, 1.0, delta=1e-9)
                         self.assertAlmostEqual(row["stored_energy"] / stored, 1.0, delta=1e-9)
                         self.assertLess(abs(row["balance_error"]), 1e-12 * stored)
@@ -184,7 +184,7 @@ class LoadZero(Programmes):
             self.assertAlmostEqual(along[0][column] / loaded[0][column], 1.0, delta=1e-8)
             self.assertAlmostEqual(along[-1][column] / loaded[-1][column], 1.0, delta=1e-8)
         moved = loaded[-1]["tip_y"] - loaded[0]["tip_y"]
-        control = f'[[control]]\nset = "tip"\ncomponent = "y"\n[loading]\nsteps = 10\ntable = [0, {moved!r}]\n'
+        control = f'[[control]]\nset = "tip"\nweights = [0, 1]\n[loading]\nsteps = 10\ntable = [0, {moved!r}]\n'
         held = self.run_case(text + control, name="held")
         self.assertEqual(held[0]["control"], 0.0)
         self.assertEqual(held[0]["load_factor"], 0.0)
@@ -211,7 +211,7 @@ class LoadZero(Programmes):
             self.assertEqual(list(file["steps"]), ["000000", "000001", "000002", "000003"])
         self.assertEqual(len(whole), 4)
         self.run_case(text, "loading.steps=3", name="part", words=("--stop-after", 1), expected=130)
-        ended = peristat("resume", self.folder / "part")
+        ended = peristat("resume", self.folder / "part", "--threads", 1)
         self.assertEqual(ended.code, 0, ended.said)
         self.assertEqual(self.history("part"), whole)
 

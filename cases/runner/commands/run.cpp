@@ -316,7 +316,7 @@ class CaseRun {
     summary_.status = status_of(result.outcome);
     if (result.outcome != Outcome::converged) {
       const double reached = body_->conditions->load_factor(load_point(result.state));
-      summary_.reason = failure_reason(result, reached);
+      summary_.reason = failure_reason(result, reached, recorder_->decisions());
     } else if (!recorder_->decisions().empty() &&
                recorder_->decisions().back().action == Decision::stop) {
       summary_.reason = recorder_->decisions().back().reason;  // it ended before its load

@@ -92,15 +92,20 @@ void add_costs(SolvedModel& solved, RunCosts& costs) {
   costs.seconds.assembly += solved.assembler().seconds_spent();
 }
 
-std::string failure_reason(const LoadSteppingResult& result, double load_factor) {
-  if (result.outcome == Outcome::interrupted)
-    return fmt::format("interrupted after load factor {:.6g}", load_factor);
-  std::string reason = explanation(result.outcome);
+std::string failure_reason(const LoadSteppingResult& result, double load_factor,
+                           const std::vector<DecisionRecord>& decisions) {
+  const std::string where = result.state.preload < 1.0
+                                ? "on the way to load 0"
+                                : fmt::format("after load factor {:.6g}", load_factor);
+  if (result.outcome == Outcome::interrupted) return "interrupted " + where;
+  const bool is_decided = !decisions.empty() && decisions.back().action == Decision::stop;
+  std::string reason = is_decided ? decisions.back().reason : explanation(result.outcome);
   const auto& inertia = result.last_attempt.inertia;
-  if (inertia && (inertia->negative > 0 || inertia->zero > 0)) {
+  const bool has_counted = inertia && (inertia->negative > 0 || inertia->zero > 0);
+  if (has_counted && reason.find("negative pivots)") == std::string::npos) {
     reason += fmt::format(" ({} negative and {} zero pivots)", inertia->negative, inertia->zero);
   }
-  return fmt::format("{} after load factor {:.6g}: {}", name(result.outcome), load_factor, reason);
+  return fmt::format("{} {}: {}", name(result.outcome), where, reason);
 }
 
 std::string status_of(Outcome outcome) {

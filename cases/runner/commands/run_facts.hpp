@@ -36,7 +36,8 @@ void leave_note(const std::filesystem::path& directory);
 void add_costs(SolvedModel& solved, RunCosts& costs);
 
 /// @param load_factor that was reached
-[[nodiscard]] std::string failure_reason(const LoadSteppingResult& result, double load_factor);
+[[nodiscard]] std::string failure_reason(const LoadSteppingResult& result, double load_factor,
+                                         const std::vector<DecisionRecord>& decisions);
 
 [[nodiscard]] std::string status_of(Outcome outcome);
 
