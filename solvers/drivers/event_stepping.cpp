@@ -8,6 +8,7 @@
 #include "assembly/terms/bonds/bond_term.hpp"
 #include "assembly/terms/damage.hpp"
 #include "solvers/drivers/implicit_stepping.hpp"
+#include "solvers/drivers/increment.hpp"
 #include "solvers/linear/vector_verbs.hpp"
 #include "src/core/input_error.hpp"
 #include "src/core/number_text.hpp"
@@ -92,7 +93,7 @@ Advance EventStepping::next() {
     }
     take_up(std::move(settled));
   }
-  Step step = path_.is_preloading() ? put_on_preload() : search();
+  Step step = search();
   while (step.attempt.has_converged() && is_above_strength(step)) {
     pass_over(step);
     if (step.attempt.has_converged()) step = search();
@@ -180,6 +181,7 @@ bool EventStepping::asks_for_interrupt() const {
 Attempt EventStepping::settle_nearby(const State& at, std::span<const double> borne,
                                      double relative_tolerance) {
   StrengthStep step;
+  step.preloads = at.preload < 1.0;
   step.borne = borne;
   step.settles = true;
   step.least_scale = share_of_scale * path_.state().events.largest_scale;
@@ -190,7 +192,7 @@ Attempt EventStepping::settle_nearby(const State& at, std::span<const double> bo
   StrengthResult found =
       search_strength(path_.problem(), tangent(), at, step, options,
                       [this](const IterationRecord&) { return asks_for_interrupt(); });
-  return to_attempt(std::move(found.newton), at.stage);
+  return to_attempt(std::move(found.newton), load_point(at));
 }
 
 Attempt EventStepping::settle_downhill(const State& at, double relative_tolerance) {
@@ -199,9 +201,10 @@ Attempt EventStepping::settle_downhill(const State& at, double relative_toleranc
   options.relative_tolerance = relative_tolerance;
   options.max_iterations = std::max(options.max_iterations, most_iterations_of_a_fall);
   const SolvedBody& body = path_.body();
-  NewtonResult found = newton(path_.problem(), body.solver, body.tangent, at, at.stage, options,
-                              [this](const IterationRecord&) { return asks_for_interrupt(); });
-  return to_attempt(std::move(found), at.stage);
+  NewtonResult found =
+      newton(path_.problem(), body.solver, body.tangent, at, load_point(at), options,
+             [this](const IterationRecord&) { return asks_for_interrupt(); });
+  return to_attempt(std::move(found), load_point(at));
 }
 
 EventStepping::Settled EventStepping::settle(const State& at, const PathLedger& ledger) {
@@ -304,30 +307,21 @@ StrengthStep EventStepping::strength_step() const {
   const double stage = state.accepted.stage, begin = segment_begin(stage), end = begin + 1.0;
   StrengthStep step;
   step.borne = borne_;
-  step.range = {begin, end};
   step.least_scale = share_of_scale * state.events.largest_scale;
+  if (state.events.longest > 0.0) step.longest = state.events.longest;
+  if (path_.is_preloading()) {
+    step.preloads = true;
+    step.range = {0.0, 1.0};
+    step.stop = 1.0;
+    return step;
+  }
+  step.range = {begin, end};
   step.stop = end;
   const double steps = path_.options().steps;
   const double asked_for =
       begin + (std::floor((stage - begin) * steps + LoadingProgramme::tolerance) + 1.0) / steps;
   if (stage >= state.events.top) step.stop = std::min(end, asked_for);
   if (stage < state.events.top) step.stop = state.events.top;
-  if (state.events.longest > 0.0) step.longest = state.events.longest;
-  return step;
-}
-
-EventStepping::Step EventStepping::put_on_preload() {
-  Step step;
-  step.end = StrengthEnd::at_stop;
-  step.attempt = settle_anywhere(path_.state().accepted, borne_, held().relative_tolerance);
-  if (!step.attempt.has_converged()) return step;
-  const double most = utilisation(state_of(step.attempt), borne_);
-  if (most > share_at_strength) {
-    step.attempt.outcome = Outcome::damage_begins;
-    step.fault = "what acts at load 0 stretches bonds to " + number_text(most) +
-                 " of what they bear; the path follows how they break if a parameter of its own "
-                 "puts it on (load2)";
-  }
   return step;
 }
 
@@ -335,7 +329,7 @@ EventStepping::Step EventStepping::search() {
   const State& from = path_.state().accepted;
   const StrengthStep asked = strength_step();
   Step step;
-  const double stop = asked.stop;
+  const LoadPoint stop = asked.point(asked.stop);
   if (const auto refusal = path_.refusal_of_conditions(stop)) {
     step.attempt = undefined_attempt(from, stop);
     step.fault = *refusal;
@@ -345,8 +339,9 @@ EventStepping::Step EventStepping::search() {
       search_strength(path_.problem(), tangent(), from, asked, held(),
                       [this](const IterationRecord& row) { return path_.iterated(row); });
   step.end = found.end;
-  step.attempted = found.stage - from.stage;
-  step.attempt = to_attempt(std::move(found.newton), found.stage);
+  const LoadPoint reached = asked.point(found.stage);
+  step.attempted = Increment::length(load_point(from), reached);
+  step.attempt = to_attempt(std::move(found.newton), reached);
   return step;
 }
 
@@ -389,6 +384,7 @@ void EventStepping::pass_over(Step& step) {
   PathState& state = path_.state();
   const Trial& trial = step.attempt.state;
   StepEnergies energies;
+  energies.is_elastic_preload = path_.is_preloading();
   energies.heating = heating_work(path_.body().assembler, state.accepted, trial.at());
   const std::vector<double> working = path_.working_force(trial, step.attempt.external_force);
   Ledger& after = step.found.ledger;

@@ -97,8 +97,6 @@ class EventStepping : public Driver {
   /// Pins what has come off, in the equations.
   [[nodiscard]] bool pin(Settled& settled);
 
-  /// Step 0: the equilibrium at load 0, before any bond is at its strength.
-  [[nodiscard]] Step put_on_preload();
   [[nodiscard]] Step search();
   /// Holds the load until nothing is above its strength.
   [[nodiscard]] Step run_avalanche();

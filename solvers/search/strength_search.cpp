@@ -38,11 +38,11 @@ class StrengthSearch {
         step_(step),
         options_(options),
         observer_(observer),
-        start_(from.stage),
+        start_(step.preloads ? from.preload : from.stage),
         external_force_(from.displacement.size()) {
     current_.displacement = from.displacement;
     current_.history = from.history;
-    result_.stage = from.stage;
+    result_.stage = start_;
     result_.end = StrengthEnd::at_stop;
   }
 
@@ -100,8 +100,9 @@ class StrengthSearch {
 
   Outcome refresh() {
     refreshed_at_ = tangent_.refreshed() + 1;
-    return outcome_of(tangent_.refresh(
-        {current_.displacement, result_.stage, current_.history, {}, current_.environment}));
+    const LoadPoint at = step_.point(result_.stage);
+    return outcome_of(tangent_.refresh({current_.displacement, at.stage, current_.history, at.load,
+                                        current_.environment, at.preload}));
   }
 
   /// Whether the tangent is of this search.
@@ -132,8 +133,9 @@ class StrengthSearch {
   Outcome find_rate() {
     const bool is_known = rate_of_ == tangent_.refreshed() && !current_.environment;
     if (is_known && !rate_.empty()) return Outcome::converged;
-    ConditionRates conditions =
-        rates_of(problem_, current_.at(Damage::held), loads, result_.stage, step_.range);
+    ConditionRates conditions = rates_of(
+        problem_, current_.at(Damage::held), [this](double stage) { return step_.point(stage); },
+        result_.stage, step_.range);
     const LinearOutcome linear =
         tangent_.solve_again(conditions.force, conditions.displacement, rate_tolerance, rate_);
     if (linear != LinearOutcome::solved) return outcome_of(linear);
@@ -210,7 +212,7 @@ class StrengthSearch {
 
   /// Takes supports and loads to the stage, and evaluates.
   void stand() {
-    const LoadPoint at = loads(result_.stage);
+    const LoadPoint at = step_.point(result_.stage);
     problem_.conditions.prescribe(at, current_.displacement);
     problem_.conditions.external_force(at, external_force_);
     current_.environment = problem_.conditions.environment(at);
@@ -237,8 +239,6 @@ class StrengthSearch {
     row.energy = current_.total_energy;
     return observer_ && observer_(row);
   }
-
-  static LoadPoint loads(double stage) { return stage; }
 
   const EquilibriumProblem& problem_;
   UpdatedTangent& tangent_;

@@ -13,8 +13,10 @@ namespace peristat {
 /// for every digit that is printed, and on the side on which all bonds are whole.
 inline constexpr double share_at_strength = 1.0 - 1e-9;
 
-/// Where an elastic path is looked along for the next strength.
+/// Where an elastic path is looked along for the next strength: in the stage, or, on the way to
+/// step 0, in the share of what acts at load 0.
 struct StrengthStep {
+  bool preloads = false;          ///< "stage" is that share here, 0 to 1
   std::span<const double> borne;  ///< per bond, see borne_stretches
   LoadRange range;                ///< that the stage may not leave
   double stop = 0.0;              ///< stage to end at, going up, if no strength is met before
@@ -22,6 +24,10 @@ struct StrengthStep {
   double least_scale = 0.0;       ///< that the residual is measured against [N]
   /// Largest change of the stage; a strength beyond it is not looked for.
   double longest = std::numeric_limits<double>::infinity();
+
+  [[nodiscard]] LoadPoint point(double stage) const {
+    return preloads ? LoadPoint::of_preload(stage) : LoadPoint(stage);
+  }
 };
 
 /// What the end of a search is.

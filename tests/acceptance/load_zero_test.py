@@ -1,5 +1,6 @@
 """Step 0: the state at load 0 is solved for in every mode, and later steps are measured from it."""
 
+import json
 import unittest
 
 import h5py
@@ -200,9 +201,18 @@ class LoadZero(Programmes):
         self.assertAlmostEqual(first["load_factor"], 0.4, delta=1e-9)
         self.assertAlmostEqual(rows[0]["external_work"] / rows[0]["stored_energy"], 1.0, delta=1e-12)
 
-    def test_the_path_names_a_dead_load_beyond_strength(self):
-        self.run_case(TWO_BONDS.replace("FORCE", "600 + 1000*load"), expected=3)
-        self.assertIn("at load 0", (self.folder / "out" / "summary.json").read_text())
+    def test_arc_length_names_a_dead_load_beyond_strength(self):
+        self.run_case(TWO_BONDS.replace("FORCE", "600 + 1000*load").replace('"path"', '"arc_length"'), expected=3)
+        reason = json.loads((self.folder / "out" / "summary.json").read_text())["reason"]
+        self.assertIn("damage_begins on the way to load 0", reason)
+        self.assertIn("arc_length", reason)
+
+    def test_the_path_breaks_what_a_dead_load_breaks(self):
+        """The weak bond bears 500 N, and takes k s^2 / 2 with it."""
+        rows = self.run_case(TWO_BONDS.replace("FORCE", "600 + 1000*load"))
+        self.assertEqual([rows[0]["step"], rows[0]["broken_bonds"]], [0, 1])
+        self.assertAlmostEqual(rows[0]["dissipated_energy"], 0.5 * 1e6 * 5e-4**2, delta=1e-9)
+        self.assertAlmostEqual(rows[0]["pin_force"], 600, delta=1e-6)  # nothing else holds the end
 
     def test_it_goes_on_from_step_zero(self):
         text = CANTILEVER.replace("WEIGHT", "-2e3")

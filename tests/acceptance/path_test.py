@@ -245,6 +245,7 @@ class Preloaded(Paths):
 
     def test_what_is_above_its_strength_at_once_is_an_avalanche(self):
         """All bonds of the strip used to break where none was at its strength yet."""
+        self.first_step = 0
         rows = self.run_case(strip().replace("2e-4*load", "2e-4*(0.5+0.5*load)"))
         self.assertEqual(rows[0]["load_factor"], 0)
         self.assertGreater(rows[0]["broken_bonds"], 0)

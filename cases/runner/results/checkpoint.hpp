@@ -26,7 +26,8 @@ struct TableRows {
 struct Checkpoint {
   PathState path;
   TableRows rows;
-  int last_with_fields = 0;  ///< number of the last step that has fields; 0: none
+  static constexpr int none = -1;
+  int last_with_fields = none;  ///< number of the last step that has fields
   /// What the fields of the last step will need, if it has none so far.
   struct Unwritten {
     std::vector<double> told_stretches;  ///< histories of bonds as the step with fields told them

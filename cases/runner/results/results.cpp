@@ -314,7 +314,8 @@ void Results::Files::publish() { publish_file(folder.results(), master.image());
 
 void Results::Files::write_checkpoint(Checkpoint checkpoint, StateNumbering* numbering) {
   checkpoint.rows = rows;
-  checkpoint.last_with_fields = written_steps.empty() ? 0 : written_steps.back().step;
+  checkpoint.last_with_fields =
+      written_steps.empty() ? Checkpoint::none : written_steps.back().step;
   checkpoints.write([&](const PutBytes& put) {
     peristat::write_checkpoint(std::move(checkpoint), program, numbering, put);
   });
@@ -444,7 +445,7 @@ struct Results::Sender {
   const RowGathering& gathering;
   StepShape shape;
   std::filesystem::path directory;
-  int last_with_fields = 0;
+  int last_with_fields = Checkpoint::none;
   StepTotals totals{};
 
   void send(const StepRecord& record, const StepFields& fields) {
