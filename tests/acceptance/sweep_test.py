@@ -103,7 +103,7 @@ class Sweep(unittest.TestCase):
         self.assertEqual((run.returncode, (self.folder / "table.md").read_text()), (2, "mine"), run.stderr)
 
     def test_words_are_varied_and_drawn(self):
-        self.assert_ends(self.sweep("--vary", "solver.preconditioner=auto,jacobi"), 0, "done", "done")
+        self.assert_ends(self.sweep("--vary", "solver.mode=newton,adaptive"), 0, "done", "done")
         self.assertTrue((self.out / "sweep.png").exists())
 
     def test_results_of_another_case_are_replaced_on_demand_only(self):
