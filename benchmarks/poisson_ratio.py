@@ -20,6 +20,10 @@ from matplotlib import pyplot  # noqa: E402
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 PROGRAM = ROOT / "build/release/peristat"
+sys.path.insert(0, str(ROOT / "cases/runner/sweep"))
+
+from own_files import PICTURE, picture, require_own, write_own  # noqa: E402
+
 # name, constant that varies, its values, limit of nu for infinite stiffness
 CASES = [
     ("poisson_2d", "c2", [-500, -300, -150, 0, 150, 400, 800, 1500, 3000, 6000, 12000, 30000], 1.0),
@@ -70,7 +74,7 @@ def main():
             axes.grid(True, color="#e6e9ec")
             axes.legend(frameon=False)
     figure.tight_layout()
-    figure.savefig(sys.argv[1], dpi=100)
+    write_own(pathlib.Path(sys.argv[1]), picture(figure, "png", dpi=100), PICTURE)
 
 
 if __name__ == "__main__":

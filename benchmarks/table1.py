@@ -10,7 +10,8 @@ Each of the four problems is run three times, one run after the other:
     equilibrium  relaxation alone in the case's steps, each of them relaxed to equilibrium
 
 The table is printed and written to FILE.md (results/table1.md). Ratios are of CPU seconds, which other
-programs on the machine change little; [ADAPT] used one core. Ends with 1 if a run failed.
+programs on the machine change little; [ADAPT] used one core. Ends with 1 if a run failed, with 2 if
+FILE.md is not an earlier table.
 """
 
 import argparse
@@ -25,8 +26,13 @@ import sys
 import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
+sys.path.insert(0, str(ROOT / "cases/runner/sweep"))
+
+from own_files import ForeignFile, require_own, write_own  # noqa: E402
+
 PROGRAM = ROOT / "build/release/peristat"
 TOLD_STATES = 100  # of the published mode; divides every number of iterations
+SIGN = b"Seconds (of CPU)"  # of the file with the table
 MODES = ("adaptive", "published", "equilibrium")
 
 
@@ -141,6 +147,11 @@ def options():
 
 def main():
     given = options()
+    try:
+        require_own(given.output, SIGN)
+    except ForeignFile as error:
+        print(f"bench: {error}", file=sys.stderr)
+        sys.exit(2)
     lines, all_went_well, threads = [], True, set()
     for number in given.problems:
         problem, runs = PROBLEMS[number], {}
@@ -155,7 +166,7 @@ def main():
                 threads.add(run.summary["threads"])
         lines.append(row_of(number, problem, runs))
     head = [
-        "Seconds (of CPU), iterations of relaxation / of Newton's method, broken bonds, peak reaction, relative "
+        f"{SIGN.decode()}, iterations of relaxation / of Newton's method, broken bonds, peak reaction, relative "
         f"residual of the last state; threads: {', '.join(map(str, sorted(threads)))}.",
         "",
         "| problem | (a) adaptive | (b) relaxation as published | (c) relaxation to equilibrium | (b)/(a) | (c)/(a) "
@@ -165,7 +176,7 @@ def main():
     table = "\n".join([*head, *lines]) + "\n"
     print(table, end="")
     given.output.parent.mkdir(parents=True, exist_ok=True)
-    given.output.write_text(table)
+    write_own(given.output, table.encode(), SIGN)
     sys.exit(0 if all_went_well else 1)
 
 

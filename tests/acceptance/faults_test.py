@@ -273,6 +273,51 @@ class Faults(unittest.TestCase):
         self.assert_code(run, 0)
         self.assertEqual(run.stderr.count("the log can't be written"), 1, run.stderr)
 
+    def test_a_log_replaces_nothing_but_logs(self):
+        self.assert_code(self.peristat(), 0)
+        foreign = self.write("notes.txt", "mine")
+        (self.folder / "linked").symlink_to(foreign)
+        (self.folder / "nowhere").symlink_to(self.folder / "new")
+        os.link(self.out / "history.csv", self.folder / "second_name")
+        places = [self.case, foreign, "linked", "nowhere", "second_name", "out/history.csv", "out/new.txt", "out/parts/000001.h5"]
+        before = self.contents(self.folder)
+        for log in places:
+            for command in (self.command("--log", log), [PROGRAM, "resume", self.out, "--log", log]):
+                run = self.execute(command)
+                self.assert_code(run, 2)
+                self.assertIn("--log", run.stderr)
+                self.assertEqual(self.contents(self.folder), before, log)
+        for again in range(2):
+            self.assert_code(self.peristat("--log", "log.txt"), 0)
+            self.assertEqual((self.folder / "log.txt").read_text().count("# log of peristat\n"), 1)
+
+    def test_a_log_does_not_take_the_place_of_an_input(self):
+        """Of points, and of a file of points that is not there yet."""
+        for points in ("points.csv", "missing.csv"):
+            self.write("cloud.toml", '[points]\nfile = "' + points + '"\nspacing = 1.0\n' + STRIP[STRIP.index("[material]"):])
+            self.write("points.csv", "x, y, volume\n0, 0, 1\n1, 0, 1\n")
+            before = self.contents(self.folder)
+            run = self.peristat("--log", points, case=self.folder / "cloud.toml")
+            self.assert_code(run, 2)
+            self.assertEqual(self.contents(self.folder), before)
+
+    def test_results_do_not_take_the_place_of_other_files(self):
+        """Of an input with the name of a result, and of a table that no earlier run has written."""
+        self.assert_code(self.peristat(), 0)
+        line = '[[probe]]\nname = "cut"\nfrom = [0.0, 0.0]\nto = [1.0, 0.0]\n'
+        self.write("strip.toml", STRIP + line)
+        self.write("out/line_cut.csv", "mine")
+        before = self.contents(self.folder)
+        run = self.peristat("--overwrite")
+        self.assert_code(run, 2)
+        self.assertIn("line_cut.csv", run.stderr)
+        self.write("out/decisions.csv", STRIP)
+        run = self.peristat("--overwrite", case=self.out / "decisions.csv")
+        self.assert_code(run, 2)
+        self.assertIn("would take its place", run.stderr)
+        self.assertEqual({name: text for name, text in self.contents(self.folder).items() if "decisions" not in str(name)},
+                         {name: text for name, text in before.items() if "decisions" not in str(name)})
+
     def test_a_closed_terminal_interrupts(self):
         run = self.start()
         self.wait_for_steps(run)

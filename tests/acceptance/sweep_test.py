@@ -79,7 +79,7 @@ class Sweep(unittest.TestCase):
     # ---- what belongs to others ----
 
     def test_files_of_others_are_not_replaced(self):
-        for name in ["sweep.csv", "sweep.png"]:
+        for name in ["sweep.csv", "sweep.png", "refinement.csv", "refinement.png"]:
             shutil.rmtree(self.out, ignore_errors=True)
             self.out.mkdir()
             (self.out / name).write_text("a,b\n1,2\n")
@@ -88,6 +88,23 @@ class Sweep(unittest.TestCase):
             self.assertIn(name, run.stderr)
             self.assertEqual([path.name for path in self.out.iterdir()], [name])
             self.assertEqual((self.out / name).read_text(), "a,b\n1,2\n")
+
+    def test_files_of_others_beside_our_table_are_not_replaced(self):
+        self.assert_ends(self.sweep("--vary", "loading.steps=1"), 0, "done")
+        (self.out / "sweep.png").write_text("mine")
+        run = self.sweep("--vary", "loading.steps=1,2")
+        self.assert_ends(run, 2)
+        self.assertEqual((self.out / "sweep.png").read_text(), "mine")
+
+    def test_the_table_of_a_benchmark_replaces_no_file_of_others(self):
+        self.write("table.md", "mine")
+        run = subprocess.run([sys.executable, "-BEs", ROOT / "benchmarks" / "table1.py", "--output", "table.md"],
+                             cwd=self.folder, text=True, capture_output=True)  # fmt: skip
+        self.assertEqual((run.returncode, (self.folder / "table.md").read_text()), (2, "mine"), run.stderr)
+
+    def test_words_are_varied_and_drawn(self):
+        self.assert_ends(self.sweep("--vary", "solver.mode=newton,adaptive"), 0, "done", "done")
+        self.assertTrue((self.out / "sweep.png").exists())
 
     def test_results_of_another_case_are_replaced_on_demand_only(self):
         self.write("other.toml", STRIP.replace("200e9", "100e9"))

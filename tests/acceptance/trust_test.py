@@ -77,6 +77,18 @@ class Trust(unittest.TestCase):
         self.assertIn("a file", ended.stderr)
         self.assertNotIn("Traceback", ended.stderr)
 
+    def test_files_of_others_are_not_replaced(self):
+        for name in ("table.md", "entries.svg", "trapping.csv", "trapping.svg", "strength_shear/h1_m3.015_0/case.toml"):
+            mine = self.folder / name
+            mine.parent.mkdir(parents=True, exist_ok=True)
+            mine.write_text("mine")
+            ended = self.trust("strength_shear", "--quick", "--jobs", 1)
+            self.assertEqual(ended.returncode, 2, ended.stdout + ended.stderr)
+            self.assertIn(name, ended.stderr)
+            self.assertEqual([path for path in self.folder.rglob("*") if path.is_file()], [mine])
+            self.assertEqual(mine.read_text(), "mine")
+            mine.unlink()
+
     def test_no_such_entry(self):
         ended = self.trust("nonsense")
         self.assertEqual(ended.returncode, 2)

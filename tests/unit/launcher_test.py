@@ -2,6 +2,7 @@
 
 import os
 import pathlib
+import re
 import shutil
 import signal
 import subprocess
@@ -44,6 +45,8 @@ SWEEP = """import os, sys
 print("sweep", sys.argv[1:], os.environ["PERISTAT_PROGRAM"])
 sys.exit(3)
 """
+# dpkg-query: every package that is asked for
+PACKAGES_ARE_THERE = r'''for name; do [[ $name == -* ]] || printf "|%s installed|" "$name"; done'''
 
 
 class Launcher(unittest.TestCase):
@@ -218,6 +221,54 @@ class Launcher(unittest.TestCase):
         process.kill()
         process.communicate(timeout=60)  # ends when the last holder of the pipe has
         self.assertLess(time.monotonic() - started, 10, "the program waits 30 s by itself")
+
+    # ---- building, and what continuous integration runs -------------------------------------------
+
+    def build_with(self, cmake):
+        """./peristat build, with a script in the place of cmake; nothing is installed."""
+        tools = self.folder / "tools"
+        tools.mkdir(exist_ok=True)
+        for name, text in {"cmake": cmake, "dpkg-query": PACKAGES_ARE_THERE}.items():
+            (tools / name).write_text("#!/usr/bin/env bash\n" + text)
+            (tools / name).chmod(0o755)
+        (self.root / "build/release/.built").unlink(missing_ok=True)
+        return self.launch("build", PATH=f"{tools}:{os.environ['PATH']}")
+
+    def test_a_build_tells_how_far_it_is_and_promises_no_time(self):
+        result = self.build_with('for ((k = 1; k <= 40; k++)); do echo "[$k/40] Building $k.o"; done')
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertRegex(result.stderr, r"built 4 of 40, \d+ s\n(.*\n)*.*built 40 of 40, \d+ s\n")
+        self.assertEqual(result.stderr.count(" of 40"), 10)
+        self.assertNotIn("minute", result.stderr)
+        self.assertEqual((self.root / "build/release/build.log").read_text().count("Building"), 2 * 40)
+
+    def test_a_build_that_fails_tells_why(self):
+        result = self.build_with('echo "[3/40] Building 3.o"; echo "FAILED: 3.o"; echo "3.cpp:1: error"; exit 1')
+        self.assertEqual(result.returncode, 1)
+        self.assertIn("3.cpp:1: error", result.stderr)
+        self.assertFalse((self.root / "build/release/.built").exists())
+
+    def run_ci(self, launcher, **environment):
+        (self.root / ".ci").mkdir(exist_ok=True)
+        shutil.copy(ROOT / ".ci/run", self.root / ".ci")
+        self.launcher.write_text("#!/usr/bin/env bash\n" + launcher)
+        return self.launch(launcher=self.root / ".ci/run", **environment)
+
+    def test_what_has_no_time_is_incomplete_and_not_green(self):
+        complete = self.run_ci('echo "$@"')
+        self.assertEqual(complete.returncode, 0, complete.stderr)
+        tiers = complete.stderr.splitlines()[-1].partition(": ")[2]
+        self.assertEqual(len(complete.stdout.splitlines()), 1 + len(tiers.split()))
+        slow = self.run_ci('[[ $2 == -N ]] || exec sleep 20', PERISTAT_CI_SECONDS="1")
+        self.assertEqual(slow.returncode, 75)
+        self.assertRegex(slow.stderr.splitlines()[-1], r"^INCOMPLETE after \d+ s: .*not run in full: " + re.escape(tiers))
+        self.assertEqual(self.run_ci("exit 8").returncode, 8)
+
+    def test_every_tier_is_run_or_declared_as_run_by_hand(self):
+        labels = set(re.findall(r"(?:set\(label |LABELS |tier IN ITEMS )([a-z_ ]+)", (ROOT / "tests/CMakeLists.txt").read_text()))
+        labels = {label for words in labels for label in words.split()} - {"tier", "label", "timeout"}
+        run = re.search(r"^tiers=\((.*)\)$", (ROOT / ".ci/run").read_text(), re.MULTILINE)[1]
+        self.assertEqual(labels - set(re.findall("[a-z_]+", run)), {"slow"})
 
     def test_an_unknown_command_names_the_nearest_one(self):
         for given, meant in [("chekc", "check"), ("rnu", "run"), ("tests", "test")]:

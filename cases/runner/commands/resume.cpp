@@ -9,6 +9,7 @@
 #include <fmt/ranges.h>
 
 #include "cases/runner/build/part_body.hpp"
+#include "cases/runner/commands/run_facts.hpp"
 #include "cases/runner/input/case.hpp"
 #include "cases/runner/input/case_difference.hpp"
 #include "cases/runner/input/case_keys.hpp"
@@ -120,6 +121,7 @@ Exit resume(const std::filesystem::path& directory, const Settings& settings,
     earlier.forget_solvers();
   }
   if (is_finished(earlier, programme_of(from))) {
+    keep_inputs_and_log_apart(from, options.log_file);
     Progress(options.quiet, options.log_file, ranks.rank() == 0)
         .say(fmt::format("the run in {} has come to its end: {} steps, load factor {:.6g}",
                          directory.string(), earlier.checkpoint().path.steps,

@@ -393,6 +393,7 @@ class CaseRun {
 Exit run(const Case& from, const RunOptions& options, const Communicator& ranks,
          EarlierRun* earlier) {
   make_write_faults_errors();
+  keep_inputs_and_log_apart(from, options.log_file);
   const bool tells = ranks.rank() == 0;
   Progress progress(options.quiet, options.log_file, tells);
   Summary summary;

@@ -2,19 +2,68 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <cstdlib>
-#include <fstream>
+#include <variant>
+#include <vector>
 
 #include <fmt/format.h>
 
+#include "cases/runner/process/output_file.hpp"
 #include "cases/runner/results/constraint_columns.hpp"
+#include "cases/runner/results/results_folder.hpp"
+#include "src/core/input_error.hpp"
 
 namespace peristat {
 
 void leave_note(const std::filesystem::path& directory) {
   const char* file = std::getenv("PERISTAT_NOTE");
   if (!file || !*file) return;
-  std::ofstream(file) << std::filesystem::absolute(directory).string() << '\n';
+  const std::string note = std::filesystem::absolute(directory).string() + "\n";
+  std::FILE* const stream = open_own_file(file, "");
+  std::fwrite(note.data(), 1, note.size(), stream);
+  std::fclose(stream);
+}
+
+namespace {
+
+std::filesystem::path resolved(const std::filesystem::path& path) {
+  std::error_code error;
+  const std::filesystem::path found = std::filesystem::weakly_canonical(path, error);
+  return error ? std::filesystem::absolute(path).lexically_normal() : found;
+}
+
+std::vector<std::filesystem::path> inputs(const Case& from) {
+  std::vector<std::filesystem::path> files{from.file};
+  if (const auto* points = std::get_if<PointSource>(&from.body)) {
+    files.push_back(points->file);
+    if (!points->neighbours.empty()) files.push_back(points->neighbours);
+  }
+  return files;
+}
+
+}  // namespace
+
+void keep_inputs_and_log_apart(const Case& from, const std::string& log_file) {
+  const std::filesystem::path results = resolved(from.output.directory);
+  for (const std::filesystem::path& file : inputs(from)) {
+    if (is_name_of_results(resolved(file), results)) {
+      throw InputError(
+          "directory", from.output.directory.string(),
+          file.string() +
+              " is read by the run and has the name of one of its results, which would "
+              "take its place; name another folder");
+    }
+    if (!log_file.empty() && resolved(file) == resolved(log_file)) {
+      throw InputError("--log", log_file, "is read by the run; name a new file");
+    }
+  }
+  if (!log_file.empty() && is_below(resolved(log_file), results)) {
+    throw InputError("--log", log_file,
+                     "stands in the results folder, whose files come and go with the runs; name a "
+                     "file outside of " +
+                         from.output.directory.string());
+  }
 }
 
 std::filesystem::path identity(const std::filesystem::path& case_file) {

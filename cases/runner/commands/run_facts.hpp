@@ -15,8 +15,14 @@ namespace peristat {
 
 /// What runs tell of themselves, on one rank or more.
 
-/// Writes the folder to the file that the environment variable PERISTAT_NOTE names, if it does.
+/// Writes the folder to the pipe, or new file, that the environment variable PERISTAT_NOTE names,
+/// if it does.
 void leave_note(const std::filesystem::path& directory);
+
+/// Refuses a run whose results would take the place of what it reads, and a log that would stand in
+/// the results folder or in the place of an input.
+/// @throws InputError before anything is written
+void keep_inputs_and_log_apart(const Case& from, const std::string& log_file);
 
 /// The file as every way to it names it, so that a later run knows it again.
 [[nodiscard]] std::filesystem::path identity(const std::filesystem::path& case_file);

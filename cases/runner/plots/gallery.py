@@ -15,7 +15,7 @@ MOST_BYTES = 100_000  # of the list
 
 
 class NoPlace(Exception):
-    """`plots` is something else than a folder."""
+    """`plots` is something else than a folder, or a picture's place is taken."""
 
 
 class Gallery:
@@ -69,8 +69,14 @@ class Gallery:
         self._write(LIST, self._text())
 
     def add(self, name: str, content: bytes) -> None:
-        """Writes a picture in place of one of that name, and lists it."""
+        """Writes a picture in place of one that was drawn before, and lists it.
+
+        Raises NoPlace if a file has that name that is not on the list; a link is replaced.
+        """
         if name not in self.names:  # first: what is drawn is always on the list
+            if os.path.lexists(self.path / name) and not os.path.islink(self.path / name):
+                raise NoPlace(f"{self.path / name} was not drawn by this command and would be replaced; move it "
+                              "to have the picture")  # fmt: skip
             self.names.append(name)
             self._write(LIST, self._text())
         self._write(name, content)

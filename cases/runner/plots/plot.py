@@ -1,7 +1,8 @@
 """Draws the pictures of a results folder: ./peristat plot DIR -> DIR/plots/*.png, crack.gif
 
 Exit code 0 when everything that can be drawn is drawn (what is missing is said), 2 when DIR is no
-results folder, is damaged, or its plots are a link, 5 when they can't be written. Needs numpy, h5py and
+results folder, is damaged, or its plots are a link or hold a picture of somebody else, 5 when they can't be
+written, 1 for a fault of the program. Needs numpy, h5py and
 matplotlib; no display.
 """
 
@@ -9,12 +10,13 @@ import argparse
 import io
 import os
 import sys
+import traceback
 from pathlib import Path
 
 from gallery import Gallery, NoPlace
 from results_folder import NotAResultsFolder, ResultsFolder, read_results_folder
 
-DONE, WRONG_INPUT, MACHINE_FAILED, INTERRUPTED = 0, 2, 5, 130
+DONE, BUG, WRONG_INPUT, MACHINE_FAILED, INTERRUPTED = 0, 1, 2, 5, 130
 FORMATS = ("png", "pdf", "svg")
 DOTS_PER_INCH = {"png": 100, "pdf": 200, "svg": 200}  # of what a vector picture holds as an image
 MOST_VECTORS = 3000  # shapes of one kind that a vector picture holds as such
@@ -187,7 +189,7 @@ def _parser() -> argparse.ArgumentParser:
         description="Draws the pictures of a results folder into DIR/plots (docs/results.md, Pictures); "
         "pictures of the same format that were drawn before are replaced.",
         epilog="Exit codes: 0 drawn (what is missing is said), 2 no results folder, or a damaged one, "
-        "5 the pictures can't be written.",
+        "5 the pictures can't be written, 1 a bug.",
     )  # fmt: skip
     parser.add_argument("directory", metavar="DIR", type=Path, help="results folder of a run")
     parser.add_argument("--format", choices=FORMATS, default="png",
@@ -206,6 +208,9 @@ def main(words: list[str]) -> int:
         return _told(str(error), WRONG_INPUT)
     except OSError as error:
         return _told(f"{arguments.directory}: {error}", MACHINE_FAILED)
+    except NameError:  # no content of a folder makes one
+        traceback.print_exc()
+        return _told(f"{arguments.directory}: a fault of the program, which is worth a report", BUG)
     except Exception as error:  # what nobody has thought of in a folder that somebody has changed
         return _told(f"{arguments.directory}: can't be drawn ({type(error).__name__}: {error})", WRONG_INPUT)
     return DONE

@@ -6,6 +6,7 @@
 #include <string>
 
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 namespace peristat {
@@ -34,7 +35,44 @@ int write_and_close(int descriptor, std::string_view contents) {
   return error;
 }
 
+/// Whether the first line of a file is the heading.
+bool begins_with(int descriptor, std::string_view heading) {
+  std::string line(heading.size() + 1, '\0');
+  const ssize_t count = ::pread(descriptor, line.data(), line.size(), 0);
+  return count == static_cast<ssize_t>(line.size()) && line == std::string(heading) + "\n";
+}
+
+/// @return a descriptor of a file that is new, or that may be emptied
+int open_empty_or_own(const std::filesystem::path& file, std::string_view heading) {
+  struct stat status {};
+  if (::stat(file.c_str(), &status) != 0) {
+    const int descriptor = ::open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    if (descriptor < 0 && errno == EEXIST) throw ForeignFile("is a link that leads nowhere");
+    return descriptor;
+  }
+  if (!S_ISREG(status.st_mode)) return ::open(file.c_str(), O_WRONLY | O_CLOEXEC);
+  const int descriptor = ::open(file.c_str(), O_RDWR | O_CLOEXEC);
+  if (descriptor < 0 || ::fstat(descriptor, &status) != 0 || status.st_size == 0) return descriptor;
+  if (!begins_with(descriptor, heading)) {
+    ::close(descriptor);
+    throw ForeignFile("holds something else, which would be lost");
+  }
+  if (::ftruncate(descriptor, 0) != 0) fail(file, errno);
+  return descriptor;
+}
+
 }  // namespace
+
+std::FILE* open_own_file(const std::filesystem::path& file, std::string_view heading) {
+  const int descriptor = open_empty_or_own(file, heading);
+  std::FILE* const stream = descriptor < 0 ? nullptr : ::fdopen(descriptor, "w");
+  if (!stream) fail(file, errno);
+  if (!heading.empty()) {
+    std::fwrite(heading.data(), 1, heading.size(), stream);
+    std::fputc('\n', stream);
+  }
+  return stream;
+}
 
 bool is_about_means(int error) {
   switch (error) {

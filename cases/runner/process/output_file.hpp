@@ -1,7 +1,9 @@
 #pragma once
 
 #include <cstdint>
+#include <cstdio>
 #include <filesystem>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 
@@ -26,6 +28,19 @@ class OutputError : public MachineError {
 /// Whether an error of the system is about the machine's means (room, descriptors, limits of the
 /// shell, a device) and not about the path that was asked for.
 [[nodiscard]] bool is_about_means(int error);
+
+/// A file that this program has not written, and leaves as it is; says why.
+class ForeignFile : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// Opens a file that a person has named. It may be new, empty, or no plain file (a terminal, a
+/// pipe, /dev/null). Of a file with contents the first line must be the heading, which this program
+/// gives to each file that it opens so; the contents are then dropped. Links are judged by where
+/// they lead; one that leads nowhere is refused.
+/// @throws ForeignFile, OutputError; nothing is changed then
+[[nodiscard]] std::FILE* open_own_file(const std::filesystem::path& file, std::string_view heading);
 
 /// Makes a new file in place of what carries the name: a link is replaced, never followed.
 /// @throws OutputError; the file is then removed

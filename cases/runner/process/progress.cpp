@@ -44,12 +44,16 @@ Progress::Progress(bool quiet, const std::string& log_file, bool tells)
       live_(!quiet_ && isatty(STDOUT_FILENO) == 1),
       start_(std::chrono::steady_clock::now()) {
   if (log_file.empty() || !tells) return;
-  log_ = std::fopen(log_file.c_str(), "w");
-  if (!log_) {
-    const int error = errno;
-    const std::string why = std::string("can't be written: ") + std::strerror(error);
-    if (is_about_means(error)) throw OutputError(log_file + ": " + why, error);
-    throw InputError("--log", log_file, why);
+  try {
+    log_ = open_own_file(log_file, log_heading);
+  } catch (const ForeignFile& error) {
+    throw InputError("--log", log_file,
+                     std::string(error.what()) +
+                         ": name a new file, or the log of an earlier run, which is replaced");
+  } catch (const OutputError& error) {
+    if (is_about_means(error.cause())) throw;
+    throw InputError("--log", log_file,
+                     std::string("can't be written: ") + std::strerror(error.cause()));
   }
 }
 

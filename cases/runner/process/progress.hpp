@@ -16,10 +16,13 @@ namespace peristat {
 /// on.
 class Progress {
  public:
+  static constexpr const char* log_heading = "# log of peristat";
+
   /// @param quiet nothing on the terminal, except what `problem` tells
-  /// @param log_file empty for none
+  /// @param log_file empty for none; a new file, or an earlier log, which is replaced: it begins
+  ///                 with the line `log_heading`
   /// @param tells    whether anything is told at all, problems and the log, too: of ranks one does
-  /// @throws InputError (key "--log") if the log file can't be written
+  /// @throws InputError (key "--log") if the log file can't be written, or holds something else
   Progress(bool quiet, const std::string& log_file, bool tells = true);
   ~Progress();
   Progress(const Progress&) = delete;

@@ -117,6 +117,19 @@ void require_plain(const ResultsFolder& folder, const Leftovers& old) {
   }
 }
 
+/// Refuses files that have the name of one of the run's own and are not of an earlier run.
+void require_no_foreign(const ResultsFolder& folder, const Leftovers& old,
+                        const std::vector<std::string>& own) {
+  for (const std::string& name : own) {
+    const bool is_left = std::find(old.files.begin(), old.files.end(), name) != old.files.end();
+    if (!is_left && fs::exists(fs::symlink_status(folder.directory / name))) {
+      throw RefusedFolder("holds a " + name +
+                          " that no earlier run has written, and this run has a file of that name; "
+                          "move it or name another folder");
+    }
+  }
+}
+
 void remove(const ResultsFolder& folder, const Leftovers& old) {
   for (const std::string& name : old.files) {
     const fs::path file = folder.directory / name;
@@ -140,15 +153,31 @@ ClaimedFolder claim(const fs::path& directory, RunIdentity run, bool overwrite) 
   std::optional<ResultsMarker> earlier = ResultsMarker::find(folder.directory);
   const Leftovers old = leftovers(folder, earlier ? &*earlier : nullptr, run.case_file, overwrite);
   require_plain(folder, old);
+  run.files.insert(run.files.end(), own_files.begin(), own_files.end());
+  require_no_foreign(folder, old, run.files);
   ResultsMarker marker = earlier ? std::move(*earlier) : ResultsMarker::create(folder.directory);
   remove(folder, old);
-  run.files.insert(run.files.end(), own_files.begin(), own_files.end());
   marker.write(run);
   fs::create_directory(folder.parts());
   return {folder, std::move(marker)};
 }
 
 }  // namespace
+
+bool is_below(const fs::path& path, const fs::path& folder) {
+  const auto [end, rest] = std::mismatch(folder.begin(), folder.end(), path.begin(), path.end());
+  return end == folder.end();
+}
+
+bool is_name_of_results(const fs::path& file, const fs::path& folder) {
+  if (is_below(file, folder / "parts") || is_below(file, folder / "plots")) return true;
+  if (file.parent_path() != folder) return false;
+  const std::string name = file.filename().string();
+  return name == ResultsMarker::name || (name.starts_with("line_") && name.ends_with(".csv")) ||
+         std::any_of(own_files.begin(), own_files.end(), [&](const std::string& own) {
+           return name == own || name == temporary(own).string();
+         });
+}
 
 void go_on_in_results_folder(const ResultsFolder& folder, ResultsMarker& marker, RunIdentity run) {
   run.files.insert(run.files.end(), own_files.begin(), own_files.end());

@@ -42,6 +42,14 @@ struct ResultsFolder {
   return "line_" + name + ".csv";
 }
 
+/// Whether a path is the folder or leads into it; both resolved.
+[[nodiscard]] bool is_below(const std::filesystem::path& path, const std::filesystem::path& folder);
+
+/// Whether a run that writes the folder may put a file of its own in the place of this one; both
+/// resolved.
+[[nodiscard]] bool is_name_of_results(const std::filesystem::path& file,
+                                      const std::filesystem::path& folder);
+
 /// A results folder that this run alone writes, as long as the marker lives.
 struct ClaimedFolder {
   ResultsFolder paths;

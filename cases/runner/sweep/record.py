@@ -11,6 +11,8 @@ import sys
 import tomllib
 from pathlib import Path
 
+from own_files import RECORD, write_own
+
 
 def is_done(folder: Path, case_text: bytes, settings: list[str]) -> bool:
     """Whether the folder holds the completed results of this case text, settings and points.
@@ -82,8 +84,7 @@ def _write(folder: Path, settings: list[str]) -> None:
         "files": {file: _checksum(Path(file).read_bytes()) for file in files},
         "summary_sha256": _checksum((folder / "summary.json").read_bytes()),
     }
-    (folder / "sweep.json").unlink(missing_ok=True)  # a link in its place is not followed
-    (folder / "sweep.json").write_text(json.dumps(record, indent=2) + "\n")
+    write_own(folder / "sweep.json", (json.dumps(record, indent=2) + "\n").encode(), RECORD)
 
 
 def _bytes(value) -> bytes:

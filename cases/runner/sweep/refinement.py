@@ -2,10 +2,12 @@
 goes, and how far from that the finest lattice is (Roache 1994, Celik et al. 2008)."""
 
 import csv
+import io
 import math
-import os
 from dataclasses import dataclass
 from pathlib import Path
+
+from own_files import write_own
 
 SAFETY = 1.25  # Roache's factor for three lattices, and for more whose orders agree
 CAUTION = 3.0  # his factor where nothing shows that the order is settled
@@ -13,6 +15,7 @@ AGREEMENT = 0.25  # of two orders, as a share
 TOLERANCE = 1e-8  # changes below this share of the value are those of the solvers' tolerances
 COLUMNS = ["quantity", "behaviour", "observed_order", "order_before", "extrapolated", "uncertainty",
            "grid_convergence_index"]  # fmt: skip
+SIGN = ",".join(COLUMNS).encode()  # of the table
 
 
 @dataclass
@@ -100,14 +103,12 @@ def write_refinements(path: Path, keys: list[str], rows: list[tuple[tuple[str, .
     """Replaces the table by a complete new one in one rename."""
     levels = len(rows[0][1].spacings)
     names = [f"{kind}_{level}" for level in range(1, levels + 1) for kind in ("spacing", "value")]
-    unfinished = path.with_name(path.name + ".tmp")
-    unfinished.unlink(missing_ok=True)  # a link in its place is not followed
-    with open(unfinished, "w", newline="", encoding="utf-8", errors="surrogateescape") as file:
-        table = csv.writer(file, lineterminator="\n")
-        table.writerow([*keys, *COLUMNS, *names])
-        for values, of in rows:
-            numbers = [of.order, of.order_before, of.extrapolated, of.uncertainty, of.index]
-            lattices = [number for pair in zip(of.spacings, of.values) for number in pair]
-            table.writerow([*values, of.quantity, of.behaviour,
-                            *("" if number is None else repr(number) for number in [*numbers, *lattices])])  # fmt: skip
-    os.replace(unfinished, path)
+    text = io.StringIO(newline="")
+    table = csv.writer(text, lineterminator="\n")
+    table.writerow([*keys, *COLUMNS, *names])
+    for values, of in rows:
+        numbers = [of.order, of.order_before, of.extrapolated, of.uncertainty, of.index]
+        lattices = [number for pair in zip(of.spacings, of.values) for number in pair]
+        table.writerow([*values, of.quantity, of.behaviour,
+                        *("" if number is None else repr(number) for number in [*numbers, *lattices])])  # fmt: skip
+    write_own(path, text.getvalue().encode("utf-8", "surrogateescape"), SIGN)

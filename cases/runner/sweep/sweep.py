@@ -10,6 +10,8 @@ import json
 import math
 import os
 import sys
+import traceback
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -17,10 +19,11 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "plots"))
 
 from computed import Keys, compute, split_computed
 from jobs import FolderLock, Jobs, bounded, estimated_memory
+from own_files import PICTURE, TABLE, ForeignFile, picture, remove_own, require_own, write_own
 from program import Ending, Program
 from record import can_go_on, is_done, record_done
-from refinement import Refinement, refine, write_refinements
-from table import figures, is_own_table, quantities, write_table
+from refinement import SIGN, Refinement, refine, write_refinements
+from table import figures, quantities, write_table
 from variations import Axis, WrongInput, check_keys, combinations, folder_name, vary, vary_with
 
 DONE, BUG, WRONG_INPUT, NOT_CONVERGED, OUT_OF_MEMORY, MACHINE_FAILED, INTERRUPTED = 0, 1, 2, 3, 4, 5, 130
@@ -28,7 +31,7 @@ STATUS = {DONE: "completed", NOT_CONVERGED: "not_converged", OUT_OF_MEMORY: "out
           INTERRUPTED: "interrupted"}  # fmt: skip
 WORDS = {NOT_CONVERGED: "did not converge", OUT_OF_MEMORY: "out of memory", INTERRUPTED: "interrupted",
          WRONG_INPUT: "refused", MACHINE_FAILED: "the machine failed"}  # fmt: skip
-MADE_OF_THE_TABLE = ["sweep.png", "refinement.csv", "refinement.png"]
+MADE_OF_THE_TABLE = {"sweep.png": PICTURE, "refinement.csv": SIGN, "refinement.png": PICTURE}  # and their signs
 REFINED = "lattice.spacing"
 # Of what can't be written: the disk is full or failing, or a limit of the shell is met.
 FAULTS = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EMFILE, errno.ENFILE, errno.EIO, errno.ENOMEM}
@@ -72,8 +75,8 @@ def run_all(sweep: Sweep, program: Program) -> int:
     rows = [all_runs.rows[number] for number in range(len(sweep.combinations))]
     say(f"sweep: {sweep.directory / 'sweep.csv'}")
     if sweep.refined is not None:
-        _tell_refinements(sweep, rows)
-    _draw(sweep, [row["status"] for row in rows])
+        all_runs.codes.add(_tell_refinements(sweep, rows))
+    all_runs.codes.add(_draw(sweep.directory / "sweep.png", lambda: _sweep_figure(sweep, [row["status"] for row in rows])))
     return _worst(all_runs.codes)
 
 
@@ -222,17 +225,17 @@ def _reason(folder: Path | None) -> str:
 
 
 def _worst(codes: set[int]) -> int:
-    if codes - {DONE, NOT_CONVERGED, OUT_OF_MEMORY}:
+    if codes - {DONE, NOT_CONVERGED, OUT_OF_MEMORY, MACHINE_FAILED}:
         return BUG
-    return next((code for code in (NOT_CONVERGED, OUT_OF_MEMORY) if code in codes), DONE)
+    return next((code for code in (MACHINE_FAILED, NOT_CONVERGED, OUT_OF_MEMORY) if code in codes), DONE)
 
 
 def _save(sweep: Sweep, rows: dict[int, dict]) -> None:
     """The table of what is done; what was made of an earlier table is removed."""
     sweep.directory.mkdir(parents=True, exist_ok=True)  # no run has made it if none had the memory
     write_table(sweep.directory / "sweep.csv", sweep.keys, [rows[number] for number in sorted(rows)])
-    for name in MADE_OF_THE_TABLE:
-        (sweep.directory / name).unlink(missing_ok=True)
+    for name, sign in MADE_OF_THE_TABLE.items():
+        remove_own(sweep.directory / name, sign)
 
 
 def _refinements(sweep: Sweep, rows: list[dict]) -> list[tuple[tuple[str, ...], Refinement]]:
@@ -252,41 +255,54 @@ def _refinements(sweep: Sweep, rows: list[dict]) -> list[tuple[tuple[str, ...], 
     return found
 
 
-def _tell_refinements(sweep: Sweep, rows: list[dict]) -> None:
+def _tell_refinements(sweep: Sweep, rows: list[dict]) -> int:
+    """@return as `_draw`"""
     found = _refinements(sweep, rows)
     if not found:
-        return
+        return DONE
     keys = [key for place, key in enumerate(sweep.keys) if place not in sweep.linked]
     write_refinements(sweep.directory / "refinement.csv", keys, found)
     for others, refinement in found:
         say("  " + ", ".join([*others, f"{refinement.quantity}: {refinement.told()}"]))
     say(f"sweep: {sweep.directory / 'refinement.csv'}")
-    path = sweep.directory / "refinement.png"
+    return _draw(sweep.directory / "refinement.png", lambda: _refinement_figure(sweep, found))
+
+
+def _refinement_figure(sweep: Sweep, found: list[tuple[tuple[str, ...], Refinement]]):
+    from refinement_picture import draw_refinements
+
+    return draw_refinements(sweep.case, found)
+
+
+def _sweep_figure(sweep: Sweep, statuses: list[str]):
+    from sweep_picture import draw_sweep
+
+    folders = [combination.folder for combination in sweep.combinations]
+    values = [combination.values for combination in sweep.combinations]
+    return draw_sweep(sweep.keys, values, folders, statuses)
+
+
+def _draw(path: Path, make: Callable[[], object]) -> int:
+    """Writes a picture. Whatever goes wrong with it, the table is complete.
+
+    @return DONE, MACHINE_FAILED where the picture can't be written, BUG where drawing has a fault
+    """
     try:
-        from refinement_picture import draw_refinements
-
-        draw_refinements(sweep.case, found).savefig(path, pil_kwargs={"compress_level": 4})
-        say(f"sweep: {path}")
-    except Exception as error:
-        print(f"sweep: {path} could not be drawn ({error}); the table is complete", file=sys.stderr)
-
-
-def _draw(sweep: Sweep, statuses: list[str]) -> None:
-    """The picture; whatever goes wrong with it, the table is complete."""
-    path = sweep.directory / "sweep.png"
-    try:
-        from sweep_picture import draw_sweep
-
-        folders = [combination.folder for combination in sweep.combinations]
-        values = [combination.values for combination in sweep.combinations]
-        figure = draw_sweep(sweep.keys, values, folders, statuses)
+        figure = make()
         if figure is None:
-            say("sweep: no sweep.png: no combination has an accepted step")
-            return
-        figure.savefig(path, pil_kwargs={"compress_level": 4})
-        say(f"sweep: {path}")
-    except Exception as error:
+            say(f"sweep: no {path.name}: no combination has an accepted step")
+            return DONE
+        write_own(path, picture(figure, "png", pil_kwargs={"compress_level": 4}), PICTURE)
+    except (OSError, MemoryError, ImportError) as error:
         print(f"sweep: {path} could not be drawn ({error}); the table is complete", file=sys.stderr)
+        return MACHINE_FAILED
+    except Exception:
+        traceback.print_exc()
+        print(f"sweep: {path} could not be drawn, by a fault of the program that is worth a report; the table is complete",
+              file=sys.stderr)  # fmt: skip
+        return BUG
+    say(f"sweep: {path}")
+    return DONE
 
 
 # ------------------------------------------------------------------------------------ command line
@@ -347,12 +363,8 @@ def read_sweep(arguments: argparse.Namespace) -> Sweep:
     directory = arguments.output or _default_directory(case)
     if directory.exists() and not directory.is_dir():
         raise WrongInput(f"--output {directory}: is no folder")
-    table = directory / "sweep.csv"
-    foreign = table if table.exists() and not is_own_table(table) else None
-    for name in MADE_OF_THE_TABLE:
-        foreign = directory / name if (directory / name).exists() and not table.exists() else foreign
-    if foreign:
-        raise WrongInput(f"{foreign} is of no sweep and would be replaced: name another folder (--output)")
+    for name, sign in {"sweep.csv": TABLE, **MADE_OF_THE_TABLE}.items():
+        require_own(directory / name, sign)
     if set('"\\') & set(str(directory)):
         raise WrongInput(f"--output {directory}: must have no quotes and no backslashes")
     jobs, threads = _jobs(arguments)
@@ -451,7 +463,7 @@ def main(words: list[str]) -> int:
         return WRONG_INPUT
     try:
         return run_all(read_sweep(arguments), Program(program))
-    except WrongInput as error:
+    except (WrongInput, ForeignFile) as error:
         print(f"peristat sweep: {error}", file=sys.stderr)
     except OSError as error:
         print(f"peristat sweep: {error}", file=sys.stderr)

@@ -175,8 +175,11 @@ def _entry(name: str, value: str) -> str:
     room = LONGEST_LABEL - len(f"{table}… = {value}")
     if 3 <= room < len(rest):
         name = f"{table}…{rest[-room:]}"
-    text = f"{name} = {value}"
-    return text if len(text) <= LONGEST_LABEL else text[: LONGEST_LABEL - 1] + "…"
+    return _shortened(f"{name} = {value}")
+
+
+def _shortened(text: str, most: int = LONGEST_LABEL) -> str:
+    return text if len(text) <= most else text[: most - 1] + "…"
 
 
 def line_looks(values: list[tuple[str, ...]]) -> list[dict]:
@@ -302,7 +305,7 @@ def _draw_outcome(axes, shown: list[Curves], keys: list[str], key: int, name: st
         axes.plot(place[curves.values[key]], curves.outcomes[name][0] / size, color=curves.looks["color"],
                   linestyle="none", zorder=3, markeredgewidth=0.0 if curves.completed else 2.2, **mark)  # fmt: skip
     if not numeric:
-        axes.set_xticks(list(place.values()), [_cut(text) for text in place])
+        axes.set_xticks(list(place.values()), [_shortened(text).replace("$", r"\$") for text in place])
     elif min(place.values()) > 0.0 and max(place.values()) >= 20.0 * min(place.values()):
         axes.set_xscale("log")
     axes.set_xlabel(keys[key].replace("$", r"\$"))

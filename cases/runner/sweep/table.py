@@ -1,10 +1,12 @@
 """The table of a sweep: a row per combination, from the results folders (docs/results.md)."""
 
 import csv
+import io
 import json
 import math
-import os
 from pathlib import Path
+
+from own_files import TABLE, write_own
 
 FIGURES = [
     "steps", "newton_iterations", "relaxation_iterations", "factorisations", "broken_bonds", "max_damage",
@@ -91,19 +93,8 @@ def write_table(path: Path, keys: list[str], rows: list[dict]) -> None:
     between = [column for column in found if column not in [*fixed, *COSTS]]
     order = ("peak_reaction", "final_reaction", "probe")
     between.sort(key=lambda column: order.index(column.partition(":")[0]))
-    unfinished = path.with_name(f"{path.name}.{os.getpid()}.tmp")  # another sweep may write one, too
-    unfinished.unlink(missing_ok=True)  # a link in its place is not followed
-    with open(unfinished, "w", newline="", encoding="utf-8", errors="surrogateescape") as file:
-        table = csv.DictWriter(file, [*fixed, *between, *COSTS], restval="", lineterminator="\n")
-        table.writeheader()
-        table.writerows(rows)
-    os.replace(unfinished, path)
-
-
-def is_own_table(path: Path) -> bool:
-    """Whether a file is a table of a sweep, by its header."""
-    try:
-        with open(path, newline="", encoding="utf-8", errors="replace") as file:
-            return {"status", "exit_code"} <= set(next(csv.reader(file), []))
-    except OSError:
-        return False
+    text = io.StringIO(newline="")
+    table = csv.DictWriter(text, [*fixed, *between, *COSTS], restval="", lineterminator="\n")
+    table.writeheader()
+    table.writerows(rows)
+    write_own(path, text.getvalue().encode("utf-8", "surrogateescape"), TABLE)

@@ -2,6 +2,7 @@
 
 from pathlib import Path
 
+from own_files import PICTURE, picture, write_own
 from verdict import Verdict
 
 COLUMNS = 4
@@ -21,7 +22,7 @@ def draw(found: list[Verdict], path: Path) -> None:
         _draw_entry(place, verdict)
     for place in list(axes.flat)[len(shown) :]:
         place.set_axis_off()
-    figure.savefig(path, metadata={"Date": None})
+    write_own(path, picture(figure, "svg"), PICTURE)
     pyplot.close(figure)
 
 

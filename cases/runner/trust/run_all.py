@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from jobs import FolderLock, Jobs, estimated_memory
+from own_files import CASE, remove_own, write_own
 from program import Ending, Program
 from record import can_go_on, is_done, record_done
 
@@ -53,6 +54,7 @@ class Runs:
 
     def run(self, texts: dict[str, str]) -> Iterator[Ran]:
         """Runs of case texts by name, as they end; fewer where the suite is interrupted."""
+        texts = {name: CASE.decode() + text for name, text in texts.items()}
         names = list(texts)
         jobs = Jobs(self._jobs, lambda number: self._memory(names[number], texts[names[number]]),
                     lambda number: FolderLock(self._folder(names[number])))  # fmt: skip
@@ -70,18 +72,21 @@ class Runs:
         if is_done(folder / "out", text.encode(), []):
             return 0.0, 1.0
         case = folder / "asked.toml"
-        case.write_text(text)
+        write_own(case, text.encode(), CASE)
         told = self._program.run(["check", str(case)], told=True).output
-        case.unlink()
+        remove_own(case, CASE)
         return estimated_memory(told)
 
     def _run(self, name: str, text: str) -> Ran:
         case, out = self._folder(name) / "case.toml", self._folder(name) / "out"
         if is_done(out, text.encode(), []):
             return Ran(name, out)
-        goes_on = case.is_file() and case.read_text() == text and can_go_on(out, text.encode(), [])
-        case.write_text(text)
-        words = ["resume", str(out)] if goes_on else ["run", str(case), "--output", str(out), "--overwrite"]
+        is_known = case.is_file()
+        goes_on = is_known and case.read_text() == text and can_go_on(out, text.encode(), [])
+        write_own(case, text.encode(), CASE)
+        # The suite may have been moved: its results then tell the earlier place of the case.
+        moved = ["--overwrite"] if is_known else []
+        words = ["resume", str(out)] if goes_on else ["run", str(case), "--output", str(out), *moved]
         began = time.monotonic()
         ending = self._program.run([*words, "--quiet", "--no-plots", *self._words], limit=LIMIT)
         if ending.code != 0:

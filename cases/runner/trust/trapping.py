@@ -2,11 +2,13 @@
 goes on, over K_Ic, by law, horizon ratio, angle and perturbation (surfing.py)."""
 
 import csv
+import io
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
+from own_files import PICTURE, picture, write_own
 from run_all import Failed, Runs
 from setting import FRACTURE_ENERGY
 from specimen import ANGLES, RATIOS, Lattice, rows
@@ -28,6 +30,7 @@ PATHS = {
     "like_3d": Strip(half_height=6.0, half_length=8.0, way=4.0, inner=2.5, outer=4.5),
 }
 COLUMNS = ["law", "strength", "path", "horizon_ratio", "angle", "perturbation", "least_K", "largest_K", "note"]
+SIGN = ",".join(COLUMNS).encode()  # of the table
 
 
 @dataclass(frozen=True)
@@ -109,8 +112,9 @@ def measure(runs: Runs, directory: Path, quick: bool, tell: Callable[[str], None
     if runs.interrupted:
         return
     found.sort(key=lambda row: row[:6])
-    with open(directory / "trapping.csv", "w", newline="") as table:
-        csv.writer(table).writerows([COLUMNS, *found])
+    table = io.StringIO(newline="")
+    csv.writer(table).writerows([COLUMNS, *found])
+    write_own(directory / "trapping.csv", table.getvalue().encode(), SIGN)
     if not quick:
         draw(found, directory / "trapping.svg")
 
@@ -138,5 +142,5 @@ def draw(found: list[list], path: Path) -> None:
     axes.set_xlabel("$K_-$ to $K_+$ over $K_{Ic}$", labelpad=14)
     axes.legend(loc="upper right", bbox_to_anchor=(1.15, 1.05))
     axes.set_title("Angle between crack and lattice")
-    figure.savefig(path, bbox_inches="tight", metadata={"Date": None})
+    write_own(path, picture(figure, "svg", bbox_inches="tight"), PICTURE)
     pyplot.close(figure)

@@ -26,6 +26,7 @@ import surfing
 import trapping
 from entries_picture import draw
 from jobs import bounded
+from own_files import PICTURE, ForeignFile, require_own, write_own
 from program import Program
 from run_all import Failed, Ran, Runs
 from specimen import Lattice, Specimen
@@ -35,6 +36,7 @@ MODULES = (surfing, notched_beam, compact_tension, centre_crack, double_cantilev
            inclined_notch, attracted_crack, strength)  # fmt: skip
 ENTRIES: dict[str, Specimen] = {s.name: s for module in MODULES for s in module.SPECIMENS}
 STEADY = "surfing"
+TABLE = HEADING[0].encode()  # the sign of our table
 PASSED, RED, WRONG_INPUT, MACHINE_FAILED, INTERRUPTED = 0, 3, 2, 5, 130
 
 
@@ -112,6 +114,9 @@ def main(words: list[str]) -> int:
     asked = _parser().parse_args(words)
     try:
         return run(asked)
+    except ForeignFile as error:
+        print(f"peristat trust: {error}", file=sys.stderr)
+        return WRONG_INPUT
     except OSError as error:
         print(f"peristat trust: {error}", file=sys.stderr)
         return MACHINE_FAILED
@@ -129,6 +134,8 @@ def run(asked: argparse.Namespace) -> int:
     tell = lambda text: print(text, flush=True)
     cores = len(os.sched_getaffinity(0))
     jobs, threads = bounded(asked.jobs or cores, asked.threads or 1, cores)
+    for name, sign in {"table.md": TABLE, "entries.svg": PICTURE, "trapping.csv": trapping.SIGN, "trapping.svg": PICTURE}.items():
+        require_own(asked.output / name, sign)
     asked.output.mkdir(parents=True, exist_ok=True)
     runs = Runs(Program(program), asked.output, jobs, threads, tell)
     if "trapping" in asked.names:
@@ -141,7 +148,7 @@ def run(asked: argparse.Namespace) -> int:
         return PASSED
     extend_cracks(found)
     text = table(found)
-    (asked.output / "table.md").write_text(text)
+    write_own(asked.output / "table.md", text.encode(), TABLE)
     if not asked.quick:
         draw(found, asked.output / "entries.svg")
     tell("\n" + text)

@@ -562,6 +562,20 @@ class Pictures(unittest.TestCase):
             self.assertEqual((plots / name).exists(), stays, name)
         self.assertEqual(outside.read_text(), "mine")
 
+    def test_a_picture_of_somebody_else_is_not_replaced(self):
+        write_folder(self.folder, lattice(10, 10))
+        (self.folder / "plots").mkdir()
+        mine = self.folder / "plots" / "deformed.png"
+        mine.write_text("mine")
+        self.assertIn("was not drawn by this command", self.plot(expected_code=2))
+        self.assertEqual(mine.read_text(), "mine")
+
+    def test_a_fault_of_the_program_is_not_told_as_a_damaged_folder(self):
+        write_folder(self.folder, lattice(10, 10))
+        with mock.patch("plot.draw_all", side_effect=NameError("name '_cut' is not defined")):
+            with redirect_stderr(io.StringIO()):
+                self.assertEqual(plot.main([str(self.folder)]), 1)
+
     def test_a_picture_replaces_a_link_and_not_what_it_leads_to(self):
         write_folder(self.folder, lattice(10, 10))
         (self.folder / "plots").mkdir()

@@ -15,8 +15,10 @@ RUNNER = Path(__file__).resolve().parents[3] / "cases" / "runner"
 sys.path[:0] = [str(RUNNER / "sweep"), str(RUNNER / "plots"), str(Path(__file__).parent)]
 
 import plot_test  # noqa: E402
+import style  # noqa: E402
 from computed import Keys, compute, split_computed  # noqa: E402
 from jobs import FolderLock, Jobs, bounded, estimated_memory  # noqa: E402
+from own_files import HEAD, PICTURE, ForeignFile, picture, remove_own, write_own  # noqa: E402
 from refinement import observed_order, refine  # noqa: E402
 from results_folder import ResultsFolder  # noqa: E402
 from sweep_picture import DASHES, draw_sweep, labels, line_looks, midline  # noqa: E402
@@ -33,6 +35,42 @@ def body(reference, layers=None) -> ResultsFolder:
 
 def lattice(*counts: int) -> np.ndarray:
     return np.stack(np.meshgrid(*map(np.arange, counts), indexing="ij"), axis=-1).reshape(-1, len(counts)).astype(float)
+
+
+class OwnFiles(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.path = Path(folder.name) / "table.md"
+
+    def test_what_has_no_sign_is_not_replaced(self):
+        self.path.write_bytes(b"mine")
+        for act in (lambda: write_own(self.path, b"sign", b"sign"), lambda: remove_own(self.path, b"sign")):
+            with self.assertRaises(ForeignFile):
+                act()
+        self.assertEqual(self.path.read_bytes(), b"mine")
+        self.assertEqual([path.name for path in self.path.parent.iterdir()], ["table.md"])
+
+    def test_own_files_and_empty_ones_are_replaced(self):
+        self.path.touch()
+        for content in (b"sign 1", b"sign 2"):
+            write_own(self.path, content, b"sign")
+            self.assertEqual(self.path.read_bytes(), content)
+        remove_own(self.path, b"sign")
+        self.assertFalse(self.path.exists())
+
+    def test_links_are_not_followed(self):
+        victim = self.path.with_name("victim")
+        victim.write_bytes(b"sign of its own")
+        self.path.symlink_to(victim)
+        with self.assertRaises(ForeignFile):
+            write_own(self.path, b"sign", b"sign")
+        self.assertEqual(victim.read_bytes(), b"sign of its own")
+
+    def test_pictures_carry_the_sign(self):
+        figure = style.new_figure(1.0, 1.0)
+        for ending in ("png", "svg"):
+            self.assertIn(PICTURE, picture(figure, ending)[:HEAD])
 
 
 class SideBySide(unittest.TestCase):
@@ -299,6 +337,35 @@ class Picture(unittest.TestCase):
                 self.assertEqual(len(first), 20)
                 self.assertEqual(second.max(), 0.5 if damaged else second[-1])
                 self.assertEqual(first.max() > 0.0, not damaged)
+
+    def draw_outcomes(self, keys, values):
+        """The panels of outcomes over the first key, of bodies that all came to the same."""
+        with tempfile.TemporaryDirectory() as name:
+            folders = [Path(name) / str(number) for number in range(len(values))]
+            for folder in folders:
+                plot_test.write_folder(folder, plot_test.lattice(8, 4))
+            figure = draw_sweep(keys, values, folders, ["completed"] * len(values))
+            figure.canvas.draw()
+            return figure.axes[2:]
+
+    def test_words_stand_below_outcomes_as_they_are_and_shortened(self):
+        long = "a" * 60
+        (panel,) = self.draw_outcomes(["solver.mode"], [("newton",), ("$x$",), (long,)])
+        told = [label.get_text() for label in panel.get_xticklabels()]
+        self.assertEqual(told, ["newton", r"\$x\$", "a" * 29 + "…"])
+
+    def test_outcomes_over_numbers_of_several_sizes_have_a_logarithmic_axis(self):
+        (panel,) = self.draw_outcomes(["a"], [("1",), ("10",), ("100",)])
+        self.assertEqual(panel.get_xscale(), "log")
+        (panel,) = self.draw_outcomes(["a"], [("1",), ("2",)])
+        self.assertEqual(panel.get_xscale(), "linear")
+
+    def test_a_key_of_one_value_has_no_outcomes_over_it(self):
+        self.assertEqual(self.draw_outcomes(["a"], [("1",), ("1",)]), [])
+
+    def test_many_combinations_share_a_legend(self):
+        panels = self.draw_outcomes(["a", "b"], [(str(a), str(b)) for a in range(6) for b in "vwxyz"])
+        self.assertEqual(len(panels), 1)
 
     def test_nothing_to_draw_is_no_picture(self):
         with tempfile.TemporaryDirectory() as folder:
