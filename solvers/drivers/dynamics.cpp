@@ -105,7 +105,7 @@ Advance Dynamics::begin() {
     const std::string refusal = choose_step(motion->at(), 0.0);
     if (!refusal.empty()) return fail(Outcome::unstable_step, 0.0, refusal);
     const double step = state.dynamics.step;
-    state.dynamics.correction_at_start = step * step / 8.0 * motion->squared_force();
+    state.dynamics.correction_at_start = motion->scheme_energy(step);
   }
   // What the body begins with counts as work that was done before.
   Ledger& entries = state.ledger.entries;
@@ -196,8 +196,11 @@ std::string Dynamics::choose_step(const Trial& state, double time) {
     return "the step is " + number_text(dynamics.step) + " s, the stable one " +
            number_text(stable) + " s";
   }
-  if (!std::isfinite(stable)) return "nothing has a stiffness, so that no step is the stable one";
   const double before = dynamics.step, wanted = options_.step_share * stable;
+  if (!std::isfinite(stable)) {  // any step is stable: all that moves has come apart, and flies on
+    if (before > 0.0) return {};
+    return "nothing has a stiffness, so that no step is the stable one; give dynamics.time_step";
+  }
   if (before > 0.0 && wanted >= before && wanted < least_growth * before) return {};
   dynamics.step = wanted;
   if (before == 0.0) return {};
@@ -299,13 +302,14 @@ Advance Dynamics::accept(Motion& motion) {
   found.growth = sums.growth;
   found.energies.released = sums.released;
   found.ledger = ledger_with(motion, sums, damaged.dissipated_energy);
+  const double energy_of_onset = motion.energy_of_onset(state.dynamics.step);
   std::vector<double> velocity = motion.take_velocity(), acceleration = motion.take_acceleration();
   Attempt attempt;
   attempt.at = time;
   attempt.largest_residual = -1.0;
   attempt.external_force = motion.external_force();
   attempt.state = motion.take();
-  const std::string fault = fault_of(attempt, found);
+  const std::string fault = fault_of(attempt, found, energy_of_onset);
   if (!fault.empty()) {
     repeats_ = time > state.accepted.stage && shorten_step(time, Outcome::inconsistent, fault);
     return repeats_ ? Advance::goes_on : fail(Outcome::inconsistent, time, fault);
@@ -347,7 +351,8 @@ void Dynamics::add_velocity_of_supports(double time, std::vector<double>& veloci
   }
 }
 
-std::string Dynamics::fault_of(const Attempt& attempt, const FoundStep& found) {
+std::string Dynamics::fault_of(const Attempt& attempt, const FoundStep& found,
+                               double energy_of_onset) {
   const auto& [assembler, solver, tangent, free] = path_.body();
   if (!is_linearised_) {
     tangent.linearise(assembler, attempt.state.at(), projection_for_stiffness(assembler));
@@ -360,36 +365,43 @@ std::string Dynamics::fault_of(const Attempt& attempt, const FoundStep& found) {
                           state.ledger.entries, found.ledger});
   give_back_tangent();
   if (!fault.empty()) return fault;
-  return fault_of_balance(found.ledger);
+  return fault_of_balance(found.ledger, energy_of_onset);
 }
 
-std::string Dynamics::fault_of_balance(const Ledger& after) {
+std::string Dynamics::fault_of_balance(const Ledger& after, double energy_of_onset) {
   PathState::Dynamics& dynamics = path_.state().dynamics;
   const double energy = after.kinetic + after.stored;
   dynamics.largest_energy =
       std::max({dynamics.largest_energy, std::abs(after.external_work), after.dissipated});
   const double error = after.balance_error() + dynamics.correction;
+  // Loads that set in give the body their energy before any work. Since (a + b)^2 <= 2 a^2 + 2 b^2,
+  // a motion that has forces or velocities a already has at most twice both energies then, and
+  // a half of four times that energy allows for it.
+  const double put_in = std::max(dynamics.largest_energy, 4.0 * energy_of_onset);
   // Explicit steps are short, so that what a bond lacks that breaks in one is a part of what it
   // dissipates; implicit ones would gain any amount by that.
   const double allowed =
       work_error * std::max(dynamics.largest_energy, is_implicit() ? 0.0 : energy) +
-      (is_implicit() ? 0.0 : after.dissipated);
+      (is_implicit() ? energy_of_onset : after.dissipated);
   const bool is_damped = is_implicit() && options_.spectral_radius < 1.0;  // which loses energy
   const bool balances = path_.damaged().has_potential();
   if (balances && (!(-error <= allowed) || !(is_damped || error <= allowed))) {
     return "the modified energy is " + number_text(error) + " J less than what was put in, " +
            number_text(dynamics.largest_energy) + " J";
   }
+  if (!(after.drained >= -allowed)) {
+    return "layers that absorb have given " + number_text(-after.drained) + " J to the motion";
+  }
   const double scheme = std::abs(dynamics.correction_at_start + dynamics.correction);
   if (balances && path_.state().steps >= steps_of_onset &&
-      !(scheme <= unresolved * std::max(dynamics.largest_energy, energy))) {
+      !(scheme <= unresolved * std::max(put_in, energy))) {
     return "the time step does not resolve the motion: " + number_text(scheme) +
            " J of its energy hang on the step, and " + number_text(dynamics.largest_energy) +
            " J have been put in; take a shorter step, or begin with fields that are smooth over "
            "a horizon";
   }
   const double growth = balances ? growth_of_instability : growth_without_potential;
-  if (!(energy <= growth * dynamics.largest_energy)) {
+  if (!(energy <= growth * put_in)) {
     return "the motion holds " + number_text(energy) + " J, and no more than " +
            number_text(dynamics.largest_energy) + " J have been put in";
   }

@@ -57,8 +57,10 @@ class Dynamics : public Driver {
   [[nodiscard]] MotionRecord motion_record(const Motion& motion) const;
   [[nodiscard]] Ledger ledger_with(const Motion& motion, const MotionSums& sums,
                                    double dissipated) const;
-  [[nodiscard]] std::string fault_of(const Attempt& attempt, const FoundStep& found);
-  [[nodiscard]] std::string fault_of_balance(const Ledger& after);
+  /// @param energy_of_onset see Motion
+  [[nodiscard]] std::string fault_of(const Attempt& attempt, const FoundStep& found,
+                                     double energy_of_onset);
+  [[nodiscard]] std::string fault_of_balance(const Ledger& after, double energy_of_onset);
   [[nodiscard]] Advance fail(Outcome outcome, double time, const std::string& what);
 
   const DynamicsOptions& options_;

@@ -269,7 +269,7 @@ std::vector<double> CrackTipIntegrals::field(std::size_t size, int mode) const {
     const Coordinates at = frame_.components(points_.position(i));
     const Coordinates vector =
         frame_.vector(mode < 3 ? williams_displacement(mode, at, *elasticity_)
-                               : tip_force_displacement(at, *elasticity_));
+                               : tip_force_displacement(at, *elasticity_, tip_.outer));
     for (std::size_t c = 0; c < d; ++c) displacement[std::size_t(i) * d + c] = vector[c];
   }
   return displacement;

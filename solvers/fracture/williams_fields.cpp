@@ -30,13 +30,14 @@ Coordinates williams_displacement(int mode, const Coordinates& at,
   return {0.0, 0.0, 4.0 * size * s};
 }
 
-Coordinates tip_force_displacement(const Coordinates& at, const TipElasticity& elasticity) {
+Coordinates tip_force_displacement(const Coordinates& at, const TipElasticity& elasticity,
+                                   double still) {
   const double r = std::hypot(at[0], at[1]);
   if (r == 0.0) return {};
   const double angle = std::atan2(at[1], at[0]), s = at[1] / r, c = at[0] / r;
   const double nu = (3.0 - elasticity.kolosov) / (1.0 + elasticity.kolosov);
   const double size = -1.0 / (std::numbers::pi * elasticity.plane_modulus);
-  return {size * (std::log(r) + 0.5 * (1.0 + nu) * s * s),
+  return {size * (std::log(r / still) + 0.5 * (1.0 + nu) * s * s),
           0.5 * size * ((1.0 - nu) * angle - (1.0 + nu) * s * c), 0.0};
 }
 

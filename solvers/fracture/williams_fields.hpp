@@ -28,9 +28,12 @@ struct TipElasticity {
 /// stress across the front: the field whose interaction with another is its T-stress (Kfouri
 /// 1986), with E' and nu' = (3 - k)/(1 + k):
 ///
-///   u1 = -(ln r + (1 + nu') sin^2 t / 2)/(pi E'),
+///   u1 = -(ln (r/R) + (1 + nu') sin^2 t / 2)/(pi E'),
 ///   u2 = -((1 - nu') t - (1 + nu') sin t cos t)/(2 pi E')
+///
+/// R is a length of the body; it moves the field as a whole, and makes it the same in any unit.
+/// @param still R [m]
 [[nodiscard]] Coordinates tip_force_displacement(const Coordinates& at,
-                                                 const TipElasticity& elasticity);
+                                                 const TipElasticity& elasticity, double still);
 
 }  // namespace peristat

@@ -10,6 +10,7 @@ Motion::Motion(const EquilibriumProblem& problem, const MotionSetting& setting, 
     : problem_(problem),
       setting_(setting),
       inverse_mass_(from.displacement.size(), 0.0),
+      drag_(setting, problem.free.dof),
       external_force_(from.displacement.size()),
       velocity_(std::move(velocity)),
       time_(from.stage) {
@@ -123,18 +124,6 @@ void Motion::add_work_of_supports() {
   });
 }
 
-void Motion::absorb(double half_step) {
-  if (setting_.absorption.empty()) return;
-  for (const Index dof : problem_.free.dof) {
-    const double rate = setting_.absorption[dof];
-    if (rate == 0.0) continue;
-    const double before = velocity_[dof];
-    velocity_[dof] *= std::exp(-rate * half_step);
-    sums_.absorbed +=
-        0.5 * setting_.mass[dof] * (before - velocity_[dof]) * (before + velocity_[dof]);
-  }
-}
-
 bool Motion::find_energy() {
   const Evaluation found = problem_.assembler.energy(at_.at());
   at_.stored_energy = found.energy;
@@ -166,6 +155,17 @@ double Motion::squared_force() const {
     sum += force * force * inverse_mass_[dof];
   }
   return problem_.sums().of_all(sum);
+}
+
+double Motion::energy_of_onset(double dt) const {
+  const bool has_follower_force = !last_follower_force_.empty() && !at_.follower_force.empty();
+  double sum = 0.0;
+  for (const Index dof : problem_.free.dof) {
+    double change = last_force_.empty() ? 0.0 : external_force_[dof] - last_force_[dof];
+    if (has_follower_force) change += at_.follower_force[dof] - last_follower_force_[dof];
+    sum += change * change * inverse_mass_[dof];
+  }
+  return dt * dt / 8.0 * problem_.sums().of_all(sum);
 }
 
 }  // namespace peristat

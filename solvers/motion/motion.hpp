@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "solvers/motion/drag.hpp"
 #include "solvers/motion/motion_setting.hpp"
 #include "solvers/problem/equilibrium.hpp"
 #include "src/core/input_error.hpp"
@@ -17,14 +18,14 @@ struct MotionSums {
   double correction = 0.0;
   double released = 0.0;  ///< see Evaluation::released [J]
   DamageGrowth growth{};
-  double absorbed = 0.0;  ///< kinetic energy that layers have taken [J]
+  double absorbed = 0.0;  ///< energy that layers have taken [J]
   int iterations = 0;     ///< of Newton
 };
 
 /// The motion M a = F(u, t) = f_ext(t) - dE/dx(u) on the free degrees of freedom, M the lumped
-/// mass, step by step in time. Works are trapezoidal sums over the steps. In layers that absorb
-/// velocities decay at a rate beside that: by exp(-rate dt/2) before and after a step, of second
-/// order in it.
+/// mass, step by step in time. Works are trapezoidal sums over the steps. Layers that absorb add a
+/// drag, M a = F - eta M v, which the schemes integrate together with F (Drag): what a constant
+/// force does is exact for any eta dt.
 ///
 /// Masses and velocities of what is prescribed do not enter: supports do the work of dE/dx alone.
 ///
@@ -67,6 +68,15 @@ class Motion {
   [[nodiscard]] double kinetic_energy() const;
   /// F.M^-1 F [J/s2]
   [[nodiscard]] double squared_force() const;
+  /// By how much the energy that a scheme conserves is below kinetic and stored energy [J].
+  [[nodiscard]] virtual double scheme_energy(double /*dt*/) { return 0.0; }
+  /// Energy that the scheme gives to a body at rest for loads that set in within the last step,
+  /// before they do any work: dt^2/8 f.M^-1 f with the change f of the loads and pressures [J].
+  ///
+  /// The last half of the step kicks with the new loads, v = dt/2 M^-1 f, while the body has not
+  /// moved yet: kinetic energy is v.Mv/2, and the work is zero. One step later the work is eight
+  /// times as much.
+  [[nodiscard]] double energy_of_onset(double dt) const;
 
  protected:
   /// Takes conditions to a time: all ranks, or none where one alone finds no value at its points.
@@ -83,8 +93,6 @@ class Motion {
     if (sharing->ranks().max(refusal ? 1.0 : 0.0) == 0.0) return;
     throw refusal.value_or(InputError("", "", "a condition has no value on another rank"));
   }
-  /// Lets velocities decay for half a step.
-  void absorb(double half_step);
   /// Finds the forces of the present state, and damages it.
   /// @return false if an interaction has collapsed
   [[nodiscard]] bool find_forces();
@@ -115,6 +123,7 @@ class Motion {
   EquilibriumProblem problem_;
   const MotionSetting& setting_;
   std::vector<double> inverse_mass_;  // 0 where there is no equation
+  Drag drag_;
   Trial at_;
   std::vector<double> external_force_, velocity_;
   double time_ = 0.0;

@@ -32,15 +32,9 @@ Newmark::Newmark(const EquilibriumProblem& problem, const MotionSetting& setting
 
 Outcome Newmark::step(double dt, double time) {
   require_conditions_on_all_ranks(time);
-  const std::vector<double> velocity_before = velocity_;
-  const double absorbed_before = sums_.absorbed;
-  absorb(0.5 * dt);
+  drag_.set_step(dt);
   NewtonResult found = find(time, inertia_of_step(dt));
-  if (found.outcome != Outcome::converged) {
-    velocity_ = velocity_before;
-    sums_.absorbed = absorbed_before;
-    return found.outcome;
-  }
+  if (found.outcome != Outcome::converged) return found.outcome;
   note_before();
   std::vector<double> force_before(velocity_.size());
   for (const Index dof : problem_.free.dof) {
@@ -55,24 +49,23 @@ Outcome Newmark::step(double dt, double time) {
   if (!find_forces()) return Outcome::degenerate;
   add_work([&](Index dof) { return at_.displacement[dof] - before[dof]; });
   accelerate(dt, force_before);
-  absorb(0.5 * dt);
   return Outcome::converged;
 }
 
 InertialSprings Newmark::inertia_of_step(double dt) const {
   const auto [of_inertia, of_force, gamma, beta] = coefficients_;
-  const double per_mass = coefficients_.stiffness_per_mass(dt);
   InertialSprings inertia{std::vector<double>(velocity_.size(), 0.0),
                           std::vector<double>(velocity_.size(), 0.0)};
-  for (const Index dof : problem_.free.dof) {
+  drag_.for_each(problem_.free.dof, [&](Index dof, const DragFactors& drag) {
     const double mass = setting_.mass[dof], force = external_force_[dof] - at_.gradient[dof];
-    const double stiffness = per_mass * mass;
+    const double stiffness = coefficients_.stiffness_per_mass(dt) / (2.0 * drag.phi2) * mass;
     const double known =
         (of_inertia * mass * acceleration_[dof] - of_force * force) / (1.0 - of_force);
     inertia.stiffness[dof] = stiffness;
-    inertia.place[dof] = at_.displacement[dof] + dt * velocity_[dof] +
-                         dt * dt * (0.5 - beta) * acceleration_[dof] - known / stiffness;
-  }
+    inertia.place[dof] = at_.displacement[dof] + dt * drag.phi1 * velocity_[dof] +
+                         dt * dt * drag.phi2 * (1.0 - 2.0 * beta) * acceleration_[dof] -
+                         known / stiffness;
+  });
   return inertia;
 }
 
@@ -120,13 +113,20 @@ NewtonResult Newmark::find(double time, const InertialSprings& inertia) {
 /// By the forces at both ends: differences of places would have the round-off of 1 / dt^2.
 void Newmark::accelerate(double dt, const std::vector<double>& force_before) {
   const auto [of_inertia, of_force, gamma, beta] = coefficients_;
-  for (const Index dof : problem_.free.dof) {
+  drag_.for_each(problem_.free.dof, [&](Index dof, const DragFactors& drag) {
     const double force = external_force_[dof] - at_.gradient[dof];
     const double mean = (1.0 - of_force) * force + of_force * force_before[dof];
     const double before = acceleration_[dof];
     acceleration_[dof] = (inverse_mass_[dof] * mean - of_inertia * before) / (1.0 - of_inertia);
-    velocity_[dof] += dt * ((1.0 - gamma) * before + gamma * acceleration_[dof]);
-  }
+    const double kick = dt * ((1.0 - gamma) * before + gamma * acceleration_[dof]);
+    const double v = velocity_[dof];
+    velocity_[dof] = drag.decay * v + drag.phi1 * kick;
+    if (drag.lost == 0.0) return;
+    sums_.absorbed +=
+        setting_.mass[dof] *
+        (0.5 * drag.lost * (1.0 + drag.decay) * v * v + drag.phi1 * drag.lost * v * kick +
+         (drag.phi2 - 0.5 * drag.phi1 * drag.phi1) * kick * kick);
+  });
 }
 
 }  // namespace peristat

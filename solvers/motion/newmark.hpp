@@ -41,6 +41,15 @@ struct NewmarkCoefficients {
 ///   F(u) = k (u - p) + c,   p = u^n + dt v^n + dt^2 (1/2 - beta) a^n,
 ///   c = (alpha_m M a^n - alpha_f F^n) / (1 - alpha_f)
 ///
+/// Where there is a drag (Drag), dt v^n is phi1 dt v^n and decay v^n, 1/2 and beta are phi2 and
+/// 2 beta phi2, 1 and gamma are phi1 and gamma phi1: exact under a constant force. With the mean
+/// acceleration a of the step the drag takes, by the integral of eta M v.v over it,
+///
+///   M ((1 - decay^2)/2 v.v + phi1 (1 - decay) dt v.a + (phi2 - phi1^2/2) dt^2 a.a)
+///
+/// With spectral radius 1 that is just what the trapezoidal work of F and the change of v.Mv/2
+/// leave, so that the method stays stable at any step.
+///
 /// Damage grows in the search. Where that finds nothing, the integrities are held, and bonds that
 /// are stretched too far in what is found are damaged, until none is.
 class Newmark : public Motion {

@@ -16,19 +16,41 @@ namespace peristat {
 /// (F^n + F^(n+1))/2 . (u^(n+1) - u^n). Where forces are linear in u that is the change of the
 /// energy: T + E - dt^2/8 F.M^-1 F, the modified energy, is then conserved to round-off, and T + E
 /// to the second order of the step. The sums' correction is that of dt^2/8 F.M^-1 F.
+///
+/// Where there is a drag (Drag) the step is that of van Gunsteren and Berendsen [1982] without
+/// their random force, which is Verlet's where x = eta dt is 0, and exact under a constant force:
+///
+///   u^(n+1) = u^n + phi1 dt v^n + phi2 dt^2 M^-1 F^n,
+///   v^(n+1) = exp(-x) v^n + dt M^-1 ((phi1 - phi2) F^n + phi2 F^(n+1))
+///
+/// It is stable wherever Verlet's is. The energy of the scheme that goes beside T is then
+/// phi2^2 dt^2/2 F.M^-1 F; what T less that and the work of F lack is what the drag has taken.
 class VelocityVerlet : public Motion {
  public:
   using Motion::Motion;
 
   [[nodiscard]] Outcome step(double dt, double time) override;
   void complete_sums() override;
+  /// dt^2/8 F.M^-1 F, or what stands for it where there is a drag.
+  [[nodiscard]] double scheme_energy(double dt) override;
 
  private:
   void kick(double half_step);
   void drift(double dt);
 
-  double last_dt_ = 0.0, force_at_change_ = 0.0;
+  void note_dragged();
+  /// Puts the mean velocities of a step in the place of those that a kick without drag has made.
+  void begin_drag(double dt);
+  /// Likewise the velocities at its end, and counts what the drag has taken.
+  void end_drag(double dt);
+  [[nodiscard]] double acceleration(Index dof) const {
+    return inverse_mass_[dof] * (external_force_[dof] - at_.gradient[dof]);
+  }
+
+  double last_dt_ = 0.0, energy_at_change_ = 0.0;
   bool has_moved_ = false;
+  std::vector<double> dragged_velocity_,
+      dragged_acceleration_;  // before a step, of the drag's dofs
 };
 
 }  // namespace peristat

@@ -2,6 +2,7 @@
 
 import math
 import pathlib
+import re
 
 import h5py
 import numpy
@@ -105,6 +106,25 @@ class CrackTips(Programmes):
         self.assertAlmostEqual(row["tip_T"] / (E * strain), 1, delta=0.02)
         for name in ("K1", "K2"):
             self.assertLess(abs(row[f"tip_{name}"]), 0.01 * E * strain * math.sqrt(math.pi * 0.01))
+
+    def test_factors_do_not_depend_on_the_unit_of_length(self):
+        """The same square with 1 m for 1 mm and for 1 km: with the same modulus J grows with the length, K with its root."""
+        thin = Elasticity(E, 1 / 3, True)
+        found = []
+        for unit in (1.0, 1e3, 1e-3):
+            fields = [williams(mode, thin.shear, thin.kolosov) for mode in (0, 1)]
+            # Displacements grow with the lengths.
+            field = [f"{unit}*({one}+0.5*({other})+1e-5*load*x*{axis == 0:d})" for axis, (one, other) in enumerate(zip(*fields))]
+            field = [re.sub(r"\b([xy])\b", rf"(\1/{unit})", component) for component in field]
+            text = square(field).replace("max(abs(x), abs(y)) > 0.017", f"max(abs(x), abs(y)) > {0.017 * unit}")
+            for length in ("spacing = 1e-3", "thickness = 1e-3", "min = [-0.02, -0.02]", "max = [0.02, 0.02]", "from = [-0.03, 0]"):
+                scaled = re.sub(r"-?\d[\d.e-]*", lambda number: repr(float(number.group()) * unit), length)
+                self.assertIn(length, text)
+                text = text.replace(length, scaled)
+            row = self.run_case(text)[-1]
+            found.append((row["tip_J"] / unit, row["tip_K1"] / unit**0.5, row["tip_K2"] / unit**0.5, row["tip_T"]))
+        for values in found[1:]:
+            numpy.testing.assert_allclose(values, found[0], rtol=1e-8)
 
     def test_half_a_square_is_the_whole(self):
         thin = Elasticity(E, 1 / 3, True)

@@ -255,6 +255,106 @@ class Steps(Folder):
         self.assertIn("unstable_step", self.said)
         self.assertEqual(json.loads((folder / "summary.json").read_text())["status"], "not_converged")
 
+    def test_points_without_bonds_fly_on_with_the_last_step(self):
+        dust = """\
+dimension = 1
+[lattice]
+spacing = 1.0
+horizon_ratio = 1.015
+shape = [{ add = "box", min = [0], max = [8] }]
+[[set]]
+name = "held"
+where = "x < 4"
+[material]
+micromodulus = 1e6
+density = 1
+[material.damage]
+law = "critical_stretch"
+critical = 1e-3
+[[initial]]
+velocity = ["x > 4 ? 100*(x - 3) : 0"]
+[solver]
+mode = "dynamics"
+[dynamics]
+end_time = 0.03
+history_every = 1
+"""
+        for support in ("", '[[support]]\nset = "held"\ndisplacement = [0]\n'):
+            folder = self.run_case(dust + support, f"dust_{len(support)}")
+            *_, last = fields(folder).values()
+            moving = last["velocity"][4:, 0]
+            numpy.testing.assert_allclose(moving, 100 * (numpy.arange(4) + 1.5), rtol=1e-12)
+            numpy.testing.assert_allclose(last["displacement"][4:, 0], 0.03 * moving, rtol=1e-12)
+
+    def test_loads_that_begin_with_nothing(self):
+        """In the first loaded step nothing has moved: kinetic energy without work."""
+        bar = """\
+dimension = 1
+[lattice]
+spacing = 1
+shape = [{ add = "box", min = [0], max = [8] }]
+[material]
+youngs_modulus = 1
+density = 1
+[[set]]
+name = "held"
+where = "x < 3"
+[[set]]
+name = "pulled"
+where = "x > 7"
+[[support]]
+set = "held"
+displacement = [0]
+[solver]
+mode = "dynamics"
+[dynamics]
+end_time = 22
+time_step = 0.1
+history_every = 1
+"""
+        ramp = '[[load]]\nset = "pulled"\ntotal_force = ["LOAD"]\n'
+        for number, (load, scheme) in enumerate((
+            ("1e-3*t", ""),
+            ("t < 20 ? 0 : 1e-3", ""),
+            ("1e-6 + (t < 20 ? 0 : 1e-3)", ""),  # in a motion that goes on
+            ("t < 20 ? 0 : 1e-3", 'scheme = "newmark"\nspectral_radius = 0.0\n'),
+        )):  # fmt: skip
+            with self.subTest(load=load, scheme=scheme):
+                case = bar.replace("time_step", scheme + "time_step") + ramp.replace("LOAD", load)
+                rows = columns(self.run_case(case, f"onset_{number}"))
+                self.assertEqual(rows["step"][-1], 220)
+                self.assertGreater(rows["external_work"][-1], 0.0)
+
+    def test_a_load_that_sets_in_on_forces_without_a_potential(self):
+        printed = """\
+dimension = 2
+[lattice]
+spacing = 1e-3
+thickness = 2e-3
+shape = [{ add = "box", min = [0.0, 0.0], max = [0.014, 0.010] }]
+[[set]]
+name = "pulled"
+where = "x > 12e-3"
+[[load]]
+set = "pulled"
+body_force = ["t < 5.5e-7 ? 0 : 3e10", 0]
+[solver]
+mode = "dynamics"
+operator = "fft"
+[dynamics]
+end_time = 2e-6
+time_step = 1e-7
+history_every = 1
+[quadrature]
+form = "printed"
+[material]
+model = "lps"
+youngs_modulus = 72e9
+poisson_ratio = 0.22
+density = 2440
+"""
+        self.assertGreater(columns(self.run_case(printed))["external_work"][-1], 0.0)
+
     def test_points_that_meet_end_the_run_with_the_last_state(self):
         text = SQUARE.replace('"0.05*x*exp(-(x^2 + y^2)/0.1)", "0.05*y*exp(-(x^2 + y^2)/0.1)"', "0, 0")
         text += '[[load]]\nset = "far"\nbody_force = ["1e300*t", 0]\n[[set]]\nname = "far"\nwhere = "x > 0.7"\n'

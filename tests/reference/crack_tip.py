@@ -22,7 +22,7 @@ def frame(tip, dimension):
     return numpy.stack([ahead, numpy.cross(front, ahead), front])
 
 
-def displacement(mode, at, elasticity):
+def displacement(mode, at, elasticity, still):
     """Of the modes 0, 1, 2 with the factor 1, or (3) of a force of 1 N/m on the tip, in the tip's frame."""
     x, y = at[:, 0], at[:, 1]
     r, angle = numpy.hypot(x, y), numpy.arctan2(y, x)
@@ -36,7 +36,7 @@ def displacement(mode, at, elasticity):
     if mode == 2:
         return numpy.stack([zero, zero, 4 * size * sine], 1)
     nu = (3 - k) / (1 + k)
-    along = numpy.log(r) + (1 + nu) / 2 * numpy.sin(angle) ** 2
+    along = numpy.log(r / still) + (1 + nu) / 2 * numpy.sin(angle) ** 2
     across = ((1 - nu) * angle - (1 + nu) * numpy.sin(angle) * numpy.cos(angle)) / 2
     return -numpy.stack([along, across, zero], 1) / (numpy.pi * elasticity.plane)
 
@@ -46,6 +46,7 @@ class CrackTip:
         body = mechanics.body
         self.mechanics, self.body, self.elasticity = mechanics, body, elasticity
         self.history = mechanics.no_history() if history is None else history
+        self.outer = outer
         self.dimension = body.reference.shape[1]
         self.frame = frame(tip, self.dimension)
         places = numpy.zeros((len(body.reference), 3))
@@ -89,7 +90,7 @@ class CrackTip:
         return ((self.q * (work - (ahead - behind) / (2 * shift))).sum() - (self.slope * self.energies(u)).sum()) / self.length
 
     def interaction(self, u, mode):
-        field = (displacement(mode, self.at, self.elasticity) @ self.frame)[:, : self.dimension]
+        field = (displacement(mode, self.at, self.elasticity, self.outer) @ self.frame)[:, : self.dimension]
         size = numpy.abs(u).max() / numpy.abs(field).max()
         return (self.flux(u + size * field) - self.flux(u - size * field)) / (2 * size)
 

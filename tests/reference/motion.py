@@ -44,15 +44,24 @@ class Motion:
     def acceleration(self):
         return numpy.divide(self.force, self.mass, out=numpy.zeros_like(self.force), where=self.free)
 
-    def step(self, dt, time):
+    def step(self, dt, time, rate=0.0):
+        """
+        :param rate: of a drag, per component [1/s]
+        """
         before, load, gradient = self.u, self.load, self.gradient
-        half = self.v + dt / 2 * self.acceleration()
+        # Means over the step of e^(-rate s) and of its integral: 1 and 1/2 without a drag.
+        x = numpy.broadcast_to(numpy.asarray(rate * dt, float), self.u.shape)
+        dragged = numpy.where(x > 0, x, 1.0)
+        phi1 = numpy.where(x > 0, -numpy.expm1(-dragged) / dragged, 1.0)
+        phi2 = numpy.where(x > 0, (1 - phi1) / dragged, 0.5)
+        a = self.acceleration()
+        half = phi1 * self.v + dt * phi2 * a
         self.time, self.number = time, self.number + 1
         prescribed = self.conditions.displacement({"t": time})
         self.u = numpy.where(self.free, self.u + dt * half, prescribed)
         self.history = self.mechanics.grown(self.history, self.u)
         self.find_force()
-        self.v = half + dt / 2 * self.acceleration()
+        self.v = numpy.exp(-x) * self.v + dt * ((phi1 - phi2) * a + phi2 * self.acceleration())
         pull = numpy.where(self.free, (load + self.load) / 2, (gradient + self.gradient) / 2)
         self.work += (pull * (self.u - before)).sum()
 

@@ -396,10 +396,13 @@ SharedEnvironment environment_at_end(const Case& from, const Body& body,
       conditions.environment(conditions.control() ? LoadPoint(end, 1.0) : LoadPoint(end));
   if (!from.dynamics.is_implicit()) return there;
   auto with = there ? std::make_shared<Environment>(*there) : std::make_shared<Environment>();
-  with->inertia = {make_motion_setting(body).mass, displacement};
-  const NewmarkCoefficients coefficients(from.dynamics.spectral_radius);
-  for (double& mass : with->inertia.stiffness) {
-    mass *= coefficients.stiffness_per_mass(from.dynamics.time_step);
+  const MotionSetting setting = make_motion_setting(body);
+  with->inertia = {setting.mass, displacement};
+  const double dt = from.dynamics.time_step;
+  const double per_mass = NewmarkCoefficients(from.dynamics.spectral_radius).stiffness_per_mass(dt);
+  for (std::size_t dof = 0; dof < setting.mass.size(); ++dof) {
+    const double rate = setting.absorption.empty() ? 0.0 : setting.absorption[dof];
+    with->inertia.stiffness[dof] *= per_mass / (2.0 * DragFactors(rate * dt).phi2);
   }
   return with;
 }
