@@ -131,6 +131,7 @@ Followed follow(const Setting& setting, const PathState* from = nullptr) {
   EXPECT_EQ(solved.strip.analyze(solved.solver), LinearOutcome::solved);
   EXPECT_EQ(standing.solver.analyze(standing.tangent.pattern, solved.strip.free),
             LinearOutcome::solved);
+  int step = from ? from->steps : 0;
   LoadSteppingObserver observer;
   observer.iteration = [&](const IterationRecord& row) { followed.rows.push_back(make_row(row)); };
   observer.decision = [&](const DecisionRecord& row) { followed.rows.push_back(make_row(row)); };
@@ -142,7 +143,6 @@ Followed follow(const Setting& setting, const PathState* from = nullptr) {
     told.insert(told.end(), state.velocity.begin(), state.velocity.end());
     followed.told.push_back(std::move(told));
   };
-  int step = from ? from->steps : 0;
   observer.interrupted = [&] { return step == setting.interrupt_after; };
   const MotionSetting motion = motion_of(solved.strip);
   const PathSetting all{solved.body(),   solved.strip.conditions,

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -160,11 +161,12 @@ TEST(StepZero, ReportsWhatWasPutOn) {
 
 /// What damages is put on in steps of the programme, in each of which the ledger is closed.
 TEST(StepZero, FollowsDamageInSteps) {
-  for (const Mode& mode : {Mode::newton, Mode::adaptive}) {
+  // Beyond its peak the notched strip has no equilibrium for Newton's method.
+  for (const auto& [mode, drawn] : {std::pair(Mode::newton, "0.012"), {Mode::adaptive, "0.03"}}) {
     SCOPED_TRACE(std::string(mode.name));
-    tests::Strip strip(tests::Strip::Middle::notched, tests::drawn("0.03"));
+    tests::Strip strip(tests::Strip::Middle::notched, tests::drawn(drawn));
     const Followed followed = follow(strip, options_of(mode, 20));
-    ASSERT_EQ(followed.rows.empty(), false);
+    ASSERT_FALSE(followed.rows.empty());
     const StepRecord& zero = followed.rows.front();
     EXPECT_EQ(zero.step, 0);
     EXPECT_GT(zero.dissipated_energy + double(zero.broken_bonds), 0.0);
