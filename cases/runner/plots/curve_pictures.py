@@ -26,9 +26,12 @@ class Reaction:
     sign: float  # by which it was turned
     values: np.ndarray  # at the accepted steps [N]
     others: list[str]  # words for the supports that have the same or the opposite reaction
+    is_constraint: bool = False  # whose one force has no direction
 
     @property
     def label(self) -> str:
+        if self.is_constraint:
+            return ", ".join([f"constraint {self.name}", *self.others])
         return ", ".join([f"{self.name} in {'−' * (self.sign < 0)}{AXES[self.axis]}", *self.others])
 
 
@@ -54,16 +57,18 @@ def draw_load_displacement(results):
     curves = reactions(results)
     unit, size = unit_for(max(np.abs(curve.values).max() for curve in curves), FORCES, 1.0)
     abscissa = find_abscissa(results, curves)
+    control = controlled(results)
+    drive, drive_label, drive_words = _what_grows(results, load, control)
 
     foot = 0.75  # inches for the legend
     height = 7.2 + foot
     bottom, panel_height = (0.115 * 7.2 + foot) / height, 0.71 * 7.2 / height
     figure = new_figure(16.0, height)
     panels = [figure.add_axes([0.075, bottom, 0.40 if abscissa else 0.80, panel_height])]
-    _draw_reactions(panels[0], curves, load, size, curves)
-    panels[0].set_xlabel("time [s]" if results.is_of_motion else "load factor")
+    _draw_reactions(panels[0], curves, drive, size, curves)
+    panels[0].set_xlabel(drive_label)
     if results.is_fractured:
-        draw_fracture(panels[0], results, curves, load, size, "at load factor {}", curves)
+        draw_fracture(panels[0], results, curves, drive, size, drive_words, curves)
     if abscissa:
         label, places, shown, words = abscissa_of(abscissa, curves)
         panels.append(figure.add_axes([0.565, bottom, 0.40, panel_height]))
@@ -80,8 +85,28 @@ def draw_load_displacement(results):
                   ncol=min(len(labels), 4), fontsize=12, bbox_to_anchor=(0.52, 0.0), borderaxespad=0.5)  # fmt: skip
     steps = len(load)
     heading(figure, results, ["reactions of the supports", f"{number(steps)} accepted step{'s' * (steps != 1)}",
-                              load_words(load.max(), results.is_of_motion, "up to ")])  # fmt: skip
+                              load_words(load.max(), results.is_of_motion, "up to ") if control is None
+                              else f"under control up to {drive_words[3:].format(number(drive.max()))}"])  # fmt: skip
     return figure
+
+
+def controlled(results) -> np.ndarray | None:
+    """The displacement that a control lets grow while it finds the loads, at the accepted steps [m]."""
+    values = results.numbers("control")
+    return values if values is not None and np.abs(values).max(initial=0.0) > 0.0 else None
+
+
+def _what_grows(results, load, control) -> tuple[np.ndarray, str, str]:
+    """Values, label and words for one value of what the run lets grow: load factor, time, or what is controlled.
+
+    Where loads are found, a reaction over the load factor is a straight line of the load over itself.
+    """
+    if control is not None:
+        unit, size = unit_for(np.abs(control).max(), LENGTHS)
+        return control / size, f"controlled displacement [{unit}]", f"at {{}} {unit}"
+    if results.is_of_motion:
+        return load, "time [s]", "at load factor {}"
+    return load, "load factor", "at load factor {}"
 
 
 def reactions(results) -> list[Reaction]:
@@ -90,6 +115,7 @@ def reactions(results) -> list[Reaction]:
     Supports whose reactions are alike or opposite are told by the one that is moved.
     """
     found = []
+    constraints = {str(entry.get("name")) for entry in results.tables("constraint")}
     for name in support_sets(results):
         components = [results.numbers(f"reaction_{axis}:{name}") for axis in AXES]
         known = {axis: values for axis, values in enumerate(components) if values is not None}
@@ -97,14 +123,14 @@ def reactions(results) -> list[Reaction]:
             axis = max(known, key=lambda component: np.abs(known[component]).max())
             values = known[axis]
             sign = 1.0 if values[np.argmax(np.abs(values))] >= 0.0 else -1.0
-            found.append(Reaction(name, axis, sign, sign * values, []))
+            found.append(Reaction(name, axis, sign, sign * values, [], name in constraints))
     largest = max((curve.values.max() for curve in found), default=0.0)
     found = [curve for curve in found if curve.values.max() > SMALL * largest] or found[:1]
     driven = {name for name, _ in driven_components(results)}
     kept = []
     for curve in sorted(found, key=lambda curve: curve.name not in driven):
         slack = ALIKE * curve.values.max()
-        twin = next((own for own in kept if own.axis == curve.axis
+        twin = next((own for own in kept if own.axis == curve.axis and own.is_constraint == curve.is_constraint
                      and np.abs(own.values - curve.values).max() <= slack), None)  # fmt: skip
         if twin is None:
             kept.append(curve)
@@ -153,7 +179,7 @@ def find_abscissa(results, curves: list[Reaction]) -> Abscissa | None:
     shown = {(curve.name, curve.axis) for curve in curves}
     driven = driven_components(results)
     for name, axis in sorted(driven, key=lambda entry: entry not in shown):
-        found = _probe_of(results, name, axis) or _mean_of(results, name, axis)
+        found = _between_grips(results, driven, name, axis) or _probe_of(results, name, axis) or _mean_of(results, name, axis)
         if found is not None:
             return _turned(found, name if name in {curve.name for curve in curves} else None)
     for name, axis in _varying(results, "load", "body_force", "total_force"):
@@ -168,6 +194,16 @@ def find_abscissa(results, curves: list[Reaction]) -> Abscissa | None:
              for probe in results.tables("probe") for axis in range(results.dimension)]  # fmt: skip
     found = [entry for entry in found if entry is not None]
     return _turned(max(found, key=lambda entry: np.abs(entry[1]).max()), None) if found else None
+
+
+def _between_grips(results, driven, name: str, axis: int) -> tuple[str, np.ndarray] | None:
+    """By how much more a driven set moves than another one that is driven the other way: words and values."""
+    own = _mean_of(results, name, axis)
+    for other in (other for other, along in driven if along == axis and other != name) if own else ():
+        against = _mean_of(results, other, axis)
+        if against is not None and own[1] @ against[1] < 0.0:
+            return f"displacement of “{name}” less that of “{other}” in {{}}{AXES[axis]}", own[1] - against[1]
+    return None
 
 
 def _turned(found: tuple[str, np.ndarray], of_set: str | None) -> Abscissa:

@@ -10,6 +10,7 @@ PARTS = (  # columns of the history, words and colours, from below
     ("dissipated_energy", "dissipated by damage", "#d98a68"),
     ("drained_energy", "drained by relaxation, or released", "#c9b26a"),
 )
+MOST_BARS = 40  # steps; the known states of more lie close together
 KINETIC = ("kinetic_energy", "kinetic", "#a9c58f")  # of a motion
 
 
@@ -55,11 +56,14 @@ def draw_energies(results):
     place = place / second
     shown = [(values, *looks) for values, (_, *looks) in zip(parts, _parts(results)) if values.any()]
     below = np.zeros_like(work)
+    # Of few steps a bar each: chords from one to the next would tell what nobody knows.
+    fill, line = ({"step": "mid"}, {"drawstyle": "steps-mid"}) if len(place) <= MOST_BARS else ({}, {})
     for values, words, colour in shown:
-        axes.fill_between(place, below, below + values, color=colour, linewidth=0.0, label=words, zorder=2)
+        axes.fill_between(place, below, below + values, color=colour, linewidth=0.0, label=words, zorder=2, **fill)
         below = below + values
-        axes.plot(place, below, color="white", linewidth=1.0, zorder=3, **_marks(len(place), "white"))
-    axes.plot(place, work, color=INK, linewidth=1.4, zorder=4, label="external work", **_marks(len(place)))
+        axes.plot(place, below, color="white", linewidth=1.0, zorder=3, **line, **_marks(len(place), "white"))
+    axes.plot(place, work, color=INK, linewidth=1.4, zorder=4, label="external work",
+              linestyle="none" if fill else "-", **_marks(len(place)))  # fmt: skip
     numerical = _column(results, "numerical_work")
     if len(numerical) == len(load) and np.abs(numerical).max() > 1e-3 * np.abs(work).max() * size:
         both = work + np.concatenate([start, numerical]) / size

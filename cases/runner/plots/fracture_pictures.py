@@ -41,7 +41,7 @@ def draw_damage_sequence(results, steps):
     low = np.min([low for low, _ in frames], axis=0)
     high = np.max([high for _, high in frames], axis=0)
     aspect = (high - low)[1] / (high - low)[0]
-    columns = min(len(steps), 3 if aspect > 0.5 else 2)
+    columns = _columns(len(steps), aspect)
     rows = -(-len(steps) // columns)
     panel_width = 14.6 / columns
     panel_height = max(min(panel_width * aspect, 7.5), 0.8)
@@ -70,6 +70,14 @@ def draw_damage_sequence(results, steps):
     return figure
 
 
+def _columns(count: int, aspect: float) -> int:
+    """Of panels: as many as make the body largest on a page 14.6 wide and 9 high, and then those that leave least empty."""
+    width = lambda columns: min(14.6 / columns, 9.0 / -(-count // columns) / aspect)
+    largest = max(map(width, range(1, count + 1)))
+    fitting = [columns for columns in range(1, count + 1) if width(columns) > 0.8 * largest]
+    return min(fitting, key=lambda columns: (-count % columns, -width(columns)))
+
+
 def draw_broken_bonds(results, broken):
     """Bonds that broke as lines between their points in the reference configuration: the cracks' paths.
 
@@ -81,7 +89,7 @@ def draw_broken_bonds(results, broken):
     spacing, points = merged(results.reference, results.spacing, MOST_CELLS)
     shown = np.concatenate([points, ends[:, 1]])
     low, high = shown.min(axis=0) - spacing, shown.max(axis=0) + spacing
-    figure, axes, bar_place = framed(low / size, high / size, right=2.05)
+    figure, axes, bar_place = framed(low / size, high / size, right=2.05 if len(np.unique(steps)) > 1 else 0.5)
     inches = (axes.get_position().width * figure.get_size_inches()[0]) / (high - low)[0]
     dot = np.clip(0.45 * inches * spacing * 72.0, 0.6, 9.0)
     axes.scatter(*points.T / size, s=dot**2, color=POINT_COLOUR, linewidths=0, zorder=1)
@@ -109,8 +117,9 @@ def draw_broken_bonds(results, broken):
     axes.set_ylabel(f"y [{unit}]")
     marked = np.unique(np.linspace(0, len(distinct) - 1, min(MOST_TICKS, len(distinct))).round().astype(int))
     what = "time [s]" if results.is_of_motion else "load factor"
-    bar = colour_bar(figure, bar_place, lines, f"step: {what} at which it broke", ticks=marked)
-    bar.set_ticks(marked, labels=[_step_label(results, int(distinct[place])) for place in marked])
+    if len(distinct) > 1:  # one colour needs no bar
+        bar = colour_bar(figure, bar_place, lines, f"step: {what} at which it broke", ticks=marked)
+        bar.set_ticks(marked, labels=[_step_label(results, int(distinct[place])) for place in marked])
     first, last = (results.in_history(int(step), "load_factor") for step in (steps[0], steps[-1]))
     words = ["broken bonds in the reference configuration", f"{number(len(steps))} bond{'s' * (len(steps) != 1)}"]
     if first is not None and last is not None:
@@ -120,6 +129,8 @@ def draw_broken_bonds(results, broken):
             first, last = first / size, last / size
         end = f" to {number(last)}" * several + (f" {unit}" if results.is_of_motion else "")
         words.append(("time" if results.is_of_motion else "load factor") + f" {number(first)}{end}")
+    if len(distinct) == 1:
+        words.append(f"all in step {int(distinct[0])}")
     if every > 1:
         words.append(f"one line in {every} drawn")
     heading(figure, results, words)

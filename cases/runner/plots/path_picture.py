@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from curve_pictures import AXES, has_reactions, reactions
-from style import FORCES, GHOST, INK, LENGTHS, LINES, heading, new_figure, number, unit_for
+from style import FORCES, GHOST, INK, LENGTHS, LINES, heading, load_axis, new_figure, number, unit_for
 
 
 def has_found_loads(results) -> bool:
@@ -40,18 +40,21 @@ class Panel:
 
 def _panels(results):
     """The load factor over what is controlled or probed; under a control also the largest reaction over it."""
-    load, control = results.numbers("load_factor"), results.numbers("control")
+    control = results.numbers("control")
+    words, of_load = load_axis(results.numbers("load_factor"))
+    load = results.numbers("load_factor") / of_load
     probes = sorted(_probes(results), key=lambda probe: -np.abs(probe[1]).max())
-    panels = [Panel(label, values, "load factor", load) for label, values in probes[:2]
+    panels = [Panel(label, values, words, load) for label, values in probes[:2]
               if np.abs(values).max() > 1e-6 * np.abs(probes[0][1]).max()]  # fmt: skip
     if control is None or not np.abs(control).max() > 0.0:
         return panels
-    panels = [Panel("controlled displacement", control, "load factor", load), *panels]
+    panels = [Panel("controlled displacement", control, words, load), *panels]
     curves = reactions(results) if has_reactions(results) else []
     if curves:
-        unit, size = unit_for(np.abs(curves[0].values).max(), FORCES, 1.0)
-        panels.insert(1, Panel("controlled displacement", control, f"reaction of {curves[0].label} [{unit}]",
-                               curves[0].values / size))  # fmt: skip
+        largest = max(curves, key=lambda curve: curve.values.max())
+        unit, size = unit_for(largest.values.max(), FORCES, 1.0)
+        panels.insert(1, Panel("controlled displacement", control, f"reaction of {largest.label} [{unit}]",
+                               largest.values / size))  # fmt: skip
     return panels[:2]
 
 

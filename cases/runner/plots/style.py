@@ -81,6 +81,15 @@ def number(value: float, digits: int = 4) -> str:
     return f"{value:.{digits}g}"
 
 
+def load_axis(values) -> tuple[str, float]:
+    """Label of an axis of load factors, and what to divide them by: a load in metres has tiny ones."""
+    largest = float(np.abs(values).max(initial=0.0))
+    if largest == 0.0 or 1e-2 <= largest < 1e5:
+        return "load factor", 1.0
+    power = 3 * int(np.floor(np.log10(largest) / 3.0))
+    return f"load factor [$10^{{{power}}}$]", 10.0**power
+
+
 def new_figure(width: float, height: float) -> Figure:
     """An empty white figure; sizes in inches (100 dots each)."""
     figure = Figure(figsize=(width, height), dpi=DOTS_PER_INCH, facecolor="white")

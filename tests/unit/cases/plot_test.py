@@ -25,16 +25,18 @@ from PIL import Image
 PLOTS = Path(__file__).resolve().parents[3] / "cases" / "runner" / "plots"
 sys.path.insert(0, str(PLOTS))
 
+import fracture_pictures  # noqa: E402
 import plot  # noqa: E402
 from cells import Cells, merged  # noqa: E402
 from convergence_picture import order_words  # noqa: E402
-from curve_pictures import find_abscissa, hand_overs, on_the_way, reactions  # noqa: E402
+from curve_pictures import draw_load_displacement, find_abscissa, hand_overs, on_the_way, reactions  # noqa: E402
 from event_path_picture import draw_events  # noqa: E402
 from field_pictures import beyond, deformed_plate, displacement_magnitude  # noqa: E402
 from separations import crosses, separate  # noqa: E402
 from resistance_picture import draw_resistances, resistances  # noqa: E402
 from results_folder import read_results_folder  # noqa: E402
-from style import round_factor  # noqa: E402
+from path_picture import draw_path  # noqa: E402
+from style import load_axis, round_factor  # noqa: E402
 from tip_picture import tip_speeds  # noqa: E402
 
 SPACING = 1e-3
@@ -542,6 +544,62 @@ class Pictures(unittest.TestCase):
     def test_a_path_that_releases_nothing_is_drawn_alone(self):
         self.write_events(released_energy=[0] * 6)
         self.assertEqual(len(draw_events(read_results_folder(self.folder)).axes), 1)
+
+    def results_with(self, columns, as_resolved="", change=lambda file: None):
+        """A plate whose history has further columns, and whose case has further tables."""
+        write_folder(self.folder, lattice(6, 6))
+        with open(self.folder / "history.csv", newline="") as file:
+            rows = list(csv.DictReader(file))
+        with open(self.folder / "history.csv", "w", newline="") as file:
+            table = csv.DictWriter(file, dict.fromkeys([*rows[0], *columns]))
+            table.writeheader()
+            table.writerows(row | {name: values[place] for name, values in columns.items()} for place, row in enumerate(rows))
+        with h5py.File(self.folder / "results.h5", "r+") as file:
+            text = file["case/as_resolved"][()].decode() + as_resolved
+            del file["case/as_resolved"]
+            file["case/as_resolved"] = text
+            change(file)
+        return read_results_folder(self.folder)
+
+    def test_under_control_reactions_are_drawn_over_what_is_controlled(self):
+        results = self.results_with({"control": [1e-6, 2e-6, 3e-6], "negative_pivots": [0, 0, 1], "reaction_x:right": [1, 2, 9e4]})
+        over = draw_load_displacement(results).axes[0]
+        self.assertEqual(over.get_xlabel(), "controlled displacement [µm]")
+        np.testing.assert_allclose(over.lines[0].get_xdata(), [0, 1, 2, 3])
+        _, reaction = draw_path(results).axes
+        self.assertIn("reaction of right", reaction.get_ylabel())  # the largest, not the first
+
+    def test_small_load_factors_have_a_power_of_ten(self):
+        self.assertEqual(load_axis(np.array([1.0, -2.0])), ("load factor", 1.0))
+        label, size = load_axis(np.array([1.7e-5, 0.0]))
+        self.assertEqual((label, round(np.log10(size))), ("load factor [$10^{-6}$]", -6))
+
+    def test_a_constraint_has_a_force_and_no_direction(self):
+        tie = {f"reaction_{axis}:tie": [value] * 3 for axis, value in zip("xyz", (-5e3, 0, 0))}
+        results = self.results_with(tie, '[[constraint]]\nname = "tie"\n')
+        self.assertIn("constraint tie", [curve.label for curve in reactions(results)])
+
+    def test_grips_that_part_are_drawn_over_their_distance(self):
+        pulled = "".join(f'[[support]]\nset = "{name}"\ndisplacement = ["{sign}1e-5*load", "free"]\n'
+                         for name, sign in (("left", "-"), ("right", "")))  # fmt: skip
+
+        def part(file):
+            for step in file["steps"].values():
+                moved = step["displacement"][()]
+                moved[:, 0] -= moved[:, 0].mean()
+                step["displacement"][...] = moved
+
+        results = self.results_with({}, pulled, part)
+        found = find_abscissa(results, reactions(results))
+        mean = lambda name: results.displacement(3)[results.sets[name], 0].mean()
+        self.assertIn("less that of", found.label)
+        self.assertAlmostEqual(found.values[-1], mean("right") - mean("left"))
+
+    def test_panels_of_a_sequence_leave_no_half_of_it_empty(self):
+        for count in range(2, 7):
+            for aspect in (0.1, 0.5, 1.0, 3.0):
+                columns = fracture_pictures._columns(count, aspect)
+                self.assertLess(-count % columns, max(2, columns / 2), (count, aspect))
 
     # ---- what is written and removed --------------------------------------------------------------
 
