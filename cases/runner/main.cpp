@@ -90,7 +90,8 @@ void add_case_options(CLI::App& command, CommandLine& line) {
 void add_run_options(CLI::App& command, CommandLine& line) {
   command
       .add_option("--stop-after", line.steps,
-                  "stop after so many accepted steps as if interrupted; resume goes on")
+                  "stop after so many accepted steps, in mode dynamics rows of the history, as if "
+                  "interrupted; resume goes on")
       ->type_name("STEPS")
       ->check(at_least_one());
   command
@@ -387,6 +388,7 @@ int main(int count, char** arguments) try {
   }
 
   if (line.ranks > 1 && !is_started_as_rank()) {
+    require_room_for_ranks(line.ranks);
     return run_as_ranks(line.ranks, arguments_of_ranks(count, arguments));
   }
   int threads = choose_threads(line.threads);

@@ -167,7 +167,16 @@ class Search {
                          " J/m2, which leaves nothing of the fracture energy, " +
                          short_text(work_ * scale_.micromodulus * scale_.crossing) +
                          " J/m2. Refine: at this horizon ratio a spacing below " +
-                         short_text(scale_.spacing * work_ / least) + " m resolves it");
+                         short_text(scale_.spacing * work_ / least) + " m resolves it" +
+                         remark_on_units(work_ / least));
+  }
+
+  /// A spacing that is far below the one given tells of other units, not of a coarse lattice.
+  [[nodiscard]] std::string remark_on_units(double refinement) const {
+    constexpr double far = 1e-3;
+    if (refinement > far) return "";
+    return ". Are all in SI units? youngs_modulus is " + short_text(scale_.youngs_modulus) +
+           " Pa (30 GPa is 30e9), strength is in Pa, fracture_energy in J/m2";
   }
 
   [[noreturn]] void refuse_round() const {

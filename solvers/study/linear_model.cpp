@@ -90,6 +90,9 @@ void add_vertices(const Crack& crack, std::vector<Coordinates>& vertices) {
       [&]<class C>(const C& of) {
         if constexpr (std::is_same_v<C, CrackSegment>) {
           vertices.insert(vertices.end(), {of.from, of.to});
+        } else if constexpr (std::is_same_v<C, CrackShape>) {
+          const Box box = bounds(of.shape);
+          vertices.insert(vertices.end(), {of.image.place(box.min), of.image.place(box.max)});
         } else {
           for (const auto& vertex : of.vertices) {
             Coordinates at{};

@@ -7,7 +7,8 @@
 
 #include "src/core/input_error.hpp"
 #include "src/core/number_text.hpp"
-#include "src/geometry/shape.hpp"
+#include "src/geometry/counts_bond.hpp"
+#include "src/geometry/shape_boundary.hpp"
 #include "src/measures/small_algebra.hpp"
 
 namespace peristat {
@@ -138,6 +139,27 @@ bool meets(const CrackOutline& outline, const Coordinates& a, const Coordinates&
   return meets_any;
 }
 
+// ---- shape ----
+
+/// A bond crosses a shape that a part of it lies in.
+bool meets(const CrackShape& of, const Coordinates& a, const Coordinates& b, double) {
+  const auto in_place = [&](Coordinates at) {  // mirrors are their own inverse
+    for (std::size_t c = 0; c < 3; ++c) at[c] = of.image.mirror[c] * (at[c] - of.image.shift[c]);
+    return at;
+  };
+  const Coordinates from = in_place(a);
+  const Line bond{from, minus<3>(in_place(b), from)};
+  std::vector<double> at{0.0, 1.0};
+  append_crossings(of.shape, of.dimension, bond, at);
+  std::erase_if(at, [](double t) { return !(t >= 0.0 && t <= 1.0); });
+  std::sort(at.begin(), at.end());
+  for (std::size_t k = 1; k < at.size(); ++k) {
+    const bool is_part = at[k] - at[k - 1] > touching_tolerance;
+    if (is_part && contains(of.shape, bond.at(0.5 * (at[k - 1] + at[k])))) return true;
+  }
+  return false;
+}
+
 // ---- bounding boxes ----
 
 Box box_around(const Coordinates& a, const Coordinates& b) {
@@ -166,6 +188,11 @@ Box box_around(const CrackOutline& outline) {
   CrackPolygon corners;
   for (const auto& [x, y] : outline.vertices) corners.vertices.push_back({x, y, 0.0});
   return box_around(corners);
+}
+
+Box box_around(const CrackShape& of) {
+  const Box own = bounds(of.shape);
+  return box_around(of.image.place(own.min), of.image.place(own.max));
 }
 
 bool overlap(const Box& one, const Box& other, double slack) {
@@ -218,6 +245,8 @@ struct Checker {
     });
   }
 
+  void operator()(const CrackShape& of) const { check_shape(of.shape, dimension, table, table); }
+
   void operator()(const CrackPolygon& polygon) const {
     fits("vertices", "polygon", 3);
     require(polygon.vertices.size() >= 3, "vertices", "", "a crack needs three vertices or more");
@@ -262,6 +291,8 @@ std::vector<Crack> with_images(const std::vector<Crack>& cracks, const Images& i
         segment->to = kind.place(segment->to);
       } else if (auto* polygon = std::get_if<CrackPolygon>(&crack)) {
         for (Coordinates& vertex : polygon->vertices) vertex = kind.place(vertex);
+      } else if (auto* shape = std::get_if<CrackShape>(&crack)) {
+        shape->image = kind;
       } else {
         for (auto& [x, y] : std::get<CrackOutline>(crack).vertices) {
           const Coordinates at = kind.place({x, y, 0.0});
@@ -275,7 +306,31 @@ std::vector<Crack> with_images(const std::vector<Crack>& cracks, const Images& i
   return all;
 }
 
+/// What `cuts` says, found sooner of bonds that are far away.
+bool meets_near(const Crack& crack, const Coordinates& a, const Coordinates& b) {
+  const Box around = std::visit([](const auto& kind) { return box_around(kind); }, crack);
+  return overlap(box_around(a, b), around, 2.0 * touching_tolerance * length(minus<3>(b, a))) &&
+         cuts(crack, a, b);
+}
+
 }  // namespace
+
+std::vector<std::int64_t> bonds_met_by_each(const std::vector<Crack>& cracks,
+                                            const std::vector<BondEnds>& cut,
+                                            const Points& points) {
+  std::vector<std::int64_t> met;
+  for (const Crack& crack : cracks) {
+    const std::vector<Crack> everywhere = with_images({crack}, points.images);
+    met.push_back(std::count_if(cut.begin(), cut.end(), [&](const BondEnds& bond) {
+      const auto& [i, j] = bond;
+      if (!counts_bond(points, i, j)) return false;
+      const auto [a, b] = std::minmax({points.position(i), points.position(j)});
+      return std::any_of(everywhere.begin(), everywhere.end(),
+                         [&](const Crack& one) { return meets_near(one, a, b); });
+    }));
+  }
+  return met;
+}
 
 CutBonds cut_bonds(Bonds& bonds, const Points& points, const std::vector<Crack>& of_body) {
   const std::vector<Crack> cracks = with_images(of_body, points.images);

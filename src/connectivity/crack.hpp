@@ -1,12 +1,14 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <string>
 #include <variant>
 #include <vector>
 
 #include "src/core/types.hpp"
 #include "src/geometry/points.hpp"
+#include "src/geometry/shape.hpp"
 #include "src/neighbourhood/bonds.hpp"
 
 namespace peristat {
@@ -27,8 +29,15 @@ struct CrackOutline {
   std::vector<std::array<double, 2>> vertices;
 };
 
+/// A part of space that bonds must not cross, a hole or a slit: its inside and its boundary.
+struct CrackShape {
+  Shape shape{};
+  int dimension = 2;
+  ImageKind image{};  ///< where the shape stands instead of at its own place
+};
+
 /// A crack that is there from the start. It is closed: its ends or edges belong to it.
-using Crack = std::variant<CrackSegment, CrackPolygon, CrackOutline>;
+using Crack = std::variant<CrackSegment, CrackPolygon, CrackOutline, CrackShape>;
 
 /// Distance from a crack, relative to the bond's length, up to which a bond touches the crack: far
 /// above the round-off of coordinates, far below a spacing.
@@ -60,6 +69,12 @@ struct CutBonds {
   std::vector<double> weight;  ///< per point, sum over its cut bonds [m6]
   std::vector<BondEnds> ends;  ///< of each
 };
+
+/// How many bonds each crack meets, itself or beyond a plane of symmetry or a period, of those that
+/// some crack has cut. Of a part of a body those that it counts.
+[[nodiscard]] std::vector<std::int64_t> bonds_met_by_each(const std::vector<Crack>& cracks,
+                                                          const std::vector<BondEnds>& cut,
+                                                          const Points& points);
 
 /// Removes the bonds that any of the cracks cuts; the others keep their order, length and weight.
 [[nodiscard]] CutBonds cut_bonds(Bonds& bonds, const Points& points,

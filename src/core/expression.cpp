@@ -13,6 +13,12 @@
 #include "src/core/number_text.hpp"
 
 namespace peristat {
+namespace {
+
+/// muParser takes fewer than 20 000 characters.
+constexpr std::size_t longest_text = 19'999;
+
+}  // namespace
 
 struct Expression::Parser {
   std::string text;
@@ -32,7 +38,14 @@ struct Expression::Parser {
   [[noreturn]] void refuse_parse(const mu::ParserError& error) const {
     const std::string where =
         error.GetPos() >= 0 ? " (character " + std::to_string(error.GetPos() + 1) + ")" : "";
-    refuse("not a valid expression" + where + ": " + error.GetMsg());
+    std::string what = error.GetMsg();
+    // muParser counts from 0 in words of its own.
+    const std::size_t position = what.find(" at position ");
+    if (position != std::string::npos) {
+      const std::size_t end = what.find_first_not_of("0123456789", position + 13);
+      what.erase(position, std::min(end, what.size()) - position);
+    }
+    refuse("not a valid expression" + where + ": " + what);
   }
 
   void define(const std::string& name, double value) {
@@ -115,6 +128,10 @@ struct Expression::Parser {
         compared.back() = true;
         i += two_characters ? 2 : 1;
       } else {
+        if (c == '*' && at(i + 1) == '*') {
+          refuse("'**' at character " + std::to_string(i + 1) +
+                 " is no operator; a power is written with ^, as in load^2");
+        }
         if (c == '(') compared.push_back(false);
         if (c == ')' && compared.size() > 1) compared.pop_back();
         if (c == '&' || c == '|' || c == '?' || c == ':' || c == ',') compared.back() = false;
@@ -131,6 +148,10 @@ struct Expression::Parser {
     }
     if (text.find_first_not_of(' ') == std::string::npos) {
       refuse("an expression must not be empty; allowed is a number or an expression");
+    }
+    if (text.size() > longest_text) {
+      refuse("an expression may have at most " + std::to_string(longest_text) +
+             " characters; this one has " + std::to_string(text.size()));
     }
     // muParser stops at a zero character in silence.
     if (text.find('\0') != std::string::npos)

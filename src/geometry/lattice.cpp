@@ -9,6 +9,7 @@
 #include "src/core/input_error.hpp"
 #include "src/core/number_text.hpp"
 #include "src/geometry/blue_noise.hpp"
+#include "src/geometry/idle_shapes.hpp"
 #include "src/geometry/lattice_sites.hpp"
 #include "src/geometry/numbering.hpp"
 #include "src/geometry/perturbed_cells.hpp"
@@ -149,6 +150,7 @@ double estimate_points(const Lattice& lattice) {
 Points make_points(const Lattice& lattice) {
   check_lattice(lattice);
   require_numbers(lattice);
+  refuse_idle_shapes(lattice);
   if (lattice.arrangement == Arrangement::blue_noise) return make_blue_noise_points(lattice);
   std::vector<Site> body = body_sites(lattice);
   const SoleRank alone;

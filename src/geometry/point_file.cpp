@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <functional>
 #include <limits>
+#include <numeric>
 #include <optional>
 #include <string_view>
 #include <utility>
@@ -111,6 +112,13 @@ class Reader {
   void read_header(std::string_view text) {
     by_comma_ = text.find(',') != std::string_view::npos;
     const std::vector<std::string> required = required_columns();
+    std::string why_not;
+    if (number_in(fields(text).front(), why_not)) {
+      refuse("the first line that is not empty and no remark has to name the columns, which are " +
+             allowed_columns() +
+             "; this one has numbers. A line of names that begins with # is a "
+             "remark: take the # away");
+    }
     for (const std::string_view field : fields(text)) {
       const std::string name(field);
       const bool known = name == "set" || std::count(required.begin(), required.end(), name) > 0;
@@ -147,6 +155,7 @@ class Reader {
       const std::string& column = columns_[k];
       if (column == "set") {
         row.sets = cells[k];
+        for (const std::string_view name : split(row.sets, '|')) check_name(name);
       } else if (column == "volume") {
         row.volume = number(column, cells[k]);
         if (!(row.volume > 0)) refuse("volume = " + std::string(cells[k]) + " must be positive");
@@ -156,6 +165,16 @@ class Reader {
     }
     ++count_;
     return row;
+  }
+
+  /// Results have a dataset of each set, by its name.
+  void check_name(std::string_view name) const {
+    constexpr std::size_t longest = 100;
+    if (name == ".") refuse("a set can't be called '.'; take letters, digits, _ and -");
+    if (name.size() > longest) {
+      refuse("the name of a set has " + std::to_string(name.size()) + " characters; at most " +
+             std::to_string(longest) + " are allowed");
+    }
   }
 
   double number(const std::string& column, std::string_view text) const {
@@ -250,6 +269,26 @@ WholeFile look_at_file(Reader& reader, int dimension, double cross_section) {
 }
 
 }  // namespace
+
+std::vector<std::int32_t> source_rows(const std::filesystem::path& file, const Points& points,
+                                      Index count) {
+  std::vector<Index> by_place(static_cast<std::size_t>(count));
+  std::iota(by_place.begin(), by_place.end(), Index(0));
+  const auto stands_before = [&](Index a, Index b) {
+    return points.position(a) < points.position(b);
+  };
+  std::sort(by_place.begin(), by_place.end(), stands_before);
+  std::vector<std::int32_t> rows(by_place.size(), -1);
+  Reader reader(file, points.dimension);
+  reader.for_each_point([&](const PointRow& row) {
+    const auto found = std::lower_bound(
+        by_place.begin(), by_place.end(), row.place,
+        [&](Index point, const Coordinates& at) { return points.position(point) < at; });
+    if (found == by_place.end() || points.position(*found) != row.place) return;
+    rows[static_cast<std::size_t>(*found)] = reader.count() - 1;
+  });
+  return rows;
+}
 
 Points read_points(const std::filesystem::path& file, int dimension, double cross_section,
                    const std::optional<NeighbourFile>& neighbours) {

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <vector>
 
 #include "src/core/communicator.hpp"
 #include "src/geometry/neighbour_file.hpp"
@@ -25,6 +27,11 @@ namespace peristat {
 [[nodiscard]] Points read_points(const std::filesystem::path& file, int dimension,
                                  double cross_section,
                                  const std::optional<NeighbourFile>& neighbours = {});
+
+/// Which point of the file each of the first `count` points is, from 0 in the file's order: the one
+/// at its place. They are of the file, all of them or those of a part.
+[[nodiscard]] std::vector<std::int32_t> source_rows(const std::filesystem::path& file,
+                                                    const Points& points, Index count);
 
 /// A part of the points that read_points gives, without ghosts, as make_slab's: every rank reads
 /// the file, and keeps no more than a slab. A call that all make.

@@ -10,6 +10,7 @@
 
 #include "src/core/input_error.hpp"
 #include "src/core/number_text.hpp"
+#include "src/geometry/idle_shapes.hpp"
 #include "src/geometry/lattice_sites.hpp"
 #include "src/geometry/numbering.hpp"
 #include "src/geometry/perturbed_cells.hpp"
@@ -253,6 +254,7 @@ CellPolygons perturb_cells_of(const Lattice& lattice, const Slab& slab, std::vec
 Part make_slab(const Lattice& lattice, const Communicator& ranks) {
   check_lattice(lattice);
   refuse_without_slabs(lattice);
+  refuse_idle_shapes(lattice);
   const WholeLattice whole = look_at_whole(lattice, ranks);
   // Numbers run slowest along the longest direction: slabs across it have numbers that follow one
   // another.

@@ -15,7 +15,8 @@ namespace peristat {
 struct ShapeStep {
   enum class Action { add, subtract } action = Action::add;
   Shape shape{};
-  std::string name{};  ///< by which loads find its boundary; may be empty
+  std::string name{};       ///< by which loads find its boundary; may be empty
+  bool cuts_bonds = false;  ///< of a subtracted shape: bonds must not cross it
 };
 
 /// A part of space, as far as measuring its share of a cell needs it.

@@ -261,6 +261,15 @@ class CommandLine(unittest.TestCase):
             self.assertIn(word, run.stdout)
         self.assertFalse((self.folder / "results").exists())
 
+    def test_no_shipped_case_is_warned_of(self):
+        cases = sorted(path for path in (ROOT / "cases").glob("*/*.toml") if not path.stem.startswith("glass_plate"))
+        self.assertGreaterEqual(len(cases), 40)
+        for case in cases:
+            with self.subTest(case=case.name):
+                run = self.peristat("check", case)
+                self.assertEqual(run.returncode, 0, run.stderr)
+                self.assertEqual([line for line in run.stdout.splitlines() if line.startswith("warning:")], [])
+
     def test_tangents_of_all_shipped_cases_pass_the_finite_difference_check(self):
         # But for the plate of a million points, of which branching_2d is a cut.
         cases = sorted(path for path in (ROOT / "cases").glob("*/*.toml") if path.stem != "glass_plate")

@@ -9,6 +9,8 @@ import tempfile
 import time
 import unittest
 
+import h5py
+
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 PROGRAM = os.environ["PERISTAT_PROGRAM"]
 
@@ -109,6 +111,74 @@ class Messages(unittest.TestCase):
         self.assert_refused(run, "allowed: ")
         self.assertNotIn("\0", run.stderr)
         self.assertNotIn("\x1b", run.stderr)
+
+    def warnings(self, run):
+        return [line.removeprefix("warning: ") for line in run.stdout.splitlines() if line.startswith("warning: ")]
+
+    def test_check_tells_what_a_case_makes_of_the_body(self):
+        run = self.peristat("check", self.write(PLATE))
+        self.assertEqual(run.returncode, 0, run.stderr)
+        for line in ("body        0.04 x 0.012 m, thickness 0.001 m; 40 x 12 spacings", "ligament    ligament beside crack[0], 0.0298 m",
+                     "crack       crack[0] cuts ", "applied     support[1].displacement[1] (top): 0 m at load 0, 1e-06 m at the end",
+                     "steps in which damage grows take many times as long"):  # fmt: skip
+            self.assertIn(line, run.stdout)
+        self.assertEqual(self.warnings(run), [])
+
+    def test_warnings_stand_at_the_head_of_a_run_and_in_its_summary(self):
+        case = self.write(PLATE.replace('"LIFT*load"', "1e-6").replace("thickness = 1e-3\n", ""))
+        told = self.warnings(self.peristat("check", case))
+        self.assertEqual(len(told), 2, told)
+        self.assertIn("lattice.thickness is not given and taken as 1 m", told[0])
+        self.assertIn("support[1].displacement[1] = 1e-06 does not depend on load: it is applied in full at load 0", told[1])
+        run = self.peristat("run", case, "--output", "out")
+        self.assertEqual(run.returncode, 0, run.stderr)
+        self.assertEqual(self.warnings(run), told)
+        self.assertLess(run.stdout.index("warning: "), run.stdout.index("step "))
+        self.assertEqual(json.loads((self.folder / "out/summary.json").read_text())["warnings"], told)
+        quiet = self.peristat("run", self.write(PLATE), "--output", "right", "--quiet")
+        self.assertEqual((quiet.returncode, quiet.stdout), (0, ""), quiet.stderr)
+        self.assertEqual(json.loads((self.folder / "right/summary.json").read_text())["warnings"], [])
+
+    def test_what_does_nothing_is_refused(self):
+        outside = PLATE.replace("from = [-1e-3, 6e-3]", "from = [1.0, 6e-3]").replace("to = [0.0102, 6e-3]", "to = [2.0, 6e-3]")
+        for command in ("check", "run"):
+            self.assert_refused(self.peristat(command, self.write(outside)), "crack[0]", "cuts no bond")
+        hole = '[[lattice.shape]]\nsubtract = "disk"\ncentre = [4.0, 4.0]\nradius = 1.0\n'
+        text = PLATE.replace("[[lattice.layer]]", hole + "[[lattice.layer]]", 1)
+        self.assert_refused(self.peristat("check", self.write(text)), "lattice.shape[1].subtract", "takes nothing away")
+        run = self.peristat("check", self.write(PLATE), "--set", "loading.table2=[0, 1]")
+        self.assert_refused(run, "loading.table2", "load2, which no displacement and no load names")
+
+    def test_a_modulus_in_gigapascals(self):
+        text = PLATE.replace("200e9", "30").replace("critical = 0.01", "fracture_energy = 100\nstrength = 3e6").replace("critical_stretch", "linear")
+        self.assert_refused(self.peristat("check", self.write(text)), "strength", "youngs_modulus is 30 Pa (30 GPa is 30e9)")
+
+    def test_names_that_results_can_not_have(self):
+        name = "n" * 300
+        for text in (PLATE.replace('name = "crack"', f'name = "{name}"'), PLATE.replace("ligament", name)):
+            self.assert_refused(self.peristat("check", self.write(text)), "300 characters; at most 100")
+        (self.folder / "points.csv").write_text("x,y,volume,set\n0,0,1e-9,.\n1e-3,0,1e-9,\n")
+        text = 'dimension = 2\n[points]\nfile = "points.csv"\nhorizon = 3e-3\nthickness = 1e-3\n[material]\nyoungs_modulus = 1e9\n'
+        self.assert_refused(self.peristat("check", self.write(text)), "points.csv:2", "can't be called '.'")
+
+    def test_more_ranks_than_the_machine_bears(self):
+        self.assert_refused(self.peristat("run", self.write(PLATE), "--ranks", "100000"), "--ranks", "at most")
+
+    def test_results_tell_which_point_of_the_file_each_is(self):
+        places = [(0.001 * (7 * k % 20), 0.001 * (k % 2)) for k in range(40)]
+        places = sorted(set(places), key=lambda place: (place[1], -place[0]))
+        rows = [f"{x},{y},1e-9,{'held' if x < 0.0025 else 'pulled' if x > 0.0165 else ''}" for x, y in places]
+        (self.folder / "points.csv").write_text("\n".join(["# remark", "x,y,volume,set", *rows]))
+        case = self.write('dimension = 2\n[points]\nfile = "points.csv"\nhorizon = 3.1e-3\nthickness = 1e-3\n'
+                          '[material]\nyoungs_modulus = 1e9\n[[support]]\nset = "held"\ndisplacement = [0, 0]\n'
+                          '[[support]]\nset = "pulled"\ndisplacement = ["1e-6*load", 0]\n')  # fmt: skip
+        run = self.peristat("run", case, "--output", "out")
+        self.assertEqual(run.returncode, 0, run.stderr)
+        with h5py.File(self.folder / "out/results.h5") as file:
+            row = file["points/source_row"][...]
+            self.assertEqual(sorted(row), list(range(len(places))))
+            for place, k in zip(file["points/reference"][...], row, strict=True):
+                self.assertEqual(tuple(place), places[k])
 
     def test_a_number_with_a_unit(self):
         for text in ("3.2 GPa", '"3.2 GPa"'):

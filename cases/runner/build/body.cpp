@@ -115,9 +115,25 @@ Points make_points_of(const Case& from) {
   });
 }
 
+std::vector<Crack> cracks_of_shapes(const Case& from) {
+  std::vector<Crack> cracks;
+  const Lattice* const lattice = lattice_of(from);
+  if (lattice == nullptr) return cracks;
+  for (const ShapeStep& step : lattice->shapes) {
+    if (step.cuts_bonds) cracks.emplace_back(CrackShape{step.shape, lattice->dimension});
+  }
+  return cracks;
+}
+
+BodySpecification specification_of(const Case& from) {
+  BodySpecification of = from;
+  for (Crack& crack : cracks_of_shapes(from)) of.cracks.push_back(std::move(crack));
+  return of;
+}
+
 std::unique_ptr<const Body> make_body(const Case& from, int threads) {
   Points points = make_points_of(from);
-  BodySpecification of = from;
+  BodySpecification of = specification_of(from);
   of.force_operator = from.solver.force_operator;
   located_errors(from, [&] { find_boundary(from, points, SoleRank(), of); });
   if (of.force_operator == ForceOperator::automatic) {
@@ -180,7 +196,7 @@ std::optional<Model> make_elastic_stand_in(const Case& from, const Body& body, i
       });
       agree_on_kinds(bonds, body.points, body.part->numbered(), body.part->ranks());
     }
-    static_cast<void>(cut_bonds(bonds, body.points, from.cracks));
+    static_cast<void>(cut_bonds(bonds, body.points, body.specification.cracks));
     const Holding holding =
         body.conditions->holding(std::vector<double>(body.conditions->constraints().dofs(), 0.0));
     if (!free_motions(body.points, bonds, holding, body.part.get()).empty())

@@ -2,6 +2,7 @@
 
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "cases/runner/input/case.hpp"
 #include "solvers/study/body.hpp"
@@ -12,6 +13,12 @@ namespace peristat {
 /// @throws InputError (with place) if a set selects nothing, and as the makers of points do
 /// @throws MemoryError if the points would not fit
 [[nodiscard]] Points make_points_of(const Case& from);
+
+/// Subtracted shapes that bonds must not cross, by `cuts_bonds`.
+[[nodiscard]] std::vector<Crack> cracks_of_shapes(const Case& from);
+
+/// What the body is made of: with the cracks of its tables, then those of its shapes.
+[[nodiscard]] BodySpecification specification_of(const Case& from);
 
 /// The whole body.
 /// @throws InputError (with place), MemoryError if the estimate exceeds the memory available

@@ -210,7 +210,7 @@ std::unique_ptr<const Body> make_part_body(const Case& from, const Communicator&
       // Those that neighbours of ghosts have are wrong, and nobody asks for them.
       part.points.ghosts = ghost_sites(*lattice, part.points, from.horizon).reference;
     }
-    BodySpecification of = from;
+    BodySpecification of = specification_of(from);
     find_boundary(from, part.points, ranks, of);
     if (tells_stress(from)) of.evaluation_bytes_per_point = stress_bytes_per_point(from.dimension);
     std::unique_ptr<const Body> body = make_body(std::move(part), of, ranks, threads);

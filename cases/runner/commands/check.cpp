@@ -10,6 +10,8 @@
 #include "assembly/terms/points/point_term.hpp"
 #include "assembly/terms/pressure/pressure_term.hpp"
 #include "cases/runner/build/body.hpp"
+#include "cases/runner/build/preflight.hpp"
+#include "cases/runner/build/preflight_rules.hpp"
 #include "cases/runner/build/solver_options.hpp"
 #include "solvers/linear/available_memory.hpp"
 #include "solvers/linear/make_linear_solver.hpp"
@@ -165,7 +167,7 @@ void print_quadrature(const Case& from, const Body& body, int threads) {
   Bonds bonds = body.model.bonds();
   if (!from.is_uniform()) {  // their weights have the constants in them
     bonds = make_bonds(body.points, from.surface_correction, body.setting, threads);
-    static_cast<void>(cut_bonds(bonds, body.points, from.cracks));
+    static_cast<void>(cut_bonds(bonds, body.points, body.specification.cracks));
   }
   fmt::print(
       "quadrature  energy of a confined strain deviates by at most {:.3g} from the classical\n",
@@ -332,6 +334,11 @@ Exit check(const Case& from, int threads) {
   fmt::print("case        {}\n", from.title.empty() ? from.file : from.title);
   fmt::print("points      {} in {}D, spacing {}, horizon {:g} m ({:.4g} spacings)\n", points.own(),
              points.dimension, spacing_text(points), body.setting.horizon, body.horizon_ratio());
+  const Preflight preflight =
+      located_errors(from, [&] { return preflight_of(from, body, SoleRank()); });
+  for (const auto& [label, text] : preflight_lines(preflight)) {
+    fmt::print("{:<11} {}\n", label, text);
+  }
   fmt::print("bonds       {}; neighbours per point {} to {}, {:.1f} on average\n",
              count_of_bonds(body), neighbours.least, neighbours.most, neighbours.mean);
   for (const std::string& line : describe_interactions(body)) {
@@ -376,14 +383,18 @@ Exit check(const Case& from, int threads) {
                seconds_text(chosen.seconds / threads));
   } else {
     const int steps = from.loading.steps_to_entry() * int(body.conditions->programme().end());
-    fmt::print("time        {} for {} load steps, if none has to be cut\n",
-               seconds_text(chosen.seconds * steps / threads), steps);
+    fmt::print("time        {} for {} load steps, if none has to be cut{}\n",
+               seconds_text(chosen.seconds * steps / threads), steps,
+               preflight.may_fail ? "; steps in which damage grows take many times as long, and "
+                                    "how many there are, the run shows"
+                                  : "");
   }
   located_errors(from, [&] {
     check_study(body, options);
     if (finds_loads(options, *body.conditions)) static_cast<void>(Study(body, options).analyze());
     static_cast<void>(make_crack_tips(body, from.crack_tips, options));
   });
+  for (const std::string& warning : warnings_of(preflight)) fmt::print("warning: {}\n", warning);
   return Exit::done;
 }
 

@@ -12,6 +12,8 @@
 
 #include "cases/runner/build/body.hpp"
 #include "cases/runner/build/part_body.hpp"
+#include "cases/runner/build/preflight.hpp"
+#include "cases/runner/build/preflight_rules.hpp"
 #include "cases/runner/build/recorded_points.hpp"
 #include "cases/runner/build/solver_options.hpp"
 #include "cases/runner/commands/run_facts.hpp"
@@ -161,6 +163,9 @@ class CaseRun {
     }
     count(*body_, study_->free(), options_, ranks_, summary_);
     tell_size();
+    summary_.warnings =
+        located_errors(from_, [&] { return warnings_of(preflight_of(from_, *body_, ranks_)); });
+    for (const std::string& warning : summary_.warnings) progress_.say("warning: " + warning);
     // Loads that can't be found are refused before results are touched.
     if (finds_loads(study_->options(), *body_->conditions)) study_->analyze();
     if (from_.dynamics.is_asked_for) describe_motion();
@@ -225,7 +230,8 @@ class CaseRun {
       tell_beginning();
     } else {
       results_.emplace(from_.output.directory, points, text, support_sets_, probes_,
-                       constant_fields_of(*body_), options_.overwrite, further_, gathering());
+                       constant_fields_of(from_, *body_), options_.overwrite, further_,
+                       gathering());
       recorder_.emplace(from_, *body_, assembler, *results_, progress_, crack_tips_);
     }
     if (ranks_.rank() == 0) leave_note(from_.output.directory);

@@ -13,6 +13,7 @@
 #include "cases/runner/results/constraint_columns.hpp"
 #include "cases/runner/results/results_folder.hpp"
 #include "src/core/input_error.hpp"
+#include "src/geometry/point_file.hpp"
 
 namespace peristat {
 
@@ -107,8 +108,13 @@ double largest_displacement(const std::vector<double>& displacement, const Point
   return std::sqrt(largest);
 }
 
-std::vector<PointCounts> constant_fields_of(const Body& body) {
+std::vector<PointCounts> constant_fields_of(const Case& from, const Body& body) {
   std::vector<PointCounts> counts;
+  if (const auto* const source = std::get_if<PointSource>(&from.body)) {
+    const Index own = body.points.owned.value_or(body.points.own());
+    counts.push_back({"source_row", "which point of the file each is, from 0 in the file's order",
+                      source_rows(source->file, body.points, own)});
+  }
   const auto own = [&](auto values) {
     values.resize(std::size_t(body.points.owned.value_or(body.points.own())));
     return values;

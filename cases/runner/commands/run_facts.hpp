@@ -31,8 +31,8 @@ void keep_inputs_and_log_apart(const Case& from, const std::string& log_file);
 [[nodiscard]] std::vector<std::string> support_sets(const Case& from);
 
 /// What the results folder tells of every point that is this body's own: the counts of [CPD] sec.
-/// 3.1, its region and random factors.
-[[nodiscard]] std::vector<PointCounts> constant_fields_of(const Body& body);
+/// 3.1, its region and random factors, and its row in a file of points.
+[[nodiscard]] std::vector<PointCounts> constant_fields_of(const Case& from, const Body& body);
 
 /// Of the points that are this body's own [m].
 [[nodiscard]] double largest_displacement(const std::vector<double>& displacement,

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "cases/runner/input/case_file.hpp"
+#include "cases/runner/input/given_values.hpp"
 #include "cases/runner/input/key_table.hpp"
 #include "cases/runner/input/probe_fields.hpp"
 #include "cases/runner/input/toml_table.hpp"
@@ -145,6 +146,7 @@ Case read_case(const std::filesystem::path& file, const std::string& text,
   collect_locations(document, "", result.locations);
   try {
     document_keys().read({TomlTable(document, "", result.file), "", result}, result);
+    if (!result.dynamics.is_asked_for) refuse_idle_tables(result);
   } catch (const InputError& error) {
     throw located(result, error);
   }

@@ -83,7 +83,15 @@ Table<ShapeStep> shape_step_keys() {
                .written_if([](auto& step, auto&) { return step.action == Action::subtract; })
                .one_of(),
            K("name", &ShapeStep::name, text(), "of the shape, by which loads find its boundary")
-               .written_if([](auto& step, auto&) { return !step.name.empty(); })}};
+               .written_if([](auto& step, auto&) { return !step.name.empty(); }),
+           K("cuts_bonds", &ShapeStep::cuts_bonds, boolean(),
+             "`subtract`: whether bonds that cross the shape are cut; otherwise those that are "
+             "longer than it is wide bridge it")
+               .written_if([](auto& step, auto&) { return step.cuts_bonds; })
+               .then([](auto& at, auto& step) {
+                 if (step.cuts_bonds && step.action == Action::add)
+                   at.refuse("is for a shape that is subtracted");
+               })}};
 }
 
 Table<Layer> layer_keys() {
@@ -654,7 +662,9 @@ Table<MaterialSpecification> material_keys(const std::string& name) {
            .one_of(),
        K("poisson_ratio", &Spec::poisson_ratio, between(-1.0, 1.0),
          "`cpd`, `lps`, `correspondence`, with `youngs_modulus`")
-           .unless(of_bond, "is for models \"cpd\", \"lps\" and \"correspondence\"")
+           .unless(of_bond,
+                   "is not free with bonds alone: they have 1/3 in plane stress, 1/4 in plane "
+                   "strain and 3D; models \"cpd\", \"lps\" and \"correspondence\" take others")
            .unless(has_constants, with_moduli)
            .moreover("`lps`, `correspondence`: to 0.5; `cpd`: in 3D to 0.5, all excluded; with "
                      "damage from 1/3 (2D) "
@@ -887,8 +897,10 @@ Table<LoadSpecification> load_keys() {
            load_value(Kind::body_force, "N/m3", "force density per component"),
            load_value(Kind::total_force, "N",
                       "force on the whole set per component, spread in proportion to the volume"),
-           load_value(Kind::gravity, "m/s2",
-                      "acceleration per component, times `material.density`; layers weigh nothing"),
+           load_value(
+               Kind::gravity, "m/s2",
+               "acceleration per component, times `material.density`; layers weigh nothing unless "
+               "`set` names them"),
            load_value(Kind::traction, "Pa",
                       "force per area per component on a flat part of the boundary, which keeps "
                       "its direction; on a lattice only"),
@@ -997,8 +1009,8 @@ Table<AbsorbingSpecification> absorbing_keys() {
           {K("set", &Spec::set, known_set(), "that absorbs")
                .written_if([](auto& absorbing, auto&) { return !absorbing.set.empty(); })
                .default_words("all points"),
-           K("rate", &Spec::rate, scalar_field("1/s"),
-             "at which velocities decay, beside what forces do; not of the time")
+           K("rate", &Spec::rate, field_of_place("1/s"),
+             "at which velocities decay, beside what forces do")
                .required()}};
 }
 

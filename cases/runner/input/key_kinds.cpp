@@ -119,6 +119,13 @@ Kind<std::string> one_of(const std::vector<std::string>& names) {
   return {[=](const Entry& at) { return at.from.one_of(at.key, names); }, string_text, allowed};
 }
 
+namespace {
+
+/// Names of columns and files have these in them; file systems take 255 bytes.
+constexpr std::size_t longest_name = 100;
+
+}  // namespace
+
 Kind<std::string> name() {
   const auto read = [](const Entry& at) {
     const std::string given = at.from.string(at.key);
@@ -129,9 +136,13 @@ Kind<std::string> name() {
     if (given.empty()) at.refuse("is empty");
     for (const char c : given)
       if (!allowed(c)) at.refuse("may only have letters, digits, _ and -");
+    if (given.size() > longest_name)
+      at.refuse("has " + std::to_string(given.size()) + " characters; at most " +
+                std::to_string(longest_name) + " are allowed");
     return given;
   };
-  return {read, string_text, "letters, digits, `_`, `-`"};
+  return {read, string_text,
+          "letters, digits, `_`, `-`; at most " + std::to_string(longest_name) + " characters"};
 }
 
 Kind<std::string> set_name() {
@@ -315,7 +326,9 @@ Kind<std::array<std::optional<std::string>, 3>> free_components(Components kind,
               return toml_string(component.value_or("free"));
             });
           },
-          "number, expression of `load` (`t`) alone, or `\"free\"`", unit};
+          kind == Components::of_load ? "number, expression of `load` (`t`) alone, or `\"free\"`"
+                                      : "number, expression of `load` alone, or `\"free\"`",
+          unit};
 }
 
 namespace {
@@ -336,8 +349,7 @@ Kind<std::string> expression(bool of_place, bool or_free) {
   };
   return {read, string_text,
           std::string("number, or expression of ") +
-              (of_place ? "place and `load` (mode `dynamics`: `t`)" : "`load` (`t`) alone") +
-              (or_free ? ", or `\"free\"`" : ""),
+              (of_place ? "place and `load`" : "`load` alone") + (or_free ? ", or `\"free\"`" : ""),
           "m"};
 }
 
@@ -390,20 +402,32 @@ Kind<double> stretch() {
           "1e-09 to 1000, or an expression of `horizon` and `spacing`", "1"};
 }
 
+namespace {
+
+/// A number, or an expression of place and, if it has them, of the parameters.
+std::string read_field(const Entry& at, bool has_parameters) {
+  const std::string given = at.from.is_string(at.key)
+                                ? at.from.string(at.key)
+                                : toml_number(at.from.number(at.key, Range()));
+  try {
+    Expression(given, at.so_far.dimension, spacing_of(at.so_far),
+               has_parameters ? at.so_far.parameters() : std::vector<std::string>());
+  } catch (const InputError& error) {
+    at.refuse(error.allowed());
+  }
+  return given;
+}
+
+}  // namespace
+
 Kind<std::string> scalar_field(const std::string& unit) {
-  const auto read = [](const Entry& at) {
-    const std::string given = at.from.is_string(at.key)
-                                  ? at.from.string(at.key)
-                                  : toml_number(at.from.number(at.key, Range()));
-    try {
-      Expression(given, at.so_far.dimension, spacing_of(at.so_far), at.so_far.parameters());
-    } catch (const InputError& error) {
-      at.refuse(error.allowed());
-    }
-    return given;
-  };
-  return {read, string_text, "number or expression of place and `load` (mode `dynamics`: `t`)",
-          unit};
+  return {[](const Entry& at) { return read_field(at, true); }, string_text,
+          "number or expression of place and `load` (mode `dynamics`: `t`)", unit};
+}
+
+Kind<std::string> field_of_place(const std::string& unit) {
+  return {[](const Entry& at) { return read_field(at, false); }, string_text,
+          "number or expression of place", unit};
 }
 
 namespace {

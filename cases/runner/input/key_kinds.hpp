@@ -97,6 +97,8 @@ enum class Components { axes, rotations, of_load };
 [[nodiscard]] Kind<double> stretch();
 /// An expression of place and load.
 [[nodiscard]] Kind<std::string> scalar_field(const std::string& unit);
+/// An expression of place.
+[[nodiscard]] Kind<std::string> field_of_place(const std::string& unit);
 /// Per component an expression of place and load.
 [[nodiscard]] Kind<std::array<std::string, 3>> displacement_components();
 /// Per component an expression of load, and of place unless it is a total.

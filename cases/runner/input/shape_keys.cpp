@@ -127,7 +127,7 @@ Kind<Shape> shape_beside() {
     refuse_other_dimension(at, at.from.string(at.key));
     const std::string kind = at.from.one_of(at.key, shape_kinds(at.so_far.dimension));
     std::vector<std::string> keys = case_keys().at("set.shape." + kind);
-    keys.insert(keys.begin(), {at.key, "name"});
+    keys.insert(keys.begin(), {at.key, "name", "cuts_bonds"});
     at.from.allow_only(keys, "is no key of a " + kind);
     return read_shape(at, kind);
   };

@@ -1,7 +1,10 @@
 #include "cases/runner/input/toml_table.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
+#include <map>
+#include <optional>
 
 #include "cases/runner/input/case_keys.hpp"
 #include "cases/runner/input/unit_remark.hpp"
@@ -28,9 +31,66 @@ bool contains(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-/// What a person may have meant by an unknown key: a similar one of this table, or the same one of
-/// another table.
+/// The whole number that a value is, as an integer or a float; nothing for other values.
+std::optional<std::int64_t> whole_number(const TomlValue& value) {
+  if (value.kind == TomlValue::Kind::integer) return value.integer;
+  constexpr double exact = 9007199254740992.0;  // 2^53, up to which doubles have all of them
+  const double number = value.kind == TomlValue::Kind::real ? value.real : 0.5;
+  if (!(std::abs(number) <= exact) || std::trunc(number) != number) return std::nullopt;
+  return static_cast<std::int64_t>(number);
+}
+
+/// Symbols of data sheets and papers, in small letters without underscores, and the keys that they
+/// stand for.
+const std::map<std::string, std::string>& keys_of_symbols() {
+  static const std::string energy = "material.damage.fracture_energy";
+  static const std::string from_toughness = energy +
+                                            ", K_Ic^2/E in plane stress and K_Ic^2 (1 - nu^2)/E in "
+                                            "plane strain and 3D,";
+  static const std::map<std::string, std::string> keys{
+      {"e", "material.youngs_modulus"},
+      {"young", "material.youngs_modulus"},
+      {"nu", "material.poisson_ratio"},
+      {"poisson", "material.poisson_ratio"},
+      {"rho", "material.density"},
+      {"alpha", "material.thermal_expansion"},
+      {"g", energy},
+      {"gc", energy},
+      {"gf", energy},
+      {"gic", energy},
+      {"g1c", energy},
+      {"kic", from_toughness},
+      {"k1c", from_toughness},
+      {"kc", from_toughness},
+      {"ft", "material.damage.strength"},
+      {"sc", "material.damage.critical"},
+      {"s0", "material.damage.critical"},
+      {"delta", "lattice.horizon_ratio or points.horizon"},
+      {"dx", "lattice.spacing"}};
+  return keys;
+}
+
+/// "horizon_ratio" for "horizon": the one key that begins with the word.
+std::string completed(const std::string& word, const std::vector<std::string>& known) {
+  std::string whole;
+  for (const std::string& key : known) {
+    if (!key.starts_with(word + "_")) continue;
+    if (!whole.empty()) return "";
+    whole = key;
+  }
+  return whole;
+}
+
+/// What a person may have meant by an unknown key: a symbol, the beginning of a key or a similar
+/// one of this table, or the same one of another table.
 std::string suggestion(const std::string& key, const std::vector<std::string>& known) {
+  std::string symbol;
+  for (const char c : key)
+    if (c != '_') symbol += char(std::tolower(static_cast<unsigned char>(c)));
+  const auto meant = keys_of_symbols().find(symbol);
+  if (meant != keys_of_symbols().end()) return "; did you mean " + meant->second + "?";
+  const std::string whole = completed(key, known);
+  if (!whole.empty()) return "; did you mean " + whole + "?";
   std::string text = did_you_mean(key, known);
   if (!text.empty()) return text;
   std::vector<std::string> elsewhere;
@@ -79,11 +139,20 @@ TomlTable::TomlTable(const TomlValue& value, std::string path, const std::string
     unknown = key;
   }
   if (first != nullptr) {
+    refuse_unknown_kind();
     refuse(*first, this->path(unknown),
            "unknown key" + suggestion(unknown, known) + "  (allowed: " + listed(known) + ")");
   }
   if (in_array && value.entries.empty())
     refuse(value, path_, "is empty (allowed: " + listed(known) + ")");
+}
+
+/// A shape of an unknown kind has unknown keys, too: the kind is what is wrong.
+void TomlTable::refuse_unknown_kind() const {
+  if (without_indices(path_) != "lattice.shape") return;
+  for (const char* const key : {"add", "subtract"}) {
+    if (is_string(key)) static_cast<void>(one_of(key, case_keys().at("set.shape")));
+  }
 }
 
 std::string TomlTable::path(const std::string& key) const {
@@ -172,10 +241,11 @@ std::int64_t TomlTable::integer(const std::string& key, std::int64_t low, std::i
   const TomlValue& value = need(key);
   const std::string words =
       "must be a whole number from " + std::to_string(low) + " to " + std::to_string(high);
-  if (value.kind != TomlValue::Kind::integer)
+  const std::optional<std::int64_t> whole = whole_number(value);
+  if (!whole && value.kind != TomlValue::Kind::real)
     refuse(value, path(key), words + ", not " + kind_name(value));
-  if (value.integer < low || value.integer > high) refuse(value, path(key), words);
-  return value.integer;
+  if (!whole || *whole < low || *whole > high) refuse(value, path(key), words);
+  return *whole;
 }
 
 std::string TomlTable::one_of(const std::string& key,

@@ -84,6 +84,7 @@ class TomlTable {
   template <std::size_t count>
   std::vector<std::array<double, count>> tuples(const std::string& key,
                                                 const std::string& what) const;
+  void refuse_unknown_kind() const;
   const TomlValue* find(const std::string& key) const;
   const TomlValue& need(const std::string& key) const;
   double checked_number(const TomlValue& value, const std::string& path, const Range& range) const;

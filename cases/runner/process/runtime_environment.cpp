@@ -59,6 +59,14 @@ int choose_threads(int asked_for) {
   return limit > 0 ? std::min(threads, limit) : threads;
 }
 
+void require_room_for_ranks(int asked_for) {
+  if (asked_for <= most_threads()) return;
+  throw InputError("--ranks", std::to_string(asked_for),
+                   "at most " + std::to_string(most_threads()) + " on this machine, which has " +
+                       std::to_string(processors()) +
+                       " processors; on several machines mpirun or srun starts them");
+}
+
 void restart_with_environment(int threads, char** arguments) {
   constexpr const char* mark = "PERISTAT_ENVIRONMENT_SET";
   if (std::getenv(mark)) {

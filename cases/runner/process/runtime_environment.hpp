@@ -14,8 +14,12 @@ void open_standard_streams();
 /// @throws InputError (key "--threads") if more are asked for than most_threads
 [[nodiscard]] int choose_threads(int asked_for);
 
-/// What --threads may ask for: 4 per processor, and 16 on any machine. More only take memory.
+/// What --threads and --ranks may ask for: 4 per processor, and 16 on any machine. More only take
+/// memory.
 [[nodiscard]] int most_threads();
+
+/// @throws InputError (key "--ranks") if more are to be started here than most_threads
+void require_room_for_ranks(int asked_for);
 
 /// Restarts the program once with the environment that its libraries read only while they are
 /// loaded:

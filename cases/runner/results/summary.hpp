@@ -22,6 +22,7 @@ struct Summary {
   RunCosts costs;
   double max_displacement = 0.0;
   int threads = 1, ranks = 1;
+  std::vector<std::string> warnings;  ///< of what may not be meant
 
   /// Of a kind that was counted.
   [[nodiscard]] std::int64_t counted(const std::string& kind) const;

@@ -32,6 +32,11 @@ class Members {
     for (const double value : values) list += (list.empty() ? "" : ", ") + finite(key, value);
     add_text(key, "[" + list + "]");
   }
+  void add(const std::string& key, const std::vector<std::string>& texts) {
+    std::string list;
+    for (const std::string& text : texts) list += (list.empty() ? "" : ", ") + json_string(text);
+    add_text(key, "[" + list + "]");
+  }
   void add(const std::string& key, const Members& members) { add_text(key, members.text()); }
 
   [[nodiscard]] std::string text() const {
@@ -140,6 +145,7 @@ std::string summary_json(const Summary& summary, const StepTotals& totals,
   all.add("peak_memory_bytes", peak_memory_bytes);
   all.add("threads", summary.threads);
   all.add("ranks", summary.ranks);
+  all.add("warnings", summary.warnings);
   return all.text() + "\n";
 }
 

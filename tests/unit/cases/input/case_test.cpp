@@ -285,6 +285,51 @@ const std::vector<BadInput> bad_inputs{
      18,
      {"material.steps = 3: unknown key; did you mean arc_length.steps, loading.steps or "
       "relaxation.steps?"}},
+    {"SymbolOfAModulus",
+     "youngs_modulus",
+     "E",
+     18,
+     {"material.E", "did you mean material.youngs_modulus?"}},
+    {"SymbolOfAToughness",
+     "[material]",
+     "[material]\nKIc = 1e6",
+     18,
+     {"material.KIc", "did you mean material.damage.fracture_energy, K_Ic^2/E in plane stress"}},
+    {"SymbolOfAFractureEnergy",
+     "[material]",
+     "[material]\n[material.damage]\nlaw = \"linear\"\nG_f = 10",
+     20,
+     {"material.damage.G_f", "did you mean material.damage.fracture_energy?"}},
+    {"BeginningOfAKey",
+     "horizon_ratio",
+     "horizon",
+     5,
+     {"lattice.horizon", "did you mean horizon_ratio?"}},
+    {"UnknownShapeWithKeysOfItsOwn",
+     "add = \"box\"\nmin = [0.0, 0.0]",
+     "add = \"ellipse\"\nradii = [0.1, 0.2]\nmin = [0.0, 0.0]",
+     8,
+     {"lattice.shape[0].add = \"ellipse\"", "not known", "box, disk"}},
+    {"PoissonRatioOfBonds",
+     "[material]",
+     "[material]\npoisson_ratio = 0.2",
+     18,
+     {"material.poisson_ratio = 0.2", "1/3 in plane stress, 1/4", "\"cpd\", \"lps\""}},
+    {"TableOfAParameterThatNothingNames",
+     "[[probe]]",
+     "[loading]\ntable = [0, 1]\ntable2 = [0, 1]\n[[probe]]",
+     27,
+     {"loading.table2", "gives values of load2, which no displacement and no load names"}},
+    {"LongName",
+     "name = \"tip\"",
+     "name = \"" + std::string(300, 't') + "\"",
+     26,
+     {"probe[0].name", "has 300 characters; at most 100"}},
+    {"CutsOfAnAddedShape",
+     "add = \"box\"",
+     "add = \"box\"\ncuts_bonds = true",
+     9,
+     {"lattice.shape[0].cuts_bonds", "is for a shape that is subtracted"}},
     {"UnknownInfluence",
      "[material]",
      "[material]\ninfluence = \"septik\"",
@@ -327,7 +372,8 @@ const std::vector<BadInput> bad_inputs{
      "true",
      18,
      {"material.youngs_modulus = true", "not a boolean"}},
-    {"RealForWholeNumber", "dimension = 2", "dimension = 2.0", 2, {"whole number from 1 to 3"}},
+    {"RealForWholeNumber", "dimension = 2", "dimension = 2.5", 2, {"whole number from 1 to 3"}},
+    {"RealBeyondWholeNumbers", "dimension = 2", "dimension = 1e300", 2, {"whole number"}},
     {"NumberForString", "title = \"Plate\"", "title = 3", 1, {"must be a string"}},
     {"NumberForBoolean",
      "[material]",
@@ -605,6 +651,17 @@ TEST_F(CaseReader, RefusesKeysOfAnotherDimension) {
   EXPECT_NE(refusal(with(bar, "[material]", "[material]\nplane = \"stress\""))
                 .find("study.toml:13:1: material.plane = \"stress\": is for dimension 2 only"),
             std::string::npos);
+}
+
+TEST_F(CaseReader, TakesWholeNumbersThatAreWrittenAsFloats) {
+  const Case of = read(with(plate, "[[probe]]", "[loading]\nsteps = 20.0\n[[probe]]"));
+  EXPECT_EQ(of.loading.steps, 20);
+}
+
+TEST_F(CaseReader, TakesATableWhoseParameterIsNamedAnywhere) {
+  const std::string text = with(plate, "[[probe]]", "[loading]\ntable2 = [0, 1]\n[[probe]]");
+  EXPECT_NE(refusal(text), "");
+  EXPECT_EQ(refusal(with(text, "1e6*load", "1e6*load2")), "");
 }
 
 TEST_F(CaseReader, RefusesAnEmptyArrayOfTables) {

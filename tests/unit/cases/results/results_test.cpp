@@ -533,7 +533,8 @@ TEST_F(ResultsTest, SummaryTakesSumsFromAllStepsAndTheRestFromTheLast) {
   },
   "peak_memory_bytes": M,
   "threads": 2,
-  "ranks": 1
+  "ranks": 1,
+  "warnings": []
 }
 )");
 }

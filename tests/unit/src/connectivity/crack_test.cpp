@@ -509,6 +509,37 @@ TEST(CutBonds, RemovesExactlyThoseAcrossAnOutline) {
   EXPECT_GT(expect_cut(body, {outline}, across), 50);
 }
 
+TEST(CutBonds, AShapeCutsWhatCrossesIt) {
+  const CrackShape slit{Box{{0, -0.1, 0}, {2, 0.1, 0}}, 2};
+  EXPECT_TRUE(cuts(slit, {1, -1, 0}, {1.2, 1, 0}));
+  EXPECT_TRUE(cuts(slit, {-0.5, 0, 0}, {2.5, 0, 0}));       // along it
+  EXPECT_TRUE(cuts(slit, {1.95, -0.2, 0}, {2.2, 0.3, 0}));  // over a corner
+  EXPECT_FALSE(cuts(slit, {2.1, -1, 0}, {2.1, 1, 0}));
+  EXPECT_FALSE(cuts(slit, {1, 0.2, 0}, {1.5, 1, 0}));
+  const CrackShape hole{Sphere{{0, 0, 0}, 1.0}, 3};
+  EXPECT_TRUE(cuts(hole, {-2, 0.5, 0.5}, {2, 0.5, 0.5}));
+  EXPECT_FALSE(cuts(hole, {-2, 0.8, 0.8}, {2, 0.8, 0.8}));
+  CrackShape mirrored{Disk{{1, 0, 0}, 0.5}, 2};
+  mirrored.image.mirror[0] = -1.0;
+  EXPECT_TRUE(cuts(mirrored, {-1, -1, 0}, {-1, 1, 0}));
+  EXPECT_FALSE(cuts(mirrored, {1, -1, 0}, {1, 1, 0}));
+}
+
+TEST(CutBonds, AreCountedForEachCrackThatMeetsThem) {
+  const BoxBody body(tests::small_box(2));
+  Bonds bonds = body.model.bonds();
+  const double at = body.points.position(0)[1] + 0.01;  // between two rows of points
+  const std::vector<Crack> cracks{CrackSegment{{-1, at, 0}, {2, at, 0}},
+                                  CrackSegment{{-1, at, 0}, {0.5, at, 0}},
+                                  CrackSegment{{20, 5, 0}, {30, 5, 0}}};
+  const CutBonds cut = cut_bonds(bonds, body.points, cracks);
+  const std::vector<std::int64_t> met = bonds_met_by_each(cracks, cut.ends, body.points);
+  EXPECT_EQ(met[0], std::int64_t(cut.ends.size()));
+  EXPECT_GT(met[1], 0);
+  EXPECT_LT(met[1], met[0]);
+  EXPECT_EQ(met[2], 0);
+}
+
 TEST(CheckCrack, RefusesOutlinesThatAreNone) {
   const CrackOutline square{{{0, 0}, {1, 0}, {1, 1}, {0, 1}}};
   EXPECT_EQ(refused_key(square, 2), "nothing");

@@ -168,6 +168,13 @@ TEST(Expression, RefusesTextThatIsNoExpression) {
     EXPECT_NE(refusal(text), "accepted") << text;
   }
   EXPECT_NE(refusal("x + * y").find("character"), std::string::npos);
+  EXPECT_EQ(refusal("x + * y").find("position"), std::string::npos) << refusal("x + * y");
+  EXPECT_NE(refusal("load ** 2").find("character 6 is no operator; a power is written with ^"),
+            std::string::npos);
+  const std::string longest = std::string(19'998, ' ') + "1";
+  EXPECT_EQ(refusal(longest), "accepted");
+  EXPECT_EQ(refusal(longest + "1"),
+            "an expression may have at most 19999 characters; this one has 20000");
   for (const char* text : {"", " ", "\n"}) {
     EXPECT_THROW(Expression(text, 2, 0.01, with_load), InputError);
   }

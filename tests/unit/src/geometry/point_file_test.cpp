@@ -96,6 +96,31 @@ TEST_F(PointFile, NamesTheLineOfABadColumnName) {
             std::pair(1, std::string("column 'x' appears twice")));
 }
 
+TEST_F(PointFile, TellsThatTheLineOfNamesIsARemark) {
+  const auto [line, told] = refusal("# x y volume\n0 0 1\n");
+  EXPECT_EQ(line, 2);
+  EXPECT_NE(told.find("this one has numbers"), std::string::npos) << told;
+  EXPECT_NE(told.find("take the # away"), std::string::npos) << told;
+}
+
+TEST_F(PointFile, RefusesNamesOfSetsThatResultsCanNotHave) {
+  EXPECT_EQ(refusal("x,y,volume,set\n0,0,1,a|.\n").first, 2);
+  EXPECT_EQ(refusal("x,y,volume,set\n0,0,1," + std::string(101, 'a') + "\n").first, 2);
+  EXPECT_EQ(refusal("x,y,volume,set\n0,0,1,a.b\n").first, 0);
+}
+
+TEST_F(PointFile, KnowsWhichPointOfTheFileEachIs) {
+  const std::vector<double> x{3, 1, 2, 0};
+  std::string text = "# remark\nx,y,volume\n";
+  for (const double at : x) text += std::to_string(at) + ",0,1\n";
+  const Points points = read(text);
+  const std::vector<std::int32_t> row = source_rows(file(), points, points.count());
+  ASSERT_EQ(row.size(), x.size());
+  for (Index i = 0; i < points.count(); ++i) {
+    EXPECT_EQ(points.position(i)[0], x[std::size_t(row[std::size_t(i)])]);
+  }
+}
+
 TEST_F(PointFile, NamesTheLineOfABadValue) {
   const std::string good = "x,y,volume\n0,0,1\n\n";
   const auto refused = [&](const std::string& line) { return refusal(good + line + "\n2,0,1\n"); };

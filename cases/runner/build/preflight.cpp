@@ -1,0 +1,476 @@
+#include "cases/runner/build/preflight.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <memory>
+#include <variant>
+
+#include <fmt/format.h>
+
+#include "assembly/terms/damage.hpp"
+#include "assembly/terms/points/point_term.hpp"
+#include "cases/runner/build/body.hpp"
+#include "solvers/study/bond_materials.hpp"
+#include "solvers/study/fracture_data.hpp"
+#include "src/core/expression.hpp"
+#include "src/core/input_error.hpp"
+#include "src/geometry/counts_bond.hpp"
+#include "src/geometry/solid.hpp"
+
+namespace peristat {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+const char* kind_of(const Shape& shape) {
+  constexpr std::array names{"box", "disk", "cylinder", "sphere", "polygon"};
+  return names[shape.index()];
+}
+
+/// Whether boxes of the body are made of whole cells along the axes.
+bool has_whole_cells(const Lattice& lattice) {
+  return lattice.arrangement == Arrangement::lattice && lattice.angle == 0.0 &&
+         lattice.volumes == CellVolumes::whole;
+}
+
+/// Of added boxes that stand where the first one begins.
+std::vector<Preflight::Division> divisions_of(const Lattice& lattice) {
+  std::vector<Preflight::Division> divisions;
+  if (!has_whole_cells(lattice)) return divisions;
+  constexpr double round_off = 1e-9;
+  const bool has_nodes = lattice.origin == LatticeOrigin::nodes;
+  const auto* const first = std::get_if<Box>(&lattice.shapes.front().shape);
+  for (std::size_t k = 0; first != nullptr && k < lattice.shapes.size(); ++k) {
+    const auto* const box = std::get_if<Box>(&lattice.shapes[k].shape);
+    if (box == nullptr || lattice.shapes[k].action != ShapeStep::Action::add) continue;
+    for (std::size_t c = 0; c < std::size_t(lattice.dimension); ++c) {
+      const double spacing = lattice.spacing.along(int(c));
+      const double anchor = first->min[c] + (has_nodes ? 0.0 : 0.5 * spacing);
+      const double low = std::ceil((box->min[c] - anchor) / spacing - round_off);
+      const double high = std::floor((box->max[c] - anchor) / spacing + round_off);
+      const double cells = high - low + (has_nodes ? 0.0 : 1.0);
+      if (cells < 1.0) continue;
+      divisions.push_back({"lattice.shape[" + std::to_string(k) + "]", int(c),
+                           box->max[c] - box->min[c], cells * spacing, cells});
+    }
+  }
+  return divisions;
+}
+
+/// Bonds of a body, all of them; null: they are too many to be found for this.
+std::shared_ptr<const Bonds> network_of(const Body& body) {
+  const auto* const term = dynamic_cast<const PointTerm*>(body.model.bond_term().get());
+  if (term == nullptr || !term->is_convolved()) {
+    return {std::shared_ptr<const Bonds>(), &body.model.bonds()};
+  }
+  constexpr Offset most = 5'000'000;  // some seconds
+  return term->count() > most ? nullptr : whole_network(body.model);
+}
+
+/// Bonds that a narrow shape has between its sides: a box's whole width of them lies in it, of
+/// other shapes half of it.
+std::int64_t bridging(const Body& body, const Bonds& bonds, const Shape& shape, double width) {
+  const Points& points = body.points;
+  constexpr double round_off = 1e-6;
+  const double least = std::holds_alternative<Box>(shape) ? width * (1.0 - round_off) : 0.5 * width;
+  const Box around = bounds(shape);
+  std::int64_t count = 0;
+  for (Index i = 0; i < bonds.points(); ++i) {
+    const Coordinates at = points.position(i);
+    bool is_near = true;
+    for (std::size_t c = 0; c < std::size_t(points.dimension); ++c) {
+      is_near = is_near && at[c] >= around.min[c] - body.setting.reach() &&
+                at[c] <= around.max[c] + body.setting.reach();
+    }
+    if (!is_near) continue;
+    for (Offset bond = bonds.offset[std::size_t(i)]; bond < bonds.offset[std::size_t(i) + 1];
+         ++bond) {
+      const Index j = bonds.partner[std::size_t(bond)];
+      if (!counts_bond(points, i, j)) continue;
+      count += length_inside(shape, points.dimension, at, points.position(j)) >= least;
+    }
+  }
+  return count;
+}
+
+std::vector<Preflight::Opening> openings_of(const Lattice& lattice, const Body& body,
+                                            const Communicator& ranks) {
+  std::vector<Preflight::Opening> openings;
+  const Box box = Solid(lattice.dimension, lattice.shapes).bounds();
+  std::shared_ptr<const Bonds> bonds;
+  for (std::size_t k = 0; k < lattice.shapes.size(); ++k) {
+    const ShapeStep& step = lattice.shapes[k];
+    if (step.action == ShapeStep::Action::add) continue;
+    Preflight::Opening opening{"lattice.shape[" + std::to_string(k) + "]", kind_of(step.shape),
+                               width_of(step.shape, lattice.dimension, box), 0, step.cuts_bonds};
+    constexpr double round_off = 1e-6;
+    const bool is_narrow = opening.width < body.setting.horizon * (1.0 - round_off);
+    if (is_narrow && !opening.cuts_bonds) {
+      if (!bonds) bonds = network_of(body);
+      const std::int64_t here = bonds ? bridging(body, *bonds, step.shape, opening.width) : 0;
+      opening.bridging = ranks.count_all(here).all;
+    }
+    openings.push_back(std::move(opening));
+  }
+  return openings;
+}
+
+/// Values of an expression over its points.
+class Values {
+ public:
+  Values(const Case& from, const Body& body, const Communicator& ranks)
+      : from_(from), body_(body), ranks_(ranks), programme_(body.conditions->programme()) {
+    const auto* const lattice = std::get_if<Lattice>(&from.body);
+    spacing_ = lattice != nullptr ? lattice->spacing : Spacing(1.0);
+  }
+
+  [[nodiscard]] Preflight::Applied of(const GivenValue& given) const {
+    const Expression expression(given.text, given.has_place ? from_.dimension : 0, spacing_,
+                                from_.parameters());
+    Preflight::Applied value{given.kind, given.key, given.where, given.unit, given.text};
+    value.changes = expression.has_parameters();
+    const std::vector<Coordinates> places = places_of(given, expression);
+    constexpr int most_entries = 100;  // between the first and the last
+    const int last = programme_.is_of_time() ? 1 : int(programme_.end());
+    const int stride = std::max(1, last / most_entries);
+    const Range begin = range(expression, places, 0.0);
+    const Range end = range(expression, places, programme_.end());
+    double largest = std::max(begin.largest(), end.largest());
+    for (int k = stride; k < last && value.changes; k += stride) {
+      largest = std::max(largest, range(expression, some_of(places), double(k)).largest());
+    }
+    const std::vector<double> all =
+        ranks_.max({-begin.least, begin.most, -end.least, end.most, largest});
+    value.begin = Range{-all[0], all[1]}.told();
+    value.end = Range{-all[2], all[3]}.told();
+    value.largest = all[4];
+    return value;
+  }
+
+ private:
+  struct Range {
+    double least = infinity, most = -infinity;
+    [[nodiscard]] double largest() const {
+      return least <= most ? std::max(std::abs(least), std::abs(most)) : 0.0;
+    }
+    [[nodiscard]] std::array<double, 2> told() const {
+      return least <= most ? std::array{least, most} : std::array{0.0, 0.0};
+    }
+  };
+
+  [[nodiscard]] static std::vector<Coordinates> some_of(const std::vector<Coordinates>& places) {
+    constexpr std::size_t most = 100;
+    const std::size_t stride = std::max<std::size_t>(1, places.size() / most);
+    std::vector<Coordinates> some;
+    for (std::size_t k = 0; k < places.size(); k += stride) some.push_back(places[k]);
+    return some;
+  }
+
+  /// Some thousand of the points where they are many.
+  [[nodiscard]] std::vector<Coordinates> places_of(const GivenValue& given,
+                                                   const Expression& expression) const {
+    if (!given.has_place || expression.is_constant()) return {Coordinates{}};
+    if (given.at) return {*given.at};
+    const auto set = body_.points.sets.find(given.set);
+    const bool is_of_set = set != body_.points.sets.end();
+    const Index count = is_of_set ? Index(set->second.size()) : body_.points.own();
+    constexpr Index most_places = 5000;
+    const Index stride = std::max<Index>(1, count / most_places);
+    std::vector<Coordinates> places;
+    for (Index k = 0; k < count; k += stride) {
+      places.push_back(body_.points.position(is_of_set ? set->second[std::size_t(k)] : k));
+    }
+    return places;
+  }
+
+  /// Without places that the expression has no value at: what it acts on has no point there.
+  [[nodiscard]] Range range(const Expression& expression, const std::vector<Coordinates>& places,
+                            double stage) const {
+    std::vector<double> parameters = programme_.at(stage);
+    // The load that a control finds is not known: values are told for 1.
+    if (body_.conditions->control() != nullptr && stage > 0.0) parameters.front() = 1.0;
+    Range range;
+    for (const Coordinates& place : places) {
+      try {
+        const double value = expression(place, parameters);
+        range.least = std::min(range.least, value);
+        range.most = std::max(range.most, value);
+      } catch (const InputError&) {
+        continue;
+      }
+    }
+    return range;
+  }
+
+  const Case& from_;
+  const Body& body_;
+  const Communicator& ranks_;
+  const LoadingProgramme& programme_;
+  Spacing spacing_;
+};
+
+/// "region[0].material" for "regions[0].material".
+std::string key_in_case(std::string key) {
+  for (const std::string table : {"regions[", "interfaces["}) {
+    if (key.starts_with(table)) key.erase(table.size() - 2, 1);
+  }
+  return key;
+}
+
+/// Of bonds that break by their stretches alone: other laws have no strength of their own.
+void add_materials(const Case& from, const Body& body, Preflight& to) {
+  const BodySpecification& of = body.specification;  // its stretches are found
+  const PointMaterials materials(of, body.points), as_given(from, body.points);
+  const auto found = all_materials(of, materials), given = all_materials(from, as_given);
+  for (std::size_t k = 0; k < found.size(); ++k) {
+    const MaterialSpecification& material = *found[k].of;
+    const std::string key = key_in_case(found[k].key);
+    if (material.youngs_modulus) {
+      to.stiffnesses.push_back({key + ".youngs_modulus", *material.youngs_modulus});
+    }
+    const DamageSpecification& damage = material.damage;
+    to.may_fail = to.may_fail || damage.law != DamageLaw::none;
+    const bool has_strength = material.model == MaterialModel::bond && !material.fibre;
+    if (!has_strength || !damage.breaks_bonds()) continue;
+    const FractureScale scale =
+        FractureScale::of(material, found[k].key, body.setting, body.points.spacing);
+    const DamageSpecification& asked = given[k].of->damage;
+    to.fractures.push_back(
+        {of.regions.empty() ? "" : found[k].name, key, scale.youngs_modulus, scale.energy(damage),
+         scale.youngs_modulus * peak_force(damage), damage.critical,
+         asked.strength || asked.onset > 0.0 || !asked.fracture_energy, damage.softens()});
+  }
+}
+
+/// Keys with a value of their own that nothing uses. Tables of other modes are none: a case may
+/// have them for the mode that --set chooses.
+std::vector<Preflight::Idle> idle_keys(const Case& from) {
+  const Mode mode = from.solver.mode;
+  const auto* const lattice = std::get_if<Lattice>(&from.body);
+  const bool has_seed = lattice != nullptr && lattice->seed != Lattice().seed;
+  const bool is_random =
+      lattice != nullptr && (lattice->arrangement == Arrangement::blue_noise ||
+                             lattice->perturbation > 0.0 || lattice->cell_perturbation > 0.0);
+  std::vector<Preflight::Idle> idle;
+  const auto add = [&](bool is_idle, const char* key, const char* needs) {
+    if (is_idle) idle.push_back({key, needs});
+  };
+  add(has_seed && !is_random, "lattice.seed",
+      "perturbation, cell_perturbation or points = \"blue_noise\"");
+  add(from.solver.elastic_horizon_ratio > 0.0 && mode != Mode::adaptive,
+      "solver.elastic_horizon_ratio", "solver.mode = \"adaptive\"");
+  add(from.loading.max_broken_bonds > 0 && mode == Mode::relaxation, "loading.max_broken_bonds",
+      "implicit steps, as solver.mode = \"newton\" has them");
+  add(from.output.count_cracks && from.cracks.empty() && cracks_of_shapes(from).empty(),
+      "output.count_cracks", "a [[crack]]");
+  return idle;
+}
+
+/// Of the shapes, or of the places of points from a file.
+std::vector<double> extents_of(const Case& from, const Body& body, const Communicator& ranks) {
+  const auto d = std::size_t(from.dimension);
+  std::vector<double> low(d, infinity), high(d, -infinity), extents;
+  if (const auto* const lattice = std::get_if<Lattice>(&from.body)) {
+    const Box box = Solid(lattice->dimension, lattice->shapes).bounds();
+    for (std::size_t c = 0; c < d; ++c) extents.push_back(box.max[c] - box.min[c]);
+    return extents;
+  }
+  for (Index i = 0; i < body.points.own(); ++i) {
+    const Coordinates at = body.points.position(i);
+    for (std::size_t c = 0; c < d; ++c) {
+      low[c] = std::min(low[c], at[c]);
+      high[c] = std::max(high[c], at[c]);
+    }
+  }
+  low = ranks.min(low);
+  high = ranks.max(high);
+  for (std::size_t c = 0; c < d; ++c) extents.push_back(high[c] - low[c]);
+  return extents;
+}
+
+void take_lattice(const Case& from, const Lattice& lattice, const Body& body,
+                  const Communicator& ranks, Preflight& to) {
+  to.divisions = divisions_of(lattice);
+  to.lengths = feature_lengths(lattice, from.cracks);
+  // Across planes of symmetry and periods the body goes on.
+  const auto ends_across = [&](int axis) {
+    const auto is_across = [axis](const auto& side) { return side.axis == axis; };
+    return std::ranges::none_of(from.constraints.periods, is_across) &&
+           std::ranges::none_of(from.constraints.symmetries, is_across);
+  };
+  for (int axis = 0; axis < from.dimension; ++axis) {
+    if (ends_across(axis)) {
+      to.lengths.push_back({FeatureLength::Kind::body, std::string("body along ") + "xyz"[axis],
+                            to.extents[std::size_t(axis)]});
+    }
+  }
+  to.openings = openings_of(lattice, body, ranks);
+}
+
+void take_cross_section(const Case& from, const Body& body, Preflight& to) {
+  if (from.dimension == 3) return;
+  const std::string table = std::holds_alternative<Lattice>(from.body) ? "lattice." : "points.";
+  to.cross_section_key = table + (from.dimension == 1 ? "area" : "thickness");
+  to.cross_section = body.setting.cross_section;
+  to.cross_section_is_given = from.locations.contains(to.cross_section_key);
+  // cpd in the plane knows no thickness, and a body in plane strain is told per metre of it.
+  const bool is_plane =
+      from.material.model != MaterialModel::cpd && from.material.plane == PlaneState::stress;
+  to.cross_section_counts = from.dimension == 1 || is_plane;
+}
+
+Coordinates middle_of(const Crack& crack) {
+  std::vector<Coordinates> vertices;
+  if (const auto* const segment = std::get_if<CrackSegment>(&crack)) {
+    vertices = {segment->from, segment->to};
+  } else if (const auto* const polygon = std::get_if<CrackPolygon>(&crack)) {
+    vertices = polygon->vertices;
+  } else if (const auto* const outline = std::get_if<CrackOutline>(&crack)) {
+    for (const auto& [x, y] : outline->vertices) vertices.push_back({x, y, 0.0});
+  }
+  Coordinates middle{};
+  for (const Coordinates& at : vertices) {
+    for (std::size_t c = 0; c < 3; ++c) middle[c] += at[c] / double(vertices.size());
+  }
+  return middle;
+}
+
+/// Of the tables [[crack]], which come first. One in the air of a subtracted shape, as along the
+/// middle of a notch, may cut nothing: where the spacing is refined, no bond bridges it any more.
+void refuse_idle_cracks(const Case& from, const std::vector<Preflight::CutByCrack>& cracks) {
+  const auto* const lattice = std::get_if<Lattice>(&from.body);
+  for (std::size_t k = 0; k < from.cracks.size(); ++k) {
+    const Coordinates middle = middle_of(from.cracks[k]);
+    const bool is_in_air =
+        lattice != nullptr && std::ranges::any_of(lattice->shapes, [&](const ShapeStep& step) {
+          return step.action == ShapeStep::Action::subtract && contains(step.shape, middle);
+        });
+    if (cracks[k].bonds > 0 || is_in_air) continue;
+    throw InputError("cracks[" + std::to_string(k) + "]", "",
+                     "cuts no bond: it lies outside of the body, or where no points see one "
+                     "another; coordinates are in metres");
+  }
+}
+
+}  // namespace
+
+const FeatureLength* Preflight::shortest(FeatureLength::Kind kind) const {
+  const FeatureLength* least = nullptr;
+  for (const FeatureLength& length : lengths) {
+    if (length.kind == kind && (least == nullptr || length.size < least->size)) least = &length;
+  }
+  return least;
+}
+
+Preflight preflight_of(const Case& from, const Body& body, const Communicator& ranks) {
+  Preflight of;
+  of.dimension = from.dimension;
+  of.spacing = body.points.spacing;
+  of.horizon = body.setting.horizon;
+  of.extents = extents_of(from, body, ranks);
+  take_cross_section(from, body, of);
+  const std::vector<std::int64_t> met =
+      bonds_met_by_each(body.specification.cracks, body.cut_bonds, body.points);
+  for (std::size_t k = 0; k < from.cracks.size(); ++k) {
+    of.cracks.push_back({"crack[" + std::to_string(k) + "]", ranks.count_all(met[k]).all});
+  }
+  refuse_idle_cracks(from, of.cracks);
+  if (const auto* const lattice = std::get_if<Lattice>(&from.body)) {
+    take_lattice(from, *lattice, body, ranks, of);
+  }
+  const Values values(from, body, ranks);
+  for (const GivenValue& given : given_values(from)) {
+    if (given.kind != GivenValue::Kind::expected) of.applied.push_back(values.of(given));
+  }
+  add_materials(from, body, of);
+  of.is_quasi_static = !from.dynamics.is_asked_for;
+  of.is_controlled = !from.controls.empty();
+  of.steps = from.loading.steps_to_entry() * std::max(1, int(body.conditions->programme().end()));
+  if (!of.is_quasi_static) of.steps = 1;
+  of.begins_moving = !from.initial.empty();
+  of.has_notch = !of.cracks.empty() || !of.openings.empty();
+  of.idle = idle_keys(from);
+  return of;
+}
+
+namespace {
+
+/// "0.1 x 0.2"
+std::string product_text(const std::vector<double>& factors) {
+  std::string text;
+  for (const double factor : factors)
+    text += fmt::format("{}{:g}", text.empty() ? "" : " x ", factor);
+  return text;
+}
+
+std::string range_text(const std::array<double, 2>& range) {
+  return range[0] == range[1] ? fmt::format("{:.6g}", range[0])
+                              : fmt::format("{:.6g} to {:.6g}", range[0], range[1]);
+}
+
+std::string body_text(const Preflight& of) {
+  std::vector<double> spacings;
+  for (const double extent : of.extents) spacings.push_back(extent / of.spacing);
+  std::string text = product_text(of.extents) + " m";
+  if (of.dimension == 2) text += fmt::format(", thickness {:g} m", of.cross_section);
+  if (of.dimension == 1) text += fmt::format(", area {:g} m2", of.cross_section);
+  return text + fmt::format("; {} spacings", product_text(spacings));
+}
+
+std::string length_text(const Preflight& of, const FeatureLength& length) {
+  return fmt::format("{}, {:.6g} m: {:.4g} spacings, {:.3g} horizons", length.what, length.size,
+                     length.size / of.spacing, length.size / of.horizon);
+}
+
+std::string applied_text(const Preflight& of, const Preflight::Applied& value) {
+  const char* const begin = of.is_quasi_static ? "at load 0" : "at the time 0";
+  const std::string end =
+      of.is_controlled && value.changes ? "for a load of 1, which is found" : "at the end";
+  return fmt::format("{}{}: {} {} {}, {} {} {}", value.key,
+                     value.where.empty() ? "" : " (" + value.where + ")", range_text(value.begin),
+                     value.unit, begin, range_text(value.end), value.unit, end);
+}
+
+std::string zone_text(const Preflight& of, const Preflight::Fracture& fracture) {
+  const double zone = fracture.characteristic_length();
+  std::string text = fmt::format("{}strength {:.4g} MPa, E G/ft^2 = {:.4g} m: {:.3g} spacings",
+                                 fracture.name.empty() ? "" : fracture.name + ": ",
+                                 fracture.strength * 1e-6, zone, zone / of.spacing);
+  if (const FeatureLength* const ligament = of.shortest(FeatureLength::Kind::ligament)) {
+    text += fmt::format(", {:.3g} of the shortest ligament", zone / ligament->size);
+  }
+  return text;
+}
+
+}  // namespace
+
+std::vector<std::pair<std::string, std::string>> preflight_lines(const Preflight& of) {
+  std::vector<std::pair<std::string, std::string>> lines{{"body", body_text(of)}};
+  for (const auto kind : {FeatureLength::Kind::ligament, FeatureLength::Kind::opening}) {
+    const FeatureLength* const least = of.shortest(kind);
+    if (least == nullptr) continue;
+    const bool is_opening = kind == FeatureLength::Kind::opening;
+    lines.emplace_back(is_opening ? "opening" : "ligament", length_text(of, *least));
+  }
+  for (const Preflight::Opening& opening : of.openings) {
+    if (!opening.cuts_bonds && opening.bridging == 0) continue;
+    lines.emplace_back("opening", opening.cuts_bonds ? opening.key + " cuts the bonds that cross it"
+                                                     : fmt::format("{} bonds bridge {}",
+                                                                   opening.bridging, opening.key));
+  }
+  for (const auto& [key, bonds] : of.cracks) {
+    lines.emplace_back("crack", fmt::format("{} cuts {} bonds", key, bonds));
+  }
+  for (const Preflight::Applied& value : of.applied) {
+    if (value.largest > 0.0) lines.emplace_back("applied", applied_text(of, value));
+  }
+  for (const Preflight::Fracture& fracture : of.fractures) {
+    if (fracture.softens) lines.emplace_back("zone", zone_text(of, fracture));
+  }
+  return lines;
+}
+
+}  // namespace peristat

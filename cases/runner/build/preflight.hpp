@@ -1,0 +1,100 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "cases/runner/build/feature_lengths.hpp"
+#include "cases/runner/input/given_values.hpp"
+#include "solvers/study/body.hpp"
+#include "src/core/communicator.hpp"
+
+namespace peristat {
+
+/// What a case makes of its body, its loads and its law, as plain values: what `check` prints, and
+/// what the rules of preflight_rules.hpp judge.
+struct Preflight {
+  /// A box of the body along one of the lattice's axes.
+  struct Division {
+    std::string key;     ///< "lattice.shape[0]"
+    int axis = 0;        ///< from 0
+    double asked = 0.0;  ///< extent that the case gives [m]
+    double made = 0.0;   ///< that of the lattice's cells in it [m]
+    double cells = 0.0;  ///< their number
+  };
+  /// A subtracted shape.
+  struct Opening {
+    std::string key, kind;  ///< "lattice.shape[1]", "box"
+    double width = 0.0;     ///< at its narrowest [m]
+    std::int64_t bridging = 0;
+    bool cuts_bonds = false;
+  };
+  struct CutByCrack {
+    std::string key;
+    std::int64_t bonds = 0;
+  };
+  /// A value of supports, loads or eigenstrains.
+  struct Applied {
+    GivenValue::Kind kind = GivenValue::Kind::displacement;
+    std::string key, where, unit, text;
+    bool changes = false;           ///< whether it goes with a load parameter or the time
+    std::array<double, 2> begin{};  ///< least and largest at load 0
+    std::array<double, 2> end{};    ///< likewise at the end of the programme
+    double largest = 0.0;           ///< magnitude at load 0 and all entries of the programme
+  };
+  /// A material whose bonds fail by their stretches.
+  struct Fracture {
+    std::string name;  ///< of its region; empty: of the body
+    std::string key;   ///< "material"
+    double youngs_modulus = 0.0, energy = 0.0, strength = 0.0;  ///< [Pa], [J/m2], [Pa]
+    double critical = 0.0;                                      ///< stretch
+    bool has_strength = false;                                  ///< given, or by its stretches
+    bool softens = false;
+    /// E G / f_t^2, which the process zone of a crack scales with [m].
+    [[nodiscard]] double characteristic_length() const {
+      return youngs_modulus * energy / (strength * strength);
+    }
+  };
+  struct Stiffness {
+    std::string key;              ///< "material.youngs_modulus"
+    double youngs_modulus = 0.0;  ///< as given [Pa]
+  };
+  struct Idle {
+    std::string key, needs;
+  };
+
+  int dimension = 0;
+  bool is_plane_stress = false;
+  double spacing = 0.0, horizon = 0.0;  ///< [m]
+  std::vector<double> extents;          ///< of the body [m]
+  double cross_section = 0.0;           ///< [m] or [m2]; dimensions 1 and 2
+  std::string cross_section_key;        ///< "lattice.thickness"
+  bool cross_section_is_given = false, cross_section_counts = false;
+  bool is_quasi_static = true, is_controlled = false, may_fail = false;
+  int steps = 1;  ///< of the programme's stages together
+  std::vector<Division> divisions;
+  std::vector<FeatureLength> lengths;
+  std::vector<Opening> openings;
+  std::vector<CutByCrack> cracks;
+  std::vector<Applied> applied;
+  std::vector<Fracture> fractures;
+  std::vector<Stiffness> stiffnesses;
+  std::vector<Idle> idle;
+  bool begins_moving = false;  ///< by initial fields
+  bool has_notch = false;      ///< a crack or a subtracted shape, which stress concentrates at
+
+  /// The shortest length of a kind; null: there is none.
+  [[nodiscard]] const FeatureLength* shortest(FeatureLength::Kind kind) const;
+};
+
+/// A call that all ranks make.
+/// @throws InputError ("cracks[0]") for a crack that cuts no bond
+[[nodiscard]] Preflight preflight_of(const Case& from, const Body& body, const Communicator& ranks);
+
+/// Lines of `check`: label and text.
+[[nodiscard]] std::vector<std::pair<std::string, std::string>> preflight_lines(const Preflight& of);
+
+}  // namespace peristat

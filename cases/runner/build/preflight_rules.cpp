@@ -1,0 +1,162 @@
+#include "cases/runner/build/preflight_rules.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+namespace peristat {
+namespace {
+
+using Kind = FeatureLength::Kind;
+using Warnings = std::vector<std::string>;
+
+/// Part of a spacing that boxes may miss whole cells by: the round-off of decimals.
+constexpr double round_off = 1e-6;
+
+void add_divisions(const Preflight& of, Warnings& warnings) {
+  for (const auto& [key, axis, asked, made, cells] : of.divisions) {
+    if (std::abs(made - asked) <= round_off * made / cells) continue;
+    warnings.push_back(fmt::format(
+        "the spacing does not divide {} along {}: {:g} m become {:.0f} spacings, {:g} m; a spacing "
+        "of {:.6g} m would fit, or lattice.volumes = \"fractional\", which cuts cells",
+        key, "xyz"[axis], asked, cells, made, asked / cells));
+  }
+}
+
+void add_cross_section(const Preflight& of, Warnings& warnings) {
+  if (!of.cross_section_counts) return;
+  const char* const what = of.dimension == 1 ? "area" : "thickness";
+  if (!of.cross_section_is_given) {
+    warnings.push_back(fmt::format(
+        "{} is not given and taken as 1 {}: all forces and energies are of a body that {}; give "
+        "the {}, or 1 if that is meant",
+        of.cross_section_key, of.dimension == 1 ? "m2" : "m",
+        of.dimension == 1 ? "has this area" : "is a metre thick", what));
+    return;
+  }
+  // A whole metre is taken on purpose, for forces per metre.
+  const double largest = *std::max_element(of.extents.begin(), of.extents.end());
+  if (of.dimension == 2 && of.cross_section != 1.0 && of.cross_section > largest) {
+    warnings.push_back(fmt::format(
+        "{} = {:g} m is more than the body is long ({:g} m), which is no plate in plane stress; "
+        "lengths are in metres",
+        of.cross_section_key, of.cross_section, largest));
+  }
+}
+
+void add_horizon(const Preflight& of, Warnings& warnings) {
+  for (const Kind kind : {Kind::body, Kind::ligament}) {
+    const FeatureLength* const least = of.shortest(kind);
+    if (least == nullptr || of.horizon <= least->size) continue;
+    warnings.push_back(fmt::format(
+        "the horizon, {:g} m, is larger than the {}, {:g} m: every point there sees a surface; a "
+        "spacing of {:.2g} m or less gives it three horizons",
+        of.horizon, least->what, least->size, least->size * of.spacing / (3.0 * of.horizon)));
+  }
+}
+
+void add_bridged(const Preflight& of, Warnings& warnings) {
+  for (const Preflight::Opening& opening : of.openings) {
+    if (opening.bridging == 0) continue;
+    warnings.push_back(fmt::format(
+        "{} bonds bridge {} ({}, {:g} m wide, narrower than the horizon, {:g} m) and hold its "
+        "sides together; cuts_bonds = true in its table cuts them",
+        opening.bridging, opening.key, opening.kind, opening.width, of.horizon));
+  }
+}
+
+void add_constant_values(const Preflight& of, Warnings& warnings) {
+  const bool is_path = of.may_fail || of.steps > 1;  // one elastic step solves for what is given
+  if (!of.is_quasi_static || !is_path) return;
+  const bool grows = of.is_controlled || std::ranges::any_of(of.applied, [](const auto& value) {
+                       return value.changes && value.largest > 0.0;
+                     });
+  for (const Preflight::Applied& value : of.applied) {
+    const bool is_displacement = value.kind == GivenValue::Kind::displacement;
+    if (value.changes || value.largest == 0.0) continue;
+    if (grows && !is_displacement) continue;  // a dead load under one that grows
+    warnings.push_back(
+        fmt::format("{} = {} does not depend on load: it is applied in full at load 0, and no step "
+                    "makes it grow; write \"{}*load\" if it is to grow with the load",
+                    value.key, value.text, value.text));
+  }
+}
+
+void add_nothing_applied(const Preflight& of, Warnings& warnings) {
+  const bool is_any =
+      of.is_controlled || of.begins_moving ||
+      std::ranges::any_of(of.applied, [](const auto& value) { return value.largest > 0.0; });
+  if (is_any) return;
+  warnings.emplace_back(
+      "nothing is applied: every prescribed displacement and load is 0 throughout, so that nothing "
+      "moves; give a [[support]] a displacement or the case a [[load]]");
+}
+
+void add_stiffnesses(const Preflight& of, Warnings& warnings) {
+  constexpr double softest_gel = 1e3;   // [Pa]
+  constexpr double no_dimension = 2.5;  // moduli of problems without units are about 1
+  for (const auto& [key, modulus] : of.stiffnesses) {
+    if (modulus <= no_dimension || modulus >= softest_gel) continue;
+    warnings.push_back(fmt::format(
+        "{} = {:g} Pa is softer than any solid; all numbers are in SI units: {:g} GPa is {:g}e9, "
+        "{:g} MPa is {:g}e6",
+        key, modulus, modulus, modulus, modulus, modulus));
+  }
+}
+
+void add_fracture(const Preflight& of, const Preflight::Fracture& fracture, Warnings& warnings) {
+  const std::string name = fracture.name.empty() ? "" : " of " + fracture.name;
+  constexpr double too_stretched = 0.5;
+  const bool is_soft = std::ranges::any_of(of.stiffnesses, [&](const auto& stiffness) {
+    return stiffness.youngs_modulus >= 1e3 && stiffness.youngs_modulus < 1e6;
+  });
+  if (is_soft && fracture.critical > too_stretched) {
+    warnings.push_back(fmt::format(
+        "bonds{} break at a stretch of {:.3g}: youngs_modulus and strength are in Pa (30 GPa is "
+        "30e9, 30000 MPa as well), fracture_energy is in J/m2",
+        name, fracture.critical));
+  }
+  if (!fracture.softens) return;
+  // docs/trustworthy-peaks.md: with a strength 1.6 times that of the law as it comes, whose length
+  // is 2.9 horizons, cracks run at up to 1.03 of the toughness, and near brittle ones at 1.19.
+  constexpr double shortest_zone = 1.1;  // in horizons
+  const double zone = fracture.characteristic_length();
+  if (zone < shortest_zone * of.horizon) {
+    warnings.push_back(fmt::format(
+        "the spacing is coarse for the process zone{}: E G/ft^2 = {:.3g} m is {:.2g} horizons, and "
+        "below {:g} the lattice holds a crack up as it does with brittle bonds; a spacing of "
+        "{:.2g} "
+        "m or less resolves it",
+        name, zone, zone / of.horizon, shortest_zone,
+        of.spacing * zone / (shortest_zone * of.horizon)));
+  }
+  if (!fracture.has_strength && !of.has_notch) {
+    warnings.push_back(fmt::format(
+        "{}.damage.strength is missing, and no crack, notch or hole is there to begin at: the "
+        "horizon sets a strength of {:.4g} MPa, and the peak grows with each refinement; give the "
+        "strength of the material",
+        fracture.key, fracture.strength * 1e-6));
+  }
+}
+
+void add_idle(const Preflight& of, Warnings& warnings) {
+  for (const auto& [key, needs] : of.idle) {
+    warnings.push_back(fmt::format("{} is not used: it needs {}", key, needs));
+  }
+}
+
+}  // namespace
+
+std::vector<std::string> warnings_of(const Preflight& of) {
+  Warnings warnings;
+  for (const auto& rule : {add_divisions, add_cross_section, add_horizon, add_bridged,
+                           add_constant_values, add_nothing_applied, add_stiffnesses}) {
+    rule(of, warnings);
+  }
+  for (const Preflight::Fracture& fracture : of.fractures) add_fracture(of, fracture, warnings);
+  add_idle(of, warnings);
+  return warnings;
+}
+
+}  // namespace peristat

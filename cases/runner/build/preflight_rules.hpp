@@ -1,0 +1,13 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "cases/runner/build/preflight.hpp"
+
+namespace peristat {
+
+/// What may not be meant: a sentence each, without "warning:" in front.
+[[nodiscard]] std::vector<std::string> warnings_of(const Preflight& of);
+
+}  // namespace peristat
