@@ -44,7 +44,7 @@ def draw_energies(results):
     load, work = _column(results, "load_factor"), _column(results, "external_work")
     parts = [_column(results, name) for name, _, _ in _parts(results)]
     grows = (np.diff(load) >= 0.0).all() and load[0] >= 0.0
-    place = load if grows else np.arange(1.0, len(load) + 1)
+    place = load if grows else _column(results, "step")
     unit, size = unit_for(max(np.abs(work).max(), sum(parts).max()), ENERGIES, 1.0)
     start = [0.0] if place[0] > 0.0 else []
     place, work = np.concatenate([start, place]), np.concatenate([start, work]) / size
