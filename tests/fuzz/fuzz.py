@@ -7,7 +7,8 @@
 
 The seed and the number of an input make it what it is, whatever ran before. A finding is: an exit
 code other than 0, 2, 3, 4, 5, a signal, no end within the limits, a traceback, nan or inf in output
-or results, or results of a completed run that can't be true. Each is written below --keep with its
+or results, or results of a completed run that can't be true. Every fifth input is one of tests/fuzz/properties.py:
+answers that must agree with one another. Each is written below --keep with its
 files, what was said, and a command that repeats it.
 """
 
@@ -27,7 +28,7 @@ import tomllib
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2]))
 
-from tests.fuzz import mutations  # noqa: E402
+from tests.fuzz import mutations, properties  # noqa: E402
 from tests.reference import program  # noqa: E402
 from tests.reference.case import NotUnderstood  # noqa: E402
 from tests.reference.results import Results, not_finite  # noqa: E402
@@ -53,7 +54,10 @@ class Finding(Exception):
 class Input:
     """One fuzzed input: its files in a folder of its own, and the commands to try on them."""
 
+    EVERY_FIFTH = 5  # input is one with a property; the others are what they are without these
+
     def __init__(self, seed, number, folder):
+        self.number = number
         self.random = random.Random(f"{seed}/{number}")
         self.folder = pathlib.Path(folder)
         self.texts = {path.name: path.read_text() for path in sorted(CORPUS.iterdir())}
@@ -72,6 +76,10 @@ class Input:
 
     def peristat(self, *arguments, **limits):
         return self.execute([program.PROGRAM, *arguments], seconds=6 * CPU_SECONDS, cpu_seconds=CPU_SECONDS, **limits)
+
+    @staticmethod
+    def finding(text, run):
+        raise Finding(text, run)
 
     def judge_end(self, run):
         if run.code not in EXPECTED:
@@ -98,6 +106,9 @@ class Input:
 
     def try_it(self):
         """Makes the input and tries it; returns its kind."""
+        if self.number % self.EVERY_FIFTH == 0:
+            properties.try_property(self)
+            return "property"
         kind = self.random.choices(("case", "set", "points", "calibrate", "plot", "pair"), weights=(50, 25, 12, 6, 3, 4))[0]
         getattr(self, f"try_{kind}")()
         return kind

@@ -3,7 +3,7 @@
 import numpy as np
 from matplotlib.ticker import MaxNLocator
 
-from style import ENERGIES, INK, heading, new_figure, number, time_unit, unit_for
+from style import ENERGIES, INK, heading, load_axis, new_figure, number, time_unit, unit_for
 
 PARTS = (  # columns of the history, words and colours, from below
     ("stored_energy", "stored", "#8fb8d4"),
@@ -44,7 +44,8 @@ def draw_energies(results):
     load, work = _column(results, "load_factor"), _column(results, "external_work")
     parts = [_column(results, name) for name, _, _ in _parts(results)]
     grows = (np.diff(load) >= 0.0).all() and load[0] >= 0.0
-    place = load if grows else _column(results, "step")
+    label, of_load = ("", 1.0) if results.is_of_motion else load_axis(load)
+    place = load / of_load if grows else _column(results, "step")
     unit, size = unit_for(max(np.abs(work).max(), sum(parts).max()), ENERGIES, 1.0)
     start = [0.0] if place[0] > 0.0 else []
     place, work = np.concatenate([start, place]), np.concatenate([start, work]) / size
@@ -70,7 +71,7 @@ def draw_energies(results):
         axes.plot(place, both, color=INK, linewidth=1.2, linestyle=(0, (4, 2)), zorder=4,
                   label="with the numerical work of relaxation")  # fmt: skip
         below = np.maximum(below, both)
-    axes.set_xlabel(f"time [{time}]" if results.is_of_motion else "load factor" if grows else "step")
+    axes.set_xlabel(f"time [{time}]" if results.is_of_motion else label if grows else "step")
     if not grows:
         axes.xaxis.set_major_locator(MaxNLocator(integer=True))
     axes.set_ylabel(f"energy [{unit}]")

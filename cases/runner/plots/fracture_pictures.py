@@ -71,11 +71,9 @@ def draw_damage_sequence(results, steps):
 
 
 def _columns(count: int, aspect: float) -> int:
-    """Of panels: as many as make the body largest on a page 14.6 wide and 9 high, and then those that leave least empty."""
-    width = lambda columns: min(14.6 / columns, 9.0 / -(-count // columns) / aspect)
-    largest = max(map(width, range(1, count + 1)))
-    fitting = [columns for columns in range(1, count + 1) if width(columns) > 0.8 * largest]
-    return min(fitting, key=lambda columns: (-count % columns, -width(columns)))
+    """Of panels: as few as the height of a page allows, of which at most a third of the last row is empty."""
+    fits = lambda columns: -(-count // columns) * (14.6 / columns * aspect + 0.45) <= 11.0
+    return next((columns for columns in range(1, count) if fits(columns) and -count % columns <= columns / 3), count)
 
 
 def draw_broken_bonds(results, broken):

@@ -73,12 +73,14 @@ class Gallery:
 
         Raises NoPlace if a file has that name that is not on the list; a link is replaced.
         """
-        if name not in self.names:  # first: what is drawn is always on the list
+        if name not in self.names:
+            self.names = list(dict.fromkeys([*self._listed(), *self.names]))  # another plot may be drawing here, too
+        if name not in self.names:
             if os.path.lexists(self.path / name) and not os.path.islink(self.path / name):
                 raise NoPlace(f"{self.path / name} was not drawn by this command and would be replaced; move it "
                               "to have the picture")  # fmt: skip
             self.names.append(name)
-            self._write(LIST, self._text())
+            self._write(LIST, self._text())  # first: what is drawn is always on the list
         self._write(name, content)
 
     def _text(self) -> bytes:

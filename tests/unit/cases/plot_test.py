@@ -597,9 +597,11 @@ class Pictures(unittest.TestCase):
 
     def test_panels_of_a_sequence_leave_no_half_of_it_empty(self):
         for count in range(2, 7):
-            for aspect in (0.1, 0.5, 1.0, 3.0):
+            for aspect in (0.1, 0.25, 0.5, 1.0, 3.0):
                 columns = fracture_pictures._columns(count, aspect)
-                self.assertLess(-count % columns, max(2, columns / 2), (count, aspect))
+                self.assertLessEqual(-count % columns, columns / 3, (count, aspect))
+        self.assertEqual(fracture_pictures._columns(4, 0.25), 2)  # a beam
+        self.assertEqual(fracture_pictures._columns(6, 1.0), 3)  # a square
 
     # ---- what is written and removed --------------------------------------------------------------
 

@@ -1,0 +1,321 @@
+"""Small cases whose answers are known to agree with one another, whatever the numbers: what they catch is a
+wrong answer with exit code 0.
+
+Every function takes the input (tests/fuzz/fuzz.py), makes its cases with the input's random generator, runs
+them, and raises Finding where a property does not hold. Bodies have some ten points and take milliseconds.
+"""
+
+import csv
+import json
+import math
+import re
+
+MODES = ("newton", "adaptive", "relaxation")
+ROUND_OFF = 1e-6  # share by which what is computed in two ways may differ: solvers stop at 1e-8 and better
+# Share of a work that a single step sums up by the mean of its ends: strains here are below 1e-3.
+ONE_STEP = 1e-2
+
+BAR = """dimension = 1
+[lattice]
+spacing = {spacing}
+horizon_ratio = 2.015
+area = {area}
+[[lattice.shape]]
+add = "box"
+min = [0.0]
+max = [{length}]
+[[set]]
+name = "left"
+where = "x < 2 * spacing"
+[[set]]
+name = "right"
+where = "x > {length} - spacing"
+[material]
+youngs_modulus = {modulus}
+density = 1000.0
+thermal_expansion = 1e-5
+[solver]
+relative_tolerance = 1e-10
+"""
+PLATE = """dimension = 2
+[lattice]
+spacing = {spacing}
+horizon_ratio = 2.015
+thickness = {area}
+[[lattice.shape]]
+add = "box"
+min = [0.0, 0.0]
+max = [{length}, {height}]
+[[set]]
+name = "left"
+where = "x < 2 * spacing"
+[[set]]
+name = "right"
+where = "x > {length} - spacing"
+[material]
+youngs_modulus = {modulus}
+density = 1000.0
+thermal_expansion = 1e-5
+[solver]
+relative_tolerance = 1e-10
+"""
+
+
+class Body:
+    """A bar or a plate of random size and stiffness, held on the left."""
+
+    def __init__(self, random):
+        spacing = 10 ** random.uniform(-4, 1)
+        self.dimension = random.choice((1, 1, 2))
+        self.count = random.randint(6, 12)
+        self.length = self.count * spacing
+        self.modulus = 10 ** random.uniform(0, 12)
+        self.area = 10 ** random.uniform(-6, 1)
+        numbers = {"spacing": spacing, "length": self.length, "height": 4 * spacing, "modulus": self.modulus, "area": self.area}
+        text = BAR if self.dimension == 1 else PLATE
+        self.text = text.format(**{name: f"{value:.9g}" for name, value in numbers.items()})
+        self.section = self.area if self.dimension == 1 else self.area * 4 * spacing
+        self.held = f'[[support]]\nset = "left"\ndisplacement = {[0.0] * self.dimension}\n'
+        self.strain = 10 ** random.uniform(-6, -4)
+
+    def along(self, expression):
+        """A vector with an expression along the bar."""
+        return "[" + ", ".join([f'"{expression}"', '"0"'][: self.dimension]) + "]"
+
+    def driven(self, scale):
+        """What loads it, with its size multiplied by an expression, by name."""
+        stress = self.strain * self.modulus
+        force, gravity = stress * self.section, stress / (1000.0 * self.length)
+        own = {
+            "force": f'[[load]]\nset = "right"\ntotal_force = {self.along(f"{force:.6g}*{scale}")}\n',
+            "gravity": f"[[load]]\ngravity = {self.along(f'{gravity:.6g}*{scale}')}\n",
+            "displacement": f'[[support]]\nset = "right"\ndisplacement = {self.along(f"{self.strain * self.length:.6g}*{scale}")}\n',
+            "temperature": f'[temperature]\nchange = "{self.strain / 1e-5:.6g}*{scale}"\n',
+            "ground": f'[[foundation]]\nname = "ground"\nset = "right"\nstiffness = {[0.1 * self.modulus * self.section / self.length] * self.dimension}\n'
+                      f"displacement = {self.along(f'{self.strain * self.length:.6g}*{scale}')}\n",  # fmt: skip
+        }
+        return {name: self.held + text for name, text in own.items()}
+
+
+def state(made, folder):
+    """What a run ended with: energies, the largest displacement, reactions."""
+    summary = json.loads((made.folder / folder / "summary.json").read_text())
+    energy = summary["energy"]
+    return {
+        "stored": energy["stored"], "displacement": summary["max_displacement"],
+        "reaction": max((math.hypot(*reaction) for reaction in summary["reactions"].values()), default=0.0),
+        "lost": energy["dissipated"] + energy["drained"], "work": energy["external_work"] + energy["numerical_work"],
+    }  # fmt: skip
+
+
+def run(made, text, folder, *words, codes=(0,)):
+    made.write("case.toml", text)
+    ended = made.peristat("run", "case.toml", "--quiet", "--threads", "1", "--output", folder, *words)
+    if ended.code == 2 and "not known" in ended.errors and 2 not in codes:
+        made.finding(f"a case of the fuzzer is refused: {ended.errors.strip()[:200]}", ended)
+    if ended.code not in codes:
+        made.finding(f"exit code {ended.code} for a case that has an answer: {ended.errors.strip()[:200]}", ended)
+    made.assert_numbers(ended)
+    return ended
+
+
+def require_balance(made, ended, found, share):
+    """What is put in is stored, dissipated or drained."""
+    away = abs(found["stored"] + found["lost"] - found["work"])
+    if away > share * max(abs(found["stored"]), abs(found["lost"]), abs(found["work"])):
+        made.finding(f"stored {found['stored']:.9g} J and lost {found['lost']:.9g} J of {found['work']:.9g} J of work", ended)
+
+
+def require_same(made, body, ended, one, other, words, share):
+    force = body.strain * body.modulus * body.section
+    of = {"displacement": body.strain * body.length, "reaction": force, "stored": force * body.strain * body.length}
+    for key, size in of.items():
+        if abs(one[key] - other[key]) > share * max(abs(one[key]), abs(other[key])) + ROUND_OFF * size:
+            made.finding(f"{words}: {key} {one[key]:.9g} and {other[key]:.9g}", ended)
+
+
+def elastic_in_one_step_and_in_many(made):
+    """An elastic body comes to the same in any number of steps."""
+    body = Body(made.random)
+    name, load = made.random.choice(sorted(body.driven("load").items()))
+    mode, many = made.random.choice(MODES), made.random.randint(2, 9)
+    states = []
+    for steps in (1, many):
+        ended = run(made, f"{body.text}mode = \"{mode}\"\n[loading]\nsteps = {steps}\n{load}", f"out{steps}")
+        states.append(state(made, f"out{steps}"))
+        require_balance(made, ended, states[-1], ONE_STEP)
+    require_same(made, body, ended, *states, f"{name} in 1 and {many} steps of mode {mode}", 1e-4)
+
+
+def at_once_and_ramped(made):
+    """What acts from the start ends where it ends if it grows, and does the same work."""
+    body = Body(made.random)
+    name = made.random.choice(sorted(body.driven("")))
+    mode, steps = made.random.choice(MODES), made.random.randint(1, 4)
+    states = []
+    for folder, scale in (("ramped", "load"), ("at_once", "1")):
+        text = f"{body.text}mode = \"{mode}\"\n[loading]\nsteps = {steps}\n{body.driven(scale)[name]}"
+        ended = run(made, text, folder)
+        states.append(state(made, folder))
+        require_balance(made, ended, states[-1], ONE_STEP)
+    require_same(made, body, ended, *states, f"{name} that grows and at once, mode {mode}", 1e-4)
+
+
+def dead_load_in_modes_that_find_loads(made):
+    """A dead load is borne before a mode that follows a path begins; at the end its work balances."""
+    body = Body(made.random)
+    force = body.strain * body.modulus * body.section
+    mode = made.random.choice(("arc_length", "path"))
+    law = f"[material.damage]\nlaw = \"critical_stretch\"\ncritical = {1e3 * body.strain:.6g}\n" if mode == "path" else ""
+    load = f'[[load]]\nset = "right"\ntotal_force = {body.along(f"{0.5 * force:.6g} + {0.5 * force:.6g}*load")}\n'
+    text = body.text.replace("[solver]", law + "[solver]")
+    ended = run(made, f"{text}mode = \"{mode}\"\n[loading]\nsteps = 4\n{body.held}{load}", "out", codes=(0, 2))
+    if ended.code == 0:
+        require_balance(made, ended, state(made, "out"), ONE_STEP)
+        with open(made.folder / "out/history.csv", newline="") as table:
+            if not any(float(row["step"]) > 0 for row in csv.DictReader(table)):
+                made.finding(f"mode {mode} ends well after no step", ended)
+
+
+TENSION = """dimension = 2
+[lattice]
+spacing = 1e-2
+[[lattice.shape]]
+add = "box"
+min = [0, 0]
+max = [0.16, 0.08]
+[[lattice.layer]]
+name = "left"
+side = "x-"
+[[lattice.layer]]
+name = "right"
+side = "x+"
+[quadrature]
+volume_correction = "linear"
+surface_correction = "energy"
+[material]
+youngs_modulus = 30e9
+[material.damage]
+law = "linear"
+fracture_energy = {energy}
+strength = {strength}
+no_fail = ["left", "right"]
+[[set]]
+name = "mid"
+where = "abs(x - 0.08) < spacing && abs(y - 0.04) < spacing"
+[[support]]
+set = "left"
+displacement = [0, "free"]
+[[support]]
+set = "right"
+displacement = ["{pull}*load", "free"]
+[[support]]
+set = "mid"
+displacement = ["free", 0]
+[loading]
+steps = 12
+[solver]
+mode = "adaptive"
+"""
+STRENGTH = 0.1  # share: corners beside the clamped layers
+
+
+def strength_is_what_the_body_bears(made):
+    """A plain plate bears its strength, whatever its fracture energy."""
+    strength = 3e6
+    energy = made.random.choice((30.0, 60.0, 110.0))
+    text = TENSION.format(energy=energy, strength=strength, pull=f"{2.0 * strength / 30e9 * 0.16:.6g}")
+    ended = run(made, text, "out", codes=(0, 2, 3))  # 3: the peak is behind it
+    if ended.code == 2:  # a law that this lattice can't have
+        return
+    with open(made.folder / "out/history.csv", newline="") as table:
+        borne = max(abs(float(row["reaction_x:right"])) for row in csv.DictReader(table)) / 0.08
+    if abs(borne / strength - 1) > STRENGTH:
+        made.finding(f"bears {borne:.4g} Pa with a strength of {strength:g} Pa, fracture energy {energy:g} J/m2", ended)
+
+
+# Keys that have no effect without another one, and what they are added to.
+WITHOUT_SWITCH = (
+    "[material.damage]\ncritical = 1e-3\n",
+    "[material.damage]\nfracture_energy = 10.0\n",
+    "[material.damage]\nstrength = 1e6\n",
+    "[[region]]\nset = \"right\"\n[region.material.damage]\ncritical = 1e-3\n",
+    "[loading]\ntable2 = [0, 1]\n",
+    "[dynamics]\nend_time = 1.0\n",
+    "[[initial]]\nset = \"right\"\nvelocity = [1.0]\n",
+    "[[absorbing]]\nset = \"right\"\nrate = 10.0\n",
+    "[arc_length]\nsteps = 4\n",
+    "[[control]]\nset = \"right\"\nweights = [1]\n",
+)
+
+
+def key_without_its_switch(made):
+    """A key that has no effect is refused, or makes a difference that `check` tells."""
+    body = Body(made.random)
+    added = made.random.choice(WITHOUT_SWITCH)
+    if body.dimension == 2:
+        added = added.replace("[1.0]", "[1.0, 0.0]").replace("[1]", "[1, 0]")
+    plain = body.text + body.driven("load")["displacement"]
+    other = plain + added
+    made.write("case.toml", plain)
+    before = made.peristat("check", "case.toml")
+    made.write("case.toml", other)
+    after = made.peristat("check", "case.toml")
+    if after.code == 0 and after.said == before.said:
+        made.finding(f"is not heeded, and not a word is said: {added!r}", after)
+
+
+def what_misses_the_body(made):
+    """A crack that cuts nothing, a shape or a set beside the body: refused, or told."""
+    body = Body(made.random)
+    far, size = 3 * body.length, body.length
+    missing = {
+        1: f'[[lattice.shape]]\nsubtract = "box"\nmin = [{far:.6g}]\nmax = [{far + size:.6g}]\n',
+        2: made.random.choice((
+            f"[[crack]]\nfrom = [{far:.6g}, 0.0]\nto = [{far + size:.6g}, 0.0]\n",
+            f'[[lattice.shape]]\nsubtract = "box"\nmin = [{far:.6g}, 0.0]\nmax = [{far + size:.6g}, {size:.6g}]\n',
+            f'[[lattice.shape]]\nsubtract = "disk"\ncentre = [{far:.6g}, 0.0]\nradius = {size:.6g}\n',
+        )),
+    }[body.dimension]  # fmt: skip
+    text = body.text + body.driven("load")["displacement"]
+    where = "[[set]]" if "lattice" in missing else "[material]"
+    made.write("case.toml", text.replace(where, missing + where, 1))
+    ended = made.peristat("check", "case.toml")
+    if ended.code == 0 and not re.search(r"no (bond|point)|nothing|not? (cut|meant?)|outside", ended.said):
+        made.finding(f"misses the body, and not a word is said: {missing!r}", ended)
+
+
+def outputs_over_inputs(made):
+    """No output takes the place of an input or of a file of somebody else."""
+    body = Body(made.random)
+    case = body.text + body.driven("load")["force"]
+    made.write("case.toml", case)
+    made.write("notes.txt", "mine")
+    (made.folder / "link").symlink_to(made.random.choice(("case.toml", "notes.txt")))
+    (made.folder / "second").hardlink_to(made.folder / "case.toml")
+    log = made.random.choice(("case.toml", "notes.txt", "link", "second", "./case.toml"))
+    ended = made.peristat("run", "case.toml", "--quiet", "--output", "out", "--log", log)
+    kept = (made.folder / "case.toml").read_text() == case and (made.folder / "notes.txt").read_text() == "mine"
+    if not kept or ended.code != 2:
+        made.finding(f"--log {log} ends with {ended.code}" + ("" if kept else ", and the file is gone"), ended)
+    run(made, case, "out")
+    before = (made.folder / "out/history.csv").read_bytes()
+    inside = made.random.choice(("out/history.csv", "out/results.h5", "out/summary.json", "out/peristat.json"))
+    ended = made.peristat("resume", "out", "--quiet", "--log", inside)
+    if ended.code != 2 or (made.folder / "out/history.csv").read_bytes() != before:
+        made.finding(f"resume --log {inside} ends with {ended.code}", ended)
+    made.write("notes.toml", case)
+    ended = made.peristat("run", "notes.toml", "--quiet", "--output", "out")
+    if ended.code != 2:
+        made.finding(f"results of another case are replaced, exit code {ended.code}", ended)
+
+
+PROPERTIES = {
+    elastic_in_one_step_and_in_many: 3, at_once_and_ramped: 3, dead_load_in_modes_that_find_loads: 2,
+    strength_is_what_the_body_bears: 1, key_without_its_switch: 1, what_misses_the_body: 1, outputs_over_inputs: 1,
+}  # fmt: skip
+
+
+def try_property(made):
+    chosen = made.random.choices(list(PROPERTIES), weights=PROPERTIES.values())[0]
+    chosen(made)
