@@ -163,14 +163,17 @@ void Conditions::prescribe_handles() {
   }
 }
 
-/// A cell without supports may move as a whole, which changes nothing: it is held at the point next
-/// to its middle. In motion its inertia holds it.
+/// A cell may move as a whole along axes that no support holds, which changes nothing: there it is
+/// held at the point next to its middle. In motion its inertia holds it.
 void Conditions::hold_periodic_cell(const ConstraintSpecification& constraints,
                                     const LoadSetting& setting) {
-  const bool is_held = !prescriptions_.empty() || !constraints.rigid_sets.empty() ||
-                       !constraints.rollers.empty() || !constraints.linear.empty();
+  const bool is_held = !constraints.rigid_sets.empty() || !constraints.rollers.empty() ||
+                       !constraints.linear.empty();
   if (constraints.periods.empty() || is_held || programme_.is_of_time()) return;
   for (int c = 0; c < points_.dimension; ++c) floats_[std::size_t(c)] = !foundations_.hold(c);
+  for (const Prescription& support : prescriptions_) {
+    floats_[std::size_t(support.component)] = false;
+  }
   for (const SymmetryPlane& plane : constraints.symmetries) {
     floats_[std::size_t(plane.axis)] = false;
   }
