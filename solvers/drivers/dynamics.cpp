@@ -88,6 +88,14 @@ Advance Dynamics::begin() {
   PathState& state = path_.state();
   const Conditions& conditions = path_.setting().conditions;
   State start{setting().displacement, 0.0, state.accepted.history, {}, state.accepted.environment};
+  if (options_.start == MotionStart::equilibrium) {
+    Attempt found = find_equilibrium();
+    if (!found.has_converged()) {
+      const std::string reason = "no equilibrium to begin with: " + reason_of(found, found.note);
+      return path_.stop(std::move(found), 0.0, reason);
+    }
+    start.displacement = std::move(found.state.displacement);
+  }
   start.displacement.resize(setting().mass.size());
   conditions.prescribe(0.0, start.displacement);
   std::vector<double> velocity = setting().velocity;
@@ -116,6 +124,27 @@ Advance Dynamics::begin() {
                           damaged.dissipated_energy + motion->sums().released;
   state.dynamics.has_begun = true;
   return accept(*motion);
+}
+
+Attempt Dynamics::find_equilibrium() {
+  const State& rest = path_.state().accepted;
+  if (const auto refusal = path_.refusal_of_conditions(0.0)) {
+    Attempt undefined = undefined_attempt(rest, 0.0);
+    undefined.note = *refusal;
+    return undefined;
+  }
+  NewtonOptions newton = path_.setting().newton_options;
+  newton.damage = Damage::held;
+  Attempt found = path_.search(rest, 0.0, newton);
+  is_linearised_ = false;
+  if (!found.has_converged()) return found;
+  const DamageGrowth growth = path_.damaged().growth(found.state.at());
+  if (growth.degrading > 0) {
+    found.outcome = Outcome::damage_begins;
+    found.note = std::to_string(growth.degrading) + " bonds or points at " +
+                 number_text(growth.utilisation) + " of what they bear";
+  }
+  return found;
 }
 
 std::unique_ptr<Motion> Dynamics::make_motion(const State& from, std::vector<double> velocity,

@@ -35,6 +35,9 @@ class Dynamics : public Driver {
   /// @throws std::logic_error if the path has none
   [[nodiscard]] const MotionSetting& setting() const;
   [[nodiscard]] Advance begin();
+  /// Searches the equilibrium of the conditions at t = 0, with integrities held.
+  /// @return converged if nothing is damaged there
+  [[nodiscard]] Attempt find_equilibrium();
   [[nodiscard]] Advance move();
   [[nodiscard]] bool is_implicit() const { return options_.scheme == MotionScheme::newmark; }
   /// @param acceleration of implicit steps; empty: of the forces

@@ -11,7 +11,11 @@ namespace {
 constexpr double share_of_avalanche = 0.25;
 
 /// Of equilibria in an avalanche.
-constexpr int most_passes = 10'000;
+constexpr int most_passes = 1000;
+
+/// After so many searches with growing damage that failed one after another, such a search is tried
+/// in every eighth pass alone: it takes five times the iterations of one with held damage.
+constexpr int most_failures = 4, passes_between_tries = 8;
 
 /// Share by which a step may exceed the load at which the first point fails.
 constexpr double most_overload = 0.02;
@@ -169,7 +173,7 @@ void ImplicitStepping::run_avalanche(ImplicitStep& step) {
   Attempt attempt = path_.search(path_.state().accepted, step.target, held);
   step.found = {};
   step.found.energies.is_avalanche = true;
-  int passes = 0;
+  int passes = 0, failures = 0;
   for (int iterations = attempt.iterations; attempt.has_converged(); ++passes) {
     Assembler& assembler = path_.damaged();
     const Evaluation committed = assembler.commit(attempt.state.displacement, attempt.state.history,
@@ -184,22 +188,42 @@ void ImplicitStepping::run_avalanche(ImplicitStep& step) {
     }
     const State from = state_of(attempt);
     held.scale = growing.scale = attempt.scale;
-    attempt = path_.search(from, step.target, growing);
+    const bool grows = failures < most_failures || passes % passes_between_tries == 0;
+    attempt = path_.search(from, step.target, grows ? growing : held);
     iterations += attempt.iterations;
-    if (!attempt.has_converged() && attempt.outcome != Outcome::interrupted) {
+    if (grows && !attempt.has_converged() && attempt.outcome != Outcome::interrupted) {
+      ++failures;
       attempt = path_.search(from, step.target, held);
       iterations += attempt.iterations;
+    } else if (grows) {
+      failures = 0;
     }
     attempt.iterations = iterations;
   }
   step.attempt = std::move(attempt);
   step.fault.clear();
-  if (!step.attempt.has_converged()) return;
+  if (!step.attempt.has_converged()) return name_snap_back(step);
   step.growth = step.found.growth;
   step.avalanche = std::to_string(step.attempt.iterations) + " iterations in " +
                    std::to_string(passes) + " passes at a control that stands still, while " +
                    bonds_text(step.growth.breaking) + " broke";
   establish(step);
+  name_snap_back(step);
+}
+
+/// An avalanche that comes to no state, or to one that owes energy, is none: the body would have to
+/// unload first. What ends it for reasons of its own keeps its name.
+void ImplicitStepping::name_snap_back(ImplicitStep& step) {
+  Attempt& attempt = step.attempt;
+  const Outcome outcome = attempt.outcome;
+  const bool is_other = outcome == Outcome::converged || outcome == Outcome::interrupted ||
+                        outcome == Outcome::out_of_memory || outcome == Outcome::damage_limit ||
+                        outcome == Outcome::fragmented || outcome == Outcome::undefined_condition;
+  if (is_other || step.found.growth.breaking == 0) return;
+  step.fault = "a snap-back: " + bonds_text(step.found.growth.breaking) +
+               " broke at the control that stands still, and then " +
+               (step.fault.empty() ? explanation(outcome) : step.fault);
+  attempt.outcome = Outcome::no_answer;
 }
 
 Advance ImplicitStepping::accept(ImplicitStep step) {

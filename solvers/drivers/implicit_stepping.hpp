@@ -53,6 +53,7 @@ class ImplicitStepping : public Driver {
   /// Pins what failing points leave loose before its equilibrium is searched for again.
   [[nodiscard]] Outcome pin_loose(const State& at, ImplicitStep& step);
   [[nodiscard]] bool may_be_avalanche(const ImplicitStep& step) const;
+  static void name_snap_back(ImplicitStep& step);
 
   Increment increment_;
 };

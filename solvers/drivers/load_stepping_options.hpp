@@ -28,12 +28,24 @@ enum class MotionScheme {
   newmark,  ///< implicit: Newmark
 };
 
+/// Where a motion begins.
+enum class MotionStart {
+  rest,         ///< undeformed, but for initial displacements
+  equilibrium,  ///< in the equilibrium of supports and loads at t = 0
+};
+
 struct DynamicsOptions {
   double time_step = 0.0;   ///< [s]; 0: a share of the stable one
   double step_share = 0.9;  ///< of the stable step, which is found anew as the stiffness changes
   int steps_per_row = 100;  ///< time steps from one state that is told to the next
   MotionScheme scheme = MotionScheme::verlet;
   double spectral_radius = 1.0;  ///< of the implicit scheme at the highest frequencies, see Newmark
+  MotionStart start = MotionStart::rest;
+
+  /// Whether equilibria are searched, at the start or in each step.
+  [[nodiscard]] bool searches() const {
+    return scheme == MotionScheme::newmark || start == MotionStart::equilibrium;
+  }
 };
 
 struct LoadSteppingOptions {

@@ -30,8 +30,8 @@ constexpr double largest_factorisation = 1e11;
 /// Share of block Jacobi; anything between 0.3 and 1 gives nearly the same iterations.
 constexpr double share_of_jacobi = 0.5;
 
-/// A point whose springs hold less than this share of its own stiffness, because its short bonds
-/// are broken, is held in place by its diagonal block instead.
+/// A point whose springs hold less than this share of its own stiffness along an axis, because its
+/// short bonds are broken or it follows others, is held in place by its diagonal block instead.
 constexpr double loose = 1e-3;
 
 }  // namespace
@@ -166,12 +166,8 @@ struct Surrogate::StandIn {
     for (std::size_t i = 0; i < std::size_t(pattern.points()); ++i) {
       double* own = &springs->diagonal[i * entries];
       const double* whole = &tangent.diagonal[i * entries];
-      double trace = 0.0, whole_trace = 0.0;
-      for (int c = 0; c < d; ++c) {
-        trace += own[c * (d + 1)];
-        whole_trace += whole[c * (d + 1)];
-      }
-      const bool is_loose = trace < loose * whole_trace;
+      bool is_loose = false;
+      for (int c = 0; c < d; ++c) is_loose |= own[c * (d + 1)] < loose * whole[c * (d + 1)];
       for (int k = 0; k < entries; ++k) own[k] += (is_loose ? 1.0 : 1e-12) * whole[k];
     }
   }

@@ -8,6 +8,22 @@
 
 namespace peristat {
 
+namespace {
+
+/// Whether supports or loads are others at the load 1.
+bool depend_on_load(const Conditions& conditions, const LoadPath& loads) {
+  const auto values_at = [&](double load) {
+    std::vector<double> values(conditions.prescribed().size()), force(values.size());
+    conditions.prescribe(loads(load), values);
+    conditions.external_force(loads(load), force);
+    values.insert(values.end(), force.begin(), force.end());
+    return values;
+  };
+  return values_at(0.0) != values_at(1.0);
+}
+
+}  // namespace
+
 bool finds_loads(const StudyOptions& options, const Conditions& conditions) {
   return conditions.control() != nullptr || options.loading.mode == Mode::arc_length;
 }
@@ -25,6 +41,12 @@ void refuse_unanswered_loads(const Body& body, const FreeDofs& free, Assembler& 
   const LinearOutcome outcome =
       find_rate(problem, solver, tangent, {rest, assembler.initial_history()}, loads, 0.0, rate);
   if (outcome != LinearOutcome::solved) return;  // the search names it
+  if (norm(rate) == 0.0 && depend_on_load(conditions, loads)) {
+    throw InputError("supports", "",
+                     "supports and loads must begin in proportion to load where the load is found; "
+                     "these do not change with it at load = 0, as load^2 and abs(load) don't. Give "
+                     "a multiple of load");
+  }
   if (norm(rate) == 0.0) {
     throw InputError("supports", "",
                      "neither a support nor a load depends on load, so there is no path to follow");

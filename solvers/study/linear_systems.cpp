@@ -165,7 +165,11 @@ void refuse_to_solve_for(const Body& body, const LoadSteppingOptions& loading) {
   const std::string why =
       "is for models with an energy; form \"printed\" takes mode dynamics with scheme \"verlet\", "
       "and form \"energy\" everything";
-  if (loading.mode == Mode::dynamics) throw InputError("dynamics.scheme", "newmark", why);
+  if (loading.mode == Mode::dynamics) {
+    if (loading.dynamics.scheme == MotionScheme::newmark)
+      throw InputError("dynamics.scheme", "newmark", why);
+    throw InputError("dynamics.start", "equilibrium", why);
+  }
   throw InputError("loading.mode", std::string(loading.mode.name), why);
 }
 
@@ -256,7 +260,8 @@ LinearSystems choose_linear_systems(const StudyOptions& options, const Model& mo
   problem.is_symmetric = is_symmetric;
   problem.sharing = sharing;
   problem.unknowns = estimate.size.free_dofs;
-  problem.has_inertia = options.loading.mode == Mode::dynamics;
+  problem.has_inertia = options.loading.mode == Mode::dynamics &&
+                        options.loading.dynamics.scheme == MotionScheme::newmark;
   problem.bonds = estimate.size.stored_blocks();
   problem.factor_flops = estimate.factor_flops;
   problem.factor_bytes = estimate.direct_bytes(linear.method);
@@ -292,7 +297,7 @@ LinearSystems choose_linear_systems(const StudyOptions& options, const Model& mo
 
 LinearSystems choose_linear_systems(const StudyOptions& options, const Body& body,
                                     SolverLadder::Reporter tell) {
-  const bool is_explicit = options.loading.dynamics.scheme == MotionScheme::verlet;
+  const bool is_explicit = !options.loading.dynamics.searches();
   if (options.loading.mode == Mode::dynamics && is_explicit) return systems_of_motion(body);
   refuse_to_solve_for(body, options.loading);
   refuse_products_with_constraints(options, body);

@@ -9,6 +9,7 @@
 #include "solvers/study/require_memory_for.hpp"
 #include "solvers/study/rest_stability.hpp"
 #include "solvers/study/without_equation.hpp"
+#include "src/conditions/points_of_set.hpp"
 #include "src/core/number_text.hpp"
 
 namespace peristat {
@@ -73,6 +74,18 @@ void refuse_modes_of_failing_points(const Body& body, const StudyOptions& option
                    "\"fft\" take newton, relaxation or dynamics");
 }
 
+/// A motion that begins in equilibrium finds its displacements.
+void refuse_initial_displacements(const Body& body) {
+  const auto& initial = body.specification.initial;
+  for (std::size_t k = 0; k < initial.size(); ++k) {
+    for (const std::string& component : initial[k].displacement) {
+      if (component == "0") continue;
+      throw InputError(indexed("initial", k) + ".displacement", '"' + component + '"',
+                       "does not go with a start in equilibrium, which finds the displacements");
+    }
+  }
+}
+
 /// Of the modes some sum over ranks.
 void refuse_modes_without_ranks(const Body& body, const StudyOptions& options) {
   const Mode mode = options.loading.mode;
@@ -110,7 +123,10 @@ void check_study(const Body& body, const StudyOptions& options) {
                      is_implicit ? "must be set: implicit steps need a body with inertia"
                                  : "is for bodies that implicit steps follow");
   }
-  if (!moves) refuse_unheld_bodies(body);
+  const bool begins_in_equilibrium =
+      moves && options.loading.dynamics.start == MotionStart::equilibrium;
+  if (begins_in_equilibrium) refuse_initial_displacements(body);
+  if (!moves || begins_in_equilibrium) refuse_unheld_bodies(body);
   refuse_unstable_rest(body, options);
 }
 

@@ -338,6 +338,13 @@ class Periodic(Constrained):
                 self.assertEqual(ended.code, 2, ended.said)
                 self.assertIn(words, ended.said)
 
+    def test_a_cell_that_is_held_along_one_axis_floats_along_the_other(self):
+        free = CELL.format(material=BONDS, x=[1e-3, 0], y=[0, 0])
+        held = '[[set]]\nname = "middle"\nwhere = "abs(y - 0.003) < 6e-4 && abs(x - 0.004) < 6e-4"\n[[support]]\nset = "middle"\ndisplacement = ["free", 0]\n'
+        expected, row = self.run_case(free, name="free")[-1], self.run_case(free + held)[-1]
+        for force in ("reaction_x:period_x", "reaction_y:period_y"):
+            self.assertAlmostEqual(row[force] / expected["reaction_x:period_x"], expected[force] / expected["reaction_x:period_x"], delta=1e-11)
+
     def test_loads_that_get_out_of_balance_end_the_run(self):
         sets = '[[set]]\nname = "low"\nwhere = "y < 0.003"\n[[set]]\nname = "high"\nwhere = "y > 0.003"\n'
         loads = '[[load]]\nset = "low"\ntotal_force = [0, "-load"]\n[[load]]\nset = "high"\ntotal_force = [0, "{}"]\n'
@@ -459,6 +466,32 @@ class Rigid(Constrained):
                 method, preconditioner = solver.split("/")
                 row = self.run_case(BODY + PIN + LIFTED + ROLLER, f"solver.linear='{method}'", f"solver.preconditioner='{preconditioner}'", name=preconditioner)[-1]
                 self.assertAlmostEqual(row["reaction_y:pin"] / expected["reaction_y:pin"], 1, delta=1e-8)
+
+    def test_the_surrogate_bears_linear_constraints(self):
+        """Whose followers have no rows, so that the springs of their neighbours alone do not hold."""
+        text = """\
+dimension = 2
+[lattice]
+spacing = 1e-3
+horizon_ratio = 3.015
+shape = [{ add = "box", min = [0, 0], max = [12e-3, 7e-3] }]
+layer = [{ name = "left", side = "x-" }, { name = "right", side = "x+" }]
+[material]
+youngs_modulus = 1e9
+[[support]]
+set = "left"
+displacement = [0, 0]
+[[constraint]]
+name = "tie"
+displacement = "1e-5*load"
+[[constraint.term]]
+set = "right"
+weights = [1, 0]
+"""
+        expected = self.run_case(text, name="direct")[-1]
+        row = self.run_case(text, "solver.linear='pcg'", "solver.preconditioner='surrogate'")[-1]
+        self.assertEqual(len(self.history()), 1)
+        self.assertAlmostEqual(row["stored_energy"] / expected["stored_energy"], 1, delta=1e-8)
 
     def test_relaxation_finds_the_same(self):
         gentle = LIFTED.replace("1e-3", "1e-5")

@@ -380,6 +380,75 @@ density = 2440
         self.assertIn("initial", self.said)
 
 
+class Start(Folder):
+    """From the equilibrium of supports and loads at t = 0."""
+
+    HANGING = (BAR.split("[[initial]]")[0] + """\
+[[set]]
+name = "top"
+where = "x < 0.3"
+[[support]]
+set = "top"
+displacement = [0]
+[[load]]
+set = "rest"
+gravity = ["1e-2*(1 + LATER)"]
+[[set]]
+name = "rest"
+where = "x > 0.3"
+[solver]
+mode = "dynamics"
+[dynamics]
+end_time = 4.0
+start = "equilibrium"
+time_step = 0.02
+[output]
+every = 20
+""")
+
+    def case(self, scheme="", start="equilibrium", later="0"):
+        text = self.HANGING.replace("LATER", later).replace('"equilibrium"', f'"{start}"')
+        return text.replace("time_step", scheme + "time_step")
+
+    def test_a_bar_that_hangs_stays_where_it_is(self):
+        for number, scheme in enumerate(("", 'scheme = "newmark"\n')):
+            rows = columns(self.run_case(self.case(scheme), f"still_{number}"))
+            self.assertLess(rows["kinetic_energy"].max(), 1e-15 * rows["stored_energy"][0])
+            numpy.testing.assert_allclose(rows["stored_energy"], rows["stored_energy"][0], rtol=1e-9)
+            numpy.testing.assert_allclose(rows["external_work"], rows["stored_energy"][0], rtol=1e-9)
+            swings = columns(self.run_case(self.case(scheme, "rest"), f"swings_{number}"))
+            self.assertGreater(swings["kinetic_energy"].max(), 0.1 * rows["stored_energy"][0])
+
+    def test_a_load_more_is_the_motion_about_the_preload(self):
+        """The bar is linear to 1e-6 or so of its strains: what the further load does adds up."""
+        small = self.HANGING.replace("1e-2", "1e-6")
+
+        def run(name, start, load):
+            text = small.replace('"equilibrium"', f'"{start}"').replace('"1e-6*(1 + LATER)"', f'"1e-6*({load})"')
+            return fields(self.run_case(text, name))
+
+        whole, further = run("whole", "equilibrium", "1 + (t > 0)"), run("further", "rest", "t > 0")
+        still = whole[0]["displacement"]
+        self.assertGreater(abs(still).max(), 1e-7)
+        for number, state in whole.items():
+            numpy.testing.assert_allclose(state["displacement"] - still, further[number]["displacement"], atol=1e-5 * abs(still).max())
+
+    def test_goes_on_to_the_last_bit(self):
+        whole = self.run_case(self.case(later="0.1*t"), "whole")
+        part = self.run_case(self.case(later="0.1*t"), "part", "--stop-after", 2, code=130)
+        ended = peristat("resume", part, "--threads", 1, "--quiet")
+        self.assertEqual(ended.returncode, 0, ended.stderr)
+        self.assertEqual((whole / "history.csv").read_text(), (part / "history.csv").read_text())
+
+    def test_starts_that_are_none(self):
+        self.assertIn("initial[0].displacement", self.refusal(self.case() + '[[initial]]\ndisplacement = ["1e-3*x"]\n'))
+        self.assertIn("do not hold the body", self.refusal(self.case().replace('[[support]]\nset = "top"\ndisplacement = [0]\n', "")))
+        brittle = '[material.damage]\nlaw = "critical_stretch"\ncritical = 1e-3\n'
+        folder = self.run_case(self.case() + brittle, "breaks", code=3)
+        self.assertIn("damage_begins", self.said)
+        self.assertIn("t = 0", (folder / "dossier.txt").read_text())
+
+
 class Check(Folder):
     def test_neighbours_by_round_off_are_told(self):
         case = self.folder / "case.toml"

@@ -305,6 +305,67 @@ class Control(Programmes):
         self.assertEqual(differences(self.folder / "whole", self.folder / "split"), [])
 
 
+class SnapBack(Programmes):
+    """A brittle plate, cut from one side, whose far corner is controlled: it snaps back with the first bonds."""
+
+    TEXT = """\
+dimension = 2
+[lattice]
+spacing = 0.001
+thickness = 0.001
+horizon_ratio = 2.015
+shape = [{ add = "box", min = [0, 0], max = [0.007, 0.007] }]
+[material]
+youngs_modulus = 200e9
+[material.damage]
+law = "critical_stretch"
+critical = 1.3e-3
+[quadrature]
+volume_correction = "linear"
+surface_correction = "energy"
+[[set]]
+name = "bottom"
+where = "y < 0.0011"
+[[set]]
+name = "top"
+where = "y > 0.0059"
+[[set]]
+name = "corner"
+where = "min(x, y) > 0.0059"
+[[crack]]
+from = [-0.001, 0.004]
+to = [0.002, 0.004]
+[[support]]
+set = "bottom"
+displacement = [0, 0]
+[[load]]
+set = "top"
+total_force = ["140.0*load", "1400.0*load"]
+[[control]]
+set = "corner"
+weights = [0, 1]
+[loading]
+table = [0, 2.8e-5]
+[solver]
+mode = "newton"
+relative_tolerance = 1e-11
+"""
+
+    def test_it_has_a_name_and_a_way_out(self):
+        for steps in (4, 8):
+            rows = self.run_case(self.TEXT, f"loading.steps={steps}", name=f"of_{steps}", expected=3)
+            told = (self.folder / f"of_{steps}/dossier.txt").read_text()
+            self.assertIn("Stopped: no_answer", told)
+            self.assertIn('solver.mode = "path"', told)
+            self.assertIn("a snap-back", told)
+            self.assertNotIn("fault of the program", told)
+            # Loads of searches that found nothing are not told as if the body had borne them.
+            reached = {0.0} | {row["load_factor"] for row in rows}
+            for row in rows_of(self.folder / f"of_{steps}", "decisions.csv"):
+                if row["outcome"] != "converged":
+                    self.assertIn(float(row["load_factor"]), reached)
+
+
 class Pictures(ShippedCase):
     def test_the_path_is_drawn_where_loads_were_found(self):
         self.run_case(OPENED, name="controlled")
@@ -332,6 +393,8 @@ class BadInput(Programmes):
         still = OPENED.replace("abs(x - 0.01) < 1e-3", "abs(x - 0.01) < 1e-3 && abs(y - 5e-3) < 1e-3")
         self.assertIn("does not answer", self.refused(still, "control[0].weights=[0,1]"))
         self.assertIn("nor a load depends on load", self.refused(OPENED.replace("1e-3*load", "0")))
+        for curved in ("load^2", "abs(load)"):  # which do not change at load 0, or both ways alike
+            self.assertIn("must begin in proportion to load", self.refused(OPENED.replace("1e-3*load", f"1e-3*{curved}")))
 
     def test_what_does_not_go_with_a_control(self):
         self.assertIn("loading.table", self.refused(OPENED.replace("table = [0, 1e-5]\n", "")))

@@ -247,7 +247,7 @@ class CaseRun {
   LoadSteppingResult follow() {
     SolvedModel& equations = study_->equations();
     study_->analyze();
-    if (!from_.dynamics.is_asked_for || from_.dynamics.is_implicit())
+    if (!from_.dynamics.is_asked_for || from_.dynamics.searches())
       progress_.say(fmt::format("linear solver: {}{} ({})", equations.solver().describe(),
                                 equations.systems().is_stored ? "" : ", tangent matrix-free",
                                 equations.systems().chosen.reason));

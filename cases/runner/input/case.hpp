@@ -78,9 +78,14 @@ struct DynamicsSpecification {
   int history_every = 0;  ///< time steps from one row of the history to the next; 0: output.every
   MotionScheme scheme = MotionScheme::verlet;
   double spectral_radius = 1.0;  ///< of implicit steps at the highest frequencies
+  MotionStart start = MotionStart::rest;
 
   /// Whether each step searches an equilibrium, with the settings of the solver.
   [[nodiscard]] bool is_implicit() const { return is_asked_for && scheme == MotionScheme::newmark; }
+  /// Whether the start or each step is an equilibrium that is searched.
+  [[nodiscard]] bool searches() const {
+    return is_implicit() || (is_asked_for && start == MotionStart::equilibrium);
+  }
 };
 
 /// Table [relaxation]: steps of the load factor, and how each is relaxed.

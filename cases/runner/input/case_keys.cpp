@@ -1014,7 +1014,7 @@ Table<AbsorbingSpecification> absorbing_keys() {
                .required()}};
 }
 
-constexpr const char* newmark_name = "newmark";
+constexpr const char *newmark_name = "newmark", *equilibrium_name = "equilibrium";
 
 /// Supports and loads are read as soon as it is known whether they are expressions of the time, and
 /// settings of the solver as soon as it is known whether steps search equilibria.
@@ -1028,6 +1028,10 @@ void ask_for_dynamics(const Entry& at, Case& result) {
   if (dynamics.has("scheme") && dynamics.is_string("scheme") &&
       dynamics.string("scheme") == newmark_name) {
     result.dynamics.scheme = MotionScheme::newmark;
+  }
+  if (dynamics.has("start") && dynamics.is_string("start") &&
+      dynamics.string("start") == equilibrium_name) {
+    result.dynamics.start = MotionStart::equilibrium;
   }
 }
 
@@ -1048,6 +1052,12 @@ Table<DynamicsSpecification> dynamics_keys() {
                  {{"verlet", MotionScheme::verlet}, {newmark_name, MotionScheme::newmark}}),
              "explicit steps, or implicit ones, each of which searches an equilibrium with "
              "inertia by Newton's method: for motions that are slow beside the stable step")
+               .early(),
+           K("start", &Spec::start,
+             choice<MotionStart>(
+                 {{"rest", MotionStart::rest}, {equilibrium_name, MotionStart::equilibrium}}),
+             "undeformed, but for initial displacements; or in the equilibrium of supports and "
+             "loads at t = 0, which is searched by Newton's method and may damage nothing")
                .early(),
            K("spectral_radius", &Spec::spectral_radius, between(0.0, 1.0),
              "of implicit steps: what a step leaves of the highest frequencies. 1: average "
@@ -1104,12 +1114,13 @@ void check_dynamics(const Entry& at, const Case& result) {
   }
   if (at.from.has("dynamics") && at.from.table("dynamics").has("spectral_radius"))
     at.from.table("dynamics").refuse("spectral_radius", "is for scheme = \"newmark\"");
+  if (result.dynamics.searches()) return;
   for (const char* key : {"linear", "preconditioner", "tangent", "predictor", "projection",
                           "relative_tolerance", "linear_tolerance", "max_iterations"}) {
     if (solver.has(key)) {
       solver.refuse(key,
                     "is not heeded by explicit time steps, which search no equilibrium; "
-                    "dynamics.scheme = \"newmark\" does");
+                    "dynamics.scheme = \"newmark\" and dynamics.start = \"equilibrium\" do");
     }
   }
 }
@@ -1302,7 +1313,7 @@ Table<SolverSpecification> solver_keys() {
   using Spec = SolverSpecification;
   using K = Key<Spec>;
   const auto searches = [](auto&, auto& from) {
-    return !from.dynamics.is_asked_for || from.dynamics.is_implicit();
+    return !from.dynamics.is_asked_for || from.dynamics.searches();
   };
   const auto is_static = [](auto&, auto& from) { return !from.dynamics.is_asked_for; };
   return {

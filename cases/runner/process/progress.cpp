@@ -42,7 +42,8 @@ Progress::Progress(bool quiet, const std::string& log_file, bool tells)
     : tells_(tells),
       quiet_(quiet || !tells),
       live_(!quiet_ && isatty(STDOUT_FILENO) == 1),
-      start_(std::chrono::steady_clock::now()) {
+      start_(std::chrono::steady_clock::now()),
+      last_said_(start_) {
   if (log_file.empty() || !tells) return;
   try {
     log_ = open_own_file(log_file, log_heading);
@@ -88,6 +89,7 @@ void Progress::erase_live_line() {
 }
 
 void Progress::say(const std::string& line) {
+  last_said_ = std::chrono::steady_clock::now();
   erase_live_line();
   write_to_person((live_ ? folded(line, columns(STDOUT_FILENO)) : line) + "\n");
   write_to_log(line);
@@ -114,13 +116,21 @@ void Progress::iteration(const IterationRecord& record) {
         "  step {} iteration {}: residual {:.3e} N, relative {:.3e}, step length {:g}", record.step,
         record.iteration, record.residual, record.relative_residual, record.step_length));
   }
-  if (!live_) return;
+  if (!live_) return show_life(record);
   erase_live_line();
   const std::string line =
       fmt::format("step {}  load {:.4g}  iteration {}  residual {:.1e}{}", record.step,
                   load_factor_, record.iteration, record.relative_residual, time_left());
   write_to_person(cut_to(line, columns(STDOUT_FILENO) - 1));
   live_line_shown_ = true;
+}
+
+/// Where no live line shows that a long search goes on.
+void Progress::show_life(const IterationRecord& record) {
+  constexpr std::chrono::seconds longest_silence{30};
+  if (std::chrono::steady_clock::now() - last_said_ < longest_silence) return;
+  say(fmt::format("  step {}: still searching, iteration {}, residual {:.1e}", record.step,
+                  record.iteration, record.relative_residual));
 }
 
 void Progress::decision(const DecisionRecord& record) {

@@ -43,6 +43,7 @@ class Progress {
   void write_to_log(const std::string& line);
   void erase_live_line();
   void moved(const StepRecord& record);
+  void show_life(const IterationRecord& record);
   [[nodiscard]] std::string time_left() const;
 
   bool tells_, quiet_, live_;
@@ -50,7 +51,7 @@ class Progress {
   double load_factor_ = 0.0;  // accepted
   double last_stage_ = 1.0;
   TimeLeft time_left_;
-  std::chrono::steady_clock::time_point start_;
+  std::chrono::steady_clock::time_point start_, last_said_;
   std::FILE* log_ = nullptr;
 };
 

@@ -65,8 +65,9 @@ std::string suggestion(Outcome outcome, Mode mode) {
       return "Mend the expression of the support or load that is named above.";
     case Outcome::no_answer:
       return "Control another displacement: one that grows throughout, like the opening of the "
-             "mouth "
-             "of a crack, or a sum of several.";
+             "mouth of a crack, or a sum of several. Where bonds break and the path snaps back in "
+             "every displacement, run it without a control and with solver.mode = \"path\", which "
+             "unloads the body before the next bond breaks.";
     case Outcome::sharp_turn:
       return "Take smaller steps (loading.steps, loading.smallest_step). Where several pivots "
              "vanish "
@@ -75,6 +76,10 @@ std::string suggestion(Outcome outcome, Mode mode) {
       return "Look at history.csv: if the path goes where you want it, end it with "
              "arc_length.steps; if it is long, allow longer steps (loading.largest_step).";
     case Outcome::damage_begins:
+      if (mode == Mode::dynamics) {
+        return "Begin with smaller loads at t = 0, and let them grow with the time, or take "
+               "dynamics.start = \"rest\".";
+      }
       return "Follow the damage by a [[control]] in mode newton, or in mode adaptive.";
     case Outcome::unstable_step:
       return "Take a smaller dynamics.time_step, or give dynamics.step_share, with which the step "
@@ -183,7 +188,10 @@ Dossier make_dossier(const Case& from, const Body& body, const LoadSteppingResul
     say("Last accepted state: none; the first step failed");
   }
   say("");
-  say(fmt::format("Last search: load factor {:.9g}, {} iterations",
+  const bool finds_load =
+      body.conditions->control() != nullptr || from.solver.mode == Mode::arc_length;
+  say(fmt::format("Last search: {} {:.9g}, {} iterations",
+                  finds_load ? "ended at the iterate of the load factor" : "load factor",
                   body.conditions->load_factor(attempt.at), attempt.iterations));
   say(fmt::format("  residual {:.4g} N, measured against {:.4g} N; tolerance {:.3g} of that",
                   attempt.state.residual_norm, attempt.scale, from.solver.relative_tolerance));

@@ -204,7 +204,13 @@ void Recorder::find_growth(const EarlierResults& earlier,
   }
 }
 
-void Recorder::decided(const DecisionRecord& record) {
+void Recorder::decided(DecisionRecord record) {
+  const bool finds_loads =
+      body_.conditions->control() != nullptr || case_.solver.mode == Mode::arc_length;
+  const bool has_failed = record.outcome != name(Outcome::converged) &&
+                          (record.action == Decision::cut || record.action == Decision::stop);
+  // What a search that failed has left of the load may be any number.
+  if (finds_loads && has_failed) record.load_factor = last_ ? last_->load_factor : 0.0;
   decisions_.push_back(record);
   results_.add(record);
   progress_.decision(record);

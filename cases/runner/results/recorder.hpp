@@ -52,7 +52,8 @@ class Recorder {
 
   void iteration(const IterationRecord& record);
   void accepted(StepRecord record, const AcceptedState& state);
-  void decided(const DecisionRecord& record);
+  /// Where the load is found, one that failed stands at the load of the state before it.
+  void decided(DecisionRecord record);
   /// A linear solver has given way to the next one.
   void changed_solver(const std::string& reason);
 
