@@ -108,6 +108,9 @@ void add_calibration(CLI::App& command, CommandLine& line) {
       command.add_option("case", line.case_file, "case file: its lattice and material");
   add_settings(command, line);
   CalibrationQuestion& asked = line.calibration;
+  command.add_flag("--strengths", asked.with_strengths,
+                   "with a law of damage: strengths under tension, biaxial tension, shear and "
+                   "compression");
   command.add_option("--dimension", asked.dimension, "2 or 3; of bonds also 1")->excludes(file);
   command.add_option("--spacing", asked.spacing, "of the lattice [m]")->excludes(file);
   command.add_option("--horizon-ratio", asked.horizon_ratio, "horizon / spacing")->excludes(file);
@@ -196,6 +199,14 @@ void refuse_options_of_bonds(const CommandLine& line) {
   }
 }
 
+/// Without a case file there is no calibration without these.
+void require_lattice(const CLI::App& command) {
+  for (const char* name : {"--dimension", "--spacing", "--horizon-ratio"}) {
+    if (command.get_option(name)->count() > 0) continue;
+    throw InputError(name, "", "is missing; calibrate needs it, or a case file");
+  }
+}
+
 Exit calibrate(const CommandLine& line) {
   if (line.calibrated_model == MaterialModel::bond) {
     return calibrate(line.calibration, line.bond_calibration);
@@ -241,13 +252,16 @@ Exit execute(const CLI::App& program, const CommandLine& line, int threads,
     return resume(line.results, overrides(line), run_options(line, threads), ranks ? *ranks : sole);
   }
   const bool is_calibration = program.got_subcommand("calibrate");
-  if (is_calibration && line.case_file.empty()) return calibrate(line);
+  if (is_calibration && line.case_file.empty()) {
+    require_lattice(*program.get_subcommand("calibrate"));
+    return calibrate(line);
+  }
   const Case from = on_each_rank(ranks, [&] {
     Case read = read_case(line.case_file, overrides(line));
     if (ranks) refuse_keys_without_ranks(read);
     return read;
   });
-  if (is_calibration) return calibrate(from);
+  if (is_calibration) return calibrate(from, line.calibration.with_strengths);
   if (program.got_subcommand("check")) return check(from, threads);
   if (program.got_subcommand("check-tangent")) {
     return check_tangent(from, line.deformation, threads);
@@ -379,6 +393,8 @@ int main(int count, char** arguments) try {
     throw InputError("", "", unexpected_words(program));
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() != 0) {
+      // What follows an unknown option is taken for a case file, and then excludes others.
+      if (!program.remaining(true).empty()) throw InputError("", "", unexpected_words(program));
       throw InputError("", "", std::string(error.what()) + "; --help lists the options");
     }
     program.exit(error);

@@ -7,6 +7,7 @@
 
 #include "src/core/input_error.hpp"
 #include "src/core/number_text.hpp"
+#include "src/materials/poisson_ratio_limits.hpp"
 #include "src/neighbourhood/bulk_neighbourhood.hpp"
 #include "src/neighbourhood/horizon.hpp"
 
@@ -135,8 +136,16 @@ void check_solid_material(const MaterialSpecification& material, const std::stri
   require(dimension > 1, key + ".model", name, "needs dimension 2 or 3");
   require(material.youngs_modulus.has_value(), key + ".youngs_modulus", "", "is missing");
   require(material.poisson_ratio.has_value(), key + ".poisson_ratio", "", "is missing");
-  require(*material.poisson_ratio > -1.0 && *material.poisson_ratio < 0.5, key + ".poisson_ratio",
-          number_text(*material.poisson_ratio), "must be above -1 and below 0.5");
+  const double nu = *material.poisson_ratio;
+  require(nu > -1.0 && nu < 0.5, key + ".poisson_ratio", number_text(nu),
+          "must be above -1 and below 0.5");
+  // In plane stress nothing is incompressible at 1/2.
+  const bool is_plane_stress = dimension == 2 && material.plane == PlaneState::stress;
+  require(1.0 + nu >= least_distance_of_poisson_ratio &&
+              (is_plane_stress || 1.0 - 2.0 * nu >= least_distance_of_poisson_ratio),
+          key + ".poisson_ratio", number_text(nu),
+          "leaves too few digits of double precision so near its limit: take at most "
+          "0.49999995, and at least -0.9999999");
   const std::string has_own = "is not for the model " + name + ", whose constants are E and nu";
   require_absent(material.micromodulus.has_value(), key + ".micromodulus", has_own);
   require_absent(material.c1.has_value(), key + ".c1", has_own);

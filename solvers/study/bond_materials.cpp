@@ -44,7 +44,8 @@ Coordinates direction_of(const FibreSpecification& fibre, int dimension) {
                        : "no shear_modulus does with the first two"));
 }
 
-/// Whether laws are the same but for the stretches that they begin and end at.
+/// Whether laws are the same but for the stretches that they begin and end at; the blended one
+/// also has its relative peak.
 bool same_law(const DamageSpecification& one, const DamageSpecification& other) {
   if (one.law != other.law) return false;
   switch (one.law) {
@@ -53,7 +54,8 @@ bool same_law(const DamageSpecification& one, const DamageSpecification& other) 
     case DamageLaw::exponential:
       return one.rate == other.rate;
     case DamageLaw::blended:
-      return one.hardening == other.hardening && one.rise() == other.rise();
+      // What is found from data has round-off, and the tolerance of a strength.
+      return one.hardening == other.hardening && std::abs(one.rise() - other.rise()) < 1e-6;
     case DamageLaw::critical_stretch:
     case DamageLaw::linear:
     case DamageLaw::none:

@@ -48,15 +48,24 @@ double ratio_at(const Function& of, double value) {
   return inverse(of, value, smallest_ratio, largest_ratio);
 }
 
+DamageSpecification brittle_law(double critical) {
+  DamageSpecification damage;
+  damage.law = DamageLaw::critical_stretch;
+  damage.critical = critical;
+  return damage;
+}
+
 /// Finds the stretches of one law.
 class Search {
  public:
-  Search(const DamageSpecification& damage, std::string key, const FractureScale& scale)
-      : result_(damage), key_(std::move(key)), scale_(scale) {
+  /// @param peak f_p of a law with a strength; 0: of one without
+  Search(const DamageSpecification& damage, std::string key, const FractureScale& scale,
+         double peak)
+      : result_(damage), key_(std::move(key)), scale_(scale), peak_(peak) {
     if (damage.fracture_energy) {
       work_ = *damage.fracture_energy / (scale.micromodulus * scale.crossing);
     }
-    if (damage.strength) peak_ = *damage.strength / scale.youngs_modulus;
+    if (damage.strength) strength_ = *damage.strength;
     result_.fracture_energy.reset();
     result_.strength.reset();
   }
@@ -73,18 +82,7 @@ class Search {
   }
 
  private:
-  void brittle() {
-    if (work_ > 0.0 && peak_ > 0.0) {
-      throw InputError(
-          key_ + "strength", number_text(peak_ * scale_.youngs_modulus),
-          "a brittle bond has one stretch for both: with this fracture_energy the strength is " +
-              short_text(std::sqrt(2.0 * work_) * scale_.youngs_modulus) +
-              " Pa, with this strength the fracture energy is " +
-              short_text(0.5 * peak_ * peak_ * scale_.micromodulus * scale_.crossing) +
-              " J/m2. Give one of them, or a law that softens, like \"linear\"");
-    }
-    result_.critical = work_ > 0.0 ? std::sqrt(2.0 * work_) : peak_;
-  }
+  void brittle() { result_.critical = work_ > 0.0 ? std::sqrt(2.0 * work_) : peak_; }
 
   void softening() {
     if (work_ > 0.0 && peak_ == 0.0 && result_.onset == 0.0) {
@@ -114,9 +112,9 @@ class Search {
     }
     const double wanted = peak_ / result_.critical;
     if (!(wanted < force(largest_ratio))) {
-      throw InputError(key_ + "strength", number_text(peak_ * scale_.youngs_modulus),
-                       "must be less than youngs_modulus times critical, " +
-                           short_text(result_.critical * scale_.youngs_modulus) + " Pa");
+      throw InputError(key_ + "strength", number_text(strength_),
+                       "must be less than what brittle bonds with this critical stretch bear, " +
+                           short_text(scale_.strength(brittle_law(result_.critical))) + " Pa");
     }
     if (!(wanted > force(smallest_ratio))) refuse_round();
     result_.onset = ratio_at(force, wanted) * result_.critical;
@@ -139,12 +137,12 @@ class Search {
     if (result_.onset == 0.0) result_.onset = 0.5 * peak_;
     if (peak_ > 0.0) {
       if (!(peak_ >= result_.onset && result_.hardening > 0.0)) {
-        throw InputError(key_ + "strength", number_text(peak_ * scale_.youngs_modulus),
-                         result_.hardening > 0.0
-                             ? "must be at least youngs_modulus times onset, " +
-                                   short_text(result_.onset * scale_.youngs_modulus) + " Pa"
-                             : "needs a hardening above 0: without, it is youngs_modulus times "
-                               "onset; give peak");
+        throw InputError(
+            key_ + "strength", number_text(strength_),
+            result_.hardening > 0.0
+                ? "must be above the stress at which bonds begin to soften with this onset, " +
+                      short_text(scale_.pull->onset(Loading::tension, result_.onset).mean) + " Pa"
+                : "needs a hardening above 0: without, the onset gives it; give peak");
       }
       result_.peak = result_.onset + (peak_ - result_.onset) / result_.hardening;
     }
@@ -171,16 +169,26 @@ class Search {
   }
 
   [[noreturn]] void refuse_round() const {
-    throw InputError(key_ + "strength", number_text(peak_ * scale_.youngs_modulus),
-                     "is too small for a tanh law, whose force goes on rising beyond the onset: "
-                     "take law \"linear\" or \"exponential\"");
+    throw InputError(
+        key_ + "strength", number_text(strength_),
+        law_rounds()
+            ? "is too small for a tanh law, whose force goes on rising beyond the onset: take law "
+              "\"linear\" or \"exponential\""
+            : "is too small: bonds would begin to soften at a stretch of " + short_text(peak_) +
+                  ", less than " + number_text(smallest_ratio) +
+                  " of the critical one. A strength is in Pa: 3 MPa are 3e6");
+  }
+
+  [[nodiscard]] bool law_rounds() const {
+    return result_.law == DamageLaw::tanh || result_.law == DamageLaw::tanh_continuous;
   }
 
   DamageSpecification result_;
   std::string key_;
   const FractureScale& scale_;
-  double work_ = 0.0;  // W that is asked for; 0: it isn't
-  double peak_ = 0.0;  // f_p that is asked for; 0: it isn't
+  double strength_ = 0.0;  // [Pa], for messages
+  double work_ = 0.0;      // W that is asked for; 0: it isn't
+  double peak_;            // f_p that is asked for; 0: it isn't
 };
 
 /// Finds the stretches with which a tear of cpd takes the fracture energy. Bonds of which each took
@@ -188,8 +196,10 @@ class Search {
 /// that it gives.
 class TearSearch {
  public:
-  TearSearch(const DamageSpecification& damage, std::string key, const FractureScale& scale)
-      : damage_(damage), key_(std::move(key)), scale_(scale) {}
+  /// @param peak f_p of a law with a strength; 0: of one without
+  TearSearch(const DamageSpecification& damage, std::string key, const FractureScale& scale,
+             double peak)
+      : damage_(damage), key_(std::move(key)), scale_(scale), peak_(peak) {}
 
   /// Between a G/W that is too small, from that of the bonds alone on, and one that is too large or
   /// leaves no law, by secants.
@@ -228,7 +238,7 @@ class TearSearch {
   /// How much too much the tear takes with the law of this G/W, as a logarithm; NaN without a law.
   double excess_at(double log_ratio) {
     try {
-      law_ = Search(damage_, key_, with_ratio(log_ratio)).found();
+      law_ = Search(damage_, key_, with_ratio(log_ratio), peak_).found();
     } catch (const InputError&) {
       return NAN;
     }
@@ -237,16 +247,118 @@ class TearSearch {
 
   /// With what is told of bonds that have the G/W of brittle ones with this strength.
   [[noreturn]] void refuse() const {
-    DamageSpecification brittle;
-    brittle.law = DamageLaw::critical_stretch;
     const double work = *damage_.fracture_energy / (scale_.micromodulus * scale_.crossing);
-    brittle.critical = damage_.strength      ? *damage_.strength / scale_.youngs_modulus
-                       : damage_.onset > 0.0 ? damage_.onset
-                                             : std::sqrt(2.0 * work);
+    const DamageSpecification brittle = brittle_law(peak_ > 0.0           ? peak_
+                                                    : damage_.onset > 0.0 ? damage_.onset
+                                                                          : std::sqrt(2.0 * work));
     const double ratio = scale_.energy(brittle) / total_work(brittle);
-    static_cast<void>(Search(damage_, key_, with_ratio(std::log(ratio))).found());
+    static_cast<void>(Search(damage_, key_, with_ratio(std::log(ratio)), peak_).found());
     throw InputError(key_ + "fracture_energy", number_text(*damage_.fracture_energy),
                      "gives no stretches with this onset or strength; give others");
+  }
+
+  const DamageSpecification& damage_;
+  std::string key_;
+  const FractureScale& scale_;
+  double peak_;
+  std::optional<DamageSpecification> law_;
+};
+
+/// The law whose bonds have this largest force; 0: that none is asked of.
+DamageSpecification law_of_peak(const DamageSpecification& damage, const std::string& key,
+                                const FractureScale& scale, double peak) {
+  return scale.tear && damage.fracture_energy ? TearSearch(damage, key, scale, peak).found()
+                                              : Search(damage, key, scale, peak).found();
+}
+
+/// Finds the largest force of the bonds of a body that bears its strength under a pull: mostly
+/// below that of a brittle one, as bonds oblique to the pull soften later.
+class StrengthSearch {
+ public:
+  StrengthSearch(const DamageSpecification& damage, std::string key, const FractureScale& scale)
+      : damage_(damage), key_(std::move(key)), scale_(scale) {}
+
+  [[nodiscard]] DamageSpecification found() {
+    const double of_unit = scale_.strength(brittle_law(1.0));
+    if (of_unit == 0.0) {
+      throw InputError(key_ + "strength", number_text(*damage_.strength),
+                       "is for a lattice that resists shear: at this horizon ratio bonds join "
+                       "neighbours along the axes alone; take a ratio from 1.5 on");
+    }
+    const double brittle = *damage_.strength / of_unit;
+    if (!damage_.softens()) {
+      if (damage_.fracture_energy) refuse_both(brittle, of_unit);
+      return law_of_peak(damage_, key_, scale_, brittle);
+    }
+    return below(brittle);
+  }
+
+ private:
+  static constexpr double tolerance = 1e-9;
+  static constexpr int most_trials = 60;
+
+  /// By secants of the logarithm between a force that is too small or too small for the law, and
+  /// one that is too large.
+  [[nodiscard]] DamageSpecification below(double brittle) {
+    double small = -INFINITY, large = INFINITY, last = std::log(brittle);
+    // Refused here, the law is refused.
+    law_ = law_of_peak(damage_, key_, scale_, brittle);
+    double last_excess = excess(), next = last - last_excess;
+    if (std::abs(last_excess) <= tolerance) return *law_;
+    (last_excess > 0.0 ? large : small) = last;
+    for (int k = 0; k < most_trials && large - small > 1e-13; ++k) {
+      const double found = excess_at(next);
+      if (std::abs(found) <= tolerance) return *law_;
+      // Without a law the force is too small for it, or, above the brittle one, too large.
+      const bool is_large = std::isnan(found) ? next > std::log(brittle) : found > 0.0;
+      (is_large ? large : small) = next;
+      double guess = next - found * (next - last) / (found - last_excess);
+      if (!(guess > small && guess < large)) {
+        guess = std::isfinite(small) && std::isfinite(large) ? 0.5 * (small + large) : next - found;
+      }
+      if (!std::isnan(found)) {
+        last = next;
+        last_excess = found;
+      }
+      next = guess;
+    }
+    law_ = law_of_peak(damage_, key_, scale_, std::exp(std::isfinite(small) ? small : large));
+    return accepted(excess());
+  }
+
+  [[nodiscard]] double excess() const {
+    return std::log(scale_.strength(*law_) / *damage_.strength);
+  }
+
+  /// NaN without a law.
+  double excess_at(double log_peak) {
+    try {
+      law_ = law_of_peak(damage_, key_, scale_, std::exp(log_peak));
+    } catch (const InputError&) {
+      return NAN;
+    }
+    return excess();
+  }
+
+  /// The strength of laws that jump does, too.
+  [[nodiscard]] DamageSpecification accepted(double excess) const {
+    constexpr double allowed = 0.01;
+    if (std::abs(excess) <= allowed) return *law_;
+    throw InputError(key_ + "strength", number_text(*damage_.strength),
+                     "is none that this law gives: the nearest is " +
+                         short_text(scale_.strength(*law_)) + " Pa");
+  }
+
+  [[noreturn]] void refuse_both(double critical, double of_unit) const {
+    DamageSpecification tough = damage_;
+    tough.strength.reset();
+    const double stretch = law_of_peak(tough, key_, scale_, 0.0).critical;
+    throw InputError(
+        key_ + "strength", number_text(*damage_.strength),
+        "a brittle bond has one stretch for both: with this fracture_energy the strength is " +
+            short_text(stretch * of_unit) + " Pa, with this strength the fracture energy is " +
+            short_text(scale_.energy(brittle_law(critical))) +
+            " J/m2. Give one of them, or a law that softens, like \"linear\"");
   }
 
   const DamageSpecification& damage_;
@@ -288,11 +400,8 @@ FractureScale FractureScale::of(const MaterialSpecification& material, const std
     scale.crossing = mean_crossing(setting);
     scale.youngs_modulus =
         material.youngs_modulus.value_or(youngs_modulus_of(scale.micromodulus, setting));
+    scale.pull = std::make_shared<BulkPull>(setting, scale.micromodulus);
     return scale;
-  }
-  if (material.damage.strength && !material.youngs_modulus) {
-    throw InputError(key + ".damage.strength", number_text(*material.damage.strength),
-                     "needs a youngs_modulus; give the stretches onset and critical");
   }
   scale.youngs_modulus = material.youngs_modulus.value_or(0.0);
   const CpdConstants constants = cpd_constants_of(material, key, setting, spacing);
@@ -301,13 +410,22 @@ FractureScale FractureScale::of(const MaterialSpecification& material, const std
   const double largest = largest_ratio_of_tear(setting.dimension);
   if (setting.horizon <= largest * spacing * (1.0 + horizon_tolerance)) {
     scale.tear = std::make_shared<CpdTear>(setting, spacing, constants);
+    scale.pull = std::make_shared<BulkPull>(setting, spacing, constants);
     scale.crossing = scale.tear->mean_crossing();
-  } else if (material.damage.fracture_energy) {
+    if (scale.pull->is_quick()) return scale;
+    scale.pull.reset();
+    if (!material.damage.strength) return scale;
+    throw InputError(key + ".damage.strength", number_text(*material.damage.strength),
+                     "takes minutes to turn into stretches of cpd at this horizon ratio in 3D; "
+                     "give a shorter horizon, or onset");
+  } else if (material.damage.is_by_data()) {
+    const bool by_energy = material.damage.fracture_energy.has_value();
     throw InputError(
-        key + ".damage.fracture_energy", number_text(*material.damage.fracture_energy),
+        key + (by_energy ? ".damage.fracture_energy" : ".damage.strength"),
+        number_text(by_energy ? *material.damage.fracture_energy : *material.damage.strength),
         "is for horizon ratios up to " + number_text(largest) + " with cpd in " +
             std::to_string(setting.dimension) +
-            "D: summing what a tear takes of longer ones takes minutes; give critical");
+            "D: summing what longer interactions take or bear takes minutes; give stretches");
   }
   return scale;
 }
@@ -316,14 +434,17 @@ double FractureScale::energy(const DamageSpecification& damage) const {
   return tear ? tear->mean_energy(law_of(damage)) : micromodulus * crossing * total_work(damage);
 }
 
+double FractureScale::strength(const DamageSpecification& damage) const {
+  return pull->peak(Loading::tension, law_of(damage)).mean;
+}
+
 DamageSpecification with_stretches(const DamageSpecification& damage, const std::string& key,
                                    const FractureScale& scale) {
   if (!damage.is_by_data()) return damage;
   const std::string table = key + ".damage.";
-  const bool by_tear = scale.tear && damage.fracture_energy;
-  if (by_tear) require_quick(damage, table, *scale.tear);
-  const DamageSpecification found =
-      by_tear ? TearSearch(damage, table, scale).found() : Search(damage, table, scale).found();
+  if (scale.tear && damage.fracture_energy) require_quick(damage, table, *scale.tear);
+  const DamageSpecification found = damage.strength ? StrengthSearch(damage, table, scale).found()
+                                                    : law_of_peak(damage, table, scale, 0.0);
   require_range(found, damage, key + ".damage.");
   return found;
 }
@@ -372,10 +493,8 @@ double peak_force(const DamageSpecification& damage) {
 }
 
 double largest_spacing(double fracture_energy, double strength, const FractureScale& scale) {
-  DamageSpecification brittle;
-  brittle.law = DamageLaw::critical_stretch;
-  brittle.critical = strength / scale.youngs_modulus;
-  return scale.spacing * fracture_energy / scale.energy(brittle);
+  const double critical = strength / scale.strength(brittle_law(1.0));
+  return scale.spacing * fracture_energy / scale.energy(brittle_law(critical));
 }
 
 double bearable_energy_density(const DamageSpecification& damage, double horizon) {

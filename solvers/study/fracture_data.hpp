@@ -4,7 +4,7 @@
 #include <string>
 
 #include "solvers/study/body_specification.hpp"
-#include "src/materials/bulk_bonds.hpp"
+#include "src/materials/bulk_pull.hpp"
 #include "src/materials/cpd_tear.hpp"
 
 namespace peristat {
@@ -17,21 +17,29 @@ struct FractureScale {
   double spacing = 0.0;         ///< [m], for messages
   /// Of cpd, but for horizons above largest_ratio_of_tear.
   std::shared_ptr<const CpdTear> tear{};
+  /// Likewise; of bonds always.
+  std::shared_ptr<const BulkPull> pull{};
 
   /// Of a material without fibres.
-  /// @throws InputError for a strength without Young's modulus, a fracture energy of cpd at a
-  ///         horizon too long for it, and damage of negative constants
+  /// @throws InputError for fracture energy and strength of cpd at a horizon too long for them, and
+  ///         damage of negative constants
   static FractureScale of(const MaterialSpecification& material, const std::string& key,
                           const BondSetting& setting, double spacing);
 
   /// G of a law, the mean over all directions of a tear [J/m2].
   [[nodiscard]] double energy(const DamageSpecification& damage) const;
+  /// f_t of a law, the mean over the directions of a pull [Pa]; 0 for a lattice without shear
+  /// stiffness.
+  [[nodiscard]] double strength(const DamageSpecification& damage) const;
 };
 
 /// The law with stretches in the place of fracture energy and strength. With the work W = int_0^s_c
 /// f ds of a bond's force c f(s) and its largest value f_p
 ///
-///   G = c A W,   f_t = E f_p.
+///   G = c A W,
+///
+/// and f_t is the largest stress of the bulk under a pull, see BulkPull: from about E f_p of
+/// brittle bonds to 1.5 E f_p of tough ones (2D), as those oblique to the pull soften later.
 ///
 /// A law that softens with a fracture energy alone gets half the stretch of a brittle bond of that
 /// energy as onset (blended: a quarter, and a peak force of half). In cpd G is that of a CpdTear,
@@ -51,11 +59,11 @@ struct FractureScale {
 /// W of the whole law, for the modulus 1: c A W is the fracture energy of bonds.
 [[nodiscard]] double total_work(const DamageSpecification& damage);
 
-/// f_p, the largest force for the modulus 1: E f_p is the strength.
+/// f_p, the largest force for the modulus 1.
 [[nodiscard]] double peak_force(const DamageSpecification& damage);
 
-/// Largest spacing at the same horizon ratio with which a bond of this peak force can take this
-/// fracture energy, whatever the law: there it is brittle [m].
+/// Largest spacing at the same horizon ratio with which a law can have this strength and this
+/// fracture energy: there it is brittle [m].
 [[nodiscard]] double largest_spacing(double fracture_energy, double strength,
                                      const FractureScale& scale);
 

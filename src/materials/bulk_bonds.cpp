@@ -7,6 +7,7 @@
 
 #include <Eigen/Dense>
 
+#include "src/materials/lattice_directions.hpp"
 #include "src/neighbourhood/lattice_kernel.hpp"
 
 namespace peristat {
@@ -52,22 +53,6 @@ std::vector<Coordinates> lattice_normals(const Spacing& spacing, int dimension) 
     }
   }
   return normals;
-}
-
-/// Directions spread evenly over half of the circle or the sphere.
-std::vector<Coordinates> even_directions(int dimension, int count) {
-  if (dimension == 1) return {};
-  std::vector<Coordinates> directions;
-  const double golden = std::numbers::pi * (3.0 - std::sqrt(5.0));
-  for (int k = 0; k < count; ++k) {
-    const double share = (k + 0.5) / count;
-    const double ring = std::sqrt(1.0 - share * share);
-    directions.push_back(dimension == 2 ? Coordinates{std::cos(std::numbers::pi * share),
-                                                      std::sin(std::numbers::pi * share), 0.0}
-                                        : Coordinates{ring * std::cos(golden * k),
-                                                      ring * std::sin(golden * k), share});
-  }
-  return directions;
 }
 
 }  // namespace
@@ -166,20 +151,6 @@ DirectionalSpread BulkBonds::crossing() const {
 double BulkBonds::youngs_modulus(const Coordinates& direction) const {
   if (compliance_.empty()) return 0.0;
   return 1.0 / contract(strain_of_pull(direction), dyad(unit(direction), setting_.dimension));
-}
-
-double BulkBonds::stress_at_unit_stretch(const Coordinates& direction) const {
-  if (compliance_.empty()) return 0.0;
-  const SymmetricTensor strain = strain_of_pull(direction);
-  double largest = 0.0;
-  for (const Bond& bond : bonds_) {
-    largest = std::max(largest, contract(strain, dyad(bond.direction, setting_.dimension)));
-  }
-  return 1.0 / largest;
-}
-
-DirectionalSpread BulkBonds::stress_at_unit_stretch() const {
-  return over_directions([&](const auto& n) { return stress_at_unit_stretch(n); });
 }
 
 template <class Quantity>

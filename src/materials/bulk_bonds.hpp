@@ -34,21 +34,17 @@ class BulkBonds {
   /// Young's modulus over c of a pull along a direction; 0 if nothing resists it.
   [[nodiscard]] double youngs_modulus(const Coordinates& direction) const;
 
-  /// Stress over c of a pull along a direction under which the most stretched bond has the stretch
-  /// 1, as far as everything is linear. In plane strain the stress of the same pull where the plane
-  /// is free, as youngs_modulus.
-  [[nodiscard]] double stress_at_unit_stretch(const Coordinates& direction) const;
-  [[nodiscard]] DirectionalSpread stress_at_unit_stretch() const;
-
   /// A direction (not of unit length) of the lattice's axes in those of the body.
   [[nodiscard]] Coordinates turned(const Coordinates& of_lattice) const;
 
- private:
+  /// Of each two opposite ones one, with both weights over V.
   struct Bond {
     Coordinates direction;
-    double length, weight;  // w / V
+    double length, weight;
   };
+  [[nodiscard]] const std::vector<Bond>& bonds() const { return bonds_; }
 
+ private:
   template <class Quantity>
   [[nodiscard]] DirectionalSpread over_directions(const Quantity& of) const;
   void correct_energy();
@@ -56,7 +52,7 @@ class BulkBonds {
   [[nodiscard]] std::vector<double> strain_of_pull(const Coordinates& direction) const;
 
   BondSetting setting_;
-  std::vector<Bond> bonds_;         // of each two opposite ones one, with both weights
+  std::vector<Bond> bonds_;
   std::vector<double> compliance_;  // times c, Kelvin's notation
 };
 

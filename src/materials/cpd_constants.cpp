@@ -7,6 +7,7 @@
 
 #include "src/core/input_error.hpp"
 #include "src/core/number_text.hpp"
+#include "src/materials/poisson_ratio_limits.hpp"
 #include "src/neighbourhood/bulk_neighbourhood.hpp"
 #include "src/neighbourhood/lattice_ball.hpp"
 #include "src/neighbourhood/side_influence.hpp"
@@ -72,6 +73,13 @@ LameModuli lame_moduli(double youngs_modulus, double poisson_ratio, int dimensio
                      dimension == 2
                          ? "must be above -1 and below 1, the incompressible limit in 2D"
                          : "must be above -1 and below 0.5, the incompressible limit in 3D");
+  }
+  const double digits = least_distance_of_poisson_ratio;
+  if (1.0 + poisson_ratio < digits || 1.0 - poisson_ratio / most < digits) {
+    throw InputError("poisson_ratio", number_text(poisson_ratio),
+                     "leaves too few digits of double precision so near its limit: take at most " +
+                         number_text(most * (1.0 - digits)) + ", and at least " +
+                         number_text(digits - 1.0));
   }
   const double mu = 0.5 * youngs_modulus / (1.0 + poisson_ratio);
   const double lambda =

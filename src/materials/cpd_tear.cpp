@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <variant>
 
 #include <boost/math/quadrature/gauss.hpp>
 
+#include "src/materials/lattice_directions.hpp"
 #include "src/neighbourhood/bulk_neighbourhood.hpp"
 #include "src/neighbourhood/lattice_ball.hpp"
 #include "src/neighbourhood/side_influence.hpp"
@@ -186,48 +186,6 @@ double work_of_places(const Law& law, const std::array<Coordinates, points>& at,
   return sum;
 }
 
-struct WeightedDirection {
-  Coordinates normal;
-  double weight;
-};
-
-/// Gauss's points and weights over [0, 1].
-template <unsigned count>
-std::vector<std::array<double, 2>> gauss_rule() {
-  using Rule = boost::math::quadrature::gauss<double, count>;
-  static_assert(count % 2 == 0);
-  std::vector<std::array<double, 2>> rule;
-  for (std::size_t k = 0; k < Rule::abscissa().size(); ++k) {
-    const double x = Rule::abscissa()[k], weight = 0.5 * Rule::weights()[k];
-    rule.push_back({0.5 * (1.0 - x), weight});
-    rule.push_back({0.5 * (1.0 + x), weight});
-  }
-  return rule;
-}
-
-std::vector<WeightedDirection> directions(int dimension) {
-  std::vector<WeightedDirection> result;
-  if (dimension == 2) {
-    for (const auto& [share, weight] : gauss_rule<12>()) {
-      const double angle = share * std::numbers::pi / 4.0;
-      result.push_back({{std::cos(angle), std::sin(angle), 0.0}, weight});
-    }
-    return result;
-  }
-  double total = 0.0;
-  for (const auto& [y, weight_y] : gauss_rule<4>()) {
-    for (const auto& [share, weight_z] : gauss_rule<4>()) {
-      const Coordinates along{1.0, y, share * y};
-      // dy dz = y dy d(z/y), seen from the centre under 1/|n|^3 of it
-      const double weight = weight_y * weight_z * y / std::pow(dot(along, along), 1.5);
-      result.push_back({unit(along), weight});
-      total += weight;
-    }
-  }
-  for (WeightedDirection& of : result) of.weight /= total;
-  return result;
-}
-
 }  // namespace
 
 CpdTear::CpdTear(const Kernel& kernel, double spacing, const CpdConstants& constants)
@@ -310,16 +268,15 @@ double CpdTear::mean_crossing() const {
 double CpdTear::mean_energy(const AnyLaw& law) const {
   double sum = c1_ * mean_crossing() * law.work(Harmonic{1.0}, law.critical());
   if (triangles_.empty() && tetrahedra_.empty()) return sum;
-  for (const auto& [normal, weight] : directions(dimension_)) {
+  for (const auto& [normal, weight] : sector_directions(dimension_)) {
     sum += weight * of_simplices(law, normal);
   }
   return sum;
 }
 
 DirectionalSpread CpdTear::spread(const AnyLaw& law) const {
-  std::vector<Coordinates> normals{{1, 0, 0}, {1, 1, 0}};
-  if (dimension_ == 3) normals.push_back({1, 1, 1});
-  for (const auto& [normal, weight] : directions(dimension_)) normals.push_back(normal);
+  std::vector<Coordinates> normals = sector_corners(dimension_);
+  for (const auto& [normal, weight] : sector_directions(dimension_)) normals.push_back(normal);
   DirectionalSpread result{mean_energy(law), std::numeric_limits<double>::infinity(), 0.0};
   for (const Coordinates& normal : normals) {
     const double value = energy(law, normal);

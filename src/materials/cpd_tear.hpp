@@ -24,9 +24,7 @@ namespace peristat {
 ///   G(n) = C1 A(n) M(s_c) + sum over kinds w/V sum over places (width along n) int T dpsi  [J/m2].
 ///
 /// The mean over all directions of n is exact for bonds (see BulkBonds::crossing). For the others
-/// it is by Gauss's rule over one of the 8 or 48 parts that a square or cubic lattice repeats: the
-/// angle from 0 to pi/4 (2D, 12 directions), or y and z/y of n ~ (1, y, z), both from 0 to 1 (3D,
-/// 4 x 4), weighted by the solid angle.
+/// it is that of sector_directions.
 class CpdTear {
  public:
   CpdTear(const Kernel& kernel, double spacing, const CpdConstants& constants);

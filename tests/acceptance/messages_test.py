@@ -117,6 +117,19 @@ class Messages(unittest.TestCase):
         run = self.peristat("check", self.write(PLATE), "--set", "lattice.spacing=1 mm")
         self.assert_refused(run, "numbers carry no unit", "write 0.001")
 
+    def test_data_of_damage_need_a_law(self):
+        """They used to be dropped without a word. Law none, said aloud, switches them off."""
+        lawless = PLATE.replace('law = "critical_stretch", ', "").replace('law = "critical_stretch"\n', "")
+        self.assertNotEqual(lawless, PLATE)
+        self.assert_refused(self.peristat("check", self.write(lawless)), "material.damage", "needs a law beside it")
+        for table in ("region", "interface"):
+            case = PLATE + f'[[{table}]]\nmaterial = {{ youngs_modulus = 1e9, damage = {{ fracture_energy = 10 }} }}\n'
+            run = self.peristat("check", self.write(case.replace("[[region]]", '[[region]]\nset = "left"')))
+            self.assert_refused(run, f"{table}[0].material.damage", "needs a law beside it")
+        run = self.peristat("check", self.write(lawless), "--set", 'material.damage.law="none"')
+        self.assertEqual(run.returncode, 0, run.stderr)
+        self.assertNotIn("fracture ", run.stdout)
+
     def test_an_option_that_is_a_key(self):
         run = self.peristat("run", self.write(PLATE), "--steps", "3")
         self.assert_refused(run, "unknown option --steps", "--set loading.steps=3")

@@ -9,6 +9,7 @@ complex step has to give them, tangents are complex steps of forces.
     saw_tooth laws that fall by drops, as mode path follows them
     sheets    moduli, fracture energy and strength as constants and stretches
     tear      what a plane tear takes from a lattice of cpd
+    pull      what a lattice of bonds bears under a homogeneous stress
     body      points, interactions, weights
     mechanics energy, forces, tangent, damage
     results   what a results folder holds

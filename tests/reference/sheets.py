@@ -6,7 +6,8 @@ import math
 import numpy
 
 from tests.reference.laws import Law
-from tests.reference.tear import Tear
+from tests.reference.pull import Pull, uniaxial
+from tests.reference.tear import Tear, directions
 
 MEAN_OF_MAGNITUDE = {1: 1.0, 2: 2 / math.pi, 3: 0.5}
 MEAN_OF_FOURTH_POWER = {1: 1.0, 2: 3 / 8, 3: 1 / 5}
@@ -60,10 +61,19 @@ class Bulk:
             second *= relative_moment(case["material"]["influence"], d + 1)
         self.crossing = MEAN_OF_MAGNITUDE[d] * second / 2
 
+    def strength(self, damage):
+        """Largest stress over c under a pull, the mean over directions of a square or cubic lattice."""
+        pull, law = Pull.of_bulk(self), Law.of_table(damage)
+        return sum(weight * pull.peak(law, uniaxial(normal)) for normal, weight in zip(*sector(len(self.direction[0])), strict=True))
+
     def crossing_of(self, normal):
         """The same for a plane of this normal instead of the mean."""
         cosine = self.direction @ (numpy.asarray(normal) / numpy.linalg.norm(normal))
         return (self.weight * self.length**2 * abs(cosine)).sum() / 2
+
+
+def sector(dimension):
+    return directions(dimension) if dimension > 1 else (numpy.ones((1, 1)), numpy.ones(1))
 
 
 def root(rising, low, high):
@@ -97,13 +107,30 @@ def with_critical(damage, work):
     return damage | {"critical": root(missing, start * (1 + 1e-9), 4 * (start + work / start))}
 
 
-def with_stretches(damage, modulus, of_work):
+def with_stretches(damage, of_work, pull=None):
     """The table with stretches in the place of fracture energy and strength.
 
-    modulus: E [Pa]; of_work: G / W [J/m2]."""
+    of_work: G / W [J/m2]; pull: the body's, for a strength [Pa]."""
     damage = dict(damage)
+    strength = damage.pop("strength", 0.0)
     work = damage.pop("fracture_energy", 0.0) / of_work
-    peak = damage.pop("strength", 0.0) / modulus
+    if not strength:
+        return of_bonds(damage, work, 0.0)
+    # The force of bonds that gives the body its strength, by secants.
+    peaks = [strength / pull({"law": "critical_stretch", "critical": 1.0})]
+    excess = []
+    while True:
+        found = of_bonds(damage, work, peaks[-1])
+        excess.append(math.log(pull(found) / strength))
+        if abs(excess[-1]) < 1e-8:
+            return found
+        slope = 1.0 if len(peaks) == 1 else (excess[-1] - excess[-2]) / math.log(peaks[-1] / peaks[-2])
+        peaks.append(peaks[-1] * math.exp(-excess[-1] / slope))
+
+
+def of_bonds(damage, work, peak):
+    """work: of a bond of the modulus 1, peak: its largest force; 0: not asked for."""
+    damage = dict(damage)
     if not work and not peak:
         return damage
     if damage["law"] == "critical_stretch":
@@ -136,7 +163,7 @@ def resolve_cpd(case, tables, spacing):
         brittle = {"law": "critical_stretch", "critical": 1e-6}
         bonds = Tear(case.dimension, case.horizon() / spacing, spacing, case.cross_section, {1: constants[1]}, case["material"]["influence"])
         least = math.log(bonds.mean(brittle) / total_work(brittle))
-        law = lambda ratio: with_stretches(table["damage"], 1.0, math.exp(ratio))
+        law = lambda ratio: with_stretches(table["damage"], math.exp(ratio))
         excess = lambda ratio: math.log(tear.mean(law(ratio)) / wanted)
         before, ratio = least, least + excess(least)
         of_before = ratio - least
@@ -169,6 +196,6 @@ def resolve(case, spacing=None, horizon_ratio=None):
         if c is None:
             c = modulus * (bulk.lattice_of_modulus if on_lattice else bulk.of_modulus)
         if "damage" in table:
-            table["damage"] = with_stretches(table["damage"], modulus, c * bulk.crossing)
+            table["damage"] = with_stretches(table["damage"], c * bulk.crossing, lambda of: c * bulk.strength(of))
         if on_lattice:
             table["micromodulus"] = table.pop("youngs_modulus") * elastic.lattice_of_modulus

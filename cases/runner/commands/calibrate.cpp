@@ -182,15 +182,15 @@ void check_place(const CalibrationQuestion& where, const BondCalibrationQuestion
 }
 
 /// Answers for a case, of bonds.
-Exit calibrate_bonds(const Case& from) {
+Exit calibrate_bonds(const Case& from, bool with_strengths) {
   const auto body = make_body(from, 1);
   located_errors(from, [&] {
     const PointMaterials materials(body->specification, body->points);
     const auto all = all_materials(body->specification, materials);
     for (std::size_t k = 0; k < all.size(); ++k) {
       if (all.size() > 1) fmt::print("{}\"{}\":\n", k == 0 ? "{" : ", ", all[k].name);
-      fmt::print("{}",
-                 bond_calibration(*all[k].of, all[k].key, body->setting, body->points.spacing));
+      fmt::print("{}", bond_calibration(*all[k].of, all[k].key, body->setting, body->points.spacing,
+                                        with_strengths));
     }
     if (all.size() > 1) fmt::print("}}\n");
   });
@@ -199,6 +199,7 @@ Exit calibrate_bonds(const Case& from) {
 
 /// The error of a material, of options in the place of keys.
 InputError of_options(const InputError& error) {
+  if (error.key().starts_with("--")) return error;
   const std::string& key = error.key();
   const std::size_t dot = key.rfind('.');
   return {dot == std::string::npos ? "" : option(key.substr(dot + 1)), error.value(),
@@ -263,7 +264,8 @@ Exit calibrate(const CalibrationQuestion& where, BondCalibrationQuestion questio
   question.material.youngs_modulus = where.youngs_modulus;
   try {
     check_material(question.material, "material", where.dimension);
-    fmt::print("{}", bond_calibration(question.material, "material", setting, where.spacing));
+    fmt::print("{}", bond_calibration(question.material, "material", setting, where.spacing,
+                                      where.with_strengths));
   } catch (const InputError& error) {
     throw of_options(error);
   }
@@ -295,8 +297,10 @@ Exit calibrate(const CalibrationQuestion& question, const DamageSpecification& d
       material.poisson_ratio = poisson_ratio_of(moduli, dimension);
     }
     check_material(material, "material", dimension);
+    require_law(damage, question.with_strengths);
     if (damage.law != DamageLaw::none) {
-      told = damage_calibration(material, "material", setting, question.spacing);
+      told = damage_calibration(material, "material", setting, question.spacing,
+                                question.with_strengths);
     }
   } catch (const InputError& error) {
     throw of_options(error);
@@ -305,8 +309,8 @@ Exit calibrate(const CalibrationQuestion& question, const DamageSpecification& d
   return Exit::done;
 }
 
-Exit calibrate(const Case& from) {
-  if (has_bonds(from.material.model)) return calibrate_bonds(from);
+Exit calibrate(const Case& from, bool with_strengths) {
+  if (has_bonds(from.material.model)) return calibrate_bonds(from, with_strengths);
   if (from.material.model == MaterialModel::correspondence) {
     throw InputError("material.model", "correspondence",
                      "has its constants as they are given; calibrate is for the other models");
@@ -343,10 +347,12 @@ Exit calibrate(const Case& from) {
     if (material.c1) question.c3 = material.c3;
     if (all.size() > 1) fmt::print("{}\"{}\":\n", k == 0 ? "{" : ", ", all[k].name);
     check(question);
+    require_law(material.damage, with_strengths);
     const std::string damage = located_errors(from, [&] {
       return material.damage.law == DamageLaw::none
                  ? ""
-                 : damage_calibration(material, all[k].key, setting, points.spacing);
+                 : damage_calibration(material, all[k].key, setting, points.spacing,
+                                      with_strengths);
     });
     print_calibration(question, damage);
   }

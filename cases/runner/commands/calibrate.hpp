@@ -15,6 +15,7 @@ struct CalibrationQuestion {
   double horizon_ratio = 0.0;  ///< horizon / spacing
   double thickness = 1.0;      ///< 2D [m]
   std::string influence = ConstantInfluence::name;
+  bool with_strengths = false;  ///< see bond_calibration
   std::optional<double> youngs_modulus, poisson_ratio, lambda, mu, c1, c2, c3;
 };
 
@@ -40,6 +41,6 @@ struct BondCalibrationQuestion {
 [[nodiscard]] Exit calibrate(const CalibrationQuestion& where, BondCalibrationQuestion question);
 
 /// The same for the lattice and material of a case.
-[[nodiscard]] Exit calibrate(const Case& from);
+[[nodiscard]] Exit calibrate(const Case& from, bool with_strengths);
 
 }  // namespace peristat

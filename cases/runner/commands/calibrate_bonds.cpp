@@ -15,7 +15,10 @@ namespace peristat {
 namespace {
 
 std::string number(double value) {
-  return std::isfinite(value) ? fmt::format("{:.17g}", value) : "null";
+  if (std::isfinite(value)) return fmt::format("{:.17g}", value);
+  throw InputError("", "",
+                   "what is asked for has no finite answer: give a lattice and a material whose "
+                   "constants and moduli can be told in double precision");
 }
 
 std::string pair(const char* key, double value) {
@@ -74,10 +77,34 @@ std::string fracture_energies(const CpdTear& tear, const AnyLaw& law, int dimens
                            [&](const Coordinates& n) { return tear.energy(law, n); });
 }
 
+std::string over_directions(const DirectionalSpread& of) {
+  return object({pair("mean", of.mean), pair("least", of.least), pair("most", of.most)});
+}
+
+/// What a body bears under other stresses than a pull, and where its bonds begin to soften.
+std::string strengths(const DamageSpecification& damage, const BulkPull& pull, int dimension) {
+  const AnyLaw law = law_of(damage);
+  const auto of = [&](const char* name, Loading loading) {
+    std::vector<std::string> pairs{"\"onset\": " +
+                                   over_directions(pull.onset(loading, law.onset()))};
+    if (loading != Loading::compression) {
+      pairs.push_back("\"peak\": " + over_directions(pull.peak(loading, law)));
+    }
+    return fmt::format("\"{}\": {}", name, object(pairs));
+  };
+  std::vector<std::string> all{of("uniaxial", Loading::tension)};
+  if (dimension == 1) return object(all);
+  all.push_back(of("biaxial", Loading::biaxial));
+  all.push_back(of("shear", Loading::shear));
+  all.push_back(of("compression", Loading::compression));
+  return object(all);
+}
+
 std::string damage_section(const DamageSpecification& damage, const FractureScale& scale,
-                           const std::optional<BulkBonds>& bonds, int dimension) {
-  const double per_area = scale.micromodulus * total_work(damage), peak = peak_force(damage);
-  const double energy = scale.energy(damage), strength = scale.youngs_modulus * peak;
+                           const std::optional<BulkBonds>& bonds, int dimension,
+                           bool with_strengths) {
+  const double per_area = scale.micromodulus * total_work(damage);
+  const double energy = scale.energy(damage);
   std::vector<std::string> pairs;
   if (damage.softens()) pairs.push_back(pair("onset", damage.onset));
   if (damage.law == DamageLaw::blended) pairs.push_back(pair("peak", damage.peak));
@@ -85,28 +112,33 @@ std::string damage_section(const DamageSpecification& damage, const FractureScal
   const std::string energies = scale.tear
                                    ? fracture_energies(*scale.tear, law_of(damage), dimension)
                                : bonds ? fracture_energies(*bonds, per_area, dimension)
-                                       : number(scale.crossing > 0.0 ? energy : NAN);
+                               : scale.crossing > 0.0 ? number(energy)
+                                                      : "null";
   pairs.push_back("\"fracture_energy\": " + energies);
-  if (strength == 0.0) return object(pairs);  // nothing but constants is known
-  pairs.push_back(pair("strength", strength));
-  if (bonds) {
-    const DirectionalSpread stress = bonds->stress_at_unit_stretch();
-    const double factor = scale.micromodulus * peak;
-    pairs.push_back("\"stress_at_peak\": " + object({pair("mean", factor * stress.mean),
-                                                     pair("least", factor * stress.least),
-                                                     pair("most", factor * stress.most)}));
+  if (!scale.pull) return object(pairs);
+  const DirectionalSpread strength = scale.pull->peak(Loading::tension, law_of(damage));
+  if (strength.mean == 0.0) return object(pairs);
+  pairs.push_back(pair("strength", strength.mean));
+  pairs.push_back("\"uniaxial_strength\": " + over_directions(strength));
+  if (with_strengths) {
+    pairs.push_back("\"strengths\": " + strengths(damage, *scale.pull, dimension));
   }
-  if (scale.crossing == 0.0) return object(pairs);
-  pairs.push_back(
-      pair("characteristic_length", scale.youngs_modulus * energy / (strength * strength)));
-  pairs.push_back(pair("largest_spacing", largest_spacing(energy, strength, scale)));
+  if (scale.crossing == 0.0 || scale.youngs_modulus == 0.0) return object(pairs);
+  pairs.push_back(pair("characteristic_length",
+                       scale.youngs_modulus * energy / (strength.mean * strength.mean)));
+  pairs.push_back(pair("largest_spacing", largest_spacing(energy, strength.mean, scale)));
   return object(pairs);
 }
 
 }  // namespace
 
+void require_law(const DamageSpecification& damage, bool with_strengths) {
+  if (!with_strengths || damage.breaks_bonds()) return;
+  throw InputError("--strengths", "", "needs a law of damage by stretches");
+}
+
 std::string bond_calibration(const MaterialSpecification& material, const std::string& key,
-                             const BondSetting& setting, double spacing) {
+                             const BondSetting& setting, double spacing, bool with_strengths) {
   if (material.fibre) {
     throw InputError(key + ".fibre", "",
                      "calibrate is for materials without fibres; check tells their constants");
@@ -121,14 +153,16 @@ std::string bond_calibration(const MaterialSpecification& material, const std::s
     pairs.push_back("\"youngs_modulus\": " + youngs_moduli(*bonds, scale.micromodulus, setting));
   }
   pairs.push_back(pair("poisson_ratio", poisson_ratio(setting)));
+  require_law(material.damage, with_strengths);
   if (material.damage.law != DamageLaw::none) {
-    pairs.push_back("\"damage\": " + damage_calibration(material, key, setting, spacing));
+    pairs.push_back("\"damage\": " +
+                    damage_calibration(material, key, setting, spacing, with_strengths));
   }
   return fmt::format("{{\n  {}\n}}\n", fmt::join(pairs, ",\n  "));
 }
 
 std::string damage_calibration(const MaterialSpecification& material, const std::string& key,
-                               const BondSetting& setting, double spacing) {
+                               const BondSetting& setting, double spacing, bool with_strengths) {
   if (material.damage.law == DamageLaw::energy_density) {
     return object(
         {pair("energy_density", bearable_energy_density(material.damage, setting.horizon)),
@@ -138,7 +172,7 @@ std::string damage_calibration(const MaterialSpecification& material, const std:
   std::optional<BulkBonds> bonds;
   if (setting.lattice && material.model == MaterialModel::bond) bonds.emplace(setting);
   return damage_section(with_stretches(material.damage, key, scale), scale, bonds,
-                        setting.dimension);
+                        setting.dimension, with_strengths);
 }
 
 }  // namespace peristat

@@ -108,6 +108,33 @@ std::string fracture_energy_text(const DamageSpecification& damage, const Fractu
                      spread.least, spread.most);
 }
 
+/// ", strength 3e+06 Pa in the mean …"; nothing where finding it would take minutes.
+std::string strength_text(const DamageSpecification& damage, const FractureScale& scale,
+                          int dimension) {
+  if (!scale.pull) return "";
+  const DirectionalSpread of = scale.pull->peak(Loading::tension, law_of(damage));
+  if (of.mean == 0.0) return "";
+  const std::string mean = fmt::format(", strength {:.6g} Pa", of.mean);
+  return dimension == 1
+             ? mean
+             : fmt::format("{} in the mean over the directions of a pull ({:.4g} to {:.4g})", mean,
+                           of.least, of.most);
+}
+
+/// Where bonds begin to soften, and what a body bears under other stresses.
+void print_strengths(const DamageSpecification& damage, const std::string& name,
+                     const FractureScale& scale, int dimension) {
+  if (!scale.pull || dimension == 1) return;
+  const AnyLaw law = law_of(damage);
+  const auto onset = [&](Loading loading) { return scale.pull->onset(loading, law.onset()).mean; };
+  if (onset(Loading::tension) == 0.0) return;
+  fmt::print(
+      "{} bonds begin to soften at {:.4g} Pa of tension, {:.4g} Pa of compression; equal biaxial "
+      "strength {:.4g} Pa, shear strength {:.4g} Pa\n",
+      heading("strengths", name), onset(Loading::tension), onset(Loading::compression),
+      scale.pull->peak(Loading::biaxial, law).mean, scale.pull->peak(Loading::shear, law).mean);
+}
+
 /// What a law of damage makes of a tear and of a pull.
 void print_fracture(const PointMaterials::Material& of, const std::string& name,
                     const BondSetting& setting, double spacing) {
@@ -128,12 +155,10 @@ void print_fracture(const PointMaterials::Material& of, const std::string& name,
   }
   const FractureScale scale = FractureScale::of(*of.of, of.key, setting, spacing);
   const std::string begin = damage.softens() ? fmt::format("onset {:.6g}, ", damage.onset) : "";
-  const std::string strength =
-      scale.youngs_modulus > 0.0
-          ? fmt::format(", strength {:.6g} Pa", scale.youngs_modulus * peak_force(damage))
-          : "";
   fmt::print("{} {}critical stretch {:.6g}{}{}\n", heading("fracture", name), begin,
-             damage.critical, fracture_energy_text(damage, scale, setting), strength);
+             damage.critical, fracture_energy_text(damage, scale, setting),
+             strength_text(damage, scale, setting.dimension));
+  print_strengths(damage, name, scale, setting.dimension);
 }
 
 void print_cpd_constants(const PointMaterials::Material& of, const std::string& name,

@@ -389,6 +389,18 @@ void check_regions(const Entry& at, Case& result) {
   check_quadrature(at, result);
 }
 
+/// Without a law its data would do nothing; no_fail may be of other materials' laws.
+void require_law(const Entry& at, DamageSpecification&) {
+  if (at.from.has("law")) return;
+  for (const char* key :
+       {"fracture_energy", "strength", "critical", "onset", "peak", "hardening", "rate"}) {
+    if (!at.from.has(key)) continue;
+    at.from.refuse(key,
+                   "needs a law beside it, like law = \"linear\"; without one there is no "
+                   "damage (law = \"none\" says so)");
+  }
+}
+
 Table<DamageSpecification> damage_keys(const std::string& material) {
   using Spec = DamageSpecification;
   using K = Key<Spec>;
@@ -425,7 +437,8 @@ Table<DamageSpecification> damage_keys(const std::string& material) {
                             {"exponential", DamageLaw::exponential},
                             {"blended", DamageLaw::blended},
                             {"energy_density", DamageLaw::energy_density}}),
-         "no damage; whole up to `critical` and then broken; softening from `onset` to "
+         "no damage, whatever else stands in the table; whole up to `critical` and then broken; "
+         "softening from `onset` to "
          "`critical` as published in [ADAPT], which jumps by (1 − tanh `rate`)/2 at both ends; "
          "the same law rescaled so that it does not jump; force falling linearly from `onset` "
          "to zero at `critical`; exponentially, without a jump at `critical`; rising on a "
@@ -441,9 +454,10 @@ Table<DamageSpecification> damage_keys(const std::string& material) {
            .unless(is_whole, "")
            .early(),
        K("strength", &Spec::strength, positive("Pa"),
-         "$f_t$ = `youngs_modulus` × the stretch at which the force of a bond is largest "
-         "(more exactly: the largest force over $c$); `onset` follows, `peak` of `blended`, "
-         "`critical` of `critical_stretch`")
+         "$f_t$ of the body: the largest stress that the lattice bears under a pull in one "
+         "direction, the mean over directions ([theory](theory.md#strength)); `onset` follows, "
+         "`peak` of `blended`, `critical` of `critical_stretch`. Of `cpd` at the horizon ratios of "
+         "`fracture_energy`, in 3D at shorter ones, where it does not take minutes")
            .unless(is_whole, "")
            .unless(is_of_points, for_stretches)
            .early(),
@@ -490,7 +504,8 @@ Table<DamageSpecification> damage_keys(const std::string& material) {
          "sets whose points' bonds stay elastic at any stretch, also those to points outside "
          "the sets")
            .written_if([](auto& damage, auto&) { return damage.law != DamageLaw::none; })
-           .early()}};
+           .early()},
+      require_law};
 }
 
 /// A stiffness may be negative (auxetic bodies have such), but not remotely large.

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from run_all import Failed, Runs
-from setting import FRACTURE_ENERGY
+from setting import FRACTURE_ENERGY, MODULUS
 from specimen import ANGLES, RATIOS, Lattice, rows
 from strip import Strip
 
@@ -20,7 +20,7 @@ LAWS = {
     "exponential": ('law = "exponential"', "newton"),
     "tanh": ('law = "tanh_continuous"', "newton"),
 }
-STRENGTH = 8.90504e6  # of linear bonds of that energy and horizon whose strength is not given [Pa]: as `check` tells
+ONSET = 8.90504e6 / MODULUS  # of linear bonds of that energy and horizon for which none is given: as `check` tells
 PATHS = {
     "straight": Strip(),
     "arc": Strip(turn=math.radians(30), way=10.0),
@@ -63,7 +63,7 @@ def settings(quick: bool) -> list[Setting]:
 def text(of: Setting) -> str:
     law, mode = LAWS[of.law]
     if of.strength != 1.0:
-        law += f"\nstrength = {of.strength * STRENGTH:.9g}"
+        law += f"\nonset = {of.strength * ONSET:.9g}"
     case = PATHS[of.path].text(Lattice(ratio=of.ratio, angle=of.angle), HORIZON / of.ratio)
     case = case.replace('law = "linear"', law).replace('mode = "newton"', f'mode = "{mode}"')
     if of.perturbation:

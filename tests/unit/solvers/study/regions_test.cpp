@@ -1,4 +1,6 @@
+#include <cmath>
 #include <numeric>
+#include <variant>
 
 #include <gtest/gtest.h>
 
@@ -107,6 +109,31 @@ TEST(Regions, BondsWithoutALawDoNotFail) {
     for (Offset bond = bonds.offset[i]; bond < bonds.offset[i + 1]; ++bond) {
       EXPECT_EQ(history[std::size_t(bond)], bonds.partner[bond] < 5 ? never_failing : 0.0);
     }
+  }
+}
+
+/// Their stretches are found, and like but for round-off.
+TEST(Regions, BlendedLawsOfTwoFractureEnergiesAreAlike) {
+  for (const double energy : {7.0, 11.0, 50.0, 60.0}) {
+    BodySpecification of = of_two(70e9, 70e9);
+    for (RegionSpecification& region : of.regions) {
+      region.material.damage.law = DamageLaw::blended;
+      region.material.damage.fracture_energy = 10.0;
+    }
+    of.regions[1].material.damage.fracture_energy = energy;
+    const auto body = make_body(bar(), of, 1);
+    const auto& law =
+        *std::get<DegradedByBond<Harmonic>>(body->model.bond_term()->potential()).laws;
+    const Bonds& bonds = body->model.bonds();
+    double low = 0.0, high = 0.0, between = 0.0;
+    for (Index i = 0; i < bonds.points(); ++i) {
+      for (Offset bond = bonds.offset[i]; bond < bonds.offset[i + 1]; ++bond) {
+        const Index j = bonds.partner[bond];
+        (i < 5 && j < 5 ? low : i >= 5 && j >= 5 ? high : between) = law.at(bond).critical();
+      }
+    }
+    EXPECT_NEAR(high / low, std::sqrt(energy / 10.0), 1e-9);
+    EXPECT_NEAR(between * (1.0 / low + 1.0 / high), 2.0, 1e-9) << energy;
   }
 }
 

@@ -144,5 +144,31 @@ TEST(StateModel, RefusesWhatItDoesNotTake) {
                   "influence"));
 }
 
+TEST(StateModel, RefusesAPoissonRatioThatLeavesNoDigits) {
+  MaterialSpecification material = solid().material;
+  const auto is_refused = [&](double nu, int dimension, PlaneState plane) {
+    material.poisson_ratio = nu;
+    material.plane = plane;
+    try {
+      check_material(material, "material", dimension);
+    } catch (const InputError& error) {
+      EXPECT_EQ(error.key(), "material.poisson_ratio");
+      return true;
+    }
+    return false;
+  };
+  for (const MaterialModel model : {MaterialModel::lps, MaterialModel::correspondence}) {
+    material.model = model;
+    material.influence = ConstantInfluence::name;
+    for (const double nu : {0.5 - 1e-8, 0.5 - 1e-14, -1.0 + 1e-8}) {
+      EXPECT_TRUE(is_refused(nu, 3, PlaneState::stress)) << nu;
+      EXPECT_TRUE(is_refused(nu, 2, PlaneState::strain)) << nu;
+    }
+    EXPECT_FALSE(is_refused(0.499999, 3, PlaneState::stress));
+    EXPECT_FALSE(is_refused(0.5 - 1e-14, 2, PlaneState::stress));  // nothing is incompressible
+    EXPECT_TRUE(is_refused(-1.0 + 1e-8, 2, PlaneState::stress));
+  }
+}
+
 }  // namespace
 }  // namespace peristat

@@ -1,0 +1,456 @@
+#include "src/materials/bulk_pull.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <numbers>
+
+#include <Eigen/Dense>
+
+#include "src/neighbourhood/bulk_neighbourhood.hpp"
+#include "src/neighbourhood/lattice_ball.hpp"
+#include "src/neighbourhood/side_influence.hpp"
+
+namespace peristat {
+namespace {
+
+using Vector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 7, 1>;
+using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 7, 7>;
+
+constexpr std::array<std::ptrdiff_t, 3> entries_of_tensor{1, 3, 6};
+
+double dot(const Coordinates& a, const Coordinates& b) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+Coordinates cross(const Coordinates& a, const Coordinates& b) {
+  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+Coordinates minus(const Coordinates& a, const Coordinates& b) {
+  return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+}
+Coordinates unit(const Coordinates& v) {
+  const double length = std::sqrt(dot(v, v));
+  return {v[0] / length, v[1] / length, v[2] / length};
+}
+
+/// n n^T in Kelvin's notation, times a factor.
+std::array<double, 6> dyad(const Coordinates& n, int dimension, double factor = 1.0) {
+  std::array<double, 6> result{};
+  std::size_t k = 0;
+  for (int a = 0; a < dimension; ++a) result[k++] = factor * n[a] * n[a];
+  for (int a = 0; a < dimension; ++a) {
+    for (int b = 0; b < a; ++b) result[k++] = factor * std::numbers::sqrt2 * n[a] * n[b];
+  }
+  return result;
+}
+
+std::array<double, 6> sum(const std::array<double, 6>& a, const std::array<double, 6>& b) {
+  std::array<double, 6> result{};
+  std::ranges::transform(a, b, result.begin(), std::plus());
+  return result;
+}
+
+/// A direction normal to another one.
+Coordinates normal_to(const Coordinates& n, int dimension) {
+  if (dimension == 2) return {-n[1], n[0], 0.0};
+  const bool is_upright = std::abs(n[2]) > 0.9;
+  return unit(cross(n, is_upright ? Coordinates{1, 0, 0} : Coordinates{0, 0, 1}));
+}
+
+/// Numbers of directions; opposite ones and those that round-off tells apart are the same.
+class Numbers {
+ public:
+  int of(const Coordinates& direction) {
+    std::array<long long, 3> rounded{};
+    for (std::size_t c = 0; c < 3; ++c) rounded[c] = std::llround(direction[c] * 1e9);
+    if (rounded < std::array<long long, 3>{}) {
+      for (long long& part : rounded) part = -part;
+    }
+    return numbers_.try_emplace(rounded, int(numbers_.size())).first->second;
+  }
+
+ private:
+  std::map<std::array<long long, 3>, int> numbers_;
+};
+
+}  // namespace
+
+/// A body on its way.
+struct BulkPull::State {
+  double along = 0.0;  // S : eps
+  Vector strain{};
+  double stress = 0.0;
+  std::vector<double> largest{};  // stretches of fibres
+};
+
+/// The equilibria of one law under one form of stress.
+class BulkPull::Equilibrium {
+ public:
+  Equilibrium(const BulkPull& bulk, const Tensor& form, const AnyLaw& law)
+      : bulk_(bulk),
+        law_(law),
+        size_(entries_of_tensor[std::size_t(bulk.dimension_ - 1)]),
+        form_(vector(form)),
+        fibres_(bulk.fibres_.size()) {}
+
+  /// Where the first bond is at its onset; no strain for a lattice that does not resist.
+  [[nodiscard]] State first() {
+    State state;
+    state.largest.assign(fibres_.size(), 0.0);
+    set_secants(state.largest);
+    const Eigen::SelfAdjointEigenSolver<Matrix> modes(secant_stiffness());
+    if (!(modes.eigenvalues()[0] > 1e-12 * modes.eigenvalues()[size_ - 1])) return state;
+    const Vector of_unit = secant_stiffness().ldlt().solve(form_);
+    double longest = 0.0;
+    for (const Fibre& fibre : bulk_.fibres_) {
+      longest = std::max(longest, vector(fibre.dyad).dot(of_unit));
+    }
+    state.stress = law_.onset() / longest;
+    state.strain = state.stress * of_unit;
+    state.along = form_.dot(state.strain);
+    return state;
+  }
+
+  /// With another strain along the form.
+  [[nodiscard]] State at(double along, const State& since) {
+    State state = since;
+    state.strain *= along / since.along;
+    state.along = along;
+    constexpr int most_iterations = 30;
+    for (int k = 0; k < most_iterations; ++k) {
+      const double change = improve(state, since.largest);
+      if (!std::isfinite(change)) break;
+      if (change > tolerance * state.strain.norm()) continue;
+      grow(state);
+      return state;
+    }
+    return by_secants(along, since);
+  }
+
+ private:
+  static constexpr double tolerance = 1e-12;
+
+  /// A fibre at a strain.
+  struct Strained {
+    double stretch, integrity, slope;  // slope of the integrity
+  };
+
+  [[nodiscard]] Vector vector(const Tensor& of) const {
+    return Eigen::Map<const Eigen::VectorXd>(of.data(), size_);
+  }
+
+  void grow(State& state) const {
+    for (std::size_t k = 0; k < fibres_.size(); ++k) {
+      const double stretch = vector(bulk_.fibres_[k].dyad).dot(state.strain);
+      state.largest[k] = std::max(state.largest[k], stretch);
+    }
+  }
+
+  void set_secants(const std::vector<double>& largest) {
+    for (std::size_t k = 0; k < fibres_.size(); ++k) {
+      fibres_[k] = {0.0, law_.integrity(largest[k]), 0.0};
+    }
+  }
+
+  [[nodiscard]] double integrity(const Simplex& of, int sides) const {
+    double product = 1.0;
+    for (int k = 0; k < sides; ++k) product *= fibres_[std::size_t(of.side[k])].integrity;
+    return product;
+  }
+
+  [[nodiscard]] Matrix secant_stiffness() const {
+    Matrix result = Matrix::Zero(size_, size_);
+    for (std::size_t k = 0; k < fibres_.size(); ++k) {
+      const Vector n = vector(bulk_.fibres_[k].dyad);
+      result += bulk_.fibres_[k].stiffness * fibres_[k].integrity * n * n.transpose();
+    }
+    for (const auto& [sides, of_measure, all] : bulk_.simplices_) {
+      const Vector measure = vector(of_measure);
+      double sum = 0.0;
+      for (const Simplex& simplex : all) sum += simplex.stiffness * integrity(simplex, sides);
+      result += sum * measure * measure.transpose();
+    }
+    return result;
+  }
+
+  /// One step of Newton's method for strain and stress. Returns the change of the strain.
+  double improve(State& state, const std::vector<double>& largest) {
+    Matrix tangent = Matrix::Zero(size_ + 1, size_ + 1);
+    Vector residual = Vector::Zero(size_ + 1);
+    auto stiffness = tangent.topLeftCorner(size_, size_);
+    auto stress = residual.head(size_);
+    for (std::size_t k = 0; k < fibres_.size(); ++k) {
+      const Vector n = vector(bulk_.fibres_[k].dyad);
+      const double s = n.dot(state.strain), a = bulk_.fibres_[k].stiffness;
+      const bool grows = s > largest[k];
+      Strained& fibre = fibres_[k];
+      fibre = {s, law_.integrity(grows ? s : largest[k]), grows ? law_.slope(s) : 0.0};
+      stress += a * fibre.integrity * s * n;
+      stiffness += a * (fibre.integrity + s * fibre.slope) * n * n.transpose();
+    }
+    add_simplices(state, stress, stiffness);
+    stress -= state.stress * form_;
+    residual[size_] = form_.dot(state.strain) - state.along;
+    tangent.topRightCorner(size_, 1) = -form_;
+    tangent.bottomLeftCorner(1, size_) = form_.transpose();
+    const Vector change = tangent.partialPivLu().solve(residual);
+    state.strain -= change.head(size_);
+    state.stress -= change[size_];
+    return change.head(size_).norm();
+  }
+
+  void add_simplices(const State& state, auto& stress, auto& stiffness) {
+    for (const auto& [sides, of_measure, all] : bulk_.simplices_) {
+      const Vector measure = vector(of_measure);
+      const double change = measure.dot(state.strain);
+      double sum = 0.0;
+      slopes_.assign(fibres_.size(), 0.0);  // of the sum, by the stretches of fibres
+      for (const Simplex& simplex : all) {
+        const double product = simplex.stiffness * integrity(simplex, sides);
+        sum += product;
+        if (product == 0.0 || product == simplex.stiffness) continue;
+        for (int k = 0; k < sides; ++k) {
+          const auto side = std::size_t(simplex.side[k]);
+          slopes_[side] += product / fibres_[side].integrity * fibres_[side].slope;
+        }
+      }
+      stress += sum * change * measure;
+      stiffness += sum * measure * measure.transpose();
+      for (std::size_t k = 0; k < slopes_.size(); ++k) {
+        if (slopes_[k] == 0.0) continue;
+        stiffness += change * slopes_[k] * measure * vector(bulk_.fibres_[k].dyad).transpose();
+      }
+    }
+  }
+
+  /// Where Newton's method finds none, as for laws that jump: with damage that grows until it is
+  /// enough.
+  [[nodiscard]] State by_secants(double along, const State& since) {
+    State state = since;
+    state.along = along;
+    constexpr int most_iterations = 3000;
+    for (int k = 0; k < most_iterations; ++k) {
+      set_secants(state.largest);
+      const Vector of_unit = secant_stiffness().ldlt().solve(form_);
+      state.stress = along / form_.dot(of_unit);
+      // Nothing is left of what resisted.
+      if (!(state.stress > 1e-6 * since.stress && state.stress < 10.0 * since.stress)) {
+        state.stress = 0.0;
+        return state;
+      }
+      state.strain = state.stress * of_unit;
+      const std::vector<double> before = state.largest;
+      grow(state);
+      double growth = 0.0;
+      for (std::size_t b = 0; b < before.size(); ++b) {
+        growth = std::max(growth, law_.integrity(before[b]) - law_.integrity(state.largest[b]));
+      }
+      if (growth < tolerance) break;
+    }
+    return state;
+  }
+
+  const BulkPull& bulk_;
+  const AnyLaw& law_;
+  std::ptrdiff_t size_;
+  Vector form_;
+  std::vector<Strained> fibres_;
+  std::vector<double> slopes_;
+};
+
+BulkPull::BulkPull(const BondSetting& setting, double micromodulus)
+    : dimension_(setting.dimension) {
+  if (!setting.lattice) {
+    spread_evenly(micromodulus * setting.moment(1));
+    return;
+  }
+  const BulkBonds bulk(setting);
+  Numbers numbers;
+  for (const BulkBonds::Bond& bond : bulk.bonds()) {
+    const auto number = std::size_t(numbers.of(bond.direction));
+    if (number == fibres_.size()) fibres_.push_back({dyad(bond.direction, dimension_), 0.0});
+    fibres_[number].stiffness += 0.5 * micromodulus * bond.weight * bond.length;
+  }
+  if (fibres_.size() > most_directions) {
+    spread_evenly(micromodulus * bulk.moment(1));
+    return;
+  }
+  // A correction by energy along the body's axes leaves a cubic lattice that is turned about one
+  // axis no cubic symmetry.
+  const bool repeats =
+      setting.lattice->spacing.is_square() && (dimension_ < 3 || setting.lattice->angle == 0.0);
+  if (repeats || dimension_ == 1) {
+    directions_ = sector_directions(dimension_);
+    for (const Coordinates& corner : sector_corners(dimension_)) directions_.push_back({corner, 0});
+  } else {
+    const std::vector<Coordinates> even = even_directions(dimension_, dimension_ == 2 ? 24 : 60);
+    for (const Coordinates& n : even) directions_.push_back({n, 1.0 / double(even.size())});
+  }
+  for (WeightedDirection& of : directions_) of.normal = bulk.turned(of.normal);
+}
+
+BulkPull::BulkPull(const Kernel& kernel, double spacing, const CpdConstants& constants)
+    : dimension_(kernel.dimension), directions_(sector_directions(kernel.dimension)) {
+  for (const Coordinates& corner : sector_corners(dimension_)) directions_.push_back({corner, 0});
+  const BulkNeighbourhood bulk =
+      bulk_neighbourhood(dimension_, spacing, kernel.horizon, kernel.cross_section);
+  const LatticeBall ball(dimension_, spacing, kernel.horizon);
+  Numbers numbers;
+  const auto number_of = [&](const Coordinates& arm) {
+    const Coordinates n = unit(arm);
+    const int number = numbers.of(n);
+    if (std::size_t(number) == fibres_.size()) fibres_.push_back({dyad(n, dimension_), 0.0});
+    return number;
+  };
+  // w = V V1, 2 V V2 and 6 V V3, see effective_volumes; of each two opposite bonds one counts.
+  const double of_bonds = 0.5 * bulk.volume / double(bulk.neighbours) * constants.c1;
+  for (const Coordinates& arm : ball.arms()) {
+    const double length = std::sqrt(dot(arm, arm));
+    fibres_[std::size_t(number_of(arm))].stiffness +=
+        of_bonds * length * kernel.influence_at(length);
+  }
+  std::map<Tensor, std::map<std::array<int, 6>, double>> found;  // stiffnesses
+  const auto add = [&](std::array<int, 6> side, int sides, const Tensor& measure,
+                       double stiffness) {
+    std::sort(side.begin(), side.begin() + sides);
+    std::fill(side.begin() + sides, side.end(), -1);
+    found[measure][side] += stiffness;
+  };
+  constexpr Coordinates here{};
+  Tensor identity{};
+  for (int c = 0; c < dimension_; ++c) identity[std::size_t(c)] = 1.0;
+  if (constants.c2 != 0.0) {
+    const double weight = 2.0 * std::pow(bulk.volume, 2) / double(bulk.pairs) * constants.c2;
+    ball.for_each_triangle([&](const Coordinates& b, const Coordinates& c, double area) {
+      const Tensor measure =
+          dimension_ == 2 ? identity : sum(identity, dyad(unit(cross(b, c)), dimension_, -1.0));
+      add({number_of(b), number_of(c), number_of(minus(b, c))}, 3, measure,
+          weight * area * influence_of_sides(kernel, std::array{here, b, c}));
+    });
+  }
+  if (constants.c3 != 0.0) {
+    const double weight = 6.0 * std::pow(bulk.volume, 3) / double(bulk.triplets) * constants.c3;
+    ball.for_each_tetrahedron(
+        [&](const Coordinates& b, const Coordinates& c, const Coordinates& d, double volume) {
+          add({number_of(b), number_of(c), number_of(d), number_of(minus(b, c)),
+               number_of(minus(b, d)), number_of(minus(c, d))},
+              6, identity, weight * volume * influence_of_sides(kernel, std::array{here, b, c, d}));
+        });
+  }
+  for (const auto& [measure, of_sides] : found) {
+    // In 3D triangles and tetrahedra never have the same measure.
+    const int sides = of_sides.begin()->first[3] < 0 ? 3 : 6;
+    simplices_.push_back({sides, measure, {}});
+    for (const auto& [side, stiffness] : of_sides) {
+      simplices_.back().all.push_back({side, stiffness});
+    }
+  }
+}
+
+/// @param first_moment m_1 of all bonds, times c
+void BulkPull::spread_evenly(double first_moment) {
+  fibres_.clear();
+  const auto add = [&](const Coordinates& n) { fibres_.push_back({dyad(n, dimension_), 0.0}); };
+  constexpr double pi = std::numbers::pi;
+  if (dimension_ == 1) add({1, 0, 0});
+  constexpr int in_plane = 180, rings = 60, in_ring = 6;
+  for (int k = 0; dimension_ == 2 && k < in_plane; ++k) {
+    add({std::cos(pi * (k + 0.5) / in_plane), std::sin(pi * (k + 0.5) / in_plane), 0.0});
+  }
+  for (int k = 0; dimension_ == 3 && k < rings * in_ring; ++k) {
+    const double height = (k / in_ring + 0.5) / rings, ring = std::sqrt(1.0 - height * height);
+    const double angle = 2.0 * pi * (k % in_ring) / in_ring;
+    add({height, ring * std::cos(angle), ring * std::sin(angle)});
+  }
+  for (Fibre& fibre : fibres_) fibre.stiffness = 0.5 * first_moment / double(fibres_.size());
+  directions_ = {{{1.0, 0.0, 0.0}, 1.0}};
+}
+
+std::vector<BulkPull::Form> BulkPull::forms(Loading loading) const {
+  if (dimension_ == 1) {
+    return {{dyad({1, 0, 0}, 1, loading == Loading::compression ? -1.0 : 1.0), 1.0}};
+  }
+  Tensor identity{};
+  for (int c = 0; c < dimension_; ++c) identity[std::size_t(c)] = 1.0;
+  if (loading == Loading::biaxial && dimension_ == 2) return {{identity, 1.0}};
+  std::vector<Form> result;
+  for (const auto& [n, weight] : directions_) {
+    const Tensor along = dyad(n, dimension_), against = dyad(n, dimension_, -1.0);
+    if (loading == Loading::tension) result.push_back({along, weight});
+    if (loading == Loading::compression) result.push_back({against, weight});
+    if (loading == Loading::biaxial) result.push_back({sum(identity, against), weight});
+    if (loading != Loading::shear) continue;
+    const Coordinates t = normal_to(n, dimension_);
+    result.push_back(
+        {sum(along, dyad(t, dimension_, -1.0)), dimension_ == 2 ? weight : 0.5 * weight});
+    if (dimension_ == 2) continue;
+    const Coordinates b = cross(n, t);
+    const Coordinates between = unit({t[0] + b[0], t[1] + b[1], t[2] + b[2]});
+    result.push_back({sum(along, dyad(between, dimension_, -1.0)), 0.5 * weight});
+  }
+  return result;
+}
+
+double BulkPull::onset(const Tensor& form, double stretch) const {
+  const AnyLaw brittle{CriticalStretch{stretch}};
+  return Equilibrium(*this, form, brittle).first().stress;
+}
+
+/// In steps of 2 % of the strain, and about each summit in finer and finer ones, until next to
+/// nothing is left.
+double BulkPull::peak(const Tensor& form, const AnyLaw& law) const {
+  constexpr double coarsest = 0.02, finest = 1e-10, finer = 0.125;
+  constexpr double left = 0.9;  // of the peak: a body that has lost a tenth breaks
+  Equilibrium equilibrium(*this, form, law);
+  const State first = equilibrium.first();
+  double best = first.stress;
+  const auto march = [&](const auto& again, State here, double step, double end) -> void {
+    State before = here;
+    constexpr int most_steps = 2000;
+    for (int k = 0; k < most_steps && here.along < end; ++k) {
+      State there = equilibrium.at(here.along * (1.0 + step), here);
+      const bool is_summit = before.stress <= here.stress && here.stress > there.stress;
+      if (is_summit && here.stress > 0.98 * best && step > finest) {
+        again(again, before, finer * step, there.along);
+      }
+      best = std::max(best, there.stress);
+      if (there.stress < left * best) return;
+      // What is left of triangles under compression would bear more and more, strained for ever.
+      if (*std::ranges::max_element(there.largest) > 4.0 * law.critical()) return;
+      before = std::move(here);
+      here = std::move(there);
+    }
+  };
+  if (best > 0.0) march(march, first, coarsest, std::numeric_limits<double>::infinity());
+  return best;
+}
+
+template <class Quantity>
+DirectionalSpread BulkPull::over(Loading loading, const Quantity& of_form) const {
+  DirectionalSpread result{0.0, std::numeric_limits<double>::infinity(), 0.0};
+  for (const auto& [form, weight] : forms(loading)) {
+    const double value = of_form(form);
+    result.mean += weight * value;
+    result.least = std::min(result.least, value);
+    result.most = std::max(result.most, value);
+  }
+  return result;
+}
+
+DirectionalSpread BulkPull::peak(Loading loading, const AnyLaw& law) const {
+  return over(loading, [&](const Tensor& form) { return peak(form, law); });
+}
+
+bool BulkPull::is_quick() const {
+  constexpr std::size_t most_simplices = 10'000;
+  std::size_t count = 0;
+  for (const Simplices& of : simplices_) count += of.all.size();
+  return count <= most_simplices;
+}
+
+DirectionalSpread BulkPull::onset(Loading loading, double stretch) const {
+  return over(loading, [&](const Tensor& form) { return onset(form, stretch); });
+}
+
+}  // namespace peristat

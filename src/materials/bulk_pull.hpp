@@ -1,0 +1,93 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "src/core/types.hpp"
+#include "src/materials/bulk_bonds.hpp"
+#include "src/materials/cpd_constants.hpp"
+#include "src/materials/lattice_directions.hpp"
+#include "src/potentials/any_law.hpp"
+
+namespace peristat {
+
+/// The stress that a body is under.
+enum class Loading {
+  tension,  ///< along one direction n, all others free
+  biaxial,  ///< equal in all directions normal to n (in 2D in both)
+  shear,    ///< equal tension and compression along two directions
+  compression,
+};
+
+/// What the interactions of a point deep inside a lattice bear under a homogeneous stress that
+/// grows: the strength of a body that nothing weakens.
+///
+/// The stress is lambda S with a fixed form S. Its strain along S, e = S : eps, grows step by step;
+/// lambda and the rest of the small strain eps follow from
+///
+///   sum a_b T_b s_b n_b n_b + sum a_t (product of the T of the sides) (M : eps) M = lambda S,
+///
+/// s_b = n_b . eps n_b the stretches, T their integrities, which never grow, a_b = c w L / (2 V)
+/// summed over the bonds of one direction. The second sum is over triangles and tetrahedra of cpd:
+/// M is the derivative of their relative area or volume, a_t = w |A| C_2 / V and w |V| C_3 / V.
+/// The strength is the largest lambda on the way. In plane strain it is the stress in the plane.
+///
+/// Directions of n are those of sector_directions for square and cubic lattices, otherwise 24 (2D)
+/// or 60 (3D) that are spread evenly. Where there is no lattice, or more than most_directions of
+/// bonds, these are spread evenly, too, with the stiffness of the continuum or the lattice.
+class BulkPull {
+ public:
+  BulkPull(const BondSetting& setting, double micromodulus);
+  BulkPull(const Kernel& kernel, double spacing, const CpdConstants& constants);
+
+  /// Largest stress [Pa]; not of compression, under which bonds along it never fail.
+  [[nodiscard]] DirectionalSpread peak(Loading loading, const AnyLaw& law) const;
+
+  /// Stress at which the most stretched bond has this stretch and all are whole [Pa].
+  [[nodiscard]] DirectionalSpread onset(Loading loading, double stretch) const;
+
+  static constexpr std::size_t most_directions = 400;
+
+  /// Whether a strength takes seconds; of cpd in 3D it takes minutes at horizon ratios of 3.
+  [[nodiscard]] bool is_quick() const;
+
+ private:
+  /// Symmetric, in Kelvin's notation: sqrt(2) times what is off the diagonal.
+  using Tensor = std::array<double, 6>;
+
+  /// All bonds of a direction.
+  struct Fibre {
+    Tensor dyad;
+    double stiffness;  // [Pa]
+  };
+  /// All triangles or tetrahedra of the same sides.
+  struct Simplex {
+    std::array<int, 6> side;  // numbers of fibres
+    double stiffness;         // [Pa]
+  };
+  struct Simplices {
+    int sides;
+    Tensor measure;
+    std::vector<Simplex> all;
+  };
+  struct Form {
+    Tensor tensor;
+    double weight;  // of a mean over all forms
+  };
+  struct State;
+  class Equilibrium;
+
+  void spread_evenly(double first_moment);
+  [[nodiscard]] std::vector<Form> forms(Loading loading) const;
+  [[nodiscard]] double peak(const Tensor& form, const AnyLaw& law) const;
+  [[nodiscard]] double onset(const Tensor& form, double stretch) const;
+  template <class Quantity>
+  [[nodiscard]] DirectionalSpread over(Loading loading, const Quantity& of_form) const;
+
+  int dimension_;
+  std::vector<Fibre> fibres_;
+  std::vector<Simplices> simplices_;  // of each measure
+  std::vector<WeightedDirection> directions_;
+};
+
+}  // namespace peristat

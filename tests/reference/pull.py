@@ -1,0 +1,81 @@
+"""What a lattice of bonds bears under a homogeneous stress whose strain grows (docs/theory.md, Fracture data)."""
+
+import math
+
+import numpy
+
+
+class Pull:
+    def __init__(self, direction, stiffness):
+        """stiffness: w r / (2 V) of every bond [m4]: times c T s n n^T it is its part of the stress."""
+        rows, columns = numpy.triu_indices(direction.shape[1])
+        self.share = numpy.where(rows == columns, 1.0, math.sqrt(2))  # of the strain's entries, as a vector
+        self.entries = rows, columns
+        self.dyad = direction[:, rows] * direction[:, columns] * self.share
+        self.stiffness = stiffness
+
+    @classmethod
+    def of_bulk(cls, bulk):
+        return cls(bulk.direction, bulk.weight * bulk.length / 2)
+
+    def tangent(self, stiffness):
+        return (self.dyad * (self.stiffness * stiffness)[:, None]).T @ self.dyad
+
+    def peak(self, law, form, finest=1e-9, coarsest=0.02):
+        """Largest stress over c, in multiples of `form`."""
+        form = form[self.entries] * self.share
+        strain = numpy.linalg.solve(self.tangent(numpy.ones(len(self.dyad))), form)
+        stress = law.onset / (self.dyad @ strain).max() * (1 - 1e-9)
+        start = (stress * (strain @ form), stress * strain, stress, numpy.zeros(len(self.dyad)))
+        return self._march(law, form, start, coarsest, finest, numpy.inf)
+
+    def _march(self, law, form, here, step, finest, end):
+        """From a state on, in steps of its strain along the form; about each summit again in finer ones."""
+        best, before = here[2], here
+        while here[0] < end:
+            there = self._settle(law, form, here[0] * (1 + step), here)
+            if before[2] <= here[2] > there[2] and here[2] > 0.98 * best and step > finest:
+                best = max(best, self._march(law, form, before, step / 8, finest, there[0]))
+            best = max(best, there[2])
+            if there[2] < 0.9 * best:
+                break
+            before, here = here, there
+        return best
+
+    def _settle(self, law, form, along, since):
+        """The state whose strain along the form is this one."""
+        _, strain, stress, history = since
+        strain = strain * along / since[0]
+        for _ in range(30):
+            stretch = self.dyad @ strain
+            grows = stretch > history
+            integrity = law.integrity(numpy.where(grows, stretch, history))
+            slope = numpy.imag(law.integrity(stretch + 1e-30j)) / 1e-30
+            residual = self.dyad.T @ (self.stiffness * integrity * stretch) - stress * form
+            matrix = numpy.block([[self.tangent(integrity + numpy.where(grows, slope * stretch, 0.0)), -form[:, None]],
+                                  [form[None], numpy.zeros((1, 1))]])
+            change = numpy.linalg.lstsq(matrix, numpy.append(-residual, along - form @ strain), rcond=1e-13)[0]
+            strain, stress = strain + change[:-1], stress + change[-1]
+            if abs(change[:-1]).max() < 1e-11 * abs(strain).max():
+                return along, strain, stress, numpy.maximum(history, self.dyad @ strain)
+        return self._settle_by_secants(law, form, along, since)
+
+    def _settle_by_secants(self, law, form, along, since):
+        """With damage that grows from try to try."""
+        history = since[3]
+        for _ in range(10000):
+            strain, *_ = numpy.linalg.lstsq(self.tangent(law.integrity(history)), form, rcond=1e-11)
+            stress = along / (strain @ form)
+            if stress > 10 * since[2] or stress < 1e-3 * since[2]:
+                return along, strain, 0.0, history
+            strain = strain * stress
+            grown = numpy.maximum(history, self.dyad @ strain)
+            if (grown - history).max() < 1e-11 * law.onset:
+                break
+            history = grown
+        return along, strain, stress, history
+
+
+def uniaxial(direction):
+    n = numpy.asarray(direction, float) / numpy.linalg.norm(direction)
+    return numpy.outer(n, n)
