@@ -194,7 +194,7 @@ class Messages(unittest.TestCase):
         self.assert_refused(self.peristat("check", self.write(lawless)), "material.damage", "needs a law beside it")
         for table in ("region", "interface"):
             case = PLATE + f'[[{table}]]\nmaterial = {{ youngs_modulus = 1e9, damage = {{ fracture_energy = 10 }} }}\n'
-            run = self.peristat("check", self.write(case.replace("[[region]]", '[[region]]\nset = "left"')))
+            run = self.peristat("check", self.write(case.replace("[[region]]", '[[region]]\nset = "top"')))
             self.assert_refused(run, f"{table}[0].material.damage", "needs a law beside it")
         run = self.peristat("check", self.write(lawless), "--set", 'material.damage.law="none"')
         self.assertEqual(run.returncode, 0, run.stderr)

@@ -48,7 +48,7 @@ class Trust(unittest.TestCase):
         self.assertAlmostEqual(value("double_cantilever", "dissipated energy over area"), 1, delta=0.01)
         self.assertAlmostEqual(value("double_cantilever", "load while the crack grows"), 1, delta=0.025)
         self.assertAlmostEqual(value("senb_03", "toughness by compliance"), 1, delta=0.04)
-        self.assertGreater(value("strength_biaxial", "strength"), 2)
+        self.assertGreater(value("strength_biaxial", "strength"), 1.5)
         self.assertLess(value("strength_shear", "strength"), 0.8)
 
     def test_two_suites_in_one_folder_share_the_work(self):

@@ -465,7 +465,7 @@ Table<DamageSpecification> damage_keys(const std::string& material) {
          "$f_t$ of the body: the largest stress that the lattice bears under a pull in one "
          "direction, the mean over directions ([theory](theory.md#strength)); `onset` follows, "
          "`peak` of `blended`, `critical` of `critical_stretch`. Of `cpd` at the horizon ratios of "
-         "`fracture_energy`")
+         "`fracture_energy`, in 3D at shorter ones, where it does not take minutes")
            .unless(is_whole, "")
            .unless(is_of_points, for_stretches)
            .early(),
