@@ -30,8 +30,8 @@ LoadSteppingOptions load_stepping_options(const Case& from) {
   options.peak_tolerance = from.relaxation.peak_tolerance;
   const DynamicsSpecification& dynamics = from.dynamics;
   const int rows = dynamics.history_every > 0 ? dynamics.history_every : from.output.every;
-  options.dynamics = {dynamics.time_step, dynamics.step_share, rows, dynamics.scheme,
-                      dynamics.spectral_radius, dynamics.start};
+  options.dynamics = {dynamics.time_step, dynamics.step_share,      rows,
+                      dynamics.scheme,    dynamics.spectral_radius, dynamics.start};
   return options;
 }
 
