@@ -1,6 +1,7 @@
 #include "solvers/study/body.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -610,6 +611,38 @@ std::string describe_loose_points(const Body& body, const Bonds& bonds) {
                      place_text(places.front().second, body.points.dimension));
 }
 
+/// Sentence about points that all lie in one plane across an axis, so that no bond resists their
+/// motion along it; empty if they do not.
+std::string describe_flatness(const Body& body) {
+  constexpr double flat = 1e-9;  // of the largest extent: what round-off leaves
+  const int dimension = body.points.dimension;
+  std::array<double, 3> extent{};
+  for (int c = 0; c < dimension; ++c) {
+    double low = std::numeric_limits<double>::max(), high = std::numeric_limits<double>::lowest();
+    for (Index i = 0; i < body.points.count(); ++i) {
+      low = std::min(low, body.points.position(i)[c]);
+      high = std::max(high, body.points.position(i)[c]);
+    }
+    if (body.part) {
+      low = body.part->ranks().min(low);
+      high = body.part->ranks().max(high);
+    }
+    extent[std::size_t(c)] = high - low;
+  }
+  const double largest = std::max({extent[0], extent[1], extent[2]});
+  for (int c = 0; c < dimension; ++c) {
+    if (extent[std::size_t(c)] > flat * largest) continue;
+    const char axis = "xyz"[c];
+    return fmt::format(
+        "all points stand at the same {0}, so that no bond resists their motion along {0}: give "
+        "the "
+        "body two layers or more across it, prescribe that displacement everywhere, or model it in "
+        "{1} dimension{2}",
+        axis, dimension - 1, dimension == 2 ? "" : "s");
+  }
+  return {};
+}
+
 }  // namespace
 
 void refuse_unheld_bodies(const Body& body) {
@@ -625,6 +658,8 @@ void refuse_unheld_bodies(const Body& body) {
                          ". Prescribe displacements that prevent this");
   }
   const std::string loose = describe_loose_points(body, *bonds);
+  const std::string flatness = describe_flatness(body);
+  if (!loose.empty() && !flatness.empty()) throw InputError("points", "", flatness);
   if (!loose.empty()) {
     throw InputError(body.specification.cracks.empty() ? "points" : "cracks", "",
                      loose +

@@ -200,6 +200,15 @@ class Messages(unittest.TestCase):
         self.assertEqual(run.returncode, 0, run.stderr)
         self.assertNotIn("fracture ", run.stdout)
 
+    def test_a_layer_of_points_in_space(self):
+        """No horizon gives bonds a direction out of the plane in which all points stand."""
+        layer = 'dimension = 3\n[lattice]\nspacing = 1e-3\nshape = [{ add = "box", min = [0, 0, 0], max = [0.02, 0.01, 0.001] }]\n'
+        layer += '[material]\nyoungs_modulus = 200e9\n[[set]]\nname = "left"\nwhere = "x < 0.003"\n'
+        layer += '[[support]]\nset = "left"\ndisplacement = [0, 0, 0]\n[[load]]\nset = "left"\nbody_force = ["load", 0, 0]\n'
+        run = self.peristat("check", self.write(layer))
+        self.assert_refused(run, "all points stand at the same z", "two layers", "2 dimensions")
+        self.assertNotIn("horizon", run.stderr)
+
     def test_an_option_that_is_a_key(self):
         run = self.peristat("run", self.write(PLATE), "--steps", "3")
         self.assert_refused(run, "unknown option --steps", "--set loading.steps=3")
