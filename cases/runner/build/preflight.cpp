@@ -237,11 +237,13 @@ void add_materials(const Case& from, const Body& body, Preflight& to) {
     if (!has_strength || !damage.breaks_bonds()) continue;
     const FractureScale scale =
         FractureScale::of(material, found[k].key, body.setting, body.points.spacing);
+    const double strength = scale.strength(damage);
+    if (strength == 0.0) continue;  // of a lattice without shear stiffness
     const DamageSpecification& asked = given[k].of->damage;
-    to.fractures.push_back(
-        {of.regions.empty() ? "" : found[k].name, key, scale.youngs_modulus, scale.energy(damage),
-         scale.youngs_modulus * peak_force(damage), damage.critical,
-         asked.strength || asked.onset > 0.0 || !asked.fracture_energy, damage.softens()});
+    to.fractures.push_back({of.regions.empty() ? "" : found[k].name, key, scale.youngs_modulus,
+                            scale.energy(damage), strength, damage.critical,
+                            asked.strength || asked.onset > 0.0 || !asked.fracture_energy,
+                            asked.strength.has_value(), damage.softens()});
   }
 }
 

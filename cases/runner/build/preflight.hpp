@@ -52,6 +52,7 @@ struct Preflight {
     double youngs_modulus = 0.0, energy = 0.0, strength = 0.0;  ///< [Pa], [J/m2], [Pa]
     double critical = 0.0;                                      ///< stretch
     bool has_strength = false;                                  ///< given, or by its stretches
+    bool is_data = false;                                       ///< its strength is given
     bool softens = false;
     /// E G / f_t^2, which the process zone of a crack scales with [m].
     [[nodiscard]] double characteristic_length() const {

@@ -122,7 +122,8 @@ void add_fracture(const Preflight& of, const Preflight::Fracture& fracture, Warn
   // is 2.9 horizons, cracks run at up to 1.03 of the toughness, and near brittle ones at 1.19.
   constexpr double shortest_zone = 1.1;  // in horizons
   const double zone = fracture.characteristic_length();
-  if (zone < shortest_zone * of.horizon) {
+  // A law that is given by its stretches is a choice of model, its strength no data to be met.
+  if (fracture.is_data && zone < shortest_zone * of.horizon) {
     warnings.push_back(fmt::format(
         "the spacing is coarse for the process zone{}: E G/ft^2 = {:.3g} m is {:.2g} horizons, and "
         "below {:g} the lattice holds a crack up as it does with brittle bonds; a spacing of "
