@@ -291,7 +291,7 @@ class LoadZero(Comparison):
 
     def test_by_relaxation(self):
         for name in LASTING:
-            self.compare_from_zero(name, 'solver.mode="relaxation"')
+            self.compare_from_zero(name, 'solver.mode="relaxation"', "lattice.spacing=0.1", ranks=(2,))
 
     def test_by_both(self):
         for name in LASTING:
