@@ -194,7 +194,13 @@ class Bodies(Comparison):
         (self.folder / "points.csv").write_text("\n".join(rows))
         text = PLATE.split("[lattice]")[0] + '[points]\nfile = "points.csv"\nthickness = 0.01\nhorizon = 0.16\n' + \
             "[[set]]\nname = \"corner\"\nwhere = \"x > 0.2 && y > 0.5\"\n[material]" + PLATE.split("[material]")[1]
-        self.compare_settings(text, 'quadrature.volume_correction="linear"', ranks=(2, 3))
+        one = self.compare_settings(text, 'quadrature.volume_correction="linear"', ranks=(2, 3))
+        with h5py.File(one / "results.h5") as file, h5py.File(self.folder / "on_3/results.h5") as several:
+            row = file["points/source_row"][()]
+            self.assertEqual(sorted(row), list(range(len(rows) - 1)))
+            self.assertEqual(list(row), list(several["points/source_row"][()]))
+            places = [[float(word) for word in rows[1 + k].split(",")[:2]] for k in row]
+            self.assertEqual(places, several["points/reference"][()].tolist())
 
     def test_loads(self):
         side = 'load=[{side="x+", traction=["1e5*load*y", "2e5"]}]'

@@ -5,6 +5,7 @@ import unittest
 import h5py
 import numpy
 
+from tests.acceptance import dynamics_test
 from tests.acceptance.on_ranks import BLOCK, CUBE, PLATE, ROOT, SHEET, SQUARE, STATES, Comparison, resume, rows
 from tests.acceptance.ranks_bodies_test import CELL
 
@@ -329,6 +330,48 @@ class Implicit(Comparison):
             run, _ = self.start(ranks, TORN, *settings(*NEWMARK, "dynamics.time_step=1e-9"))
             self.assertEqual(run.returncode, 2)
             self.assertIn("shorter than a thousandth of the stable explicit step", run.stderr)
+
+
+class FromEquilibrium(Comparison):
+    """A motion that starts in the equilibrium of supports and loads at t = 0."""
+
+    STEADY = Motions.MOVING.replace('["1e6*t*2000*y", "1e5*exp(-t*5000)"]', '["1e6*(1 + 2000*t)*y", "-1e6"]')
+    STEPS = Motions.STEPS.replace('displacement = ["1e-4*exp(-(y - 1.2)^2*50)", "0"]', "").replace(
+        'mode = "dynamics"', 'mode = "dynamics"\n'
+        + "\n".join(setting.replace("=", " = ", 1) for setting in NEWMARK if setting.startswith("solver.")).replace("solver.", "")).replace(
+        "[dynamics]", '[dynamics]\nstart = "equilibrium"')  # fmt: skip
+
+    def test_explicit_and_implicit_steps(self):
+        for of in ((), NEWMARK[:2]):
+            one = self.compare(self.STEADY + self.STEPS, (2,), *settings(*of), solver="")
+            first = rows(one, "history.csv")[0]
+            self.assertGreater(float(first["stored_energy"]), 0.0)
+            with h5py.File(one / "results.h5") as file:
+                self.assertGreater(numpy.abs(file["steps/000000/displacement"][()]).max(), 1e-4)
+
+    def test_automatic_choices(self):
+        """One rank has a factor, several have iterations to a tolerance."""
+        tight = settings("solver.relative_tolerance=1e-12", "solver.linear_tolerance=1e-12")
+        text = dynamics_test.Start.HANGING.replace("LATER", "0.1*t")
+        one, several = (self.results(ranks, text, *tight) for ranks in (1, 2))
+        self.expect_same(one, several)
+
+    def test_goes_on(self):
+        whole = self.results(1, self.STEADY + self.STEPS).rename(self.folder / "whole")
+        run, output = self.start(2, self.STEADY + self.STEPS, "--stop-after", "3")
+        self.assertEqual(run.returncode, 130, run.stderr)
+        again = resume(3, output)
+        self.assertEqual(again.returncode, 0, again.stderr)
+        self.expect_same(whole, output)
+
+    def test_starts_that_are_none(self):
+        free = self.STEADY.replace('displacement = [0, 0]', 'displacement = ["free", 0]').replace('[0, "1e-3*sin(2000*t)"]', '["free", 0]')
+        brittle = self.STEADY.replace("density", 'damage = { law = "critical_stretch", critical = 1e-4 }\ndensity')
+        for text, code, words in ((free, 2, "do not hold the body"), (brittle, 3, "no equilibrium to begin with")):
+            for ranks in (1, 2):
+                run, _ = self.start(ranks, text + self.STEPS)
+                self.assertEqual(run.returncode, code, run.stderr)
+                self.assertIn(words, run.stdout + run.stderr)
 
 
 class OtherModels(Comparison):

@@ -262,6 +262,77 @@ class SameResults(Comparison):
         self.assertEqual(run.stdout.count("completed in"), 1)
 
 
+# What acts at load 0: a weight, a temperature, a support that is displaced from the start.
+LASTING = {
+    "weight": ('material={model="bond", youngs_modulus=1e9, density=1000}', 'load=[{gravity=["2e3", "-3e4*(1 + x)"]}]'),
+    "temperature": ('material={model="bond", youngs_modulus=1e9, thermal_expansion=1e-5}', 'temperature={change="300*y + 100*load"}'),
+    "support": ('support=[{set="bottom", displacement=[0, "1e-3*(1 + x)"]}, {set="top", displacement=["free", "0.01*load"]}]',),
+}  # fmt: skip
+
+
+class LoadZero(Comparison):
+    """Step 0 is a row of each run, and its fields are there where something acts at load 0."""
+
+    def compare_from_zero(self, name, *settings, text=PLATE, ranks=(3,)):
+        words = [word for setting in (*LASTING[name], *settings) for word in ("--set", setting)]
+        one = self.compare(text, ranks, *words)
+        history = rows(one, "history.csv")
+        self.assertEqual([row["step"] for row in history], ["0", "1", "2"])
+        self.assertGreater(float(history[0]["stored_energy"]), 0.0)
+        for count in ranks:
+            with h5py.File(self.folder / f"on_{count}/results.h5") as file:
+                self.assertGreater(numpy.abs(file["steps/000000/displacement"][()]).max(), 1e-5)
+                self.assertEqual(rows(one, "decisions.csv")[0]["action"], rows(self.folder / f"on_{count}", "decisions.csv")[0]["action"])
+        return one
+
+    def test_by_newtons_method(self):
+        for name in LASTING:
+            self.compare_from_zero(name, 'solver.mode="newton"', ranks=(2, 3))
+
+    def test_by_relaxation(self):
+        for name in LASTING:
+            self.compare_from_zero(name, 'solver.mode="relaxation"', "lattice.spacing=0.1", ranks=(2,))
+
+    def test_by_both(self):
+        for name in LASTING:
+            self.compare_from_zero(name, 'solver.mode="adaptive"')
+
+    def test_where_nothing_acts(self):
+        one = self.compare(PLATE, (3,))
+        self.assertEqual(float(rows(one, "history.csv")[0]["stored_energy"]), 0.0)
+        with h5py.File(self.folder / "on_3/results.h5") as file:
+            self.assertNotIn("000000", file["steps"])
+
+    def test_damage_at_load_zero(self):
+        """The support softens bonds before the first step."""
+        law = 'damage={law="tanh", onset=0.01, critical=0.5, rate=3}'
+        one = self.compare(PLATE, (3,), *(word for setting in (
+            f'material={{model="bond", youngs_modulus=1e9, {law}}}', 'solver.mode="newton"',
+            'support=[{set="bottom", displacement=[0, 0]}, {set="top", displacement=[0, "2e-2 + 1e-4*load"]}]'
+        ) for word in ("--set", setting)))  # fmt: skip
+        self.assertGreater(float(rows(one, "history.csv")[0]["dissipated_energy"]), 0.0)
+
+
+class CutBonds(Comparison):
+    """A subtracted shape that bonds must not cross."""
+
+    def test_a_slit_that_is_narrower_than_the_horizon(self):
+        slit = '{{subtract="box", min=[-0.1, 1.09], max=[0.4, 1.16], cuts_bonds={}}}'
+        box = '{add="box", min=[0, 0], max=[1, 1.5]}'
+        hole = '{subtract="disk", centre=[0.5, 0.7], radius=0.2, cuts_bonds=true}'
+        bonds = {}
+        for word in ("true", "false"):
+            one = self.compare(PLATE, (2, 3), "--set", f"lattice.shape=[{box}, {hole}, {slit.format(word)}]")
+            found = {json.loads((self.folder / name / "summary.json").read_text())["bonds"] for name in ("on_1", "on_2", "on_3")}
+            self.assertEqual(len(found), 1)
+            bonds[word] = found.pop()
+        self.assertLess(bonds["true"], bonds["false"])
+
+    def test_in_space(self):
+        solid = '{add="box", min=[0, 0, 0], max=[0.7, 0.6, 0.9]}, {subtract="sphere", centre=[0.35, 0.3, 0.6], radius=0.16, cuts_bonds=true}'
+        self.compare(BLOCK, (2,), "--set", f"lattice.shape=[{solid}]")
+
+
 class Page(OnRanks):
     """docs/cluster.md"""
 
