@@ -262,7 +262,8 @@ class CommandLine(unittest.TestCase):
         self.assertFalse((self.folder / "results").exists())
 
     def test_no_shipped_case_is_warned_of(self):
-        cases = sorted(path for path in (ROOT / "cases").glob("*/*.toml") if not path.stem.startswith("glass_plate"))
+        # But for the plate of a million points, whose check takes a minute and a half; glass_plate_half has its keys.
+        cases = sorted(path for path in (ROOT / "cases").glob("*/*.toml") if path.stem != "glass_plate")
         self.assertGreaterEqual(len(cases), 40)
         for case in cases:
             with self.subTest(case=case.name):

@@ -118,9 +118,10 @@ void add_fracture(const Preflight& of, const Preflight::Fracture& fracture, Warn
         name, fracture.critical));
   }
   if (!fracture.softens) return;
-  // docs/trustworthy-peaks.md: with a strength 1.6 times that of the law as it comes, whose length
-  // is 2.4 horizons, cracks run at up to 1.03 of the toughness, and near brittle ones at 1.19.
-  constexpr double shortest_zone = 0.9;  // in horizons
+  // docs/trustworthy-peaks.md: with bonds 1.6 times as strong as those of the law as it comes,
+  // whose length is 2.4 horizons, cracks run at up to 1.03 of the toughness, and near brittle ones
+  // at 1.19.
+  constexpr double shortest_zone = 1.1;  // in horizons
   const double zone = fracture.characteristic_length();
   // A law that is given by its stretches is a choice of model, its strength no data to be met.
   if (fracture.is_data && zone < shortest_zone * of.horizon) {
