@@ -76,7 +76,7 @@ class Specimen:
 
 
 def rows(folder: Path, name: str = "history") -> list[dict]:
-    """Rows of a table, numbers as such."""
+    """Rows of a table, numbers as such; of the history without step 0, the body at rest."""
 
     def value(text):
         try:
@@ -85,7 +85,8 @@ def rows(folder: Path, name: str = "history") -> list[dict]:
             return text
 
     with open(folder / f"{name}.csv", newline="") as table:
-        return [{key: value(text) for key, text in row.items()} for row in csv.DictReader(table)]
+        found = [{key: value(text) for key, text in row.items()} for row in csv.DictReader(table)]
+    return [row for row in found if name != "history" or row["step"] > 0]
 
 
 def peak(values: list[float]) -> float:
