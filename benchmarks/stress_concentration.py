@@ -88,7 +88,7 @@ def row_of_points(folder: Path, spacing: float, surface: str):
     subprocess.run([PROGRAM, "run", path, "--output", folder / "out", "--overwrite", "--quiet", "--no-plots"], check=True)
     x, y, stress = table(folder / "out/line_ligament.csv", "x", "y", "stress_yy")
     (missing,) = table(folder / "out/line_missing.csv", "missing_neighbourhood")
-    _, reaction = table(folder / "out/history.csv", "reaction_y:symmetry_y")
+    (reaction,) = table(folder / "out/history.csv", "reaction_y:symmetry_y")
     gross = abs(reaction[-1]) / (WIDTH / 2 * THICKNESS)
     assert abs(gross / GROSS - 1) < 1e-8, gross
     row = numpy.abs(y - spacing / 2) < 0.1 * spacing

@@ -116,10 +116,10 @@ void Recorder::accepted(StepRecord record, const AcceptedState& state) {
   add_constraint_values(*body_.conditions, state.trial, state.external_force, recorded_.ranks(),
                         record.probes);
   add_motion_values(record, points_.dimension, record.probes);
-  for (const LineProbe& line : lines_) {
-    results_.add_line(line.table().name, line.rows(record, all));
-  }
   const bool is_at_rest = record.step == 0 && !record.motion && !moves(made.displacement);
+  for (const LineProbe& line : lines_) {
+    if (!is_at_rest) results_.add_line(line.table().name, line.rows(record, all));
+  }
   const bool write_fields = record.step % case_.output.every == 0 && !is_at_rest;
   results_.add(record, write_fields ? std::optional(view) : std::nullopt);
   if (write_fields) written_histories_.tell(bond_stretches(body_.model, at.history));
