@@ -86,7 +86,7 @@ def rows(folder: Path, name: str = "history") -> list[dict]:
 
     with open(folder / f"{name}.csv", newline="") as table:
         found = [{key: value(text) for key, text in row.items()} for row in csv.DictReader(table)]
-    return [row for row in found if name != "history" or row["step"] > 0]
+    return [row for row in found if name != "history" or row.get("step") != 0]
 
 
 def peak(values: list[float]) -> float:
