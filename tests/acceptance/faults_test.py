@@ -88,8 +88,9 @@ class Faults(unittest.TestCase):
         """Every accepted step can be read; gives their number."""
         folder = folder or self.out
         with h5py.File(folder / "results.h5") as file:
-            zero, *steps = file["history/step"][...]
-            self.assertEqual([zero, *steps], list(range(len(steps) + 1)))
+            rows = list(file["history/step"][...])
+            self.assertEqual(rows, list(range(len(rows))))
+            steps = rows[1:]  # after step 0, which the disk may have been full for
             self.assertGreaterEqual(len(steps), at_least)
             self.assertEqual(sorted(file["steps"]), [f"{step:06d}" for step in steps])
             for step in file["steps"].values():
