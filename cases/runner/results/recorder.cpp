@@ -125,7 +125,7 @@ void Recorder::accepted(StepRecord record, const AcceptedState& state) {
   if (write_fields) written_histories_.tell(bond_stretches(body_.model, at.history));
   if (!is_at_rest) progress_.accepted(record, relative_residual_);
   last_ = std::move(record);
-  if (!write_fields) unwritten_ = std::move(made);
+  if (!write_fields && !is_at_rest) unwritten_ = std::move(made);
 }
 
 bool Recorder::moves(std::span<const double> displacement) const {
