@@ -126,7 +126,7 @@ class CpdFractureEnergy(unittest.TestCase):
         self.assertEqual(run.code, 0, run.said)
         line = next(line for line in run.output.splitlines() if line.startswith("fracture "))
         self.assertIn("fracture energy 4000 J/m2 in the mean over the directions of a crack (", line)
-        self.assertTrue(line.endswith("strength 2e+08 Pa"), line)
+        self.assertIn("strength 2e+08 Pa in the mean over the directions of a pull (", line)
 
     def of_moduli(self, damage):
         tables = self.strip(0.03, 0.0, damage)
@@ -134,20 +134,29 @@ class CpdFractureEnergy(unittest.TestCase):
         tables["material"] |= {"youngs_modulus": 70e9, "poisson_ratio": 0.4}
         return self.write(tables)
 
-    def test_a_strength_is_the_stretch_of_the_largest_force_times_the_modulus(self):
-        for damage, key in (({"law": "linear", "critical": 0.02}, "onset"), ({"law": "exponential", "critical": 0.02}, "onset"),
-                            ({"law": "critical_stretch"}, "critical")):  # fmt: skip
+    def test_stretches_of_a_strength_have_that_strength(self):
+        for damage, keys in (({"law": "linear", "critical": 0.02}, ("onset", "critical")), ({"law": "exponential", "critical": 0.02}, ("onset", "critical")),
+                             ({"law": "critical_stretch"}, ("critical",))):  # fmt: skip
             with self.subTest(law=damage["law"]):
                 run = peristat("calibrate", self.of_moduli(damage | {"strength": 3e8}))
                 self.assertEqual(run.code, 0, run.said)
                 told = run.json()["damage"]
-                self.assertAlmostEqual(told[key] * 70e9 / 3e8, 1.0, delta=1e-12)
-                self.assertAlmostEqual(told["strength"] / 3e8, 1.0, delta=1e-12)
+                self.assertAlmostEqual(told["strength"] / 3e8, 1.0, delta=1e-7)
+                # The other way round: a pull of the lattice whose bonds have these stretches.
+                run = peristat("calibrate", "--strengths", self.of_moduli({"law": damage["law"]} | {key: told[key] for key in keys}))
+                self.assertEqual(run.code, 0, run.said)
+                peak = run.json()["damage"]["strengths"]["uniaxial"]["peak"]
+                self.assertAlmostEqual(peak["mean"] / 3e8, 1.0, delta=1e-6)
+                self.assertLess(peak["least"], 3e8)
+                self.assertGreater(peak["most"], 3e8)
+
+    def test_a_strength_needs_no_moduli(self):
+        run = peristat("check", self.write(self.strip(0.03, 0.0, {"law": "linear", "critical": 0.02, "strength": 2e8})))
+        self.assertEqual(run.code, 0, run.said)
+        self.assertIn("strength 2e+08 Pa in the mean over the directions of a pull (", run.said)
 
     def test_strengths_without_an_answer_are_refused(self):
-        of_constants = self.strip(0.03, 0.0, {"law": "linear", "critical": 0.02, "strength": 2e8})
-        for case, words in ((lambda: self.write(of_constants), ["material.damage.strength", "youngs_modulus"]),
-                            (lambda: self.of_moduli({"law": "critical_stretch", "fracture_energy": G, "strength": 2e8}),
+        for case, words in ((lambda: self.of_moduli({"law": "critical_stretch", "fracture_energy": G, "strength": 2e8}),
                              ["material.damage.strength", "one stretch for both"]),
                             (lambda: self.of_moduli({"law": "linear", "fracture_energy": G, "strength": 2e9}),
                              ["material.damage.strength", "a spacing below"])):  # fmt: skip
