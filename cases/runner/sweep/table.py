@@ -31,12 +31,13 @@ def figures(folder: Path) -> dict:
     except (OSError, ValueError):
         return {}
     row = {name: summary.get(name, "") for name in FIGURES}
-    row |= {column: summary.get("energy", {}).get(name, "") for column, name in ENERGIES.items()}
-    row |= {f"peak_reaction:{name}": peak for name, peak in _peak_reactions(folder).items()}
-    for name, reaction in summary.get("reactions", {}).items():
-        row[f"final_reaction:{name}"] = math.hypot(*reaction)
-    for name, value in summary.get("probes", {}).items():
-        row |= _probe_columns(name, value)
+    if summary.get("steps"):  # at rest nothing is known of the body
+        row |= {column: summary.get("energy", {}).get(name, "") for column, name in ENERGIES.items()}
+        row |= {f"peak_reaction:{name}": peak for name, peak in _peak_reactions(folder).items()}
+        for name, reaction in summary.get("reactions", {}).items():
+            row[f"final_reaction:{name}"] = math.hypot(*reaction)
+        for name, value in summary.get("probes", {}).items():
+            row |= _probe_columns(name, value)
     row["seconds_total"] = summary.get("seconds", {}).get("total", "")
     row["peak_memory_bytes"] = summary.get("peak_memory_bytes", "")
     return row
