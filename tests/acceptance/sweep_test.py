@@ -356,9 +356,21 @@ class Sweep(unittest.TestCase):
         self.assertEqual((failed["status"], failed["exit_code"], failed["steps"]), ("not_converged", "3", "0"))
         for column in ("peak_reaction:left", "final_reaction:left", "energy_stored"):  # zeros would be no result
             self.assertEqual(failed[column], "")
+        with h5py.File(self.out / "solver.max_iterations=1" / "results.h5") as file:
+            self.assertEqual(list(file["steps"]), [])  # of a body at rest no fields are written
         self.assertEqual((completed["status"], completed["steps"]), ("completed", "1"))
         self.assertTrue((self.out / "sweep.png").exists())
         self.assert_ends(self.sweep(*FIRST_FAILS), 3, "exit code 3", "skipped")
+
+    def test_figures_of_a_preload_are_told_though_the_load_fails(self):
+        preloaded = ["support[1].displacement=['1e-5 + 9e-3*load', 0]", "solver.max_iterations=2", "loading.smallest_step=0.5"]
+        settings = [word for text in preloaded for word in ("--set", text)]
+        self.assert_ends(self.sweep("--vary", "loading.steps=1", *settings), 3, "exit code 3: did not converge")
+        row = self.rows()[0]
+        self.assertEqual(row["steps"], "0")
+        self.assertGreater(float(row["final_reaction:left"]), 0.0)
+        with h5py.File(next(self.out.glob("*/results.h5"))) as file:
+            self.assertEqual(list(file["steps"]), ["000000"])
 
     def test_what_does_not_fit_is_told_and_earlier_results_are_not_taken_for_it(self):
         self.sweep("--vary", "loading.steps=1")

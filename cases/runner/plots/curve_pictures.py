@@ -83,7 +83,7 @@ def draw_load_displacement(results):
     handles, labels = panels[0].get_legend_handles_labels()
     figure.legend(handles, [label.replace("$", r"\$") for label in labels], loc="lower center",
                   ncol=min(len(labels), 4), fontsize=12, bbox_to_anchor=(0.52, 0.0), borderaxespad=0.5)  # fmt: skip
-    steps = len(load)
+    steps = len(load) if results.is_of_motion else sum(step > 0 for step in results.history["step"])
     heading(figure, results, ["reactions of the supports", f"{number(steps)} accepted step{'s' * (steps != 1)}",
                               load_words(load.max(), results.is_of_motion, "up to ") if control is None
                               else f"under control up to {drive_words[3:].format(number(drive.max()))}"])  # fmt: skip
@@ -145,8 +145,9 @@ def support_sets(results) -> list[str]:
 
 
 def has_reactions(results) -> bool:
-    """Whether the history has accepted steps with reactions."""
-    return results.numbers("load_factor") is not None and bool(reactions(results))
+    """Whether the history has accepted steps with reactions; a body at rest has none."""
+    load = results.numbers("load_factor")
+    return load is not None and len(load) > len(results.resting_steps) and bool(reactions(results))
 
 
 def driven_components(results) -> list[tuple[str, int]]:
@@ -229,7 +230,7 @@ def _probe_of(results, name, axis: int) -> tuple[str, np.ndarray] | None:
 def _mean_of(results, name: str, axis: int) -> tuple[str, np.ndarray] | None:
     """Mean displacement of a set at the accepted steps if all have fields: words (with a place for its sign) and values."""
     steps = [int(step) for step in results.history.get("step", [])]
-    if not steps or set(steps) - set(results.step_numbers) or not len(results.sets.get(name, ())):
+    if not steps or set(steps) - set(results.step_numbers) - results.resting_steps or not len(results.sets.get(name, ())):
         return None  # fields of some steps were not written
     if len(steps) * results.reference.size > MOST_VALUES_READ or axis >= results.dimension:
         return None

@@ -159,8 +159,15 @@ class ResultsFolder:
         self._report(f"{name} of step {number} has values that are not finite (not drawn)")
         return None
 
+    @property
+    def resting_steps(self) -> set[int]:
+        """Step 0 if nothing moves there: it has a row of the history and no fields."""
+        return {0} & {int(step) for step in self.history.get("step", [])} - set(self.step_numbers)
+
     def displacement(self, number: int) -> np.ndarray:
         """Displacement of a step alone, count x dimension [m]."""
+        if number in self.resting_steps:
+            return np.zeros_like(self.reference)
         with _reading(self.path) as file:
             array = file.numbers(f"steps/{number:06d}/displacement", self.reference.shape)
         return np.nan_to_num(array, posinf=0.0, neginf=0.0)

@@ -31,7 +31,7 @@ def figures(folder: Path) -> dict:
     except (OSError, ValueError):
         return {}
     row = {name: summary.get(name, "") for name in FIGURES}
-    if summary.get("steps"):  # at rest nothing is known of the body
+    if summary.get("steps") or summary.get("max_displacement"):  # zeros of a body at rest are no results
         row |= {column: summary.get("energy", {}).get(name, "") for column, name in ENERGIES.items()}
         row |= {f"peak_reaction:{name}": peak for name, peak in _peak_reactions(folder).items()}
         for name, reaction in summary.get("reactions", {}).items():

@@ -872,6 +872,31 @@ class Pictures(unittest.TestCase):
         self.assertIn("no step was accepted", self.plot())
         self.assert_pictures()
 
+    def begin_at_rest(self):
+        """A row of zeros for step 0, whose fields are not written: nothing moves there."""
+        path = self.folder / "history.csv"
+        names, *rows = path.read_text().splitlines()
+        rest = ["newton" if name == "mode" else "0" for name in names.split(",")]
+        path.write_text("\n".join([names, ",".join(rest), *rows]) + "\n")
+        return read_results_folder(self.folder)
+
+    def test_a_row_at_rest_takes_no_displacement_away(self):
+        write_folder(self.folder, lattice(20, 10))
+        results = self.begin_at_rest()
+        found = find_abscissa(results, reactions(results))
+        self.assertIn("“left”", found.label)
+        expected = [0.0] + [results.displacement(step)[results.sets["left"], 0].mean() for step in (1, 2, 3)]
+        np.testing.assert_allclose(found.values, expected, rtol=1e-15)
+        figure = draw_load_displacement(results)
+        self.assertEqual(len(figure.axes), 2)
+        self.assertTrue(any("3 accepted steps" in text.get_text() for text in figure.texts))
+
+    def test_a_body_that_stayed_at_rest_has_no_curve(self):
+        write_folder(self.folder, lattice(20, 10), steps=0)
+        self.begin_at_rest()
+        self.assertIn("no load_displacement", self.plot())
+        self.assertFalse((self.folder / "plots/load_displacement.png").exists())
+
     def test_steps_without_their_part_are_passed_over(self):
         write_folder(self.folder, lattice(20, 10))
         with h5py.File(self.folder / "results.h5", "a") as file:
