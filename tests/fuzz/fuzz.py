@@ -216,7 +216,11 @@ class Input:
             if not 0 <= row["max_damage"] <= 1:
                 raise Finding(f"damage {row['max_damage']}", run)
         rows = {int(row["step"]): row for row in results.table("history")}
-        borne = max((abs(step.force).max() for step in results.steps), default=0.0)  # what is torn keeps its round-off
+        # What is torn keeps the round-off of what it bore, be it in the step that tore it.
+        borne = max((abs(step.force).max() for step in results.steps), default=0.0)
+        for step in results.steps:
+            moved = abs(step.displacement).max()
+            borne = max(borne, abs(rows[step.number]["external_work"]) / moved if moved > 0.0 else 0.0)
         for step in results.steps:
             total = step.force.sum(axis=0)
             for axis in range(len(total)):  # what the body beyond planes of symmetry pulls with

@@ -5,6 +5,7 @@ Every function takes the input (tests/fuzz/fuzz.py), makes its cases with the in
 them, and raises Finding where a property does not hold. Bodies have some ten points and take milliseconds.
 """
 
+import copy
 import csv
 import json
 import math
@@ -65,18 +66,33 @@ class Body:
     """A bar or a plate of random size and stiffness, held on the left."""
 
     def __init__(self, random):
-        spacing = 10 ** random.uniform(-4, 1)
+        self.spacing = 10 ** random.uniform(-4, 1)
         self.dimension = random.choice((1, 1, 2))
         self.count = random.randint(6, 12)
-        self.length = self.count * spacing
         self.modulus = 10 ** random.uniform(0, 12)
         self.area = 10 ** random.uniform(-6, 1)
-        numbers = {"spacing": spacing, "length": self.length, "height": 4 * spacing, "modulus": self.modulus, "area": self.area}
-        text = BAR if self.dimension == 1 else PLATE
-        self.text = text.format(**{name: f"{value:.9g}" for name, value in numbers.items()})
-        self.section = self.area if self.dimension == 1 else self.area * 4 * spacing
-        self.held = f'[[support]]\nset = "left"\ndisplacement = {[0.0] * self.dimension}\n'
         self.strain = 10 ** random.uniform(-6, -4)
+        self.held = f'[[support]]\nset = "left"\ndisplacement = {[0.0] * self.dimension}\n'
+
+    @property
+    def length(self):
+        return self.count * self.spacing
+
+    @property
+    def section(self):
+        return self.area if self.dimension == 1 else self.area * 4 * self.spacing
+
+    @property
+    def text(self):
+        numbers = {"spacing": self.spacing, "length": self.length, "height": 4 * self.spacing, "modulus": self.modulus, "area": self.area}
+        return (BAR if self.dimension == 1 else PLATE).format(**numbers)
+
+    def in_units(self, length, stress):
+        """The same body, told in units of length and stress that are so many times smaller."""
+        other = copy.copy(self)
+        other.spacing, other.modulus = length * self.spacing, stress * self.modulus
+        other.area *= length ** (2 if self.dimension == 1 else 1)
+        return other
 
     def along(self, expression):
         """A vector with an expression along the bar."""
@@ -87,12 +103,12 @@ class Body:
         stress = self.strain * self.modulus
         force, gravity = stress * self.section, stress / (1000.0 * self.length)
         own = {
-            "force": f'[[load]]\nset = "right"\ntotal_force = {self.along(f"{force:.6g}*{scale}")}\n',
-            "gravity": f"[[load]]\ngravity = {self.along(f'{gravity:.6g}*{scale}')}\n",
-            "displacement": f'[[support]]\nset = "right"\ndisplacement = {self.along(f"{self.strain * self.length:.6g}*{scale}")}\n',
-            "temperature": f'[temperature]\nchange = "{self.strain / 1e-5:.6g}*{scale}"\n',
+            "force": f'[[load]]\nset = "right"\ntotal_force = {self.along(f"{force}*{scale}")}\n',
+            "gravity": f"[[load]]\ngravity = {self.along(f'{gravity}*{scale}')}\n",
+            "displacement": f'[[support]]\nset = "right"\ndisplacement = {self.along(f"{self.strain * self.length}*{scale}")}\n',
+            "temperature": f'[temperature]\nchange = "{self.strain / 1e-5}*{scale}"\n',
             "ground": f'[[foundation]]\nname = "ground"\nset = "right"\nstiffness = {[0.1 * self.modulus * self.section / self.length] * self.dimension}\n'
-                      f"displacement = {self.along(f'{self.strain * self.length:.6g}*{scale}')}\n",  # fmt: skip
+                      f"displacement = {self.along(f'{self.strain * self.length}*{scale}')}\n",  # fmt: skip
         }
         return {name: self.held + text for name, text in own.items()}
 
@@ -159,6 +175,33 @@ def at_once_and_ramped(made):
         states.append(state(made, folder))
         require_balance(made, ended, states[-1], ONE_STEP)
     require_same(made, body, ended, *states, f"{name} that grows and at once, mode {mode}", 1e-4)
+
+
+UNITS = 1e-9  # share: the digits of a state change by round-off alone where its units do, by powers of four
+
+
+def in_other_units(made):
+    """A body bears the same in metres and in other units of length and stress: nothing in the program has a size of its own."""
+    body = Body(made.random)
+    name = made.random.choice(sorted(body.driven("load")))
+    length, stress = (4.0 ** made.random.randint(-8, 8) for _ in range(2))
+    tears, critical = made.random.random() < 0.5, body.strain * made.random.uniform(0.5, 1.5)
+    states = []
+    for folder, one in (("metres", body), ("others", body.in_units(length, stress))):
+        law = f"[material.damage]\nlaw = \"critical_stretch\"\ncritical = {critical}\n" if tears else ""
+        mode = f"mode = \"{'adaptive' if tears else 'newton'}\"\n"
+        text = one.text.replace("[solver]", law + "[solver]") + mode
+        ended = run(made, f"{text}[loading]\nsteps = 3\n{one.driven('load')[name]}", folder, codes=(0, 2, 3))
+        states.append((ended.code, state(made, folder) if ended.code == 0 else {}))
+    (code, one), (other_code, other) = states
+    if code != other_code:
+        made.finding(f"ends with {code} in metres and with {other_code} in other units", ended)
+    force = stress * length**2
+    unit = {"displacement": length, "reaction": force} | dict.fromkeys(("stored", "lost", "work"), force * length)
+    size = {key: max(map(abs, (one[k] for k in one if unit[k] == unit[key])), default=0.0) for key in one}
+    for key, value in one.items():
+        if abs(other[key] / unit[key] - value) > UNITS * size[key]:
+            made.finding(f"{name}: {key} {value:.12g} in metres, {other[key] / unit[key]:.12g} in other units", ended)
 
 
 def dead_load_in_modes_that_find_loads(made):
@@ -234,7 +277,8 @@ def strength_is_what_the_body_bears(made):
         made.finding(f"bears {borne:.4g} Pa with a strength of {strength:g} Pa, fracture energy {energy:g} J/m2", ended)
 
 
-# Keys that have no effect without another one, and what they are added to.
+# Keys that have no effect without another one. Tables of modes, [arc_length], are none of them: a case may have
+# them for the mode that --set chooses.
 WITHOUT_SWITCH = (
     "[material.damage]\ncritical = 1e-3\n",
     "[material.damage]\nfracture_energy = 10.0\n",
@@ -244,7 +288,6 @@ WITHOUT_SWITCH = (
     "[dynamics]\nend_time = 1.0\n",
     "[[initial]]\nset = \"right\"\nvelocity = [1.0]\n",
     "[[absorbing]]\nset = \"right\"\nrate = 10.0\n",
-    "[arc_length]\nsteps = 4\n",
     "[[control]]\nset = \"right\"\nweights = [1]\n",
 )
 
@@ -312,7 +355,7 @@ def outputs_over_inputs(made):
 
 PROPERTIES = {
     elastic_in_one_step_and_in_many: 3, at_once_and_ramped: 3, dead_load_in_modes_that_find_loads: 2,
-    strength_is_what_the_body_bears: 1, key_without_its_switch: 1, what_misses_the_body: 1, outputs_over_inputs: 1,
+    strength_is_what_the_body_bears: 1, key_without_its_switch: 1, what_misses_the_body: 1, in_other_units: 2, outputs_over_inputs: 1,
 }  # fmt: skip
 
 

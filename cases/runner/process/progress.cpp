@@ -127,8 +127,7 @@ void Progress::iteration(const IterationRecord& record) {
 
 /// Where no live line shows that a long search goes on.
 void Progress::show_life(const IterationRecord& record) {
-  constexpr std::chrono::seconds longest_silence{30};
-  if (std::chrono::steady_clock::now() - last_said_ < longest_silence) return;
+  if (std::chrono::steady_clock::now() - last_said_ < longest_silence_) return;
   say(fmt::format("  step {}: still searching, iteration {}, residual {:.1e}", record.step,
                   record.iteration, record.relative_residual));
 }

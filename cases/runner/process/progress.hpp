@@ -28,6 +28,9 @@ class Progress {
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
+  /// How long a search may go on without a line where no live line follows it; without this 30 s.
+  void show_life_after(std::chrono::milliseconds silence) { longest_silence_ = silence; }
+
   /// The stage of the loading programme at which the run ends; without this 1.
   void follow_to(double last_stage) { last_stage_ = last_stage; }
 
@@ -51,6 +54,7 @@ class Progress {
   double load_factor_ = 0.0;  // accepted
   double last_stage_ = 1.0;
   TimeLeft time_left_;
+  std::chrono::milliseconds longest_silence_{30'000};
   std::chrono::steady_clock::time_point start_, last_said_;
   std::FILE* log_ = nullptr;
 };
