@@ -433,6 +433,12 @@ every = 20
         for number, state in whole.items():
             numpy.testing.assert_allclose(state["displacement"] - still, further[number]["displacement"], atol=1e-5 * abs(still).max())
 
+    def test_a_motion_without_a_start_says_when_it_failed(self):
+        """A motion has a time, not a load factor."""
+        text = self.HANGING.replace("LATER", "0").replace("[solver]", '[material.damage]\nlaw = "critical_stretch"\ncritical = 1e-6\n[solver]')
+        self.run_case(text, "no_start", code=3)
+        self.assertIn("damage_begins before the first time step", self.said)
+
     def test_a_point_on_a_spring(self):
         """A point between two that are held swings about where the further load would leave it. That sets in with
         the first step, of which each scheme takes the half; the rest of the error is of second order."""

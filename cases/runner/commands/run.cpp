@@ -322,7 +322,9 @@ class CaseRun {
     summary_.status = status_of(result.outcome);
     if (result.outcome != Outcome::converged) {
       const double reached = body_->conditions->load_factor(load_point(result.state));
-      summary_.reason = failure_reason(result, reached, recorder_->decisions());
+      const bool moves = from_.solver.mode == Mode::dynamics;
+      const std::string where = place_of_failure(result, reached, moves, recorder_->last());
+      summary_.reason = failure_reason(result, where, recorder_->decisions());
     } else if (!recorder_->decisions().empty() &&
                recorder_->decisions().back().action == Decision::stop) {
       summary_.reason = recorder_->decisions().back().reason;  // it ended before its load

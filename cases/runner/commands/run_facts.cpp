@@ -147,11 +147,16 @@ void add_costs(SolvedModel& solved, RunCosts& costs) {
   costs.seconds.assembly += solved.assembler().seconds_spent();
 }
 
-std::string failure_reason(const LoadSteppingResult& result, double load_factor,
+std::string place_of_failure(const LoadSteppingResult& result, double load_factor, bool moves,
+                             const std::optional<StepRecord>& last) {
+  if (result.state.preload < 1.0) return "on the way to load 0";
+  if (!moves) return fmt::format("after load factor {:.6g}", load_factor);
+  return last && last->motion ? fmt::format("after time {:.6g} s", last->motion->time)
+                              : "before the first time step";
+}
+
+std::string failure_reason(const LoadSteppingResult& result, const std::string& where,
                            const std::vector<DecisionRecord>& decisions) {
-  const std::string where = result.state.preload < 1.0
-                                ? "on the way to load 0"
-                                : fmt::format("after load factor {:.6g}", load_factor);
   if (result.outcome == Outcome::interrupted) return "interrupted " + where;
   const bool is_decided = !decisions.empty() && decisions.back().action == Decision::stop;
   std::string reason = is_decided ? decisions.back().reason : explanation(result.outcome);

@@ -41,8 +41,14 @@ void keep_inputs_and_log_apart(const Case& from, const std::string& log_file);
 /// Adds what assembly and linear solver have cost.
 void add_costs(SolvedModel& solved, RunCosts& costs);
 
-/// @param load_factor that was reached
-[[nodiscard]] std::string failure_reason(const LoadSteppingResult& result, double load_factor,
+/// Up to where a run that did not end well has come: "after load factor 0.5".
+/// @param moves whether it is a motion, which has a time in place of a load factor
+/// @param last  of the accepted steps
+[[nodiscard]] std::string place_of_failure(const LoadSteppingResult& result, double load_factor,
+                                           bool moves, const std::optional<StepRecord>& last);
+
+/// @param where by place_of_failure
+[[nodiscard]] std::string failure_reason(const LoadSteppingResult& result, const std::string& where,
                                          const std::vector<DecisionRecord>& decisions);
 
 [[nodiscard]] std::string status_of(Outcome outcome);
