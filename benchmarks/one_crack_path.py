@@ -109,7 +109,7 @@ def told(name, options, result, side, first):
     is_same = ends == known_ends
     apart = max((abs(a - b) for a, b in zip(loads, known_loads)), default=0.0)
     same = f"yes, {apart:.0e}" if is_same else "no"
-    print(f"| {name} | {' '.join(options[1:])} | {len(history)} | {force(peak):.9g} | {float(peak['load_factor']):.9g} "
+    print(f"| {name} | {' '.join(options[1:])} | {len(history) - 1} | {force(peak):.9g} | {float(peak['load_factor']):.9g} "
           f"| {snapped['broken_bonds']} at {float(snapped['load_factor']):.6g} | {len(broken)} | {same} | {seconds:.0f} "
           f"| {code} |", flush=True)  # fmt: skip
 
