@@ -4,17 +4,31 @@ from itertools import product
 
 import numpy as np
 
+ROUND = [0, 2, 3, 1]  # corners of a square in the order of going round
+SIDES = {(0, -1): [3, 0], (0, 1): [1, 2], (1, -1): [0, 1], (1, 1): [2, 3]}  # of a square: the ends in that order
+# Corners of the faces of a cube, going round so that the normal points outwards.
+FACES = {
+    (0, -1): [0, 1, 3, 2],
+    (0, 1): [4, 6, 7, 5],
+    (1, -1): [0, 4, 5, 1],
+    (1, 1): [2, 3, 7, 6],
+    (2, -1): [0, 2, 6, 4],
+    (2, 1): [1, 5, 7, 3],
+}
+
 
 class Cells:
     """One cell per point, sharing corners with its neighbours so that a picture has no gaps, unless they
     have been parted (separations.py).
 
     A lattice, also a perturbed one, is recognised by the cells of one spacing: every point must have
-    its own. Points that are no lattice get a square or cube each, without neighbours.
+    its own. Points that are no lattice get a square or cube each, without neighbours
+    (in a plane: cloud_cells.py).
 
     index      count x dimension, lattice position of the cell
     edges      of a cell, a row for each of the lattice's axes [m]
     spacing    edge length of a square or cube as large [m]
+    offsets    of the corners from the cell's place, in edges: a row per corner, for all cells or for each
     is_lattice whether the points stand on a lattice
     """
 
@@ -22,6 +36,7 @@ class Cells:
         self.dimension = reference.shape[1]
         self.edges = as_edges(spacing, self.dimension)
         self.spacing = float(abs(np.linalg.det(self.edges)) ** (1.0 / self.dimension))
+        self.offsets = 0.5 * corner_signs(self.dimension)
         places = reference @ np.linalg.inv(self.edges)
         phase = np.angle(np.exp(2j * np.pi * places).mean(axis=0)) / (2 * np.pi)
         index = np.rint(places - phase).astype(np.int64)
@@ -50,7 +65,11 @@ class Cells:
 
     def neighbours(self, axis: int, sign: int) -> np.ndarray:
         """Number of every cell's neighbour in a direction, -1 where there is none."""
-        return self._grid[self._flat + sign * self._strides[axis]]
+        return self.cells_at(sign * np.eye(self.dimension, dtype=np.int64)[axis])
+
+    def cells_at(self, away: np.ndarray) -> np.ndarray:
+        """Number of the cell that is so many lattice places (at most one along each axis) away from every cell, or -1."""
+        return self._grid[self._flat + away @ self._strides]
 
     def part(self, axis: int, cells: np.ndarray) -> None:
         """Parts cells from their next neighbours along an axis."""
@@ -76,10 +95,16 @@ class Cells:
         parted[self._open.get((axis, sign), [])] = True
         return parted
 
+    def sides(self):
+        """Of each side of a square: the corners of `outlines` at its ends, the neighbours beyond it, and which of these
+        have been parted."""
+        for side, ends in SIDES.items():
+            yield ends, self.neighbours(*side), self.parted(*side)
+
     @property
-    def is_upright(self) -> bool:
-        """Whether cells stand along the coordinate axes."""
-        return bool((self.edges == np.diag(np.diag(self.edges))).all())
+    def is_image(self) -> bool:
+        """Whether cells are squares of an image: along the coordinate axes, and none has been fitted to an outline."""
+        return self.is_lattice and self.offsets.ndim == 2 and bool((self.edges == np.diag(np.diag(self.edges))).all())
 
     def image(self, values: np.ndarray) -> np.ndarray:
         """Values of a plane lattice as an image, rows along y from below; NaN where there is no point."""
@@ -93,19 +118,24 @@ class Cells:
         Displacements are continued linearly from the points to the corners and averaged there, among the
         cells that hang together. Loose cells (those of broken material) move with their point alone.
         """
-        change = self._change(displacement, loose)
-        signs = corner_signs(self.dimension)
-        moved = displacement[:, None, :] + 0.5 * np.einsum("ka,nac->nkc", signs, change)
+        moved = displacement[:, None, :] + self.offsets @ self._change(displacement, loose)
         knot = self._knots(loose)
         number_of_cells = np.maximum(np.bincount(knot.ravel(), minlength=knot.size), 1)
         for component in range(self.dimension):
             sums = np.bincount(knot.ravel(), moved[:, :, component].ravel(), minlength=knot.size)
             moved[:, :, component] = (sums / number_of_cells)[knot]
-        centres = reference
-        if self.is_lattice:  # of a perturbed lattice: the unperturbed places
-            centres = self.index @ self.edges
-            centres = centres + (reference - centres).mean(axis=0)
-        return centres[:, None, :] + 0.5 * signs @ self.edges + moved
+        return self.centres(reference)[:, None, :] + self.offsets @ self.edges + moved
+
+    def outlines(self, reference: np.ndarray, displacement: np.ndarray, loose: np.ndarray) -> np.ndarray:
+        """Displaced corners of squares in the order of going round, count x 4 x 2."""
+        return self.corners(reference, displacement, loose)[:, ROUND]
+
+    def centres(self, reference: np.ndarray) -> np.ndarray:
+        """Middles of the cells: of a perturbed lattice the unperturbed places."""
+        if not self.is_lattice:
+            return reference
+        places = self.index @ self.edges
+        return places + (reference - places).mean(axis=0)
 
     def _knots(self, loose: np.ndarray) -> np.ndarray:
         """A number of every corner that it shares with the corners of other cells it is joined to."""

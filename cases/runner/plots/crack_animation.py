@@ -54,13 +54,15 @@ def _spread(numbers: list[int], most: int) -> list[int]:
     return [numbers[round(i * (len(numbers) - 1) / max(count - 1, 1))] for i in range(count)]
 
 
-def _by_colour(squares: np.ndarray, damage: np.ndarray) -> list[Outline]:
-    """The squares (count x 4 x 2) of every colour as one outline, which is much faster to draw than each alone."""
+def _by_colour(cells: np.ndarray, damage: np.ndarray) -> list[Outline]:
+    """The cells (count x corners x 2) of every colour as one outline, which is much faster to draw than each alone."""
     level = np.rint(np.clip(damage, 0.0, 1.0) * (len(LEVELS) - 1)).astype(int)
-    codes = np.array([Outline.MOVETO, Outline.LINETO, Outline.LINETO, Outline.LINETO, Outline.CLOSEPOLY], np.uint8)
+    closed = np.concatenate([cells, cells[:, :1]], axis=1)
+    codes = np.full(closed.shape[1], Outline.LINETO, np.uint8)
+    codes[0], codes[-1] = Outline.MOVETO, Outline.CLOSEPOLY
     outlines = []
     for number in range(len(LEVELS)):
-        own = squares[level == number][:, [0, 1, 2, 3, 0]].reshape(-1, 2)
+        own = closed[level == number].reshape(-1, 2)
         outlines.append(Outline(own, np.resize(codes, len(own))))
     return outlines
 

@@ -44,10 +44,10 @@ def _crosses_polygon(start, end, vertices) -> np.ndarray:
     share = np.where(np.abs(above - below) > slack, np.clip(-below / rise, 0.0, 1.0), 0.0)
     place = start + share[:, None] * (end - start)
     flat = np.delete(np.arange(3), np.argmax(np.abs(normal)))  # coordinates in which the polygon is not flat
-    return passes & _inside(place[:, flat], vertices[:, flat])
+    return passes & inside_polygon(place[:, flat], vertices[:, flat])
 
 
-def _inside(places, vertices) -> np.ndarray:
+def inside_polygon(places, vertices) -> np.ndarray:
     """Whether places are inside a polygon of the plane, by the number of its edges above them."""
     inside = np.zeros(len(places), dtype=bool)
     x, y = places.T

@@ -7,6 +7,7 @@ from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.colors import LinearSegmentedColormap, Normalize
 
 from cells import Cells
+from cloud_cells import CloudCells
 from separations import cells_of
 from style import (
     ENERGY_DENSITIES, FAINT, GHOST, INK, LENGTHS, LINES, PIECE,
@@ -16,8 +17,6 @@ from style import (
 MOST_CELLS = 60_000  # drawn in one panel; more points are averaged over blocks
 CLIPPED_SHARE = 99.5  # percentile of the energy density at which its colours may end
 FLIGHT = 0.25  # share of the body's size that floating pieces may lie outside it in a picture
-ROUND = [0, 2, 3, 1]  # corners of a square in the order of going round
-SIDES = {(0, -1): [0, 3], (0, 1): [1, 2], (1, -1): [0, 1], (1, 1): [3, 2]}  # of a square, and their ends
 SEAM = 0.75  # width of a cell's own edge [point]: covers the hairline between neighbours
 DAMAGE_COLOURS = LinearSegmentedColormap.from_list(  # lightness falls steadily
     "damage", ["#d9dfe5", "#f0b36a", "#d8562f", "#8c1c2b", "#2b0a18"]
@@ -69,13 +68,13 @@ def beyond(values: np.ndarray, low: float, high: float) -> str:
 
 @dataclass
 class Plate:
-    """The squares of a deformed plate, fewer than the points if these are too many to draw."""
+    """The cells of a deformed plate, fewer than the points if these are too many to draw."""
 
-    cells: Cells
-    still: np.ndarray  # corners in the reference configuration: count x 4 x 2
+    cells: Cells | CloudCells
+    still: np.ndarray  # corners in the reference configuration: count x most x 2
     moved: np.ndarray  # corners after the deformation
-    floating: np.ndarray  # whether the square belongs to a piece that has come off
-    values: np.ndarray  # what colours the squares
+    floating: np.ndarray  # whether the cell belongs to a piece that has come off
+    values: np.ndarray  # what colours the cells
 
     def frame(self) -> tuple[np.ndarray, np.ndarray]:
         """Corners of a box around the plate before and after; pieces that flew far stay outside."""
@@ -91,10 +90,10 @@ class Plate:
 
 def deformed_plate(results, step, factor: float, values: np.ndarray, size: float = 1.0,
                    limit: int = MOST_CELLS) -> Plate:  # fmt: skip
-    """Squares with displacements times a factor; lengths are in units of `size` metres."""
+    """Cells with displacements times a factor; lengths are in units of `size` metres."""
     cells, reference, displacement, floating, loose, values = cells_of(results, step, limit, size, values)
-    still = cells.corners(reference, np.zeros_like(reference), loose)[:, ROUND]
-    moved = cells.corners(reference, factor * displacement, loose)[:, ROUND]
+    still = cells.outlines(reference, np.zeros_like(reference), loose)
+    moved = cells.outlines(reference, factor * displacement, loose)
     return Plate(cells, still, moved, floating, values)
 
 
@@ -157,28 +156,24 @@ def framed(low, high, right: float = 1.75):
 
 def _draw_outline(axes, plate: Plate) -> None:
     """Boundary of the reference configuration, filled faintly so that the motion is seen."""
-    if plate.cells.is_lattice:
-        everybody = np.ones(len(plate.still), dtype=bool)
-        axes.add_collection(
-            LineCollection(rims(plate.cells, plate.still, everybody), colors=GHOST, linewidths=1.4, zorder=3,
-                           capstyle="projecting"), autolim=False,
-        )  # fmt: skip
+    everybody = np.ones(len(plate.still), dtype=bool)
+    axes.add_collection(
+        LineCollection(rims(plate.cells, plate.still, everybody), colors=GHOST, linewidths=1.4, zorder=3,
+                       capstyle="projecting"), autolim=False,
+    )  # fmt: skip
     axes.add_collection(PolyCollection(plate.still, facecolors="#f1f3f5", edgecolors="#f1f3f5",
                                        linewidths=SEAM, zorder=0), autolim=False)  # fmt: skip
 
 
-def rims(cells: Cells, corners: np.ndarray, members: np.ndarray) -> np.ndarray:
-    """Edges between the squares that are members and what is none: count x 2 ends x 2."""
-    edges = []
-    for side, ends in SIDES.items():
-        other = cells.neighbours(*side)
-        edges.append(corners[members & ((other < 0) | ~members[other])][:, ends])
-    return np.concatenate(edges)
+def rims(cells: Cells | CloudCells, corners: np.ndarray, members: np.ndarray) -> np.ndarray:
+    """Sides between the cells that are members and what is none: count x 2 ends x 2."""
+    outer = lambda other: members & ((other < 0) | ~members[other])
+    return np.concatenate([corners[outer(other)][:, ends] for ends, other, _ in cells.sides()])
 
 
-def crack_lines(cells: Cells, corners: np.ndarray, colour: str = INK) -> LineCollection:
-    """Both faces of every crack: edges between squares that have been parted."""
-    edges = [corners[cells.parted(*side)][:, ends] for side, ends in SIDES.items()]
+def crack_lines(cells: Cells | CloudCells, corners: np.ndarray, colour: str = INK) -> LineCollection:
+    """Both faces of every crack: sides between cells that have been parted."""
+    edges = [corners[parted][:, ends] for ends, _, parted in cells.sides()]
     return LineCollection(np.concatenate(edges), colors=colour, linewidths=0.9, capstyle="projecting", zorder=3)
 
 
@@ -219,7 +214,7 @@ def draw_plane_fields(results, step):
         results, step, MOST_CELLS, size, step.energy_density
     )
     displacement = displacement * size
-    still = cells.corners(reference, np.zeros_like(reference), loose)[:, ROUND]
+    still = cells.outlines(reference, np.zeros_like(reference), loose)
     density, density_size = unit_for(np.percentile(held_values(energy, floating), CLIPPED_SHARE), ENERGY_DENSITIES)
     panels = [
         *displacement_panels(displacement, floating),
@@ -235,11 +230,11 @@ def draw_plane_fields(results, step):
         held = held_values(values, floating)
         norm, colours = _norm(held, colours)
         extend = beyond(values, norm.vmin, norm.vmax)
-        if cells.is_lattice and cells.is_upright:
+        if cells.is_image:
             picture = axes.imshow(cells.image(values), extent=(low[0], high[0], low[1], high[1]), origin="lower",
                                   interpolation="nearest", cmap=colours, norm=norm)  # fmt: skip
         else:
-            picture = PolyCollection(still, array=values, cmap=colours, norm=norm)
+            picture = PolyCollection(still, array=values, cmap=colours, norm=norm, edgecolors="face", linewidths=SEAM)
             axes.add_collection(picture, autolim=False)
         axes.add_collection(crack_lines(cells, still, FAINT if colours == "inferno" else INK), autolim=False)
         if floating.any():

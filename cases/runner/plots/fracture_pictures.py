@@ -1,9 +1,8 @@
 """Pictures of damage and cracks in two-dimensional bodies."""
 
 import numpy as np
-from matplotlib.cm import ScalarMappable
 from matplotlib.collections import LineCollection, PolyCollection
-from matplotlib.colors import LinearSegmentedColormap, Normalize
+from matplotlib.colors import Normalize
 
 from cells import merged
 from field_pictures import (
@@ -11,17 +10,15 @@ from field_pictures import (
     crack_lines, deformed_plate, draw_plane, exaggeration, exaggeration_words, framed, mark_pieces, rims,
 )  # fmt: skip
 from images import ImageKinds
+from panels import step_panels
+from step_colours import STEP_COLOURS, ranks_of_steps, step_bar
 from style import (
-    GHOST, INK, LENGTHS, PIECE, bond_words, colour_bar, heading, new_figure, number, step_words, time_unit, unit_for,
+    GHOST, INK, LENGTHS, PIECE, bond_words, heading, number, time_unit, unit_for,
 )  # fmt: skip
 
 OPENING = 0.05  # largest displacement over the body's size: a crack is seen to open, the body keeps its shape
 MOST_BONDS = 150_000  # more broken bonds are thinned out
-MOST_TICKS = 8
 POINT_COLOUR = "#d8dde2"
-STEP_COLOURS = LinearSegmentedColormap.from_list(  # as dark at the end as to be seen on the points
-    "steps", ["#20104f", "#6a1b83", "#b5305f", "#e0602c", "#eda31b"]
-)
 
 
 def draw_damaged_plane(results, step):
@@ -40,40 +37,18 @@ def draw_damage_sequence(results, steps):
     frames = [plate.frame() for plate in plates]
     low = np.min([low for low, _ in frames], axis=0)
     high = np.max([high for _, high in frames], axis=0)
-    aspect = (high - low)[1] / (high - low)[0]
-    columns = _columns(len(steps), aspect)
-    rows = -(-len(steps) // columns)
-    panel_width = 14.6 / columns
-    panel_height = max(min(panel_width * aspect, 7.5), 0.8)
-    width, height = 16.0, 1.5 + rows * (panel_height + 0.45)
-    figure = new_figure(width, height)
-    for place, (step, plate) in enumerate(zip(steps, plates)):
-        x = 0.3 + (place % columns) * panel_width
-        y = height - 1.15 - (place // columns + 1) * (panel_height + 0.45)
-        axes = figure.add_axes([x / width, y / height, 0.96 * panel_width / width, panel_height / height])
+    words = [exaggeration_words(factor), "outline: undeformed body"]
+    figure, panels = step_panels(results, steps, low, high, DAMAGE_COLOURS, words)
+    for axes, plate in zip(panels, plates):
         axes.add_collection(
             PolyCollection(plate.moved, array=plate.values, cmap=DAMAGE_COLOURS, norm=Normalize(0, 1),
                            edgecolors="face", linewidths=SEAM, zorder=2), autolim=False,
         )  # fmt: skip
         everybody = np.ones(len(plate.still), dtype=bool)
-        outline = rims(plate.cells, plate.still, everybody) if plate.cells.is_lattice else []
+        outline = rims(plate.cells, plate.still, everybody)
         axes.add_collection(LineCollection(outline, colors=GHOST, linewidths=1.0, zorder=1), autolim=False)
         axes.add_collection(crack_lines(plate.cells, plate.moved), autolim=False)
-        axes.set_xlim(low[0], high[0])
-        axes.set_ylim(low[1], high[1])
-        axes.set_aspect("equal")
-        axes.axis("off")
-        axes.set_title(", ".join(step_words(step)), fontsize=13, loc="left")
-    mappable = ScalarMappable(Normalize(0, 1), DAMAGE_COLOURS)
-    colour_bar(figure, [15.0 / width, 0.3 / height, 0.2 / width, (height - 1.9) / height], mappable, "damage")
-    heading(figure, results, ["damage as it grows", exaggeration_words(factor), "outline: undeformed body"])
     return figure
-
-
-def _columns(count: int, aspect: float) -> int:
-    """Of panels: as few as the height of a page allows, of which at most a third of the last row is empty."""
-    fits = lambda columns: -(-count // columns) * (14.6 / columns * aspect + 0.45) <= 11.0
-    return next((columns for columns in range(1, count) if fits(columns) and -count % columns <= columns / 3), count)
 
 
 def draw_broken_bonds(results, broken):
@@ -105,19 +80,14 @@ def draw_broken_bonds(results, broken):
         axes.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), fontsize=12, borderaxespad=0.1, ncols=2)
     every = -(-len(steps) // MOST_BONDS)
     width = np.clip(0.10 * inches * results.spacing * 72.0, 0.35, 1.6)
-    # A colour per step in which bonds broke: steps in between would only take colours away.
-    distinct, rank = np.unique(steps, return_inverse=True)
-    lines = LineCollection(ends[::every] / size, array=rank[::every].astype(float),
-                           norm=Normalize(-0.5, len(distinct) - 0.5), cmap=STEP_COLOURS, linewidths=width,
-                           capstyle="round", zorder=2)  # fmt: skip
+    distinct, rank, norm = ranks_of_steps(steps)
+    lines = LineCollection(ends[::every] / size, array=rank[::every].astype(float), norm=norm, cmap=STEP_COLOURS,
+                           linewidths=width, capstyle="round", zorder=2)  # fmt: skip
     axes.add_collection(lines, autolim=False)
     axes.set_xlabel(f"x [{unit}]")
     axes.set_ylabel(f"y [{unit}]")
-    marked = np.unique(np.linspace(0, len(distinct) - 1, min(MOST_TICKS, len(distinct))).round().astype(int))
-    what = "time [s]" if results.is_of_motion else "load factor"
     if len(distinct) > 1:  # one colour needs no bar
-        bar = colour_bar(figure, bar_place, lines, f"step: {what} at which it broke", ticks=marked)
-        bar.set_ticks(marked, labels=[_step_label(results, int(distinct[place])) for place in marked])
+        step_bar(figure, bar_place, results, distinct, norm)
     first, last = (results.in_history(int(step), "load_factor") for step in (steps[0], steps[-1]))
     words = ["broken bonds in the reference configuration", f"{number(len(steps))} bond{'s' * (len(steps) != 1)}"]
     if first is not None and last is not None:
@@ -133,8 +103,3 @@ def draw_broken_bonds(results, broken):
         words.append(f"one line in {every} drawn")
     heading(figure, results, words)
     return figure
-
-
-def _step_label(results, step: int) -> str:
-    load = results.in_history(step, "load_factor")
-    return f"{step}" if load is None else f"{step}: {number(load, 3)}"

@@ -91,6 +91,7 @@ def _draw_fields(results: ResultsFolder):
             yield "middle_plane", section_pictures.draw_middle_plane(results, step)
         if step.damage.max() > 0.0:
             yield "damage", solid_pictures.draw_damaged_solid(results, step)
+            yield from _draw_crack_surface(results, step)
     if results.dimension > 1:
         import stress_pictures
 
@@ -112,6 +113,21 @@ def _draw_fracture(results: ResultsFolder, step):
     if damaged and len(results.step_numbers) > 1:
         frames = [results.step(number) for number in chosen_frames(results)]
         yield "sequence", fracture_pictures.draw_damage_sequence(results, frames)
+
+
+def _draw_crack_surface(results: ResultsFolder, step):
+    """Pictures of a solid in which a crack has grown."""
+    from crack_surface import crack_surface
+
+    surface = crack_surface(results, step)
+    if not surface.has_grown:
+        return
+    import crack_surface_pictures
+
+    yield "crack_surface", crack_surface_pictures.draw_crack_surface(results, step, surface)
+    if len(results.step_numbers) > 1:
+        frames = [results.step(number) for number in chosen_frames(results)]
+        yield "sequence", crack_surface_pictures.draw_crack_surface_sequence(results, frames)
 
 
 def chosen_frames(results: ResultsFolder) -> list[int]:

@@ -8,12 +8,14 @@ import csv
 import json
 import tomllib
 from dataclasses import dataclass, field
+from functools import cached_property
 from pathlib import Path
 
 import numpy as np
 
 from hdf5_reader import Damaged, Hdf5Reader, as_text, require_plain_file
 from images import BrokenBonds, ImageKinds, on_the_body
+from outline import Outline, read_outline
 
 MOST_TABLE = 1 << 30  # bytes of a CSV file
 MOST_SUMMARY = 64 << 20  # bytes of summary.json
@@ -62,6 +64,7 @@ class ResultsFolder:
     summary: dict
     case: dict  # the resolved case
     missing: list[str] = field(default_factory=list)  # sentences for a person
+    drawn: dict = field(default_factory=dict)  # what pictures of several steps share
     image_kinds: ImageKinds | None = None  # of a body with planes of symmetry or periods
     _bonds: BrokenBonds | None = None  # broken ones, once they have been read
     lattice_edges: np.ndarray | None = None  # of a lattice that is turned or not of squares, a row per axis [m]
@@ -91,6 +94,23 @@ class ResultsFolder:
         ratio = _finite(lattice.get("horizon_ratio")) if isinstance(lattice, dict) else None
         horizon = _finite(points.get("horizon")) if isinstance(points, dict) else None
         return int(max(ratio or (horizon or 0.0) / self.spacing, 1.0))
+
+    @cached_property
+    def outline(self) -> Outline | None:
+        """Of a plane body whose case has shapes; other dimensions have other shapes, which make none."""
+        lattice = self.case.get("lattice")
+        tables = lattice.get("shape") if isinstance(lattice, dict) else None
+        return read_outline(tables, self.spacing, self.reference) if isinstance(tables, list) else None
+
+    @cached_property
+    def in_layers(self) -> np.ndarray:
+        """Whether each point stands in a layer in front of the body."""
+        lattice, inside = self.case.get("lattice"), np.zeros(len(self.volume), dtype=bool)
+        layers = lattice.get("layer") if isinstance(lattice, dict) else None
+        for layer in layers if isinstance(layers, list) else []:
+            name = as_text(layer.get("name", "")) if isinstance(layer, dict) else ""
+            inside[self.sets.get(name, [])] = True
+        return inside
 
     @property
     def cracks(self) -> list[np.ndarray]:

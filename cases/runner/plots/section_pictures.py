@@ -4,7 +4,8 @@ import numpy as np
 from matplotlib.cm import ScalarMappable
 from matplotlib.colors import Normalize
 
-from solid_pictures import AXES, Camera, draw_solid
+from camera import AXES, Camera
+from solid_pictures import draw_solid
 from style import GHOST, LENGTHS, colour_bar, heading, new_figure, number, step_words, unit_for
 
 VISIBLE = 0.1  # displacement over the body's size from which on lateral pictures are drawn

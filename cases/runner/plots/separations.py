@@ -3,10 +3,14 @@
 import numpy as np
 
 from cells import Cells, at_the_rim, merged
+from cloud_cells import CloudCells
 from crossings import crosses
+from rim import fitted, rim_offsets
 from separations_from_images import separate_from_images
+from voronoi import voronoi_cells
 
 LOOSE_DAMAGE = 0.35  # a cell this damaged lies at a crack; it moves with its point alone if more isn't known
+LEAST_VOLUME = 0.01  # of the mean one: a cell of less is drawn as large
 LOST_DAMAGE = 0.65  # a cell this damaged has lost more than a crack takes from it, and moves with its point alone
 
 
@@ -50,22 +54,54 @@ def cells_of(results, step, limit: int, size: float, *fields: np.ndarray):
     whether each floats, whether each moves with its point alone, and the fields. Where the folder does not
     list broken bonds, or cells stand for many points, damage tells what is loose.
     """
-    edges, reference, displacement, damage, floating, *fields = merged(
-        results.reference, results.edges, limit, step.displacement, step.damage, step.floating.astype(float), *fields
-    )
+    edges, reference, displacement, damage, floating, in_layers, *fields = merged(
+        results.reference, results.edges, limit, step.displacement, step.damage, step.floating.astype(float),
+        results.in_layers.astype(float), *fields
+    )  # fmt: skip
     floating = floating > 0.5
     cells = Cells(reference / size, edges / size)
     is_whole = len(reference) == len(results.reference) and results.tells_broken_bonds
     broken = results.broken_bonds().until(step.number) if is_whole else None
-    separate(cells, reference, results.cracks, broken.inner() if is_whole else None, results.reach)
-    if is_whole and results.image_kinds and cells.is_lattice:
-        separate_from_images(results, cells, broken)
-    if is_whole:
-        _separate_pieces(cells, np.rint(step.fragment))
     loose = damage > (LOST_DAMAGE if is_whole else LOOSE_DAMAGE)
+    if cells.dimension == 2 and not cells.is_lattice and len(reference) == len(results.reference):
+        cells = CloudCells(_polygons(results).scaled(1.0 / size), reference / size, results.spacing / size)
+        inner = broken.inner() if is_whole else np.zeros((0, 2), dtype=np.int64)
+        cells.part([crack / size for crack in results.cracks], inner, np.rint(step.fragment))
+        return cells, reference / size, displacement / size, floating, loose, *fields
+    _separate_lattice(results, step, cells, reference, broken)
+    if results.outline and cells.is_lattice:
+        cells.offsets = _offsets(results, reference, edges, in_layers > 0.0)
     if floating.any() and not is_whole:
         loose |= at_the_rim(cells, floating)
     return cells, reference / size, displacement / size, floating, loose, *fields
+
+
+def _separate_lattice(results, step, cells, reference, broken) -> None:
+    """Parts cells of a lattice by cracks and by broken bonds if these are known."""
+    separate(cells, reference, results.cracks, broken.inner() if broken else None, results.reach)
+    if broken and results.image_kinds and cells.is_lattice:
+        separate_from_images(results, cells, broken)
+    if broken:
+        _separate_pieces(cells, np.rint(step.fragment))
+
+
+def _polygons(results):
+    """Cells of a cloud [m], found once."""
+    if "polygons" not in results.drawn:
+        positive = np.maximum(np.nan_to_num(results.volume, posinf=0.0), 0.0)
+        sizes = results.spacing * np.sqrt(np.clip(positive / (positive.mean() or 1.0), LEAST_VOLUME, 1.0 / LEAST_VOLUME))
+        polygons = voronoi_cells(results.reference, sizes)
+        results.drawn["polygons"] = fitted(polygons, results.outline, sizes) if results.outline else polygons
+    return results.drawn["polygons"]
+
+
+def _offsets(results, reference, edges, in_layers):
+    """Offsets of the corners of a lattice's cells [edges], fitted to the outline once for each number of cells."""
+    name = f"offsets of {len(reference)}"
+    if name not in results.drawn:
+        cells = Cells(reference, edges)
+        results.drawn[name] = rim_offsets(cells, cells.centres(reference), results.outline, in_layers)
+    return results.drawn[name]
 
 
 def _separate_pieces(cells, piece: np.ndarray) -> None:

@@ -8,59 +8,21 @@ import numpy as np
 from matplotlib import colormaps
 from matplotlib.cm import ScalarMappable
 from matplotlib.collections import PolyCollection
-from matplotlib.colors import Normalize, to_rgba
+from matplotlib.colors import LinearSegmentedColormap, Normalize, PowerNorm, to_rgba
 
-from cells import Cells, corner_signs
+from camera import AXES, Camera, darker, draw_directions, lit, normals, stage
+from cells import FACES, Cells, corner_signs
 from field_pictures import (
     CLIPPED_SHARE, DAMAGE_COLOURS, beyond, displacement_magnitude, exaggeration, exaggeration_words, held_values,
 )  # fmt: skip
 from separations import cells_of
 from style import (
-    DOTS_PER_INCH, ENERGY_DENSITIES, GHOST, INK, LENGTHS, PIECE,
-    bond_words, colour_bar, heading, new_figure, number, piece_legend, piece_words, step_words, unit_for,
+    DOTS_PER_INCH, ENERGY_DENSITIES, GHOST, LENGTHS, PIECE,
+    bond_words, colour_bar, heading, number, piece_legend, piece_words, step_words, unit_for,
 )  # fmt: skip
 
+PALE = LinearSegmentedColormap.from_list("pale", ["#e3e7eb", "#f5d48a", "#ee8a3c", "#c23a5b", "#5b1f86"])
 MOST_CELLS = 250_000  # more points are averaged over blocks
-# Corners of the faces of a cube, going round so that the normal points outwards.
-FACES = {
-    (0, -1): [0, 1, 3, 2],
-    (0, 1): [4, 6, 7, 5],
-    (1, -1): [0, 4, 5, 1],
-    (1, 1): [2, 3, 7, 6],
-    (2, -1): [0, 2, 6, 4],
-    (2, 1): [1, 5, 7, 3],
-}
-AXES = "xyz"
-
-
-class Camera:
-    """Parallel projection that lays the body's longest direction across the picture."""
-
-    def __init__(self, reference: np.ndarray, displacement: np.ndarray):
-        extent = np.ptp(reference, axis=0)
-        across = int(np.argmax(extent))
-        others = [axis for axis in range(3) if axis != across]
-        motion = np.abs(displacement).max(axis=0)
-        # Up is where the body moves most, so that bending is seen; z if there is no difference.
-        up = others[0] if motion[others[0]] > 1.01 * motion[others[1]] else others[1]
-        a, b = np.eye(3)[across], np.eye(3)[up]
-        c = np.cross(a, b)  # out of the picture
-        slender = extent[across] > 3.0 * np.sort(extent)[1]
-        azimuth, elevation = np.radians((24.0, 20.0) if slender else (33.0, 25.0))
-        self.across = 3 - across - int(np.argmax(b))  # the axis that points most at the viewer
-        self.right = np.cos(azimuth) * a - np.sin(azimuth) * c
-        self.towards = np.cos(elevation) * (np.sin(azimuth) * a + np.cos(azimuth) * c) + np.sin(elevation) * b
-        self.up = np.cross(self.towards, self.right)
-        self.light = _unit(self.towards + 0.6 * self.up - 0.5 * self.right)
-        self.fill_light = _unit(self.towards + 1.2 * self.right)
-
-    def project(self, places: np.ndarray) -> np.ndarray:
-        """Picture coordinates (right, up) of places, whose last axis is x, y, z."""
-        return places @ np.stack([self.right, self.up], axis=1)
-
-    def depth(self, places: np.ndarray) -> np.ndarray:
-        """Grows towards the viewer."""
-        return places @ self.towards
 
 
 def draw_deformed_solid(results, step):
@@ -70,14 +32,17 @@ def draw_deformed_solid(results, step):
 
 
 def draw_cut_solid(results, step):
-    """The half of the deformed body behind its middle plane, coloured by energy density: what is inside is seen."""
+    """The half of the deformed body behind its middle plane, coloured by energy density: what is inside is seen.
+
+    Colours go by the square root, and begin with a pale one: most of a body has little of what its supports have.
+    """
     held = held_values(step.energy_density, step.floating)
     low, high, peak = min(float(held.min()), 0.0), float(held.max()), float(np.percentile(held, CLIPPED_SHARE))
     end = peak if 0.0 < peak < 0.7 * high else high
     unit, size = unit_for(end, ENERGY_DENSITIES)
     words = [f"up to {number(high / size)} {unit}"] if end < high else []
     return draw_solid(results, step, step.energy_density / size, (low / size, end / size or 1.0),
-                      f"energy density [{unit}]", "inferno", is_cut=True, words=words)  # fmt: skip
+                      f"energy density [{unit}]", PALE, is_cut=True, words=words)  # fmt: skip
 
 
 def draw_damaged_solid(results, step):
@@ -101,20 +66,21 @@ def draw_solid(results, step, values, value_range, label, colours, mark_pieces=F
         middle = 0.5 * (reference[:, camera.across].min() + reference[:, camera.across].max())
         side = np.sign(camera.towards[camera.across])
         shown = side * (reference[:, camera.across] - middle) <= 0.25 * spacing
-        words = [f"cut at {AXES[camera.across]} = {length_words(middle)}", *words]
+        place = 0.0 if abs(middle) < 1e-9 * spacing else middle  # no round-off of a middle at 0
+        words = [f"cut at {AXES[camera.across]} = {length_words(place)}", *words]
     faces, owners = _visible_faces(cells, corners, loose, camera, shown)
     box = _bounding_box(reference, spacing)
 
     picture = camera.project(faces)
     frame = np.concatenate([picture.reshape(-1, 2), camera.project(box)])
     low, high = frame.min(axis=0), frame.max(axis=0)
-    figure, axes, bar_place, scale = _stage(low, high)
+    figure, axes, bar_place, scale = stage(low, high)
     _draw_box(axes, camera, box)
 
-    norm = Normalize(*value_range)
-    face_colours = _lit(colormaps.get_cmap(colours)(norm(values[owners])), faces, camera)
+    norm = PowerNorm(0.5, *value_range) if is_cut else Normalize(*value_range)
+    face_colours = lit(colormaps.get_cmap(colours)(norm(values[owners])), faces, camera)
     edge = spacing * scale * DOTS_PER_INCH
-    edges, width = (face_colours, 0.4) if edge < 7.0 else (_darker(face_colours, 0.84), min(0.07 * edge, 1.0))
+    edges, width = (face_colours, 0.4) if edge < 7.0 else (darker(face_colours, 0.84), min(0.07 * edge, 1.0))
     if mark_pieces and floating.any():
         piece_legend(figure, piece_words(step), side="right", hatch=None)
         edges, width = np.where(floating[owners, None], to_rgba(PIECE), edges), max(width, 0.8)
@@ -122,7 +88,7 @@ def draw_solid(results, step, values, value_range, label, colours, mark_pieces=F
         PolyCollection(picture, facecolors=face_colours, edgecolors=edges, linewidths=width,
                        joinstyle="round", zorder=2), autolim=False,
     )  # fmt: skip
-    _draw_directions(figure, camera)
+    draw_directions(figure, camera)
     colour_bar(figure, bar_place, ScalarMappable(norm, colours), label,
                extend=beyond(values[shown], norm.vmin, norm.vmax))  # fmt: skip
     unit, size = unit_for(np.ptp(box, axis=0).max(), LENGTHS)
@@ -144,61 +110,12 @@ def _visible_faces(cells: Cells, corners, loose, camera, shown):
         other = cells.joined(axis, sign)
         outer = np.flatnonzero(shown & ((other < 0) | loose | loose[other] | ~shown[other]))
         quadrilaterals = corners[outer][:, order]
-        facing = _normals(quadrilaterals) @ camera.towards > 0.0
+        facing = normals(quadrilaterals) @ camera.towards > 0.0
         faces.append(quadrilaterals[facing])
         owners.append(outer[facing])
     faces, owners = np.concatenate(faces), np.concatenate(owners)
-    order = np.argsort(camera.depth(faces.mean(axis=1)), kind="stable")
+    order = camera.far_to_near(faces)
     return faces[order], owners[order]
-
-
-def _unit(vector):
-    return vector / np.linalg.norm(vector)
-
-
-def _normals(faces: np.ndarray) -> np.ndarray:
-    """Normals of quadrilaterals, not normalised."""
-    return np.cross(faces[:, 2] - faces[:, 0], faces[:, 3] - faces[:, 1])
-
-
-def _lit(colours: np.ndarray, faces: np.ndarray, camera) -> np.ndarray:
-    """Colours under a main light from the upper left and a weak one from the right."""
-    normals = _normals(faces)
-    normals /= np.maximum(np.linalg.norm(normals, axis=1), 1e-300)[:, None]
-    main = np.clip(normals @ camera.light, 0.0, 1.0)
-    fill = np.clip(normals @ camera.fill_light, 0.0, 1.0)
-    brightness = np.clip(0.50 + 0.46 * main + 0.16 * fill, 0.0, 1.05)[:, None]
-    sheen = 0.10 * (main**12)[:, None]
-    lit = colours.copy()
-    lit[:, :3] = np.clip(lit[:, :3] * brightness + sheen, 0.0, 1.0)
-    return lit
-
-
-def _darker(colours: np.ndarray, factor: float) -> np.ndarray:
-    darker = colours.copy()
-    darker[:, :3] *= factor
-    return darker
-
-
-def _stage(low, high):
-    """A figure in proportion to the projected body: figure, axes, colour bar's place, inches per metre."""
-    left, right, bottom, top = 0.9, 1.95, 0.95, 1.5
-    size = np.maximum(high - low, 1e-300)
-    scale = min((16.0 - left - right) / size[0], 8.6 / size[1])
-    width, height = left + scale * size[0] + right, bottom + max(scale * size[1], 2.2) + top
-    total_width = max(width, 10.0)
-    figure = new_figure(total_width, height)
-    axes = figure.add_axes([0.0, 0.0, 1.0, 1.0], zorder=0)
-    axes.axis("off")
-    # The axes cover the figure, one unit per metre, so that lengths and labels may use the margins.
-    free_left = left + 0.5 * (total_width - width)
-    free_bottom = bottom + 0.5 * (height - bottom - top - scale * size[1])
-    axes.set_xlim(low[0] - free_left / scale, low[0] + (total_width - free_left) / scale)
-    axes.set_ylim(low[1] - free_bottom / scale, low[1] + (height - free_bottom) / scale)
-    bar_height = min(height - bottom - top, 4.5)
-    bar_bottom = bottom + 0.5 * (height - bottom - top - bar_height)
-    bar = [(total_width - 1.3) / total_width, bar_bottom / height, 0.22 / total_width, bar_height / height]
-    return figure, axes, bar, scale
 
 
 def _bounding_box(reference: np.ndarray, spacing: float) -> np.ndarray:
@@ -214,16 +131,3 @@ def _draw_box(axes, camera, box) -> None:
         axes.plot(*picture[face + face[:1]].T, color=GHOST, linewidth=1.2, zorder=1)
 
 
-def _draw_directions(figure, camera) -> None:
-    """A small tripod of the coordinate directions in the lower left corner."""
-    width, height = figure.get_size_inches()
-    side = 1.25
-    tripod = figure.add_axes([0.2 / width, 0.15 / height, side / width, side / height], zorder=3)
-    tripod.axis("off")
-    arrows = camera.project(np.eye(3))
-    middle = 0.5 * (np.minimum(arrows.min(axis=0), 0) + np.maximum(arrows.max(axis=0), 0))
-    for name, arrow in zip(AXES, arrows):
-        tripod.annotate("", arrow, (0, 0), arrowprops={"arrowstyle": "-|>", "color": INK, "lw": 1.3})
-        tripod.text(*(1.28 * arrow), name, ha="center", va="center", fontsize=12, color=INK)
-    tripod.set_xlim(middle[0] - 1.0, middle[0] + 1.0)
-    tripod.set_ylim(middle[1] - 1.0, middle[1] + 1.0)

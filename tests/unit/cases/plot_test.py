@@ -25,19 +25,24 @@ from PIL import Image
 PLOTS = Path(__file__).resolve().parents[3] / "cases" / "runner" / "plots"
 sys.path.insert(0, str(PLOTS))
 
-import fracture_pictures  # noqa: E402
 import plot  # noqa: E402
 from cells import Cells, merged  # noqa: E402
 from convergence_picture import order_words  # noqa: E402
 from curve_pictures import draw_load_displacement, find_abscissa, hand_overs, on_the_way, reactions  # noqa: E402
 from event_path_picture import draw_events  # noqa: E402
+from camera import Camera  # noqa: E402
+from crack_surface import crack_surface  # noqa: E402
+from crack_surface_pictures import draw_crack_surface, draw_crack_surface_sequence  # noqa: E402
 from field_pictures import beyond, deformed_plate, displacement_magnitude  # noqa: E402
 from separations import crosses, separate  # noqa: E402
 from resistance_picture import draw_resistances, resistances  # noqa: E402
 from results_folder import read_results_folder  # noqa: E402
+from panels import number_of_columns  # noqa: E402
 from path_picture import draw_path  # noqa: E402
+from solid_pictures import draw_cut_solid  # noqa: E402
 from style import load_axis, round_factor  # noqa: E402
 from tip_picture import tip_speeds  # noqa: E402
+from voronoi import voronoi_cells  # noqa: E402
 
 SPACING = 1e-3
 HISTORY = (
@@ -47,7 +52,7 @@ HISTORY = (
 ITERATIONS = "step,iteration,residual,relative_residual,energy,step_length,linear_iterations,changed_bonds".split(",")
 
 BROKEN_BONDS = ["step", "load_factor", "first_point", "second_point", "second_image"]
-PICTURES = {"deformed", "lateral", "middle_plane", "cut", "fields", "damage", "broken_bonds", "sequence",
+PICTURES = {"deformed", "lateral", "middle_plane", "cut", "fields", "damage", "broken_bonds", "crack_surface", "sequence",
             "load_displacement", "energies", "convergence", "resistance"}  # fmt: skip
 CRACKED = ("deformed", "fields", "damage", "broken_bonds", "sequence", "load_displacement", "energies", "convergence")
 
@@ -598,10 +603,10 @@ class Pictures(unittest.TestCase):
     def test_panels_of_a_sequence_leave_no_half_of_it_empty(self):
         for count in range(2, 7):
             for aspect in (0.1, 0.25, 0.5, 1.0, 3.0):
-                columns = fracture_pictures._columns(count, aspect)
+                columns = number_of_columns(count, aspect)
                 self.assertLessEqual(-count % columns, columns / 3, (count, aspect))
-        self.assertEqual(fracture_pictures._columns(4, 0.25), 2)  # a beam
-        self.assertEqual(fracture_pictures._columns(6, 1.0), 3)  # a square
+        self.assertEqual(number_of_columns(4, 0.25), 2)  # a beam
+        self.assertEqual(number_of_columns(6, 1.0), 3)  # a square
 
     # ---- what is written and removed --------------------------------------------------------------
 
@@ -828,14 +833,216 @@ class Pictures(unittest.TestCase):
     def test_damaged_solid(self):
         write_folder(self.folder, lattice(12, 6, 6), damaged=True)
         self.plot()
-        self.assert_pictures("deformed", "cut", "damage", "load_displacement", "convergence")
+        self.assert_pictures("deformed", "cut", "damage", "crack_surface", "sequence", "load_displacement", "convergence")
 
     def test_damaged_solid_with_a_floating_piece(self):
         write_folder(self.folder, lattice(12, 6, 6), damaged=True)
         with h5py.File(self.folder / "results.h5", "a") as file:
             file["steps/000003/fragment"] = (file["points/reference"][:, 0] > 0.008).astype(float)
         self.plot()
+        self.assert_pictures("deformed", "cut", "damage", "crack_surface", "sequence", "load_displacement", "convergence")
+
+    def write_torn_solid(self, crack=""):
+        """A block of 8 x 4 x 3 cells, torn in its middle from below in three steps; the first step has no damage."""
+        reference = lattice(8, 4, 3)
+        write_folder(self.folder, reference, steps=4, damaged=True)
+        place = np.rint(reference / SPACING - 0.5).astype(int)
+        number = {tuple(index): point for point, index in enumerate(place)}
+        with h5py.File(self.folder / "results.h5", "a") as file:
+            rows = [(min(j + 2, 4), number[3, j, k], number[4, j, k]) for j in range(4) for k in range(3)]
+            for name, column in zip(("step", "first_point", "second_point"), np.array(rows).T):
+                file[f"broken_bonds/{name}"] = column
+            text = file["case/as_resolved"][()].decode()
+            del file["case/as_resolved"]
+            file["case/as_resolved"] = text.replace("[solver]", "horizon_ratio = 1.5\n" + crack + "[solver]")
+        return read_results_folder(self.folder)
+
+    def drawn_colours(self, axes) -> np.ndarray:
+        """Colours of the faces of cracks, which are drawn after those of the body."""
+        return axes.collections[1].get_facecolor()
+
+    def test_a_crack_surface_is_coloured_by_its_steps(self):
+        results = self.write_torn_solid()
+        surface = crack_surface(results, results.step(4))
+        figure = draw_crack_surface(results, results.step(4), surface)
+        self.assertEqual(len(np.unique(surface.steps)), 3)
+        self.assertEqual([label.get_text().split(":")[0] for label in figure.axes[-2].get_yticklabels()], ["2", "3", "4"])
+        self.assertEqual(len(self.drawn_colours(figure.axes[0])), 12)
+        self.assertEqual(len(np.unique(self.drawn_colours(figure.axes[0]).round(6), axis=0)), 3)
+        self.assertFalse(any("pre-crack" in text.get_text() for text in figure.texts))
+        results.history = {}
+        figure = draw_crack_surface(results, results.step(4), surface)
+        self.assertEqual([label.get_text() for label in figure.axes[-2].get_yticklabels()], ["2", "3", "4"])
+        one = surface._replace(steps=np.full(12, 2))  # a colour bar would tell nothing
+        self.assertEqual(len(draw_crack_surface(results, results.step(4), one).axes), len(figure.axes) - 1)
+        self.plot()
+        self.assert_pictures("deformed", "cut", "damage", "crack_surface", "sequence", "load_displacement", "convergence")
+
+    def test_faces_of_a_pre_crack_are_blue_in_both_pictures(self):
+        vertices = [[2 * SPACING, y, z] for y, z in ((-1, -1), (1, -1), (1, 1), (-1, 1))]
+        results = self.write_torn_solid(f"[[crack]]\nvertices = {vertices}\n")
+        steps = [results.step(number) for number in (1, 4)]
+        is_blue = lambda colours: (colours[:, 2] > 1.5 * colours[:, 0]) & (colours[:, 1] > 2 * colours[:, 0])
+        alone = draw_crack_surface(results, steps[1], crack_surface(results, steps[1]))
+        sequence = draw_crack_surface_sequence(results, steps)
+        for figure, panel, blue, all_of_them in ((alone, 0, 12, 24), (sequence, 0, 12, 12), (sequence, 1, 12, 24)):
+            colours = self.drawn_colours(figure.axes[panel])
+            self.assertEqual((is_blue(colours).sum(), len(colours)), (blue, all_of_them))
+            self.assertTrue(any("blue: pre-crack" in text.get_text() for text in figure.texts))
+
+    def test_faces_of_cracks_are_lit_from_both_sides(self):
+        results = self.write_torn_solid()
+        step = results.step(4)
+        surface = crack_surface(results, step)
+        turned = surface._replace(faces=surface.faces[:, ::-1])
+        seen = [self.drawn_colours(draw_crack_surface(results, step, one).axes[0]) for one in (surface, turned)]
+        np.testing.assert_allclose(*seen, rtol=1e-12)
+
+    def test_a_solid_whose_bonds_are_not_known_shows_its_damaged_cells(self):
+        write_folder(self.folder, lattice(12, 6, 6), damaged=True)
+        results = read_results_folder(self.folder)
+        surface = crack_surface(results, results.step(3))
+        figure = draw_crack_surface(results, results.step(3), surface)
+        self.assertIn("damage", [axes.get_ylabel() for axes in figure.axes])
+        self.assertEqual(len(surface.faces), 2 * (6 * 6 + 2 * 6 + 2 * 6))
+
+    def test_a_solid_with_little_damage_has_no_crack_surface(self):
+        write_folder(self.folder, lattice(12, 6, 6), damaged=True)
+        with h5py.File(self.folder / "results.h5", "a") as file:
+            file["steps/000003/damage"][...] *= 0.2
+        self.plot()
         self.assert_pictures("deformed", "cut", "damage", "load_displacement", "convergence")
+
+    def test_a_crack_in_a_single_step_is_no_sequence(self):
+        write_folder(self.folder, lattice(12, 6, 6), steps=1)
+        with h5py.File(self.folder / "results.h5", "a") as file:
+            file["steps/000001/damage"][:36] = 0.5
+        self.plot()
+        self.assert_pictures("deformed", "cut", "damage", "crack_surface", "load_displacement", "convergence")
+
+    def test_a_cut_is_pale_where_there_is_little_energy(self):
+        write_folder(self.folder, lattice(20, 6, 6) - [0.0, 3.0 * SPACING * (1 + 1e-13), 3.0 * SPACING * (1 + 1e-13)])
+        with h5py.File(self.folder / "results.h5", "a") as file:
+            x = file["points/reference"][:, 0] / SPACING
+            file["steps/000003/energy_density"][...] = np.where(x < 4, 1e6, np.where(x < 8, 1e5, 0.0))
+        figure = draw_cut_solid(*self.last(read_results_folder(self.folder)))
+        [faces] = figure.axes[0].collections
+        colours = np.unique(faces.get_facecolor()[:, :3].round(2), axis=0)
+        self.assertGreater(np.median(faces.get_facecolor()[:, :3].min(axis=1)), 0.5)
+        bar = figure.axes[-1]
+        self.assertGreater(len(colours), 4)  # of three values, on faces that are lit differently
+        ticks = bar.get_yticks()
+        self.assertEqual(bar.get_yscale(), "function")  # the square root
+        self.assertTrue((np.diff(ticks) > 0).all())
+        self.assertTrue(any("cut at y = 0 m" in text.get_text() for text in figure.texts), [t.get_text() for t in figure.texts])
+
+    def last(self, results):
+        return results, results.step(results.step_numbers[-1])
+
+    def test_a_camera_may_look_from_farther_round(self):
+        block = lattice(8, 4, 4)
+        own, given = Camera(block, 0 * block), Camera(block, 0 * block, 70.0)
+        self.assertGreater(abs(given.towards[0]), abs(own.towards[0]))
+        faces = np.random.default_rng(1).uniform(size=(9, 1, 3)) + np.zeros((1, 4, 1))
+        self.assertTrue((np.diff(own.depth(faces[own.far_to_near(faces)][:, 0])) > 0).all())
+
+    def shaped(self, shapes, points, layer=""):
+        """Results of a body with shapes in its case [spacings]."""
+        write_folder(self.folder, points * SPACING, steps=1)
+        with h5py.File(self.folder / "results.h5", "a") as file:
+            text = file["case/as_resolved"][()].decode()
+            del file["case/as_resolved"]
+            file["case/as_resolved"] = text.replace("[solver]", shapes + layer + "[solver]")
+        return read_results_folder(self.folder)
+
+    PLATE = (f"[[lattice.shape]]\nadd = 'box'\nmin = [0.0, 0.0]\nmax = [{20 * SPACING}, {12 * SPACING}]\n"
+             f"[[lattice.shape]]\nsubtract = 'disk'\ncentre = [{10 * SPACING}, {6 * SPACING}]\nradius = {3.3 * SPACING}\n")
+
+    def test_a_round_hole_is_drawn_round(self):
+        points = lattice(20, 12) / SPACING
+        points = points[np.linalg.norm(points - [10, 6], axis=1) > 3.3]
+        results = self.shaped(self.PLATE, points)
+        plate = deformed_plate(*self.last(results), 0.0, np.zeros(len(points)), SPACING)
+        self.assertFalse(plate.cells.is_image)  # and not drawn as one
+        near = np.linalg.norm(plate.still.reshape(-1, 2) - [10, 6], axis=1)
+        np.testing.assert_allclose(near[near < 3.4], 3.3, rtol=0, atol=0.02)
+        self.assertGreater((near < 3.4).sum(), 40)
+        np.testing.assert_allclose(plate.moved, plate.still, rtol=0, atol=1e-12)
+        self.plot()
+        self.assert_pictures("deformed", "fields", "load_displacement", "convergence")
+        fewer = deformed_plate(*self.last(results), 0.0, np.zeros(len(points)), SPACING, limit=80)
+        self.assertLess(len(fewer.still), 81)  # cells that stand for several points have outlines of their own
+        self.assertEqual(len(results.drawn), 2)
+
+    def test_cells_of_layers_stay_squares(self):
+        layer = "[[lattice.layer]]\nname = 'left'\nside = 'x-'\nthickness = 1\n"
+        points = np.concatenate([[[-0.5, 3.5]], lattice(20, 12) / SPACING])
+        points = points[np.linalg.norm(points - [10, 6], axis=1) > 3.3]
+        results = self.shaped(self.PLATE, points, layer)  # the set is what stands at less than two spacings
+        np.testing.assert_array_equal(results.in_layers, points[:, 0] < 2.0)
+        plate = deformed_plate(*self.last(results), 0.0, np.zeros(len(points)), SPACING)
+        np.testing.assert_allclose(np.ptp(plate.still[0], axis=0), [1, 1], rtol=0, atol=1e-9)
+
+    def test_a_cloud_is_drawn_without_gaps(self):
+        points = lattice(20, 12) / SPACING
+        points = points + np.random.default_rng(3).choice([-0.15, 0.0, 0.15], points.shape)
+        points = np.concatenate([points, [[9.9, 6.1]]])  # a second point in a cell of the lattice
+        points = points[np.linalg.norm(points - [10, 6], axis=1) > 3.3]
+        points = np.concatenate([points, [[19.8, 11.9]]])
+        results = self.shaped(self.PLATE, points)
+        self.assertFalse(Cells(points, 1.0).is_lattice)
+        for factor in (0.0, 5.0):
+            plate = deformed_plate(*self.last(results), factor, np.zeros(len(points)), SPACING)
+            x, y = plate.moved[:, :, 0], plate.moved[:, :, 1]
+            area = 0.5 * (x * np.roll(y, -1, axis=1) - y * np.roll(x, -1, axis=1)).sum()
+            whole = (240 - np.pi * 3.3**2) * (1 + 0.01 * factor) * (1 - 0.003 * factor)
+            self.assertAlmostEqual(area / whole, 1.0, delta=0.005)
+        self.plot()
+        self.assert_pictures("deformed", "fields", "load_displacement", "convergence")
+
+    def test_a_cloud_is_parted_by_its_cracks_bonds_and_pieces(self):
+        points = lattice(10, 6) / SPACING + np.random.default_rng(3).uniform(-0.15, 0.15, (60, 2))
+        points = np.concatenate([points, [[5.0, 5.95]]])
+        crack = f"[[crack]]\nfrom = [{2 * SPACING}, {-SPACING}]\nto = [{2 * SPACING}, {9 * SPACING}]\n"
+        results = self.shaped(crack, points)
+        with h5py.File(self.folder / "results.h5", "a") as file:
+            right = points[:, 0] > 5.0
+            rows = [(1, one, other) for one in np.flatnonzero(~right) for other in np.flatnonzero(right)]
+            for name, column in zip(("step", "first_point", "second_point"), np.array(rows).T):
+                file[f"broken_bonds/{name}"] = column
+            file["steps/000001/fragment"] = np.where(points[:, 0] > 8.0, 1, 0)
+        results = read_results_folder(self.folder)
+        for size in (1.0, SPACING):
+            with mock.patch("separations.voronoi_cells", wraps=voronoi_cells) as found:
+                plates = [deformed_plate(*self.last(results), 0.0, np.zeros(61), size) for _ in range(2)]
+            self.assertEqual(found.call_count, 1 if size == 1.0 else 0)  # once for all pictures
+            part = sum(points[:, 0] > place for place in (2.0, 5.0, 8.0))  # between the cuts
+            for _, other, parted in plates[1].cells.sides():
+                np.testing.assert_array_equal(parted, (other >= 0) & (part != part[other]))
+            self.assertGreater(sum(parted.sum() for *_, parted in plates[1].cells.sides()), 30)
+
+    def test_a_cloud_of_clusters_far_apart_may_be_merged(self):
+        cluster = np.random.default_rng(3).uniform(0.0, 6.0, (60, 2))
+        points = np.concatenate([cluster, cluster + 30_000.0])
+        results = self.shaped(self.PLATE, points)
+        plate = deformed_plate(*self.last(results), 0.0, np.zeros(120), SPACING, limit=50)
+        self.assertFalse(plate.cells.is_lattice)
+        sides = np.ptp(plate.still, axis=1)
+        np.testing.assert_allclose(sides, np.full_like(sides, sides[0, 0]), rtol=1e-6)
+
+    def test_a_solid_and_a_bar_have_no_outline(self):
+        for dimension in (1, 3):
+            self.folder = self.folder.with_name(f"body_{dimension}")
+            box = f"[[lattice.shape]]\nadd = 'box'\nmin = {[0.0] * dimension}\nmax = {[4 * SPACING] * dimension}\n"
+            self.assertIsNone(self.shaped(box, lattice(*[4] * dimension) / SPACING).outline)
+
+    def test_volumes_that_make_no_sense_leave_a_cloud_its_cells(self):
+        points = np.random.default_rng(5).uniform(0.0, 0.02, (300, 2))
+        write_folder(self.folder, points)
+        with h5py.File(self.folder / "results.h5", "a") as file:
+            file["points/volume"][:4] = [0.0, -1.0, np.nan, np.inf]
+        results = read_results_folder(self.folder)
+        self.assertTrue(np.isfinite(deformed_plate(*self.last(results), 1.0, np.zeros(300)).moved).all())
 
     def test_points_that_are_no_lattice(self):
         for dimension in (2, 3):
