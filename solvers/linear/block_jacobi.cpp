@@ -8,11 +8,10 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
 
+#include "solvers/linear/zero_pivot.hpp"
+
 namespace peristat {
 namespace {
-
-/// A pivot below this fraction of its block's largest entry is zero up to round-off.
-constexpr double zero_pivot = 1e3 * std::numeric_limits<double>::epsilon();
 
 /// Inverts a block of the free degrees of freedom of a point, in place; prescribed ones get zeros.
 template <int D>

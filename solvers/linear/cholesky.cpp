@@ -14,6 +14,7 @@
 #include "solvers/linear/speeds.hpp"
 #include "solvers/linear/trilinos/krylov.hpp"
 #include "solvers/linear/vector_verbs.hpp"
+#include "solvers/linear/zero_pivot.hpp"
 #include "src/core/stopwatch.hpp"
 
 namespace peristat {
@@ -29,9 +30,6 @@ constexpr Index smallest_for_metis = 5000;
 
 /// Largest relative residual of a direct solve; backward-stable factorisations stay far below.
 constexpr double accepted_residual = 1e-6;
-
-/// A pivot below this fraction of the largest is zero up to round-off: it has no sign.
-constexpr double zero_pivot = 1e3 * std::numeric_limits<double>::epsilon();
 
 }  // namespace
 

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <span>
 #include <stdexcept>
 #include <utility>
@@ -13,13 +12,12 @@
 
 #include "solvers/ranks/point_records.hpp"
 #include "solvers/ranks/ranks.hpp"
+#include "src/core/infinity.hpp"
 #include "src/neighbourhood/horizon.hpp"
 #include "src/neighbourhood/search.hpp"
 
 namespace peristat {
 namespace {
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// Least and largest coordinates of points; of none, infinite ones the wrong way round.
 class PointBox {

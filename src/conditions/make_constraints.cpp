@@ -9,6 +9,7 @@
 
 #include "src/conditions/linear_rows.hpp"
 #include "src/conditions/points_of_set.hpp"
+#include "src/core/coordinates.hpp"
 #include "src/core/input_error.hpp"
 #include "src/core/number_text.hpp"
 #include "src/core/sharing.hpp"
@@ -16,8 +17,6 @@
 
 namespace peristat {
 namespace {
-
-double length(const Coordinates& vector) { return std::sqrt(dot<3>(vector, vector)); }
 
 /// Unit vectors that complete a unit normal.
 std::array<Coordinates, 3> basis_of(const Coordinates& normal, int dimension) {
@@ -29,7 +28,7 @@ std::array<Coordinates, 3> basis_of(const Coordinates& normal, int dimension) {
   Coordinates axis{};
   axis[least] = 1.0;
   Coordinates first = cross(normal, axis);
-  first = scaled<3>(1.0 / length(first), first);
+  first = scaled(1.0 / length(first), first);
   return {normal, first, cross(normal, first)};
 }
 
@@ -213,10 +212,10 @@ class Maker {
     Coordinates centre{};
     double volume = 0.0;
     for (const Member& member : members) {
-      centre = plus<3>(centre, scaled<3>(member.volume, member.place));
+      centre = plus(centre, scaled(member.volume, member.place));
       volume += member.volume;
     }
-    return scaled<3>(1.0 / volume, centre);
+    return scaled(1.0 / volume, centre);
   }
 
   /// Largest arm; refuses a set that can turn without moving its points.
@@ -230,14 +229,14 @@ class Maker {
     double size = 0.0;
     Coordinates longest{};
     for (const Index member : set.members) {
-      const Coordinates arm = minus<3>(points_.position(member), set.centre);
+      const Coordinates arm = minus(points_.position(member), set.centre);
       if (is_own(member) && length(arm) > size) size = length(arm), longest = arm;
     }
     if (ranks_) longest = longest_of_all(size, longest);
     if (ranks_) size = length(longest);
     double across = 0.0;
     for (const Index member : set.members) {
-      const Coordinates arm = minus<3>(points_.position(member), set.centre);
+      const Coordinates arm = minus(points_.position(member), set.centre);
       across = std::max(across, length(cross(longest, arm)) / size);
     }
     if (ranks_) across = ranks_->max(across);
@@ -267,7 +266,7 @@ class Maker {
       throw InputError(table + ".normal", place_text(spec.normal, dimension()),
                        "must be a direction");
     }
-    return scaled<3>(1.0 / size, spec.normal);
+    return scaled(1.0 / size, spec.normal);
   }
 
   [[nodiscard]] double of_all(double mine) const { return ranks_ ? ranks_->sum(mine) : mine; }
@@ -343,7 +342,7 @@ class Maker {
     if (&member == against) return;
     HeldSum held;
     const auto add = [&](const Member& of, double weight) {
-      if (of.here && points_.owns(*of.here)) held.emplace_back(*of.here, scaled<3>(weight, normal));
+      if (of.here && points_.owns(*of.here)) held.emplace_back(*of.here, scaled(weight, normal));
     };
     add(member, 1.0);
     if (against) add(*against, -1.0);
@@ -374,12 +373,12 @@ class Maker {
     const std::array<Coordinates, 3> basis = basis_of(unit_normal(spec, table), dimension());
     Restraint restraint{
         Restraint::Kind::rollers, table + ".set", spec.name(), {}, basis[0], 0, 0.0};
-    const Coordinates along = spec.to ? minus<3>(*spec.to, *spec.at) : Coordinates{};
+    const Coordinates along = spec.to ? minus(*spec.to, *spec.at) : Coordinates{};
     const int stations =
         std::max(1, static_cast<int>(std::lround(length(along) / points_.spacing)));
     for (int station = 0; station < stations; ++station) {
       const double share = spec.to ? (station + 0.5) / stations : 0.0;
-      const Coordinates place = plus<3>(*spec.at, scaled<3>(share, along));
+      const Coordinates place = plus(*spec.at, scaled(share, along));
       const Index value = made_.constraints.add_handle(place);
       leave_unused(value, 1);
       prescribe(table + ".displacement", spec.displacement, dof(value, 0), 1.0, &place);
@@ -391,7 +390,7 @@ class Maker {
           row.add(dof(point, c), weight * basis[0][std::size_t(c)]);
         }
         refuse_follower(point, table + ".at", "the roller " + spec.name());
-        held.emplace_back(point, scaled<3>(weight, basis[0]));
+        held.emplace_back(point, scaled(weight, basis[0]));
       }
       made_.held_sums.push_back(std::move(held));
       rows_.push_back(std::move(row));
@@ -409,13 +408,13 @@ class Maker {
     std::vector<double> depth;
     double least = std::numeric_limits<double>::infinity(), sum = 0.0;
     for (Index i = 0; i < points_.owned.value_or(points_.own()); ++i) {
-      const Coordinates arm = minus<3>(points_.position(i), place);
+      const Coordinates arm = minus(points_.position(i), place);
       double weight = 1.0;
       for (int c = 1; c < dimension(); ++c) {
-        weight *= 1.0 - std::abs(dot<3>(arm, basis[std::size_t(c)])) / reach;
+        weight *= 1.0 - std::abs(dot(arm, basis[std::size_t(c)])) / reach;
         if (weight <= 1e-9) break;
       }
-      const double across = std::abs(dot<3>(arm, basis[0]));
+      const double across = std::abs(dot(arm, basis[0]));
       if (weight <= 1e-9 || across > 2.0 * reach) continue;
       found.emplace_back(i, weight);
       depth.push_back(across);
@@ -468,7 +467,7 @@ class Maker {
         for (int c = 0; c < dimension(); ++c) {
           row.add(dof(member, c), term.weights[std::size_t(c)] / count);
         }
-        held.emplace_back(member, scaled<3>(1.0 / count, term.weights));
+        held.emplace_back(member, scaled(1.0 / count, term.weights));
       }
     }
     made_.held_sums.push_back(std::move(held));

@@ -23,7 +23,7 @@ std::span<const std::array<int, 2>> stress_entries(int dimension) {
 }
 
 /// Cosine between the normals of faces that face away from each other.
-constexpr double opposite = -0.7;
+constexpr double faces_away = -0.7;
 
 std::string key_of(LoadSpecification::Kind kind) {
   using Kind = LoadSpecification::Kind;
@@ -102,7 +102,7 @@ void SurfaceTractions::refuse_one_sided(const Points& points, const Load& load,
     while (begin > 0 && sites_[begin - 1].point == site.point) --begin;
     for (std::size_t other = begin; other < sites_.size(); ++other) {
       if (sites_[other].point != site.point) break;
-      if (dot<3>(sites_[other].normal, site.normal) > opposite) continue;
+      if (dot<3>(sites_[other].normal, site.normal) > faces_away) continue;
       if (is_balanced && is_loaded[other]) continue;
       throw InputError(load.key, "",
                        "acts on one of two faces that are less than two horizons apart, at " +

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <limits>
 
+#include "src/core/coordinates.hpp"
 #include "src/core/input_error.hpp"
 #include "src/core/number_text.hpp"
 #include "src/geometry/counts_bond.hpp"
@@ -14,20 +15,17 @@
 namespace peristat {
 namespace {
 
-double length(const Coordinates& a) { return std::sqrt(dot<3>(a, a)); }
-
 /// The place a + s (b - a).
 Coordinates between(const Coordinates& a, const Coordinates& b, double s) {
-  return plus<3>(a, scaled<3>(s, minus<3>(b, a)));
+  return plus(a, scaled(s, minus(b, a)));
 }
 
 /// Distance of a place from the segment p-q. Measured from the end that is meant, it is exact near
 /// the ends of segments of any length.
 double distance(const Coordinates& place, const Coordinates& p, const Coordinates& q) {
-  const Coordinates along = minus<3>(q, p), from_p = minus<3>(place, p),
-                    from_q = minus<3>(place, q);
-  if (dot<3>(from_p, along) <= 0.0) return length(from_p);
-  if (dot<3>(from_q, along) >= 0.0) return length(from_q);
+  const Coordinates along = minus(q, p), from_p = minus(place, p), from_q = minus(place, q);
+  if (dot(from_p, along) <= 0.0) return length(from_p);
+  if (dot(from_q, along) >= 0.0) return length(from_q);
   return length(cross(from_p, along)) / length(along);
 }
 
@@ -38,10 +36,10 @@ double distance(const Coordinates& a, const Coordinates& b, const Coordinates& p
                 const Coordinates& q) {
   const double of_ends =
       std::min({distance(a, p, q), distance(b, p, q), distance(p, a, b), distance(q, a, b)});
-  const Coordinates along = minus<3>(q, p), normal = cross(minus<3>(b, a), along);
-  const double square = dot<3>(normal, normal);
+  const Coordinates along = minus(q, p), normal = cross(minus(b, a), along);
+  const double square = dot(normal, normal);
   if (square == 0.0) return of_ends;
-  const double s = dot<3>(cross(minus<3>(p, a), along), normal) / square;
+  const double s = dot(cross(minus(p, a), along), normal) / square;
   return std::min(of_ends, distance(between(a, b, std::clamp(s, 0.0, 1.0)), p, q));
 }
 
@@ -55,10 +53,10 @@ const Coordinates& vertex_after(const CrackPolygon& polygon, std::size_t k) {
 Coordinates area_vector(const CrackPolygon& polygon) {
   Coordinates sum{};
   for (std::size_t k = 1; k + 1 < polygon.vertices.size(); ++k) {
-    sum = plus<3>(sum, cross(minus<3>(polygon.vertices[k], polygon.vertices[0]),
-                             minus<3>(polygon.vertices[k + 1], polygon.vertices[0])));
+    sum = plus(sum, cross(minus(polygon.vertices[k], polygon.vertices[0]),
+                          minus(polygon.vertices[k + 1], polygon.vertices[0])));
   }
-  return scaled<3>(0.5, sum);
+  return scaled(0.5, sum);
 }
 
 /// Even-odd rule in the projection along the largest component of the normal; arbitrary on the
@@ -115,9 +113,9 @@ bool meets(const CrackSegment& segment, const Coordinates& a, const Coordinates&
 /// A bond is nearest to a polygon at one of its ends, where it crosses the plane, or at an edge.
 bool meets(const CrackPolygon& polygon, const Coordinates& a, const Coordinates& b, double slack) {
   const Coordinates area = area_vector(polygon);
-  const Coordinates normal = scaled<3>(1.0 / length(area), area);
-  const double height_a = dot<3>(minus<3>(a, polygon.vertices[0]), normal);
-  const double height_b = dot<3>(minus<3>(b, polygon.vertices[0]), normal);
+  const Coordinates normal = scaled(1.0 / length(area), area);
+  const double height_a = dot(minus(a, polygon.vertices[0]), normal);
+  const double height_b = dot(minus(b, polygon.vertices[0]), normal);
   if (std::min(height_a, height_b) > slack || std::max(height_a, height_b) < -slack) return false;
   if (std::abs(height_a) <= slack && is_inside(polygon, normal, a)) return true;
   if (std::abs(height_b) <= slack && is_inside(polygon, normal, b)) return true;
@@ -148,7 +146,7 @@ bool meets(const CrackShape& of, const Coordinates& a, const Coordinates& b, dou
     return at;
   };
   const Coordinates from = in_place(a);
-  const Line bond{from, minus<3>(in_place(b), from)};
+  const Line bond{from, minus(in_place(b), from)};
   std::vector<double> at{0.0, 1.0};
   append_crossings(of.shape, of.dimension, bond, at);
   std::erase_if(at, [](double t) { return !(t >= 0.0 && t <= 1.0); });
@@ -252,12 +250,12 @@ struct Checker {
     require(polygon.vertices.size() >= 3, "vertices", "", "a crack needs three vertices or more");
     for (const Coordinates& vertex : polygon.vertices) finite("vertices", vertex);
     const Box box = box_around(polygon);
-    const double extent = length(minus<3>(box.max, box.min));
+    const double extent = length(minus(box.max, box.min));
     const Coordinates area = area_vector(polygon);
     require(length(area) > polygon_tolerance * extent * extent, "vertices", "",
             "a crack needs an area: its vertices lie on one line, or its edges cross");
     for (const Coordinates& vertex : polygon.vertices) {
-      const double height = dot<3>(minus<3>(vertex, polygon.vertices[0]), area) / length(area);
+      const double height = dot(minus(vertex, polygon.vertices[0]), area) / length(area);
       require(std::abs(height) <= polygon_tolerance * extent, "vertices", place_text(vertex, 3),
               "all vertices of a crack must lie in one plane, and this one is " +
                   number_text(std::abs(height)) + " m from that of the others");
@@ -275,7 +273,7 @@ void check_crack(const Crack& crack, int dimension, const std::string& table) {
 }
 
 bool cuts(const Crack& crack, const Coordinates& a, const Coordinates& b) {
-  const double slack = touching_tolerance * length(minus<3>(b, a));
+  const double slack = touching_tolerance * length(minus(b, a));
   return std::visit([&](const auto& kind) { return meets(kind, a, b, slack); }, crack);
 }
 
@@ -309,7 +307,7 @@ std::vector<Crack> with_images(const std::vector<Crack>& cracks, const Images& i
 /// What `cuts` says, found sooner of bonds that are far away.
 bool meets_near(const Crack& crack, const Coordinates& a, const Coordinates& b) {
   const Box around = std::visit([](const auto& kind) { return box_around(kind); }, crack);
-  return overlap(box_around(a, b), around, 2.0 * touching_tolerance * length(minus<3>(b, a))) &&
+  return overlap(box_around(a, b), around, 2.0 * touching_tolerance * length(minus(b, a))) &&
          cuts(crack, a, b);
 }
 

@@ -6,6 +6,8 @@
 #include <numbers>
 #include <numeric>
 
+#include "src/core/coordinates.hpp"
+#include "src/core/infinity.hpp"
 #include "src/core/input_error.hpp"
 #include "src/measures/small_algebra.hpp"
 
@@ -15,8 +17,6 @@ namespace {
 using Piece = BoundaryCurves::Piece;
 
 constexpr double whole_turn = 2.0 * std::numbers::pi;
-
-double length(const Coordinates& a) { return std::hypot(a[0], a[1]); }
 
 Coordinates along_axis(const Side& side, double step) {
   Coordinates result{};
@@ -28,8 +28,8 @@ Piece segment(const ShapeSide& part, const Coordinates& a, const Coordinates& b)
   Piece piece;
   piece.part = part;
   piece.start = a;
-  piece.to = length(minus<3>(b, a));
-  piece.along = scaled<3>(1.0 / piece.to, minus<3>(b, a));
+  piece.to = length(minus(b, a));
+  piece.along = scaled(1.0 / piece.to, minus(b, a));
   return piece;
 }
 
@@ -97,7 +97,7 @@ struct Curves {
 /// Appends the angles at which a circle meets the line of a segment.
 void append_angles(const Piece& circle, const Piece& line, std::vector<double>& t) {
   const Coordinates normal = line.normal(0.0);
-  const double height = dot<3>(minus<3>(line.start, circle.start), normal) / circle.radius;
+  const double height = dot(minus(line.start, circle.start), normal) / circle.radius;
   const double middle = std::atan2(normal[1], normal[0]);
   t.insert(t.end(), {middle, middle + std::numbers::pi});  // where they may touch
   if (std::abs(height) > 1.0) return;
@@ -107,7 +107,7 @@ void append_angles(const Piece& circle, const Piece& line, std::vector<double>& 
 
 /// Appends the angles at which a circle meets another one.
 void append_angles_of_circles(const Piece& circle, const Piece& other, std::vector<double>& t) {
-  const Coordinates between = minus<3>(other.start, circle.start);
+  const Coordinates between = minus(other.start, circle.start);
   const double distance = length(between), r = circle.radius, s = other.radius;
   const double cosine = (distance * distance + r * r - s * s) / (2.0 * distance * r);
   const double middle = std::atan2(between[1], between[0]);
@@ -130,8 +130,8 @@ Coordinates Piece::normal(double t) const {
 }
 
 double Piece::nearest(const Coordinates& place) const {
-  const Coordinates arm = minus<3>(place, start);
-  if (radius == 0.0) return std::clamp(dot<3>(arm, along), from, to);
+  const Coordinates arm = minus(place, start);
+  if (radius == 0.0) return std::clamp(dot(arm, along), from, to);
   double t = from + std::fmod(std::atan2(arm[1], arm[0]) - from, whole_turn);
   if (t < from) t += whole_turn;
   if (t <= to) return t;
@@ -160,9 +160,9 @@ BoundaryCurves::BoundaryCurves(const CollaredBody& body, const std::vector<Shape
 
 /// The sign of the normal out of the body relative to the piece's; 0 where it is no boundary.
 double BoundaryCurves::exposure(const Piece& piece, double t) const {
-  const Coordinates at = piece.at(t), step = scaled<3>(nudge_, piece.normal(t));
-  const bool is_in = body_.contains(minus<3>(at, step));
-  const bool goes_on = body_.contains(plus<3>(at, step));
+  const Coordinates at = piece.at(t), step = scaled(nudge_, piece.normal(t));
+  const bool is_in = body_.contains(minus(at, step));
+  const bool goes_on = body_.contains(plus(at, step));
   return double(is_in) - double(goes_on);
 }
 
@@ -178,7 +178,7 @@ void BoundaryCurves::append_cuts(const Piece& whole, std::vector<double>& t) con
     for (const Piece& other : curves.pieces) {
       if (whole.radius == 0.0) {
         // Where edges on the same line begin and end, and where a circle may touch it.
-        t.push_back(dot<3>(minus<3>(other.start, whole.start), whole.along));
+        t.push_back(dot(minus(other.start, whole.start), whole.along));
       } else if (other.radius == 0.0) {
         append_angles(whole, other, t);
       } else {
@@ -206,7 +206,7 @@ void BoundaryCurves::append_jumps(const Piece& whole, std::vector<double>& t) co
       continue;
     }
     const auto is_covered = [&](double at) {
-      return cover.where(plus<3>(whole.at(at), along_axis(cover.side, nudge_)));
+      return cover.where(plus(whole.at(at), along_axis(cover.side, nudge_)));
     };
     const double step = 0.25 * body_.spacing();
     for (double low = whole.from; low < whole.to; low += step) {
@@ -286,18 +286,18 @@ void BoundaryCurves::check_covers() const {
 bool BoundaryCurves::belong_together(const Piece& a, const Piece& b) const {
   if (a.radius == 0.0 && b.radius == 0.0) {
     const Coordinates of_a = a.normal(0.0), of_b = b.normal(0.0);
-    if (length(minus<3>(of_a, of_b)) < 1e-7 &&
-        std::abs(dot<3>(minus<3>(b.start, a.start), of_a)) < 4.0 * nudge_)
+    if (length(minus(of_a, of_b)) < 1e-7 &&
+        std::abs(dot(minus(b.start, a.start), of_a)) < 4.0 * nudge_)
       return true;
   } else if (a.radius > 0.0 && b.radius > 0.0 && a.sign == b.sign &&
-             std::abs(a.radius - b.radius) + length(minus<3>(a.start, b.start)) < 4.0 * nudge_) {
+             std::abs(a.radius - b.radius) + length(minus(a.start, b.start)) < 4.0 * nudge_) {
     return true;
   }
   const double smooth = std::cos(smooth_angle * std::numbers::pi / 180.0);
   for (const double of_a : {a.from, a.to}) {
     for (const double of_b : {b.from, b.to}) {
-      if (length(minus<3>(a.at(of_a), b.at(of_b))) < 16.0 * nudge_ &&
-          dot<3>(a.normal(of_a), b.normal(of_b)) > smooth)
+      if (length(minus(a.at(of_a), b.at(of_b))) < 16.0 * nudge_ &&
+          dot(a.normal(of_a), b.normal(of_b)) > smooth)
         return true;
     }
   }
@@ -330,7 +330,7 @@ void BoundaryCurves::append_feet(const Coordinates& place, double distance,
   for (const Piece& piece : pieces_) {
     const double t = piece.nearest(place);
     const Coordinates at = piece.at(t);
-    const double away = length(minus<3>(at, place));
+    const double away = length(minus(at, place));
     if (away > distance || away >= nearest[piece.face].distance) continue;
     nearest[piece.face] = {piece.part, at, piece.normal(t), away};
   }
@@ -339,7 +339,6 @@ void BoundaryCurves::append_feet(const Coordinates& place, double distance,
 }
 
 std::optional<double> BoundaryCurves::outermost(const Side& side) const {
-  constexpr double infinity = std::numeric_limits<double>::infinity();
   const auto axis = std::size_t(side.axis);
   double farthest = -infinity, flat = -infinity;
   for (const Piece& piece : pieces_) {

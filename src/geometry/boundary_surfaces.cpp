@@ -5,6 +5,7 @@
 #include <limits>
 #include <numbers>
 
+#include "src/core/coordinates.hpp"
 #include "src/measures/small_algebra.hpp"
 
 namespace peristat {
@@ -12,10 +13,6 @@ namespace {
 
 using Surface = BoundarySurfaces::Surface;
 using Kind = Surface::Kind;
-
-double length(const Coordinates& a) { return std::hypot(a[0], a[1], a[2]); }
-
-Coordinates unit(const Coordinates& a) { return scaled<3>(1.0 / length(a), a); }
 
 /// A unit vector at right angles to one.
 Coordinates across(const Coordinates& axis) {
@@ -93,9 +90,9 @@ struct Surfaces {
     const Coordinates axis = unit(of.axis);
     round(Kind::cylinder, of.centre, axis, of.radius);
     if (!std::isfinite(of.length)) return;
-    const Coordinates half = scaled<3>(0.5 * of.length, axis);
-    plane(1, minus<3>(of.centre, half), scaled<3>(-1.0, axis));
-    plane(2, plus<3>(of.centre, half), axis);
+    const Coordinates half = scaled(0.5 * of.length, axis);
+    plane(1, minus(of.centre, half), scaled(-1.0, axis));
+    plane(2, plus(of.centre, half), axis);
   }
 
   void operator()(const Sphere& of) { round(Kind::sphere, of.centre, {}, of.radius); }
@@ -106,14 +103,14 @@ struct Surfaces {
 /// Whether two are the same places with the body on the same side.
 bool are_one(const Surface& a, const Surface& b, double slack) {
   if (a.kind != b.kind || std::abs(a.radius - b.radius) > slack) return false;
-  const double facing = a.kind == Kind::plane ? dot<3>(a.axis, b.axis) : 1.0;
+  const double facing = a.kind == Kind::plane ? dot(a.axis, b.axis) : 1.0;
   if (a.sign * b.sign * facing < 0.0) return false;
-  const Coordinates between = minus<3>(b.middle, a.middle);
+  const Coordinates between = minus(b.middle, a.middle);
   if (a.kind == Kind::sphere) return length(between) < slack;
   if (length(cross(a.axis, b.axis)) > 1e-7) return false;
-  const double along = dot<3>(between, a.axis);
+  const double along = dot(between, a.axis);
   if (a.kind == Kind::plane) return std::abs(along) < slack;
-  return length(minus<3>(between, scaled<3>(along, a.axis))) < slack;
+  return length(minus(between, scaled(along, a.axis))) < slack;
 }
 
 double distance_to(const Box& box, const Coordinates& place) {
@@ -127,8 +124,8 @@ double distance_to(const Box& box, const Coordinates& place) {
 
 Coordinates Surface::normal(const Coordinates& at) const {
   if (kind == Kind::plane) return axis;
-  Coordinates arm = minus<3>(at, middle);
-  if (kind == Kind::cylinder) arm = minus<3>(arm, scaled<3>(dot<3>(arm, axis), axis));
+  Coordinates arm = minus(at, middle);
+  if (kind == Kind::cylinder) arm = minus(arm, scaled(dot(arm, axis), axis));
   if (length(arm) > 1e-12 * radius) return unit(arm);
   // From the middle all directions are as good.
   return kind == Kind::cylinder ? across(axis) : Coordinates{1.0, 0.0, 0.0};
@@ -136,8 +133,8 @@ Coordinates Surface::normal(const Coordinates& at) const {
 
 Coordinates Surface::foot(const Coordinates& place) const {
   const Coordinates out = normal(place);
-  const double height = dot<3>(minus<3>(place, middle), out) - radius;
-  return minus<3>(place, scaled<3>(height, out));
+  const double height = dot(minus(place, middle), out) - radius;
+  return minus(place, scaled(height, out));
 }
 
 std::array<Coordinates, 2> Surface::tangents(const Coordinates& at) const {
@@ -148,16 +145,16 @@ std::array<Coordinates, 2> Surface::tangents(const Coordinates& at) const {
 
 Coordinates Surface::reached(const Coordinates& from, const Coordinates& direction,
                              double way) const {
-  if (kind == Kind::plane) return plus<3>(from, scaled<3>(way, direction));
+  if (kind == Kind::plane) return plus(from, scaled(way, direction));
   const Coordinates out = normal(from);
-  const double along = kind == Kind::cylinder ? dot<3>(direction, axis) : 0.0;
-  const Coordinates round = minus<3>(direction, scaled<3>(along, axis));
+  const double along = kind == Kind::cylinder ? dot(direction, axis) : 0.0;
+  const Coordinates round = minus(direction, scaled(along, axis));
   const double speed = length(round);
-  Coordinates at = plus<3>(from, scaled<3>(way * along, axis));
+  Coordinates at = plus(from, scaled(way * along, axis));
   if (speed < 1e-12) return at;
   const double angle = way * speed / radius;
-  at = plus<3>(at, scaled<3>(radius * (std::cos(angle) - 1.0), out));
-  return plus<3>(at, scaled<3>(radius * std::sin(angle) / speed, round));
+  at = plus(at, scaled(radius * (std::cos(angle) - 1.0), out));
+  return plus(at, scaled(radius * std::sin(angle) / speed, round));
 }
 
 BoundarySurfaces::BoundarySurfaces(const CollaredBody& body, const std::vector<ShapeStep>& shapes,
@@ -184,8 +181,8 @@ BoundarySurfaces::BoundarySurfaces(const CollaredBody& body, const std::vector<S
 }
 
 bool BoundarySurfaces::is_exposed(const Surface& surface, const Coordinates& at) const {
-  const Coordinates step = scaled<3>(surface.sign * nudge_, surface.normal(at));
-  return body_.contains(minus<3>(at, step)) && !body_.contains(plus<3>(at, step));
+  const Coordinates step = scaled(surface.sign * nudge_, surface.normal(at));
+  return body_.contains(minus(at, step)) && !body_.contains(plus(at, step));
 }
 
 std::optional<Coordinates> BoundarySurfaces::first_exposed(const Surface& surface,
@@ -200,7 +197,7 @@ std::optional<Coordinates> BoundarySurfaces::first_exposed(const Surface& surfac
     double way = most * step / steps;
     Coordinates at = surface.reached(from, direction, way);
     if (!is_exposed(surface, at)) {
-      if (length(minus<3>(at, place)) > distance) return std::nullopt;  // and farther from here on
+      if (length(minus(at, place)) > distance) return std::nullopt;  // and farther from here on
       before = way;
       continue;
     }
@@ -215,7 +212,7 @@ std::optional<Coordinates> BoundarySurfaces::first_exposed(const Surface& surfac
         before = middle;
       }
     }
-    if (length(minus<3>(at, place)) > distance) return std::nullopt;
+    if (length(minus(at, place)) > distance) return std::nullopt;
     return at;
   }
   return std::nullopt;
@@ -225,7 +222,7 @@ std::optional<Coordinates> BoundarySurfaces::nearest(const Surface& surface,
                                                      const Coordinates& place,
                                                      double distance) const {
   const Coordinates foot = surface.foot(place);
-  const double height = length(minus<3>(foot, place));
+  const double height = length(minus(foot, place));
   if (height > distance) return std::nullopt;
   if (is_exposed(surface, foot)) return foot;
   // Cut off here: ways in all directions lead away from the place, each to its nearest part.
@@ -239,12 +236,12 @@ std::optional<Coordinates> BoundarySurfaces::nearest(const Surface& surface,
   double least = distance, best_angle = 0.0;
   const auto try_angle = [&](double angle) {
     const Coordinates direction =
-        plus<3>(scaled<3>(std::cos(angle), tangents[0]), scaled<3>(std::sin(angle), tangents[1]));
+        plus(scaled(std::cos(angle), tangents[0]), scaled(std::sin(angle), tangents[1]));
     const auto at = first_exposed(surface, place, least, direction, most);
     if (!at) return;
     best = at;
     best_angle = angle;
-    least = length(minus<3>(*at, place));
+    least = length(minus(*at, place));
   };
   constexpr int angles = 64;
   constexpr double between = 2.0 * std::numbers::pi / angles;
@@ -263,8 +260,8 @@ void BoundarySurfaces::append_feet(const Coordinates& place, double distance,
     if (distance_to(surface.bounds, place) > distance) continue;
     const auto at = nearest(surface, place, distance);
     if (!at) continue;
-    feet.push_back({surface.part, *at, scaled<3>(surface.sign, surface.normal(*at)),
-                    length(minus<3>(*at, place))});
+    feet.push_back(
+        {surface.part, *at, scaled(surface.sign, surface.normal(*at)), length(minus(*at, place))});
   }
 }
 

@@ -16,8 +16,8 @@ constexpr double round_off = 1e-12;
 PlaneVector operator-(const PlaneVector& a, const PlaneVector& b) {
   return {a[0] - b[0], a[1] - b[1]};
 }
-double cross(const PlaneVector& a, const PlaneVector& b) { return a[0] * b[1] - a[1] * b[0]; }
-double dot(const PlaneVector& a, const PlaneVector& b) { return a[0] * b[0] + a[1] * b[1]; }
+double plane_cross(const PlaneVector& a, const PlaneVector& b) { return a[0] * b[1] - a[1] * b[0]; }
+double plane_dot(const PlaneVector& a, const PlaneVector& b) { return a[0] * b[0] + a[1] * b[1]; }
 
 struct Segment {
   PlaneVector from, to;
@@ -26,8 +26,8 @@ struct Segment {
 /// The part of a side in the disk.
 std::optional<Segment> chord(const PlaneVector& from, const PlaneVector& to, double radius) {
   const PlaneVector along = to - from;
-  const double squared = dot(along, along), half = dot(from, along);
-  const double root = half * half - squared * (dot(from, from) - radius * radius);
+  const double squared = plane_dot(along, along), half = plane_dot(from, along);
+  const double root = half * half - squared * (plane_dot(from, from) - radius * radius);
   if (!(root > 0.0)) return {};
   const double enter = std::max((-half - std::sqrt(root)) / squared, 0.0);
   const double leave = std::min((-half + std::sqrt(root)) / squared, 1.0);
@@ -47,7 +47,7 @@ class Sums {
   /// The triangle of the corner and a side.
   void add_triangle(const PlaneVector& from, const PlaneVector& to) {
     const PlaneVector a = from - about_, b = to - about_;
-    const double area = 0.5 * cross(a, b);
+    const double area = 0.5 * plane_cross(a, b);
     area_ += area;
     for (std::size_t c = 0; c < 2; ++c) moment_[c] += area * (a[c] + b[c]) / 3.0;
   }
@@ -58,7 +58,7 @@ class Sums {
     const double length = std::hypot(along[0], along[1]);
     if (length == 0.0) return;
     // Half of theta, by the chord's half length and its distance from the centre.
-    const double half = std::atan2(0.5 * length, cross(from, to) / length);
+    const double half = std::atan2(0.5 * length, plane_cross(from, to) / length);
     const double area = 0.5 * radius * radius * (2.0 * half - std::sin(2.0 * half));
     const PlaneVector bisector{along[1] / length, -along[0] / length};
     const double moment = length * length * length / 12.0;
@@ -78,7 +78,7 @@ class Sums {
 
 bool holds_origin(const std::vector<PlaneVector>& corners) {
   for (std::size_t k = 0; k < corners.size(); ++k) {
-    if (cross(corners[k], corners[(k + 1) % corners.size()]) <= 0.0) return false;
+    if (plane_cross(corners[k], corners[(k + 1) % corners.size()]) <= 0.0) return false;
   }
   return true;
 }

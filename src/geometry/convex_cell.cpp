@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
+#include "src/core/infinity.hpp"
 #include "src/geometry/cell_piece.hpp"
 #include "src/measures/small_algebra.hpp"
 
@@ -71,7 +71,6 @@ class PolygonInBody : public Region {
 
 /// The rectangle around a polygon, as the only cell of a lattice.
 LatticeFrame box_around(const ConvexCell& cell, double& volume) {
-  constexpr double infinity = std::numeric_limits<double>::infinity();
   Coordinates low{infinity, infinity, infinity}, high{-infinity, -infinity, -infinity};
   for (const Coordinates& arm : cell.corners) {
     for (std::size_t c = 0; c < 3; ++c) {

@@ -5,6 +5,8 @@
 #include <limits>
 #include <numbers>
 
+#include "src/core/infinity.hpp"
+
 namespace peristat {
 
 LatticeFrame::LatticeFrame(int dimension, const Coordinates& anchor, double offset,
@@ -58,7 +60,6 @@ Coordinates LatticeFrame::spacings_to(const Coordinates& place) const {
 }
 
 LatticeFrame::Range LatticeFrame::range_of(const Box& box, double beside) const {
-  constexpr double infinity = std::numeric_limits<double>::infinity();
   Coordinates low{infinity, infinity, infinity}, high{-infinity, -infinity, -infinity};
   const int corners = is_turned() ? 4 : 2;  // of the box in the plane of the turn
   bool usable = spacing_ > 0.0;

@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <memory>
 #include <string>
 #include <utility>
 
 #include "src/core/expression.hpp"
+#include "src/core/infinity.hpp"
 #include "src/core/input_error.hpp"
 #include "src/core/number_text.hpp"
 #include "src/geometry/cell_piece.hpp"
@@ -17,8 +17,6 @@
 
 namespace peristat {
 namespace {
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 bool is_cut(const Lattice& lattice) { return lattice.volumes == CellVolumes::fractional; }
 

@@ -24,9 +24,9 @@ struct Row {
   std::size_t line = 0;
 };
 
-class Reader {
+class NeighbourReader {
  public:
-  Reader(const NeighbourFile& from, const Points& points) : from_(from), points_(points) {}
+  NeighbourReader(const NeighbourFile& from, const Points& points) : from_(from), points_(points) {}
 
   std::vector<NeighbourShares> read() {
     for_each_row(from_.file, [&](std::size_t line, std::string_view text) {
@@ -172,7 +172,7 @@ class Reader {
 }  // namespace
 
 std::vector<NeighbourShares> read_neighbours(const NeighbourFile& from, const Points& points) {
-  return Reader(from, points).read();
+  return NeighbourReader(from, points).read();
 }
 
 }  // namespace peristat

@@ -4,8 +4,9 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <limits>
 #include <utility>
+
+#include "src/core/infinity.hpp"
 
 namespace peristat {
 
@@ -34,7 +35,6 @@ LocalityCells::Key LocalityCells::of(const double* position) const {
 std::vector<Index> locality_order(int dimension, const Spacing& spacing,
                                   const std::vector<double>& reference) {
   const std::size_t count = reference.size() / dimension;
-  constexpr double infinity = std::numeric_limits<double>::infinity();
   Coordinates low{infinity, infinity, infinity}, high{-infinity, -infinity, -infinity};
   for (std::size_t k = 0; k < reference.size(); ++k) {
     low[k % dimension] = std::min(low[k % dimension], reference[k]);

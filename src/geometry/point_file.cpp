@@ -63,9 +63,10 @@ struct PointRow {
   std::string_view sets{};  ///< names joined by |
 };
 
-class Reader {
+class PointReader {
  public:
-  Reader(const std::filesystem::path& file, int dimension) : file_(file), dimension_(dimension) {}
+  PointReader(const std::filesystem::path& file, int dimension)
+      : file_(file), dimension_(dimension) {}
 
   /// Calls visit(row) for every point, in the order of the file.
   void for_each_point(const std::function<void(const PointRow&)>& visit) {
@@ -217,7 +218,7 @@ class Collection {
     }
   }
 
-  void refuse_shared_places(const Reader& reader) const {
+  void refuse_shared_places(const PointReader& reader) const {
     const auto pair = points_at_one_place(points, same_place_tolerance * points.spacing);
     if (!pair) return;
     const auto [first, second] = *pair;
@@ -232,7 +233,8 @@ class Collection {
   std::vector<std::size_t> lines_;  // per point
 };
 
-double spacing_of(double mean_volume, double cross_section, int dimension, const Reader& reader) {
+double spacing_of(double mean_volume, double cross_section, int dimension,
+                  const PointReader& reader) {
   const double spacing = std::pow(mean_volume / cross_section, 1.0 / dimension);
   if (!std::isfinite(spacing) || !(spacing > 0)) {
     reader.refuse_file("the mean volume " + number_text(mean_volume) + " gives no usable spacing");
@@ -251,7 +253,7 @@ struct WholeFile {
   double spacing = 0.0;
 };
 
-WholeFile look_at_file(Reader& reader, int dimension, double cross_section) {
+WholeFile look_at_file(PointReader& reader, int dimension, double cross_section) {
   WholeFile whole;
   whole.low.fill(std::numeric_limits<double>::infinity());
   whole.high.fill(-std::numeric_limits<double>::infinity());
@@ -279,7 +281,7 @@ std::vector<std::int32_t> source_rows(const std::filesystem::path& file, const P
   };
   std::sort(by_place.begin(), by_place.end(), stands_before);
   std::vector<std::int32_t> rows(by_place.size(), -1);
-  Reader reader(file, points.dimension);
+  PointReader reader(file, points.dimension);
   reader.for_each_point([&](const PointRow& row) {
     const auto found = std::lower_bound(
         by_place.begin(), by_place.end(), row.place,
@@ -293,7 +295,7 @@ std::vector<std::int32_t> source_rows(const std::filesystem::path& file, const P
 Points read_points(const std::filesystem::path& file, int dimension, double cross_section,
                    const std::optional<NeighbourFile>& neighbours) {
   check_cross_section(cross_section);
-  Reader reader(file, dimension);
+  PointReader reader(file, dimension);
   Collection read(dimension);
   reader.for_each_point([&](const PointRow& row) { read.add(row); });
   Points& points = read.points;
@@ -308,7 +310,7 @@ Points read_points(const std::filesystem::path& file, int dimension, double cros
 Part read_slab(const std::filesystem::path& file, int dimension, double cross_section,
                const Communicator& ranks) {
   check_cross_section(cross_section);
-  Reader reader(file, dimension);
+  PointReader reader(file, dimension);
   const WholeFile whole = look_at_file(reader, dimension, cross_section);
   const LocalityCells cells(dimension, whole.spacing, whole.low, whole.high);
   const double rows = cells.of(whole.high.data())[0] + 1.0;

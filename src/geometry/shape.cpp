@@ -4,23 +4,13 @@
 #include <cmath>
 #include <cstddef>
 
+#include "src/core/coordinates.hpp"
+#include "src/core/infinity.hpp"
 #include "src/core/input_error.hpp"
 #include "src/core/number_text.hpp"
 
 namespace peristat {
 namespace {
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
-
-double dot(const Coordinates& a, const Coordinates& b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-Coordinates difference(const Coordinates& a, const Coordinates& b) {
-  return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
-}
-
-double length(const Coordinates& a) { return std::hypot(a[0], a[1], a[2]); }
 
 /// Absolute tolerance [m] for a shape of this size whose coordinates have this magnitude; the
 /// second part is the coordinates' own round-off, for a small shape far from the origin.
@@ -60,7 +50,7 @@ bool inside(const Disk& disk, const Coordinates& place) {
 }
 
 bool inside(const Cylinder& cylinder, const Coordinates& place) {
-  const Coordinates from_centre = difference(place, cylinder.centre);
+  const Coordinates from_centre = minus(place, cylinder.centre);
   const double along = dot(from_centre, cylinder.axis) / length(cylinder.axis);
   Coordinates across = from_centre;
   for (int c = 0; c < 3; ++c) across[c] -= along * cylinder.axis[c] / length(cylinder.axis);
@@ -70,7 +60,7 @@ bool inside(const Cylinder& cylinder, const Coordinates& place) {
 }
 
 bool inside(const Sphere& sphere, const Coordinates& place) {
-  return length(difference(place, sphere.centre)) <=
+  return length(minus(place, sphere.centre)) <=
          sphere.radius + tolerance(sphere.radius, magnitude(sphere.centre));
 }
 

@@ -4,12 +4,11 @@
 #include <cmath>
 #include <cstddef>
 
+#include "src/core/coordinates.hpp"
 #include "src/measures/small_algebra.hpp"
 
 namespace peristat {
 namespace {
-
-double length(const Coordinates& a) { return std::hypot(a[0], a[1], a[2]); }
 
 /// Roots of square t^2 + 2 half_linear t + constant.
 void append_roots(double square, double half_linear, double constant, std::vector<double>& t) {
@@ -40,8 +39,7 @@ struct Crossings {
   }
 
   void round(const Coordinates& from, const Coordinates& along, double radius) const {
-    append_roots(dot<3>(along, along), dot<3>(from, along), dot<3>(from, from) - radius * radius,
-                 t);
+    append_roots(dot(along, along), dot(from, along), dot(from, from) - radius * radius, t);
   }
 
   void operator()(const Disk& disk) const {
@@ -50,14 +48,14 @@ struct Crossings {
   }
 
   void operator()(const Sphere& sphere) const {
-    round(minus<3>(line.from, sphere.centre), line.along, sphere.radius);
+    round(minus(line.from, sphere.centre), line.along, sphere.radius);
   }
 
   void operator()(const Cylinder& cylinder) const {
-    const Coordinates axis = scaled<3>(1.0 / length(cylinder.axis), cylinder.axis);
-    const Coordinates from = minus<3>(line.from, cylinder.centre);
-    const double height = dot<3>(from, axis), slope = dot<3>(line.along, axis);
-    round(minus<3>(from, scaled<3>(height, axis)), minus<3>(line.along, scaled<3>(slope, axis)),
+    const Coordinates axis = scaled(1.0 / length(cylinder.axis), cylinder.axis);
+    const Coordinates from = minus(line.from, cylinder.centre);
+    const double height = dot(from, axis), slope = dot(line.along, axis);
+    round(minus(from, scaled(height, axis)), minus(line.along, scaled(slope, axis)),
           cylinder.radius);
     append_plane(height - 0.5 * cylinder.length, slope, t);
     append_plane(height + 0.5 * cylinder.length, slope, t);
@@ -86,7 +84,7 @@ struct Levels {
   std::vector<double>& levels;
 
   void around(const Coordinates& centre, double reach) const {
-    const double height = dot<3>(centre, direction);
+    const double height = dot(centre, direction);
     for (const double level : {height - reach, height + reach})
       if (std::isfinite(level)) levels.push_back(level);
   }
@@ -107,7 +105,7 @@ struct Levels {
   void operator()(const Sphere& sphere) const { around(sphere.centre, sphere.radius); }
 
   void operator()(const Cylinder& cylinder) const {
-    const double along = dot<3>(cylinder.axis, direction) / length(cylinder.axis);
+    const double along = dot(cylinder.axis, direction) / length(cylinder.axis);
     const double across = cylinder.radius * std::sqrt(std::max(0.0, 1.0 - along * along));
     if (along == 0.0) return around(cylinder.centre, across);
     const double half = 0.5 * cylinder.length * std::abs(along);
@@ -141,14 +139,14 @@ struct Distance {
   }
 
   double operator()(const Sphere& sphere) const {
-    return std::abs(length(minus<3>(place, sphere.centre)) - sphere.radius);
+    return std::abs(length(minus(place, sphere.centre)) - sphere.radius);
   }
 
   double operator()(const Cylinder& cylinder) const {
-    const Coordinates axis = scaled<3>(1.0 / length(cylinder.axis), cylinder.axis);
-    const Coordinates from = minus<3>(place, cylinder.centre);
-    const double height = dot<3>(from, axis);
-    const double across = length(minus<3>(from, scaled<3>(height, axis)));
+    const Coordinates axis = scaled(1.0 / length(cylinder.axis), cylinder.axis);
+    const Coordinates from = minus(place, cylinder.centre);
+    const double height = dot(from, axis);
+    const double across = length(minus(from, scaled(height, axis)));
     return std::abs(std::max(across - cylinder.radius, std::abs(height) - 0.5 * cylinder.length));
   }
 

@@ -4,10 +4,10 @@
 #include <cmath>
 #include <cstddef>
 #include <iterator>
-#include <limits>
 #include <string>
 #include <utility>
 
+#include "src/core/infinity.hpp"
 #include "src/core/input_error.hpp"
 #include "src/core/number_text.hpp"
 #include "src/geometry/idle_shapes.hpp"
@@ -19,8 +19,6 @@
 
 namespace peristat {
 namespace {
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 void refuse_without_slabs(const Lattice& lattice) {
   const auto refuse = [](const char* key, const std::string& value, const std::string& what) {

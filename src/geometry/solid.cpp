@@ -1,7 +1,8 @@
 #include "src/geometry/solid.hpp"
 
 #include <algorithm>
-#include <limits>
+
+#include "src/core/infinity.hpp"
 
 namespace peristat {
 
@@ -68,7 +69,6 @@ bool Solid::holds_hull_of(const std::vector<Coordinates>& places) const {
 }
 
 Box Solid::bounds() const {
-  constexpr double infinity = std::numeric_limits<double>::infinity();
   Box box{{infinity, infinity, infinity}, {-infinity, -infinity, -infinity}};
   for (const ShapeStep* step : steps_) {
     if (step->action != ShapeStep::Action::add) continue;

@@ -7,6 +7,7 @@
 
 #include <Eigen/Dense>
 
+#include "src/core/coordinates.hpp"
 #include "src/materials/lattice_directions.hpp"
 #include "src/neighbourhood/lattice_kernel.hpp"
 
@@ -14,15 +15,6 @@ namespace peristat {
 namespace {
 
 using SymmetricTensor = std::vector<double>;  // symmetric, in Kelvin's notation
-
-double dot(const Coordinates& a, const Coordinates& b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-Coordinates unit(const Coordinates& v) {
-  const double length = std::sqrt(dot(v, v));
-  return {v[0] / length, v[1] / length, v[2] / length};
-}
 
 /// n n^T
 SymmetricTensor dyad(const Coordinates& n, int dimension) {

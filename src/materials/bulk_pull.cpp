@@ -8,6 +8,7 @@
 
 #include <Eigen/Dense>
 
+#include "src/core/coordinates.hpp"
 #include "src/neighbourhood/bulk_neighbourhood.hpp"
 #include "src/neighbourhood/lattice_ball.hpp"
 #include "src/neighbourhood/side_influence.hpp"
@@ -20,22 +21,8 @@ using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 7, 7>;
 
 constexpr std::array<std::ptrdiff_t, 3> entries_of_tensor{1, 3, 6};
 
-double dot(const Coordinates& a, const Coordinates& b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-Coordinates cross(const Coordinates& a, const Coordinates& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-Coordinates minus(const Coordinates& a, const Coordinates& b) {
-  return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
-}
-Coordinates unit(const Coordinates& v) {
-  const double length = std::sqrt(dot(v, v));
-  return {v[0] / length, v[1] / length, v[2] / length};
-}
-
 /// n n^T in Kelvin's notation, times a factor.
-std::array<double, 6> dyad(const Coordinates& n, int dimension, double factor = 1.0) {
+std::array<double, 6> projector(const Coordinates& n, int dimension, double factor = 1.0) {
   std::array<double, 6> result{};
   std::size_t k = 0;
   for (int a = 0; a < dimension; ++a) result[k++] = factor * n[a] * n[a];
@@ -269,7 +256,7 @@ BulkPull::BulkPull(const BondSetting& setting, double micromodulus)
   Numbers numbers;
   for (const BulkBonds::Bond& bond : bulk.bonds()) {
     const auto number = std::size_t(numbers.of(bond.direction));
-    if (number == fibres_.size()) fibres_.push_back({dyad(bond.direction, dimension_), 0.0});
+    if (number == fibres_.size()) fibres_.push_back({projector(bond.direction, dimension_), 0.0});
     fibres_[number].stiffness += 0.5 * micromodulus * bond.weight * bond.length;
   }
   if (fibres_.size() > most_directions) {
@@ -300,7 +287,7 @@ BulkPull::BulkPull(const Kernel& kernel, double spacing, const CpdConstants& con
   const auto number_of = [&](const Coordinates& arm) {
     const Coordinates n = unit(arm);
     const int number = numbers.of(n);
-    if (std::size_t(number) == fibres_.size()) fibres_.push_back({dyad(n, dimension_), 0.0});
+    if (std::size_t(number) == fibres_.size()) fibres_.push_back({projector(n, dimension_), 0.0});
     return number;
   };
   // w = V V1, 2 V V2 and 6 V V3, see effective_volumes; of each two opposite bonds one counts.
@@ -323,8 +310,9 @@ BulkPull::BulkPull(const Kernel& kernel, double spacing, const CpdConstants& con
   if (constants.c2 != 0.0) {
     const double weight = 2.0 * std::pow(bulk.volume, 2) / double(bulk.pairs) * constants.c2;
     ball.for_each_triangle([&](const Coordinates& b, const Coordinates& c, double area) {
-      const Tensor measure =
-          dimension_ == 2 ? identity : sum(identity, dyad(unit(cross(b, c)), dimension_, -1.0));
+      const Tensor measure = dimension_ == 2
+                                 ? identity
+                                 : sum(identity, projector(unit(cross(b, c)), dimension_, -1.0));
       add({number_of(b), number_of(c), number_of(minus(b, c))}, 3, measure,
           weight * area * influence_of_sides(kernel, std::array{here, b, c}));
     });
@@ -351,7 +339,9 @@ BulkPull::BulkPull(const Kernel& kernel, double spacing, const CpdConstants& con
 /// @param first_moment m_1 of all bonds, times c
 void BulkPull::spread_evenly(double first_moment) {
   fibres_.clear();
-  const auto add = [&](const Coordinates& n) { fibres_.push_back({dyad(n, dimension_), 0.0}); };
+  const auto add = [&](const Coordinates& n) {
+    fibres_.push_back({projector(n, dimension_), 0.0});
+  };
   constexpr double pi = std::numbers::pi;
   if (dimension_ == 1) add({1, 0, 0});
   constexpr int in_plane = 180, rings = 60, in_ring = 6;
@@ -369,25 +359,25 @@ void BulkPull::spread_evenly(double first_moment) {
 
 std::vector<BulkPull::Form> BulkPull::forms(Loading loading) const {
   if (dimension_ == 1) {
-    return {{dyad({1, 0, 0}, 1, loading == Loading::compression ? -1.0 : 1.0), 1.0}};
+    return {{projector({1, 0, 0}, 1, loading == Loading::compression ? -1.0 : 1.0), 1.0}};
   }
   Tensor identity{};
   for (int c = 0; c < dimension_; ++c) identity[std::size_t(c)] = 1.0;
   if (loading == Loading::biaxial && dimension_ == 2) return {{identity, 1.0}};
   std::vector<Form> result;
   for (const auto& [n, weight] : directions_) {
-    const Tensor along = dyad(n, dimension_), against = dyad(n, dimension_, -1.0);
+    const Tensor along = projector(n, dimension_), against = projector(n, dimension_, -1.0);
     if (loading == Loading::tension) result.push_back({along, weight});
     if (loading == Loading::compression) result.push_back({against, weight});
     if (loading == Loading::biaxial) result.push_back({sum(identity, against), weight});
     if (loading != Loading::shear) continue;
     const Coordinates t = normal_to(n, dimension_);
     result.push_back(
-        {sum(along, dyad(t, dimension_, -1.0)), dimension_ == 2 ? weight : 0.5 * weight});
+        {sum(along, projector(t, dimension_, -1.0)), dimension_ == 2 ? weight : 0.5 * weight});
     if (dimension_ == 2) continue;
     const Coordinates b = cross(n, t);
     const Coordinates between = unit({t[0] + b[0], t[1] + b[1], t[2] + b[2]});
-    result.push_back({sum(along, dyad(between, dimension_, -1.0)), 0.5 * weight});
+    result.push_back({sum(along, projector(between, dimension_, -1.0)), 0.5 * weight});
   }
   return result;
 }

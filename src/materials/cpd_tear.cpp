@@ -7,6 +7,7 @@
 
 #include <boost/math/quadrature/gauss.hpp>
 
+#include "src/core/coordinates.hpp"
 #include "src/materials/lattice_directions.hpp"
 #include "src/neighbourhood/bulk_neighbourhood.hpp"
 #include "src/neighbourhood/lattice_ball.hpp"
@@ -14,23 +15,6 @@
 
 namespace peristat {
 namespace {
-
-double dot(const Coordinates& a, const Coordinates& b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-Coordinates minus(const Coordinates& a, const Coordinates& b) {
-  return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
-}
-Coordinates plus(const Coordinates& a, const Coordinates& b) {
-  return {a[0] + b[0], a[1] + b[1], a[2] + b[2]};
-}
-Coordinates scaled(double factor, const Coordinates& a) {
-  return {factor * a[0], factor * a[1], factor * a[2]};
-}
-Coordinates cross(const Coordinates& a, const Coordinates& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-Coordinates unit(const Coordinates& a) { return scaled(1.0 / std::sqrt(dot(a, a)), a); }
 
 /// A bond across the plane: its stretch and the opening belong to each other.
 struct BondAcross {

@@ -6,13 +6,10 @@
 
 #include <boost/math/quadrature/gauss.hpp>
 
+#include "src/core/coordinates.hpp"
+
 namespace peristat {
 namespace {
-
-Coordinates unit(const Coordinates& v) {
-  const double length = std::hypot(v[0], v[1], v[2]);
-  return {v[0] / length, v[1] / length, v[2] / length};
-}
 
 /// Gauss's points and weights over [0, 1].
 template <unsigned count>

@@ -1,30 +1,65 @@
-"""What a lattice of bonds bears under a homogeneous stress whose strain grows (docs/theory.md, Fracture data)."""
+"""What a lattice bears under a homogeneous stress whose strain grows (docs/theory.md, Fracture data)."""
 
+import itertools
 import math
 
 import numpy
 
 
 class Pull:
+    """Of interactions whose energy per volume is stiffness / 2 times their relative change squared, with the product of
+    the integrities of their sides. A bond is its own side."""
+
     def __init__(self, direction, stiffness):
         """stiffness: w r / (2 V) of every bond [m4]: times c T s n n^T it is its part of the stress."""
-        rows, columns = numpy.triu_indices(direction.shape[1])
-        self.share = numpy.where(rows == columns, 1.0, math.sqrt(2))  # of the strain's entries, as a vector
-        self.entries = rows, columns
-        self.dyad = direction[:, rows] * direction[:, columns] * self.share
-        self.stiffness = stiffness
+        self._set_directions(direction)
+        self.kinds = [(self.dyad, numpy.arange(len(self.dyad))[:, None], stiffness)]
 
     @classmethod
     def of_bulk(cls, bulk):
         return cls(bulk.direction, bulk.weight * bulk.length / 2)
 
-    def tangent(self, stiffness):
-        return (self.dyad * (self.stiffness * stiffness)[:, None]).T @ self.dyad
+    @classmethod
+    def of_cpd(cls, tear):
+        """Of all interactions of a planar lattice; stiffness in Pa."""
+        pull, sides, first = cls.__new__(cls), [], 0
+        for places, _ in tear.kinds:
+            pairs = itertools.combinations(range(places.shape[1]), 2)
+            sides.append(numpy.stack([places[:, b] - places[:, a] for a, b in pairs], 1))
+        arms = numpy.concatenate([of.reshape(-1, tear.dimension) for of in sides])
+        pull._set_directions(arms / numpy.linalg.norm(arms, axis=1)[:, None])
+        pull.kinds = []
+        for (_, stiffness), of in zip(tear.kinds, sides, strict=True):
+            number = first + numpy.arange(of.shape[0] * of.shape[1]).reshape(of.shape[:2])
+            first += number.size
+            area = numpy.tile((pull.entries[0] == pull.entries[1]).astype(float), (len(of), 1))
+            pull.kinds.append((pull.dyad[number[:, 0]] if of.shape[1] == 1 else area, number, stiffness))
+        return pull
+
+    def _set_directions(self, direction):
+        rows, columns = numpy.triu_indices(direction.shape[1])
+        self.share = numpy.where(rows == columns, 1.0, math.sqrt(2))  # of the strain's entries, as a vector
+        self.entries = rows, columns
+        self.dyad = direction[:, rows] * direction[:, columns] * self.share
+
+    def secant(self, integrity):
+        """Stress over strain at these integrities of the sides."""
+        return sum((measure.T * (stiffness * integrity[side].prod(axis=1))) @ measure for measure, side, stiffness in self.kinds)
+
+    def _stress_and_tangent(self, strain, integrity, slope):
+        stress, tangent = 0.0, self.secant(integrity)
+        for measure, side, stiffness in self.kinds:
+            of_sides, force = integrity[side], stiffness * (measure @ strain)
+            stress = stress + measure.T @ (force * of_sides.prod(axis=1))
+            for k in range(side.shape[1]):
+                others = numpy.delete(of_sides, k, axis=1).prod(axis=1)
+                tangent = tangent + (measure.T * (force * others * slope[side[:, k]])) @ self.dyad[side[:, k]]
+        return stress, tangent
 
     def peak(self, law, form, finest=1e-9, coarsest=0.02):
-        """Largest stress over c, in multiples of `form`."""
+        """Largest stress over c (of cpd: in Pa), in multiples of `form`."""
         form = form[self.entries] * self.share
-        strain = numpy.linalg.solve(self.tangent(numpy.ones(len(self.dyad))), form)
+        strain = numpy.linalg.solve(self.secant(numpy.ones(len(self.dyad))), form)
         stress = law.onset / (self.dyad @ strain).max() * (1 - 1e-9)
         start = (stress * (strain @ form), stress * strain, stress, numpy.zeros(len(self.dyad)))
         return self._march(law, form, start, coarsest, finest, numpy.inf)
@@ -51,10 +86,9 @@ class Pull:
             grows = stretch > history
             integrity = law.integrity(numpy.where(grows, stretch, history))
             slope = numpy.imag(law.integrity(stretch + 1e-30j)) / 1e-30
-            residual = self.dyad.T @ (self.stiffness * integrity * stretch) - stress * form
-            matrix = numpy.block([[self.tangent(integrity + numpy.where(grows, slope * stretch, 0.0)), -form[:, None]],
-                                  [form[None], numpy.zeros((1, 1))]])
-            change = numpy.linalg.lstsq(matrix, numpy.append(-residual, along - form @ strain), rcond=1e-13)[0]
+            borne, tangent = self._stress_and_tangent(strain, integrity, numpy.where(grows, slope, 0.0))
+            matrix = numpy.block([[tangent, -form[:, None]], [form[None], numpy.zeros((1, 1))]])
+            change = numpy.linalg.lstsq(matrix, numpy.append(stress * form - borne, along - form @ strain), rcond=1e-13)[0]
             strain, stress = strain + change[:-1], stress + change[-1]
             if abs(change[:-1]).max() < 1e-11 * abs(strain).max():
                 return along, strain, stress, numpy.maximum(history, self.dyad @ strain)
@@ -64,7 +98,7 @@ class Pull:
         """With damage that grows from try to try."""
         history = since[3]
         for _ in range(10000):
-            strain, *_ = numpy.linalg.lstsq(self.tangent(law.integrity(history)), form, rcond=1e-11)
+            strain, *_ = numpy.linalg.lstsq(self.secant(law.integrity(history)), form, rcond=1e-11)
             stress = along / (strain @ form)
             if stress > 10 * since[2] or stress < 1e-3 * since[2]:
                 return along, strain, 0.0, history

@@ -6,11 +6,15 @@ import pathlib
 import tempfile
 import unittest
 
+import numpy
+
 from tests.reference.case import Case
 from tests.reference.clouds import toml
+from tests.reference.laws import Law
 from tests.reference.program import peristat
+from tests.reference.pull import Pull, uniaxial
 from tests.reference.sheets import resolve
-from tests.reference.tear import Tear
+from tests.reference.tear import Tear, directions
 
 SPACING, RATIO, G = 1e-3, 2.015, 4e3
 C1, C2 = 5e19, 3e27
@@ -149,6 +153,25 @@ class CpdFractureEnergy(unittest.TestCase):
                 self.assertAlmostEqual(peak["mean"] / 3e8, 1.0, delta=1e-6)
                 self.assertLess(peak["least"], 3e8)
                 self.assertGreater(peak["most"], 3e8)
+
+    def test_strengths_are_those_of_the_reference(self):
+        """Peaks of a pull, of equal biaxial tension and of shear, with triangles that stiffen a body and that soften it."""
+        shear = lambda n: uniaxial(n) - uniaxial([-n[1], n[0]])
+        for law, c2 in (("linear", C2), ("linear", -C2 / 4), ("exponential", C2), ("tanh", C2), ("critical_stretch", C2)):
+            with self.subTest(law=law, c2=c2):
+                stretches = {"critical": 0.016} | ({} if law == "critical_stretch" else {"onset": 0.002})
+                damage = {"law": law} | stretches
+                tables = self.strip(0.03, 0.0, damage)
+                tables["material"]["c2"] = c2
+                run = peristat("calibrate", "--strengths", self.write(tables))
+                self.assertEqual(run.code, 0, run.said)
+                told = {stress: of["peak"]["mean"] for stress, of in run.json()["damage"]["strengths"].items() if "peak" in of}
+                pull, of = Pull.of_cpd(Tear(2, RATIO, SPACING, 0.5, {1: C1, 2: c2})), Law.of_table(damage)
+                mean = lambda form: sum(w * pull.peak(of, form(n)) for n, w in zip(*directions(2), strict=True))
+                found = {"uniaxial": mean(uniaxial), "biaxial": pull.peak(of, numpy.eye(2)), "shear": mean(shear)}
+                print(law, c2, {k: (told[k], found[k], told[k]/found[k]-1) for k in found})
+                for stress, value in found.items():
+                    self.assertAlmostEqual(told[stress] / value, 1.0, delta=1e-7, msg=stress)
 
     def test_a_strength_needs_no_moduli(self):
         run = peristat("check", self.write(self.strip(0.03, 0.0, {"law": "linear", "critical": 0.02, "strength": 2e8})))

@@ -4,10 +4,11 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <limits>
 #include <utility>
 #include <variant>
 
+#include "src/core/coordinates.hpp"
+#include "src/core/infinity.hpp"
 #include "src/geometry/shape_boundary.hpp"
 #include "src/geometry/solid.hpp"
 #include "src/measures/small_algebra.hpp"
@@ -15,12 +16,8 @@
 namespace peristat {
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
-
 using Kind = FeatureLength::Kind;
 using Run = std::array<double, 2>;
-
-double length(const Coordinates& a) { return std::hypot(a[0], a[1], a[2]); }
 
 /// The parts of a line, by t, that lie in what `contains` a place.
 template <class Contains>
@@ -111,11 +108,10 @@ class Measuring {
     } else if (const auto* polygon = std::get_if<CrackPolygon>(&crack)) {
       Coordinates centre{};
       const double share = 1.0 / double(polygon->vertices.size());
-      for (const auto& vertex : polygon->vertices)
-        centre = plus<3>(centre, scaled<3>(share, vertex));
+      for (const auto& vertex : polygon->vertices) centre = plus(centre, scaled(share, vertex));
       for (std::size_t k = 0; k < polygon->vertices.size(); ++k) {
         const auto& next = polygon->vertices[(k + 1) % polygon->vertices.size()];
-        add_ahead(centre, scaled<3>(0.5, plus<3>(polygon->vertices[k], next)), key);
+        add_ahead(centre, scaled(0.5, plus(polygon->vertices[k], next)), key);
       }
     }
   }
@@ -145,7 +141,7 @@ class Measuring {
   }
 
   void add_ligaments_between(const Middle& one, const Middle& other) {
-    const Line line{one.first, minus<3>(other.first, one.first)};
+    const Line line{one.first, minus(other.first, one.first)};
     for (const auto& [begin, end] : runs(line, solid_)) {
       if (begin > 0.0 && end < 1.0) {
         add_ligament((end - begin) * length(line.along), one.second + " and " + other.second);
@@ -155,7 +151,7 @@ class Measuring {
 
   /// Beyond `to`, if that is a tip in the body.
   void add_ahead(const Coordinates& from, const Coordinates& to, const std::string& key) {
-    const Line line{from, minus<3>(to, from)};
+    const Line line{from, minus(to, from)};
     for (const auto& [begin, end] : runs(line, solid_)) {
       const bool is_in_body = begin < 1.0 && end > 1.0 + touching_tolerance;
       if (is_in_body) add_ligament((end - 1.0) * length(line.along), key);
@@ -183,7 +179,7 @@ double width_of(const Shape& shape, int dimension, const Box& body) {
 
 double length_inside(const Shape& shape, int dimension, const Coordinates& from,
                      const Coordinates& to) {
-  const Line line{from, minus<3>(to, from)};
+  const Line line{from, minus(to, from)};
   std::vector<double> crossings{0.0, 1.0};
   append_crossings(shape, dimension, line, crossings);
   std::erase_if(crossings, [](double t) { return !(t >= 0.0 && t <= 1.0); });

@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <limits>
 #include <memory>
 #include <variant>
 
@@ -16,14 +15,13 @@
 #include "solvers/study/bond_materials.hpp"
 #include "solvers/study/fracture_data.hpp"
 #include "src/core/expression.hpp"
+#include "src/core/infinity.hpp"
 #include "src/core/input_error.hpp"
 #include "src/geometry/counts_bond.hpp"
 #include "src/geometry/solid.hpp"
 
 namespace peristat {
 namespace {
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 const char* kind_of(const Shape& shape) {
   constexpr std::array names{"box", "disk", "cylinder", "sphere", "polygon"};

@@ -21,7 +21,7 @@ std::string number(double value) {
                    "constants and moduli can be told in double precision");
 }
 
-std::string pair(const char* key, double value) {
+std::string exact_pair(const char* key, double value) {
   return fmt::format("\"{}\": {}", key, number(value));
 }
 
@@ -50,7 +50,7 @@ std::string youngs_moduli(const BulkBonds& bonds, double micromodulus, const Bon
   std::vector<std::string> pairs = of_directions(setting.dimension, [&](const Coordinates& n) {
     return micromodulus * bonds.youngs_modulus(bonds.turned(n));
   });
-  pairs.insert(pairs.begin(), pair("mean", micromodulus / bulk_micromodulus(1.0, setting)));
+  pairs.insert(pairs.begin(), exact_pair("mean", micromodulus / bulk_micromodulus(1.0, setting)));
   return object(pairs);
 }
 
@@ -58,8 +58,8 @@ std::string youngs_moduli(const BulkBonds& bonds, double micromodulus, const Bon
 template <class OfPlane>
 std::string fracture_energies(const DirectionalSpread& spread, int dimension,
                               const OfPlane& of_plane) {
-  std::vector<std::string> pairs{pair("mean", spread.mean), pair("least", spread.least),
-                                 pair("most", spread.most)};
+  std::vector<std::string> pairs{exact_pair("mean", spread.mean), exact_pair("least", spread.least),
+                                 exact_pair("most", spread.most)};
   for (auto& of : of_directions(dimension, of_plane)) pairs.push_back(of);
   return object(pairs);
 }
@@ -78,7 +78,8 @@ std::string fracture_energies(const CpdTear& tear, const AnyLaw& law, int dimens
 }
 
 std::string over_directions(const DirectionalSpread& of) {
-  return object({pair("mean", of.mean), pair("least", of.least), pair("most", of.most)});
+  return object(
+      {exact_pair("mean", of.mean), exact_pair("least", of.least), exact_pair("most", of.most)});
 }
 
 /// What a body bears under other stresses than a pull, and where its bonds begin to soften.
@@ -106,9 +107,9 @@ std::string damage_section(const DamageSpecification& damage, const FractureScal
   const double per_area = scale.micromodulus * total_work(damage);
   const double energy = scale.energy(damage);
   std::vector<std::string> pairs;
-  if (damage.softens()) pairs.push_back(pair("onset", damage.onset));
-  if (damage.law == DamageLaw::blended) pairs.push_back(pair("peak", damage.peak));
-  pairs.push_back(pair("critical", damage.critical));
+  if (damage.softens()) pairs.push_back(exact_pair("onset", damage.onset));
+  if (damage.law == DamageLaw::blended) pairs.push_back(exact_pair("peak", damage.peak));
+  pairs.push_back(exact_pair("critical", damage.critical));
   const std::string energies = scale.tear
                                    ? fracture_energies(*scale.tear, law_of(damage), dimension)
                                : bonds ? fracture_energies(*bonds, per_area, dimension)
@@ -118,15 +119,15 @@ std::string damage_section(const DamageSpecification& damage, const FractureScal
   if (!scale.pull) return object(pairs);
   const DirectionalSpread strength = scale.pull->peak(Loading::tension, law_of(damage));
   if (strength.mean == 0.0) return object(pairs);
-  pairs.push_back(pair("strength", strength.mean));
+  pairs.push_back(exact_pair("strength", strength.mean));
   pairs.push_back("\"uniaxial_strength\": " + over_directions(strength));
   if (with_strengths) {
     pairs.push_back("\"strengths\": " + strengths(damage, *scale.pull, dimension));
   }
   if (scale.crossing == 0.0 || scale.youngs_modulus == 0.0) return object(pairs);
-  pairs.push_back(pair("characteristic_length",
-                       scale.youngs_modulus * energy / (strength.mean * strength.mean)));
-  pairs.push_back(pair("largest_spacing", largest_spacing(energy, strength.mean, scale)));
+  pairs.push_back(exact_pair("characteristic_length",
+                             scale.youngs_modulus * energy / (strength.mean * strength.mean)));
+  pairs.push_back(exact_pair("largest_spacing", largest_spacing(energy, strength.mean, scale)));
   return object(pairs);
 }
 
@@ -147,12 +148,12 @@ std::string bond_calibration(const MaterialSpecification& material, const std::s
   std::optional<BulkBonds> bonds;
   if (setting.lattice) bonds.emplace(setting);
   std::vector<std::string> pairs{
-      pair("micromodulus", scale.micromodulus),
-      pair("continuum_youngs_modulus", youngs_modulus_of(scale.micromodulus, setting))};
+      exact_pair("micromodulus", scale.micromodulus),
+      exact_pair("continuum_youngs_modulus", youngs_modulus_of(scale.micromodulus, setting))};
   if (bonds) {
     pairs.push_back("\"youngs_modulus\": " + youngs_moduli(*bonds, scale.micromodulus, setting));
   }
-  pairs.push_back(pair("poisson_ratio", poisson_ratio(setting)));
+  pairs.push_back(exact_pair("poisson_ratio", poisson_ratio(setting)));
   require_law(material.damage, with_strengths);
   if (material.damage.law != DamageLaw::none) {
     pairs.push_back("\"damage\": " +
@@ -165,8 +166,8 @@ std::string damage_calibration(const MaterialSpecification& material, const std:
                                const BondSetting& setting, double spacing, bool with_strengths) {
   if (material.damage.law == DamageLaw::energy_density) {
     return object(
-        {pair("energy_density", bearable_energy_density(material.damage, setting.horizon)),
-         pair("fracture_energy", *material.damage.fracture_energy)});
+        {exact_pair("energy_density", bearable_energy_density(material.damage, setting.horizon)),
+         exact_pair("fracture_energy", *material.damage.fracture_energy)});
   }
   const FractureScale scale = FractureScale::of(material, key, setting, spacing);
   std::optional<BulkBonds> bonds;

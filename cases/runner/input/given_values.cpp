@@ -10,7 +10,7 @@
 namespace peristat {
 namespace {
 
-using Kind = GivenValue::Kind;
+using ValueKind = GivenValue::Kind;
 
 std::string indexed(const std::string& table, std::size_t number) {
   return table + "[" + std::to_string(number) + "]";
@@ -43,8 +43,8 @@ class Collection {
     for (std::size_t k = 0; k < from_.probes.size(); ++k) {
       const ProbeSpecification& probe = from_.probes[k];
       for (std::size_t c = 0; c < probe.expected.size(); ++c) {
-        add({Kind::expected, indexed(indexed("probe", k) + ".expected", c), probe.expected[c], "",
-             probe.name, probe.set, true});
+        add({ValueKind::expected, indexed(indexed("probe", k) + ".expected", c), probe.expected[c],
+             "", probe.name, probe.set, true});
       }
     }
     return std::move(values_);
@@ -72,13 +72,13 @@ class Collection {
   void add_supports() {
     for (std::size_t k = 0; k < from_.supports.size(); ++k) {
       const SupportSpecification& support = from_.supports[k];
-      add_components({Kind::displacement, indexed("support", k) + ".displacement", "", "m",
+      add_components({ValueKind::displacement, indexed("support", k) + ".displacement", "", "m",
                       support.set, support.set, true},
                      support.displacement, dimension_);
     }
     for (std::size_t k = 0; k < from_.foundations.size(); ++k) {
       const FoundationSpecification& of = from_.foundations[k];
-      add_components({Kind::displacement, indexed("foundation", k) + ".displacement", "", "m",
+      add_components({ValueKind::displacement, indexed("foundation", k) + ".displacement", "", "m",
                       of.name, of.set, true},
                      of.displacement, dimension_);
     }
@@ -89,23 +89,23 @@ class Collection {
     for (std::size_t k = 0; k < of.rigid_sets.size(); ++k) {
       const RigidSetSpecification& rigid = of.rigid_sets[k];
       const std::string table = indexed("rigid", k);
-      add_components({Kind::displacement, table + ".displacement", "", "m", rigid.set, ""},
+      add_components({ValueKind::displacement, table + ".displacement", "", "m", rigid.set, ""},
                      rigid.displacement, dimension_);
-      add_components({Kind::displacement, table + ".rotation", "", "rad", rigid.set, ""},
+      add_components({ValueKind::displacement, table + ".rotation", "", "rad", rigid.set, ""},
                      rigid.rotation, dimension_ == 3 ? 3 : 1);
     }
     for (std::size_t k = 0; k < of.rollers.size(); ++k) {
       const RollerSpecification& roller = of.rollers[k];
       if (roller.displacement == "free") continue;
-      add({Kind::displacement, indexed("roller", k) + ".displacement", roller.displacement, "m",
-           roller.name(), roller.set, true, roller.at});
+      add({ValueKind::displacement, indexed("roller", k) + ".displacement", roller.displacement,
+           "m", roller.name(), roller.set, true, roller.at});
     }
     for (std::size_t k = 0; k < of.linear.size(); ++k) {
-      add({Kind::displacement, indexed("constraint", k) + ".displacement",
+      add({ValueKind::displacement, indexed("constraint", k) + ".displacement",
            of.linear[k].displacement, "m", of.linear[k].name, ""});
     }
     for (std::size_t k = 0; k < of.periods.size(); ++k) {
-      add_components({Kind::displacement, indexed("period", k) + ".gradient", "", "1",
+      add_components({ValueKind::displacement, indexed("period", k) + ".gradient", "", "1",
                       name_of_period(of.periods[k]), ""},
                      of.periods[k].gradient, dimension_);
     }
@@ -115,9 +115,9 @@ class Collection {
     for (std::size_t k = 0; k < from_.loads.size(); ++k) {
       const LoadSpecification& load = from_.loads[k];
       const bool is_total = load.kind == LoadSpecification::Kind::total_force;
-      GivenValue like{Kind::load,    indexed("load", k) + "." + load_key(load.kind),
-                      load.value[0], unit_of(load.kind),
-                      load.set,      load.set,
+      GivenValue like{ValueKind::load, indexed("load", k) + "." + load_key(load.kind),
+                      load.value[0],   unit_of(load.kind),
+                      load.set,        load.set,
                       !is_total};
       if (like.where.empty()) like.where = load.side ? name(*load.side) : load.boundary;
       if (load.kind == LoadSpecification::Kind::pressure) {
@@ -133,11 +133,11 @@ class Collection {
   void add_strains() {
     const Eigenstrains& of = from_.eigenstrains;
     for (std::size_t k = 0; k < of.given.size(); ++k) {
-      add({Kind::strain, indexed("eigenstrain", k) + ".strain", of.given[k].strain, "1",
+      add({ValueKind::strain, indexed("eigenstrain", k) + ".strain", of.given[k].strain, "1",
            of.given[k].set, of.given[k].set, true});
     }
     if (of.temperature_change) {
-      add({Kind::strain, "temperature.change", *of.temperature_change, "K", "", "", true});
+      add({ValueKind::strain, "temperature.change", *of.temperature_change, "K", "", "", true});
     }
   }
 

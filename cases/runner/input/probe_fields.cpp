@@ -5,25 +5,25 @@
 namespace peristat {
 namespace {
 
-using Kind = ProbeField::Kind;
+using FieldKind = ProbeField::Kind;
 
 const std::vector<ProbeField>& fields() {
   static const std::vector<ProbeField> all{
-      {"displacement", "m", Kind::vector},
-      {"force", "N", Kind::vector},
+      {"displacement", "m", FieldKind::vector},
+      {"force", "N", FieldKind::vector},
       {"damage", "1"},
       {"stretch", "1"},
       {"energy_density", "J/m3"},
-      {"deformation_gradient", "1", Kind::tensor, true},
-      {"strain", "1", Kind::symmetric, true},
-      {"divergence", "1", Kind::scalar, true},
-      {"first_piola_stress", "Pa", Kind::tensor, true},
-      {"stress", "Pa", Kind::symmetric, true},
-      {"von_mises", "Pa", Kind::scalar, true},
-      {"principal_stress", "Pa", Kind::principal, true},
-      {"missing_neighbourhood", "1", Kind::scalar, true},
-      {"velocity", "m/s", Kind::vector, false, true},
-      {"kinetic_energy_density", "J/m3", Kind::scalar, false, true}};
+      {"deformation_gradient", "1", FieldKind::tensor, true},
+      {"strain", "1", FieldKind::symmetric, true},
+      {"divergence", "1", FieldKind::scalar, true},
+      {"first_piola_stress", "Pa", FieldKind::tensor, true},
+      {"stress", "Pa", FieldKind::symmetric, true},
+      {"von_mises", "Pa", FieldKind::scalar, true},
+      {"principal_stress", "Pa", FieldKind::principal, true},
+      {"missing_neighbourhood", "1", FieldKind::scalar, true},
+      {"velocity", "m/s", FieldKind::vector, false, true},
+      {"kinetic_energy_density", "J/m3", FieldKind::scalar, false, true}};
   return all;
 }
 
@@ -38,12 +38,12 @@ std::vector<std::string> symmetric(int dimension) {
 }  // namespace
 
 std::vector<std::string> ProbeField::components(int dimension) const {
-  if (kind == Kind::symmetric) return symmetric(dimension);
+  if (kind == FieldKind::symmetric) return symmetric(dimension);
   std::vector<std::string> names;
-  for (int r = 0; r < dimension && kind != Kind::scalar; ++r) {
-    if (kind == Kind::vector) names.emplace_back(1, "xyz"[r]);
-    if (kind == Kind::principal) names.emplace_back(1, "123"[r]);
-    for (int c = 0; c < dimension && kind == Kind::tensor; ++c) names.push_back(axes(r, c));
+  for (int r = 0; r < dimension && kind != FieldKind::scalar; ++r) {
+    if (kind == FieldKind::vector) names.emplace_back(1, "xyz"[r]);
+    if (kind == FieldKind::principal) names.emplace_back(1, "123"[r]);
+    for (int c = 0; c < dimension && kind == FieldKind::tensor; ++c) names.push_back(axes(r, c));
   }
   return names;
 }

@@ -14,6 +14,7 @@
 #include <sched.h>
 #include <unistd.h>
 
+#include "cases/runner/process/processors.hpp"
 #include "src/core/address_space.hpp"
 #include "src/core/machine_error.hpp"
 
@@ -26,12 +27,6 @@ constexpr std::size_t buffer_bytes = std::size_t(128) << 20;
 // buffer's own allocation, which OpenBLAS tries again for ever where it fails.
 constexpr std::size_t loading_bytes = std::size_t(16) << 20;
 constexpr int most_buffers = 128;  // OpenBLAS of Debian takes no more threads
-
-int processors() {
-  cpu_set_t allowed;
-  CPU_ZERO(&allowed);
-  return sched_getaffinity(0, sizeof allowed, &allowed) == 0 ? std::max(1, CPU_COUNT(&allowed)) : 1;
-}
 
 #if !defined(__SANITIZE_ADDRESS__)
 /// Value of a variable among "NAME=value", or 0.

@@ -10,6 +10,7 @@
 #include <sched.h>
 #include <unistd.h>
 
+#include "cases/runner/process/processors.hpp"
 #include "src/core/input_error.hpp"
 #include "src/core/machine_error.hpp"
 
@@ -21,13 +22,6 @@ namespace {
 int positive_variable(const char* name) {
   const char* text = std::getenv(name);
   return text ? std::max(0, std::atoi(text)) : 0;
-}
-
-int processors() {
-  cpu_set_t allowed;
-  CPU_ZERO(&allowed);
-  if (sched_getaffinity(0, sizeof allowed, &allowed) != 0) return 1;
-  return std::max(1, CPU_COUNT(&allowed));
 }
 
 }  // namespace

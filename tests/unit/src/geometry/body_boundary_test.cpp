@@ -10,6 +10,7 @@
 
 #include <gtest/gtest.h>
 
+#include "src/core/infinity.hpp"
 #include "src/core/input_error.hpp"
 #include "src/geometry/covers.hpp"
 #include "src/geometry/lattice_sites.hpp"
@@ -20,7 +21,6 @@ namespace {
 
 constexpr auto add = ShapeStep::Action::add;
 constexpr auto subtract = ShapeStep::Action::subtract;
-constexpr double infinity = std::numeric_limits<double>::infinity();
 const Side left{0, -1}, right{0, 1}, bottom{1, -1}, top{1, 1};
 
 using Shapes = std::vector<ShapeStep>;

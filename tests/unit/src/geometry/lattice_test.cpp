@@ -9,12 +9,12 @@
 
 #include <gtest/gtest.h>
 
+#include "src/core/infinity.hpp"
 #include "src/core/input_error.hpp"
 
 namespace peristat {
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr auto add = ShapeStep::Action::add;
 constexpr auto subtract = ShapeStep::Action::subtract;
 

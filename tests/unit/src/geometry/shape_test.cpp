@@ -6,12 +6,11 @@
 
 #include <gtest/gtest.h>
 
+#include "src/core/infinity.hpp"
 #include "src/core/input_error.hpp"
 
 namespace peristat {
 namespace {
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 const Box box{{-1, -2, -3}, {1, 2, 3}};
 const Disk disk{{1, 2, 0}, 0.5};
