@@ -109,6 +109,7 @@ class BulkPull::Equilibrium {
       const double change = improve(state, since.largest);
       if (!std::isfinite(change)) break;
       if (change > tolerance * state.strain.norm()) continue;
+      if (has_stiffened(state, since)) break;
       grow(state);
       return state;
     }
@@ -122,6 +123,13 @@ class BulkPull::Equilibrium {
   struct Strained {
     double stretch, integrity, slope;  // slope of the integrity
   };
+
+  /// Integrities fall, and with them stress over strain (where triangles of negative stiffness fail
+  /// it could rise; no lattice is known where it does). A state that bears more is no equilibrium
+  /// on the way, but what round-off makes of a lattice that has lost its stiffness.
+  [[nodiscard]] static bool has_stiffened(const State& state, const State& since) {
+    return state.stress * since.along > (1.0 + 1e-9) * since.stress * state.along;
+  }
 
   [[nodiscard]] Vector vector(const Tensor& of) const {
     return Eigen::Map<const Eigen::VectorXd>(of.data(), size_);
@@ -222,7 +230,7 @@ class BulkPull::Equilibrium {
       const Vector of_unit = secant_stiffness().ldlt().solve(form_);
       state.stress = along / form_.dot(of_unit);
       // Nothing is left of what resisted.
-      if (!(state.stress > 1e-6 * since.stress && state.stress < 10.0 * since.stress)) {
+      if (!(state.stress > 1e-6 * since.stress) || has_stiffened(state, since)) {
         state.stress = 0.0;
         return state;
       }

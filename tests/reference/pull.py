@@ -80,19 +80,27 @@ class Pull:
     def _settle(self, law, form, along, since):
         """The state whose strain along the form is this one."""
         _, strain, stress, history = since
-        strain = strain * along / since[0]
+        strain, scale = strain * along / since[0], numpy.trace(self.secant(numpy.ones(len(self.dyad))))
         for _ in range(30):
             stretch = self.dyad @ strain
             grows = stretch > history
             integrity = law.integrity(numpy.where(grows, stretch, history))
             slope = numpy.imag(law.integrity(stretch + 1e-30j)) / 1e-30
             borne, tangent = self._stress_and_tangent(strain, integrity, numpy.where(grows, slope, 0.0))
-            matrix = numpy.block([[tangent, -form[:, None]], [form[None], numpy.zeros((1, 1))]])
-            change = numpy.linalg.lstsq(matrix, numpy.append(stress * form - borne, along - form @ strain), rcond=1e-13)[0]
-            strain, stress = strain + change[:-1], stress + change[-1]
+            matrix = numpy.block([[tangent / scale, -form[:, None]], [form[None], numpy.zeros((1, 1))]])
+            change = numpy.linalg.lstsq(matrix, numpy.append((stress * form - borne) / scale, along - form @ strain), rcond=1e-13)[0]
+            strain, stress = strain + change[:-1], stress + scale * change[-1]
             if abs(change[:-1]).max() < 1e-11 * abs(strain).max():
+                if self._has_stiffened(along, stress, since):
+                    break
                 return along, strain, stress, numpy.maximum(history, self.dyad @ strain)
         return self._settle_by_secants(law, form, along, since)
+
+    @staticmethod
+    def _has_stiffened(along, stress, since):
+        """Integrities fall, and with them stress over strain: a state that bears more is no equilibrium, but what the
+        pseudoinverse makes of a lattice that has lost its stiffness."""
+        return stress * since[0] > since[2] * along * (1 + 1e-9)
 
     def _settle_by_secants(self, law, form, along, since):
         """With damage that grows from try to try."""
@@ -100,7 +108,7 @@ class Pull:
         for _ in range(10000):
             strain, *_ = numpy.linalg.lstsq(self.secant(law.integrity(history)), form, rcond=1e-11)
             stress = along / (strain @ form)
-            if stress > 10 * since[2] or stress < 1e-3 * since[2]:
+            if self._has_stiffened(along, stress, since) or stress < 1e-3 * since[2]:
                 return along, strain, 0.0, history
             strain = strain * stress
             grown = numpy.maximum(history, self.dyad @ strain)
