@@ -225,7 +225,7 @@ class Motions(Comparison):
         whole = self.results(1, self.MOVING + self.STEPS).rename(self.folder / "whole")
         run, output = self.start(2, self.MOVING + self.STEPS, "--stop-after", "3")
         self.assertEqual(run.returncode, 130, run.stderr)
-        self.assertEqual(len(rows(output, "history.csv")), 3)
+        self.assertEqual([row["step"] for row in rows(output, "history.csv")], ["0", "2", "4", "6"])
         again = resume(3, output)
         self.assertEqual(again.returncode, 0, again.stderr)
         self.expect_same(whole, output)
@@ -286,7 +286,7 @@ class Torn(Comparison):
             run, output = self.start(ranks, bar.replace("0.12*x*x", "x*x").replace("time_step = 0.1", "step_share = 0.9"))
             codes.add((run.returncode, rows(output, "history.csv")[-1]["broken_bonds"], rows(output, "decisions.csv")[-1]["reason"]))
         self.assertEqual(len(codes), 1)
-        self.assertIn("nothing has a stiffness", codes.pop()[2])
+        self.assertEqual(codes.pop()[:2], (0, "9"))  # its points fly on, by the last step that was stable
 
     def test_tears_that_go_on_with_other_numbers_of_ranks(self):
         # Lengths have other last bits on other numbers of ranks. Bonds that go on softening by these

@@ -150,7 +150,7 @@ class LinearKinematics(Terms):
         for first, then in ((2, 3), (3, 1)):
             output = self.goes_on(PULLED + SOLVER, first=first, then=then, after=3)
             self.assertGreater(self.failed(output)[-1], 10)
-        self.goes_on(IN_MOTION, "dynamics.history_every=1", after=12)
+        self.goes_on(IN_MOTION, "dynamics.history_every=1", after=9)
 
 
 # Torn from a pre-crack and a hole; the dilatation of a point goes with its bonds.
