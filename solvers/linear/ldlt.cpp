@@ -20,7 +20,7 @@ namespace {
 /// Address space of MUMPS' libraries, and what they allocate at once.
 constexpr std::size_t room_for_mumps = std::size_t(64) << 20;
 
-const mumps::Module& module() {
+const mumps::Module& mumps_module() {
   static const mumps::Module* const loaded = [] {
     void* const symbol =
         load_module("MUMPS", mumps::module_file, mumps::module_symbol, room_for_mumps);
@@ -96,7 +96,7 @@ LinearOutcome Ldlt::analyze(const BlockPattern& pattern, const FreeDofs& free) {
   own.inertia.reset();
   own.list_entries(pattern);
   if (free.count() == 0) return LinearOutcome::solved;
-  own.factor = module().make_symmetric_factor();
+  own.factor = mumps_module().make_symmetric_factor();
   return outcome_of(own.factor->analyze(own.entries));
 }
 
@@ -141,6 +141,6 @@ std::string Ldlt::describe() const {
                      entries, 8e-6 * entries, factor ? factor->expected_flops() : 0.0);
 }
 
-std::string Ldlt::library_version() { return module().version(); }
+std::string Ldlt::library_version() { return mumps_module().version(); }
 
 }  // namespace peristat

@@ -12,7 +12,7 @@ namespace {
 constexpr std::size_t room_for_trilinos = std::size_t(256) << 20;
 
 /// Loads the module at the first call. It stays: Kokkos is stopped when the process ends.
-const trilinos::Module& module() {
+const trilinos::Module& trilinos_module() {
   static const trilinos::Module* const loaded = [] {
     void* const symbol =
         load_module("Trilinos", trilinos::module_file, trilinos::module_symbol, room_for_trilinos);
@@ -26,7 +26,8 @@ const trilinos::Module& module() {
 KrylovResult solve_krylov(int size, const VectorMap& matrix, const VectorMap& preconditioner,
                           const double* right_hand_side, double* solution,
                           const KrylovOptions& options) {
-  return module().solve_krylov(size, matrix, preconditioner, right_hand_side, solution, options);
+  return trilinos_module().solve_krylov(size, matrix, preconditioner, right_hand_side, solution,
+                                        options);
 }
 
 struct MatrixPreconditioner::Implementation {
@@ -36,7 +37,8 @@ struct MatrixPreconditioner::Implementation {
 
 MatrixPreconditioner::MatrixPreconditioner(MatrixPreconditionerKind kind,
                                            const MatrixPreconditionerOptions& options)
-    : implementation_(new Implementation{module().make_preconditioner(kind, options), {}}) {}
+    : implementation_(
+          new Implementation{trilinos_module().make_preconditioner(kind, options), {}}) {}
 
 MatrixPreconditioner::~MatrixPreconditioner() = default;
 
@@ -68,6 +70,6 @@ std::string MatrixPreconditioner::describe() const {
   return implementation_->preconditioner->describe();
 }
 
-std::string trilinos_version() { return module().version(); }
+std::string trilinos_version() { return trilinos_module().version(); }
 
 }  // namespace peristat

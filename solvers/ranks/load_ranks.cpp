@@ -11,7 +11,7 @@ namespace {
 /// Address space of Trilinos and MPI.
 constexpr std::size_t room_for_ranks = std::size_t(384) << 20;
 
-const ranks::Module& module() {
+const ranks::Module& ranks_module() {
   static const ranks::Module* const loaded = [] {
     void* const symbol =
         load_module("MPI", ranks::module_file, ranks::module_symbol, room_for_ranks);
@@ -32,10 +32,10 @@ class NoGhosts : public GhostExchange {
 
 }  // namespace
 
-std::unique_ptr<Communicator> start_ranks() { return module().start_ranks(); }
+std::unique_ptr<Communicator> start_ranks() { return ranks_module().start_ranks(); }
 
 Records exchange(const Communicator& ranks, const std::vector<int>& to, const Records& records) {
-  return ranks.count() == 1 ? records : module().exchange(ranks, to, records);
+  return ranks.count() == 1 ? records : ranks_module().exchange(ranks, to, records);
 }
 
 std::vector<int> partition(const Communicator& ranks, int dimension,
@@ -43,7 +43,7 @@ std::vector<int> partition(const Communicator& ranks, int dimension,
                            const std::vector<std::int64_t>& numbers,
                            const std::vector<double>& weights) {
   if (ranks.count() == 1) return std::vector<int>(numbers.size(), 0);
-  return module().partition(ranks, dimension, positions, numbers, weights);
+  return ranks_module().partition(ranks, dimension, positions, numbers, weights);
 }
 
 std::unique_ptr<GhostExchange> make_ghost_exchange(const Communicator& ranks,
@@ -51,7 +51,7 @@ std::unique_ptr<GhostExchange> make_ghost_exchange(const Communicator& ranks,
                                                    const std::vector<std::int64_t>& ghosts,
                                                    int width) {
   if (ranks.count() == 1 && ghosts.empty()) return std::make_unique<NoGhosts>();
-  return module().make_ghost_exchange(ranks, owned, ghosts, width);
+  return ranks_module().make_ghost_exchange(ranks, owned, ghosts, width);
 }
 
 }  // namespace peristat

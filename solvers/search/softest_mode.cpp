@@ -10,7 +10,7 @@ namespace {
 
 /// Beside a critical point the other eigenvalues are larger by orders: a few iterations do.
 constexpr int most_iterations = 50;
-constexpr double tolerance = 1e-8;
+constexpr double direction_tolerance = 1e-8;
 constexpr double tolerance_of_solves = 1e-10;
 
 void normalise(std::vector<double>& mode) {
@@ -40,7 +40,7 @@ LinearOutcome find_softest_mode(const EquilibriumProblem& problem, LinearSolver&
   for (int k = 0; k < most_iterations && outcome == LinearOutcome::solved; ++k) {
     outcome = solver.solve(now, next, tolerance_of_solves);
     normalise(next);
-    const bool is_found = distance(now, next) <= tolerance;
+    const bool is_found = distance(now, next) <= direction_tolerance;
     std::swap(now, next);
     if (is_found) break;
   }

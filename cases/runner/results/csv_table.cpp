@@ -14,7 +14,7 @@
 namespace peristat {
 namespace {
 
-std::string cell_text(const Cell& cell) {
+std::string cell_text(const TableCell& cell) {
   if (const auto* integer = std::get_if<std::int64_t>(&cell)) return std::to_string(*integer);
   if (const auto* number = std::get_if<double>(&cell)) return number_text(*number);
   const auto& text = std::get<std::string>(cell);
@@ -36,7 +36,7 @@ std::string contents(const std::filesystem::path& file) {
 
 std::string csv_line(const Row& row) {
   std::string line;
-  for (const Cell& cell : row) line += cell_text(cell) + ",";
+  for (const TableCell& cell : row) line += cell_text(cell) + ",";
   line.back() = '\n';
   return line;
 }

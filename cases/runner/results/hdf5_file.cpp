@@ -460,15 +460,15 @@ void Hdf5File::append(const std::string& group, const std::vector<Column>& colum
     const std::string path = column_path(group, columns[i]);
     if (columns[i].kind == Column::Kind::integer) {
       const auto values = column_values<std::int64_t>(
-          rows, i, [](const Cell& cell) { return std::get<std::int64_t>(cell); });
+          rows, i, [](const TableCell& cell) { return std::get<std::int64_t>(cell); });
       append_values(columns_.at(path), path, H5T_NATIVE_INT64, values.data(), values.size());
     } else if (columns[i].kind == Column::Kind::number) {
-      const auto values =
-          column_values<double>(rows, i, [](const Cell& cell) { return std::get<double>(cell); });
+      const auto values = column_values<double>(
+          rows, i, [](const TableCell& cell) { return std::get<double>(cell); });
       append_values(columns_.at(path), path, H5T_NATIVE_DOUBLE, values.data(), values.size());
     } else {
       const auto values = column_values<const char*>(
-          rows, i, [](const Cell& cell) { return std::get<std::string>(cell).c_str(); });
+          rows, i, [](const TableCell& cell) { return std::get<std::string>(cell).c_str(); });
       // Texts are converted in a buffer that is cleared each time; the default one has a megabyte.
       const Handle transfer(H5Pcreate(H5P_DATASET_XFER), H5Pclose, "prepare to write " + path);
       checked(H5Pset_buffer(transfer, 1 << 12, nullptr, nullptr), "prepare to write " + path);

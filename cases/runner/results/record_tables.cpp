@@ -13,7 +13,6 @@ namespace {
 
 constexpr auto integer = Column::Kind::integer;
 constexpr auto number = Column::Kind::number;
-constexpr auto text = Column::Kind::text;
 constexpr const char* axes[] = {"x", "y", "z"};
 
 Row checked(const std::vector<Column>& columns, Row row) {
@@ -55,7 +54,7 @@ const std::vector<Column>& step_columns() {
   static const std::vector<Column> columns{
       {integer, "step", "1", "number of the accepted step"},
       {number, "load_factor", "1", "load factor of the step"},
-      {text, "mode", "none",
+      {Column::Kind::text, "mode", "none",
        "how equilibrium was found: newton, relaxation, arc_length or path; dynamics"},
       {integer, "newton_iterations", "1", "Newton iterations of the step"},
       {integer, "relaxation_iterations", "1",
@@ -132,10 +131,10 @@ std::vector<Column> decision_columns() {
   return {{integer, "step", "1", "number that the step has, or would have had"},
           {number, "load_factor", "1", "load factor that was attempted"},
           {number, "increment", "1", "increment of the stage that was attempted"},
-          {text, "outcome", "none", "outcome of the search for equilibrium"},
-          {text, "action", "none", "what load stepping did then"},
+          {Column::Kind::text, "outcome", "none", "outcome of the search for equilibrium"},
+          {Column::Kind::text, "action", "none", "what load stepping did then"},
           {number, "next_increment", "1", "increment of the stage of the next attempt"},
-          {text, "reason", "none", "why, for a person"},
+          {Column::Kind::text, "reason", "none", "why, for a person"},
           {number, "stage", "1", "stage of the loading programme that was attempted"}};
 }
 

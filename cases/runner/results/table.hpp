@@ -14,7 +14,7 @@ struct Column {
 };
 
 /// Entry of a column: integer, number or text as the column's kind.
-using Cell = std::variant<std::int64_t, double, std::string>;
-using Row = std::vector<Cell>;
+using TableCell = std::variant<std::int64_t, double, std::string>;
+using Row = std::vector<TableCell>;
 
 }  // namespace peristat
