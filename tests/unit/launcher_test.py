@@ -285,6 +285,8 @@ class Launcher(unittest.TestCase):
         shutil.rmtree(self.root / "build")
         self.assertRegex(self.launch("version").stdout, r"^peristat \d+\.\d+\.\d+\n$")
         self.assertIn("check-tangent", self.launch("help").stdout)
+        for command in ("sweep", "trust"):
+            self.assertIn(f"{command} ['--help']", self.launch(command, "--help").stdout)
         self.assertEqual(self.launch().returncode, 2)
         self.assertFalse((self.root / "build").exists())
 
