@@ -1,12 +1,15 @@
 #include "solvers/linear/load_module.hpp"
 
 #include <cerrno>
+#include <csignal>
+#include <cstdlib>
 #include <cstring>
 #include <new>
 #include <stdexcept>
 #include <string>
 
 #include <dlfcn.h>
+#include <sys/wait.h>
 
 #include "src/core/address_space.hpp"
 #include "src/core/machine_error.hpp"
@@ -31,12 +34,36 @@ namespace {
   throw std::runtime_error(message);
 }
 
+bool is_missing(const std::string& file, const std::string& reason) {
+  return reason.starts_with(file + ": ") && reason.ends_with(std::strerror(ENOENT));
+}
+
+/// Lets the launcher that started the program build a module that it has not built so far.
+/// @return whether it did
+/// @throws MachineError if the user interrupts the build, which then interrupts the run as well
+bool build_by_launcher(const char* library, const std::string& file) {
+  if (std::getenv("PERISTAT_LAUNCHER") == nullptr) return false;
+  const std::string target = file.substr(0, file.rfind(".so"));
+  const int status = std::system(("\"$PERISTAT_LAUNCHER\" build " + target + " >&2").c_str());
+  if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return true;
+  if ((WIFEXITED(status) && WEXITSTATUS(status) == 130) || WIFSIGNALED(status)) {
+    std::raise(SIGINT);
+    throw MachineError(std::string(library) + " was not built: interrupted");
+  }
+  throw MachineError(std::string(library) + " could not be built: see above");
+}
+
 }  // namespace
 
 void* load_module(const char* library, const char* file, const char* symbol, std::size_t room) {
   if (!has_address_space(room)) throw std::bad_alloc();
-  void* const loaded = dlopen(file, RTLD_LAZY | RTLD_LOCAL);
-  if (!loaded) throw_why_not(library, dlerror());
+  void* loaded = dlopen(file, RTLD_LAZY | RTLD_LOCAL);
+  std::string reason = loaded ? "" : dlerror();
+  if (!loaded && is_missing(file, reason) && build_by_launcher(library, file)) {
+    loaded = dlopen(file, RTLD_LAZY | RTLD_LOCAL);
+    if (!loaded) reason = dlerror();
+  }
+  if (!loaded) throw_why_not(library, reason);
   void* const found = dlsym(loaded, symbol);
   if (!found) throw_why_not(library, dlerror());
   return found;

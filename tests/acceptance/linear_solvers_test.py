@@ -5,6 +5,7 @@ import json
 import os
 import pathlib
 import re
+import shutil
 import subprocess
 import tempfile
 import unittest
@@ -56,6 +57,30 @@ class LinearSolvers(unittest.TestCase):
                     counted[linear, preconditioner] = summary["linear_iterations"]
         for better in ("rigid_pieces", "surrogate", "multigrid"):
             self.assertLess(counted["pcg", better], 0.5 * counted["pcg", "jacobi"])
+
+    def with_launcher(self, script):
+        """A run that iterates, by a program without modules beside it and a stand-in for the launcher."""
+        house = self.folder / "a house"
+        house.mkdir(exist_ok=True)
+        shutil.copy(PROGRAM, house / "peristat")
+        (house / "launcher").write_text("#!/bin/sh\n" + script)
+        (house / "launcher").chmod(0o755)
+        words = [word for setting in [*SMALL, "solver.linear=pcg"] for word in ("--set", setting)]
+        return subprocess.run([house / "peristat", "run", BEAM, "--overwrite", "--output", "out", *words], cwd=self.folder,
+                              env=os.environ | {"PERISTAT_LAUNCHER": str(house / "launcher")}, text=True, timeout=300,
+                              stdin=subprocess.DEVNULL, capture_output=True)  # fmt: skip
+
+    def test_a_module_is_built_by_the_launcher_at_its_first_use(self):
+        built = self.with_launcher(f'echo "built: $*"; ln -s "{pathlib.Path(PROGRAM).parent}/$2.so" "$(dirname "$0")"')
+        self.assertEqual(built.returncode, 0, built.stderr)
+        self.assertIn("built: build peristat_trilinos\n", built.stderr)
+
+    def test_a_module_that_is_not_built_ends_the_run(self):
+        for status, code, words in [(1, 5, "Trilinos could not be built"), (130, 130, "")]:
+            (self.folder / "a house/peristat_trilinos.so").unlink(missing_ok=True)
+            ended = self.with_launcher(f"exit {status}")
+            self.assertEqual(ended.returncode, code, ended.stderr)
+            self.assertIn(words, ended.stderr)
 
     def test_stored_and_matrix_free_tangents_give_the_same(self):
         stored, first = self.run_case(BEAM, *SMALL, "solver.linear=pcg", "solver.tangent=stored")

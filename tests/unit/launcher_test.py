@@ -224,7 +224,7 @@ class Launcher(unittest.TestCase):
 
     # ---- building, and what continuous integration runs -------------------------------------------
 
-    def build_with(self, cmake):
+    def build_with(self, cmake, *targets):
         """./peristat build, with a script in the place of cmake; nothing is installed."""
         tools = self.folder / "tools"
         tools.mkdir(exist_ok=True)
@@ -232,15 +232,41 @@ class Launcher(unittest.TestCase):
             (tools / name).write_text("#!/usr/bin/env bash\n" + text)
             (tools / name).chmod(0o755)
         (self.root / "build/release/.built").unlink(missing_ok=True)
-        return self.launch("build", PATH=f"{tools}:{os.environ['PATH']}")
+        return self.launch("build", *targets, PATH=f"{tools}:{os.environ['PATH']}")
 
-    def test_a_build_tells_how_far_it_is_and_promises_no_time(self):
-        result = self.build_with('for ((k = 1; k <= 40; k++)); do echo "[$k/40] Building $k.o"; done')
+    def test_a_build_shows_how_far_it_is_and_the_time_left(self):
+        result = self.build_with('for ((k = 1; k <= 40; k++)); do ((k == 24)) && sleep 6; echo "[$k/40] Building $k.o"; done')
         self.assertEqual(result.returncode, 0, result.stderr)
-        self.assertRegex(result.stderr, r"built 4 of 40, \d+ s\n(.*\n)*.*built 40 of 40, \d+ s\n")
+        self.assertRegex(result.stderr, r"built 4 of 40, \d+ s\n(.*\n)*.*built 24 of 40, 6 s, 4 s left\n(.*\n)*.*built 40 of 40")
         self.assertEqual(result.stderr.count(" of 40"), 10)
-        self.assertNotIn("minute", result.stderr)
         self.assertEqual((self.root / "build/release/build.log").read_text().count("Building"), 2 * 40)
+
+    def test_a_terminal_shows_a_bar(self):
+        self.build_with('for ((k = 1; k <= 10; k++)); do echo "[$k/10] Building $k.o"; done')
+        environment = os.environ | {"PATH": f"{self.folder / 'tools'}:{os.environ['PATH']}"}
+        typescript = subprocess.run(["script", "-qec", f"'{self.launcher}' build", "/dev/null"], env=environment,
+                                    stdin=subprocess.DEVNULL, capture_output=True, text=True).stdout  # fmt: skip
+        self.assertIn("built [" + 15 * "#" + 15 * " " + "] 5 of 10", typescript)
+
+    def test_a_build_of_the_program_takes_along_the_modules_that_are_there(self):
+        echo = 'echo "$@" >>cmake_calls'
+        (self.root / "build/release/peristat_mumps.so").touch()
+        self.build_with(echo)
+        self.launch("check", "x", PATH=f"{self.folder / 'tools'}:{os.environ['PATH']}")  # which is current
+        first = (self.root / "cmake_calls").read_text()
+        (self.root / "src/changed.cpp").touch()
+        self.launch("check", "x", PATH=f"{self.folder / 'tools'}:{os.environ['PATH']}")
+        calls = (self.root / "cmake_calls").read_text()
+        self.assertTrue(calls.startswith(first))
+        self.assertRegex(first, "--target peristat peristat_trilinos peristat_ranks peristat_mumps")
+        self.assertTrue(calls.endswith("--target peristat peristat_mumps\n"), calls)
+
+    def test_a_module_is_built_alone(self):
+        result = self.build_with('echo "$@" >>cmake_calls', "peristat_mumps")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertTrue((self.root / "cmake_calls").read_text().endswith("--target peristat_mumps\n"))
+        self.assertFalse((self.root / "build/release/.built").exists())  # which is the program's
+        self.assertEqual(self.build_with("", "unheard_of").returncode, 2)
 
     def test_a_build_that_fails_tells_why(self):
         result = self.build_with('echo "[3/40] Building 3.o"; echo "FAILED: 3.o"; echo "3.cpp:1: error"; exit 1')

@@ -54,7 +54,7 @@ double BondTerm::stored_bytes() const {
 }
 
 std::unique_ptr<TermPasses> BondTerm::passes(const TermSetting& setting) const {
-  return std::make_unique<BondPasses>(*this, setting);
+  return make_bond_passes(*this, setting);
 }
 
 }  // namespace peristat

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <stdexcept>
 #include <utility>
 
@@ -17,7 +18,7 @@ class CollocationPasses : public TermPasses {
   CollocationPasses(const CollocationTerm& term, const TermSetting& setting)
       : term_(term),
         setting_(setting),
-        stretches_(term, setting),
+        stretches_(make_bond_passes(term, setting)),
         whole_(setting.points, term.whole(), setting.workspace.threads()) {}
 
   Evaluation gradient(const StateView& at, std::span<double> gradient, Write how) override {
@@ -47,7 +48,7 @@ class CollocationPasses : public TermPasses {
   }
 
   DamageGrowth growth(const StateView& at) override {
-    return term_.can_fail() ? stretches_.growth(at) : DamageGrowth{};
+    return term_.can_fail() ? stretches_->growth(at) : DamageGrowth{};
   }
 
   void tangent(const StateView&, double, Tangent&, Write) override {
@@ -147,7 +148,7 @@ class CollocationPasses : public TermPasses {
                            const SharedEnvironment& environment, History& history) {
     if (!term_.can_fail()) return {};
     buffer_.resize(displacement.size());
-    return stretches_.commit_forces(displacement, environment, history, buffer_, Write::over)
+    return stretches_->commit_forces(displacement, environment, history, buffer_, Write::over)
         .growth;
   }
 
@@ -159,7 +160,7 @@ class CollocationPasses : public TermPasses {
 
   const CollocationTerm& term_;
   TermSetting setting_;
-  BondPasses stretches_;  // of its bonds, whose own forces count for nothing
+  std::unique_ptr<TermPasses> stretches_;  // of its bonds, whose own forces count for nothing
   CollocationOperator whole_;
   std::vector<char> broken_;
   std::vector<double> buffer_;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <stdexcept>
 #include <utility>
 
@@ -21,7 +22,7 @@ class StatePasses : public TermPasses {
   StatePasses(const StateTerm& term, const TermSetting& setting)
       : term_(term),
         slot_(setting.model.slot_of(term)),
-        stretches_(term, setting),
+        stretches_(make_bond_passes(term, setting)),
         points_(setting.points),
         sharing_(setting.sharing),
         pattern_(setting.pattern),
@@ -49,7 +50,7 @@ class StatePasses : public TermPasses {
     static_cast<void>(this->gradient({displacement, before, Damage::grows, environment}, {}, how));
     const auto remembered = kernels_.remembered();
     const DamageGrowth committed =
-        stretches_.commit_forces(displacement, environment, history, {}, Write::over).growth;
+        stretches_->commit_forces(displacement, environment, history, {}, Write::over).growth;
     Evaluation found =
         this->gradient({displacement, history, Damage::grows, environment}, gradient, how);
     found.growth = committed;
@@ -63,7 +64,7 @@ class StatePasses : public TermPasses {
   }
 
   DamageGrowth growth(const StateView& at) override {
-    return term_.can_fail() ? stretches_.growth(at) : DamageGrowth{};
+    return term_.can_fail() ? stretches_->growth(at) : DamageGrowth{};
   }
 
   /// @param projection changes nothing: Pi is convex
@@ -148,7 +149,7 @@ class StatePasses : public TermPasses {
 
   const StateTerm& term_;
   std::size_t slot_;
-  BondPasses stretches_;  // of its bonds, whose own forces count for nothing
+  std::unique_ptr<TermPasses> stretches_;  // of its bonds, whose own forces count for nothing
   const Points& points_;
   const Sharing* sharing_;
   const BlockPattern& pattern_;

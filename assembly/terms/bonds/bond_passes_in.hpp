@@ -1,0 +1,245 @@
+#pragma once
+
+#include <algorithm>
+#include <span>
+#include <stdexcept>
+#include <vector>
+
+#include "assembly/terms/bonds/bond_kernels.hpp"
+#include "assembly/terms/bonds/bond_passes.hpp"
+#include "assembly/terms/bonds/bond_term.hpp"
+#include "assembly/terms/bonds/bond_workspace.hpp"
+#include "assembly/terms/model.hpp"
+
+namespace peristat {
+
+/// The passes over bonds in a dimension, with their potential.
+template <int dimension>
+class BondPassesIn : public TermPasses {
+ public:
+  BondPassesIn(const BondTerm& term, const TermSetting& setting);
+
+  Evaluation gradient(const StateView& at, std::span<double> gradient, Write how) override;
+  Evaluation commit(std::span<const double> displacement, const SharedEnvironment& environment,
+                    History& history, std::span<double> gradient, Write how) override;
+  Evaluation commit_forces(std::span<const double> displacement,
+                           const SharedEnvironment& environment, History& history,
+                           std::span<double> gradient, Write how) override;
+  DamageGrowth growth(const StateView& at) override;
+  void tangent(const StateView& at, double projection, Tangent& tangent, Write how) override;
+  void visit_tangent(const StateView& at, double projection, const RowVisitor& visit,
+                     std::span<double> diagonal) override;
+  void product(const StateView& at, std::span<const double> v, double projection,
+               std::span<double> product, Write how) override;
+  void point_energies(const StateView& at, std::span<double> energies, Write how) override;
+  [[nodiscard]] bool shares_energy() const override { return true; }
+  void add_virials(const StateView& at, std::span<double> virials) override;
+
+ private:
+  using Kernels = BondKernels<dimension>;
+
+  /// Calls body(law, history of the bonds, eigenstretch) with the potential as its own type, and
+  /// one for no eigenstretch.
+  template <class Body>
+  auto dispatch(const StateView& at, const Body& body) const;
+
+  template <bool with_energy>
+  Evaluation commit(std::span<const double> displacement, const SharedEnvironment& environment,
+                    History& history, std::span<double> gradient, Write how);
+
+  /// Straight into the tangent, whose off-diagonal blocks are those of the bonds.
+  void write_tangent(const StateView& at, double projection, Tangent& tangent);
+
+  const BondTerm& term_;
+  std::size_t slot_;
+  const BlockPattern& pattern_;
+  std::vector<Offset> places_;  // of the bonds' blocks in the pattern; empty: in its order
+  BondWorkspace workspace_;
+};
+
+template <int dimension>
+BondPassesIn<dimension>::BondPassesIn(const BondTerm& term, const TermSetting& setting)
+    : term_(term),
+      slot_(setting.model.slot_of(term)),
+      pattern_(setting.pattern),
+      places_(setting.pattern.places_of(term.couplings())),
+      workspace_(setting.points, term.bonds(), setting.workspace) {}
+
+template <int dimension>
+template <class Body>
+auto BondPassesIn<dimension>::dispatch(const StateView& at, const Body& body) const {
+  const auto with_law = [&](const auto& law, const double* largest_stretch) {
+    const std::span<const double> of_point = at.eigenstretch();
+    if (of_point.empty()) return body(law, largest_stretch, NoEigenstretch{});
+    return body(law, largest_stretch, Eigenstretch{of_point.data()});
+  };
+  return std::visit(
+      [&]<class P>(const P& potential) {
+        if constexpr (PotentialWithHistory<P>) {
+          const std::span<const double> history = at.history.of(slot_);
+          if (history.size() != std::size_t(term_.bonds().count()) + lane_count) {
+            throw std::logic_error("bonds that can be damaged are evaluated after their history");
+          }
+          P law = potential;
+          law.holds_damage = at.damage == Damage::held;
+          return with_law(law, history.data());
+        } else {
+          return with_law(potential, nullptr);
+        }
+      },
+      term_.potential());
+}
+
+template <int dimension>
+Evaluation BondPassesIn<dimension>::gradient(const StateView& at, std::span<double> gradient,
+                                             Write how) {
+  return dispatch(
+      at, [&](const auto& law, const double* largest_stretch, const auto& eigenstretch) {
+        return Kernels::template gradient<false>(workspace_, law, eigenstretch, at.displacement,
+                                                 largest_stretch, gradient, how);
+      });
+}
+
+template <int dimension>
+Evaluation BondPassesIn<dimension>::commit(std::span<const double> displacement,
+                                           const SharedEnvironment& environment, History& history,
+                                           std::span<double> gradient, Write how) {
+  return commit<true>(displacement, environment, history, gradient, how);
+}
+
+template <int dimension>
+Evaluation BondPassesIn<dimension>::commit_forces(std::span<const double> displacement,
+                                                  const SharedEnvironment& environment,
+                                                  History& history, std::span<double> gradient,
+                                                  Write how) {
+  return commit<false>(displacement, environment, history, gradient, how);
+}
+
+template <int dimension>
+template <bool with_energy>
+Evaluation BondPassesIn<dimension>::commit(std::span<const double> displacement,
+                                           const SharedEnvironment& environment, History& history,
+                                           std::span<double> gradient, Write how) {
+  const bool can_fail = term_.can_fail();
+  const StateView at{displacement, history, Damage::grows, environment};
+  double* const to_change = can_fail ? history.change(slot_).data() : nullptr;
+  return dispatch(
+      at, [&]<class P>(const P& law, const double* largest_stretch, const auto& eigenstretch) {
+        if constexpr (PotentialWithHistory<P>) {
+          return Kernels::template gradient<true, with_energy>(
+              workspace_, law, eigenstretch, displacement, to_change, gradient, how);
+        } else {
+          return Kernels::template gradient<false, with_energy>(
+              workspace_, law, eigenstretch, displacement, largest_stretch, gradient, how);
+        }
+      });
+}
+
+template <int dimension>
+DamageGrowth BondPassesIn<dimension>::growth(const StateView& at) {
+  if (!term_.can_fail()) return {};
+  return dispatch(
+      at, [&]<class P>(const P& law, const double* largest_stretch, const auto& eigenstretch) {
+        if constexpr (PotentialWithHistory<P>) {
+          return Kernels::growth(workspace_, law, eigenstretch, at.displacement, largest_stretch);
+        } else {
+          return DamageGrowth{};
+        }
+      });
+}
+
+template <int dimension>
+void BondPassesIn<dimension>::tangent(const StateView& at, double projection, Tangent& tangent,
+                                      Write how) {
+  if (how == Write::over && places_.empty()) return write_tangent(at, projection, tangent);
+  if (how == Write::over) tangent.clear();
+  std::vector<double> diagonal(tangent.diagonal.size());
+  visit_tangent(
+      at, projection,
+      [&](int, Index i, std::span<const double> blocks) {
+        Offset bond = term_.bonds().offset[i];
+        const std::size_t entries = std::size_t(tangent.dimension * tangent.dimension);
+        for (std::size_t k = 0; k < blocks.size(); k += entries, ++bond) {
+          tangent.add_to_block(places_.empty() ? bond : places_[std::size_t(bond)],
+                               blocks.subspan(k, entries));
+        }
+      },
+      diagonal);
+  for (std::size_t k = 0; k < diagonal.size(); ++k) tangent.diagonal[k] += diagonal[k];
+}
+
+template <int dimension>
+void BondPassesIn<dimension>::visit_tangent(const StateView& at, double projection,
+                                            const RowVisitor& visit, std::span<double> diagonal) {
+  const std::vector<Offset>& offset = term_.bonds().offset;
+  Offset longest = 0;
+  for (std::size_t i = 1; i < offset.size(); ++i) {
+    longest = std::max(longest, offset[i] - offset[i - 1]);
+  }
+  const int threads = workspace_.threads.threads();
+  dispatch(at, [&](const auto& law, const double* largest_stretch, const auto& eigenstretch) {
+    constexpr std::size_t entries = dimension * dimension;
+    std::vector<std::vector<double>> rows(std::size_t(threads),
+                                          std::vector<double>(std::size_t(longest) * entries));
+    Kernels::template tangent<Tangent::Blocks::whole>(
+        workspace_, law, eigenstretch, at.displacement, largest_stretch, projection,
+        [&](int thread, Index) { return rows[std::size_t(thread)].data(); },
+        [&](int thread, Index i) {
+          const std::size_t bonds = std::size_t(offset[i + 1] - offset[i]);
+          visit(thread, i, std::span(rows[std::size_t(thread)]).first(bonds * entries));
+        },
+        diagonal);
+  });
+}
+
+template <int dimension>
+void BondPassesIn<dimension>::product(const StateView& at, std::span<const double> v,
+                                      double projection, std::span<double> product, Write how) {
+  dispatch(at, [&](const auto& law, const double* largest_stretch, const auto& eigenstretch) {
+    Kernels::product(workspace_, law, eigenstretch, at.displacement, largest_stretch, v, projection,
+                     product, how);
+  });
+}
+
+template <int dimension>
+void BondPassesIn<dimension>::point_energies(const StateView& at, std::span<double> energies,
+                                             Write how) {
+  dispatch(at, [&](const auto& law, const double* largest_stretch, const auto& eigenstretch) {
+    Kernels::point_energies(workspace_, law, eigenstretch, at.displacement, largest_stretch,
+                            energies, how);
+  });
+}
+
+template <int dimension>
+void BondPassesIn<dimension>::add_virials(const StateView& at, std::span<double> virials) {
+  dispatch(at, [&](const auto& law, const double* largest_stretch, const auto& eigenstretch) {
+    Kernels::add_virials(workspace_, law, eigenstretch, at.displacement, largest_stretch, virials);
+  });
+}
+
+template <int dimension>
+void BondPassesIn<dimension>::write_tangent(const StateView& at, double projection,
+                                            Tangent& tangent) {
+  dispatch(at, [&](const auto& law, const double* largest_stretch, const auto& eigenstretch) {
+    const auto blocks_of = [&](int, Index i) {
+      return &tangent.off_diagonal[std::size_t(pattern_.offset[i]) * tangent.block_size()];
+    };
+    const auto done = [](int, Index) {};
+    if (tangent.blocks == Tangent::Blocks::whole) {
+      Kernels::template tangent<Tangent::Blocks::whole>(
+          workspace_, law, eigenstretch, at.displacement, largest_stretch, projection, blocks_of,
+          done, tangent.diagonal);
+    } else {
+      Kernels::template tangent<Tangent::Blocks::upper_halves>(
+          workspace_, law, eigenstretch, at.displacement, largest_stretch, projection, blocks_of,
+          done, tangent.diagonal);
+    }
+  });
+}
+
+template <int dimension>
+std::unique_ptr<TermPasses> make_bond_passes_in(const BondTerm& term, const TermSetting& setting) {
+  return std::make_unique<BondPassesIn<dimension>>(term, setting);
+}
+
+}  // namespace peristat
