@@ -76,11 +76,9 @@ class LinearSolvers(unittest.TestCase):
         self.assertIn("built: build peristat_trilinos\n", built.stderr)
 
     def test_a_module_that_is_not_built_ends_the_run(self):
-        for status, code, words in [(1, 5, "Trilinos could not be built"), (130, 130, "")]:
-            (self.folder / "a house/peristat_trilinos.so").unlink(missing_ok=True)
-            ended = self.with_launcher(f"exit {status}")
-            self.assertEqual(ended.returncode, code, ended.stderr)
-            self.assertIn(words, ended.stderr)
+        ended = self.with_launcher("echo no compiler >&2; exit 1")
+        self.assertEqual(ended.returncode, 5, ended.stderr)
+        self.assertRegex(ended.stderr, "no compiler\n(.*\n)*.*Trilinos could not be built: see above")
 
     def test_stored_and_matrix_free_tangents_give_the_same(self):
         stored, first = self.run_case(BEAM, *SMALL, "solver.linear=pcg", "solver.tangent=stored")
