@@ -12,7 +12,7 @@ import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 EXAMPLES = ROOT / "docs/examples"
-PROGRAM = pathlib.Path(os.environ.get("PERISTAT_PROGRAM", ROOT / "build/developer/peristat"))
+PROGRAM = pathlib.Path(os.environ.get("PERISTAT_PROGRAM", ROOT / "build/release/peristat"))
 THE_SAME_CASE = """
 dimension = 2
 [lattice]
