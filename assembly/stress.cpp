@@ -2,11 +2,12 @@
 
 #include <cmath>
 
-#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
 
 #include "assembly/terms/bonds/deformation_gradients.hpp"
 #include "assembly/terms/collocation/collocation_term.hpp"
 #include "assembly/terms/damage.hpp"
+#include "src/dense/symmetric_spectrum.hpp"
 #include "src/geometry/image_tensors.hpp"
 
 namespace peristat {
@@ -28,11 +29,11 @@ double von_mises(const TensorOf<D>& in_plane, double across) {
 /// Principal values, descending, and directions, whose largest component is positive.
 template <int D>
 void find_principal(const TensorOf<D>& stress, double* values, double* directions) {
-  const Eigen::SelfAdjointEigenSolver<TensorOf<D>> spectrum(stress);
+  const SymmetricSpectrum<D> spectrum = symmetric_spectrum<D>(stress.data());
   for (int k = 0; k < D; ++k) {
-    const int place = D - 1 - k;
-    values[k] = spectrum.eigenvalues()(place);
-    Eigen::Matrix<double, D, 1> direction = spectrum.eigenvectors().col(place);
+    const auto place = std::size_t(D - 1 - k);
+    values[k] = spectrum.values[place];
+    Eigen::Matrix<double, D, 1> direction(spectrum.vectors[place].data());
     int largest = 0;
     direction.cwiseAbs().maxCoeff(&largest);
     if (direction(largest) < 0.0) direction = -direction;

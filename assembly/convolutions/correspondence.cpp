@@ -5,10 +5,11 @@
 #include <stdexcept>
 #include <utility>
 
-#include <Eigen/Dense>
+#include <Eigen/LU>
 
 #include "assembly/convolutions/linear_bonds.hpp"
 #include "src/core/dual.hpp"
+#include "src/dense/symmetric_spectrum.hpp"
 #include "src/measures/small_algebra.hpp"
 
 namespace peristat {
@@ -71,13 +72,6 @@ Matrix<D, double> matrix_at(const std::vector<double>& field, std::size_t point)
   Matrix<D, double> at;
   for (std::size_t k = 0; k < D * D; ++k) at[k / D][k % D] = field[point * D * D + k];
   return at;
-}
-
-/// Ascending, of a symmetric matrix.
-template <int D>
-Eigen::Matrix<double, D, 1> eigenvalues(const ConstTensors<D>& matrix) {
-  using Solver = Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, D, D>>;
-  return Solver(matrix, Eigen::EigenvaluesOnly).eigenvalues();
 }
 
 /// S : E / 2
@@ -148,7 +142,7 @@ void Correspondence::renew_shapes() {
   fields_.for_points([&](std::size_t i) {
     const ConstTensors<D> shape(&shapes_[i * D * D]);
     Tensors<D> inverse(&inverse_shapes_[i * D * D]);
-    const bool has_one = eigenvalues<D>(shape)[0] > least_shape * whole_shape_;
+    const bool has_one = symmetric_eigenvalues<D>(shape.data())[0] > least_shape * whole_shape_;
     inverse.setZero();
     if (has_one && share(i) > 0.0) inverse = shape.inverse();
   });
@@ -403,7 +397,7 @@ void Correspondence::bound_rows(std::span<double> row_sums) {
   std::vector<double> weight(fields_.points());
   fields_.fill(0, [](std::size_t) { return 1.0; });
   fields_.find_sums(lengths, 0, [&](std::size_t i, double sum) {
-    const double norm = eigenvalues<D>(ConstTensors<D>(&inverse_shapes_[i * D * D]))[D - 1];
+    const double norm = symmetric_eigenvalues<D>(&inverse_shapes_[i * D * D])[D - 1];
     const double arms = ConstVectors<D>(&arms_left_[i * D]).norm();
     const Matrix<D, double> H = matrix_at<D>(gradients_, i);
     const Matrix<D, double> S =

@@ -3,7 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/Dense>
+#include <Eigen/LU>
+#include <Eigen/SVD>
+
+#include "src/dense/least_squares.hpp"
 
 namespace peristat {
 namespace {
@@ -32,7 +35,9 @@ Eigen::Matrix3d cell_of(std::span<const LatticeSpring> springs) {
     arms += Eigen::Vector3d(spring.arm.data()) * step.transpose();
     steps += step * step.transpose();
   }
-  return arms * steps.completeOrthogonalDecomposition().pseudoInverse();
+  const Eigen::Matrix3d one = Eigen::Matrix3d::Identity();
+  const std::vector<double> inverse = least_squares({steps.data(), 9}, 3, {one.data(), 9});
+  return arms * Eigen::Matrix3d(inverse.data());
 }
 
 /// The rotation nearest to a tensor.

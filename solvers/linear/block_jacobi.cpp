@@ -1,51 +1,51 @@
 #include "solvers/linear/block_jacobi.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <limits>
 
-#include <Eigen/Cholesky>
-#include <Eigen/Core>
-
 #include "solvers/linear/zero_pivot.hpp"
+#include "src/dense/symmetric_inverse.hpp"
 
 namespace peristat {
 namespace {
 
+/// Writes a number to the diagonal and zeros elsewhere to rows and columns of prescribed degrees of
+/// freedom.
+template <int D>
+void set_prescribed(const Index* equation, double diagonal, double* block) {
+  for (int r = 0; r < D; ++r) {
+    if (equation[r] != FreeDofs::none) continue;
+    for (int c = 0; c < D; ++c) block[r * D + c] = block[c * D + r] = 0.0;
+    block[r * (D + 1)] = diagonal;
+  }
+}
+
 /// Inverts a block of the free degrees of freedom of a point, in place; prescribed ones get zeros.
 template <int D>
 LinearOutcome invert(const Index* equation, double* block) {
-  using Block = Eigen::Matrix<double, D, D, Eigen::RowMajor>;
-  Eigen::Map<Block> entries(block);
-  Block with_unit_rows = entries;
   double largest = 0.0;
   for (int r = 0; r < D; ++r) {
-    if (equation[r] != FreeDofs::none) {
-      largest = std::max(largest, std::abs(entries(r, r)));
-      continue;
-    }
-    with_unit_rows.row(r).setZero();
-    with_unit_rows.col(r).setZero();
+    if (equation[r] == FreeDofs::none) continue;
+    largest = std::max(largest, std::abs(block[r * (D + 1)]));
   }
   if (largest == 0.0 &&
       std::any_of(equation, equation + D, [](Index e) { return e != FreeDofs::none; })) {
     return LinearOutcome::singular;
   }
-  for (int r = 0; r < D; ++r) {
-    if (equation[r] == FreeDofs::none) with_unit_rows(r, r) = largest > 0.0 ? largest : 1.0;
+  std::array<double, D * D> inverse;
+  std::copy_n(block, D * D, inverse.begin());
+  set_prescribed<D>(equation, largest > 0.0 ? largest : 1.0, inverse.data());
+  if (!std::ranges::all_of(inverse, [](double entry) { return std::isfinite(entry); })) {
+    return LinearOutcome::singular;
   }
-  if (!with_unit_rows.allFinite()) return LinearOutcome::singular;
-  const Eigen::LDLT<Block> factor(with_unit_rows);
-  const double least = factor.vectorD().minCoeff();
+  const double least = invert_symmetric<D>(inverse.data());
   if (std::abs(least) <= zero_pivot * largest) return LinearOutcome::singular;
   if (least < 0.0) return LinearOutcome::not_positive_definite;
-  entries = factor.solve(Block::Identity());
-  for (int r = 0; r < D; ++r) {
-    if (equation[r] != FreeDofs::none) continue;
-    entries.row(r).setZero();
-    entries.col(r).setZero();
-  }
+  set_prescribed<D>(equation, 0.0, inverse.data());
+  std::ranges::copy(inverse, block);
   return LinearOutcome::solved;
 }
 

@@ -3,9 +3,8 @@
 #include <algorithm>
 #include <utility>
 
-#include <Eigen/Dense>
-
 #include "solvers/linear/ldlt.hpp"
+#include "src/dense/square_system.hpp"
 
 namespace peristat {
 namespace {
@@ -25,8 +24,8 @@ struct UpdatedTangent::Correction {
   std::vector<BondDirection> directions;
   std::vector<double> stiffness;
   std::vector<std::vector<double>> columns;  // of Z
-  Eigen::MatrixXd between;                   // G^T Z
-  Eigen::LDLT<Eigen::MatrixXd> inner;        // of C^-1 - G^T Z
+  std::vector<std::vector<double>> between;  // columns of G^T Z, its upper half
+  SymmetricFactors inner;                    // of C^-1 - G^T Z
   bool is_current = true;
   std::vector<double> known_side, known_solution;
 
@@ -37,28 +36,28 @@ struct UpdatedTangent::Correction {
   }
 
   [[nodiscard]] bool factorize() {
-    const auto size = Eigen::Index(columns.size());
-    Eigen::MatrixXd matrix = -between.topLeftCorner(size, size);
-    for (Eigen::Index k = 0; k < size; ++k) matrix(k, k) += 1.0 / stiffness[std::size_t(k)];
-    inner.compute(matrix);
+    const std::size_t size = columns.size();
+    std::vector<double> matrix(size * size);
+    for (std::size_t c = 0; c < size; ++c) {
+      for (std::size_t r = 0; r <= c; ++r) {
+        matrix[c * size + r] = matrix[r * size + c] = -between[c][r];
+      }
+      matrix[c * size + c] += 1.0 / stiffness[c];
+    }
+    inner.compute(matrix, int(size));
     is_current = true;
-    const auto pivots = inner.vectorD();
-    return inner.info() == Eigen::Success && inner.isPositive() &&
-           pivots.minCoeff() > least_pivot * pivots.maxCoeff();
+    return inner.is_positive(least_pivot);
   }
 
   void apply(std::vector<double>& x) const {
     const std::size_t size = columns.size();
     if (size == 0) return;
-    Eigen::VectorXd along_bonds{Eigen::Index(size)};
-    for (std::size_t k = 0; k < size; ++k)
-      along_bonds[Eigen::Index(k)] = along(directions[k].free, x);
-    const Eigen::VectorXd shares = inner.solve(along_bonds);
-    using Vector = Eigen::Map<Eigen::VectorXd>;
-    using Constant = Eigen::Map<const Eigen::VectorXd>;
-    Vector sum(x.data(), Eigen::Index(x.size()));
+    std::vector<double> shares(size);
+    for (std::size_t k = 0; k < size; ++k) shares[k] = along(directions[k].free, x);
+    inner.solve(shares);
     for (std::size_t k = 0; k < size; ++k) {
-      sum += shares[Eigen::Index(k)] * Constant(columns[k].data(), sum.size());
+      const std::vector<double>& column = columns[k];
+      for (std::size_t e = 0; e < x.size(); ++e) x[e] += shares[k] * column[e];
     }
   }
 };
@@ -204,13 +203,11 @@ LinearOutcome UpdatedTangent::add_column(const LostStiffness& lost) {
   std::vector<double> column;
   const LinearOutcome outcome = solve_for(side, column_tolerance, column);
   if (outcome != LinearOutcome::solved) return outcome;
-  const auto size = Eigen::Index(c.columns.size());
-  if (c.between.rows() == 0) c.between.setZero(most_columns, most_columns);
-  for (Eigen::Index k = 0; k < size; ++k) {
-    c.between(k, size) = c.between(size, k) =
-        Correction::along(c.directions[std::size_t(k)].free, column);
+  std::vector<double>& between = c.between.emplace_back();
+  for (const BondDirection& other : c.directions) {
+    between.push_back(Correction::along(other.free, column));
   }
-  c.between(size, size) = Correction::along(g.free, column);
+  between.push_back(Correction::along(g.free, column));
   c.column_of[lost.bond] = c.columns.size();
   c.directions.push_back(std::move(g));
   c.stiffness.push_back(lost.stiffness);

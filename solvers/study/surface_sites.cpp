@@ -5,17 +5,13 @@
 #include <memory>
 #include <stdexcept>
 
-#include <Eigen/QR>
-
 #include "assembly/terms/collocation/collocation_term.hpp"
 #include "src/core/input_error.hpp"
 #include "src/core/number_text.hpp"
+#include "src/dense/least_squares.hpp"
 
 namespace peristat {
 namespace {
-
-using Matrix = Eigen::MatrixXd;
-using Vector = Eigen::VectorXd;
 
 /// Depth below a face, in spacings, of points that stand on it.
 constexpr double on_face = 1e-6;
@@ -23,13 +19,11 @@ constexpr double on_face = 1e-6;
 /// a_f of least squares, of all the one of least norm.
 std::vector<double> shares_of(const std::vector<Foot>& feet, const Coordinates& normal) {
   if (feet.size() == 1) return {1.0};
-  Matrix normals(3, Eigen::Index(feet.size()));
-  for (std::size_t f = 0; f < feet.size(); ++f) {
-    for (int c = 0; c < 3; ++c) normals(c, Eigen::Index(f)) = feet[f].normal[c];
+  std::vector<double> normals;
+  for (const Foot& foot : feet) {
+    normals.insert(normals.end(), foot.normal.begin(), foot.normal.end());
   }
-  const Vector of_point = Eigen::Map<const Vector>(normal.data(), 3);
-  const Vector shares = normals.completeOrthogonalDecomposition().solve(of_point);
-  return {shares.begin(), shares.end()};
+  return least_squares(normals, 3, normal);
 }
 
 }  // namespace

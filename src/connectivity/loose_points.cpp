@@ -1,13 +1,15 @@
 #include "src/connectivity/loose_points.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <numeric>
 #include <set>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 
 #include "src/connectivity/fragments.hpp"
+#include "src/dense/symmetric_spectrum.hpp"
 
 namespace peristat {
 
@@ -44,23 +46,24 @@ Eigen::Matrix3d direction(const Web& web, Index i, Index j) {
 
 /// Below this, an eigenvalue of the support counts as zero. As soon as there is one direction, the
 /// largest eigenvalue is at least one; less is the round-off of directions that were taken away.
-double zero_of(const Eigen::Vector3d& eigenvalues) {
-  return independence_tolerance * std::max(1.0, eigenvalues.maxCoeff());
+double zero_of(const std::array<double, 3>& eigenvalues) {
+  return independence_tolerance * std::max(1.0, eigenvalues.back());
 }
 
 bool holds(const Eigen::Matrix3d& support) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(support, Eigen::EigenvaluesOnly);
-  return solver.eigenvalues()(0) > zero_of(solver.eigenvalues());
+  const std::array<double, 3> eigenvalues = symmetric_eigenvalues<3>(support.data());
+  return eigenvalues.front() > zero_of(eigenvalues);
 }
 
 /// Axes that complete what supports a point, the least covered first; among equals, the lowest.
 std::vector<int> missing_axes(const Eigen::Matrix3d& support) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(support);
+  const SymmetricSpectrum<3> spectrum = symmetric_spectrum<3>(support.data());
   Eigen::Matrix3d rest = Eigen::Matrix3d::Zero();  // projects on what is not supported
   int missing = 0;
-  for (int k = 0; k < 3; ++k) {
-    if (solver.eigenvalues()(k) > zero_of(solver.eigenvalues())) continue;
-    rest += solver.eigenvectors().col(k) * solver.eigenvectors().col(k).transpose();
+  for (std::size_t k = 0; k < 3; ++k) {
+    if (spectrum.values[k] > zero_of(spectrum.values)) continue;
+    const Eigen::Vector3d vector(spectrum.vectors[k].data());
+    rest += vector * vector.transpose();
     ++missing;
   }
   std::vector<int> axes;

@@ -4,8 +4,9 @@
 #include <cmath>
 #include <cstdio>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 
+#include "src/dense/symmetric_spectrum.hpp"
 #include "src/measures/small_algebra.hpp"
 
 namespace peristat {
@@ -13,6 +14,8 @@ namespace {
 
 /// Eigenvalues below this fraction of the largest count as zero: motions of the size of round-off.
 constexpr double rank_tolerance = 1e-10;
+
+// Products of matrices are lazy ones: at most 6 x 6, and Eigen's others take seconds to compile.
 
 /// Motions of one point: at most 3 x 6, without a heap.
 using PointMotions = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 3, 6>;
@@ -57,13 +60,15 @@ Eigen::RowVectorXd row_of(const HeldMotion& motion, const Eigen::Vector3d& centr
 /// Orthonormal basis of the vectors that a positive semi-definite matrix maps to zero (or, with
 /// `complement`, of the others).
 Eigen::MatrixXd null_space(const Eigen::MatrixXd& matrix, double scale, bool complement = false) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(matrix);
+  const SymmetricModes modes =
+      symmetric_modes({matrix.data(), std::size_t(matrix.size())}, int(matrix.cols()));
   std::vector<Eigen::Index> columns;
   for (Eigen::Index k = 0; k < matrix.cols(); ++k) {
-    const bool zero = solver.eigenvalues()(k) <= rank_tolerance * scale;
+    const bool zero = modes.values[std::size_t(k)] <= rank_tolerance * scale;
     if (zero != complement) columns.push_back(k);
   }
-  return solver.eigenvectors()(Eigen::all, columns);
+  return Eigen::Map<const Eigen::MatrixXd>(modes.vectors.data(), matrix.rows(), matrix.cols())(
+      Eigen::all, columns);
 }
 
 std::string direction_name(const Eigen::VectorXd& direction) {
@@ -79,7 +84,7 @@ std::string direction_name(const Eigen::VectorXd& direction) {
 /// Directions spanning the columns, along the axes where possible.
 std::vector<std::string> direction_names(const Eigen::MatrixXd& span) {
   std::vector<std::string> names;
-  const Eigen::MatrixXd projector = span * span.transpose();
+  const Eigen::MatrixXd projector = span.lazyProduct(span.transpose());
   Eigen::MatrixXd rest = projector;
   for (Eigen::Index c = 0; c < span.rows(); ++c) {
     if (std::abs(projector(c, c) - 1.0) > 1e-6) continue;
@@ -153,7 +158,8 @@ RigidMotions free_rigid_motions(const RigidMotions& about, const MotionSums& sum
       held(sums.held.data(), modes, modes);
   // A straight row of points does not move when it turns about itself: such motions do not count.
   const Eigen::MatrixXd moving = null_space(gram, sums.points, true);
-  const Eigen::MatrixXd free = moving * null_space(moving.transpose() * held * moving, 1.0);
+  const Eigen::MatrixXd resisted = moving.transpose().lazyProduct(held);
+  const Eigen::MatrixXd free = moving.lazyProduct(null_space(resisted.lazyProduct(moving), 1.0));
   return {about.dimension, about.centre, about.size, static_cast<int>(free.cols()),
           std::vector<double>(free.data(), free.data() + free.size())};
 }
@@ -180,9 +186,9 @@ std::vector<std::string> motion_names(const RigidMotions& motions) {
   const Eigen::MatrixXd rotation = free.bottomRows(free.rows() - dimension);
   // Combinations of free motions without rotation are free translations.
   Eigen::MatrixXd still = Eigen::MatrixXd::Identity(free.cols(), free.cols());
-  if (rotation.rows() > 0) still = null_space(rotation.transpose() * rotation, 1.0);
+  if (rotation.rows() > 0) still = null_space(rotation.transpose().lazyProduct(rotation), 1.0);
   if (still.cols() > 0) {
-    Eigen::MatrixXd translation = free.topRows(dimension) * still;
+    const Eigen::MatrixXd translation = free.topRows(dimension).lazyProduct(still);
     for (const std::string& name : direction_names(translation)) {
       names.push_back("move along " + name);
     }
@@ -190,7 +196,7 @@ std::vector<std::string> motion_names(const RigidMotions& motions) {
   if (rotation.rows() == 1) {
     if (rotation.norm() > 1e-6) names.push_back("rotate about z");
   } else if (rotation.rows() == 3) {
-    const Eigen::MatrixXd axes = null_space(rotation * rotation.transpose(), 1.0, true);
+    const Eigen::MatrixXd axes = null_space(rotation.lazyProduct(rotation.transpose()), 1.0, true);
     if (axes.cols() > 0) {
       for (const std::string& name : direction_names(axes)) {
         names.push_back("rotate about " + name);

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <numbers>
 
-#include <Eigen/Dense>
-
 #include "src/core/coordinates.hpp"
+#include "src/dense/square_system.hpp"
+#include "src/dense/symmetric_spectrum.hpp"
 #include "src/materials/lattice_directions.hpp"
 #include "src/neighbourhood/lattice_kernel.hpp"
 
@@ -90,18 +90,21 @@ void BulkBonds::correct_energy() {
 }
 
 void BulkBonds::find_compliance() {
-  const auto size = std::ptrdiff_t(dyad({}, setting_.dimension).size());
-  Eigen::MatrixXd stiffness = Eigen::MatrixXd::Zero(size, size);
+  const std::size_t size = dyad({}, setting_.dimension).size();
+  std::vector<double> stiffness(size * size, 0.0);
   for (const Bond& bond : bonds_) {
-    const SymmetricTensor of = dyad(bond.direction, setting_.dimension);
-    const Eigen::Map<const Eigen::VectorXd> n(of.data(), size);
-    stiffness += 0.5 * bond.weight * bond.length * n * n.transpose();
+    const SymmetricTensor n = dyad(bond.direction, setting_.dimension);
+    for (std::size_t c = 0; c < size; ++c) {
+      for (std::size_t r = 0; r < size; ++r) {
+        stiffness[c * size + r] += 0.5 * bond.weight * bond.length * n[r] * n[c];
+      }
+    }
   }
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> modes(stiffness);
+  const std::vector<double> eigenvalues = symmetric_modes(stiffness, int(size)).values;
   // Bonds along the axes alone resist no shear.
-  if (!(modes.eigenvalues()[0] > 1e-12 * modes.eigenvalues()[size - 1])) return;
-  const Eigen::MatrixXd inverse = stiffness.inverse();
-  compliance_.assign(inverse.data(), inverse.data() + inverse.size());
+  if (eigenvalues.front() > 1e-12 * eigenvalues.back()) {
+    compliance_ = inverse_of(stiffness, int(size));
+  }
 }
 
 std::vector<double> BulkBonds::strain_of_pull(const Coordinates& direction) const {

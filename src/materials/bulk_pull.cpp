@@ -1,14 +1,19 @@
 #include "src/materials/bulk_pull.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <map>
 #include <numbers>
+#include <span>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 
 #include "src/core/coordinates.hpp"
+#include "src/dense/square_system.hpp"
+#include "src/dense/symmetric_spectrum.hpp"
 #include "src/neighbourhood/bulk_neighbourhood.hpp"
 #include "src/neighbourhood/lattice_ball.hpp"
 #include "src/neighbourhood/side_influence.hpp"
@@ -20,6 +25,10 @@ using Vector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 7, 1>;
 using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 7, 7>;
 
 constexpr std::array<std::ptrdiff_t, 3> entries_of_tensor{1, 3, 6};
+
+std::span<const double> entries_of(const Matrix& matrix) {
+  return {matrix.data(), std::size_t(matrix.size())};
+}
 
 /// n n^T in Kelvin's notation, times a factor.
 std::array<double, 6> projector(const Coordinates& n, int dimension, double factor = 1.0) {
@@ -86,9 +95,11 @@ class BulkPull::Equilibrium {
     State state;
     state.largest.assign(fibres_.size(), 0.0);
     set_secants(state.largest);
-    const Eigen::SelfAdjointEigenSolver<Matrix> modes(secant_stiffness());
-    if (!(modes.eigenvalues()[0] > 1e-12 * modes.eigenvalues()[size_ - 1])) return state;
-    const Vector of_unit = secant_stiffness().ldlt().solve(form_);
+    const Matrix stiffness = secant_stiffness();
+    const std::vector<double> eigenvalues =
+        symmetric_modes(entries_of(stiffness), int(size_)).values;
+    if (!(eigenvalues.front() > 1e-12 * eigenvalues.back())) return state;
+    const Vector of_unit = strain_of_form(stiffness);
     double longest = 0.0;
     for (const Fibre& fibre : bulk_.fibres_) {
       longest = std::max(longest, vector(fibre.dyad).dot(of_unit));
@@ -133,6 +144,12 @@ class BulkPull::Equilibrium {
 
   [[nodiscard]] Vector vector(const Tensor& of) const {
     return Eigen::Map<const Eigen::VectorXd>(of.data(), size_);
+  }
+
+  [[nodiscard]] Vector strain_of_form(const Matrix& stiffness) const {
+    Vector strain = form_;
+    solve_symmetric(entries_of(stiffness), {strain.data(), std::size_t(strain.size())});
+    return strain;
   }
 
   void grow(State& state) const {
@@ -189,7 +206,8 @@ class BulkPull::Equilibrium {
     residual[size_] = form_.dot(state.strain) - state.along;
     tangent.topRightCorner(size_, 1) = -form_;
     tangent.bottomLeftCorner(1, size_) = form_.transpose();
-    const Vector change = tangent.partialPivLu().solve(residual);
+    Vector change = residual;
+    solve_square(entries_of(tangent), {change.data(), std::size_t(change.size())});
     state.strain -= change.head(size_);
     state.stress -= change[size_];
     return change.head(size_).norm();
@@ -227,7 +245,7 @@ class BulkPull::Equilibrium {
     constexpr int most_iterations = 3000;
     for (int k = 0; k < most_iterations; ++k) {
       set_secants(state.largest);
-      const Vector of_unit = secant_stiffness().ldlt().solve(form_);
+      const Vector of_unit = strain_of_form(secant_stiffness());
       state.stress = along / form_.dot(of_unit);
       // Nothing is left of what resisted.
       if (!(state.stress > 1e-6 * since.stress) || has_stiffened(state, since)) {

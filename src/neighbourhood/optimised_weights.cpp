@@ -9,11 +9,11 @@
 #include <string>
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 
 #include "src/core/input_error.hpp"
 #include "src/core/lanes.hpp"
 #include "src/core/number_text.hpp"
+#include "src/dense/symmetric_spectrum.hpp"
 
 namespace peristat {
 namespace {
@@ -172,13 +172,15 @@ class WeightSolver {
   }
 
   double solve_by_eigenvalues(std::span<double> weight) {
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> spectrum(normal_);
-    if (spectrum.info() != Eigen::Success) return std::numeric_limits<double>::infinity();
-    const Eigen::VectorXd& values = spectrum.eigenvalues();
+    const Eigen::Index size = normal_.rows();
+    const SymmetricModes modes =
+        symmetric_modes({normal_.data(), std::size_t(normal_.size())}, int(size));
+    if (!modes.is_found) return std::numeric_limits<double>::infinity();
+    const Eigen::Map<const Eigen::VectorXd> values(modes.values.data(), size);
     const double least = least_eigenvalue * values.maxCoeff();
     const Eigen::VectorXd inverses =
         values.unaryExpr([&](double value) { return value > least ? 1.0 / value : 0.0; });
-    const Eigen::MatrixXd& vectors = spectrum.eigenvectors();
+    const Eigen::Map<const Eigen::MatrixXd> vectors(modes.vectors.data(), size, size);
     return refine(weight, [&](const Eigen::VectorXd& r) -> Eigen::VectorXd {
       return vectors * inverses.cwiseProduct(vectors.transpose() * r);
     });

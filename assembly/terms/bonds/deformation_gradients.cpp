@@ -1,8 +1,9 @@
 #include "assembly/terms/bonds/deformation_gradients.hpp"
 
-#include <Eigen/Eigenvalues>
+#include <Eigen/Core>
 
 #include "assembly/terms/damage.hpp"
+#include "src/dense/symmetric_spectrum.hpp"
 #include "src/geometry/image_tensors.hpp"
 
 namespace peristat {
@@ -57,12 +58,14 @@ DeformationGradients solve(const Points& points, const Moments& sums) {
   const auto own = std::size_t(points.own());
   DeformationGradients found{std::vector<double>(own * D * D), std::vector<char>(own)};
   for (std::size_t i = 0; i < own; ++i) {
-    const Tensor reference = Eigen::Map<const Tensor>(&sums.reference[i * D * D]);
-    const Eigen::SelfAdjointEigenSolver<Tensor> spectrum(reference);
-    const auto& moment = spectrum.eigenvalues();
+    const SymmetricSpectrum<D> spectrum = symmetric_spectrum<D>(&sums.reference[i * D * D]);
+    const Eigen::Map<const Eigen::Matrix<double, D, 1>> moment(spectrum.values.data());
     found.is_determined[i] = moment(0) > flat * moment(D - 1);
     if (!found.is_determined[i]) continue;
-    const Tensor& axes = spectrum.eigenvectors();
+    Tensor axes;
+    for (int k = 0; k < D; ++k) {
+      for (int c = 0; c < D; ++c) axes(c, k) = spectrum.vectors[k][c];
+    }
     Eigen::Map<Tensor>(&found.displacement[i * D * D]) =
         Eigen::Map<const Tensor>(&sums.displacement[i * D * D]) * axes *
         moment.cwiseInverse().asDiagonal() * axes.transpose();

@@ -7,9 +7,8 @@
 #include <stdexcept>
 #include <utility>
 
-#include <Eigen/Eigenvalues>
-
 #include "src/core/threads.hpp"
+#include "src/dense/symmetric_spectrum.hpp"
 #include "src/measures/small_algebra.hpp"
 
 namespace peristat {
@@ -58,17 +57,16 @@ Vector<D, double> contracted(const double* third, const Matrix<D, double>& tenso
 /// Pseudo-inverse of a positive semidefinite matrix, written row by row.
 template <int D>
 void write_inverse(const Matrix<D, double>& shape, double* inverse) {
-  using Tensor = Eigen::Matrix<double, D, D, Eigen::RowMajor>;
-  const Eigen::SelfAdjointEigenSolver<Tensor> spectrum(
-      Eigen::Map<const Tensor>(shape.front().data()));
-  const auto& values = spectrum.eigenvalues();  // ascending
-  Tensor sum = Tensor::Zero();
+  const SymmetricSpectrum<D> spectrum = symmetric_spectrum<D>(shape.front().data());
+  std::fill_n(inverse, D * D, 0.0);
   for (int k = 0; k < D; ++k) {
-    if (!(values(k) > flat_shape * values(D - 1))) continue;
-    const auto vector = spectrum.eigenvectors().col(k);
-    sum += vector * vector.transpose() / values(k);
+    const double value = spectrum.values[k];
+    if (!(value > flat_shape * spectrum.values[D - 1])) continue;
+    const auto& vector = spectrum.vectors[k];
+    for (int r = 0; r < D; ++r) {
+      for (int c = 0; c < D; ++c) inverse[r * D + c] += vector[r] * vector[c] / value;
+    }
   }
-  Eigen::Map<Tensor>(inverse, D, D) = sum;
 }
 
 /// Share of sum k r^2 below which a point is torn: a straight crack leaves it half of its ball.

@@ -9,12 +9,11 @@
 #include <string>
 #include <utility>
 
-#include <Eigen/QR>
-
 #include "cases/runner/input/probe_fields.hpp"
 #include "cases/runner/results/crack_measures.hpp"
 #include "src/core/concatenated.hpp"
 #include "src/core/expression.hpp"
+#include "src/dense/least_squares.hpp"
 
 namespace peristat {
 namespace {
@@ -39,22 +38,27 @@ const std::vector<double>& values_of(const ProbeField& field, const StepFields& 
   return *(fields.*members.at(field.name));
 }
 
+/// From row by row to column by column.
+std::vector<double> by_columns(const std::vector<double>& rows, std::size_t columns) {
+  const std::size_t count = rows.size() / columns;
+  std::vector<double> result(rows.size());
+  for (std::size_t r = 0; r < count; ++r) {
+    for (std::size_t c = 0; c < columns; ++c) result[c * count + r] = rows[r * columns + c];
+  }
+  return result;
+}
+
 /// Rows of all ranks that have the same least squares as theirs: of a body in parts, where a set
 /// may be large, their triangular factor in the place of rows.
-Eigen::MatrixXd rows_of_all(Eigen::MatrixXd mine, const Communicator& ranks) {
+std::vector<double> rows_of_all(std::vector<double> mine, std::size_t columns,
+                                const Communicator& ranks) {
   if (ranks.count() == 1) return mine;
-  const Eigen::Index columns = mine.cols();
-  if (mine.rows() > columns) {
-    mine = Eigen::HouseholderQR<Eigen::MatrixXd>(mine)
-               .matrixQR()
-               .topRows(columns)
-               .triangularView<Eigen::Upper>()
-               .toDenseMatrix();
+  const std::size_t rows = mine.size() / columns;
+  if (rows > columns) {
+    // Columns of the transpose are the triangle's rows.
+    mine = by_columns(triangular_factor(by_columns(mine, columns), int(rows)), columns);
   }
-  using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-  const RowMajor rows = mine;
-  const std::vector<double> all = concatenated({rows.data(), rows.data() + rows.size()}, ranks);
-  return Eigen::Map<const RowMajor>(all.data(), Eigen::Index(all.size()) / columns, columns);
+  return concatenated(mine, ranks);
 }
 
 /// Poisson's ratio of the homogeneous deformation that fits the displacements of a set best (least
@@ -63,24 +67,32 @@ double fitted_poisson_ratio(const ProbeSpecification& probe, const RecordedPoint
                             const std::vector<double>& displacement) {
   const std::span<const Index> members = points.members(probe.set);
   const int d = points.dimension();
-  Eigen::MatrixXd mine(members.size(), 2 * d + 1);  // position, 1, displacement
-  for (std::size_t k = 0; k < members.size(); ++k) {
-    for (int c = 0; c < d; ++c) {
-      mine(k, c) = points.points().reference[std::size_t(members[k]) * d + c];
-      mine(k, d + 1 + c) = displacement[std::size_t(members[k]) * d + c];
-    }
-    mine(k, d) = 1.0;
+  const auto width = std::size_t(d);
+  std::vector<double> mine;  // row by row: position, 1, displacement
+  for (const Index member : members) {
+    const auto first = std::ptrdiff_t(std::size_t(member) * width);
+    const auto place = points.points().reference.begin() + first;
+    const auto moved = displacement.begin() + first;
+    mine.insert(mine.end(), place, place + d);
+    mine.push_back(1.0);
+    mine.insert(mine.end(), moved, moved + d);
   }
-  const Eigen::MatrixXd rows = rows_of_all(std::move(mine), points.ranks());
+  const std::size_t columns = 2 * width + 1;
+  const std::vector<double> all =
+      by_columns(rows_of_all(std::move(mine), columns, points.ranks()), columns);
+  const std::size_t rows = all.size() / columns;
+  if (rows == 0) return 0.0;
   // Of full rank for any set of two or more points in every direction, by the smallest solution for
   // others.
-  const Eigen::MatrixXd positions = rows.leftCols(d + 1), displacements = rows.rightCols(d);
-  const Eigen::MatrixXd gradient = positions.completeOrthogonalDecomposition().solve(displacements);
+  const std::span<const double> positions = std::span(all).first(rows * (width + 1));
+  const std::vector<double> gradient =
+      least_squares(positions, int(rows), std::span(all).last(rows * width));
+  const auto slope = [&](int axis) { return gradient[std::size_t(axis) * (width + 2)]; };
   double lateral = 0.0;
   for (int c = 0; c < d; ++c) {
-    if (c != probe.axis) lateral += gradient(c, c) / (d - 1);
+    if (c != probe.axis) lateral += slope(c) / (d - 1);
   }
-  const double axial = gradient(probe.axis, probe.axis);
+  const double axial = slope(probe.axis);
   return axial == 0.0 ? 0.0 : -lateral / axial;
 }
 

@@ -1,0 +1,62 @@
+#include "src/dense/square_system.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+
+namespace peristat {
+namespace {
+
+Eigen::Map<const Eigen::MatrixXd> mapped(std::span<const double> matrix, Eigen::Index size) {
+  return {matrix.data(), size, size};
+}
+
+Eigen::Map<Eigen::VectorXd> mapped(std::span<double> side) {
+  return {side.data(), Eigen::Index(side.size())};
+}
+
+}  // namespace
+
+void solve_square(std::span<const double> matrix, std::span<double> side) {
+  const Eigen::PartialPivLU<Eigen::MatrixXd> factors(mapped(matrix, Eigen::Index(side.size())));
+  const Eigen::VectorXd given = mapped(side);
+  mapped(side) = factors.solve(given);
+}
+
+std::vector<double> inverse_of(std::span<const double> matrix, int size) {
+  const Eigen::MatrixXd found =
+      Eigen::PartialPivLU<Eigen::MatrixXd>(mapped(matrix, size)).inverse();
+  return {found.data(), found.data() + found.size()};
+}
+
+struct SymmetricFactors::Factors {
+  Eigen::LDLT<Eigen::MatrixXd> ldlt;
+};
+
+SymmetricFactors::SymmetricFactors() : factors_(std::make_unique<Factors>()) {}
+SymmetricFactors::~SymmetricFactors() = default;
+SymmetricFactors::SymmetricFactors(SymmetricFactors&&) noexcept = default;
+SymmetricFactors& SymmetricFactors::operator=(SymmetricFactors&&) noexcept = default;
+
+void SymmetricFactors::compute(std::span<const double> matrix, int size) {
+  factors_->ldlt.compute(mapped(matrix, size));
+}
+
+bool SymmetricFactors::is_positive(double least_share) const {
+  const auto& ldlt = factors_->ldlt;
+  const auto pivots = ldlt.vectorD();
+  return ldlt.info() == Eigen::Success && ldlt.isPositive() &&
+         pivots.minCoeff() > least_share * pivots.maxCoeff();
+}
+
+void SymmetricFactors::solve(std::span<double> side) const {
+  const Eigen::VectorXd given = mapped(side);
+  mapped(side) = factors_->ldlt.solve(given);
+}
+
+void solve_symmetric(std::span<const double> matrix, std::span<double> side) {
+  SymmetricFactors factors;
+  factors.compute(matrix, int(side.size()));
+  factors.solve(side);
+}
+
+}  // namespace peristat

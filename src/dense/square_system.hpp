@@ -1,0 +1,44 @@
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+namespace peristat {
+
+/// x of A x = b with any regular A, by elimination with partial pivots.
+/// @param matrix column by column
+/// @param side b, which becomes x
+void solve_square(std::span<const double> matrix, std::span<double> side);
+
+/// A^-1 of a regular matrix, column by column.
+[[nodiscard]] std::vector<double> inverse_of(std::span<const double> matrix, int size);
+
+/// Factors L D L^T of a symmetric matrix, with pivots along the diagonal.
+class SymmetricFactors {
+ public:
+  SymmetricFactors();
+  ~SymmetricFactors();
+  SymmetricFactors(SymmetricFactors&&) noexcept;
+  SymmetricFactors& operator=(SymmetricFactors&&) noexcept;
+
+  /// @param matrix size x size entries, of which the lower half, column by column, is read
+  void compute(std::span<const double> matrix, int size);
+
+  /// Whether it could be factorised without a negative pivot, with all of them above this share of
+  /// the largest.
+  [[nodiscard]] bool is_positive(double least_share) const;
+
+  /// @param side becomes the solution
+  void solve(std::span<double> side) const;
+
+ private:
+  struct Factors;
+  std::unique_ptr<Factors> factors_;
+};
+
+/// x of A x = b with a symmetric A.
+/// @param side becomes the solution
+void solve_symmetric(std::span<const double> matrix, std::span<double> side);
+
+}  // namespace peristat
