@@ -119,6 +119,24 @@ Kind<std::string> one_of(const std::vector<std::string>& names) {
   return {[=](const Entry& at) { return at.from.one_of(at.key, names); }, string_text, allowed};
 }
 
+Kind<std::int64_t> choice_of_numbers(std::vector<Choice<std::int64_t>> choices) {
+  std::vector<std::string> names;
+  for (const auto& choice : choices) names.emplace_back(choice.name);
+  const Kind<std::string> name = one_of(names);
+  const auto read = [name, choices](const Entry& at) {
+    const std::string chosen = name.read(at);
+    return std::find_if(choices.begin(), choices.end(),
+                        [&](const auto& choice) { return choice.name == chosen; })
+        ->value;
+  };
+  const auto text = [choices](std::int64_t value, const Case&) {
+    for (const auto& choice : choices)
+      if (choice.value == value) return toml_string(choice.name);
+    return std::string();
+  };
+  return {read, text, name.allowed};
+}
+
 namespace {
 
 /// Names of columns and files have these in them; file systems take 255 bytes.
@@ -146,17 +164,16 @@ Kind<std::string> name() {
 }
 
 Kind<std::string> set_name() {
-  Kind<std::string> kind = name();
-  kind.read = [read = kind.read](const Entry& at) {
-    const std::string given = read(at);
+  const Kind<std::string> any = name();
+  const auto read = [any](const Entry& at) {
+    const std::string given = any.read(at);
     const auto names = set_names(at.so_far);
     if (const auto taken = names.find(given); taken != names.end())
       at.refuse("this name is taken by " + taken->second +
                 "; sets and layers need different names");
     return given;
   };
-  kind.allowed += "; no other set or layer has it";
-  return kind;
+  return {read, string_text, any.allowed + "; no other set or layer has it"};
 }
 
 Kind<std::string> known_set() {
@@ -203,17 +220,19 @@ Kind<Coordinates> coordinates(std::string unit) {
 }
 
 Kind<Coordinates> stiffnesses(const std::string& unit) {
-  Kind<Coordinates> kind = coordinates(unit);
-  kind.read = [read = kind.read](const Entry& at) {
-    const Coordinates stiffness = read(at);
+  const Kind<Coordinates> any = coordinates(unit);
+  const auto read = [any](const Entry& at) {
+    const Coordinates stiffness = any.read(at);
     for (std::size_t c = 0; c < stiffness.size(); ++c) {
       if (stiffness[c] < 0.0) at.from.refuse(at.key, c, "must be 0 or positive");
     }
     if (stiffness == Coordinates{}) at.refuse("is zero in every component: this holds nothing");
     return stiffness;
   };
-  kind.allowed = "numbers from 0, not all 0";
-  return kind;
+  const auto text = [any](const Coordinates& stiffness, const Case& from) {
+    return any.text(stiffness, from);
+  };
+  return {read, text, "numbers from 0, not all 0", unit};
 }
 
 Kind<Side> side() {

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <initializer_list>
 #include <optional>
 #include <string>
 #include <utility>
@@ -31,28 +32,23 @@ namespace peristat {
 /// A string out of a list.
 [[nodiscard]] Kind<std::string> one_of(const std::vector<std::string>& names);
 
-/// Names of the values of an enumeration.
+/// A value of an enumeration, and its name.
 template <class Value>
-using Choices = std::vector<std::pair<std::string, Value>>;
+struct Choice {
+  const char* name;
+  Value value;
+};
 
-/// A value of an enumeration by its name.
+/// A number by its name.
+[[nodiscard]] Kind<std::int64_t> choice_of_numbers(std::vector<Choice<std::int64_t>> choices);
+
+/// A value of an enumeration by its name; as a number, so that enumerations share a kind.
 template <class Value>
-[[nodiscard]] Kind<Value> choice(const Choices<Value>& choices) {
-  std::vector<std::string> names;
-  for (const auto& [name, value] : choices) names.push_back(name);
-  const Kind<std::string> name_kind = one_of(names);
-  return {[=](const Entry& at) {
-            const std::string chosen = name_kind.read(at);
-            return std::find_if(choices.begin(), choices.end(),
-                                [&](const auto& choice) { return choice.first == chosen; })
-                ->second;
-          },
-          [=](const Value& value, const Case&) {
-            for (const auto& [name, choice] : choices)
-              if (choice == value) return toml_string(name);
-            return std::string();
-          },
-          name_kind.allowed};
+[[nodiscard]] Kind<std::int64_t> choice(std::initializer_list<Choice<Value>> choices) {
+  std::vector<Choice<std::int64_t>> numbers;
+  for (const auto& [name, value] : choices)
+    numbers.push_back({name, static_cast<std::int64_t>(value)});
+  return choice_of_numbers(std::move(numbers));
 }
 
 /// A name that is given: letters, digits, _ and -.

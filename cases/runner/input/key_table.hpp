@@ -1,247 +1,245 @@
 #pragma once
 
-#include <algorithm>
-#include <functional>
-#include <optional>
+#include <initializer_list>
 #include <string>
+#include <string_view>
 #include <type_traits>
 #include <utility>
 #include <vector>
 
 #include "cases/runner/input/case.hpp"
-#include "cases/runner/input/case_keys.hpp"
-#include "cases/runner/input/toml_table.hpp"
+#include "cases/runner/input/untyped_keys.hpp"
 
 namespace peristat {
 
-/// A key while it is read: its table, and the case with all that was read before.
-struct Entry {
-  const TomlTable& from;
-  std::string key;  ///< empty for the table itself
-  const Case& so_far;
-
-  [[noreturn]] void refuse(const std::string& why) const { from.refuse(key, why); }
-};
-
 /// What the value of a key may be: how it is read and checked, written as TOML, and described.
 template <class Value>
-struct Kind {
-  std::function<Value(const Entry&)> read;
-  std::function<std::string(const Value&, const Case&)> text;
-  std::string allowed, unit = {};
+struct Kind : UntypedKind {
+  /// @param reads  what gives the value of an Entry
+  /// @param writes what gives TOML of a value and the case
+  template <class Reads, class Writes>
+  Kind(Reads reads, Writes writes, std::string is_allowed, std::string has_unit = {})
+      : UntypedKind([=](const Entry& at, void* value) { *static_cast<Value*>(value) = reads(at); },
+                    [=](const void* value, const Case& from) -> std::string {
+                      return writes(*static_cast<const Value*>(value), from);
+                    },
+                    std::move(is_allowed), std::move(has_unit)) {}
+
+  [[nodiscard]] Value read(const Entry& at) const {
+    Value value{};
+    read_into(at, &value);
+    return value;
+  }
+  [[nodiscard]] std::string text(const Value& value, const Case& from) const {
+    return text_of(&value, from);
+  }
 };
 
 /// Member of a member, to be used like a pointer to a member.
 template <class Outer, class Inner>
 auto in(Outer outer, Inner inner) {
-  return [=](auto& spec) -> auto& { return std::invoke(inner, std::invoke(outer, spec)); };
+  return [=](auto& spec) -> auto& { return member_of(member_of(spec, outer), inner); };
+}
+
+/// An action without the type of its specification. Those that capture nothing become functions,
+/// for which std::function is compiled once.
+template <class Spec, class Action>
+UntypedKey::Action untyped_action(Action action) {
+  if constexpr (std::is_empty_v<Action>)
+    return +[](const Entry& at, void* spec) { Action()(at, *static_cast<Spec*>(spec)); };
+  else
+    return [=](const Entry& at, void* spec) { action(at, *static_cast<Spec*>(spec)); };
+}
+
+/// The same for a predicate.
+template <class Spec, class Predicate>
+UntypedKey::Predicate untyped_predicate(Predicate holds) {
+  if constexpr (std::is_empty_v<Predicate>)
+    return +[](const void* spec, const Case& so_far) -> bool {
+      return Predicate()(*static_cast<const Spec*>(spec), so_far);
+    };
+  else
+    return [=](const void* spec, const Case& so_far) -> bool {
+      return holds(*static_cast<const Spec*>(spec), so_far);
+    };
+}
+
+template <class Value, class Held>
+void read_value_of_member(const UntypedKind& kind, const Entry& at, const UntypedMember& member,
+                          void* spec) {
+  Value value{};
+  kind.read_into(at, &value);
+  if constexpr (requires { static_cast<Held>(std::move(value)); })
+    *static_cast<Held*>(member(spec)) = static_cast<Held>(std::move(value));
+  else  // a number for an optional enumeration
+    *static_cast<Held*>(member(spec)) = static_cast<typename Held::value_type>(value);
+}
+
+template <class Value, class Held>
+std::string text_of_member(const UntypedKind& kind, const void* held, const Case& from) {
+  const Held& stored = *static_cast<const Held*>(held);
+  if constexpr (requires { stored.has_value(); }) {
+    if (!stored) return {};
+    const Value value = static_cast<Value>(*stored);
+    return kind.text_of(&value, from);
+  } else {
+    const Value value = static_cast<Value>(stored);
+    return kind.text_of(&value, from);
+  }
+}
+
+template <class Value, class Held>
+constexpr ValueOfMember value_of_member{read_value_of_member<Value, Held>,
+                                        text_of_member<Value, Held>};
+
+template <class Element>
+void read_element_of_member(const UntypedTable& table, const Entry& at, const UntypedMember& member,
+                            void* spec) {
+  Element element{};
+  table.read_untyped(at, &element);
+  static_cast<std::vector<Element>*>(member(spec))->push_back(std::move(element));
+}
+
+template <class Element>
+const void* find_element_of_member(const void* held, std::size_t k) {
+  const auto& elements = *static_cast<const std::vector<Element>*>(held);
+  return k < elements.size() ? &elements[k] : nullptr;
+}
+
+template <class Element>
+constexpr ElementsOfMember elements_of_member{read_element_of_member<Element>,
+                                              find_element_of_member<Element>};
+
+/// Null for a table of its own.
+template <class Held, class Inner>
+constexpr const ElementsOfMember* elements_if_array() {
+  if constexpr (std::is_same_v<Held, std::vector<Inner>>) {
+    return &elements_of_member<Inner>;
+  } else {
+    static_assert(std::is_same_v<Held, Inner>);
+    return nullptr;
+  }
 }
 
 /// A key of a table: all that reading, the resolved text and the reference know of it. Unless more
 /// is said it is optional, and its default is that of the specification's struct.
+///
+/// A predicate takes the specification and the case so far, an action the entry and the
+/// specification.
 template <class Spec>
-class Key {
- public:
-  using Predicate = std::function<bool(const Spec&, const Case& so_far)>;
-  using Action = std::function<void(const Entry&, Spec&)>;
+class Key : public UntypedKey {
+  template <class Access>
+  using Held = std::remove_cvref_t<decltype(member_of(std::declval<Spec&>(),
+                                                      std::declval<const Access&>()))>;
 
+ public:
   /// @param member  pointer to a member of the specification, or what gives a reference to one
   /// @param meaning a sentence for the reference, as are the words below
-  template <class Member, class Value>
-  Key(std::string name, Member member, Kind<Value> kind, std::string meaning)
-      : description_{name, std::move(meaning), kind.unit, {}, kind.allowed, false} {
-    using Held = std::remove_cvref_t<std::invoke_result_t<Member, Spec&>>;
-    read_ = [=](const Entry& at, Spec& spec) {
-      std::invoke(member, spec) = static_cast<Held>(kind.read(at));
-    };
-    value_text_ = [=](const Spec& spec, const Case& from) -> std::string {
-      const Held& stored = std::invoke(member, spec);
-      if constexpr (requires { stored.has_value(); })
-        return stored ? kind.text(*stored, from) : std::string();
-      else
-        return kind.text(static_cast<Value>(stored), from);
-    };
-  }
+  template <class Access, class Value>
+  Key(std::string_view name, Access member, const Kind<Value>& kind, std::string_view meaning)
+      : UntypedKey(name, UntypedMember::of<Spec>(member), value_of_member<Value, Held<Access>>,
+                   kind, meaning) {}
   /// A table of its own, or an array of tables if the member is a vector.
-  template <class Member, class Inner>
-  Key(std::string name, Member member, const Table<Inner>& inner, std::string meaning)
-      : description_{name, std::move(meaning), {}, "all defaults", {}, false} {
-    using Held = std::remove_cvref_t<std::invoke_result_t<Member, Spec&>>;
-    constexpr bool is_array = requires(Held stored) { stored.push_back(Inner()); };
-    if (is_array) description_.fallback = "none";
-    describe_inside_ = [=](auto& all) { inner.describe(all, is_array); };
-    if constexpr (is_array) {
-      read_ = [=](const Entry& at, Spec& spec) {
-        for (const TomlTable& table : at.from.tables(name)) {
-          Inner element{};
-          inner.read({table, "", at.so_far}, element);
-          std::invoke(member, spec).push_back(std::move(element));
-        }
-      };
-    } else {
-      read_ = [=](const Entry& at, Spec& spec) {
-        inner.read({at.from.table(name), "", at.so_far}, std::invoke(member, spec));
-      };
-      fallback_ = [=](const Entry& at, Spec& spec) {
-        inner.read({at.from.empty_table(name), "", at.so_far}, std::invoke(member, spec));
-      };
-    }
-    lines_ = [=](const Spec& spec, const Case& from) {
-      std::string lines;
-      if constexpr (is_array)
-        for (const auto& element : std::invoke(member, spec))
-          lines += "\n[[" + inner.name + "]]\n" + inner.lines(element, from);
-      else
-        lines = "\n[" + inner.name + "]\n" + inner.lines(std::invoke(member, spec), from);
-      return lines;
-    };
-  }
+  template <class Access, class Inner>
+  Key(std::string_view name, Access member, const Table<Inner>& inner, std::string_view meaning)
+      : UntypedKey(name, UntypedMember::of<Spec>(member), inner,
+                   elements_if_array<Held<Access>, Inner>(), meaning) {}
 
-  Key& required(std::string words = "required") {
-    is_required_ = true;
-    return default_words(std::move(words));
+  Key& required(std::string_view words = "required") {
+    set_required(words);
+    return *this;
   }
-  /// A default that depends on other keys.
+  /// A default that depends on other keys. It takes the specification and the case so far.
   template <class Fallback>
-  Key& otherwise(Fallback fallback, std::string words) {
-    fallback_ = [=](const Entry& at, Spec& spec) { fallback(spec, at.so_far); };
-    return default_words(std::move(words));
+  Key& otherwise(Fallback, std::string_view words) {
+    static_assert(std::is_empty_v<Fallback>);
+    set_fallback(
+        +[](const Entry& at, void* spec) { Fallback()(*static_cast<Spec*>(spec), at.so_far); },
+        words);
+    return *this;
   }
-  Key& default_words(std::string words) {
-    description_.fallback = std::move(words);
+  Key& default_words(std::string_view words) {
+    set_default_words(words);
     return *this;
   }
   /// Limits beside those of the kind.
-  Key& moreover(const std::string& words) {
-    description_.allowed += (description_.allowed.empty() ? "" : "; ") + words;
+  Key& moreover(std::string_view words) {
+    add_limits(words);
     return *this;
   }
   /// Where this holds the key is neither read nor written: it is refused, or ignored if there is no
   /// reason.
-  Key& unless(Predicate holds, std::string reason) {
-    exclusions_.emplace_back(std::move(holds), std::move(reason));
+  template <class Predicate>
+  Key& unless(Predicate holds, std::string_view reason) {
+    add_exclusion(untyped_predicate<Spec>(holds), reason);
     return *this;
   }
   /// Of the keys of the table that say so exactly one is needed.
   Key& one_of() {
-    is_one_of_ = true;
+    set_one_of();
     return *this;
   }
   /// Read first: which other keys apply may depend on it.
   Key& early() {
-    is_early_ = true;
+    set_early();
     return *this;
   }
   /// May change when a run goes on: see extending_keys.
   Key& extends() {
-    description_.extends = true;
+    set_extends();
     return *this;
   }
   /// What follows from the key, there or not: checks together with what was read before.
+  template <class Action>
   Key& then(Action action) {
-    then_ = std::move(action);
+    set_then(untyped_action<Spec>(action));
     return *this;
   }
+  template <class Predicate>
   Key& written_if(Predicate holds) {
-    written_if_ = std::move(holds);
+    set_written_if(untyped_predicate<Spec>(holds));
     return *this;
   }
-  Key& describes(std::function<void(std::vector<TableDescription>&)> tables_inside) {
-    describe_inside_ = std::move(tables_inside);
+  /// Describes tables inside that are read by a kind.
+  Key& describes(DescribeInside tables_inside) {
+    set_described(tables_inside);
     return *this;
   }
-
- private:
-  friend struct Table<Spec>;
-
-  const std::string& name() const { return description_.name; }
-
-  const std::string* exclusion(const Spec& spec, const Case& so_far) const {
-    for (const auto& [holds, reason] : exclusions_)
-      if (holds(spec, so_far)) return &reason;
-    return nullptr;
-  }
-
-  /// Whether the key means something here. @throws InputError if it is there and means nothing
-  bool applies(const Entry& at, const Spec& spec) const {
-    const std::string* reason = exclusion(spec, at.so_far);
-    if (reason != nullptr && !reason->empty() && at.from.has(name()))
-      at.from.refuse(name(), *reason);
-    return reason == nullptr;
-  }
-
-  void read(const Entry& table, Spec& spec) const {
-    const Entry at{table.from, name(), table.so_far};
-    if (!applies(at, spec)) return;
-    if (is_required_ || at.from.has(name()))
-      read_(at, spec);
-    else if (fallback_)
-      fallback_(at, spec);
-    if (then_) then_(at, spec);
-  }
-
-  std::string lines(const Spec& spec, const Case& from) const {
-    if (exclusion(spec, from) != nullptr || (written_if_ && !written_if_(spec, from))) return {};
-    if (lines_) return lines_(spec, from);
-    const std::string value = value_text_(spec, from);
-    return value.empty() ? value : name() + " = " + value + "\n";
-  }
-
-  KeyDescription description_;
-  Action read_, fallback_, then_;
-  std::function<std::string(const Spec&, const Case&)> value_text_, lines_;
-  std::vector<std::pair<Predicate, std::string>> exclusions_;
-  Predicate written_if_;
-  std::function<void(std::vector<TableDescription>&)> describe_inside_;
-  bool is_required_ = false, is_one_of_ = false, is_early_ = false;
 };
+
+/// Stands for no action before or after the keys of a table.
+struct NoAction {};
 
 /// A table of the case file; its keys in the order of the resolved text.
 template <class Spec>
-struct Table {
-  std::string name;  ///< dotted ("material.damage"); empty for the document
-  std::vector<Key<Spec>> keys;
-  typename Key<Spec>::Action before{}, after{};
-
-  void read(const Entry& at, Spec& spec) const {
-    if (before) before(at, spec);
-    for (const auto& key : keys)
-      if (key.is_early_) key.read(at, spec);
-    std::vector<std::string> group;
-    for (const auto& key : keys)
-      if (key.applies(at, spec) && key.is_one_of_) group.push_back(key.name());
-    const std::string one = group.empty() ? "" : at.from.exactly_one(group);
-    for (const auto& key : keys)
-      if (key.name() == one) key.read(at, spec);
-    for (const auto& key : keys)
-      if (!key.is_early_ && !key.is_one_of_) key.read(at, spec);
-    if (after) after(at, spec);
+struct Table : UntypedTable {
+  /// @param name   dotted ("material.damage"); empty for the document
+  /// @param before action before the first key is read, as is `after` after the last one
+  template <class Before = NoAction, class After = NoAction>
+  Table(std::string_view name, std::initializer_list<Key<Spec>> keys, Before before = {},
+        After after = {})
+      : UntypedTable(name, [] {
+          static const Spec defaults{};
+          return static_cast<const void*>(&defaults);
+        }) {
+    for (const auto& key : keys) add(key);
+    if constexpr (!std::is_same_v<Before, NoAction>) do_before(before);
+    if constexpr (!std::is_same_v<After, NoAction>) do_after(after);
+  }
+  void add(const Key<Spec>& key) { add_key(key); }
+  template <class Before>
+  void do_before(Before action) {
+    set_before(untyped_action<Spec>(action));
+  }
+  template <class After>
+  void do_after(After action) {
+    set_after(untyped_action<Spec>(action));
   }
 
+  void read(const Entry& at, Spec& spec) const { read_untyped(at, &spec); }
   /// Keys and values in force as lines of TOML, without the header.
   [[nodiscard]] std::string lines(const Spec& spec, const Case& from) const {
-    std::string text;
-    for (const auto& key : keys) text += key.lines(spec, from);
-    return text;
-  }
-
-  /// Appends this table and those in it.
-  void describe(std::vector<TableDescription>& all, bool is_array = false) const {
-    TableDescription own{name, is_array, {}, {}};
-    std::string group;
-    for (const auto& key : keys) {
-      own.listed.push_back(key.name());
-      if (key.is_one_of_) group += (group.empty() ? "`" : ", `") + key.name() + "`";
-    }
-    for (const auto& key : keys) {
-      own.keys.push_back(key.description_);
-      std::string& fallback = own.keys.back().fallback;
-      if (key.is_one_of_) fallback = "exactly one of " + group;
-      if (fallback.empty()) fallback = default_text(key.value_text_(Spec{}, Case{}));
-    }
-    all.push_back(std::move(own));
-    for (const auto& key : keys)
-      if (key.describe_inside_) key.describe_inside_(all);
+    return untyped_lines(&spec, from);
   }
 };
 

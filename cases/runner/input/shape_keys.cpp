@@ -73,7 +73,7 @@ void for_each_shape(const Action& action) {
 /// "box" of the table "set.shape.box".
 template <class OneShape>
 std::string kind_name(const OneShape& shape) {
-  const std::string& table = keys_of(shape).name;
+  const std::string& table = keys_of(shape).name();
   return table.substr(table.rfind('.') + 1);
 }
 

@@ -1,0 +1,369 @@
+#include "cases/runner/input/body_keys.hpp"
+
+#include <cstdint>
+#include <filesystem>
+#include <limits>
+#include <string>
+#include <type_traits>
+#include <variant>
+#include <vector>
+
+#include "cases/runner/input/key_kinds.hpp"
+#include "cases/runner/input/shape_keys.hpp"
+#include "src/core/number_text.hpp"
+#include "src/neighbourhood/optimised_weights.hpp"
+
+namespace peristat {
+namespace {
+
+constexpr auto lattice = [](auto& from) -> auto& { return std::get<Lattice>(from.body); };
+constexpr auto points = [](auto& from) -> auto& { return std::get<PointSource>(from.body); };
+
+template <class Member>
+Key<Case> thickness(Member cross_section) {
+  return Key<Case>("thickness", cross_section, positive("m"), "of the plate, dimension 2 only")
+      .unless(in_dimension<1>, "is for dimension 2; dimension 1 has an area")
+      .unless(in_dimension<3>, "is for dimension 2 only")
+      .default_words("1");
+}
+
+template <class Member>
+Key<Case> area(Member cross_section) {
+  return Key<Case>("area", cross_section, positive("m2"), "of the bar, dimension 1 only")
+      .unless(in_dimension<2>, "is for dimension 1; dimension 2 has a thickness")
+      .unless(in_dimension<3>, "is for dimension 1 only")
+      .default_words("1");
+}
+
+template <class Spec>
+Key<Spec> where(const std::string& meaning, const std::string& fallback) {
+  return Key<Spec>("where", &Spec::where, condition(), meaning)
+      .written_if([](auto& spec, auto&) { return !spec.where.empty(); })
+      .default_words(fallback);
+}
+
+Table<ShapeStep> shape_step_keys() {
+  using K = Key<ShapeStep>;
+  using Action = ShapeStep::Action;
+  return {"lattice.shape",
+          {K("add", &ShapeStep::shape, shape_beside(), "kind of the shape to add")
+               .written_if([](auto& step, auto&) { return step.action == Action::add; })
+               .one_of(),
+           K("subtract", &ShapeStep::shape, shape_beside(), "kind of the shape to take away")
+               .then([](auto&, auto& step) { step.action = Action::subtract; })
+               .written_if([](auto& step, auto&) { return step.action == Action::subtract; })
+               .one_of(),
+           K("name", &ShapeStep::name, text(), "of the shape, by which loads find its boundary")
+               .written_if([](auto& step, auto&) { return !step.name.empty(); }),
+           K("cuts_bonds", &ShapeStep::cuts_bonds, boolean(),
+             "`subtract`: whether bonds that cross the shape are cut; otherwise those that are "
+             "longer than it is wide bridge it")
+               .written_if([](auto& step, auto&) { return step.cuts_bonds; })
+               .then([](auto& at, auto& step) {
+                 if (step.cuts_bonds && step.action == Action::add)
+                   at.refuse("is for a shape that is subtracted");
+               })}};
+}
+
+Table<Layer> layer_keys() {
+  using K = Key<Layer>;
+  return {"lattice.layer",
+          {K("name", &Layer::name, set_name(), "of the layer and of its set").required(),
+           K("side", &Layer::side, side(), "of the body").required(),
+           K("thickness", &Layer::thickness, integer(1, 1000, "spacings"), "number of planes"),
+           where<Layer>("keeps a part of the layer", "all of it")}};
+}
+
+}  // namespace
+
+Table<Case> lattice_keys() {
+  using K = Key<Case>;
+  return {
+      "lattice",
+      {K("spacing", in(lattice, &Lattice::spacing), spacing(),
+         "distance of neighbouring points, or one along each of the lattice's axes")
+           .required(),
+       K("points", in(lattice, &Lattice::arrangement),
+         choice<Arrangement>(
+             {{"lattice", Arrangement::lattice}, {"blue_noise", Arrangement::blue_noise}}),
+         "where they stand: on the lattice, or at random with about the spacing as the distance "
+         "from their neighbours, with the volumes of their Voronoi cells")
+           .unless(in_dimension<1>, "is for dimensions 2 and 3")
+           .moreover("`blue_noise` with model `bond`")
+           .early(),
+       K("lloyd_steps", in(lattice, &Lattice::lloyd_steps), integer(0, 100, ""),
+         "how often points of blue noise move to the centroids of their Voronoi cells")
+           .unless([](auto& from,
+                      auto&) { return lattice(from).arrangement != Arrangement::blue_noise; },
+                   "is for points = \"blue_noise\""),
+       K("angle", in(lattice, &Lattice::angle), between(-360.0, 360.0, "degrees"),
+         "that the lattice is turned by under the body, anticlockwise about the origin, in 3D "
+         "about the z axis; shapes, layers and sets stay")
+           .unless(in_dimension<1>, "is for dimensions 2 and 3"),
+       K("horizon_ratio", &Case::horizon_ratio, number(Range::positive("-"), "1 to 1000"),
+         "horizon / spacing; of spacings that differ, their geometric mean")
+           .then([](auto& at, auto& result) {
+             if (result.horizon_ratio < 1.0)
+               at.refuse("horizon smaller than the spacing; must be at least 1, usually 3.015");
+             const Spacing& spacing = lattice(result).spacing;
+             const double horizon = result.horizon_ratio * spacing;
+             if (!spacing.is_square() && horizon < spacing.largest())
+               at.refuse("gives a horizon of " + number_text(horizon) +
+                         " m (it refers to the geometric mean of the spacings), smaller than the "
+                         "largest spacing, " +
+                         number_text(spacing.largest()) + " m");
+           })
+           .moreover("in 3D to 100; with model `cpd` to 50 in 2D, to 8 in 3D"),
+       thickness(in(lattice, &Lattice::cross_section)), area(in(lattice, &Lattice::cross_section)),
+       K("origin", in(lattice, &Lattice::origin),
+         choice<LatticeOrigin>(
+             {{"cell_centres", LatticeOrigin::cell_centres}, {"nodes", LatticeOrigin::nodes}}),
+         "where points stand relative to the lower corner of the first shape: cells' centres, half "
+         "a spacing inside, or the corner itself"),
+       K("volumes", in(lattice, &Lattice::volumes),
+         choice<CellVolumes>(
+             {{"cells", CellVolumes::whole}, {"fractional", CellVolumes::fractional}}),
+         "of points: that of a cell if its place lies in the body, or of the part of each cell "
+         "that "
+         "does")
+           .moreover("`fractional` with model `bond`"),
+       K("perturbation", in(lattice, &Lattice::perturbation), between(0.0, 0.49, "spacings"),
+         "largest random shift of a point along each of the lattice's axes; points of layers stay"),
+       K("cell_perturbation", in(lattice, &Lattice::cell_perturbation),
+         between(0.0, 0.249, "spacings"),
+         "largest random shift of the corners of cells inside the body along each of the lattice's "
+         "axes; points stand at the cells' centroids and have their volumes")
+           .unless(in_dimension<3>, "is for dimensions 1 and 2")
+           .moreover("model `bond`"),
+       K("seed", in(lattice, &Lattice::seed),
+         count_from(0, "", std::numeric_limits<std::int64_t>::max()),
+         "of the random shifts and places; the same seed gives the same points"),
+       K("shape", in(lattice, &Lattice::shapes), shape_step_keys(), "tables: the body")
+           .then([](auto& at, auto& result) {
+             if (lattice(result).shapes.empty())
+               at.refuse("this array of tables is missing; a lattice needs at least one shape");
+           })
+           .default_words("at least one is required"),
+       K("layer", in(lattice, &Lattice::layers), layer_keys(), "tables: points outside the body")},
+      [](auto&, auto& result) {
+        result.body = Lattice();
+        lattice(result).dimension = result.dimension;
+      }};
+}
+
+namespace {
+
+Kind<std::filesystem::path> file_beside_the_case() {
+  const auto read = [](const Entry& at) {
+    const std::filesystem::path given = at.from.string(at.key);
+    if (given.empty()) at.refuse("is empty");
+    const auto folder = std::filesystem::path(at.so_far.file).parent_path();
+    const auto file = std::filesystem::absolute(folder / given).lexically_normal();
+    std::error_code error;
+    if (!std::filesystem::is_regular_file(file, error))
+      at.refuse("no such file; looked for " + file.string());
+    return file;
+  };
+  return {read, [](auto& file, auto&) { return toml_string(file.string()); }, "an existing file"};
+}
+
+}  // namespace
+
+Table<Case> points_keys() {
+  using K = Key<Case>;
+  return {
+      "points",
+      {K("file", in(points, &PointSource::file), file_beside_the_case(),
+         "comma- or blank-separated text, relative to the case file's folder")
+           .required(),
+       K("horizon", in(points, &PointSource::horizon), positive("m"), "the same for every point")
+           .moreover("at least the mean spacing; at most as many mean spacings as "
+                     "`lattice.horizon_ratio` allows")
+           .required(),
+       K("neighbours", in(points, &PointSource::neighbours), file_beside_the_case(),
+         "neighbours of the points and the shares of their volumes that count, beside the case "
+         "file like `file`; model `bond`")
+           .written_if([](auto& from, auto&) { return !points(from).neighbours.empty(); })
+           .default_words("all points within the horizon"),
+       thickness(in(points, &PointSource::cross_section)),
+       area(in(points, &PointSource::cross_section))},
+      [](auto&, auto& result) { result.body = PointSource(); }};
+}
+
+Table<SetRule> set_keys() {
+  using K = Key<SetRule>;
+  return {"set",
+          {K("name", &SetRule::name, set_name(), "of the set").required(),
+           where<SetRule>("selects points where it is not zero", "this or `shape` is required"),
+           K("shape", &SetRule::shape, shape_inside(),
+             "selects the points in it; its keys are those of `[[lattice.shape]]`: `{ box = { min "
+             "= [0, 0], max = [1, 1] } }`")
+               .describes(describe_shapes)
+               .default_words("this or `where` is required")},
+          {},
+          [](auto& at, auto& set) {
+            if (set.where.empty() && !set.shape) at.refuse("needs a where or a shape");
+          }};
+}
+
+Table<Crack> crack_keys() {
+  using K = Key<Crack>;
+  constexpr auto segment = [](auto& crack) -> auto& { return std::get<CrackSegment>(crack); };
+  constexpr auto polygon = [](auto& crack) -> auto& { return std::get<CrackPolygon>(crack); };
+  constexpr auto outline = [](auto& crack) -> auto& {
+    if constexpr (std::is_const_v<std::remove_reference_t<decltype(crack)>>) {
+      static const CrackOutline none;
+      const auto* const own = std::get_if<CrackOutline>(&crack);
+      return own != nullptr ? *own : none;
+    } else {
+      return crack.template emplace<CrackOutline>();
+    }
+  };
+  const auto is_outline = [](auto& crack, auto&) {
+    return std::holds_alternative<CrackOutline>(crack);
+  };
+  const std::string in_space = "is for dimension 2; 3D has vertices",
+                    beside_outline = "stands beside outline; a crack is one or the other";
+  return {"crack",
+          {K("outline", in(outline, &CrackOutline::vertices), pairs(),
+             "2D: corners of a closed polygon whose sides cut, the last is joined to the first")
+               .unless(in_dimension<3>, in_space)
+               .written_if(is_outline)
+               .default_words("this, or `from` and `to`, in 2D")
+               .early(),
+           K("from", in(segment, &CrackSegment::from), coordinates(), "2D: one end")
+               .unless(in_dimension<3>, in_space)
+               .unless(is_outline, beside_outline)
+               .required("required in 2D without `outline`"),
+           K("to", in(segment, &CrackSegment::to), coordinates(), "2D: the other end")
+               .unless(in_dimension<3>, in_space)
+               .unless(is_outline, beside_outline)
+               .moreover("not `from`")
+               .required("required in 2D without `outline`"),
+           K("vertices", in(polygon, &CrackPolygon::vertices), triples(),
+             "3D: corners in order, the last is joined to the first")
+               .unless(in_dimension<2>, "is for dimension 3; 2D has from and to, or an outline")
+               .moreover("in one plane (to 10⁻⁹ of the extent) and around an area; edges must not "
+                         "cross or touch")
+               .required("required in 3D")},
+          [](auto& at, auto& crack) {
+            if (at.so_far.dimension == 1)
+              at.refuse("there are no cracks in dimension 1; subtract a box instead");
+            if (at.so_far.dimension == 3) crack = CrackPolygon();
+          },
+          [](auto& at, auto& crack) { check_crack(crack, at.so_far.dimension, at.from.path()); }};
+}
+
+// ---- The quadrature
+
+namespace {
+
+bool is_cpd(const Case& from) { return from.material.model == MaterialModel::cpd; }
+bool is_lps(const Case& from) { return from.material.model == MaterialModel::lps; }
+
+}  // namespace
+
+Table<Case> quadrature_keys() {
+  using K = Key<Case>;
+  const auto of_kernel = [](auto&, const Case& from) {
+    return !is_cpd(from) && !from.is_collocated();
+  };
+  const auto of_bond = [](auto&, const Case& from) {
+    return from.material.model == MaterialModel::bond;
+  };
+  const auto of_lps = [](auto&, const Case& from) { return is_lps(from); };
+  const auto of_collocation = [](auto&, const Case& from) { return from.is_collocated(); };
+  constexpr auto collocation = [](auto& from) -> auto& { return from.collocation; };
+  return {
+      "quadrature",
+      {K("form", &Case::form,
+         choice<SolidForm>({{"collocation", SolidForm::collocation},
+                            {"energy", SolidForm::energy},
+                            {"printed", SolidForm::printed}}),
+         "model `lps`: forces at points by a quadrature that is exact for linear displacements "
+         "up to the surface, which have no potential; or those of an "
+         "[energy](theory.md#the-solid-as-an-energy), symmetric, as the other models' are, with "
+         "all modes and loads that these have but mode `path`; or those of [FCBM] (A-8), for "
+         "comparisons alone: without a potential where neighbourhoods differ, by "
+         "`solver.operator = \"fft\"` in mode `dynamics` with `scheme = \"verlet\"`")
+           .written_if(of_lps),
+       K("volume_correction", &Case::volume_correction,
+         choice<VolumeCorrection>({{"none", VolumeCorrection::none},
+                                   {"linear", VolumeCorrection::linear},
+                                   {"exact", VolumeCorrection::exact},
+                                   {"exact_centroids", VolumeCorrection::exact_centroids}}),
+         "share of a neighbour's volume that counts near the edge of the horizon: all; linear "
+         "over half a spacing to either side; what its cell has within the horizon; the same, "
+         "with length and influence of the bond those of that part's centroid. The last two "
+         "are for whole cells of a lattice, of which `cell_perturbation` may shift the corners")
+           .written_if(of_kernel),
+       K("horizon_shape", &Case::horizon_shape,
+         choice<HorizonShape>({{"ball", HorizonShape::ball},
+                               {"box", HorizonShape::box},
+                               {"diamond", HorizonShape::diamond}}),
+         "which neighbours a point sees: those whose distance, whose largest component or whose "
+         "sum of components along the lattice's axes is at most the horizon. Boxes and diamonds "
+         "are stiffer along some directions than along others: "
+         "[moduli](theory.md#horizon-shapes) are means over all of them")
+           .written_if(of_bond),
+       K("surface_correction", &Case::surface_correction,
+         choice<SurfaceCorrection>({{"none", SurfaceCorrection::none},
+                                    {"volume", SurfaceCorrection::volume},
+                                    {"energy", SurfaceCorrection::energy}}),
+         "factor that restores the stiffness of points whose neighbourhood is cut by a "
+         "surface: none, by the volume of the neighbourhood, or by the energy of simple "
+         "deformations")
+           .written_if(of_bond),
+       K("weights", &Case::weights,
+         choice<InteractionWeights>(
+             {{"mean", InteractionWeights::mean}, {"bulk", InteractionWeights::bulk}}),
+         "model `cpd`: weights of interactions near surfaces, by the mean of their points' "
+         "effective volumes, or as in the bulk everywhere")
+           .written_if([](auto&, const Case& from) { return is_cpd(from); }),
+       K("degree", in(collocation, &CollocationSpecification::degree),
+         count_from(least_exact_degree, "", most_exact_degree),
+         "model `lps` by collocation: of the polynomials that the quadrature is exact for")
+           .written_if(of_collocation),
+       K("traction_form", in(collocation, &CollocationSpecification::traction_form),
+         choice<TractionForm>({{"full", TractionForm::full}, {"paper", TractionForm::paper}}),
+         "model `lps` by collocation: what of the displacements' continuation over the boundary "
+         "counts: all of it, which is exact for linear fields on every grid, or what [LPS] eq. "
+         "4.6 keeps")
+           .written_if(of_collocation),
+       K("normals", in(collocation, &CollocationSpecification::normals),
+         choice<NormalSource>(
+             {{"numerical", NormalSource::numerical}, {"exact", NormalSource::exact}}),
+         "model `lps` by collocation: normals of surfaces from the neighbourhoods, or from the "
+         "shapes' faces, at points that have one face and all of their bonds")
+           .written_if(of_collocation)}};
+}
+
+void check_quadrature(const Entry& at, const Case& result) {
+  if (!at.from.has("quadrature")) return;
+  const TomlTable quadrature = at.from.table("quadrature");
+  const std::vector<std::string> of_bond{"volume_correction", "surface_correction",
+                                         "horizon_shape"},
+      of_cpd{"weights"}, of_lps{"form"}, of_collocation{"degree", "traction_form", "normals"};
+  const auto refuse = [&](const std::vector<std::string>& keys, const std::string& what) {
+    for (const std::string& key : keys) {
+      const bool is_none = key != "degree" && quadrature.has(key) &&
+                           (quadrature.string(key) == "none" || quadrature.string(key) == "ball");
+      if (quadrature.has(key) && !is_none) quadrature.refuse(key, what);
+    }
+  };
+  if (is_cpd(result))
+    refuse(of_bond, "is for model \"bond\"; the effective volumes of cpd need none");
+  if (result.is_collocated())
+    refuse(of_bond, "is for model \"bond\"; lps has a quadrature of its own");
+  if (result.has_states())
+    refuse({"surface_correction", "horizon_shape"},
+           "is for model \"bond\"; the states of lps are those of the "
+           "neighbours there are");
+  if (is_polynomial(result.material.model))
+    refuse({"surface_correction", "horizon_shape"}, "is for model \"bond\"");
+  if (!is_cpd(result)) refuse(of_cpd, "is for model \"cpd\"");
+  if (!is_lps(result)) refuse(of_lps, "is for model \"lps\"");
+  if (!result.is_collocated()) refuse(of_collocation, "is for model \"lps\" by collocation");
+}
+
+}  // namespace peristat

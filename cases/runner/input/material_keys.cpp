@@ -1,0 +1,498 @@
+#include "cases/runner/input/material_keys.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <type_traits>
+
+#include "cases/runner/input/body_keys.hpp"
+#include "cases/runner/input/key_kinds.hpp"
+#include "src/neighbourhood/influence.hpp"
+
+namespace peristat {
+
+void check_regions(const Entry& at, Case& result) {
+  if (!at.from.has("material")) {
+    if (result.regions.empty()) static_cast<void>(at.from.table("material"));  // it is missing
+    const MaterialSpecification& first = result.regions.front().material;
+    result.material.model = first.model;
+    result.material.potential = first.potential;
+    result.material.plane = first.plane;
+    result.material.influence = first.influence;
+    result.material.kinematics = first.kinematics;
+  }
+  check_quadrature(at, result);
+}
+
+namespace {
+
+/// Without a law its data would do nothing; no_fail may be of other materials' laws.
+void require_law(const Entry& at, DamageSpecification&) {
+  if (at.from.has("law")) return;
+  for (const char* key :
+       {"fracture_energy", "strength", "critical", "onset", "peak", "hardening", "rate"}) {
+    if (!at.from.has(key)) continue;
+    at.from.refuse(key,
+                   "needs a law beside it, like law = \"linear\"; without one there is no "
+                   "damage (law = \"none\" says so)");
+  }
+}
+
+Table<DamageSpecification> damage_keys(const std::string& material) {
+  using Spec = DamageSpecification;
+  using K = Key<Spec>;
+  const auto is_whole = [](auto& damage, auto&) { return damage.law == DamageLaw::none; };
+  const auto is_of_points = [](auto& damage, auto&) {
+    return damage.law == DamageLaw::energy_density;
+  };
+  const std::string for_stretches = "is for the laws of stretches";
+  const auto is_sudden = [](auto& damage, auto&) { return !damage.softens(); };
+  const auto has_no_rate = [](auto& damage, auto&) { return !damage.has_rate(); };
+  const auto is_not_blended = [](auto& damage, auto&) { return damage.law != DamageLaw::blended; };
+  const auto is_sized = [](auto& damage, auto&) {
+    return damage.fracture_energy || (damage.strength && !damage.softens());
+  };
+  const auto begins_by_strength = [](auto& damage, auto&) {
+    return damage.strength && damage.law != DamageLaw::blended;
+  };
+  // Asking for what is not there tells that it is missing.
+  const auto require_key = [](auto lacks) {
+    return [=](const Entry& at, const Spec& damage) {
+      if (lacks(damage)) static_cast<void>(at.from.number(at.key, Range()));
+    };
+  };
+  const std::string for_softening = "is for the laws that soften",
+                    for_blended = "is for the law \"blended\"";
+  return {
+      material + ".damage",
+      {K("law", &Spec::law,
+         choice<DamageLaw>({{"none", DamageLaw::none},
+                            {"critical_stretch", DamageLaw::critical_stretch},
+                            {"tanh", DamageLaw::tanh},
+                            {"tanh_continuous", DamageLaw::tanh_continuous},
+                            {"linear", DamageLaw::linear},
+                            {"exponential", DamageLaw::exponential},
+                            {"blended", DamageLaw::blended},
+                            {"energy_density", DamageLaw::energy_density}}),
+         "no damage, whatever else stands in the table; whole up to `critical` and then broken; "
+         "softening from `onset` to "
+         "`critical` as published in [ADAPT], which jumps by (1 − tanh `rate`)/2 at both ends; "
+         "the same law rescaled so that it does not jump; force falling linearly from `onset` "
+         "to zero at `critical`; exponentially, without a jump at `critical`; rising on a "
+         "lower slope from `onset` to `peak`, and then falling linearly; of points, with "
+         "`kinematics = \"linear\"`, and of all models by `solver.operator = \"fft\"`: all at once "
+         "and "
+         "for good where the energy density exceeds "
+         "`fracture_energy` / (2 δ)")
+           .early(),
+       K("fracture_energy", &Spec::fracture_energy, positive("J/m2"),
+         "$G_c$ of a plane crack, the mean over its directions on this lattice; `critical` "
+         "follows. Of `cpd` at horizon ratios up to 12 in 2D, 3.2 in 3D")
+           .unless(is_whole, "")
+           .early(),
+       K("strength", &Spec::strength, positive("Pa"),
+         "$f_t$ of the body: the largest stress that the lattice bears under a pull in one "
+         "direction, the mean over directions ([theory](theory.md#strength)); `onset` follows, "
+         "`peak` of `blended`, `critical` of `critical_stretch`. Of `cpd` at the horizon ratios of "
+         "`fracture_energy`, in 3D at shorter ones, where it does not take minutes")
+           .unless(is_whole, "")
+           .unless(is_of_points, for_stretches)
+           .early(),
+       K("critical", &Spec::critical, stretch(), "stretch $s_c$ from which on a bond is broken")
+           .unless(is_whole, "")
+           .unless(is_of_points, for_stretches)
+           .unless(is_sized, "follows from fracture_energy or strength; give one of them")
+           .then(require_key([](auto& damage) { return damage.critical == 0.0; }))
+           .default_words("this or `fracture_energy` is required with a law"),
+       K("onset", &Spec::onset, stretch(),
+         "laws that soften: stretch $s_m$ beyond which a bond loses stiffness")
+           .unless(is_whole, "")
+           .unless(is_sudden, for_softening)
+           .unless(begins_by_strength, "follows from strength; give one of them")
+           .then(require_key(
+               [](auto& damage) { return damage.onset == 0.0 && !damage.is_by_data(); }))
+           .written_if([](auto& damage, auto&) { return damage.onset != 0.0; })
+           .moreover("below `critical`")
+           .default_words("required without `strength`; with `fracture_energy` half the "
+                          "stretch of a brittle bond of that energy, a quarter of `blended`"),
+       K("peak", &Spec::peak, stretch(), "`blended`: stretch $s_p$ at which the force is largest")
+           .unless(is_whole, "")
+           .unless(is_not_blended, for_blended)
+           .unless([](auto& damage, auto&) { return damage.strength.has_value(); },
+                   "follows from strength; give one of them")
+           .then(require_key([](auto& damage) {
+             return damage.peak == 0.0 && (damage.onset != 0.0 || !damage.fracture_energy);
+           }))
+           .written_if([](auto& damage, auto&) { return damage.peak != 0.0; })
+           .moreover("from `onset` to below `critical`")
+           .default_words("required without `strength`; without any of the three the largest "
+                          "force is half that of a brittle bond of that `fracture_energy`"),
+       K("hardening", &Spec::hardening, between(0.0, 0.99, "1"),
+         "`blended`: slope of the force between `onset` and `peak` over that of the whole "
+         "bond")
+           .unless(is_whole, "")
+           .unless(is_not_blended, for_blended),
+       K("rate", &Spec::rate, between(0.1, 50.0, "1"),
+         "tanh laws: $\\beta$, how much of the softening falls on the middle between the two "
+         "stretches; `exponential`: how much steeper the force falls at first")
+           .unless(is_whole, "")
+           .unless(has_no_rate, "is for the tanh laws and \"exponential\""),
+       K("no_fail", &Spec::no_fail, known_sets(),
+         "sets whose points' bonds stay elastic at any stretch, also those to points outside "
+         "the sets")
+           .written_if([](auto& damage, auto&) { return damage.law != DamageLaw::none; })
+           .early()},
+      require_law};
+}
+
+/// A stiffness may be negative (auxetic bodies have such), but not remotely large.
+Kind<double> stiffness(const std::string& unit) {
+  return number({-1e200, 1e200, "must be a finite number of " + unit}, "any number", unit);
+}
+
+std::vector<std::string> bond_potentials() {
+  std::vector<std::string> names;
+  WholeBondPotentials::for_each([&](const auto& whole) { names.emplace_back(whole.name); });
+  return names;
+}
+
+Table<FibreSpecification> fibre_keys(const std::string& material) {
+  using Spec = FibreSpecification;
+  using K = Key<Spec>;
+  return {
+      material + ".fibre",
+      {K("angle", &Spec::angle, between(-360.0, 360.0, "degrees"),
+         "2D: of the fibres against the x axis, towards y")
+           .unless(in_dimension<3>, "is for dimension 2; 3D has a direction")
+           .required("required in 2D"),
+       K("direction", &Spec::direction, coordinates("1"), "3D: of the fibres, of any length")
+           .unless(in_dimension<2>, "is for dimension 3; 2D has an angle")
+           .moreover("not all zero")
+           .required("required in 3D"),
+       K("transverse_modulus", &Spec::transverse_modulus, positive("Pa"),
+         "Young's modulus $E_2$ across the fibres; `youngs_modulus` is $E_1$, along them")
+           .required(),
+       K("shear_modulus", &Spec::shear_modulus, positive("Pa"),
+         "$G$ of planes that the fibres lie in; Poisson's ratio follows")
+           .moreover("such that no bond has a negative constant")
+           .default_words("$\\sqrt{E_1E_2}/(2 + 2\\nu)$ with the $\\nu$ of isotropic bonds, 1/3 or "
+                          "1/4"),
+       K("transverse_critical", &Spec::transverse_critical, between(1e-9, 1e3, "1"),
+         "`critical` of bonds across the fibres; that of `[material.damage]` is then of those "
+         "along them, and between it goes with the square of the cosine, `onset` with it")
+           .default_words("as along the fibres")}};
+}
+
+Table<ScatterSpecification> scatter_keys(const std::string& material) {
+  using Spec = ScatterSpecification;
+  using K = Key<Spec>;
+  constexpr auto field = [](auto& scatter) -> auto& { return scatter.field; };
+  return {material + ".scatter",
+          {K("of", &Spec::of,
+             choice<Spec::Quantity>({{"stiffness", Spec::Quantity::stiffness},
+                                     {"strength", Spec::Quantity::strength}}),
+             "what the factor multiplies: the constants of bonds, triangles and tetrahedra, or the "
+             "stretches of the law of damage")
+               .required(),
+           K("distribution", &Spec::distribution,
+             choice<Spec::Distribution>({{"weibull", Spec::Distribution::weibull}}),
+             "of the factor, whose mean is 1"),
+           K("weibull_modulus", in(field, &WeibullField::modulus), between(1.0, 1e3, "1"),
+             "shape $m$: the larger, the less scatter")
+               .required(),
+           K("correlation_length", in(field, &WeibullField::correlation_length),
+             number({0.0, 1e30, "must be 0 or a positive number [m]"}, "0 or positive", "m"),
+             "$\\ell$ over which the field changes; 0: every point has a value of its own"),
+           K("seed", in(field, &WeibullField::seed),
+             count_from(0, "", std::numeric_limits<std::int64_t>::max()),
+             "of the field; the same seed and place give the same value, whatever else the case "
+             "has")}};
+}
+
+void make_linear_if_lps(const Entry& at, MaterialSpecification& material) {
+  if (material.model != MaterialModel::lps) return;
+  if (at.from.has("kinematics") && material.kinematics == Kinematics::finite) {
+    at.refuse("of \"lps\" is \"linear\", whatever the deformation");
+  }
+  material.kinematics = Kinematics::linear;
+}
+
+}  // namespace
+
+Table<MaterialSpecification> material_keys(const std::string& name) {
+  using Spec = MaterialSpecification;
+  using K = Key<Spec>;
+  const auto of_cpd = [](auto& material, auto&) { return material.model == MaterialModel::cpd; };
+  const auto of_bond = [](auto& material, auto&) { return has_bonds(material.model); };
+  const auto of_lps = [](auto& material, auto&) { return has_lame_constants(material.model); };
+  const auto of_correspondence = [](auto& material, auto&) {
+    return material.model == MaterialModel::correspondence;
+  };
+  const auto has_moduli = [](auto& material, auto&) { return material.youngs_modulus.has_value(); };
+  const auto has_constants = [](auto& material, auto&) { return material.c1.has_value(); };
+  const auto has_micromodulus = [](auto& material, auto&) {
+    return material.micromodulus.has_value();
+  };
+  constexpr auto fibre_of = [](auto& material) -> auto& {
+    if constexpr (std::is_const_v<std::remove_reference_t<decltype(material)>>) {
+      static const FibreSpecification none;
+      return material.fibre ? *material.fibre : none;
+    } else {
+      if (!material.fibre) material.fibre.emplace();
+      return *material.fibre;
+    }
+  };
+  const std::string for_bond = "is for model \"bond\"", for_cpd = "is for model \"cpd\"",
+                    with_moduli = "goes with youngs_modulus, not with c1";
+  return {
+      name,
+      {K("model", &Spec::model,
+         choice<MaterialModel>({{"bond", MaterialModel::bond},
+                                {"cpd", MaterialModel::cpd},
+                                {"lps", MaterialModel::lps},
+                                {"green_bond", MaterialModel::green_bond},
+                                {"correspondence", MaterialModel::correspondence}}),
+         "bond-based peridynamics, whose Poisson ratio is 1/4 (3D and plane strain) or 1/3 (plane "
+         "stress); continuum-kinematics-inspired peridynamics with one-, two- and "
+         "three-neighbour interactions, dimension 2 and 3; or the "
+         "[linear peridynamic solid](theory.md#linear-peridynamic-solid) of any Poisson ratio, by "
+         "collocation or as an energy, for small displacements, dimension 2 and 3; or, at any "
+         "deformation and by `solver.operator = \"fft\"` alone, "
+         "[bonds that stretch by their squared lengths](theory.md#materials-of-convolutions-at-"
+         "finite-deformation), as `bond` at small strains, or a correspondence material of "
+         "St. Venant and Kirchhoff of any Poisson ratio, dimension 2 and 3")
+           .then([name](auto& at, auto& material) {
+             const bool tells_body = name == "material" || (!at.so_far.material.has_constants() &&
+                                                            at.so_far.regions.empty());
+             if (tells_body && material.model == MaterialModel::lps)
+               material.influence = InverseInfluence::name;
+             if (at.so_far.dimension > 1) return;
+             if (material.model == MaterialModel::cpd)
+               at.refuse("cpd needs dimension 2 or 3; in 1D it is the bond model");
+             if (material.model == MaterialModel::lps) at.refuse("lps needs dimension 2 or 3");
+             if (material.model == MaterialModel::correspondence)
+               at.refuse("correspondence needs dimension 2 or 3");
+           })
+           .early(),
+       K("potential", &Spec::potential, one_of(bond_potentials()),
+         "of whole bonds, a function of their stretch, and below its onset of a damage law"),
+       K("plane", &Spec::plane,
+         choice<PlaneState>({{"stress", PlaneState::stress}, {"strain", PlaneState::strain}}),
+         "state of a plane body, dimension 2 only (`cpd` in 2D is purely two-dimensional, neither)")
+           .unless(of_cpd, for_bond)
+           .unless(in_dimension<1>, "is for dimension 2 only")
+           .unless(in_dimension<3>, "is for dimension 2 only"),
+       K("kinematics", &Spec::kinematics,
+         choice<Kinematics>({{"finite", Kinematics::finite}, {"linear", Kinematics::linear}}),
+         "`bond`: bonds stretch by their lengths, at any deformation; or by the displacements "
+         "along them, for small ones, which is linear: without eigenstrains, with "
+         "`potential = \"harmonic\"`, and damage by `energy_density` alone. `lps` is always linear")
+           .then(make_linear_if_lps)
+           .unless(of_cpd, "is for models \"bond\" and \"lps\""),
+       K("influence", &Spec::influence, one_of(influence_names()),
+         "influence function $\\omega(r/\\delta)$, $c\\,\\omega s$ is the force density of a bond: "
+         "[GPMB]'s of order 0, 0.5, 1, 3, 5 and 7, $e^{-(r/\\delta)^2}$, or $\\delta/r$; "
+         "constants, "
+         "moduli and fracture energy go with it. `cpd`: of triangles and tetrahedra the product of "
+         "those of their sides, with constants of the lattice. `lps` as an energy: the kernel "
+         "K(r), "
+         "by collocation the inverse one alone")
+           .default_words("`\"constant\"`, with `lps` `\"inverse\"`"),
+       K("youngs_modulus", &Spec::youngs_modulus, positive("Pa"), "in all models").one_of(),
+       K("micromodulus", &Spec::micromodulus, positive("N/m6", 1e150),
+         "`bond`: bond constant c of the pairwise force c·stretch")
+           .unless(of_cpd, for_bond)
+           .unless(of_lps, for_bond)
+           .one_of(),
+       K("poisson_ratio", &Spec::poisson_ratio, between(-1.0, 1.0),
+         "`cpd`, `lps`, `correspondence`, with `youngs_modulus`")
+           .unless(of_bond,
+                   "is not free with bonds alone: they have 1/3 in plane stress, 1/4 in plane "
+                   "strain and 3D; models \"cpd\", \"lps\" and \"correspondence\" take others")
+           .unless(has_constants, with_moduli)
+           .moreover("`lps`, `correspondence`: to 0.5; `cpd`: in 3D to 0.5, all excluded; with "
+                     "damage from 1/3 (2D) "
+                     "or 1/4 (3D) on")
+           .required("required with `youngs_modulus`"),
+       K("stabilisation", &Spec::stabilisation, positive("-"),
+         "`correspondence`: stiffness of the "
+         "[springs](theory.md#materials-of-convolutions-at-finite-deformation) that resist what "
+         "deformation gradients do not see, relative to bonds of the same bulk modulus")
+           .written_if(of_correspondence)
+           .unless([of_correspondence](auto& material,
+                                       auto& from) { return !of_correspondence(material, from); },
+                   "is for model \"correspondence\""),
+       K("c1", &Spec::c1, positive("N/m6", 1e200), "`cpd`: one-neighbour constant")
+           .unless(of_bond, for_cpd)
+           .unless(of_lps, for_cpd)
+           .one_of(),
+       K("c2", &Spec::c2, stiffness("N/m10"),
+         "`cpd`: two-neighbour constant; in 3D also beside `youngs_modulus`, in 2D it then follows")
+           .unless(of_bond, for_cpd)
+           .unless(of_lps, for_cpd)
+           .unless(
+               [](auto& material, const Case& so_far) {
+                 return material.youngs_modulus && so_far.dimension == 2;
+               },
+               "follows from youngs_modulus and poisson_ratio in 2D; give c1 for a free c2")
+           .moreover("a negative one is refused with damage, and where it makes the body "
+                     "[unstable at rest](theory.md#stability-at-rest)"),
+       K("c3", &Spec::c3, stiffness("N/m14"),
+         "`cpd`: three-neighbour constant, 3D; follows from `youngs_modulus`")
+           .unless(of_bond, for_cpd)
+           .unless(of_lps, for_cpd)
+           .unless(has_moduli,
+                   "follows from youngs_modulus and poisson_ratio; give c1 for a free c3")
+           .then([](auto& at, auto& material) {
+             if (at.so_far.dimension == 2 && material.c3 != 0.0)
+               at.refuse("must be 0 in 2D: three neighbours of a point in a plane span no volume");
+           })
+           .moreover("a negative one as of `c2`"),
+       K("calibration", &Spec::calibration,
+         choice<Calibration>(
+             {{"lattice", Calibration::lattice}, {"continuum", Calibration::continuum}}),
+         "with `youngs_modulus`: what the constants reproduce the moduli on, this lattice's sums "
+         "with their corrections (`bond`: in the mean over all directions) or integrals")
+           .unless(has_constants, with_moduli)
+           .unless(has_micromodulus, "goes with youngs_modulus, not with micromodulus")
+           .unless(of_lps, "is for models \"bond\", \"green_bond\" and \"cpd\"")
+           .default_words("`\"lattice\"` with `cpd`, `\"continuum\"` with `bond`"),
+       K("thermal_expansion", &Spec::thermal_expansion, between(-1.0, 1.0, "per K"),
+         "of lengths, α: for `[temperature]`"),
+       K("density", &Spec::density, positive("kg/m3"),
+         "for gravity and mode `dynamics`: dynamic relaxation has a density of its own"),
+       K("damage", &Spec::damage, damage_keys(name), "table `[material.damage]`")
+           .default_words("no damage"),
+       K("fibre", fibre_of, fibre_keys(name),
+         "table `[material.fibre]`: moduli and stretches by "
+         "the direction of the bond")
+           .written_if([](auto& material, auto&) { return material.fibre.has_value(); })
+           .unless(of_cpd, for_bond)
+           .unless(of_lps, for_bond)
+           .unless(in_dimension<1>, "needs dimension 2 or 3")
+           .otherwise([](auto&, auto&) {}, "none"),
+       K("scatter", &Spec::scatter, scatter_keys(name),
+         "tables `[[material.scatter]]`: random fields")}};
+}
+
+namespace {
+
+/// What regions and interfaces add to the keys of a material: its model, potential, plane,
+/// influence function and kinematics are those of the body.
+Table<MaterialSpecification> material_of_body_keys(const std::string& name) {
+  Table<MaterialSpecification> keys = material_keys(name);
+  const auto of_body = [](const Case& so_far) -> const MaterialSpecification& {
+    const bool is_first = !so_far.material.has_constants() && !so_far.regions.empty();
+    return is_first ? so_far.regions.front().material : so_far.material;
+  };
+  keys.do_before([of_body](const Entry& at, MaterialSpecification& material) {
+    const MaterialSpecification& body = of_body(at.so_far);
+    material.model = body.model;
+    material.potential = body.potential;
+    material.plane = body.plane;
+    material.influence = body.influence;
+    material.kinematics = body.kinematics;
+  });
+  keys.do_after([of_body](const Entry& at, MaterialSpecification& material) {
+    const bool is_first = !at.so_far.material.has_constants() && at.so_far.regions.empty();
+    const MaterialSpecification& body = of_body(at.so_far);
+    if (is_first) return;
+    const auto require = [&](bool is_same, const std::string& key) {
+      if (!is_same) at.from.refuse(key, "must be the same for all materials of a body");
+    };
+    require(material.model == body.model, "model");
+    require(material.potential == body.potential, "potential");
+    require(material.plane == body.plane, "plane");
+    require(material.influence == body.influence, "influence");
+    require(material.kinematics == body.kinematics, "kinematics");
+  });
+  return keys;
+}
+
+}  // namespace
+
+Table<RegionSpecification> region_keys() {
+  using Spec = RegionSpecification;
+  using K = Key<Spec>;
+  return {"region",
+          {K("set", &Spec::set, known_set(), "whose points are of this material")
+               .then([](auto& at, auto& region) {
+                 if (region.set == rest_name)
+                   at.refuse(
+                       "is what `between` calls the points in no region; give the set another "
+                       "name");
+               })
+               .moreover("no region shares points with another")
+               .required()
+               .early(),
+           K("material", &Spec::material, material_of_body_keys("region.material"),
+             "table `[region.material]`, with the keys of [`[material]`](#material)")
+               .required()}};
+}
+
+namespace {
+
+Kind<std::array<std::string, 2>> two_materials() {
+  const auto read = [](const Entry& at) {
+    const std::vector<std::string> given = at.from.strings(at.key);
+    if (given.size() != 2) at.refuse("must be two names");
+    std::vector<std::string> names;
+    for (const RegionSpecification& region : at.so_far.regions) names.push_back(region.set);
+    if (at.so_far.material.has_constants()) names.emplace_back(rest_name);
+    for (const std::string& name : given) {
+      if (std::find(names.begin(), names.end(), name) != names.end()) continue;
+      at.refuse("there is no region of the set \"" + name + "\"" + did_you_mean(name, names) +
+                (names.empty() ? "" : "  (there: " + listed(names) + ")"));
+    }
+    if (given[0] == given[1]) at.refuse("must be two materials, not one");
+    return std::array{given[0], given[1]};
+  };
+  return {read, [](const auto& names, const Case&) { return array_text(names, toml_string); },
+          "two sets of regions; `\"material\"` for the points in none"};
+}
+
+}  // namespace
+
+Table<InterfaceSpecification> interface_keys() {
+  using Spec = InterfaceSpecification;
+  using K = Key<Spec>;
+  constexpr auto own = [](auto& interface) -> auto& {
+    if constexpr (std::is_const_v<std::remove_reference_t<decltype(interface)>>) {
+      static const MaterialSpecification none;
+      return interface.material ? *interface.material : none;
+    } else {
+      if (!interface.material) interface.material.emplace();
+      return *interface.material;
+    }
+  };
+  return {
+      "interface",
+      {K("between", &Spec::between, two_materials(), "the two materials that it lies between")
+           .written_if([](auto& interface, auto&) { return !interface.is_of_all(); })
+           .default_words("all pairs that no other `[[interface]]` names"),
+       K("rule", &Spec::rule,
+         choice<InterfaceRule>({{"harmonic", InterfaceRule::harmonic},
+                                {"arithmetic", InterfaceRule::arithmetic},
+                                {"weaker", InterfaceRule::weaker}}),
+         "what a bond between them, or an interaction of points of both, makes of the constants "
+         "of its points, and of the stretches of like laws of damage: their mean, or the least")
+           .unless([](auto& interface, auto&) { return interface.material.has_value(); },
+                   "stands beside material; give one of them"),
+       K("material", own, material_of_body_keys("interface.material"),
+         "table `[interface.material]`, with the keys of [`[material]`](#material) but "
+         "`density` and `scatter`: constants and damage of its own")
+           .written_if([](auto& interface, auto&) { return interface.material.has_value(); })
+           .early()
+           .otherwise([](auto&, auto&) {}, "none: by the rule")},
+      {},
+      [](auto& at, auto& interface) {
+        for (const auto& other : at.so_far.interfaces) {
+          const auto& [a, b] = interface.between;
+          if (other.between == interface.between || other.between == std::array{b, a})
+            at.refuse("another interface is of the same pair");
+        }
+      }};
+}
+
+}  // namespace peristat

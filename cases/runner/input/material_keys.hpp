@@ -1,0 +1,18 @@
+#pragma once
+
+#include <string>
+
+#include "cases/runner/input/key_table.hpp"
+
+namespace peristat {
+
+/// The materials of the body, its regions and its interfaces.
+/// @param name of the table: of the body, a region or an interface
+[[nodiscard]] Table<MaterialSpecification> material_keys(const std::string& name);
+[[nodiscard]] Table<RegionSpecification> region_keys();
+[[nodiscard]] Table<InterfaceSpecification> interface_keys();
+
+/// What follows from the materials. Without [material] the first region tells model and plane.
+void check_regions(const Entry& at, Case& result);
+
+}  // namespace peristat

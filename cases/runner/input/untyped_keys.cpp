@@ -1,0 +1,184 @@
+#include "cases/runner/input/untyped_keys.hpp"
+
+#include "cases/runner/input/case.hpp"
+
+namespace peristat {
+
+UntypedKind::UntypedKind(Read reads, Text writes, std::string is_allowed, std::string has_unit)
+    : read_into(std::move(reads)),
+      text_of(std::move(writes)),
+      allowed(std::move(is_allowed)),
+      unit(std::move(has_unit)) {}
+UntypedKind::UntypedKind(const UntypedKind&) = default;
+UntypedKind::UntypedKind(UntypedKind&&) noexcept = default;
+UntypedKind::~UntypedKind() = default;
+
+// ---- A key
+
+UntypedKey::UntypedKey(std::string_view name, const UntypedMember& member,
+                       const ValueOfMember& value, const UntypedKind& kind,
+                       std::string_view meaning)
+    : description_{std::string(name), std::string(meaning), kind.unit, {}, kind.allowed, false},
+      member_(member),
+      value_(value),
+      kind_(std::make_shared<UntypedKind>(kind)) {}
+
+UntypedKey::UntypedKey(std::string_view name, const UntypedMember& member,
+                       const UntypedTable& inner, const ElementsOfMember* elements,
+                       std::string_view meaning)
+    : description_{std::string(name), std::string(meaning), {}, {}, {}, false},
+      member_(member),
+      elements_(elements),
+      inner_(std::make_shared<UntypedTable>(inner)) {
+  description_.fallback = elements != nullptr ? "none" : "all defaults";
+}
+
+UntypedKey::UntypedKey(const UntypedKey&) = default;
+UntypedKey::UntypedKey(UntypedKey&&) noexcept = default;
+UntypedKey::~UntypedKey() = default;
+
+void UntypedKey::set_required(std::string_view words) {
+  is_required_ = true;
+  set_default_words(words);
+}
+
+void UntypedKey::set_fallback(Action action, std::string_view words) {
+  fallback_ = std::move(action);
+  set_default_words(words);
+}
+
+void UntypedKey::set_default_words(std::string_view words) { description_.fallback = words; }
+
+void UntypedKey::add_limits(std::string_view words) {
+  if (!description_.allowed.empty()) description_.allowed += "; ";
+  description_.allowed += words;
+}
+
+void UntypedKey::add_exclusion(Predicate holds, std::string_view reason) {
+  exclusions_.emplace_back(std::move(holds), reason);
+}
+
+void UntypedKey::set_then(Action action) { then_ = std::move(action); }
+void UntypedKey::set_written_if(Predicate holds) { written_if_ = std::move(holds); }
+
+const std::string* UntypedKey::exclusion(const void* spec, const Case& so_far) const {
+  for (const auto& [holds, reason] : exclusions_)
+    if (holds(spec, so_far)) return &reason;
+  return nullptr;
+}
+
+/// Whether the key means something here. @throws InputError if it is there and means nothing
+bool UntypedKey::applies(const Entry& at, const void* spec) const {
+  const std::string* reason = exclusion(spec, at.so_far);
+  if (reason != nullptr && !reason->empty() && at.from.has(name())) at.from.refuse(name(), *reason);
+  return reason == nullptr;
+}
+
+void UntypedKey::read(const Entry& table, void* spec) const {
+  const Entry at{table.from, name(), table.so_far};
+  if (!applies(at, spec)) return;
+  if (is_required_ || at.from.has(name()))
+    read_value(at, spec);
+  else
+    read_default(at, spec);
+  if (then_) then_(at, spec);
+}
+
+void UntypedKey::read_value(const Entry& at, void* spec) const {
+  if (!inner_)
+    value_.read(*kind_, at, member_, spec);
+  else if (elements_ == nullptr)
+    inner_->read_untyped({at.from.table(name()), "", at.so_far}, member_(spec));
+  else
+    for (const TomlTable& table : at.from.tables(name()))
+      elements_->read(*inner_, {table, "", at.so_far}, member_, spec);
+}
+
+/// Values and arrays keep what the specification's struct has.
+void UntypedKey::read_default(const Entry& at, void* spec) const {
+  if (fallback_)
+    fallback_(at, spec);
+  else if (inner_ && elements_ == nullptr)
+    inner_->read_untyped({at.from.empty_table(name()), "", at.so_far}, member_(spec));
+}
+
+std::string UntypedKey::lines(const void* spec, const Case& from) const {
+  if (exclusion(spec, from) != nullptr || (written_if_ && !written_if_(spec, from))) return {};
+  if (inner_) return table_lines(spec, from);
+  const std::string value = value_text(spec, from);
+  return value.empty() ? value : name() + " = " + value + "\n";
+}
+
+std::string UntypedKey::table_lines(const void* spec, const Case& from) const {
+  const void* const held = member_(spec);
+  if (elements_ == nullptr)
+    return "\n[" + inner_->name() + "]\n" + inner_->untyped_lines(held, from);
+  std::string lines;
+  for (std::size_t k = 0; const void* element = elements_->find(held, k); ++k)
+    lines += "\n[[" + inner_->name() + "]]\n" + inner_->untyped_lines(element, from);
+  return lines;
+}
+
+std::string UntypedKey::value_text(const void* spec, const Case& from) const {
+  return value_.text(*kind_, member_(spec), from);
+}
+
+void UntypedKey::describe_inside(std::vector<TableDescription>& all) const {
+  if (describe_inside_ != nullptr)
+    describe_inside_(all);
+  else if (inner_)
+    inner_->describe(all, elements_ != nullptr);
+}
+
+// ---- A table
+
+UntypedTable::UntypedTable(std::string_view name, Defaults defaults)
+    : name_(name), defaults_(defaults) {}
+UntypedTable::UntypedTable(const UntypedTable&) = default;
+UntypedTable::UntypedTable(UntypedTable&&) noexcept = default;
+UntypedTable::~UntypedTable() = default;
+
+void UntypedTable::add_key(const UntypedKey& key) { keys_.push_back(key); }
+void UntypedTable::set_before(Action action) { before_ = std::move(action); }
+void UntypedTable::set_after(Action action) { after_ = std::move(action); }
+
+void UntypedTable::read_untyped(const Entry& at, void* spec) const {
+  if (before_) before_(at, spec);
+  for (const auto& key : keys_)
+    if (key.is_early_) key.read(at, spec);
+  std::vector<std::string> group;
+  for (const auto& key : keys_)
+    if (key.applies(at, spec) && key.is_one_of_) group.push_back(key.name());
+  const std::string one = group.empty() ? "" : at.from.exactly_one(group);
+  for (const auto& key : keys_)
+    if (key.name() == one) key.read(at, spec);
+  for (const auto& key : keys_)
+    if (!key.is_early_ && !key.is_one_of_) key.read(at, spec);
+  if (after_) after_(at, spec);
+}
+
+std::string UntypedTable::untyped_lines(const void* spec, const Case& from) const {
+  std::string text;
+  for (const auto& key : keys_) text += key.lines(spec, from);
+  return text;
+}
+
+void UntypedTable::describe(std::vector<TableDescription>& all, bool is_array) const {
+  static const Case no_case;
+  TableDescription own{name_, is_array, {}, {}};
+  std::string group;
+  for (const auto& key : keys_) {
+    own.listed.push_back(key.name());
+    if (key.is_one_of_) group += (group.empty() ? "`" : ", `") + key.name() + "`";
+  }
+  for (const auto& key : keys_) {
+    own.keys.push_back(key.description_);
+    std::string& fallback = own.keys.back().fallback;
+    if (key.is_one_of_) fallback = "exactly one of " + group;
+    if (fallback.empty()) fallback = default_text(key.value_text(defaults_(), no_case));
+  }
+  all.push_back(std::move(own));
+  for (const auto& key : keys_) key.describe_inside(all);
+}
+
+}  // namespace peristat
