@@ -1,15 +1,28 @@
 #!/usr/bin/env bash
 # Does a fresh Debian 12 run peristat? Makes a minimal system in a temporary folder, copies this tree
-# into it, and there types what an analyst types first. Prints the minutes of each. As root, with
+# into it, and there types what an analyst types first. Prints the seconds of each. As root, with
 # debootstrap installed; takes 3 GB of TMPDIR and cleans up behind itself.
 #   benchmarks/bare_debian.sh              run a case, then the tests
 #   benchmarks/bare_debian.sh COMMAND...   each argument is one command line for ./peristat
+#   benchmarks/bare_debian.sh --package FILE.deb [COMMAND...]
+#                                          installs the package instead, without a compiler; by
+#                                          default it runs a case and looks for its pictures
 set -euo pipefail
 
 release=bookworm
 tree=$(cd "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/.." && pwd)
 ((EUID == 0)) || { echo "bare_debian.sh: only root may make a system and enter it" >&2; exit 2; }
-(($#)) || set -- "run cases/plate_with_hole/elastic.toml" "test"
+package=''
+if [[ ${1-} == --package ]]; then
+  package=$(readlink -e -- "${2-}") || { echo "bare_debian.sh: no package \"${2-}\"" >&2; exit 2; }
+  shift 2
+fi
+peristat=${package:+peristat} && peristat=${peristat:-./peristat}
+case_file=${package:+/usr/share/peristat/}cases/plate_with_hole/elastic.toml
+if ! (($#)); then
+  set -- "run $case_file"
+  [[ $package ]] || set -- "$@" test
+fi
 
 # The mirror that this machine uses itself.
 mirror=$(apt-get indextargets --format '$(ORIGIN) $(CODENAME) $(REPO_URI)' |
@@ -27,14 +40,13 @@ clean_up() {
 trap clean_up EXIT
 trap 'exit 130' INT TERM HUP
 
-minutes() { awk -v seconds="$1" 'BEGIN { printf "%.1f", seconds / 60 }'; }
 report=()
 timed() {  # timed NAME COMMAND...
   local name=$1 started=$SECONDS status=0
   shift
   echo "== $name"
   "$@" || status=$?
-  report+=("$(minutes $((SECONDS - started))) min, exit code $status: $name")
+  report+=("$((SECONDS - started)) s, exit code $status: $name")
   return "$status"
 }
 
@@ -57,20 +69,37 @@ cp -L /etc/resolv.conf /etc/hosts "$system/etc/"
 mount -t proc proc "$system/proc"
 mount --bind /dev "$system/dev"
 
-mkdir -p "$system/opt/peristat"
-git -C "$tree" ls-files -z --cached --others --exclude-standard |
-  tar -C "$tree" --null --files-from=- --ignore-failed-read -c |
-  tar -C "$system/opt/peristat" --no-same-owner -x
-
 environment=(PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin HOME=/root)
 for name in http_proxy https_proxy no_proxy; do
   [[ -v $name ]] && environment+=("$name=${!name}")
 done
-status=0
+enter() { env -i "${environment[@]}" chroot "$system" bash -c "$1" </dev/null; }
+mkdir -p "$system/opt/peristat"
+status=0 since=$SECONDS
+if [[ $package ]]; then
+  cp "$package" "$system/opt/"
+  install="apt-get update && DEBIAN_FRONTEND=noninteractive apt-get install --yes"
+  timed "apt-get update and install" enter "$install /opt/${package##*/}" || exit 1
+  enter "ldd /usr/libexec/peristat/peristat | grep libperistat"  # which of the two
+  for compiler in c++ g++ cc gcc clang; do
+    if enter "command -v $compiler"; then
+      echo "bare_debian.sh: the package has brought a compiler" >&2
+      status=1
+    fi
+  done
+else
+  git -C "$tree" ls-files -z --cached --others --exclude-standard |
+    tar -C "$tree" --null --files-from=- --ignore-failed-read -c |
+    tar -C "$system/opt/peristat" --no-same-owner -x
+fi
+
 for line; do
-  timed "./peristat $line" env -i "${environment[@]}" \
-    chroot "$system" bash -c "cd /opt/peristat && ./peristat $line" </dev/null || status=1
+  timed "$peristat $line" enter "cd /opt/peristat && $peristat $line" || status=1
 done
+if [[ $package && $* == "run $case_file" ]]; then
+  enter "ls /opt/peristat/results/plate_with_hole_elastic/plots/*.png" || status=1
+  report+=("$((SECONDS - since)) s from nothing to the first pictures")
+fi
 printf '\n'
 printf '%s\n' "${report[@]}"
 exit "$status"

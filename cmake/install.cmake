@@ -1,5 +1,6 @@
 # The library libperistat.so of all floors below the cases, and what is installed: the library with
-# its headers and its CMake package, the program, and the modules that both load.
+# its headers and its CMake package, the modules, the program, the launcher with its pictures and
+# sweeps, cases and pages.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
@@ -9,7 +10,6 @@ add_library(peristat_library SHARED
   $<TARGET_OBJECTS:peristat_assembly>
   $<TARGET_OBJECTS:peristat_solvers>)
 add_library(peristat::peristat ALIAS peristat_library)
-add_dependencies(peristat_library peristat_trilinos peristat_ranks peristat_mumps)
 set_target_properties(peristat_library PROPERTIES
   OUTPUT_NAME peristat EXPORT_NAME peristat LINKER_LANGUAGE CXX
   VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
@@ -20,16 +20,40 @@ target_link_libraries(peristat_library
   PRIVATE peristat_cholmod peristat_muparser peristat_voropp peristat_fftw fmt::fmt ${CMAKE_DL_LIBS}
   PUBLIC OpenMP::OpenMP_CXX)
 
-# Where each finds the modules; and OpenBLAS in the folder of its flavour.
+# Calls stay in the library where a program has a weak function of the same name, which it may have
+# compiled for another level of processors.
+target_link_options(peristat_library PRIVATE LINKER:-Bsymbolic-functions)
+
+# Where each finds the library and the modules; and OpenBLAS in the folder of its flavour.
 set(module_folder ${CMAKE_INSTALL_LIBDIR}/peristat)
-file(RELATIVE_PATH module_from_program
-     /${CMAKE_INSTALL_BINDIR} /${module_folder})
+set(program_folder libexec/peristat)  # which the launcher knows
+file(RELATIVE_PATH libraries_from_program /${program_folder} /${CMAKE_INSTALL_LIBDIR})
 set_target_properties(peristat_library PROPERTIES
   INSTALL_RPATH "$ORIGIN/peristat" INSTALL_RPATH_USE_LINK_PATH ON)
 set_target_properties(peristat PROPERTIES
-  INSTALL_RPATH "$ORIGIN/${module_from_program}" INSTALL_RPATH_USE_LINK_PATH ON)
+  INSTALL_RPATH "$ORIGIN/${libraries_from_program};$ORIGIN/${libraries_from_program}/peristat"
+  INSTALL_RPATH_USE_LINK_PATH ON)
 
-install(TARGETS peristat RUNTIME)
+if(PERISTAT_LEVEL)
+  # The library alone, where glibc's loader looks first on such processors.
+  set_property(TARGET peristat_library PROPERTY INSTALL_RPATH "$ORIGIN/../../peristat")
+  install(TARGETS peristat_library
+          LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/glibc-hwcaps/${PERISTAT_LEVEL} NAMELINK_SKIP)
+  return()
+endif()
+
+# bin/peristat is the launcher: it finds ../libexec/peristat/peristat and ../share/peristat.
+install(PROGRAMS peristat TYPE BIN)
+install(TARGETS peristat RUNTIME DESTINATION ${program_folder})
+set(tools_folder share/peristat)
+foreach(tool IN ITEMS plots sweep trust)
+  install(DIRECTORY cases/runner/${tool} DESTINATION ${tools_folder} FILES_MATCHING PATTERN *.py)
+endforeach()
+install(DIRECTORY cases DESTINATION ${tools_folder} PATTERN runner EXCLUDE)
+install(DIRECTORY docs TYPE DOC)
+install(FILES README.md CHANGELOG.md CONTRIBUTING.md LICENSE TYPE DOC)
+install(FILES benchmarks/RESULTS.md DESTINATION ${CMAKE_INSTALL_DOCDIR}/benchmarks)
+
 install(TARGETS peristat_trilinos peristat_ranks peristat_mumps LIBRARY DESTINATION ${module_folder})
 install(TARGETS peristat_library EXPORT peristatTargets LIBRARY)
 set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/peristat)

@@ -1,0 +1,138 @@
+"""An installed peristat, as a package brings it: its launcher runs cases and draws their pictures from
+any folder, without the sources, and writes nothing beside itself."""
+
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import tempfile
+import unittest
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+PROGRAM = pathlib.Path(os.environ.get("PERISTAT_PROGRAM", ROOT / "build/release/peristat"))
+CASE = """
+title = "Short strip"
+dimension = 2
+[lattice]
+spacing = 1e-2
+thickness = 1e-3
+[[lattice.shape]]
+add = "box"
+min = [0.0, 0.0]
+max = [0.10, 0.04]
+[[lattice.layer]]
+name = "left"
+side = "x-"
+[[lattice.layer]]
+name = "right"
+side = "x+"
+[material]
+youngs_modulus = 200e9
+[[support]]
+set = "left"
+displacement = [0, 0]
+[[support]]
+set = "right"
+displacement = ["1e-4*load", "free"]
+[loading]
+steps = 2
+"""
+
+
+class Package(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = pathlib.Path(tempfile.mkdtemp(prefix="peristat package ")).resolve()
+        cls.addClassCleanup(shutil.rmtree, cls.folder, ignore_errors=True)
+        # Staged, as packages are made: where it is installed and where it is told to be differ.
+        subprocess.run(["cmake", "--install", PROGRAM.parent, "--prefix", "/usr"], check=True,
+                       env=os.environ | {"DESTDIR": str(cls.folder / "stage")}, stdout=subprocess.DEVNULL)  # fmt: skip
+        cls.prefix = cls.folder / "stage/usr"
+        cls.launcher = cls.prefix / "bin/peristat"
+
+    def setUp(self):
+        self.work = pathlib.Path(tempfile.mkdtemp(dir=self.folder, prefix="work "))
+        (self.work / "strip.toml").write_text(CASE)
+
+    def launch(self, *arguments, **environment):
+        return subprocess.run(
+            [self.launcher, *arguments], cwd=self.work, env=os.environ | {"OMP_NUM_THREADS": "1"} | environment,
+            stdin=subprocess.DEVNULL, capture_output=True, text=True,
+        )  # fmt: skip
+
+    def installed(self):
+        return {path: path.lstat().st_mtime_ns for path in self.prefix.rglob("*")}
+
+    def test_a_run_draws_its_pictures_and_leaves_the_installation_alone(self):
+        before = self.installed()
+        run = self.launch("run", "strip.toml", "--output", "results/strip")
+        self.assertEqual((run.returncode, run.stderr), (0, ""))
+        again = self.launch("plot", "results/strip")
+        self.assertEqual(again.returncode, 0, again.stderr)
+        sweep = self.launch("sweep", "strip.toml", "--vary", "material.youngs_modulus=1e9,2e9", "--output", "moduli")
+        self.assertEqual(sweep.returncode, 0, sweep.stderr)
+
+        self.assertTrue((self.work / "results/strip/results.h5").is_file())
+        self.assertGreater(len(list((self.work / "results/strip/plots").glob("*.png"))), 1)
+        self.assertTrue(list((self.work / "moduli").glob("*.png")))
+        self.assertEqual(self.installed(), before)
+
+    def test_every_module_is_found(self):
+        as_root = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
+        for module, options in (("trilinos", ["--set", "solver.linear=pcg"]), ("mumps", ["--set", "solver.mode=arc_length"]),
+                                ("ranks", ["--ranks", "2"])):  # fmt: skip
+            with self.subTest(module=module):
+                run = self.launch("run", "strip.toml", "--no-plots", "--output", module, *options, LD_DEBUG="files", **as_root)
+                self.assertEqual(run.returncode, 0, run.stderr[-2000:])
+                (loaded,) = set(re.findall(rf"calling init: (.*/peristat_{module}\.so)", run.stderr))
+                self.assertEqual(pathlib.Path(os.path.normpath(loaded)).parent.name, "peristat")
+                self.assertTrue(pathlib.Path(loaded).resolve().is_relative_to(self.prefix), loaded)
+
+    def test_no_wide_vector_crosses_between_program_and_library(self):
+        """In a package both are compiled for different processors (docs/installing.md#processors)."""
+        symbols = lambda *words: subprocess.run(["nm", "-C", *words], capture_output=True, text=True, check=True).stdout.splitlines()
+        wide = re.compile(r"simd|__vector|Eigen::")  # Eigen's memory has another layout, too
+        library = symbols("--defined-only", "--dynamic", PROGRAM.parent / "libperistat.so")
+        self.assertTrue(any(map(wide.search, library)))  # the library has some
+        taken = [line for line in symbols("--undefined-only", PROGRAM.parent / "libperistat_runner.a") if " U peristat::" in line]
+        self.assertGreater(len(taken), 100)
+        self.assertEqual([line for line in taken if wide.search(line)], [])
+
+    def test_the_loader_finds_every_library(self):
+        binaries = [path for path in self.prefix.rglob("*") if path.is_file() and path.read_bytes()[:4] == b"\x7fELF"]
+        names = {path.name for path in binaries}
+        self.assertLessEqual({"peristat", "peristat_trilinos.so", "peristat_ranks.so", "peristat_mumps.so"}, names)
+        for binary in binaries:
+            found = subprocess.run(["ldd", binary], capture_output=True, text=True, check=True).stdout
+            self.assertIn("=>", found)
+            self.assertNotIn("not found", found, binary)
+            self.assertNotIn(str(ROOT), found, binary)  # nothing of the build is needed
+
+    def test_the_shipped_cases_come_along(self):
+        shipped = lambda folder: {str(path.relative_to(folder)): path.read_bytes() for path in folder.rglob("*.toml")}
+        cases = shipped(self.prefix / "share/peristat/cases")
+        self.assertIn("plate_with_hole/elastic.toml", cases)
+        self.assertEqual(cases, shipped(ROOT / "cases"))
+
+    def test_the_help_names_what_can_be_typed(self):
+        told = self.launch("help").stdout
+        self.assertNotIn("./peristat", told)
+        listed = set(re.findall(r"^  peristat ([a-z-]+)", told, re.MULTILINE))
+        self.assertLessEqual({"run", "resume", "check", "sweep", "trust", "plot", "help"}, listed)
+        self.assertTrue(listed.isdisjoint({"build", "test", "bench", "package"}))
+        first = re.search(r"Start with: peristat run (.*)", told)[1]
+        self.assertEqual(self.launch("check", first).returncode, 0)
+        self.assertEqual(self.launch("trust", "--help").returncode, 0)
+        version = re.search(r"project\(peristat VERSION ([0-9.]+)", (ROOT / "CMakeLists.txt").read_text("utf-8"))[1]
+        self.assertEqual(self.launch("version").stdout, f"peristat {version}\n")
+
+    def test_what_needs_the_sources_is_refused(self):
+        for command in ("build", "test", "bench", "package"):
+            refused = self.launch(command)
+            self.assertEqual((refused.returncode, refused.stdout), (2, ""))
+            self.assertIn(f"{command} needs peristat's sources", refused.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()
