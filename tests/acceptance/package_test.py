@@ -40,6 +40,10 @@ steps = 2
 """
 
 
+def lines(*command):
+    return subprocess.run([str(word) for word in command], capture_output=True, text=True, check=True).stdout.splitlines()
+
+
 class Package(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
@@ -91,20 +95,28 @@ class Package(unittest.TestCase):
 
     def test_no_wide_vector_crosses_between_program_and_library(self):
         """In a package both are compiled for different processors (docs/installing.md#processors)."""
-        symbols = lambda *words: subprocess.run(["nm", "-C", *words], capture_output=True, text=True, check=True).stdout.splitlines()
         wide = re.compile(r"simd|__vector|Eigen::")  # Eigen's memory has another layout, too
-        library = symbols("--defined-only", "--dynamic", PROGRAM.parent / "libperistat.so")
+        library = lines("nm", "-C", "--defined-only", "--dynamic", PROGRAM.parent / "libperistat.so")
         self.assertTrue(any(map(wide.search, library)))  # the library has some
-        taken = [line for line in symbols("--undefined-only", PROGRAM.parent / "libperistat_runner.a") if " U peristat::" in line]
+        taken = [line for line in lines("nm", "-C", "--undefined-only", PROGRAM.parent / "libperistat_runner.a") if " U peristat::" in line]
         self.assertGreater(len(taken), 100)
         self.assertEqual([line for line in taken if wide.search(line)], [])
+
+    def test_the_library_calls_its_own_copies(self):
+        """A program exports templates that it has compiled, too, perhaps for another processor."""
+        library = PROGRAM.parent / "libperistat.so"
+        own = {words[2] for words in map(str.split, lines("nm", "--dynamic", "--defined-only", library)) if words[1] in "TW"}
+        asked = [words[4].partition("@")[0] for words in map(str.split, lines("readelf", "-rW", library)) if len(words) > 4]
+        self.assertIn("dlopen", asked)
+        self.assertGreater(len(own), 100)
+        self.assertEqual(own.intersection(asked), set())
 
     def test_the_loader_finds_every_library(self):
         binaries = [path for path in self.prefix.rglob("*") if path.is_file() and path.read_bytes()[:4] == b"\x7fELF"]
         names = {path.name for path in binaries}
         self.assertLessEqual({"peristat", "peristat_trilinos.so", "peristat_ranks.so", "peristat_mumps.so"}, names)
         for binary in binaries:
-            found = subprocess.run(["ldd", binary], capture_output=True, text=True, check=True).stdout
+            found = "\n".join(lines("ldd", binary))
             self.assertIn("=>", found)
             self.assertNotIn("not found", found, binary)
             self.assertNotIn(str(ROOT), found, binary)  # nothing of the build is needed
