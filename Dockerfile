@@ -7,7 +7,7 @@ RUN apt-get update && /peristat/peristat package
 FROM debian:12-slim
 COPY --from=build /peristat/build/peristat_*.deb /tmp/
 RUN apt-get update \
- && apt-get install --yes --no-install-recommends /tmp/peristat_*.deb openmpi-bin \
+ && apt-get install --yes --no-install-recommends /tmp/peristat_*.deb \
  && rm -rf /tmp/peristat_*.deb /var/lib/apt/lists/*
 # The user whose folder is mounted has no home here.
 ENV MPLCONFIGDIR=/tmp/matplotlib

@@ -78,7 +78,7 @@ mkdir -p "$system/opt/peristat"
 status=0 since=$SECONDS
 if [[ $package ]]; then
   cp "$package" "$system/opt/"
-  install="apt-get update && DEBIAN_FRONTEND=noninteractive apt-get install --yes"
+  install="apt-get update && DEBIAN_FRONTEND=noninteractive apt-get install --yes -qq"
   timed "apt-get update and install" enter "$install /opt/${package##*/}" || exit 1
   enter "ldd /usr/libexec/peristat/peristat | grep libperistat"  # which of the two
   for compiler in c++ g++ cc gcc clang; do

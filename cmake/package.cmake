@@ -18,10 +18,11 @@ set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS ${PROJECT_BINARY_DIR})
-# Beside what the libraries ask for: OpenBLAS in its OpenMP flavour, where they take any.
+# Beside what the libraries ask for: OpenBLAS in its OpenMP flavour, where they take any; mpirun for
+# --ranks; and munkres, with which matplotlib's fonttools are content: otherwise they bring SciPy, its
+# pythran and with that a compiler.
 set(CPACK_DEBIAN_PACKAGE_DEPENDS
-    "libopenblas0-openmp, python3, python3-numpy, python3-h5py, python3-matplotlib")
-set(CPACK_DEBIAN_PACKAGE_RECOMMENDS openmpi-bin)  # --ranks alone starts mpirun
+    "libopenblas0-openmp, openmpi-bin, python3, python3-munkres, python3-numpy, python3-h5py, python3-matplotlib")
 
 # Debian's form of it: paragraphs are indented.
 file(READ LICENSE BSD_3_CLAUSE)
