@@ -10,9 +10,11 @@
 namespace peristat {
 namespace {
 
-/// Program, libraries and files; Trilinos, which is loaded where it is used; what its multigrid, of
-/// more libraries, takes beside that [bytes].
-constexpr double base_bytes = 32e6, trilinos_bytes = 44e6, multigrid_bytes = 11e6;
+/// Program, libraries and files; CHOLMOD and BLAS, whose pages are read where a linear system is
+/// solved; Trilinos, which is loaded where it is used; what its multigrid, of more libraries, takes
+/// beside that [bytes].
+constexpr double base_bytes = 26e6, linear_algebra_bytes = 6e6, trilinos_bytes = 44e6,
+                 multigrid_bytes = 11e6;
 
 /// CHOLMOD's workspace beside the factor, as measured: 460 MB for the beam of
 /// cases/cantilever, 1.56 GB for the plate with a hole at 120 000 points.
@@ -148,7 +150,8 @@ double unsymmetric_bytes(const BodySize& size, const LinearSolverOptions& option
   const double d = size.dimension;
   const bool keeps_vectors = options.method != LinearMethod::bicgstab;
   const double vectors = keeps_vectors ? vectors_of_unsymmetric_gmres : 12.0;
-  const double bytes = trilinos_bytes + 8.0 * size.points * (vectors * d + d + 0.5 * d * (d + 1.0));
+  const double bytes = linear_algebra_bytes + trilinos_bytes +
+                       8.0 * size.points * (vectors * d + d + 0.5 * d * (d + 1.0));
   const bool is_local = options.preconditioner == PreconditionerKind::automatic ||
                         options.preconditioner == PreconditionerKind::local_operator;
   return bytes + (is_local ? local_operator_bytes(size) : 0.0);
@@ -225,7 +228,8 @@ MemoryEstimate estimate_memory(const BodySize& size) {
 
 double MemoryEstimate::iterative_bytes(const LinearSolverOptions& options) const {
   if (!size.is_symmetric()) return unsymmetric_bytes(size, options);
-  double bytes = trilinos_bytes + krylov_bytes(size, options.method == LinearMethod::gmres);
+  double bytes = linear_algebra_bytes + trilinos_bytes +
+                 krylov_bytes(size, options.method == LinearMethod::gmres);
   const double d = size.dimension;
   switch (options.preconditioner) {
     case PreconditionerKind::jacobi:
@@ -252,14 +256,14 @@ double MemoryEstimate::iterative_bytes(const LinearSolverOptions& options) const
 }
 
 double MemoryEstimate::direct_bytes(LinearMethod method) const {
-  if (!size.is_symmetric()) return lu_bytes(size, size.entries_per_row);
+  if (!size.is_symmetric()) return linear_algebra_bytes + lu_bytes(size, size.entries_per_row);
   if (method == LinearMethod::ldlt) {
     const double d = size.dimension;
-    return ldlt_library_bytes +
+    return linear_algebra_bytes + ldlt_library_bytes +
            ldlt_bytes_per_entry * d * d * (size.stored_blocks() + size.points) +
            8.0 * ldlt_overhead[std::size_t(size.dimension) - 1] * factor_entries;
   }
-  return matrix_bytes + 8.0 * factor_overhead * factor_entries;
+  return linear_algebra_bytes + matrix_bytes + 8.0 * factor_overhead * factor_entries;
 }
 
 }  // namespace peristat
