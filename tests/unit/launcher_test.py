@@ -224,7 +224,7 @@ class Launcher(unittest.TestCase):
 
     # ---- building, and what continuous integration runs -------------------------------------------
 
-    def build_with(self, cmake, *targets):
+    def build_with(self, cmake):
         """./peristat build, with a script in the place of cmake; nothing is installed."""
         tools = self.folder / "tools"
         tools.mkdir(exist_ok=True)
@@ -232,7 +232,7 @@ class Launcher(unittest.TestCase):
             (tools / name).write_text("#!/usr/bin/env bash\n" + text)
             (tools / name).chmod(0o755)
         (self.root / "build/release/.built").unlink(missing_ok=True)
-        return self.launch("build", *targets, PATH=f"{tools}:{os.environ['PATH']}")
+        return self.launch("build", PATH=f"{tools}:{os.environ['PATH']}")
 
     def test_a_build_shows_how_far_it_is_and_the_time_left(self):
         result = self.build_with('for ((k = 1; k <= 40; k++)); do ((k == 24)) && sleep 6; echo "[$k/40] Building $k.o"; done')
@@ -261,12 +261,19 @@ class Launcher(unittest.TestCase):
         self.assertRegex(first, "--target peristat peristat_trilinos peristat_ranks peristat_mumps")
         self.assertTrue(calls.endswith("--target peristat peristat_mumps\n"), calls)
 
-    def test_a_module_is_built_alone(self):
-        result = self.build_with('echo "$@" >>cmake_calls', "peristat_mumps")
+    def test_a_module_is_built_alone_and_of_the_sources_of_the_program(self):
+        self.build_with('echo "$@" >>cmake_calls')
+        path = f"{self.folder / 'tools'}:{os.environ['PATH']}"
+        result = self.launch("build", "peristat_mumps", PATH=path)
         self.assertEqual(result.returncode, 0, result.stderr)
-        self.assertTrue((self.root / "cmake_calls").read_text().endswith("--target peristat_mumps\n"))
-        self.assertFalse((self.root / "build/release/.built").exists())  # which is the program's
-        self.assertEqual(self.build_with("", "unheard_of").returncode, 2)
+        calls = (self.root / "cmake_calls").read_text()
+        self.assertTrue(calls.endswith("--target peristat_mumps\n"), calls)
+        (self.root / "src/changed.cpp").touch()
+        result = self.launch("build", "peristat_mumps", PATH=path)
+        self.assertEqual(result.returncode, 1)
+        self.assertIn("the sources have changed", result.stderr)
+        self.assertEqual((self.root / "cmake_calls").read_text(), calls)
+        self.assertEqual(self.launch("build", "unheard_of", PATH=path).returncode, 2)
 
     def test_a_build_that_fails_tells_why(self):
         result = self.build_with('echo "[3/40] Building 3.o"; echo "FAILED: 3.o"; echo "3.cpp:1: error"; exit 1')
