@@ -9,35 +9,11 @@ import subprocess
 import tempfile
 import unittest
 
+from tests.acceptance.strip import PULLED
+
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 PROGRAM = pathlib.Path(os.environ.get("PERISTAT_PROGRAM", ROOT / "build/release/peristat"))
-CASE = """
-title = "Short strip"
-dimension = 2
-[lattice]
-spacing = 1e-2
-thickness = 1e-3
-[[lattice.shape]]
-add = "box"
-min = [0.0, 0.0]
-max = [0.10, 0.04]
-[[lattice.layer]]
-name = "left"
-side = "x-"
-[[lattice.layer]]
-name = "right"
-side = "x+"
-[material]
-youngs_modulus = 200e9
-[[support]]
-set = "left"
-displacement = [0, 0]
-[[support]]
-set = "right"
-displacement = ["1e-4*load", "free"]
-[loading]
-steps = 2
-"""
+CASE = PULLED + "[loading]\nsteps = 2\n"
 
 
 def lines(*command):

@@ -275,6 +275,10 @@ class Launcher(unittest.TestCase):
         self.assertEqual((self.root / "cmake_calls").read_text(), calls)
         self.assertEqual(self.launch("build", "unheard_of", PATH=path).returncode, 2)
 
+    def test_a_package_takes_no_arguments(self):
+        result = self.launch("package", "extra")
+        self.assertEqual((result.returncode, result.stderr), (2, "peristat: package takes no arguments\n"))
+
     def test_a_build_that_fails_tells_why(self):
         result = self.build_with('echo "[3/40] Building 3.o"; echo "FAILED: 3.o"; echo "3.cpp:1: error"; exit 1')
         self.assertEqual(result.returncode, 1)
