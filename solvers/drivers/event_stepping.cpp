@@ -39,7 +39,7 @@ constexpr int most_settling_iterations = 10;
 constexpr int most_iterations_of_a_fall = 200;
 
 /// Events of one avalanche.
-constexpr int most_passes = 1'000'000;
+constexpr int most_events = 1'000'000;
 
 /// End of the segment of the programme that a stage is in.
 double segment_begin(double stage) { return LoadingProgramme::next_entry(stage) - 1.0; }
@@ -364,7 +364,7 @@ EventStepping::Step EventStepping::run_avalanche() {
     const double utilisation = settled.utilisation;
     take_up(std::move(settled));
     if (utilisation <= share_at_strength + 0.5 * (1.0 - share_at_strength)) break;
-    if (passes == most_passes) {
+    if (passes == most_events) {
       step.attempt.outcome = Outcome::iteration_limit;
       return step;
     }

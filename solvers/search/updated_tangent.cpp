@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "solvers/linear/ldlt.hpp"
-#include "src/dense/square_system.hpp"
+#include "src/dense/symmetric_system.hpp"
 
 namespace peristat {
 namespace {

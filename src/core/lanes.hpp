@@ -1,9 +1,9 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstring>
-
-#include <experimental/simd>
 
 namespace peristat {
 
@@ -12,28 +12,109 @@ namespace peristat {
 /// kernels are bound by the gathers of point data and not by arithmetic.
 inline constexpr int lane_count = 4;
 
-/// One double per interaction of a batch. Measures and potentials are templates over their scalar:
-/// the kernels call them with Lanes, tests and single interactions with double.
-using Lanes =
-    std::experimental::simd<double, std::experimental::simd_abi::deduce_t<double, lane_count>>;
-
-/// Largest entry.
-inline double largest(const Lanes& a) { return std::experimental::hmax(a); }
-inline double largest(double a) { return a; }
-
-/// Smallest entry.
-inline double smallest(const Lanes& a) { return std::experimental::hmin(a); }
-inline double smallest(double a) { return a; }
-
-/// Sum of the entries.
-inline double sum(const Lanes& a) { return std::experimental::reduce(a); }
-inline double sum(double a) { return a; }
-
 namespace lanes_detail {
 
 using Quad = double __attribute__((vector_size(4 * sizeof(double))));
 using Pair = double __attribute__((vector_size(2 * sizeof(double))));
 using Order = long long __attribute__((vector_size(4 * sizeof(long long))));
+
+}  // namespace lanes_detail
+
+/// Whether something holds of each of four lanes: all bits of it, or none.
+struct LaneMask {
+  lanes_detail::Order bits;
+
+  [[nodiscard]] bool operator[](int l) const { return bits[l] != 0; }
+  friend LaneMask operator!(const LaneMask& a) { return {~a.bits}; }
+  friend LaneMask operator&&(const LaneMask& a, const LaneMask& b) { return {a.bits & b.bits}; }
+  friend LaneMask operator||(const LaneMask& a, const LaneMask& b) { return {a.bits | b.bits}; }
+};
+
+inline bool any_of(const LaneMask& a) {
+#ifdef __AVX__
+  return __builtin_ia32_movmskpd256(lanes_detail::Quad(a.bits)) != 0;
+#else
+  return (a.bits[0] | a.bits[1] | a.bits[2] | a.bits[3]) != 0;
+#endif
+}
+inline bool none_of(const LaneMask& a) { return !any_of(a); }
+
+/// One double per interaction of a batch, a vector register of the compiler. Measures and
+/// potentials are templates over their scalar: the kernels call them with Lanes, tests and single
+/// interactions with double. (<experimental/simd> does the same, and takes a second to compile in
+/// every file.)
+class Lanes {
+ public:
+  Lanes() = default;
+  /// One number in all lanes.
+  Lanes(double all) : row_{all, all, all, all} {}
+  explicit Lanes(const lanes_detail::Quad& row) : row_(row) {}
+  /// Four numbers in a row.
+  explicit Lanes(const double* from) { std::memcpy(&row_, from, sizeof row_); }
+  /// of_lane(l) in each.
+  template <class OfLane>
+  requires requires(const OfLane& of_lane) { double(of_lane(0)); }
+  explicit Lanes(const OfLane& of_lane)
+      : row_{double(of_lane(0)), double(of_lane(1)), double(of_lane(2)), double(of_lane(3))} {}
+
+  void copy_to(double* to) const { std::memcpy(to, &row_, sizeof row_); }
+  [[nodiscard]] const lanes_detail::Quad& row() const { return row_; }
+
+  [[nodiscard]] double operator[](int l) const { return row_[l]; }
+  void set(int l, double value) { row_[l] = value; }
+
+  Lanes operator-() const { return Lanes(-row_); }
+  friend Lanes operator+(const Lanes& a, const Lanes& b) { return Lanes(a.row_ + b.row_); }
+  friend Lanes operator-(const Lanes& a, const Lanes& b) { return Lanes(a.row_ - b.row_); }
+  friend Lanes operator*(const Lanes& a, const Lanes& b) { return Lanes(a.row_ * b.row_); }
+  friend Lanes operator/(const Lanes& a, const Lanes& b) { return Lanes(a.row_ / b.row_); }
+  Lanes& operator+=(const Lanes& b) { return *this = *this + b; }
+  Lanes& operator-=(const Lanes& b) { return *this = *this - b; }
+  Lanes& operator*=(const Lanes& b) { return *this = *this * b; }
+  Lanes& operator/=(const Lanes& b) { return *this = *this / b; }
+
+  friend LaneMask operator<(const Lanes& a, const Lanes& b) { return {a.row_ < b.row_}; }
+  friend LaneMask operator>(const Lanes& a, const Lanes& b) { return {a.row_ > b.row_}; }
+  friend LaneMask operator<=(const Lanes& a, const Lanes& b) { return {a.row_ <= b.row_}; }
+  friend LaneMask operator>=(const Lanes& a, const Lanes& b) { return {a.row_ >= b.row_}; }
+
+ private:
+  lanes_detail::Quad row_;
+};
+
+/// a where the mask is set, b elsewhere.
+inline Lanes chosen(const LaneMask& mask, const Lanes& a, const Lanes& b) {
+  return Lanes(mask.bits ? a.row() : b.row());
+}
+
+inline Lanes min(const Lanes& a, const Lanes& b) { return chosen(b < a, b, a); }
+inline Lanes max(const Lanes& a, const Lanes& b) { return chosen(a < b, b, a); }
+inline Lanes abs(const Lanes& a) {
+  using namespace lanes_detail;
+  const Order sign = Order(Quad{-0.0, -0.0, -0.0, -0.0});
+  return Lanes(Quad(Order(a.row()) & ~sign));
+}
+inline Lanes sqrt(const Lanes& a) {
+  return Lanes([&](int l) { return std::sqrt(a[l]); });
+}
+
+/// Largest entry.
+inline double largest(const Lanes& a) {
+  return std::max(std::max(a[0], a[1]), std::max(a[2], a[3]));
+}
+inline double largest(double a) { return a; }
+
+/// Smallest entry.
+inline double smallest(const Lanes& a) {
+  return std::min(std::min(a[0], a[1]), std::min(a[2], a[3]));
+}
+inline double smallest(double a) { return a; }
+
+/// Sum of the entries.
+inline double sum(const Lanes& a) { return (a[0] + a[2]) + (a[1] + a[3]); }
+inline double sum(double a) { return a; }
+
+namespace lanes_detail {
 
 inline Quad load(const double* from) {
   Quad row;
@@ -52,16 +133,6 @@ inline void transpose(Quad& a, Quad& b, Quad& c, Quad& d) {
   d = __builtin_shuffle(ab_odd, cd_odd, Order{2, 3, 6, 7});
 }
 
-inline Lanes to_lanes(const Quad& row) {
-  return Lanes(reinterpret_cast<const double*>(&row), std::experimental::element_aligned);
-}
-
-inline Quad to_row(const Lanes& lanes) {
-  Quad row;
-  lanes.copy_to(reinterpret_cast<double*>(&row), std::experimental::element_aligned);
-  return row;
-}
-
 }  // namespace lanes_detail
 
 /// Reads four rows of four consecutive doubles and turns them: column c of row l becomes lane l of
@@ -71,10 +142,10 @@ inline void load_transposed(const double* row0, const double* row1, const double
   using namespace lanes_detail;
   Quad a = load(row0), b = load(row1), c = load(row2), d = load(row3);
   transpose(a, b, c, d);
-  columns[0] = to_lanes(a);
-  columns[1] = to_lanes(b);
-  columns[2] = to_lanes(c);
-  columns[3] = to_lanes(d);
+  columns[0] = Lanes(a);
+  columns[1] = Lanes(b);
+  columns[2] = Lanes(c);
+  columns[3] = Lanes(d);
 }
 
 /// The same for four rows of two consecutive doubles.
@@ -83,18 +154,18 @@ inline void load_transposed_pairs(const std::array<const double*, 4>& row, Lanes
   using namespace lanes_detail;
   const Quad even{row[0][0], row[0][1], row[2][0], row[2][1]};
   const Quad odd{row[1][0], row[1][1], row[3][0], row[3][1]};
-  column0 = to_lanes(__builtin_shuffle(even, odd, Order{0, 4, 2, 6}));
-  column1 = to_lanes(__builtin_shuffle(even, odd, Order{1, 5, 3, 7}));
+  column0 = Lanes(__builtin_shuffle(even, odd, Order{0, 4, 2, 6}));
+  column1 = Lanes(__builtin_shuffle(even, odd, Order{1, 5, 3, 7}));
 }
 
 /// The reverse: row l of `rows` gets lane l of the four columns.
 inline void store_transposed(const Lanes& column0, const Lanes& column1, const Lanes& column2,
                              const Lanes& column3, lanes_detail::Quad rows[4]) {
   using namespace lanes_detail;
-  rows[0] = to_row(column0);
-  rows[1] = to_row(column1);
-  rows[2] = to_row(column2);
-  rows[3] = to_row(column3);
+  rows[0] = column0.row();
+  rows[1] = column1.row();
+  rows[2] = column2.row();
+  rows[3] = column3.row();
   transpose(rows[0], rows[1], rows[2], rows[3]);
 }
 
@@ -102,7 +173,7 @@ inline void store_transposed(const Lanes& column0, const Lanes& column1, const L
 inline void store_transposed(const Lanes& column0, const Lanes& column1,
                              lanes_detail::Pair pairs[4]) {
   using namespace lanes_detail;
-  const Quad a = to_row(column0), b = to_row(column1);
+  const Quad a = column0.row(), b = column1.row();
   const Quad even = __builtin_shuffle(a, b, Order{0, 4, 2, 6});
   const Quad odd = __builtin_shuffle(a, b, Order{1, 5, 3, 7});
   pairs[0] = Pair{even[0], even[1]};

@@ -18,13 +18,18 @@ std::vector<double> least_squares(std::span<const double> matrix, int rows,
   return {found.data(), found.data() + found.size()};
 }
 
-std::vector<double> triangular_factor(std::span<const double> matrix, int rows) {
-  const Eigen::HouseholderQR<Eigen::MatrixXd> factors(mapped(matrix, rows));
-  const Eigen::Index columns = factors.matrixQR().cols();
-  std::vector<double> triangle(std::size_t(columns * columns), 0.0);
-  Eigen::Map<Eigen::MatrixXd>(triangle.data(), columns, columns) =
-      factors.matrixQR().topRows(columns).triangularView<Eigen::Upper>();
-  return triangle;
+std::vector<double> condensed_rows(std::span<const double> matrix, int rows) {
+  // A P = Q R, so that C = R P^T. The decomposition above contains this one.
+  const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> factors(mapped(matrix, rows));
+  const Eigen::Index columns = factors.cols();
+  std::vector<double> condensed(std::size_t(columns * columns), 0.0);
+  for (Eigen::Index c = 0; c < columns; ++c) {
+    const Eigen::Index to = factors.colsPermutation().indices()(c);
+    for (Eigen::Index r = 0; r <= c; ++r) {
+      condensed[std::size_t(to * columns + r)] = factors.matrixR()(r, c);
+    }
+  }
+  return condensed;
 }
 
 }  // namespace peristat

@@ -13,9 +13,9 @@ namespace peristat {
 [[nodiscard]] std::vector<double> least_squares(std::span<const double> matrix, int rows,
                                                 std::span<const double> sides);
 
-/// The upper triangle R of A = Q R, which has the same least squares as A.
+/// A square C with C^T C = A^T A, which has the same least squares as A.
 /// @param matrix A, rows x columns, at least as many rows as columns
-/// @return columns x columns, with zeros below the diagonal
-[[nodiscard]] std::vector<double> triangular_factor(std::span<const double> matrix, int rows);
+/// @return columns x columns
+[[nodiscard]] std::vector<double> condensed_rows(std::span<const double> matrix, int rows);
 
 }  // namespace peristat

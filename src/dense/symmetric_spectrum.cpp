@@ -5,19 +5,28 @@
 namespace peristat {
 namespace {
 
-template <int D>
-using Tensor = Eigen::Matrix<double, D, D, Eigen::RowMajor>;
+// One size for all: each further one takes eight seconds to compile.
+using Solver = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>;
 
+Solver solver_of(const double* matrix, int size, int options) {
+  return Solver(Eigen::Map<const Eigen::MatrixXd>(matrix, size, size), options);
+}
+
+/// Of a tensor given row by row: Eigen reads the lower half of its transpose.
 template <int D>
-Eigen::SelfAdjointEigenSolver<Tensor<D>> spectrum_of(const double* matrix, int options) {
-  return Eigen::SelfAdjointEigenSolver<Tensor<D>>(Eigen::Map<const Tensor<D>>(matrix), options);
+Solver solver_of_rows(const double* matrix, int options) {
+  std::array<double, std::size_t(D * D)> transposed;
+  for (int r = 0; r < D; ++r) {
+    for (int c = 0; c < D; ++c) transposed[std::size_t(c * D + r)] = matrix[r * D + c];
+  }
+  return solver_of(transposed.data(), D, options);
 }
 
 }  // namespace
 
 template <int D>
 SymmetricSpectrum<D> symmetric_spectrum(const double* matrix) {
-  const auto solver = spectrum_of<D>(matrix, Eigen::ComputeEigenvectors);
+  const Solver solver = solver_of_rows<D>(matrix, Eigen::ComputeEigenvectors);
   SymmetricSpectrum<D> found;
   for (int k = 0; k < D; ++k) {
     found.values[std::size_t(k)] = solver.eigenvalues()(k);
@@ -30,7 +39,7 @@ SymmetricSpectrum<D> symmetric_spectrum(const double* matrix) {
 
 template <int D>
 std::array<double, D> symmetric_eigenvalues(const double* matrix) {
-  const auto solver = spectrum_of<D>(matrix, Eigen::EigenvaluesOnly);
+  const Solver solver = solver_of_rows<D>(matrix, Eigen::EigenvaluesOnly);
   std::array<double, D> values;
   for (int k = 0; k < D; ++k) values[std::size_t(k)] = solver.eigenvalues()(k);
   return values;
@@ -45,8 +54,7 @@ template std::array<double, 3> symmetric_eigenvalues<3>(const double*);
 
 SymmetricModes symmetric_modes(std::span<const double> matrix, int size) {
   if (size == 0) return {true, {}, {}};
-  const Eigen::Map<const Eigen::MatrixXd> mapped(matrix.data(), size, size);
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(mapped);
+  const Solver solver = solver_of(matrix.data(), size, Eigen::ComputeEigenvectors);
   const Eigen::VectorXd& values = solver.eigenvalues();
   const Eigen::MatrixXd& vectors = solver.eigenvectors();
   return {solver.info() == Eigen::Success,

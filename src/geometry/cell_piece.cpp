@@ -16,7 +16,7 @@ namespace {
 /// Volume and first moments about the cell's place, along the lattice's axes, in spacings.
 using Moments = std::array<double, 4>;
 
-Moments plus(const Moments& a, const Moments& b) { return peristat::plus<4>(a, b); }
+Moments added(const Moments& a, const Moments& b) { return peristat::plus<4>(a, b); }
 
 double largest_difference(const Moments& a, const Moments& b) {
   double largest = 0.0;
@@ -43,10 +43,10 @@ Moments integral(const Integrand& f, double from, double to, const Moments& esti
                  double tolerance, int depth) {
   const double middle = 0.5 * (from + to);
   const Moments left = gauss(f, from, middle), right = gauss(f, middle, to);
-  const Moments sum = plus(left, right);
+  const Moments sum = added(left, right);
   if (depth == 0 || largest_difference(sum, estimate) <= tolerance) return sum;
-  return plus(integral(f, from, middle, left, tolerance, depth - 1),
-              integral(f, middle, to, right, tolerance, depth - 1));
+  return added(integral(f, from, middle, left, tolerance, depth - 1),
+               integral(f, middle, to, right, tolerance, depth - 1));
 }
 
 /// Over the cell's width, panel by panel between the given places in spacings from its middle.
@@ -59,7 +59,7 @@ Moments integral(const Integrand& f, std::vector<double>& breaks, double toleran
   for (std::size_t k = 0; k + 1 < breaks.size(); ++k) {
     const double from = std::max(breaks[k], -0.5), to = std::min(breaks[k + 1], 0.5);
     if (!(to > from)) continue;
-    sum = plus(sum, integral(f, from, to, gauss(f, from, to), tolerance, deepest));
+    sum = added(sum, integral(f, from, to, gauss(f, from, to), tolerance, deepest));
   }
   return sum;
 }
@@ -114,7 +114,7 @@ class Measured {
             volume *= to - from;
           }
           if (volume == 0.0 || !region_.contains(at(middle))) continue;
-          sum = plus(sum, {volume, volume * middle[0], volume * middle[1], volume * middle[2]});
+          sum = added(sum, {volume, volume * middle[0], volume * middle[1], volume * middle[2]});
         }
       }
     }
@@ -167,7 +167,7 @@ class Measured {
       if (!(to > from)) continue;
       const double middle = 0.5 * (from + to), length = to - from;
       if (!region_.contains(line.at(middle))) continue;
-      sum = plus(sum, {length, length * middle, length * through[1], length * through[2]});
+      sum = added(sum, {length, length * middle, length * through[1], length * through[2]});
     }
     return sum;
   }

@@ -6,8 +6,8 @@
 #include <numbers>
 
 #include "src/core/coordinates.hpp"
-#include "src/dense/square_system.hpp"
 #include "src/dense/symmetric_spectrum.hpp"
+#include "src/dense/symmetric_system.hpp"
 #include "src/materials/lattice_directions.hpp"
 #include "src/neighbourhood/lattice_kernel.hpp"
 
@@ -100,10 +100,15 @@ void BulkBonds::find_compliance() {
       }
     }
   }
-  const std::vector<double> eigenvalues = symmetric_modes(stiffness, int(size)).values;
+  const SymmetricModes modes = symmetric_modes(stiffness, int(size));
   // Bonds along the axes alone resist no shear.
-  if (eigenvalues.front() > 1e-12 * eigenvalues.back()) {
-    compliance_ = inverse_of(stiffness, int(size));
+  if (!(modes.values.front() > 1e-12 * modes.values.back())) return;
+  compliance_.assign(size * size, 0.0);
+  for (std::size_t k = 0; k < size; ++k) {
+    const double* mode = &modes.vectors[k * size];
+    for (std::size_t e = 0; e < size * size; ++e) {
+      compliance_[e] += mode[e / size] * mode[e % size] / modes.values[k];
+    }
   }
 }
 

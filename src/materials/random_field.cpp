@@ -10,8 +10,6 @@
 namespace peristat {
 namespace {
 
-constexpr double pi = std::numbers::pi;
-
 /// The quantile of Weibull's distribution.
 /// @param below, above probabilities of smaller and of larger values; each keeps its digits
 double quantile(double below, double above, const WeibullField& field) {
@@ -22,7 +20,7 @@ double quantile(double below, double above, const WeibullField& field) {
 /// A standard normal number, of two uniform ones (Box and Muller).
 double normal(std::uint64_t seed, std::uint64_t counter) {
   const double radius = std::sqrt(-2.0 * std::log(open_unit(random_bits(seed, 2 * counter))));
-  return radius * std::cos(2.0 * pi * open_unit(random_bits(seed, 2 * counter + 1)));
+  return radius * std::cos(2.0 * std::numbers::pi * open_unit(random_bits(seed, 2 * counter + 1)));
 }
 
 struct Mode {
@@ -38,7 +36,8 @@ std::vector<Mode> modes_of(const WeibullField& field, int dimension) {
       modes[n].wave[c] = std::numbers::sqrt2 / field.correlation_length *
                          normal(field.seed, numbers_per_mode * n + c);
     }
-    modes[n].phase = 2.0 * pi * open_unit(random_bits(field.seed, 2 * (numbers_per_mode * n + 3)));
+    modes[n].phase =
+        2.0 * std::numbers::pi * open_unit(random_bits(field.seed, 2 * (numbers_per_mode * n + 3)));
   }
   return modes;
 }

@@ -3,8 +3,6 @@
 #include <array>
 #include <cmath>
 
-#include <experimental/simd>
-
 namespace peristat {
 
 // Inlined by order: the compiler's own choice has cost the kernels a sixth when other code changed.
@@ -94,7 +92,6 @@ template <int D, class Real>
 template <class Real>
 [[gnu::always_inline]] inline Real square_root(const Real& a) {
   using std::sqrt;
-  using std::experimental::sqrt;
   return sqrt(a);
 }
 

@@ -157,25 +157,23 @@ template <int D>
 bool Interactions<Measure>::make_block(const Arms<Measure::arms, D, Lanes>& arms,
                                        const Vector<2, Lanes>& shares, std::uint32_t candidates,
                                        InteractionBlock& block) {
-  using std::experimental::element_aligned;
-  using std::experimental::where;
   const Lanes reference = Measure::template value<D>(arms);
-  const Lanes candidate(interactions_detail::lanes_of_bits[candidates].data(), element_aligned);
-  const Lanes size = std::experimental::abs(reference), &cell = shares[1];
+  const Lanes candidate(interactions_detail::lanes_of_bits[candidates].data());
+  const Lanes size = abs(reference), &cell = shares[1];
   const auto active = candidate * size > flat_measure * cell;
-  if (std::experimental::none_of(active)) return false;
+  if (none_of(active)) return false;
   Lanes inverse = 1.0 / reference;
-  where(!active, inverse) = 1.0;
+  inverse = chosen(active, inverse, 1.0);
   Lanes weight = shares[0];
-  if (std::experimental::any_of(active && size < full_measure * cell)) {
+  if (any_of(active && size < full_measure * cell)) {
     weight *= flatness_factor(Lanes(size / cell));
   }
-  where(reference < 0.0, weight) = -weight;
-  where(!active, weight) = 0.0;
-  inverse.copy_to(block.inverse_reference, element_aligned);
-  weight.copy_to(block.weight, element_aligned);
+  weight = chosen(reference < 0.0, -weight, weight);
+  weight = chosen(active, weight, 0.0);
+  inverse.copy_to(block.inverse_reference);
+  weight.copy_to(block.weight);
   block.active = candidates;
-  if (std::experimental::any_of(!active && candidate > 0.0)) {  // some are flat
+  if (any_of(!active && candidate > 0.0)) {  // some are flat
     for (int l = 0; l < lane_count; ++l) {
       if (!active[l]) block.active &= ~(std::uint32_t(1) << l);
     }

@@ -39,7 +39,7 @@ class LocalVectors {
   [[nodiscard]] Vector<D, Lanes> block(int first) const {
     Vector<D, Lanes> result;
     for (int c = 0; c < D; ++c) {
-      result[c].copy_from(&values_[c * stride_ + first], std::experimental::element_aligned);
+      result[c] = Lanes(&values_[c * stride_ + first]);
     }
     return result;
   }

@@ -125,10 +125,10 @@ class WeightSolver {
       double squared = 0.0;
       for (std::size_t c = 0; c < dimension_; ++c) {
         const double s = arms[j * dimension_ + c];
-        arms_[j / lane_count][c][j % lane_count] = s;
+        arms_[j / lane_count][c].set(int(j % lane_count), s);
         squared += s * s;
       }
-      kernel_[j / lane_count][j % lane_count] = 1.0 / (squared * std::sqrt(squared));
+      kernel_[j / lane_count].set(int(j % lane_count), 1.0 / (squared * std::sqrt(squared)));
     }
   }
 
@@ -198,7 +198,7 @@ class WeightSolver {
         omega += y[std::ptrdiff_t(k - first_)] * values_[k];
       for (std::size_t k = first_; k < values_.size(); ++k) sums_[k] += omega * values_[k];
       for (std::size_t j = l * lane_count; j < std::min(count_, (l + 1) * lane_count); ++j)
-        weight[j] = omega[j % lane_count];
+        weight[j] = omega[int(j % lane_count)];
     }
     missing_ = goal_;
     for (std::size_t k = first_; k < values_.size(); ++k)

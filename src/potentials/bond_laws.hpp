@@ -47,7 +47,7 @@ class BondLaws {
   /// Of the bonds from the first on; those past the last are of no bond.
   [[nodiscard]] DamageRange<Lanes> ranges(Offset first) const {
     const auto lanes_at = [first](const std::vector<double>& of) {
-      return Lanes(of.data() + first, std::experimental::element_aligned);
+      return Lanes(of.data() + first);
     };
     return {lanes_at(onset_), lanes_at(critical_)};
   }

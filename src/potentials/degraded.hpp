@@ -26,21 +26,21 @@ template <class Real, class Whole, class OfLane>
     const Lanes& e, const Lanes& largest_stretch, const DamageRange<Real>& range,
     const Whole& whole, const OfLane& of_lane) {
   const auto broken = largest_stretch >= range.critical;
-  const auto degraded = std::experimental::max(e, largest_stretch) > range.onset;
+  const auto degraded = max(e, largest_stretch) > range.onset;
   PotentialDensity<Lanes> result;
-  if (std::experimental::none_of(degraded && !broken)) {
+  if (none_of(degraded && !broken)) {
     result = whole(e);
     // One by one: in a loop over their addresses they would leave their registers.
-    std::experimental::where(broken, result.value) = 0.0;
-    std::experimental::where(broken, result.first) = 0.0;
-    std::experimental::where(broken, result.second) = 0.0;
+    result.value = chosen(broken, 0.0, result.value);
+    result.first = chosen(broken, 0.0, result.first);
+    result.second = chosen(broken, 0.0, result.second);
     return result;
   }
   for (int l = 0; l < lane_count; ++l) {
     const PotentialDensity<double> one = of_lane(l);
-    result.value[l] = one.value;
-    result.first[l] = one.first;
-    result.second[l] = one.second;
+    result.value.set(l, one.value);
+    result.first.set(l, one.first);
+    result.second.set(l, one.second);
   }
   return result;
 }

@@ -46,7 +46,7 @@ ROOMS = [
 ]
 OUTSIDE = ["tests", "benchmarks"]
 # Headers outside the standard library that headers of a floor may include; keep it this small.
-ALLOWED_IN_HEADERS = {"omp.h", "experimental/simd"}
+ALLOWED_IN_HEADERS = {"omp.h"}
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]', re.MULTILINE)
 STANDARD_HEADER = re.compile(r"[a-z_0-9]+")  # <vector>: neither a folder nor an extension
 CLANG_FORMAT_VERSION = "14"  # versions differ in taste; this is the one of Debian 12

@@ -203,9 +203,7 @@ template <class P>
 [[gnu::always_inline]] inline auto at_history(const double* largest_stretch, const P& potential,
                                               Offset first_bond) {
   if constexpr (PotentialWithHistory<P>) {
-    return AtHistory<P>{potential,
-                        Lanes(largest_stretch + first_bond, std::experimental::element_aligned),
-                        first_bond};
+    return AtHistory<P>{potential, Lanes(largest_stretch + first_bond), first_bond};
   } else {
     return potential;
   }
@@ -217,11 +215,11 @@ template <class P>
 [[gnu::always_inline]] inline Lanes tension(const double* largest_stretch, const P& potential,
                                             Offset first_bond, const Lanes& e) {
   if constexpr (PotentialWithHistory<P>) {
-    const Lanes largest(largest_stretch + first_bond, std::experimental::element_aligned);
+    const Lanes largest(largest_stretch + first_bond);
     const auto range = potential.ranges(first_bond);
     const auto broken = largest >= range.critical;
-    const auto degraded = std::experimental::max(e, largest) > range.onset;
-    if (std::experimental::any_of(degraded && !broken)) {
+    const auto degraded = max(e, largest) > range.onset;
+    if (any_of(degraded && !broken)) {
       return Lanes([&](int l) {
         return potential.of_bond(first_bond + l)(double(e[l]), double(largest[l])).first;
       });
@@ -229,7 +227,7 @@ template <class P>
     auto whole = potential.shape;
     whole.modulus = potential.modulus;
     Lanes first = whole(e).first;
-    std::experimental::where(broken, first) = 0.0;
+    first = chosen(broken, 0.0, first);
     return first;
   } else {
     return potential(e).first;
@@ -240,10 +238,10 @@ template <class P>
 template <int D, class P>
 inline void commit(const Points& points, const P& potential, Index i, const Batch<D>& batch,
                    const Lanes& stretch, double* largest_stretch, DamageGrowth& growth) {
-  const Lanes before(largest_stretch + batch.first, std::experimental::element_aligned);
+  const Lanes before(largest_stretch + batch.first);
   const auto range = potential.ranges(batch.first);
   const auto may_grow = stretch > range.onset && before < range.critical;
-  if (std::experimental::none_of(may_grow)) return;
+  if (none_of(may_grow)) return;
   for (int l = 0; l < batch.count; ++l) {
     double& largest = largest_stretch[batch.first + l];
     const double s = stretch[l];
@@ -261,7 +259,7 @@ template <int D, class P>
 inline void look_at(const Points& points, const P& potential, Index i, const Batch<D>& batch,
                     const Lanes& stretch, const double* largest_stretch, DamageGrowth& growth) {
   const auto range = potential.ranges(batch.first);
-  if (std::experimental::none_of(stretch > std::min(growth.utilisation, 1.0) * range.onset)) return;
+  if (none_of(stretch > std::min(growth.utilisation, 1.0) * range.onset)) return;
   for (int l = 0; l < batch.count; ++l) {
     const double before = largest_stretch[batch.first + l], s = stretch[l];
     const auto& of_bond = potential.of_bond(batch.first + l);
@@ -283,8 +281,8 @@ inline Lanes share_of_owned(const Points& points, Index i,
 /// semidefinite part: its eigenvalues are psi'' and psi'/l.
 inline InteractionEnergy<Lanes> projected(const InteractionEnergy<Lanes>& psi, double share) {
   const Lanes zero = 0.0;
-  return {psi.value, psi.first - share * std::experimental::min(psi.first, zero),
-          psi.second - share * std::experimental::min(psi.second, zero)};
+  return {psi.value, psi.first - share * min(psi.first, zero),
+          psi.second - share * min(psi.second, zero)};
 }
 
 /// Writes a row's total over what is there, or adds it.
@@ -331,7 +329,7 @@ struct BondKernels {
                 commit<D>(a.points, potential, i, batch, measure.relative_change, largest_stretch,
                           growth);
               }
-              shortest = std::experimental::min(shortest, measure.current);
+              shortest = min(shortest, measure.current);
               Vector<D, Lanes> force;
               if constexpr (with_energy) {
                 const auto psi = interaction_energy(

@@ -60,9 +60,7 @@ struct LocalWorkspace {
   template <class Group>
   [[nodiscard]] Lanes integrity_of(const Group& group, const InteractionBlock& block) const {
     if (!is_degraded_) return 1.0;
-    const auto lanes_at = [](const double* from) {
-      return Lanes(from, std::experimental::element_aligned);
-    };
+    const auto lanes_at = [](const double* from) { return Lanes(from); };
     Lanes product = lanes_at(&own_integrity_[std::size_t(block.first)]);
     const auto& fixed = group.partners;
     for (std::size_t p = 0; p < fixed.size(); ++p) {
@@ -90,7 +88,7 @@ struct LocalWorkspace {
     if (!has_eigenstretch_) return;
     double known = own_eigenstretch_;
     for (const int partner : fixed) known += eigenstretch_[std::size_t(partner)];
-    const Lanes last(&eigenstretch_[std::size_t(block.first)], std::experimental::element_aligned);
+    const Lanes last(&eigenstretch_[std::size_t(block.first)]);
     constexpr int arms = MeasureAt::arms;
     const Lanes mean = (known + last) / double(arms + 1);
     measure.relative_change -= arms == 2 ? mean * (2.0 + mean) : mean * (3.0 + mean * (3.0 + mean));
@@ -172,9 +170,9 @@ struct LocalWorkspace {
         hessian_(std::size_t(most) * stride_ * entries) {}
 
   static void add_lanes(double* to, const Lanes& value) {
-    Lanes total(to, std::experimental::element_aligned);
+    Lanes total(to);
     total += value;
-    total.copy_to(to, std::experimental::element_aligned);
+    total.copy_to(to);
   }
   template <int width>
   static void add(double* to, const std::array<Lanes, width>& value) {

@@ -41,9 +41,8 @@ class BatchArms {
         fill_empty(block, workspace_.displacement.one(repeated), displacement_[last]);
       }
     }
-    auto result = Measure::template at<D, Lanes>(
-        Lanes(block.inverse_reference, std::experimental::element_aligned), reference_,
-        displacement_);
+    auto result =
+        Measure::template at<D, Lanes>(Lanes(block.inverse_reference), reference_, displacement_);
     workspace_.relieve(result, fixed_, block);
     return result;
   }
@@ -54,9 +53,8 @@ class BatchArms {
  private:
   static void fill_empty(const InteractionBlock& block, const Vector<D, Lanes>& with,
                          Vector<D, Lanes>& arm) {
-    const Lanes full(interactions_detail::lanes_of_bits[block.active].data(),
-                     std::experimental::element_aligned);
-    for (int c = 0; c < D; ++c) std::experimental::where(full < 0.5, arm[c]) = with[c];
+    const Lanes full(interactions_detail::lanes_of_bits[block.active].data());
+    for (int c = 0; c < D; ++c) arm[c] = chosen(full < 0.5, with[c], arm[c]);
   }
 
   const LocalWorkspace<D>& workspace_;
@@ -109,7 +107,7 @@ struct SimplexKernels {
   template <class Group>
   static Lanes weight_of(const LocalWorkspace<D>& w, const Group& group,
                          const InteractionBlock& block) {
-    return Lanes(block.weight, std::experimental::element_aligned) * w.integrity_of(group, block);
+    return Lanes(block.weight) * w.integrity_of(group, block);
   }
 
   /// Adds partners' totals to their rows, and minus their sum to the point's own.
@@ -153,7 +151,7 @@ struct SimplexKernels {
               const auto psi = interaction_energy(weight_of(w, group, block), potential, measure);
               row_energy += psi.value;
               if constexpr (Measure::template singular_at_zero<D>) {
-                smallest_measure = std::experimental::min(smallest_measure, measure.current);
+                smallest_measure = min(smallest_measure, measure.current);
               }
               if (energy_only) continue;
               const auto force = energy_gradient(psi, measure);
@@ -426,7 +424,7 @@ struct SimplexKernels {
         for (int q = p; q < arms; ++q) {
           for (int r = 0; r < D; ++r) {
             for (int c = 0; c < D; ++c) {
-              blocks[p][q][r][c][l] = matrix[(p * D + r) * size + q * D + c];
+              blocks[p][q][r][c].set(l, matrix[(p * D + r) * size + q * D + c]);
             }
           }
         }

@@ -6,13 +6,6 @@
 #include "cases/runner/process/output_file.hpp"
 
 namespace peristat {
-namespace {
-
-/// A generous bound of what HDF5 needs beside the values of a file [byte].
-constexpr std::uint64_t room_for_structure = 1 << 16;
-
-}  // namespace
-
 void publish_part(const std::filesystem::path& path, std::uint64_t bytes,
                   const std::function<void(Hdf5File&)>& write) {
   const std::filesystem::path unfinished = temporary(path);

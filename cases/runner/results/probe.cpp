@@ -49,14 +49,14 @@ std::vector<double> by_columns(const std::vector<double>& rows, std::size_t colu
 }
 
 /// Rows of all ranks that have the same least squares as theirs: of a body in parts, where a set
-/// may be large, their triangular factor in the place of rows.
+/// may be large, as many as there are columns in their place.
 std::vector<double> rows_of_all(std::vector<double> mine, std::size_t columns,
                                 const Communicator& ranks) {
   if (ranks.count() == 1) return mine;
   const std::size_t rows = mine.size() / columns;
   if (rows > columns) {
-    // Columns of the transpose are the triangle's rows.
-    mine = by_columns(triangular_factor(by_columns(mine, columns), int(rows)), columns);
+    // Columns of the transpose are rows.
+    mine = by_columns(condensed_rows(by_columns(mine, columns), int(rows)), columns);
   }
   return concatenated(mine, ranks);
 }

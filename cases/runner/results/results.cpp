@@ -30,8 +30,7 @@ namespace peristat {
 namespace {
 
 constexpr std::size_t master_growth = 1 << 18;  // bytes
-// Generous bounds of what HDF5 needs for the gathered file, and for the groups of a step [byte].
-constexpr std::uint64_t room_for_structure = 1 << 16;
+// A generous bound of what HDF5 needs for the groups of a step [byte].
 constexpr std::uint64_t room_for_step = 1 << 14;
 
 using Clock = std::chrono::steady_clock;

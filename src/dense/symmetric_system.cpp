@@ -1,7 +1,6 @@
-#include "src/dense/square_system.hpp"
+#include "src/dense/symmetric_system.hpp"
 
 #include <Eigen/Cholesky>
-#include <Eigen/LU>
 
 namespace peristat {
 namespace {
@@ -15,18 +14,6 @@ Eigen::Map<Eigen::VectorXd> mapped(std::span<double> side) {
 }
 
 }  // namespace
-
-void solve_square(std::span<const double> matrix, std::span<double> side) {
-  const Eigen::PartialPivLU<Eigen::MatrixXd> factors(mapped(matrix, Eigen::Index(side.size())));
-  const Eigen::VectorXd given = mapped(side);
-  mapped(side) = factors.solve(given);
-}
-
-std::vector<double> inverse_of(std::span<const double> matrix, int size) {
-  const Eigen::MatrixXd found =
-      Eigen::PartialPivLU<Eigen::MatrixXd>(mapped(matrix, size)).inverse();
-  return {found.data(), found.data() + found.size()};
-}
 
 struct SymmetricFactors::Factors {
   Eigen::LDLT<Eigen::MatrixXd> ldlt;

@@ -2,17 +2,8 @@
 
 #include <memory>
 #include <span>
-#include <vector>
 
 namespace peristat {
-
-/// x of A x = b with any regular A, by elimination with partial pivots.
-/// @param matrix column by column
-/// @param side b, which becomes x
-void solve_square(std::span<const double> matrix, std::span<double> side);
-
-/// A^-1 of a regular matrix, column by column.
-[[nodiscard]] std::vector<double> inverse_of(std::span<const double> matrix, int size);
 
 /// Factors L D L^T of a symmetric matrix, with pivots along the diagonal.
 class SymmetricFactors {
