@@ -5,11 +5,11 @@
 namespace peristat {
 namespace {
 
-Eigen::Map<const Eigen::MatrixXd> mapped(std::span<const double> matrix, Eigen::Index size) {
+Eigen::Map<const Eigen::MatrixXd> square(std::span<const double> matrix, int size) {
   return {matrix.data(), size, size};
 }
 
-Eigen::Map<Eigen::VectorXd> mapped(std::span<double> side) {
+Eigen::Map<Eigen::VectorXd> column(std::span<double> side) {
   return {side.data(), Eigen::Index(side.size())};
 }
 
@@ -25,7 +25,7 @@ SymmetricFactors::SymmetricFactors(SymmetricFactors&&) noexcept = default;
 SymmetricFactors& SymmetricFactors::operator=(SymmetricFactors&&) noexcept = default;
 
 void SymmetricFactors::compute(std::span<const double> matrix, int size) {
-  factors_->ldlt.compute(mapped(matrix, size));
+  factors_->ldlt.compute(square(matrix, size));
 }
 
 bool SymmetricFactors::is_positive(double least_share) const {
@@ -36,8 +36,8 @@ bool SymmetricFactors::is_positive(double least_share) const {
 }
 
 void SymmetricFactors::solve(std::span<double> side) const {
-  const Eigen::VectorXd given = mapped(side);
-  mapped(side) = factors_->ldlt.solve(given);
+  const Eigen::VectorXd given = column(side);
+  column(side) = factors_->ldlt.solve(given);
 }
 
 void solve_symmetric(std::span<const double> matrix, std::span<double> side) {
