@@ -12,7 +12,7 @@
 #include <Eigen/Core>
 
 #include "src/core/coordinates.hpp"
-#include "src/dense/least_squares.hpp"
+#include "src/dense/square_system.hpp"
 #include "src/dense/symmetric_spectrum.hpp"
 #include "src/dense/symmetric_system.hpp"
 #include "src/neighbourhood/bulk_neighbourhood.hpp"
@@ -207,9 +207,8 @@ class BulkPull::Equilibrium {
     residual[size_] = form_.dot(state.strain) - state.along;
     tangent.topRightCorner(size_, 1) = -form_;
     tangent.bottomLeftCorner(1, size_) = form_.transpose();
-    const std::vector<double> found = least_squares(entries_of(tangent), int(size_ + 1),
-                                                    {residual.data(), std::size_t(size_ + 1)});
-    const Eigen::Map<const Vector> change(found.data(), size_ + 1);
+    Vector change = residual;
+    solve_square(entries_of(tangent), {change.data(), std::size_t(change.size())});
     state.strain -= change.head(size_);
     state.stress -= change[size_];
     return change.head(size_).norm();

@@ -117,10 +117,10 @@ TEST(Cholesky, TakesABodyWithoutFreeDegreesOfFreedom) {
   EXPECT_EQ(solver.statistics().factorisations, 0);
 }
 
-/// Large enough that some iterations cost less than a factorisation.
+/// Large enough that some iterations cost less than a factorisation: affordable_iterations.
 System large_system() {
   tests::BoxSetting box = tests::small_box(3);
-  box.extent = {11, 10, 9};
+  box.extent = {15, 13, 12};
   const BoxBody body(box);
   return System(box, some_prescribed(body), std::vector<double>(body.dofs(), 0.0));
 }

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "src/dense/least_squares.hpp"
+#include "src/dense/square_system.hpp"
 #include "src/dense/symmetric_inverse.hpp"
 #include "src/dense/symmetric_spectrum.hpp"
 #include "src/dense/symmetric_system.hpp"
@@ -146,10 +147,19 @@ TEST(SmallDense, ModesOfWhatIsNotFiniteAreNotFound) {
 TEST(SmallDense, SolutionsOfSquareSystemsHaveNoResidual) {
   for (const std::size_t size : {1, 3, 7, 40}) {
     const std::vector<double> matrix = some_matrix(size, size), side = some_matrix(size, 1);
-    const std::vector<double> x = least_squares(matrix, int(size), side);
+    std::vector<double> x = side;
+    solve_square(matrix, x);
     EXPECT_LE(largest(difference(product(matrix, x, size), side)),
               round_off * double(size) * (largest(x) * largest(matrix) + largest(side)));
   }
+}
+
+TEST(SmallDense, AConstraintBesideAStiffnessKeepsItsDigits) {
+  const double stiffness = 1e30;  // [stiffness, -1; 1, 0] x = side
+  std::vector<double> x{0.0, 3.0};
+  solve_square(std::vector<double>{stiffness, 1.0, -1.0, 0.0}, x);
+  EXPECT_NEAR(x[0] / 3.0, 1.0, round_off);
+  EXPECT_NEAR(x[1] / (3.0 * stiffness), 1.0, round_off);
 }
 
 template <int D>
