@@ -4,8 +4,8 @@
 
 namespace peristat {
 
-/// Whether this process gets so much address space (`ulimit -v`) in one piece; takes none. Needs
-/// nothing of the C library but system calls.
+/// True if this process can get so much address space (`ulimit -v`) in one piece. Reserves nothing.
+/// Needs nothing of the C library but system calls.
 [[nodiscard]] bool has_address_space(std::size_t bytes);
 
 }  // namespace peristat

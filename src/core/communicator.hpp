@@ -9,15 +9,15 @@
 #include <string>
 #include <vector>
 
-// Read as C++17, too, by what starts MPI: solvers/ranks/trilinos.
+// Also compiled as C++17 by the code that starts MPI: solvers/ranks/trilinos.
 
 namespace peristat {
 
-/// The ranks of a run: processes each of which holds a part of the body. Every call but rank, count
-/// and abort is one that all ranks make, in the same order.
+/// The ranks of a run: processes each of which holds a part of the body. Every call but rank,
+/// count, handle and abort is collective: all ranks make it, in the same order.
 ///
-/// Sums are added up in the order of the ranks, by every rank alike: all get the same bits, so that
-/// they decide alike, and a number of ranks gives the same bits again.
+/// Every rank adds sums up in the order of the ranks, so that all get the same bits and decide
+/// alike, and the same number of ranks gives the same bits again.
 class Communicator {
  public:
   Communicator() = default;
@@ -28,27 +28,27 @@ class Communicator {
   [[nodiscard]] virtual int rank() const = 0;
   [[nodiscard]] virtual int count() const = 0;
 
-  /// What the ranks give, rank by rank; all give as many numbers.
+  /// Concatenates the numbers of all ranks in their order; all give the same count.
   [[nodiscard]] virtual std::vector<double> all_of(const std::vector<double>& mine) const = 0;
 
-  /// At rank 0: visit(rank, bytes) with what every rank gives, in their order and one at a time, so
-  /// that rank 0 need not hold all of it. Elsewhere nothing is visited.
+  /// At rank 0 calls visit(rank, bytes) with the bytes of every rank, in their order and one at a
+  /// time, so that rank 0 need not hold all of them. Elsewhere visits nothing.
   using Visit = std::function<void(int rank, const std::string& bytes)>;
   virtual void gather(const std::string& mine, const Visit& visit) const = 0;
 
   /// Gives all ranks the bytes of rank 0.
   virtual void broadcast(std::string& bytes) const = 0;
 
-  /// Ends all ranks with a message on standard error; not a call that all make.
+  /// Ends all ranks with a message on standard error; not collective.
   [[noreturn]] virtual void abort(const std::string& message, int exit_code) const = 0;
 
-  /// An MPI_Comm, for what is compiled with MPI; null: a sole rank without MPI.
+  /// The MPI_Comm, for code compiled with MPI; null: a sole rank without MPI.
   [[nodiscard]] virtual const void* handle() const = 0;
 
   [[nodiscard]] std::vector<double> sum(const std::vector<double>& mine) const {
     return reduced(mine, [](double a, double b) { return a + b; });
   }
-  /// Numbers that are not finite stay: a comparison must not lose them.
+  /// A NaN of any rank is the result, so that comparisons see it.
   [[nodiscard]] std::vector<double> min(const std::vector<double>& mine) const {
     return reduced(mine, [](double a, double b) { return a != a || a < b ? a : b; });
   }
@@ -59,7 +59,7 @@ class Communicator {
   [[nodiscard]] double min(double mine) const { return min(std::vector<double>{mine})[0]; }
   [[nodiscard]] double max(double mine) const { return max(std::vector<double>{mine})[0]; }
 
-  /// Numbers of ranks before this one, added up, and those of all: exact below 2^53.
+  /// Sum of the numbers of the ranks before this one, and of all ranks: exact below 2^53.
   struct Counts {
     std::int64_t before = 0, all = 0;
   };

@@ -8,8 +8,8 @@
 
 namespace peristat {
 
-/// What the ranks give, as many numbers as each likes, one after the other; all get all of it. A
-/// call that all ranks make.
+/// Concatenates the numbers of all ranks, of any count each, in their order; all ranks get the
+/// result. Collective.
 [[nodiscard]] inline std::vector<double> concatenated(const std::vector<double>& mine,
                                                       const Communicator& ranks) {
   if (ranks.count() == 1) return mine;

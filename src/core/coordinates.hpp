@@ -6,7 +6,7 @@
 
 namespace peristat {
 
-// Vectors of plain doubles. The kernels have their own, over any scalar:
+// Vectors of plain doubles. The kernels have their own over any scalar:
 // src/measures/small_algebra.hpp.
 
 inline double dot(const Coordinates& a, const Coordinates& b) {
@@ -31,7 +31,7 @@ inline Coordinates cross(const Coordinates& a, const Coordinates& b) {
 
 inline double length(const Coordinates& a) { return std::hypot(a[0], a[1], a[2]); }
 
-/// The direction of a vector that is not zero.
+/// Direction of a nonzero vector.
 inline Coordinates unit(const Coordinates& a) { return scaled(1.0 / length(a), a); }
 
 }  // namespace peristat

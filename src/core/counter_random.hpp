@@ -4,15 +4,14 @@
 
 namespace peristat {
 
-/// Scatters the bits of a number all over: the finaliser of SplitMix64 (Steele, Lea and Flood
-/// 2014).
+/// Mixes the bits of a number: the finaliser of SplitMix64 (Steele, Lea and Flood 2014).
 [[nodiscard]] inline std::uint64_t scattered(std::uint64_t bits) {
   bits = (bits ^ (bits >> 30)) * 0xbf58476d1ce4e5b9u;
   bits = (bits ^ (bits >> 27)) * 0x94d049bb133111ebu;
   return bits ^ (bits >> 31);
 }
 
-/// The number that follows from a seed and a counter, without any number before it.
+/// Random number that depends on a seed and a counter alone, not on numbers drawn before.
 [[nodiscard]] inline std::uint64_t random_bits(std::uint64_t seed, std::uint64_t counter) {
   return scattered(scattered(seed) + 0x9e3779b97f4a7c15u * (counter + 1));
 }

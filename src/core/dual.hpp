@@ -2,8 +2,8 @@
 
 namespace peristat {
 
-/// A number and its rate of change along a direction: what sums and products make of both is exact,
-/// d(a b) = a db + b da.
+/// A number and its derivative along a direction (dual number); sums and products are
+/// differentiated exactly, d(a b) = a db + b da.
 struct Dual {
   double value = 0.0, rate = 0.0;
 

@@ -27,7 +27,7 @@ struct Expression::Parser {
   std::vector<std::string> parameters;
   std::optional<double> constant;
   mu::Parser parser;
-  // What the parser's variables point at; this struct therefore never moves.
+  // Variables of the parser point at these; this struct therefore never moves.
   Coordinates place{};
   std::vector<double> values;  // of the parameters
 
@@ -39,7 +39,7 @@ struct Expression::Parser {
     const std::string where =
         error.GetPos() >= 0 ? " (character " + std::to_string(error.GetPos() + 1) + ")" : "";
     std::string what = error.GetMsg();
-    // muParser counts from 0 in words of its own.
+    // Drops the position that muParser counts from 0; `where` counts from 1.
     const std::size_t position = what.find(" at position ");
     if (position != std::string::npos) {
       const std::size_t end = what.find_first_not_of("0123456789", position + 13);
@@ -76,7 +76,7 @@ struct Expression::Parser {
     std::vector<std::string> allowed = is_called ? functions : variables;
     std::string what = (is_called ? "unknown function " : "unknown variable ") + word + "; allowed";
     for (const std::string& name : allowed) what += (name == allowed[0] ? " are " : ", ") + name;
-    // Well spelt, but not of this dimension or not here.
+    // Correctly spelt, but not defined in this dimension or for this key.
     for (const char* known : {"x", "y", "z", "load", "t"}) {
       if (word == known) refuse(what);
     }
@@ -86,8 +86,8 @@ struct Expression::Parser {
     refuse(what + (nearest.empty() ? "" : "; did you mean " + nearest + "?"));
   }
 
-  /// Reads the text once for what muParser does not tell or takes in silence: unknown words, a
-  /// single '=', and a second comparison beside another one.
+  /// Reads the text once for unknown words, a single '=' and a second comparison beside another
+  /// one, which muParser does not report or silently accepts.
   /// @return whether a variable occurs
   bool scan() const {
     const auto is_digit = [](char c) { return c >= '0' && c <= '9'; };
@@ -153,7 +153,7 @@ struct Expression::Parser {
       refuse("an expression may have at most " + std::to_string(longest_text) +
              " characters; this one has " + std::to_string(text.size()));
     }
-    // muParser stops at a zero character in silence.
+    // muParser stops silently at a zero character.
     if (text.find('\0') != std::string::npos)
       refuse("an expression must not hold a zero character");
     const bool varies = scan();
@@ -179,7 +179,7 @@ struct Expression::Parser {
       refuse_parse(error);
     }
     if (!std::isfinite(result)) {
-      // Without a dimension (total forces) only the parameters tell where.
+      // Without a dimension (total forces) only the parameters say where.
       static constexpr const char* names[] = {"", "(x) = ", "(x, y) = ", "(x, y, z) = "};
       std::string where = names[dimension];
       if (dimension > 0) where += place_text(place, dimension);

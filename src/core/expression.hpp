@@ -15,8 +15,9 @@ namespace peristat {
 /// their names (`load`), and the constants pi, spacing_x, spacing_y, spacing_z (along the lattice's
 /// axes) and, where these are equal, spacing [m]. Decimals have a point, whatever the locale.
 ///
-/// What muParser takes but hardly anyone means is refused: an assignment (x = 1 for x == 1), a
-/// chain of comparisons (0 < x < 1 compares a truth value) and several values (1, 2 for 1.2).
+/// Refuses three forms that muParser accepts but that are hardly ever meant: an assignment (x = 1
+/// for x == 1), a chain of comparisons (0 < x < 1 compares a truth value) and several values (1, 2
+/// for 1.2).
 class Expression {
  public:
   /// @param spacing 0 where there is none

@@ -8,12 +8,12 @@
 
 namespace peristat {
 
-/// Wrong input, told to the person who wrote it (exit code 2).
+/// Wrong input, reported to the person who wrote it (exit code 2).
 ///
-/// Code below the runner names what it was given in its own terms, the member of a specification
-/// ("supports[1].displacement[0]"), the value found and what is allowed; the runner, which knows
-/// the case file, says which key that is and puts file, line and column in front. What somebody
-/// wrote is quoted shortened and without control characters (readable_text.hpp).
+/// Code below the runner names the input in its own terms: the member of a specification
+/// ("supports[1].displacement[0]"), the value found and what is allowed. The runner, which knows
+/// the case file, replaces the member by its key and puts file, line and column in front. Quoted
+/// input is shortened and has no control characters (readable_text.hpp).
 class InputError : public std::runtime_error {
  public:
   /// @param key   dotted key of the case file, below the runner a member; or empty
@@ -31,7 +31,7 @@ class InputError : public std::runtime_error {
   [[nodiscard]] const std::string& key() const { return key_; }
   [[nodiscard]] const std::string& value() const { return value_; }
   [[nodiscard]] const std::string& allowed() const { return allowed_; }
-  /// Empty while nobody who knows the file has seen the error.
+  /// Empty until code that knows the file fills it in.
   [[nodiscard]] const std::string& place() const { return place_; }
 
   /// "key = value: allowed", without the parts that are empty.
@@ -43,7 +43,8 @@ class InputError : public std::runtime_error {
   }
 
  private:
-  /// Characters of a message's parts. The sentence may quote a value and list all known keys.
+  /// Most characters of the parts of a message. The sentence may quote a value and list all known
+  /// keys.
   static constexpr std::size_t most_of_value = 80, most_of_place = 300, most_of_sentence = 2000;
 
   std::string key_, value_, allowed_, place_;

@@ -16,8 +16,8 @@ struct Panel {
   double size = 0.0;  ///< integral of |f|
 };
 
-/// The rule once. Boost halves, too, but compares errors of [-1, 1] with a tolerance of [from, to]:
-/// over a short range it would halve to the end, a million times.
+/// Applies the rule once. Boost can halve panels, too, but it compares errors on [-1, 1] with a
+/// tolerance for [from, to]: over a short range it would halve to the end, a million times.
 Panel panel(const Function& of, double from, double to) {
   const double middle = 0.5 * (from + to), half = 0.5 * (to - from);
   const auto on_unit = [&](double t) { return of(middle + half * t); };
@@ -36,7 +36,7 @@ double refined(const Function& of, const Panel& whole, double tolerance, int mos
 }  // namespace
 
 double integral(const Function& of, double from, double to) {
-  constexpr int most_halvings = 40;             // what holds a jump is then 1e-12 of the range
+  constexpr int most_halvings = 40;             // a panel with a jump is then 1e-12 of the range
   constexpr double relative_tolerance = 1e-14;  // some tens of round-offs
   const Panel whole = panel(of, from, to);
   return refined(of, whole, relative_tolerance * whole.size, most_halvings);

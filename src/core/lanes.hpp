@@ -20,7 +20,7 @@ using Order = long long __attribute__((vector_size(4 * sizeof(long long))));
 
 }  // namespace lanes_detail
 
-/// Whether something holds of each of four lanes: all bits of it, or none.
+/// Truth values of four lanes: all bits of a lane set, or none.
 struct LaneMask {
   lanes_detail::Order bits;
 
@@ -39,10 +39,9 @@ inline bool any_of(const LaneMask& a) {
 }
 inline bool none_of(const LaneMask& a) { return !any_of(a); }
 
-/// One double per interaction of a batch, a vector register of the compiler. Measures and
-/// potentials are templates over their scalar: the kernels call them with Lanes, tests and single
-/// interactions with double. (<experimental/simd> does the same, and takes a second to compile in
-/// every file.)
+/// One double per interaction of a batch, in a vector register. Measures and potentials are
+/// templates over their scalar: the kernels call them with Lanes, tests and single interactions
+/// with double. (<experimental/simd> does the same, and takes a second to compile in every file.)
 class Lanes {
  public:
   Lanes() = default;
@@ -51,7 +50,7 @@ class Lanes {
   explicit Lanes(const lanes_detail::Quad& row) : row_(row) {}
   /// Four numbers in a row.
   explicit Lanes(const double* from) { std::memcpy(&row_, from, sizeof row_); }
-  /// of_lane(l) in each.
+  /// of_lane(l) in lane l.
   template <class OfLane>
   requires requires(const OfLane& of_lane) { double(of_lane(0)); }
   explicit Lanes(const OfLane& of_lane)
@@ -135,8 +134,8 @@ inline void transpose(Quad& a, Quad& b, Quad& c, Quad& d) {
 
 }  // namespace lanes_detail
 
-/// Reads four rows of four consecutive doubles and turns them: column c of row l becomes lane l of
-/// columns[c]. Contiguous loads and shuffles beat hardware gathers by a factor of 1.6 here.
+/// Reads four rows of four consecutive doubles and transposes them: column c of row l becomes lane
+/// l of columns[c]. Contiguous loads and shuffles beat hardware gathers by a factor of 1.6 here.
 inline void load_transposed(const double* row0, const double* row1, const double* row2,
                             const double* row3, Lanes columns[4]) {
   using namespace lanes_detail;

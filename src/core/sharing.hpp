@@ -12,10 +12,10 @@
 
 namespace peristat {
 
-/// What a part of a body shares with the parts that other ranks have. Its points are those that the
-/// rank owns, then ghosts, which follow their owners, then images of both, first those of owned
-/// points. Arrays per degree of freedom may have handles of constraints after them: all ranks have
-/// these, and rank 0 owns them.
+/// Index map of a part: its relation to the parts on other ranks. The points of a part are ordered:
+/// owned points, ghosts (copies of points that other ranks own), images of both, those of owned
+/// points first. Arrays per degree of freedom may end with generalised degrees of freedom (handles)
+/// of constraints: all ranks have these, and rank 0 owns them.
 class Sharing {
  public:
   Sharing() = default;
@@ -25,37 +25,37 @@ class Sharing {
 
   [[nodiscard]] virtual const Communicator& ranks() const = 0;
   [[nodiscard]] virtual Index owned() const = 0;
-  /// That are here, ghosts and images too.
+  /// Number of points on this rank, with ghosts and images.
   [[nodiscard]] virtual Index count() const = 0;
   [[nodiscard]] virtual Index first_image() const = 0;
-  /// How many images of owned points there are, the first ones.
+  /// Number of images of owned points, which come first among the images.
   [[nodiscard]] virtual Index owned_images() const = 0;
-  /// Of each owned point in the whole body, ascending.
+  /// Number of each owned point in the whole body, ascending.
   [[nodiscard]] virtual const std::vector<GlobalIndex>& number() const = 0;
 
-  /// Gives ghosts, and handles, what their owners have; a call that all ranks make.
+  /// Copies the owners' values to ghosts and handles. Collective.
   /// @param values points x dimension, and handles where there are any
   virtual void update_ghosts(std::span<double> values) const = 0;
 };
 
-/// Replaces values of which each rank has a share by their sums; a call that all ranks make.
+/// Replaces values of which each rank has a summand by their sums over all ranks. Collective.
 inline void add_up(const Communicator& ranks, std::span<double> shares) {
   if (shares.empty()) return;
   const std::vector<double> all = ranks.sum(std::vector<double>(shares.begin(), shares.end()));
   std::copy(all.begin(), all.end(), shares.begin());
 }
 
-/// The sum of what ranks have a share of; of a whole body (null) what is given.
+/// Returns the sum over all ranks; for a whole body (null) the argument itself.
 [[nodiscard]] inline double sum_of_all(const Sharing* sharing, double share) {
   return sharing ? sharing->ranks().sum(share) : share;
 }
 
-/// Whether it is so on any rank; of a whole body (null) what is given.
+/// True if the flag is set on any rank; for a whole body (null) the flag itself.
 [[nodiscard]] inline bool any_of_all(const Sharing* sharing, bool is_here) {
   return sharing ? sharing->ranks().max(is_here ? 1.0 : 0.0) > 0.0 : is_here;
 }
 
-/// Gives ghosts the one value per point that their owners have; a call that all ranks make.
+/// Copies the owners' one value per point to ghosts. Collective.
 inline void update_ghost_values(const Sharing& sharing, int dimension, std::span<double> values) {
   const auto d = std::size_t(dimension);
   std::vector<double> vectors(values.size() * d);
@@ -64,7 +64,7 @@ inline void update_ghost_values(const Sharing& sharing, int dimension, std::span
   for (std::size_t i = 0; i < values.size(); ++i) values[i] = vectors[i * d];
 }
 
-/// Numbers of points in the whole body, those of ghosts too. A call that all ranks make.
+/// Returns the numbers in the whole body of owned points and ghosts. Collective.
 [[nodiscard]] inline std::vector<double> whole_numbers(const Sharing& sharing, std::size_t points,
                                                        int dimension) {
   std::vector<double> numbers(sharing.number().begin(), sharing.number().end());
@@ -73,9 +73,8 @@ inline void update_ghost_values(const Sharing& sharing, int dimension, std::span
   return numbers;
 }
 
-/// What the ranks give one after the other; each gives as many numbers as it wants. A call that all
-/// make.
-/// @return at rank 0 what all give, elsewhere nothing
+/// Concatenates the numbers of all ranks, of any count each, at rank 0. Collective.
+/// @return the bytes at rank 0, elsewhere nothing
 [[nodiscard]] inline std::string gathered(const Communicator& ranks,
                                           const std::vector<double>& mine) {
   std::string all, bytes(mine.size() * sizeof(double), '\0');
@@ -90,7 +89,7 @@ inline void update_ghost_values(const Sharing& sharing, int dimension, std::span
   return numbers;
 }
 
-/// The same at all ranks.
+/// Concatenates the numbers of all ranks at every rank. Collective.
 [[nodiscard]] inline std::vector<double> all_together(const Communicator& ranks,
                                                       const std::vector<double>& mine) {
   std::string all = gathered(ranks, mine);

@@ -7,15 +7,15 @@
 
 namespace peristat {
 
-/// Distances of a lattice's points along its axes [m]. Where one number is asked for it is the edge
-/// of the square or cube of the same volume, (s_1 ... s_d)^(1/d), which is also what a cloud has as
-/// its mean spacing; of equal distances it is that distance to the last bit.
+/// Distances of a lattice's points along its axes [m]. Converts to one number: the edge of the
+/// square or cube of the same volume, (s_1 ... s_d)^(1/d), which is also the mean spacing of a
+/// cloud. For equal distances it is that distance to the last bit.
 class Spacing {
  public:
-  Spacing(double everywhere = 0.0)  // a number stands for a lattice of squares or cubes
+  Spacing(double everywhere = 0.0)  // one number is a lattice of squares or cubes
       : along_{everywhere, everywhere, everywhere}, edge_(everywhere) {}
 
-  /// @param along per axis; beyond the dimension they don't count
+  /// @param along per axis; entries beyond the dimension are ignored
   Spacing(const Coordinates& along, int dimension) : Spacing(along[0]) {
     double volume = 1.0;
     for (int c = 0; c < dimension; ++c) {
@@ -30,7 +30,7 @@ class Spacing {
 
   [[nodiscard]] double along(int axis) const { return along_[axis]; }
   [[nodiscard]] double largest() const { return *std::max_element(along_.begin(), along_.end()); }
-  /// Whether cells are squares or cubes.
+  /// True if cells are squares or cubes.
   [[nodiscard]] bool is_square() const { return along_[1] == along_[0] && along_[2] == along_[0]; }
 
  private:

@@ -4,7 +4,7 @@
 
 namespace peristat {
 
-/// Adds the wall time of its life to a sum of seconds.
+/// Adds the wall time between its construction and destruction to a sum of seconds.
 class Stopwatch {
  public:
   explicit Stopwatch(double& sum) : sum_(sum), start_(std::chrono::steady_clock::now()) {}

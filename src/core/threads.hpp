@@ -17,9 +17,9 @@ class ThreadError : public MachineError {
                      " threads; ask for fewer (--threads, OMP_NUM_THREADS)") {}
 };
 
-/// Runs body(thread) on exactly so many threads, each with a share of the work that belongs to its
-/// number. OpenMP may grant fewer than a parallel region asks for (OMP_DYNAMIC, a nested region),
-/// and then the shares of the others would be left out in silence.
+/// Runs body(thread) on exactly so many threads, each with the share of the work that belongs to
+/// its number. OpenMP may grant fewer threads than a parallel region requests (OMP_DYNAMIC, a
+/// nested region), and the shares of the missing ones would silently be left out.
 /// @throws ThreadError; body has then not run
 template <class Body>
 void run_on_threads(int threads, const Body& body) {
@@ -36,7 +36,7 @@ void run_on_threads(int threads, const Body& body) {
   if (granted != threads) throw ThreadError(granted, threads);
 }
 
-/// Makes sure that later regions get so many threads, whatever OMP_DYNAMIC and
+/// Makes sure that later parallel regions get so many threads, whatever OMP_DYNAMIC and
 /// OMP_MAX_ACTIVE_LEVELS say.
 /// @throws ThreadError
 inline void require_threads(int threads) {

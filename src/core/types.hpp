@@ -17,7 +17,7 @@ using Offset = std::int64_t;
 /// Coordinates of a place [m]; components beyond the dimension are zero.
 using Coordinates = std::array<double, 3>;
 
-/// Matrix of three rows; beyond the dimension zero.
+/// Matrix of three rows; entries beyond the dimension are zero.
 using Tensor = std::array<std::array<double, 3>, 3>;
 
 }  // namespace peristat
