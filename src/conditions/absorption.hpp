@@ -7,8 +7,8 @@
 
 namespace peristat {
 
-/// Rate eta per point at which layers absorb its velocity, dv/dt = -eta v beside its forces [1/s];
-/// empty without layers. Of several layers it adds up. Images have none of their own.
+/// Damping rate eta per point, dv/dt = -eta v in addition to its forces [1/s]; empty without
+/// layers. Rates of several layers add up. Images have rate 0.
 /// @throws InputError ("absorbing[k].set", "absorbing[k].rate") as add_field_of_place does, and for
 ///         a rate that is negative somewhere
 [[nodiscard]] std::vector<double> absorption_rates(

@@ -115,7 +115,7 @@ Conditions::Conditions(const Points& points, const std::vector<SupportSpecificat
   hold_periodic_cell(constraints, setting);
   prescribe_handles();
   if (!control.empty()) {
-    // What follows others answers where they do.
+    // A follower moves with its masters, so it is not held.
     std::vector<char> held = prescribed_;
     for (std::size_t dof = 0; dof < held.size(); ++dof) {
       if (made_.constraints.dependent()[dof]) held[dof] = 0;
@@ -163,8 +163,8 @@ void Conditions::prescribe_handles() {
   }
 }
 
-/// A cell may move as a whole along axes that no support holds, which changes nothing: it is held
-/// at the point next to its middle. In motion its inertia holds it.
+/// Fixes the point next to the middle of a periodic cell along axes that no support holds: the cell
+/// may translate along these without any change. In a motion inertia holds it.
 void Conditions::hold_periodic_cell(const ConstraintSpecification& constraints,
                                     const LoadSetting& setting) {
   const bool is_held = !constraints.rigid_sets.empty() || !constraints.rollers.empty() ||
@@ -186,7 +186,7 @@ void Conditions::hold_periodic_cell(const ConstraintSpecification& constraints,
 
 std::optional<Index> Conditions::point_of_middle(const LoadSetting& setting) const {
   const Index own = points_.owned.value_or(points_.own());
-  std::vector<double> sum(4, 0.0);  // of places, and of points
+  std::vector<double> sum(4, 0.0);  // of positions, and number of points
   for (Index i = 0; i < own; ++i) {
     const Coordinates at = points_.position(i);
     for (std::size_t c = 0; c < 3; ++c) sum[c] += at[c];
@@ -196,7 +196,7 @@ std::optional<Index> Conditions::point_of_middle(const LoadSetting& setting) con
   const Coordinates middle = scaled<3>(1.0 / sum[3], Coordinates{sum[0], sum[1], sum[2]});
   const NearestPoint mine = nearest_point(points_, middle, own);
   if (!ranks_) return mine.point;
-  // Of those as near but for round-off the one with the lowest number, as of a whole body.
+  // Among points equally near within round-off the lowest number wins, as for a whole body.
   const double least = ranks_->min(mine.distance);
   const bool is_as_near = own > 0 && mine.distance <= least + round_off_of_distances(points_);
   const double number = is_as_near ? double(setting.numbers.number_of(mine.point))
@@ -239,7 +239,7 @@ Conditions::Loaded Conditions::loaded(const LoadSpecification& load, const LoadS
   const bool is_everywhere = load.kind == Kind::gravity && load.set.empty();
   on.points =
       is_everywhere ? points_of_body(points_) : points_of_set(points_, load.set, table + ".set");
-  if (points_.owned) {  // a ghost's force is its owner's
+  if (points_.owned) {  // the owner applies a ghost's force
     std::erase_if(on.points, [&](Index point) { return point >= *points_.owned; });
   }
   for (const Index point : on.points) on.amount.push_back(points_.volume[point]);
@@ -366,12 +366,12 @@ void Conditions::try_stages() {
     }
     for (const double value : values) largest_ = std::max(largest_, std::abs(value));
   };
-  if (control_) return try_at({0.0, 0.0});  // nobody knows where its loads will go
+  if (control_) return try_at({0.0, 0.0});  // its loads are not known in advance
   const auto try_share = [&](double share) { try_at(share * programme_.end()); };
-  // The end first: it tells how large displacements are.
+  // The end first: it sets largest_.
   for (const double share : {1.0, 0.0, 0.5}) try_share(share);
   if (first_.empty()) return;
-  // Shares at which hardly any two different expressions agree.
+  // Fractions of the programme at which two different expressions hardly ever agree.
   for (const double share : {0.0737, 0.1831, 0.2946, 0.3819, 0.6093, 0.7548, 0.8862}) {
     try_share(share);
   }
@@ -491,7 +491,7 @@ double follows_plane(const ImageKind& kind, const Restraint& plane) {
 Coordinates Conditions::reaction_of(const Restraint& restraint,
                                     std::span<const double> gradient) const {
   const std::size_t d = std::size_t(points_.dimension);
-  // All ranks know the forces on handles.
+  // All ranks know the forces on handles, so rank 0 alone reports them.
   const bool is_told_elsewhere = ranks_ && ranks_->rank() > 0 && !restraint.handles.empty();
   Coordinates sum{};
   if (is_told_elsewhere) return sum;
@@ -513,7 +513,7 @@ Coordinates Conditions::reaction_of(const Restraint& restraint,
       sum[0] = gradient[std::size_t(restraint.handles.front()) * d];
       break;
     case Restraint::Kind::symmetry:
-      // What it takes to move the plane, and with it all that is mirrored in it.
+      // Force conjugate to a displacement of the plane together with all images mirrored in it.
       for (Index image = points_.own(); image < points_.count(); ++image) {
         const std::size_t axis = std::size_t(restraint.axis);
         sum[axis] += follows_plane(points_.image_kind(image), restraint) *
@@ -598,7 +598,7 @@ void Conditions::add_held_sums(std::span<const double> displacement, Holding& ho
     holding.motions.insert(holding.motions.end(), held.begin(), held.end());
     return;
   }
-  // Ranks have shares of a sum, and the first of them tells it.
+  // Each rank has a summand; the lowest rank with a member reports the total.
   std::vector<double> shares, first;
   for (const HeldMotion& motion : held) {
     shares.insert(shares.end(), motion.along.begin(), motion.along.end());
@@ -651,7 +651,7 @@ Holding Conditions::holding(std::span<const double> displacement) const {
   for (const Constraints::RigidSet& set : constraints().rigid_sets()) {
     const bool is_here = !set.members.empty() && points_.owns(set.members.front());
     if (ranks_) holding.ties.push_back(is_here ? set.members.front() : -1);
-    if (set.members.empty()) continue;  // on this rank
+    if (set.members.empty()) continue;  // none on this rank
     for (const Index member : set.members) {
       holding.links.push_back({set.members.front(), member});
     }

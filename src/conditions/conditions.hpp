@@ -25,18 +25,18 @@
 
 namespace peristat {
 
-/// What loads depend on beside the points; arrays are per point, or empty if that is not known.
+/// Data that loads depend on besides the points; arrays are per point, or empty if unknown.
 struct LoadSetting {
   double horizon = 0.0;                        ///< [m], for tractions
   std::vector<double> density = {};            ///< [kg/m3], for gravity
   std::vector<double> thermal_expansion = {};  ///< [1/K], for the temperature
-  /// Where tractions act on the surface; nothing: they are forces on points.
+  /// Sites at which tractions act on the surface; nothing: tractions are forces on points.
   std::optional<std::vector<SurfaceSite>> surface = std::nullopt;
-  const Communicator* ranks = nullptr;  ///< that have parts of the body; null: it is whole
-  NumberedPoints numbers{};             ///< of a part
+  const Communicator* ranks = nullptr;  ///< that have parts of the body; null: the body is whole
+  NumberedPoints numbers{};             ///< of the points of a part
 };
 
-/// What strains the points without forces.
+/// Eigenstrains, given directly or by a change of temperature.
 struct Eigenstrains {
   std::vector<EigenstrainSpecification> given{};
   std::optional<std::string> temperature_change{};  ///< [K], an expression of x, y, z and load
@@ -45,16 +45,16 @@ struct Eigenstrains {
 };
 
 /// Supports, constraints and loads of a body along its loading programme. Arrays have one entry per
-/// degree of freedom (point x dimension + component), those of the constraints' handles last.
+/// degree of freedom (point x dimension + component), then those of the constraints' handles
+/// (generalised degrees of freedom).
 class Conditions {
  public:
   /// @throws InputError ("supports[k].…", "loads[k].…", k from 0) for a set that is unknown or
   ///         empty, a bad expression, or two supports that prescribe different displacements to one
-  ///         point and component (compared at some stages, and whenever they are used); what
-  ///         DisplacementControl
-  ///         or make_constraints throws
-  /// @param control in the place of the first load parameter: the programme's first table is then
-  ///        of its values [m]; no terms: none
+  ///         point and component (compared at some stages, and whenever they are used); also what
+  ///         DisplacementControl or make_constraints throws
+  /// @param control replaces the first load parameter: the programme's first table then gives its
+  ///        values [m]; no terms: none
   Conditions(const Points& points, const std::vector<SupportSpecification>& supports,
              const std::vector<LoadSpecification>& loads, LoadingProgramme programme = {},
              const std::vector<ControlTerm>& control = {}, const LoadSetting& setting = {},
@@ -63,7 +63,7 @@ class Conditions {
 
   [[nodiscard]] int dimension() const { return points_.dimension; }
   [[nodiscard]] const LoadingProgramme& programme() const { return programme_; }
-  /// Null where the programme's first table is of the load factor.
+  /// Null if the programme's first table gives the load factor.
   [[nodiscard]] const DisplacementControl* control() const {
     return control_ ? &*control_ : nullptr;
   }
@@ -73,11 +73,10 @@ class Conditions {
   [[nodiscard]] const Constraints& constraints() const { return made_.constraints; }
   [[nodiscard]] const std::vector<Restraint>& restraints() const { return made_.restraints; }
 
-  /// Whether a degree of freedom has no equation: it is prescribed, or follows others.
+  /// True for a degree of freedom without an equation: it is prescribed or a follower.
   [[nodiscard]] const std::vector<char>& prescribed() const { return prescribed_; }
 
-  /// What holds pieces of the body, at a displacement. Of a part of a body a call that all ranks
-  /// make.
+  /// Returns what restrains pieces of the body at a displacement. Collective if the body has parts.
   [[nodiscard]] Holding holding(std::span<const double> displacement) const;
 
   /// Overwrites the prescribed entries with their displacement [m] at a point of the programme.
@@ -88,12 +87,12 @@ class Conditions {
   /// @throws InputError if one is not finite
   void external_force(const LoadPoint& at, std::span<double> force) const;
 
-  /// What the load makes of the energy there; null where there are neither eigenstrains nor
-  /// pressures, nor a ground that moves.
-  /// @throws InputError if one is not finite, or leaves nothing of a length
+  /// Returns the load-dependent data of the energy there; null without eigenstrains, pressures,
+  /// surface tractions and a moving ground.
+  /// @throws InputError if a value is not finite or an eigenstrain is not above -1
   [[nodiscard]] SharedEnvironment environment(const LoadPoint& at) const;
 
-  /// Whether these depend on where the load is.
+  /// True if these depend on the load parameters.
   [[nodiscard]] bool supports_move() const { return changes_.supports; }
   [[nodiscard]] bool loads_change() const { return changes_.loads; }
   [[nodiscard]] bool environment_changes() const { return changes_.environment; }
@@ -104,17 +103,19 @@ class Conditions {
   /// Faces that pressures act on, in the order of Environment::pressure.
   [[nodiscard]] const PressedBoundary& pressed_boundary() const { return pressed_; }
 
-  /// Reaction of each support's set [N]: the sum over its prescribed degrees of freedom of what the
-  /// supports add to hold them, dE/dx - external force. Points of two sets count in both. Likewise
-  /// of the restraints: what rigid sets and rollers add, what the part of the body beyond a plane
-  /// of symmetry or a period does, and, in its first component, the multiplier of a linear
-  /// constraint; and of the foundations. Of a part of a body this rank's share.
+  /// Returns the reaction of each support's set [N]: the sum of dE/dx - external force over its
+  /// prescribed degrees of freedom, which is the force that the supports add. Points of two sets
+  /// count in both. Also returns the reactions of restraints: the forces of rigid sets and rollers,
+  /// those of the part of the body beyond a plane of symmetry or a period and, in its first
+  /// component, the multiplier of a linear constraint; and the forces of foundations. For a part of
+  /// a body these are this rank's summands.
   /// @param gradient folded, see Constraints
   [[nodiscard]] std::map<std::string, Coordinates> reactions(
       std::span<const double> gradient, std::span<const double> external,
       std::span<const double> displacement, const SharedEnvironment& environment) const;
 
-  /// Moment about the present centre of each rigid set [N m] that it adds, or this rank's share.
+  /// Moment of each rigid set's constraint about the set's present centre [N m]; for a part of a
+  /// body this rank's summand.
   [[nodiscard]] std::map<std::string, Coordinates> moments(std::span<const double> displacement,
                                                            std::span<const double> gradient,
                                                            std::span<const double> external) const;
@@ -135,11 +136,11 @@ class Conditions {
     int component;
     Expression displacement;
   };
-  /// The points of a load, and what its value is multiplied with at each to be a force.
+  /// Points of a load, and the factor at each that turns the load's value into a force.
   struct Loaded {
     std::vector<Index> points;
     std::vector<double> amount;  // volume [m3], mass [kg], or area [m2]
-    double spread_over = 1.0;    // the whole volume of a total force [m3]
+    double spread_over = 1.0;    // total force: volume that it is spread over [m3]
   };
   struct Load {
     std::string key;
@@ -152,7 +153,7 @@ class Conditions {
     std::string key;
     std::vector<Index> points;
     std::vector<double> factor;  // per point
-    Expression value;            // [1], or of the temperature [K]
+    Expression value;            // [1], or change of temperature [K]
   };
 
   struct Pressure {
@@ -171,11 +172,12 @@ class Conditions {
   void refuse_shared_names() const;
   void prescribe_handles();
   void hold_periodic_cell(const ConstraintSpecification& constraints, const LoadSetting& setting);
-  /// The owned point next to the middle of the body, on the rank that has it.
+  /// Returns the owned point nearest to the middle of the body on the rank that owns it, nothing on
+  /// others.
   [[nodiscard]] std::optional<Index> point_of_middle(const LoadSetting& setting) const;
-  /// Before sums over all ranks: what one rank alone has no value of, all refuse.
+  /// Calls add_loads ahead of a collective sum: if it fails on one rank, all ranks throw.
   void add_loads_of_all(const std::function<void()>& add_loads) const;
-  /// Refuses forces that would have to be borne where a cell is held that nothing holds.
+  /// Throws if the loads do not add up to 0 along an axis in which nothing holds a periodic cell.
   void require_balance(std::span<const double> force, const std::string& key) const;
   void prescribe_handles_at(std::span<const double> loads, double preload,
                             std::span<double> displacement) const;
@@ -185,7 +187,7 @@ class Conditions {
   void find_shared();
   void find_changes();
   void try_stages();
-  /// Where a point, or a handle that stands at a place, has gone.
+  /// Returns the present position of a point, or of a handle with the reference position `at`.
   [[nodiscard]] Coordinates moved(Index row, Coordinates at,
                                   std::span<const double> displacement) const;
   [[nodiscard]] std::size_t dof_of(const Prescription& prescription, Index point) const {
@@ -208,13 +210,13 @@ class Conditions {
   std::vector<char> prescribed_;
   MadeConstraints made_;
   std::optional<DisplacementControl> control_;
-  /// First of the prescriptions of each degree of freedom; empty if none has more than one.
+  /// First prescription of each degree of freedom; empty if none has more than one.
   std::vector<const Prescription*> first_;
-  std::array<bool, 3> floats_{};  ///< components in which nothing holds a cell
+  std::array<bool, 3> floats_{};  ///< components in which nothing holds a periodic cell
   struct Changes {
     bool supports = false, loads = false, environment = false;
   } changes_;
-  double largest_ = 0.0;  ///< displacement at the stages that were tried [m]
+  double largest_ = 0.0;  ///< largest displacement at the stages that were tried [m]
 };
 
 }  // namespace peristat

@@ -14,7 +14,7 @@ namespace peristat {
 /// A set that moves as one rigid body. Expressions of the load parameters; nothing: free.
 struct RigidSetSpecification {
   std::string set{};
-  std::optional<Coordinates> centre{};  ///< [m]; nothing: that of the set's volume
+  std::optional<Coordinates> centre{};  ///< [m]; nothing: the centroid of the set
   std::array<std::optional<std::string>, 3> displacement{};  ///< of the centre [m]
   /// Rotation vector [rad]; 2D: its first component, about z.
   std::array<std::optional<std::string>, 3> rotation{};
@@ -23,9 +23,8 @@ struct RigidSetSpecification {
 /// Points that are held along one direction and slide across it.
 struct RollerSpecification {
   std::string set{};
-  std::string label{};  ///< in the place of the set's name
-  /// In the place of a set: where a roller touches the body [m], and in 3D the other end of its
-  /// line.
+  std::string label{};  ///< name of a roller without a set
+  /// Instead of a set: where a roller touches the body [m], and in 3D the other end of its line.
   std::optional<Coordinates> at{}, to{};
   Coordinates normal{};
   /// Along the normal [m], an expression of place and load parameters; "free": unknown, but the
@@ -35,8 +34,8 @@ struct RollerSpecification {
   [[nodiscard]] const std::string& name() const { return set.empty() ? label : set; }
 };
 
-/// The sum of weighted mean displacements of sets is a displacement [m], an expression of the load
-/// parameters.
+/// A weighted sum of mean displacements of sets equals a displacement [m], an expression of the
+/// load parameters.
 struct LinearConstraintSpecification {
   std::string name{};
   std::vector<ControlTerm> terms{};
@@ -46,20 +45,21 @@ struct LinearConstraintSpecification {
 /// Two sides of a cell across an axis, between which the displacement jumps by the length times a
 /// column of the mean displacement gradient.
 struct PeriodSpecification : Period {
-  /// du/dx_axis, expressions of the load parameters; nothing: free, the body's mean stress has no
-  /// such component.
+  /// du/dx_axis, expressions of the load parameters; nothing: free, this component of the body's
+  /// mean stress is 0.
   std::array<std::optional<std::string>, 3> gradient{"0", "0", "0"};
 };
 
-/// Another plane of symmetry across the axis of one of them, on the body's other side.
+/// Returns the other plane of symmetry across the axis of planes[of], on the body's other side, or
+/// null.
 [[nodiscard]] const SymmetryPlane* opposite(const std::vector<SymmetryPlane>& planes,
                                             std::size_t of);
 
-/// What reactions of a plane are told by: "symmetry_x", or, of two, "symmetry_x-" of the lower one
-/// and "symmetry_x+".
+/// Name of a plane in reports of reactions: "symmetry_x", or of two planes "symmetry_x-" for the
+/// lower one and "symmetry_x+".
 [[nodiscard]] std::string name_of_plane(const std::vector<SymmetryPlane>& planes, std::size_t of);
 
-/// What a period is told by: "period_x".
+/// Name of a period in reports: "period_x".
 [[nodiscard]] std::string name_of_period(const Period& period);
 
 struct ConstraintSpecification {

@@ -8,11 +8,11 @@
 
 namespace peristat {
 
-/// What is controlled in the place of the first load parameter: a weighted sum of displacements,
+/// Displacement control: a weighted sum of displacements replaces the first load parameter,
 ///
 ///   c = sum over terms t of sum over components a of w_ta mean over the set of u_a   [m],
 ///
-/// an opening of a mouth or a shortening of a column, for example.
+/// for example the opening of a mouth or the shortening of a column.
 class DisplacementControl {
  public:
   /// @param prescribed per degree of freedom

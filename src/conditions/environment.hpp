@@ -5,8 +5,8 @@
 
 namespace peristat {
 
-/// What stands for the inertia of points in a step of an implicit motion: springs to where inertia
-/// alone would take them. Arrays have an entry per degree of freedom; empty: none.
+/// Inertia of points in a step of an implicit motion: springs to where inertia alone would take
+/// them. Arrays have an entry per degree of freedom; empty: none.
 struct InertialSprings {
   std::vector<double> stiffness{};  ///< [N/m]
   std::vector<double> place{};      ///< displacement without stretch of the spring [m]
@@ -14,10 +14,10 @@ struct InertialSprings {
   friend bool operator==(const InertialSprings&, const InertialSprings&) = default;
 };
 
-/// What the load makes the energy itself depend on, beside displacement and history.
+/// Load-dependent data of the energy, beside displacement and history.
 struct Environment {
-  /// Per point, 0 at rest: by how much of its length the body around it would be longer if nothing
-  /// held it. Empty: none.
+  /// Per point, 0 at rest: relative elongation that the body around it would have if nothing held
+  /// it. Empty: none.
   std::vector<double> eigenstretch{};
   /// Per face of the boundary that pressures act on [Pa]; empty: none.
   std::vector<double> pressure{};
@@ -25,19 +25,19 @@ struct Environment {
   /// Empty: none.
   std::vector<double> ground{};
   InertialSprings inertia{};
-  /// On the surface at points, points x dimension [Pa]; empty: surfaces are free.
+  /// Traction on the surface at points, points x dimension [Pa]; empty: surfaces are free.
   std::vector<double> traction{};
 
-  /// Whether some forces of the model are those of loads, not of interactions.
+  /// True if some forces of the model are those of loads, not of interactions.
   [[nodiscard]] bool has_follower_force() const { return !pressure.empty() || !traction.empty(); }
 
   friend bool operator==(const Environment&, const Environment&) = default;
 };
 
-/// Made once for a load point and shared by all states that are there; null where nothing of it is.
+/// Made once per load point and shared by all states there; null if it would be empty.
 using SharedEnvironment = std::shared_ptr<const Environment>;
 
-/// On the straight way from one to another of the same conditions.
+/// Interpolates linearly between two environments of the same conditions.
 [[nodiscard]] SharedEnvironment between(const SharedEnvironment& from, const SharedEnvironment& to,
                                         double share);
 

@@ -7,11 +7,11 @@
 
 namespace peristat {
 
-/// Adds the value of an expression of x, y and z to those of the points of a set; of all but images
-/// if the set is empty.
+/// Adds the value of an expression of x, y and z to the entries of the points of a set; of all
+/// points but images if the set is empty.
 /// @param key    of the table, for errors: "initial[0]"
-/// @param member of it that has the expression: "velocity[1]"
-/// @param stride, offset where the value of a point stands: values[point * stride + offset]
+/// @param member of the table that has the expression: "velocity[1]"
+/// @param stride, offset position of a point's entry: values[point * stride + offset]
 /// @throws InputError for a set that is unknown or empty, a bad expression, and a value that is not
 ///         finite, with its place
 void add_field_of_place(const Points& points, const std::string& set, const std::string& text,

@@ -47,7 +47,7 @@ std::vector<Spring> on_set(const Points& points, const FoundationSpecification& 
                            const std::string& table, const Communicator* ranks) {
   const Coordinates stiffness = checked(of.stiffness, points.dimension, table + ".stiffness");
   std::vector<Index> members = points_of_set(points, of.set, table + ".set");
-  if (points.owned) {  // a ghost's spring is its owner's
+  if (points.owned) {  // the owner has a ghost's spring
     std::erase_if(members, [&](Index point) { return point >= *points.owned; });
   }
   double volume = 0.0;

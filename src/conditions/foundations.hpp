@@ -26,9 +26,8 @@ class Foundations {
  public:
   Foundations() = default;
 
-  /// @param ranks that have parts of the body, a call that all make: each has the springs of its
-  /// own
-  ///        points; null: it is whole
+  /// @param ranks that have parts of the body: collective, each rank has the springs of its own
+  ///        points; null: the body is whole
   /// @throws InputError ("foundations[k].…", k from 0) for a place that traction_areas or
   ///         points_of_set refuses, a stiffness that is negative, not finite or zero in all
   ///         components, and a bad expression
@@ -40,15 +39,15 @@ class Foundations {
   /// Whether any spring acts along an axis.
   [[nodiscard]] bool hold(int axis) const { return holds_[std::size_t(axis)]; }
 
-  /// A foundation as it is told.
+  /// Summary of a foundation for reports.
   struct Summary {
-    std::string name, key;  ///< of the name
+    std::string name, key;  ///< key of the name
     std::size_t springs = 0;
-    Coordinates stiffness{};  ///< of all springs [N/m]
+    Coordinates stiffness{};  ///< sum of all springs [N/m]
   };
   [[nodiscard]] std::vector<Summary> summaries() const;
 
-  /// Whether the ground is anywhere but in its place.
+  /// True unless the displacement of the ground is given as 0 everywhere.
   [[nodiscard]] bool ground_moves() const;
   /// Displacement of the ground, springs x dimension [m].
   /// @throws InputError if it is not finite

@@ -7,13 +7,13 @@
 
 namespace peristat {
 
-/// What a motion begins with; arrays are points x dimension.
+/// Initial state of a motion; arrays are points x dimension.
 struct InitialState {
   std::vector<double> displacement;  ///< [m]
   std::vector<double> velocity;      ///< [m/s]
 };
 
-/// What several specifications give to a point adds up, as loads do. Images have none of their own.
+/// Adds the values of all specifications at a point, as for loads. Images have none of their own.
 /// @throws InputError ("initial[k].set", "initial[k].displacement[c]", …) for a set that is unknown
 ///         or empty, a bad expression, and a value that is not finite, with its place
 [[nodiscard]] InitialState make_initial_state(const Points& points,

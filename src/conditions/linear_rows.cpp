@@ -11,7 +11,7 @@
 namespace peristat {
 namespace {
 
-/// A coefficient below this share of the row's largest one is what round-off has left of it.
+/// A coefficient below this fraction of the row's largest one is round-off.
 constexpr double vanished = 1e-10;
 
 /// Most coefficients of a row: each becomes a dense row of the tangent.
@@ -36,7 +36,7 @@ void LinearRows::note_held_dofs() {
 
 void LinearRows::gather() {
   const auto d = std::size_t(points_.dimension);
-  std::vector<double> coefficients;  // and where they stand
+  std::vector<double> coefficients;  // row, degree of freedom, coefficient, prescribed
   for (std::size_t k = 0; k < rows_.size(); ++k) {
     for (const auto& [dof, coefficient] : rows_[k].coefficient) {
       const auto point = Index(dof / d);

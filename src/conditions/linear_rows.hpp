@@ -13,7 +13,7 @@
 
 namespace peristat {
 
-/// sum of coefficient * displacement = the component of a handle.
+/// Equation: sum of coefficient * displacement = a handle's degree of freedom `value`.
 struct LinearRow {
   std::string key, who;  ///< for errors
   std::map<std::size_t, double> coefficient;
@@ -24,11 +24,11 @@ struct LinearRow {
   }
 };
 
-/// Linear constraints, each of which takes one degree of freedom out of the equations. Of a part of
-/// a body all ranks have the same rows, each with the coefficients of the points that it owns.
+/// Linear constraints, each of which eliminates one degree of freedom. For a part of a body all
+/// ranks have the same rows, each with the coefficients of the points that it owns.
 class LinearRows {
  public:
-  /// What the arguments refer to outlives it.
+  /// The arguments must outlive the object.
   /// @param prescribed by supports, per degree of freedom: these stay masters
   /// @param ranks that have parts of the body; null: it is whole
   /// @param numbers of the points of a part
@@ -38,21 +38,23 @@ class LinearRows {
 
   void push_back(LinearRow row) { rows_.push_back(std::move(row)); }
 
-  /// Solves the rows for one degree of freedom each (Gauss and Jordan, the largest coefficient of a
-  /// row first), and lets these follow. A call that all ranks make.
-  /// @throws InputError for a row of prescribed displacements alone, or one that says what others
-  ///         say
+  /// Solves each row for one degree of freedom (Gauss-Jordan elimination, the pivot is the row's
+  /// largest coefficient) and makes these followers. Collective.
+  /// @throws InputError for a row of prescribed displacements alone, or one that repeats or
+  ///         contradicts others
   void eliminate(Constraints& constraints);
 
  private:
-  /// A row solved for its pivot, of coefficient 1; also of the handles' components.
+  /// Row solved for its pivot: the pivot is the sum of coefficient * degree of freedom, handles
+  /// included.
   using Solved = std::map<std::size_t, double>;
   void note_held_dofs();
-  /// Numbers degrees of freedom by the points of the whole body, and adds what other ranks have.
+  /// Renumbers degrees of freedom by the points of the whole body; adds the coefficients of other
+  /// ranks.
   void gather();
   [[nodiscard]] std::map<std::size_t, Solved> solve();
   [[nodiscard]] std::size_t pivot_of(const LinearRow& row, double size) const;
-  /// The point or handle of a degree of freedom, if it is this rank's.
+  /// Returns the point or handle of a degree of freedom if this rank owns it.
   [[nodiscard]] std::optional<Index> own_row(std::size_t dof) const;
   void follow(const std::map<std::size_t, Solved>& solved, Constraints& constraints) const;
 

@@ -6,9 +6,9 @@
 namespace peristat {
 
 /// The load parameters `load`, `load2`, … along a path. Each has a table of values. The *stage*
-/// runs from 0 over 1, 2, … and counts the tables' entries; between two entries a parameter goes
-/// linearly from the one to the other. Without tables there is one parameter, the load factor,
-/// which goes from 0 to 1 as the stage does. In a programme of time both are the time.
+/// runs from 0 over 1, 2, … and counts the tables' entries; between two entries a parameter varies
+/// linearly. Without tables there is one parameter, the load factor, which equals the stage and
+/// goes from 0 to 1. In a programme of time the one parameter and the stage are the time.
 class LoadingProgramme {
  public:
   static constexpr std::size_t most_parameters = 4;
@@ -22,13 +22,13 @@ class LoadingProgramme {
   ///         one that is not finite
   explicit LoadingProgramme(std::vector<std::vector<double>> tables);
 
-  /// The one parameter `t`, the time, which is the stage, too [s].
+  /// Programme with the one parameter `t`, the time, which is also the stage [s].
   /// @throws InputError ("end_time") unless the end is positive and finite
   [[nodiscard]] static LoadingProgramme of_time(double end);
 
-  /// "load", "load2", … of so many parameters.
+  /// Names of so many parameters: "load", "load2", …
   [[nodiscard]] static std::vector<std::string> names(std::size_t parameters);
-  /// Those of this one.
+  /// Names of this programme's parameters.
   [[nodiscard]] std::vector<std::string> names() const;
   [[nodiscard]] bool is_of_time() const { return end_time_ > 0.0; }
 
@@ -45,9 +45,9 @@ class LoadingProgramme {
   [[nodiscard]] bool has_rest(double stage) const {
     return is_of_time() ? stage < end_time_ : end() - stage > tolerance;
   }
-  /// Whether a parameter is larger in size than at any stage before.
+  /// True if a parameter is larger in size than at any stage before, or in a programme of time.
   [[nodiscard]] bool is_at_new_load(double stage) const;
-  /// Stage of the first entry that lies beyond.
+  /// Stage of the first entry after a stage.
   [[nodiscard]] static double next_entry(double stage);
 
  private:

@@ -18,7 +18,7 @@
 namespace peristat {
 namespace {
 
-/// Unit vectors that complete a unit normal.
+/// Orthonormal basis whose first vector is a unit normal.
 std::array<Coordinates, 3> basis_of(const Coordinates& normal, int dimension) {
   if (dimension == 2) return {normal, {-normal[1], normal[0], 0.0}, {}};
   std::size_t least = 0;
@@ -98,7 +98,7 @@ class Maker {
     for (int c = first; c < dimension(); ++c) made_.unused.push_back(dof(handle, c));
   }
 
-  /// Notes who holds a point; refuses a second one.
+  /// Records which constraint holds a point; throws if the point is held already.
   void hold(Index point, const std::string& key, const std::string& who) {
     std::string& holder = holder_[std::size_t(point)];
     for (int c = 0; c < dimension(); ++c) {
@@ -125,7 +125,7 @@ class Maker {
                         period.from};
     restraint.length = period.to - period.from;
     for (int c = 0; c < dimension(); ++c) restraint.is_mirrored[std::size_t(c)] = is_mirrored(c);
-    // Otherwise the body is farther from its images than a horizon.
+    // Without a handle the body is farther from its images than a horizon.
     if (handle >= 0) restraint.handles.push_back(handle);
     for (int c = 0; c < dimension() && handle >= 0; ++c) {
       const auto& text = period.gradient[std::size_t(c)];
@@ -150,7 +150,7 @@ class Maker {
     return ranks_ ? ranks_->max(double(is_cut_here)) > 0.0 : is_cut_here;
   }
 
-  /// Refuses sets that a plane of symmetry cuts, and whose two halves might move apart.
+  /// Throws if a plane of symmetry cuts a set and the two halves might move apart.
   void refuse_cut_sets(const RigidSetSpecification& spec, const Constraints::RigidSet& set,
                        const std::string& table) const {
     for (const SymmetryPlane& plane : of_.symmetries) {
@@ -207,7 +207,8 @@ class Maker {
     made_.constraints.follow(std::move(set));
   }
 
-  /// To the last bit that of one rank, so that a run may go on with other numbers of them.
+  /// Centroid, with the bits of a run on one rank, so that a run may go on with another number of
+  /// ranks.
   [[nodiscard]] static Coordinates centre_of(const std::vector<Member>& members) {
     Coordinates centre{};
     double volume = 0.0;
@@ -218,7 +219,8 @@ class Maker {
     return scaled(1.0 / volume, centre);
   }
 
-  /// Largest arm; refuses a set that can turn without moving its points.
+  /// Largest distance of a point from the centre; throws for a set that can turn without moving
+  /// points.
   [[nodiscard]] double size_of(const Constraints::RigidSet& set, const std::string& key,
                                const std::string& name) const {
     const auto is_own = [&](Index member) { return points_.owns(member); };
@@ -249,7 +251,7 @@ class Maker {
     return size;
   }
 
-  /// Of the longest arms of all ranks the first.
+  /// Longest arm of all ranks, the first one of equals.
   [[nodiscard]] Coordinates longest_of_all(double size, const Coordinates& longest) const {
     const std::vector<double> all = ranks_->all_of({size, longest[0], longest[1], longest[2]});
     std::size_t first = 0;
@@ -271,13 +273,14 @@ class Maker {
 
   [[nodiscard]] double of_all(double mine) const { return ranks_ ? ranks_->sum(mine) : mine; }
 
-  /// Points of a set of the whole body.
+  /// Number of points of a set of the whole body.
   [[nodiscard]] double count_of(const std::vector<Index>& members) const {
     return of_all(
         double(std::ranges::count_if(members, [&](Index member) { return points_.owns(member); })));
   }
 
-  /// Points of a set of the whole body, alike on all ranks and in the order of one.
+  /// Points of a set of the whole body, the same on all ranks and in the order of a run on one
+  /// rank.
   [[nodiscard]] std::vector<Member> members_of_all(const std::vector<Index>& members) const {
     std::vector<Member> all;
     if (!ranks_) {
@@ -337,7 +340,7 @@ class Maker {
     made_.restraints.push_back(std::move(restraint));
   }
 
-  /// Notes that a point is held along a normal, against another one if there is one.
+  /// Records that a point is held along a normal, relative to another point if there is one.
   void hold_along(const Coordinates& normal, const Member& member, const Member* against) {
     if (&member == against) return;
     HeldSum held;
@@ -349,7 +352,7 @@ class Maker {
     made_.held_sums.push_back(std::move(held));
   }
 
-  /// Lets a point follow its handle, and along the normal a common one.
+  /// Makes a point follow its own handle and, along the normal, the common one if there is one.
   void slide(Index member, const std::array<Coordinates, 3>& basis, Index own, Index common) {
     for (int c = 1; c < dimension(); ++c) {
       made_.slides.push_back({dof(own, c), member, basis[std::size_t(c)]});
@@ -365,8 +368,8 @@ class Maker {
     made_.constraints.follow(member, {true, true, true}, std::move(masters));
   }
 
-  /// A roller that touches the body at a place or along a line: the mean of the nearest points'
-  /// displacements, weighted so that it is that of the place, is held along the normal.
+  /// A roller that touches the body at a place or along a line: it holds the normal displacement of
+  /// the place, interpolated between the nearest points.
   void make_touching_roller(std::size_t k) {
     const RollerSpecification& spec = of_.rollers[k];
     const std::string table = indexed("rollers", k);
@@ -398,8 +401,8 @@ class Maker {
     made_.restraints.push_back(std::move(restraint));
   }
 
-  /// Points of the row at a place, with hat functions as weights: they reproduce linear fields. Of
-  /// a part of a body those that this rank owns.
+  /// Points of the row at a place, with hat functions as weights, which reproduce linear fields.
+  /// For a part of a body those that this rank owns.
   [[nodiscard]] std::vector<std::pair<Index, double>> nearest(
       const Coordinates& place, const std::array<Coordinates, 3>& basis,
       const std::string& table) const {
@@ -482,7 +485,7 @@ class Maker {
   const std::vector<char>& prescribed_;
   const std::vector<std::string>& parameters_;
   MadeConstraints made_;
-  std::vector<std::string> holder_;  // of each point: a rigid set or rollers; empty: none
+  std::vector<std::string> holder_;  // rigid set or rollers that hold each point; empty: none
   LinearRows rows_;
 };
 

@@ -10,9 +10,9 @@ namespace peristat {
 /// "supports[2]"
 [[nodiscard]] std::string indexed(const std::string& table, std::size_t number);
 
-/// Points of a set that something acts on.
+/// Returns the points of a set.
 /// @param key of the set's name, for the error
-/// @throws InputError if there is no such set, or no point in it
+/// @throws InputError if there is no such set, or no point in that of a whole body
 [[nodiscard]] const std::vector<Index>& points_of_set(const Points& points, const std::string& set,
                                                       const std::string& key);
 

@@ -14,7 +14,7 @@ double largest_size(const std::vector<double>& values) {
   return largest;
 }
 
-/// With six digits: to be read, not to be computed with.
+/// With six digits, for messages.
 std::string short_text(double value) {
   char text[32];
   const auto end = std::to_chars(text, text + sizeof text, value, std::chars_format::general, 6);

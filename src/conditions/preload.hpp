@@ -8,8 +8,8 @@
 
 namespace peristat {
 
-/// What acts on a body at load 0, before its loading programme begins. Sizes are the largest over
-/// the body.
+/// Actions on a body at load 0, before its loading programme begins. Sizes are the largest over the
+/// body.
 struct Preload {
   double displacement = 0.0;  ///< of supports and handles [m]
   Coordinates force{};        ///< sum of the loads [N]
@@ -20,12 +20,12 @@ struct Preload {
   double ground = 0.0;        ///< displacement below foundations [m]
 
   [[nodiscard]] bool acts() const;
-  /// "loads of 12 N (sum (0, -12, 0) N), prescribed displacements up to 1e-3 m"; empty if nothing
+  /// "loads of 12 N (in sum 0, -12, 0 N), prescribed displacements up to 0.001 m"; empty if nothing
   /// acts.
   [[nodiscard]] std::string description() const;
 };
 
-/// @param ranks that have parts of the body, which all call; null: it is whole
+/// @param ranks that have parts of the body (collective); null: the body is whole
 [[nodiscard]] Preload find_preload(const Conditions& conditions, const Communicator* ranks);
 
 }  // namespace peristat

@@ -12,7 +12,7 @@
 namespace peristat {
 namespace {
 
-/// Twice the place of a corner: half a spacing off the cells' centres.
+/// Position of a corner in half spacings.
 LatticeCell corner_of(const LatticeCell& cell, const std::array<int, 3>& offset, int dimension) {
   LatticeCell corner{};
   for (int c = 0; c < dimension; ++c) corner[c] = 2 * cell[c] + offset[c];
@@ -157,7 +157,7 @@ void add_pressed_faces(const Points& points, const LoadSpecification& load, cons
                                          : points_of_set(points, load.set, key + ".set");
   const std::size_t before = boundary.face.size();
   for (const Index point : members) {
-    if (cells.point(cells.cell(point)) != point) continue;  // of a layer
+    if (cells.point(cells.cell(point)) != point) continue;  // a point of a layer
     for (int axis = 0; axis < points.dimension; ++axis) {
       for (const int sign : {-1, 1}) {
         const Side side{axis, sign};

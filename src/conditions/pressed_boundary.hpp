@@ -11,8 +11,8 @@
 
 namespace peristat {
 
-/// Exposed faces of the cells of a lattice body, to which pressures are applied. The corner of a
-/// face moves with points of the body around it, the same for all its faces, so that these stay
+/// Exposed faces of the cells of a lattice body, on which pressures act. A corner moves with the
+/// body's points around it, in the same way for all faces that share it, so that these stay
 /// together as the body deforms.
 struct PressedBoundary {
   std::vector<Coordinates> corner;  ///< in the reference [m]
@@ -25,19 +25,19 @@ struct PressedBoundary {
   double cross_section = 1.0;       ///< 1D: area [m2]; 2D: thickness [m]
 };
 
-/// Adds the faces of a load's `side`, or the exposed faces of the points of its `set` (those on its
-/// side alone, if it has both), to a boundary.
+/// Adds to a boundary the faces of a load's `side`, or the exposed faces of the points of its `set`
+/// (on its side alone, if it has both).
 /// @param key of the load, for errors
-/// @param ranks that have parts of the body with ghosts as far as reach_of_pressures, in a call
-/// that
-///        all make: each gets the faces whose corners move with points of its own. Null: it is
+/// @param ranks that have parts of the body with ghosts as far as reach_of_pressures (collective):
+///        each rank gets the faces whose corners move with points of its own. Null: the body is
 ///        whole
-/// @throws InputError for points on no lattice, a side that is none, a set without exposed faces
+/// @throws InputError for points on no lattice, a side that the body does not have, a set without
+///         exposed faces
 void add_pressed_faces(const Points& points, const LoadSpecification& load, const std::string& key,
                        PressedBoundary& boundary, const Communicator* ranks = nullptr);
 
-/// How far the ghosts of a part reach for the faces that press on its points: over a face, as far
-/// as what moves with its corners, and to what covers it [m].
+/// Distance over which a part needs ghosts for the faces that press on its points: across a face,
+/// to the points that its corners move with, and to the points that cover it [m].
 [[nodiscard]] double reach_of_pressures(const Points& points);
 
 /// Forces on the faces in the reference, faces x dimension [N].

@@ -17,7 +17,7 @@ struct SupportSpecification {
   std::array<std::optional<std::string>, 3> displacement{};
 };
 
-/// What a set, or without one the body, begins with: per component an expression of x, y and z.
+/// Initial values of a set, or without one of the body: per component an expression of x, y and z.
 struct InitialSpecification {
   std::string set{};
   std::array<std::string, 3> displacement{"0", "0", "0"};  ///< [m]
@@ -31,17 +31,19 @@ struct AbsorbingSpecification {
 };
 
 /// How deep a traction acts: in the outermost row of points alone, spread evenly over the horizon,
-/// or on the surface itself, which the model "lps" alone can.
+/// or on the surface itself (model "lps" only).
 enum class Depth { row, horizon, surface };
 
-/// Load that keeps its direction: a body force density [N/m3] on a set, an expression of x, y, z
-/// and load; a total force [N], an expression of load alone, spread over a set in proportion to the
-/// volume; gravity [m/s2] on a set or, without one, the body, layers left out; a traction [Pa] on a
-/// flat part of a lattice body's boundary, the outermost plane of points on a side or a set that
-/// lies in one plane. And a load that follows the deformation: a pressure [Pa], its first value, on
-/// the exposed faces of the cells of a side or set. With the depth `surface` traction and pressure
-/// act on the body's boundary, on a side, on the boundary of a shape or where points of a set are,
-/// and so does a stress [Pa], whose traction is sigma n.
+/// A load. Loads of fixed direction are
+/// - a body force density [N/m3] on a set, an expression of x, y, z and load;
+/// - a total force [N], an expression of load alone, spread over a set in proportion to the volume;
+/// - gravity [m/s2] on a set or, without one, the body, layers left out;
+/// - a traction [Pa] on a flat part of a lattice body's boundary: the outermost plane of points on
+///   a side, or a set that lies in one plane.
+/// A pressure [Pa], its first value, follows the deformation of the exposed cell faces of a side or
+/// set. With the depth `surface` traction and pressure act on the body's boundary: on a side, on
+/// the boundary of a shape or at the points of a set; so does a stress [Pa], whose traction is
+/// sigma n.
 struct LoadSpecification {
   enum class Kind {
     body_force,
@@ -60,8 +62,8 @@ struct LoadSpecification {
 };
 
 /// Springs along the axes between points and a ground that may move: a modulus [N/m3] on a flat
-/// part of a lattice body's boundary, given like that of a traction, or a stiffness [N/m] of all
-/// springs of a set together, spread in proportion to the volume. One of the two is not zero.
+/// part of a lattice body's boundary, given like that of a traction, or a total stiffness [N/m] of
+/// a set, spread in proportion to the volume. Exactly one of the two is nonzero.
 struct FoundationSpecification {
   std::string name{};
   std::string set{};
@@ -77,7 +79,7 @@ struct EigenstrainSpecification {
   std::string strain{"0"};
 };
 
-/// "body_force", …: of what a load gives.
+/// Key of a kind of load: "body_force", …
 [[nodiscard]] constexpr const char* load_key(LoadSpecification::Kind kind) {
   switch (kind) {
     case LoadSpecification::Kind::body_force:

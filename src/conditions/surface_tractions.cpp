@@ -12,7 +12,7 @@
 namespace peristat {
 namespace {
 
-/// Places of the entries of a stress: xx yy xy, or xx yy zz xy yz xz.
+/// Indices of the entries of a stress: xx yy xy, or xx yy zz xy yz xz.
 constexpr std::array<std::array<int, 2>, 3> plane_entries{{{0, 0}, {1, 1}, {0, 1}}};
 constexpr std::array<std::array<int, 2>, 6> solid_entries{
     {{0, 0}, {1, 1}, {2, 2}, {0, 1}, {1, 2}, {0, 2}}};
@@ -22,7 +22,7 @@ std::span<const std::array<int, 2>> stress_entries(int dimension) {
   return solid_entries;
 }
 
-/// Cosine between the normals of faces that face away from each other.
+/// Two faces are opposite if the cosine between their normals is at most this.
 constexpr double faces_away = -0.7;
 
 std::string key_of(LoadSpecification::Kind kind) {
@@ -87,7 +87,7 @@ void SurfaceTractions::add(const Points& points, const LoadSpecification& load,
 
 void SurfaceTractions::refuse_one_sided(const Points& points, const Load& load,
                                         const std::vector<char>& prescribed) const {
-  // A pressure on both faces is a stress between them; a traction that is the same on both is none.
+  // Equal pressures on both faces are the tractions of one stress; equal tractions are not.
   const bool is_balanced = load.kind == LoadSpecification::Kind::pressure;
   const auto d = std::size_t(points.dimension);
   std::vector<char> is_loaded(sites_.size(), 0);
@@ -97,7 +97,7 @@ void SurfaceTractions::refuse_one_sided(const Points& points, const Load& load,
     const auto first = prescribed.begin() + std::ptrdiff_t(std::size_t(site.point) * d);
     if (std::all_of(first, first + std::ptrdiff_t(d), [](char held) { return held != 0; }))
       continue;
-    // The sites of a point stand behind one another.
+    // The sites of a point are consecutive.
     std::size_t begin = k;
     while (begin > 0 && sites_[begin - 1].point == site.point) --begin;
     for (std::size_t other = begin; other < sites_.size(); ++other) {

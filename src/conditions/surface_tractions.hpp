@@ -13,36 +13,36 @@
 
 namespace peristat {
 
-/// A face of the boundary over which the ball around a point reaches.
+/// A face of the boundary that the ball around a point crosses.
 struct SurfaceSite {
   Index point = 0;
-  std::optional<Side> side{};  ///< of the body's box, if it is one
-  std::string name{};          ///< of the face's shape; empty: it has none
+  std::optional<Side> side{};  ///< of the body's box, if the face is one
+  std::string name{};          ///< of the face's shape; empty: it has no name
   Coordinates place{};         ///< on the face, nearest to the point [m]
   Coordinates normal{};        ///< of the face there, outward
-  /// Part a_f of the point's traction T = sum_f a_f t_f that is the face's, with n = sum_f a_f e_f
-  /// of the point's normal: 1 where the face is the only one.
+  /// Fraction a_f of the face in the point's traction T = sum_f a_f t_f, where n = sum_f a_f e_f is
+  /// the point's normal: 1 if there is no other face.
   double share = 1.0;
-  /// The same part a_f e_f of the point's normal; what the faces don't span is the nearest one's.
+  /// Part a_f e_f of the point's normal; the nearest face also gets the part that the faces don't
+  /// span.
   Coordinates part_of_normal{};
 };
 
-/// Tractions on the surface at points, of models that take them as they are ([LPS] sec. 4.2). At a
+/// Tractions on the surface at points, for models that apply them directly ([LPS] sec. 4.2). At a
 /// point with one face a traction keeps its vector, and a stress gives sigma n with the normal of
-/// the point, which is what makes a linear field exact on every grid.
+/// the point, which makes a linear field exact on every grid.
 class SurfaceTractions {
  public:
   SurfaceTractions() = default;
   explicit SurfaceTractions(std::vector<SurfaceSite> sites) : sites_(std::move(sites)) {}
 
-  /// Takes up a traction, a pressure or a stress.
+  /// Adds a traction, a pressure or a stress.
   /// @param table of the load, for errors
-  /// @param prescribed per degree of freedom: forces on held points move nothing
-  /// @param ranks that have parts of the body, in a call that all make; null: it is whole
-  /// @throws InputError ("TABLE.side", "TABLE.boundary", …) for a part of the boundary that no
-  /// point
-  ///         is at, for expressions that can't be read, and for a traction on one of two faces that
-  ///         are less than two horizons apart: a point between them knows but one traction
+  /// @param prescribed per degree of freedom; faces at fully prescribed points are not checked
+  /// @param ranks that have parts of the body (collective); null: the body is whole
+  /// @throws InputError ("TABLE.side", "TABLE.boundary", …) for a part of the boundary without
+  ///         points, for expressions that can't be read, and for a traction on one of two faces
+  ///         that are less than two horizons apart: a point between them has only one traction
   void add(const Points& points, const LoadSpecification& load,
            const std::vector<std::string>& parameters, const std::string& table,
            const std::vector<char>& prescribed, const Communicator* ranks = nullptr);

@@ -10,7 +10,7 @@
 namespace peristat {
 namespace {
 
-/// Below this part of a cell the horizon's end is round-off.
+/// A part of a cell below this is round-off of the horizon's end.
 constexpr double least_part = 1e-9;
 
 struct Face {
@@ -72,7 +72,7 @@ TractionAreas traction_areas(const Points& points, const LoadSpecification& load
     const double area = points.volume[outermost] / points.spacing;
     std::size_t kept = first;
     for (std::size_t k = first; k < areas.area.size(); ++k) {
-      if (areas.points[k] >= owned) continue;  // a ghost's part is its owner's
+      if (areas.points[k] >= owned) continue;  // the owner has a ghost's part
       areas.points[kept] = areas.points[k];
       areas.area[kept++] = areas.area[k] * (area / whole);
     }

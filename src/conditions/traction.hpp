@@ -9,22 +9,21 @@
 
 namespace peristat {
 
-/// Area that each of some points bears a traction on [m2]: their sum is that of the loaded faces of
-/// cells.
+/// Area over which each of some points carries a traction [m2]; the sum is the area of the loaded
+/// faces of cells.
 struct TractionAreas {
   std::vector<Index> points;
   std::vector<double> area;
 };
 
-/// The area of every loaded face, spacing^(d-1) x cross-section, is borne by the point behind it,
-/// or shared out over its column of points as far as these reach into the horizon below the face:
-/// each by the part of its cell that does.
+/// Assigns the area of every loaded face, spacing^(d-1) x cross-section, to the point behind it, or
+/// distributes it over the column of points within the horizon below the face, in proportion to the
+/// part of each cell that lies within.
 /// @param key of the load, for errors
-/// @param ranks that have parts of the body, a call that all make, with the areas of the points
-/// that
-///        each owns; null: it is whole
-/// @throws InputError for points on no lattice, a side that is none, and a set that does not lie in
-///         one plane of points on the boundary, or in more than one
+/// @param ranks that have parts of the body (collective): each rank gets the areas of the points
+///        that it owns; null: the body is whole
+/// @throws InputError for points on no lattice, a side that the body does not have, and a set that
+///         does not lie in exactly one plane of points on the boundary
 [[nodiscard]] TractionAreas traction_areas(const Points& points, const LoadSpecification& load,
                                            double horizon, const std::string& key,
                                            const Communicator* ranks = nullptr);

@@ -6,7 +6,7 @@
 
 namespace peristat {
 
-/// Runs `make` and gives its input errors the key that they concern.
+/// Runs `make` and sets the key of its input errors.
 template <class Make>
 auto with_key(const std::string& key, const Make& make) {
   try {
@@ -16,7 +16,7 @@ auto with_key(const std::string& key, const Make& make) {
   }
 }
 
-/// Gives input errors that have no key that of the table.
+/// Runs `make` and sets the table as the key of its input errors that have none.
 template <class Make>
 auto with_table(const std::string& table, const Make& make) {
   try {
