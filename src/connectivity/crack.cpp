@@ -20,8 +20,8 @@ Coordinates between(const Coordinates& a, const Coordinates& b, double s) {
   return plus(a, scaled(s, minus(b, a)));
 }
 
-/// Distance of a place from the segment p-q. Measured from the end that is meant, it is exact near
-/// the ends of segments of any length.
+/// Distance of a place from the segment p-q. Beyond an end it is measured from that end, so that it
+/// is exact near the ends of segments of any length.
 double distance(const Coordinates& place, const Coordinates& p, const Coordinates& q) {
   const Coordinates along = minus(q, p), from_p = minus(place, p), from_q = minus(place, q);
   if (dot(from_p, along) <= 0.0) return length(from_p);
@@ -29,9 +29,9 @@ double distance(const Coordinates& place, const Coordinates& p, const Coordinate
   return length(cross(from_p, along)) / length(along);
 }
 
-/// Distance of the segments a-b and p-q: that of an end of one from the other or, if they are not
-/// parallel, that of the lines' nearest places. The latter is measured at a place of a-b, and so
-/// round-off of nearly parallel lines only misses a distance that the ends have, too.
+/// Distance of the segments a-b and p-q: the least distance of an end of one from the other or, if
+/// they are not parallel, that of the lines' nearest places. The latter is measured at a place of
+/// a-b, so that round-off of nearly parallel lines only misses a distance that the ends have, too.
 double distance(const Coordinates& a, const Coordinates& b, const Coordinates& p,
                 const Coordinates& q) {
   const double of_ends =
@@ -49,7 +49,7 @@ const Coordinates& vertex_after(const CrackPolygon& polygon, std::size_t k) {
   return polygon.vertices[k + 1 < polygon.vertices.size() ? k + 1 : 0];
 }
 
-/// Normal as long as the area is large; it does not need a convex corner.
+/// Normal whose length is the area; the polygon need not be convex.
 Coordinates area_vector(const CrackPolygon& polygon) {
   Coordinates sum{};
   for (std::size_t k = 1; k + 1 < polygon.vertices.size(); ++k) {
@@ -139,7 +139,7 @@ bool meets(const CrackOutline& outline, const Coordinates& a, const Coordinates&
 
 // ---- shape ----
 
-/// A bond crosses a shape that a part of it lies in.
+/// True if a part of the bond lies in the shape.
 bool meets(const CrackShape& of, const Coordinates& a, const Coordinates& b, double) {
   const auto in_place = [&](Coordinates at) {  // mirrors are their own inverse
     for (std::size_t c = 0; c < 3; ++c) at[c] = of.image.mirror[c] * (at[c] - of.image.shift[c]);
@@ -279,7 +279,7 @@ bool cuts(const Crack& crack, const Coordinates& a, const Coordinates& b) {
 
 namespace {
 
-/// A crack beyond planes of symmetry and periodic sides, too.
+/// Cracks together with their images beyond planes of symmetry and periodic sides.
 std::vector<Crack> with_images(const std::vector<Crack>& cracks, const Images& images) {
   std::vector<Crack> all = cracks;
   for (const ImageKind& kind : images.kinds) {
@@ -304,7 +304,7 @@ std::vector<Crack> with_images(const std::vector<Crack>& cracks, const Images& i
   return all;
 }
 
-/// What `cuts` says, found sooner of bonds that are far away.
+/// Same as `cuts`, but faster for bonds that are far away.
 bool meets_near(const Crack& crack, const Coordinates& a, const Coordinates& b) {
   const Box around = std::visit([](const auto& kind) { return box_around(kind); }, crack);
   return overlap(box_around(a, b), around, 2.0 * touching_tolerance * length(minus(b, a))) &&
@@ -339,7 +339,7 @@ CutBonds cut_bonds(Bonds& bonds, const Points& points, const std::vector<Crack>&
   CutBonds removed{std::vector<double>(points.volume.size(), 0.0), {}};
   bonds.remove_if([&](Index i, Offset bond) {
     const Index j = bonds.partner[bond];
-    // Ranks number points differently, and are to cut alike: the end that comes first by its place.
+    // Orders the ends by position, so that ranks, which number points differently, cut alike.
     const auto [a, b] = std::minmax({points.position(i), points.position(j)});
     const Box box = box_around(a, b);
     const double slack = 2.0 * touching_tolerance * bonds.length(bond);  // more than cuts allows

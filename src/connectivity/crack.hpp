@@ -33,10 +33,10 @@ struct CrackOutline {
 struct CrackShape {
   Shape shape{};
   int dimension = 2;
-  ImageKind image{};  ///< where the shape stands instead of at its own place
+  ImageKind image{};  ///< image of the shape that the crack is; default: the shape itself
 };
 
-/// A crack that is there from the start. It is closed: its ends or edges belong to it.
+/// A crack that exists from the start. It is closed: its ends or edges belong to it.
 using Crack = std::variant<CrackSegment, CrackPolygon, CrackOutline, CrackShape>;
 
 /// Distance from a crack, relative to the bond's length, up to which a bond touches the crack: far
@@ -51,8 +51,8 @@ inline constexpr double polygon_tolerance = 1e-9;
 /// is none), has components that are not finite or is degenerate: a segment or a side of an outline
 /// without length, a polygon with fewer than three vertices, without area, out of plane, or with
 /// edges that cross or touch.
-/// @param table what holds the crack ("crack[0]"); the errors name its "from",
-///              "to", "vertices" or "outline"
+/// @param table table that holds the crack ("crack[0]"); the errors name its "from", "to",
+///        "vertices" or "outline"
 /// @throws InputError
 void check_crack(const Crack& crack, int dimension, const std::string& table);
 
@@ -67,11 +67,11 @@ void check_crack(const Crack& crack, int dimension, const std::string& table);
 /// Bonds that cracks have cut.
 struct CutBonds {
   std::vector<double> weight;  ///< per point, sum over its cut bonds [m6]
-  std::vector<BondEnds> ends;  ///< of each
+  std::vector<BondEnds> ends;  ///< end points of each cut bond
 };
 
-/// How many bonds each crack meets, itself or beyond a plane of symmetry or a period, of those that
-/// some crack has cut. Of a part of a body those that it counts.
+/// Number of bonds that each crack or its images meet, among those that some crack has cut. For a
+/// part of a body: those that it counts.
 [[nodiscard]] std::vector<std::int64_t> bonds_met_by_each(const std::vector<Crack>& cracks,
                                                           const std::vector<BondEnds>& cut,
                                                           const Points& points);

@@ -11,7 +11,7 @@
 namespace peristat {
 namespace {
 
-/// Numbers the pieces that float, in the order of Fragments::piece.
+/// Numbers the floating pieces in the order of Fragments::piece.
 void number_pieces(const std::vector<Piece>& pieces, const std::vector<RigidMotions>& free,
                    const Points& points, const Sharing* sharing, Fragments& fragments) {
   std::vector<const Piece*> floating;
@@ -59,7 +59,7 @@ std::vector<Piece> cores_of(const Web& web, const Points& points, const Bonds& b
     if (point >= 0 && is_loose[std::size_t(point)]) point = -1;
   }
   std::vector<Piece> cores = pieces_of(points, bonds, apart, of_cores, ties, sharing);
-  // A loose point is a piece of its own, which no other rank knows.
+  // Drops loose points: each is a piece of its own, on one rank alone.
   std::erase_if(
       cores, [&](const Piece& core) { return !core.is_shared && is_loose[core.members.front()]; });
   return cores;

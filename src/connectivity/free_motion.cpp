@@ -54,8 +54,8 @@ std::vector<std::vector<Index>> Components::members() const {
 
 namespace {
 
-/// Motions of a piece that would part an image from where its source takes it: m(X') - mirror m(X),
-/// but where the jump over a period is free.
+/// Adds the link of an image to its source, and the motions that would part it from where its
+/// source takes it: m(X') - mirror m(X) = 0 must hold, except where the jump over a period is free.
 void tie(const Points& points, Index image, std::span<const double> positions, Holding& holding) {
   const ImageKind& kind = points.image_kind(image);
   const Index source = points.source(image);
@@ -99,7 +99,7 @@ Holding with_images(Holding holding, const Points& points, const Bonds& bonds,
 
 namespace {
 
-/// Free motions that ranks have found, at all of them.
+/// Gathers the free motions found by all ranks, at all of them.
 std::vector<std::pair<FreeMotion, RigidMotions>> of_all_ranks(
     const std::vector<std::pair<FreeMotion, RigidMotions>>& mine, int dimension,
     const Communicator& ranks) {

@@ -26,8 +26,8 @@ struct Components {
 [[nodiscard]] Components connected_components(const Bonds& bonds, std::span<const char> broken = {},
                                               std::span<const BondEnds> links = {});
 
-/// With what ties images to their sources, as far as unbroken bonds join them to the body: links,
-/// and motions that would part them.
+/// Adds what ties images to their sources, for images that unbroken bonds join to the body: links,
+/// and the motions that would part the two.
 /// @param positions of the points, points x dimension [m]
 [[nodiscard]] Holding with_images(Holding holding, const Points& points, const Bonds& bonds,
                                   std::span<const char> broken, std::span<const double> positions);
@@ -36,14 +36,13 @@ struct Components {
 struct FreeMotion {
   GlobalIndex points = 0;            ///< of the component
   GlobalIndex example = 0;           ///< its lowest point, by its number in the whole body
-  Coordinates place{};               ///< of that [m]
+  Coordinates place{};               ///< position of that point [m]
   std::vector<std::string> motions;  ///< "move along x", "rotate about z", …
 };
 
 /// All components that may move as rigid bodies, largest first; empty if everything is held.
 /// Decided by the rank of the prescribed components on the rigid motions of each component.
-/// @param sharing null: the body is whole. Otherwise a call that all ranks make, which all get the
-///        same from
+/// @param sharing null: the body is whole. Otherwise collective, with the same result on all ranks
 [[nodiscard]] std::vector<FreeMotion> free_motions(const Points& points, const Bonds& bonds,
                                                    const Holding& holding,
                                                    const Sharing* sharing = nullptr);

@@ -8,30 +8,30 @@
 
 namespace peristat {
 
-/// A rigid motion u(x) = t + r x x of the piece that a point belongs to may not have along.t +
-/// about.r.
+/// Restraint of a rigid motion u(x) = t + r x x of the piece that a point belongs to: along.t +
+/// about.r must be 0.
 struct HeldMotion {
   Index member = 0;
   Coordinates along{}, about{};
 };
 
-/// A free generalised coordinate that points follow: how fast a rigid motion of its member's piece
-/// moves it.
+/// A free generalised degree of freedom that points follow, and the rate at which a rigid motion of
+/// its member's piece moves it.
 struct FreeHandle {
   std::size_t dof = 0;
   HeldMotion moved_by{};
   bool is_slide = false;  ///< moves its member alone, in the direction moved_by.along
 };
 
-/// What holds pieces beside their prescribed degrees of freedom.
+/// Restraints of pieces.
 struct Holding {
-  /// Per degree of freedom of the points: prescribed by a support, or on a spring. What only
-  /// follows others is not.
+  /// Per degree of freedom of the points: prescribed by a support, or on a spring. Not set for
+  /// followers.
   std::vector<char> prescribed;
-  std::vector<HeldMotion> motions{};  ///< of which there may be none
+  std::vector<HeldMotion> motions{};  ///< restraints of rigid motions
   std::vector<BondEnds> links{};      ///< points that move together, bonded or not
-  /// Of a part of a body: of each set of points of several ranks that move together, one that this
-  /// rank owns; -1: it owns none. All ranks have as many.
+  /// For a part of a body: per set of points of several ranks that move together, one point of it
+  /// that this rank owns, or -1 if it owns none. All ranks have as many entries.
   std::vector<Index> ties{};
   std::vector<FreeHandle> handles{};
   /// Whether component [c] of the jump over the period across an axis [a] is free.

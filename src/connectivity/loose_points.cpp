@@ -35,7 +35,7 @@ Eigen::Map<Eigen::Matrix3d> matrix(Support& support) {
   return Eigen::Map<Eigen::Matrix3d>(support[0].data());
 }
 
-/// n n^T, n the direction from i to j; zero where they lie in one place.
+/// n n^T, n the direction from i to j; zero if they coincide.
 Eigen::Matrix3d direction(const Web& web, Index i, Index j) {
   const Coordinates from = web.position(i), to = web.position(j);
   const Eigen::Vector3d arm(to[0] - from[0], to[1] - from[1], to[2] - from[2]);
@@ -44,8 +44,8 @@ Eigen::Matrix3d direction(const Web& web, Index i, Index j) {
   return arm * (arm.transpose() / squared);
 }
 
-/// Below this, an eigenvalue of the support counts as zero. As soon as there is one direction, the
-/// largest eigenvalue is at least one; less is the round-off of directions that were taken away.
+/// Eigenvalues of a support below this count as zero. With one direction or more the largest
+/// eigenvalue is at least one; less is the round-off of directions that were subtracted.
 double zero_of(const std::array<double, 3>& eigenvalues) {
   return independence_tolerance * std::max(1.0, eigenvalues.back());
 }
@@ -55,10 +55,10 @@ bool holds(const Eigen::Matrix3d& support) {
   return eigenvalues.front() > zero_of(eigenvalues);
 }
 
-/// Axes that complete what supports a point, the least covered first; among equals, the lowest.
+/// Axes that complete the support of a point, the least covered first; among equals, the lowest.
 std::vector<int> missing_axes(const Eigen::Matrix3d& support) {
   const SymmetricSpectrum<3> spectrum = symmetric_spectrum<3>(support.data());
-  Eigen::Matrix3d rest = Eigen::Matrix3d::Zero();  // projects on what is not supported
+  Eigen::Matrix3d rest = Eigen::Matrix3d::Zero();  // projector on the unsupported directions
   int missing = 0;
   for (std::size_t k = 0; k < 3; ++k) {
     if (spectrum.values[k] > zero_of(spectrum.values)) continue;
@@ -79,7 +79,7 @@ std::vector<int> missing_axes(const Eigen::Matrix3d& support) {
   return axes;
 }
 
-/// Degrees of freedom of a point that slides, the least supported first.
+/// Degrees of freedom along which a point slides, the least supported first.
 std::vector<std::size_t> slides_of(Index point, const std::vector<FreeHandle>& handles,
                                    const Eigen::Matrix3d& support) {
   std::vector<std::pair<double, std::size_t>> found;
@@ -95,7 +95,7 @@ std::vector<std::size_t> slides_of(Index point, const std::vector<FreeHandle>& h
   return dofs;
 }
 
-/// See pin_loose_points, of all loose points that there are.
+/// Same as pin_loose_points, for all loose points of the body.
 void pin_all(const Web& web, const std::vector<Index>& loose,
              const std::vector<FreeHandle>& handles, std::vector<Support> support,
              std::vector<char>& pinned) {
@@ -126,8 +126,8 @@ void pin_all(const Web& web, const std::vector<Index>& loose,
   }
 }
 
-/// The loose points of a body that ranks share, in the order of their numbers, with the bonds among
-/// them: the same on all ranks.
+/// Loose points of a partitioned body, in the order of their numbers, with the bonds among them:
+/// the same on all ranks.
 struct LooseWeb {
   std::vector<double> number;  // in the whole body
   std::vector<double> positions;
@@ -151,7 +151,7 @@ LooseWeb gather_loose_points(const Web& web, const std::vector<Index>& loose,
     for (const auto& row : support[std::size_t(i)])
       points.insert(points.end(), row.begin(), row.end());
     web.for_each_partner(i, [&](Index j) {
-      if (j >= sharing.first_image()) return;  // which are never loose
+      if (j >= sharing.first_image()) return;  // images are never loose
       ends.push_back(number[std::size_t(i)]);
       ends.push_back(number[std::size_t(j)]);
     });
@@ -225,7 +225,7 @@ std::vector<char> strip_loose_points(Web& web, std::vector<Support>& support,
   if (!loose.empty() || sharing != nullptr) web.find_lower_partners();
   std::size_t done = 0;
   for (bool goes_on = true; goes_on;) {
-    for (; done < loose.size(); ++done) {  // grows under way
+    for (; done < loose.size(); ++done) {  // grows in the loop
       const Index i = loose[done];
       web.for_each_partner(i, [&](Index j) {
         matrix(support[j]) -= direction(web, i, j);

@@ -14,7 +14,7 @@ namespace peristat {
 /// The unbroken bonds of a body in its present state.
 class Web {
  public:
-  /// The bonds outlive it.
+  /// The bonds must outlive it.
   /// @param broken one flag per bond, or empty
   /// @param positions points x dimension [m]
   Web(const Bonds& bonds, std::span<const char> broken, int dimension,
@@ -32,7 +32,7 @@ class Web {
     for (Index i = 0; i < bonds_.points(); ++i) for_each_above(i, visit);
   }
 
-  /// Makes for_each_partner ready.
+  /// Prepares for_each_partner.
   void find_lower_partners();
 
   /// visit(j) for the points at the other ends of the unbroken bonds of a point.
@@ -59,7 +59,7 @@ class Web {
 };
 
 /// Sum of n n^T over the directions n that support a point, symmetric. Directions beyond the
-/// dimension are supported.
+/// dimension count as supported.
 using Support = Tensor;
 
 /// @param prescribed per degree of freedom
@@ -67,17 +67,16 @@ using Support = Tensor;
                                                const std::vector<char>& prescribed,
                                                const std::vector<FreeHandle>& handles);
 
-/// Strips loose points until none is left (see find_fragments), and takes them out of the supports
-/// of all points.
-/// @param sharing null: the body is whole. Otherwise a call that all ranks make; supports of ghosts
-///        don't count
-/// @return of each point, whether it is loose
+/// Strips loose points until none is left (see find_fragments), and subtracts them from the
+/// supports of all points.
+/// @param sharing null: the body is whole. Otherwise collective; supports of ghosts are not used
+/// @return per point, 1 if it is loose
 [[nodiscard]] std::vector<char> strip_loose_points(Web& web, std::vector<Support>& support,
                                                    const Sharing* sharing);
 
 /// Pins loose points one by one, those that need the fewest pins first (then the lowest); each then
-/// supports the others by its bonds. All ranks that share a body are told of all loose points.
-/// @param support what the others leave to each point
+/// supports the others by its bonds. With `sharing`: collective, all ranks get all loose points.
+/// @param support of each point by points that are not loose
 /// @param pinned per degree of freedom; gets the pins
 /// @param loose this rank's own, ascending
 void pin_loose_points(const Web& web, const std::vector<Index>& loose,

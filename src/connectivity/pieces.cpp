@@ -15,7 +15,8 @@
 namespace peristat {
 namespace {
 
-/// Labels of all ranks' components that ghosts tie to one another: the lowest of each piece.
+/// Joins components of all ranks that ghosts connect: maps each label to the lowest one of its
+/// piece.
 std::map<double, double> join(const Communicator& ranks,
                               const std::set<std::pair<double, double>>& mine) {
   std::vector<double> flat;
@@ -35,7 +36,7 @@ std::map<double, double> join(const Communicator& ranks,
   return parent;
 }
 
-/// Ties the components of points of several ranks that are joined, see Holding, to the lowest.
+/// Connects the components of points that are tied across ranks (Holding::ties) to the lowest one.
 void add_ties(const Communicator& ranks, const std::vector<double>& label,
               std::span<const Index> tied, std::set<std::pair<double, double>>& ties) {
   std::vector<double> mine;
@@ -50,8 +51,8 @@ void add_ties(const Communicator& ranks, const std::vector<double>& label,
   }
 }
 
-/// Of each component here the number of the shared piece that it is a part of, or -1; and how many
-/// there are.
+/// Returns for each component here the number of the shared piece that it is a part of, or -1; and
+/// the number of shared pieces.
 std::pair<std::vector<Index>, std::size_t> shared_pieces(const Components& here, int dimension,
                                                          std::span<const Index> tied,
                                                          const Sharing& sharing) {
@@ -81,7 +82,7 @@ std::pair<std::vector<Index>, std::size_t> shared_pieces(const Components& here,
   return {shared, number.size()};
 }
 
-/// How many points the shared pieces have, and which is the lowest.
+/// Sums the points of the shared pieces over all ranks and finds their lowest points.
 void count_shared(std::span<Piece> pieces, const Communicator& ranks) {
   std::vector<double> points, lowest;
   for (const Piece& piece : pieces) {
@@ -129,7 +130,7 @@ std::vector<Piece> pieces_of(const Points& points, const Bonds& bonds, std::span
     piece.members.insert(piece.members.end(), members[k].begin(), members[k].end());
   }
   for (Piece& piece : pieces) {
-    std::sort(piece.members.begin(), piece.members.end());  // of several components here
+    std::sort(piece.members.begin(), piece.members.end());  // from several components here
     const auto images = std::ranges::lower_bound(piece.members, points.own());
     piece.points = GlobalIndex(images - piece.members.begin());
     if (piece.members.empty()) continue;
@@ -234,8 +235,8 @@ void FreePieces::tell_pinned_handles(std::vector<char>& pinned) const {
 
 namespace {
 
-/// How the motions of a shared piece move the degrees of freedom that are this rank's: rows from
-/// which pinned ones are taken out, as in determinate_pins.
+/// Displacements of this rank's degrees of freedom in the motions of a shared piece: one row each,
+/// from which pinned rows are projected out, as in determinate_pins.
 struct MovedDofs {
   std::vector<std::size_t> dof;  // here
   std::vector<double> number;    // in the whole body
@@ -251,7 +252,8 @@ struct MovedDofs {
     for (const auto& of_dof : row) largest = std::max(largest, norm(of_dof));
     return largest;
   }
-  /// The lowest that moves about as much; of none, the number of rows.
+  /// First row whose norm is `largest` within alike_displacements; the number of rows if there is
+  /// none.
   [[nodiscard]] std::size_t lowest_alike(double largest) const {
     std::size_t k = 0;
     while (k < row.size() && largest > (1.0 + alike_displacements) * norm(row[k])) ++k;
@@ -275,7 +277,7 @@ void FreePieces::pin_shared(std::span<const Piece> pieces, std::span<const Rigid
   constexpr double nobody = std::numeric_limits<double>::infinity();
   const auto d = std::size_t(points_.dimension);
   const std::size_t modes = d * (d + 1) / 2;
-  const double first_handle =  // they come after all points
+  const double first_handle =  // handles come after all points
       sharing_->ranks().sum(double(sharing_->owned())) - double(sharing_->count());
   int rounds = 0;
   std::vector<MovedDofs> moved(pieces.size());

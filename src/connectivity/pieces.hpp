@@ -11,29 +11,30 @@
 
 namespace peristat {
 
-/// What hangs together of a body, as far as it is here.
+/// Connected component of the body, with this rank's part of it.
 struct Piece {
-  std::vector<Index> members;  ///< that are this rank's, ascending
+  std::vector<Index> members;  ///< points of this rank, ascending
   GlobalIndex points = 0;      ///< of the whole piece, without images
   GlobalIndex lowest = 0;      ///< its lowest point's number in the whole body
-  /// Several ranks have points of it, or bonds to them: all ranks list it, in the same order.
+  /// True if several ranks have points of it, or bonds to them: all ranks list it, in the same
+  /// order.
   bool is_shared = false;
 };
 
-/// The pieces that bonds and links make: those that ranks share first, then the others by their
-/// lowest points. Of a shared body every rank joins its own points, and tells the others which of
-/// its pieces ghosts tie to which of theirs: one exchange, however far a piece reaches. Pieces of
-/// images alone, beyond reach of the body, are none.
+/// Returns the connected components of bonds and links: those that ranks share first, then the
+/// others by their lowest points. Every rank joins its own points, and the ranks exchange the pairs
+/// of components that ghosts connect: one exchange, however far a piece reaches. Components of
+/// images alone are left out.
 /// @param broken one flag per bond; empty: none is
 /// @param links pairs of points here that are joined, too
-/// @param ties of a shared body points of several ranks that are joined, see Holding
-/// @param sharing null: the body is whole. Otherwise a call that all ranks make
+/// @param ties points of several ranks that are joined, see Holding
+/// @param sharing null: the body is whole. Otherwise collective
 [[nodiscard]] std::vector<Piece> pieces_of(const Points& points, const Bonds& bonds,
                                            std::span<const char> broken,
                                            std::span<const BondEnds> links,
                                            std::span<const Index> ties, const Sharing* sharing);
 
-/// What moves freely of some pieces, and how to pin it. Of a shared body calls that all ranks make.
+/// Free rigid motions of pieces, and pins that suppress them. Collective if ranks share the body.
 class FreePieces {
  public:
   /// All must outlive it.
@@ -42,7 +43,7 @@ class FreePieces {
              const Sharing* sharing)
       : points_(points), positions_(positions), holding_(holding), sharing_(sharing) {}
 
-  /// See free_rigid_motions, of each piece.
+  /// Returns the free rigid motions of each piece, see free_rigid_motions.
   [[nodiscard]] std::vector<RigidMotions> motions(const std::vector<Piece>& pieces) const;
 
   /// Pins each piece by determinate_pins.
@@ -57,7 +58,7 @@ class FreePieces {
   [[nodiscard]] std::vector<RigidMotions> shared_motions(std::span<const Piece> pieces) const;
   void pin_shared(std::span<const Piece> pieces, std::span<const RigidMotions> motions,
                   const std::vector<char>& held, std::vector<char>& pinned) const;
-  /// Those that one rank has pinned all have.
+  /// Pins on all ranks the handles that one rank has pinned.
   void tell_pinned_handles(std::vector<char>& pinned) const;
 
   const Points& points_;

@@ -15,7 +15,8 @@ namespace {
 /// Eigenvalues below this fraction of the largest count as zero: motions of the size of round-off.
 constexpr double rank_tolerance = 1e-10;
 
-// Products of matrices are lazy ones: at most 6 x 6, and Eigen's others take seconds to compile.
+// Matrix products are lazy ones: sizes are at most 6 x 6, and Eigen's others take seconds to
+// compile.
 
 /// Motions of one point: at most 3 x 6, without a heap.
 using PointMotions = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 3, 6>;
@@ -43,7 +44,7 @@ PointMotions rigid_motions(const Eigen::Vector3d& arm, int dimension, double siz
   return motion;
 }
 
-/// A held motion by the motions about a centre, as rigid_motions has them; of length one.
+/// A held motion as a row over the motions about a centre of rigid_motions, normalised.
 Eigen::RowVectorXd row_of(const HeldMotion& motion, const Eigen::Vector3d& centre, int dimension,
                           double size) {
   const Coordinates from_centre{centre.x(), centre.y(), centre.z()};
@@ -156,7 +157,7 @@ RigidMotions free_rigid_motions(const RigidMotions& about, const MotionSums& sum
   const Eigen::Index modes = about.dimension * (about.dimension + 1) / 2;
   const Eigen::Map<const Eigen::MatrixXd> gram(sums.moving.data(), modes, modes),
       held(sums.held.data(), modes, modes);
-  // A straight row of points does not move when it turns about itself: such motions do not count.
+  // A straight row of points does not move in a rotation about itself: such motions are left out.
   const Eigen::MatrixXd moving = null_space(gram, sums.points, true);
   const Eigen::MatrixXd resisted = moving.transpose().lazyProduct(held);
   const Eigen::MatrixXd free = moving.lazyProduct(null_space(resisted.lazyProduct(moving), 1.0));
@@ -240,7 +241,7 @@ std::vector<std::size_t> determinate_pins(const RigidMotions& motions,
     rows.row(k) =
         rigid_motions(arm, d, motions.size).row(Eigen::Index(dof % d)) * basis_of(motions);
   }
-  // Gram-Schmidt with pivots: a pinned row is taken out of all rows.
+  // Gram-Schmidt with pivots: a pinned row is projected out of all rows.
   std::vector<std::size_t> pins;
   for (int pin = 0; pin < motions.count; ++pin) {
     Eigen::Index most = 0;
