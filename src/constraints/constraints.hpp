@@ -13,49 +13,50 @@
 
 namespace peristat {
 
-/// A share of a point's displacement: `block` (row major, in the corner of 3 x 3) times the
-/// components of another point or handle.
+/// Part of a follower's displacement: `block` (row major, in the corner of 3 x 3) times the
+/// displacement of another point or handle, its master.
 struct Dependence {
   Index master = 0;
   Tensor block{};
 };
 
-/// Degrees of freedom that follow others, which leave the equations (master and slave elimination):
+/// Master-slave elimination of degrees of freedom that follow others:
 ///
 ///   u = phi(q),   R_q = J^T (f - dE/du),   K_q = J^T K J + (dE/du - f) . d2 phi / dq2
 ///
 /// with J = d phi / dq, so that the tangent keeps its symmetry and, where it had it, its
-/// definiteness. Arrays have, after the body's points, one more entry of `dimension` numbers per
-/// handle: generalised coordinates that stand for no point, like the rotation of a rigid set.
+/// definiteness. After the body's points arrays have one more entry of `dimension` numbers per
+/// handle: a generalised degree of freedom that belongs to no point, such as the rotation of a
+/// rigid set.
 ///
-/// A dependent component is a function of others that depend on nothing, with one exception: images
-/// follow sources that may themselves follow.
+/// A dependent component is a function of independent ones, with one exception: images follow
+/// sources that may themselves follow.
 ///
-/// Of a part of a body handles are the same on all ranks, and rank 0's. Where points follow others
-/// of several ranks, what moves, extends, folds, unfolds or shares out is a call that all ranks
-/// make.
+/// For a part of a body all ranks have the same handles, which rank 0 owns. If followers have
+/// masters on several ranks, functions that move, extend, fold, unfold or share out are collective.
 class Constraints {
  public:
-  /// With what the points' images follow. Each period has a handle, the jump of the displacement
-  /// over it [m].
-  /// @param ranks that have parts of the body; they outlive it. Null: it is whole
+  /// Constraints of the points' images alone. Each period has a handle, the jump of the
+  /// displacement across it [m].
+  /// @param ranks that have parts of the body; they outlive it. Null: the body is whole
   explicit Constraints(const Points& points, const Communicator* ranks = nullptr);
 
-  /// Of parts of a body the same on all ranks, which have all handles and kinds of images.
+  /// True without constraints. The same on all ranks, which have all handles and kinds of images.
   [[nodiscard]] bool none() const {
     const Images& images = body_->images;
     if (body_->owned) return handles_.empty() && images.kinds.empty();
     return followers_.empty() && rigid_.empty() && images.source.empty();
   }
 
-  /// Whether points follow others directly, as of rollers and linear constraints: not as images or
-  /// in rigid sets. Of a part of a body those that are here count.
+  /// True if points follow others directly, as for rollers and linear constraints: not as images or
+  /// in rigid sets. For a part of a body: those on this rank, and the shared followers of all
+  /// ranks.
   [[nodiscard]] bool couples_points() const { return !followers_.empty() || !shared_.empty(); }
 
-  /// Points and handles.
+  /// Number of points and handles.
   [[nodiscard]] Index rows() const { return points_ + static_cast<Index>(handles_.size()); }
   [[nodiscard]] std::size_t dofs() const { return std::size_t(rows()) * std::size_t(dimension_); }
-  /// Where handles stand, for what asks for places [m].
+  /// Places of the handles [m].
   [[nodiscard]] const std::vector<Coordinates>& handles() const { return handles_; }
   /// Handle of the period across an axis; -1: none.
   [[nodiscard]] Index period_handle(int axis) const { return period_[std::size_t(axis)]; }
@@ -64,33 +65,33 @@ class Constraints {
 
   Index add_handle(const Coordinates& place);
 
-  /// Lets components of a point follow.
+  /// Makes components of a point follow masters.
   /// @param follows per component
-  /// @param masters rows of other components are zero
+  /// @param masters whose rows of other components are zero
   /// @throws std::logic_error if one of them follows already
   void follow(Index point, const std::array<bool, 3>& follows, std::vector<Dependence> masters);
 
-  /// A point that follows masters of several ranks, as each of them knows it.
+  /// A follower with masters on several ranks, as each of them knows it.
   struct SharedFollower {
-    std::optional<Index> point;  ///< nothing: it is not here
+    std::optional<Index> point;  ///< nothing: it is not on this rank
     std::array<bool, 3> follows;
     std::vector<Dependence> masters;  ///< that this rank owns
   };
-  /// Lets components of a point follow masters of several ranks; a call that all of them make, in
-  /// the same order.
+  /// Makes components of a point follow masters of several ranks. Collective, in the same order on
+  /// all ranks.
   /// @throws std::logic_error if one of them follows already
   void follow(SharedFollower follower);
 
   [[nodiscard]] const std::vector<SharedFollower>& shared_followers() const { return shared_; }
 
-  /// The share of a shared follower in a point that is one, or in an image of it.
+  /// Dependence of a point, or of an image of it, on a shared follower.
   struct SharedDependence {
-    std::size_t follower;  ///< its number
-    Coordinates factor;    ///< of each component; 0: the point's own
+    std::size_t follower;  ///< its number in shared_followers()
+    Coordinates factor;    ///< per component: ±1 (an image's mirror), or 0 if it does not follow
   };
   [[nodiscard]] std::optional<SharedDependence> shared_dependence(Index point) const;
 
-  /// Lets points follow a rigid motion about a centre: u = c + (R(theta) - I)(X - centre), c the
+  /// Makes points follow a rigid motion about a centre: u = c + (R(theta) - I)(X - centre), c the
   /// components of one handle and theta those of another, divided by `size` [m] (2D: its first
   /// one).
   struct RigidSet {
@@ -107,42 +108,43 @@ class Constraints {
   [[nodiscard]] Coordinates rotation(const RigidSet& set,
                                      std::span<const double> displacement) const;
 
-  /// Moves whatever follows.
+  /// Sets the displacements of all followers.
   void move(std::span<double> displacement) const;
 
-  /// Shares out what handles have moved since `from` among all points that a follower's equation
-  /// names, each by its coefficient, in the place of leaving it to the follower: one point of many
-  /// would jump by as many times the displacement that their mean is given.
-  /// @param stays per degree of freedom, whether it is none that can take a share
+  /// Distributes the change of handles since `from` over all points in a follower's equation, in
+  /// proportion to their coefficients, instead of leaving it to the follower alone: where a mean of
+  /// many points is prescribed, one point would jump by as many times the mean's change.
+  /// @param stays per degree of freedom: it takes no share
   void share_out_jump(std::span<const double> from, std::span<const char> stays,
                       std::span<double> displacement) const;
 
-  /// Lets a rate of displacements include what follows: J times that of the others.
+  /// Extends a rate of displacements to the followers: J times that of their masters.
   void extend(std::span<const double> displacement, std::span<double> rate) const;
 
-  /// Takes derivatives by all displacements to those that nothing prescribes: adds J^T (dE/du - f)
-  /// of what follows to the gradient's entries of its masters. Entries of what follows keep the
+  /// Reduces derivatives by all displacements to those by the independent ones: adds J^T (dE/du -
+  /// f) of followers to the gradient's entries of their masters. Entries of followers keep the
   /// whole force that acts there.
   void fold(std::span<const double> displacement, std::span<const double> external_force,
             std::span<double> gradient) const;
 
-  /// Internal forces again from a folded gradient, where points follow others directly; forces on
+  /// Recovers internal forces from a folded gradient where points follow others directly; forces on
   /// images stay with their sources.
   void unfold(std::span<const double> external_force, std::span<double> gradient) const;
 
   /// Adds forces on images to their sources and the jumps over periods.
   void fold_images(std::span<double> force) const;
 
-  /// The rows of J of a point: itself as far as it does not follow, and its masters but those that
-  /// shared_dependence tells.
+  /// The rows of J of a point: itself in components that do not follow, and its masters, without
+  /// those of shared_dependence.
   [[nodiscard]] std::vector<Dependence> dependences(Index point,
                                                     std::span<const double> displacement) const;
-  /// Whether a point or handle follows nothing.
+  /// True if a point or handle follows nothing.
   [[nodiscard]] bool stands_alone(Index row) const {
     return row >= points_ || role_[std::size_t(row)].kind == Role::Kind::alone;
   }
 
-  /// What the curvature of phi adds to K_q: for each rigid set the block of its rotation [N/m].
+  /// Contribution of the curvature of phi to K_q: for each rigid set the block of its rotation
+  /// [N/m].
   /// @param gradient folded
   [[nodiscard]] std::vector<Tensor> curvature(std::span<const double> displacement,
                                               std::span<const double> external_force,
