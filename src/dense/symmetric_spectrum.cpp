@@ -5,14 +5,14 @@
 namespace peristat {
 namespace {
 
-// One size for all: each further one takes eight seconds to compile.
+// A dynamic size for all: each fixed one takes eight seconds more to compile.
 using Solver = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>;
 
 Solver solver_of(const double* matrix, int size, int options) {
   return Solver(Eigen::Map<const Eigen::MatrixXd>(matrix, size, size), options);
 }
 
-/// Of a tensor given row by row: Eigen reads the lower half of its transpose.
+/// Solver of a tensor given row by row, in Eigen's order by columns.
 template <int D>
 Solver solver_of_rows(const double* matrix, int options) {
   std::array<double, std::size_t(D * D)> transposed;

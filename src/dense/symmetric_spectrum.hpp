@@ -13,7 +13,7 @@ struct SymmetricSpectrum {
   std::array<std::array<double, D>, D> vectors;  ///< vectors[k] belongs to values[k]
 };
 
-/// Of a small tensor; D is 1, 2 or 3.
+/// Spectrum of a small tensor; D is 1, 2 or 3.
 /// @param matrix D x D entries, of which the lower half, row by row, is read
 template <int D>
 [[nodiscard]] SymmetricSpectrum<D> symmetric_spectrum(const double* matrix);
@@ -22,9 +22,9 @@ template <int D>
 template <int D>
 [[nodiscard]] std::array<double, D> symmetric_eigenvalues(const double* matrix);
 
-/// Of a matrix of any size.
+/// Spectrum of a matrix of any size.
 struct SymmetricModes {
-  bool is_found = false;        ///< whether the iterations have converged
+  bool is_found = false;        ///< true if the iterations have converged
   std::vector<double> values;   ///< ascending
   std::vector<double> vectors;  ///< one after another, in the order of the values
 };

@@ -16,8 +16,8 @@ class SymmetricFactors {
   /// @param matrix size x size entries, of which the lower half, column by column, is read
   void compute(std::span<const double> matrix, int size);
 
-  /// Whether it could be factorised without a negative pivot, with all of them above this share of
-  /// the largest.
+  /// True if the matrix could be factorised without a negative pivot, with all pivots above this
+  /// fraction of the largest.
   [[nodiscard]] bool is_positive(double least_share) const;
 
   /// @param side becomes the solution
@@ -28,7 +28,7 @@ class SymmetricFactors {
   std::unique_ptr<Factors> factors_;
 };
 
-/// x of A x = b with a symmetric A.
+/// Solves A x = b with a symmetric A.
 /// @param side becomes the solution
 void solve_symmetric(std::span<const double> matrix, std::span<double> side);
 
